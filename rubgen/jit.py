@@ -1,0 +1,44 @@
+"""The one decorator for compiled kernels.
+
+Numba's on-disk cache looks at the file of the compiled function alone and misses a change in a kernel that it calls
+from another file. The cache therefore lives in a folder that is named after a hash of every kernel source of rubgen.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import ParamSpec, TypeVar, cast
+
+import numba
+import platformdirs
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+@cache
+def kernel_cache_dir() -> Path:
+    """Folder of the compiled kernels: the user's cache folder, then a hash of numba's version and all kernel sources."""
+    root = Path(__file__).parent
+    digest = hashlib.sha256(numba.__version__.encode())
+    for source in sorted(root.rglob("*_kernels.py")) + [Path(__file__)]:
+        digest.update(source.relative_to(root).as_posix().encode())
+        digest.update(source.read_bytes())
+    return Path(platformdirs.user_cache_dir("rubgen")) / "kernels" / digest.hexdigest()[:16]
+
+
+def kernel(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile `function` with numba, without the GIL, without fastmath, cached in `kernel_cache_dir()`.
+
+    Kernels live in files named `*_kernels.py`, take arrays and scalars only, and never raise. `NUMBA_DISABLE_JIT=1`
+    runs them as plain Python.
+    """
+    previous = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(kernel_cache_dir())
+    try:
+        return cast("Callable[P, R]", numba.njit(cache=True, nogil=True)(function))
+    finally:
+        numba.config.CACHE_DIR = previous

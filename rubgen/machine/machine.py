@@ -1,0 +1,133 @@
+"""What is simulated: a bladed disk on elastic supports inside a flexible casing.
+
+All lengths in m, stiffness in N/m or N m/rad, density in kg/m3. Values are checked when an object is made.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import ConfigDict, Field
+from pydantic.dataclasses import dataclass
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Ratio = Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)]
+STRICT = ConfigDict(extra="forbid")
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Material:
+    """Linear isotropic elastic material."""
+
+    youngs_modulus_pa: Positive
+    poisson_ratio: Annotated[float, Field(gt=-1, lt=0.5, allow_inf_nan=False)]
+    density_kg_per_m3: Positive
+
+    @property
+    def shear_modulus_pa(self) -> float:
+        """G = E / (2 (1 + nu)), in Pa."""
+        return self.youngs_modulus_pa / (2 * (1 + self.poisson_ratio))
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Disk:
+    """Annular disk whose thickness is linear in the radius, and its mesh of eight-node shells."""
+
+    material: Material
+    bore_radius_m: Positive
+    rim_radius_m: Positive
+    bore_thickness_m: Positive
+    rim_thickness_m: Positive
+    radial_elements: Annotated[int, Field(ge=1)] = 7
+    circumferential_elements: Annotated[int, Field(ge=3)] = 72
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class BladeRow:
+    """Equal blades on the rim: chord, thickness and stagger are linear from root to tip.
+
+    The angle is the one between the thickness normal and the axis of rotation Z, in degrees.
+    """
+
+    material: Material
+    count: Annotated[int, Field(ge=1)]
+    length_m: Positive
+    root_chord_m: Positive
+    tip_chord_m: Positive
+    root_thickness_m: Positive
+    tip_thickness_m: Positive
+    root_angle_deg: Finite
+    tip_angle_deg: Finite
+    elements: Annotated[int, Field(ge=1)] = 20
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Casing:
+    """Flexible ring on radial and circumferential springs at its nodes.
+
+    Undeformed inner surface r(theta) = r_mean - (ovality / 2) cos(lobes (theta - lobe_angle)), with
+    r_mean = tip radius + clearance + ovality / 2: the smallest gap at rest is the clearance.
+    """
+
+    material: Material
+    thickness_m: Positive
+    width_m: Positive
+    clearance_m: Positive
+    ovality_m: NonNegative
+    lobes: Annotated[int, Field(ge=2)] = 2
+    lobe_angle_deg: Finite = 0.0
+    radial_support_stiffness_n_per_m: Positive
+    circumferential_support_stiffness_n_per_m: Positive
+    nodes: Annotated[int, Field(ge=12)] = 180
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class DiskSupport:
+    """Springs that hold the disk centre in the inertial frame, isotropic about the axis of rotation."""
+
+    lateral_stiffness_n_per_m: Positive
+    axial_stiffness_n_per_m: Positive
+    tilt_stiffness_nm_per_rad: Positive
+    torsion_stiffness_nm_per_rad: Positive
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Damping:
+    """Damping ratios at rest, each of its own mechanism.
+
+    lateral, tilt, axial, torsion: dampers beside the support springs, in the inertial frame, sized so that the mode
+    of that name has the ratio. blade: elastic (internal) damping beta K_e with that ratio at the first blade mode.
+    casing: the same ratio for every casing mode.
+    """
+
+    lateral: Ratio
+    tilt: Ratio
+    axial: Ratio
+    torsion: Ratio
+    blade: Ratio
+    casing: Ratio
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Machine:
+    """A blisk on its supports, with its unbalance and damping, in its casing."""
+
+    name: Annotated[str, Field(min_length=1)]
+    disk: Disk
+    blades: BladeRow
+    casing: Casing
+    disk_support: DiskSupport
+    damping: Damping
+    unbalance_kg_m: NonNegative
+
+    @property
+    def tip_radius_m(self) -> float:
+        """Radius of the blade tips at rest, in m."""
+        return self.disk.rim_radius_m + self.blades.length_m
+
+    @property
+    def casing_mean_radius_m(self) -> float:
+        """Mean radius of the casing's undeformed inner surface, in m."""
+        return self.tip_radius_m + self.casing.clearance_m + self.casing.ovality_m / 2

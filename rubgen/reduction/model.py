@@ -1,0 +1,59 @@
+"""The reduced system at one speed, as the solver takes it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rubgen.arrays import FloatArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class CasingSurface:
+    """Undeformed inner surface r(theta) = mean_radius + sum_j amplitude_j cos(order_j (theta - phase_j)), in m, rad."""
+
+    mean_radius: float
+    amplitude: FloatArray
+    order: FloatArray
+    phase: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpinningSystem:
+    """M q'' + C q' + K q = force + contact, constant matrices of the turning frame at one spin speed.
+
+    The state is q = [tip_0 (radial, tangential, axial), ..., tip_{n_blades-1}, O_d x, O_d y, blisk modes, casing
+    modes], n in all. Tip translations are absolute (they contain the motion of O_d) and lie along the blade's own
+    axes, which turn with the blisk: blade k stands at angle theta + blade_angles[k]. The casing modes live in the
+    inertial frame and are mass-normalised.
+
+    `M`, `C`, `K` are (n, n) and contain every gyroscopic, centrifugal, support and damping term; `force` (n,) is the
+    unbalance. `tip_static` (n_blades, 3) is the steady centrifugal displacement of the full model at this speed along
+    the same axes as the tips; it is added to the tips wherever a position is needed, and is no part of q.
+    `casing_modes` (nodes, 2, n_casing) holds the X and Y displacement of each mode at the nodes, which stand at equal
+    steps of polar angle from 0. `lateral_stiffness` and `lateral_damping` are the support's, per axis, in N/m, N s/m.
+    """
+
+    speed: float
+    M: FloatArray
+    C: FloatArray
+    K: FloatArray
+    force: FloatArray
+    n_blades: int
+    n_casing: int
+    tip_radius: float
+    blade_angles: FloatArray
+    tip_static: FloatArray
+    surface: CasingSurface
+    casing_modes: FloatArray
+    lateral_stiffness: float
+    lateral_damping: float
+
+    @property
+    def centre(self) -> int:
+        """Index of O_d x in q; O_d y follows."""
+        return 3 * self.n_blades
+
+    @property
+    def casing_start(self) -> int:
+        """Index of the first casing mode in q."""
+        return self.M.shape[0] - self.n_casing

@@ -1,0 +1,86 @@
+"""What one run is: a machine, how it is operated, what touches, what is measured.
+
+Frozen and validated on creation, like the machine.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+from pydantic.dataclasses import dataclass
+
+from rubgen.machine import STRICT, Machine, NonNegative, Positive
+
+TurnCount = Annotated[int, Field(ge=1)]
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Reduction:
+    """Numbers of Craig-Bampton modes kept: per blade, of the disk, of the coupled blisk, of the casing."""
+
+    blade_modes: Annotated[int, Field(ge=0)] = 4
+    disk_modes: Annotated[int, Field(ge=0)] = 4
+    blisk_modes: Annotated[int, Field(ge=0)] = 4
+    casing_modes: Annotated[int, Field(ge=1)] = 11
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Operation:
+    """Steady rotation: the clearance closes over `closing_turns`, transients die, then `record_turns` are recorded.
+
+    `settle_turns` counts from the start and includes the closing; "auto" follows from the slowest decay of the model.
+    `steps_per_turn` is the least number; it is doubled until the step is stable and feeds the sensors.
+    """
+
+    speed_rpm: Positive
+    settle_turns: TurnCount | Literal["auto"] = "auto"
+    record_turns: TurnCount = 500
+    steps_per_turn: TurnCount = 1024
+    closing_turns: TurnCount = 40
+
+    @property
+    def speed_rad_per_s(self) -> float:
+        """Spin speed Omega in rad/s."""
+        return self.speed_rpm * 0.10471975511965977  # 2 pi / 60
+
+    @property
+    def rotation_frequency_hz(self) -> float:
+        """f_r in Hz."""
+        return self.speed_rpm / 60
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class ContactLaw:
+    """Unilateral contact with sliding Coulomb friction; restitution 0 is a plastic impact."""
+
+    friction: Annotated[float, Field(ge=0, le=0.3, allow_inf_nan=False)] = 0.0
+    restitution: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] = 0.0
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Sensing:
+    """How the true response becomes recorded channels.
+
+    `noise` scales every sensor's own noise level (0 switches it off); `keep_clean` keeps the channels before noise,
+    range and ADC as well.
+    """
+
+    sample_rate_hz: Positive = 25600.0
+    noise: NonNegative = 1.0
+    adc_bits: Annotated[int, Field(ge=8, le=32)] = 16
+    keep_clean: bool = False
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Scenario:
+    """One run, complete: the same scenario gives the same bytes."""
+
+    machine: Machine
+    operation: Operation
+    contact: ContactLaw = ContactLaw()
+    reduction: Reduction = Reduction()
+    sensing: Sensing = Sensing()
+    signal_seconds: Positive = 1.0
+    seed: Annotated[int, Field(ge=0)] = 0
+    index: Annotated[int, Field(ge=0)] = 0

@@ -1,0 +1,98 @@
+"""What the integration of one run gives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from rubgen.arrays import FloatArray, IntArray
+
+
+class Status(StrEnum):
+    """How an integration ended; each value is a sentence for the user."""
+
+    OK = "ok"
+    DIVERGED = "diverged: displacements left the range in which a linear casing means anything"
+    UNSTABLE = "unstable: the linear system without contact grows by itself"
+    CONTACT_UNSOLVED = "contact-unsolved: no unique contact force was found in a step"
+    ENERGY = "energy: the energy identity of the scheme was not kept"
+
+    @property
+    def code(self) -> str:
+        """The word before the colon: `ok`, `diverged`, ... as it stands in tables."""
+        return self.value.split(":")[0]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactEvents:
+    """One row per uninterrupted touch of one blade within the record, in order of its end; all arrays (n_events,)."""
+
+    blade: IntArray
+    start_step: IntArray
+    """First step of the touch, counted from the start of the record."""
+    steps: IntArray
+    """Number of steps with a positive contact force."""
+    angle: FloatArray
+    """Polar angle on the casing in [0, 2 pi), mean weighted by impulse, rad."""
+    impulse: FloatArray
+    """Normal impulse, integral of the contact force, N s."""
+    friction_loss: FloatArray
+    """Work of friction at the contact, J, <= 0."""
+    normal_loss: FloatArray
+    """Work lost in the normal direction, J, <= 0 for restitution 0."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class EnergyBook:
+    """Works over the whole integration, in J, as the scheme books them.
+
+    residual = |E_end - E_start - sum of works| / (sum of absolute works); the identity is exact but for rounding.
+    """
+
+    start: float
+    end: float
+    unbalance: float
+    damping: float
+    circulatory: float
+    contact: float
+    normal_loss: float
+    friction_loss: float
+    drive_contact_work: float
+    drive_contact_limit: float
+    absolute_work: float
+    residual: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Response:
+    """The true response of one run: never a history of the state.
+
+    `taps` maps a name to the signal at every step of the end of the record, (n_tail,), the last step of the record
+    being the last value; the tail covers the asked seconds or 100 turns, whichever is longer. `section_q`,
+    `section_v` (record_turns, n) are state and velocity once a turn at theta = 0 mod 2 pi (blisk coordinates in the
+    turning frame, which coincides with the inertial one there). `impulse_per_turn` (record_turns,) in N s.
+    `contact_steps_per_turn` (record_turns,) counts the steps of each turn in which any blade touched.
+    When `status` is not OK, `reason` says where and by how much, and no array may be used as data.
+    """
+
+    status: Status
+    reason: str
+    speed: float
+    dt: float
+    steps_per_turn: int
+    settle_turns: int
+    record_turns: int
+    taps: dict[str, FloatArray]
+    section_q: FloatArray
+    section_v: FloatArray
+    impulse_per_turn: FloatArray
+    contact_steps_per_turn: IntArray
+    events: ContactEvents
+    energy: EnergyBook
+    n_blades: int
+    n_casing: int
+
+    @property
+    def turn_seconds(self) -> float:
+        """Duration of one turn in s."""
+        return self.dt * self.steps_per_turn
