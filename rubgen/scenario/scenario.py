@@ -84,3 +84,9 @@ class Scenario:
     signal_seconds: Positive = 1.0
     seed: Annotated[int, Field(ge=0)] = 0
     index: Annotated[int, Field(ge=0)] = 0
+    machine_id: str = ""
+
+    @property
+    def run_id(self) -> str:
+        """Name of the run in files and tables."""
+        return f"run-{self.index:06d}"

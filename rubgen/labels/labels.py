@@ -1,0 +1,48 @@
+"""The labels of one run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from rubgen.arrays import FloatArray
+
+
+class Motion(StrEnum):
+    """Class of a steady motion, from the most regular to the least."""
+
+    STATIC = "static"
+    PERIOD_1 = "period-1"
+    PERIOD_K = "period-k"
+    QUASI_PERIODIC = "quasi-periodic"
+    CHAOTIC = "chaotic"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Labels:
+    """What the dynamics really did, from the true response over the whole record.
+
+    Angles in rad, impulse in N s. `period*` is None unless the motion repeats after that many turns. The dictionaries
+    are keyed by tap name: `orders` holds peak amplitudes at k f_r, k = 1..10, in the tap's unit; `even_share` and
+    `odd_share` the shares of sum of squared amplitudes on even and odd k; `dominant_order` the k of the largest.
+    """
+
+    rub: bool
+    contact_duty: float
+    impulse_per_turn: float
+    blades_touched: int
+    contact_zones: int
+    contact_zone_centres: tuple[float, ...]
+    contact_zone_widths: tuple[float, ...]
+    contact_zones_symmetric: bool | None
+    motion_blisk: Motion
+    motion_casing: Motion
+    motion: Motion
+    period_blisk: int | None
+    period_casing: int | None
+    period: int | None
+    has_2fr: bool
+    orders: dict[str, FloatArray]
+    even_share: dict[str, float]
+    odd_share: dict[str, float]
+    dominant_order: dict[str, int]

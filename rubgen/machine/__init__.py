@@ -1,0 +1,34 @@
+"""What is simulated: frozen, validated descriptions of a blisk, its supports and its casing."""
+
+from rubgen.machine.machine import (
+    STRICT,
+    BladeRow,
+    Casing,
+    Damping,
+    Disk,
+    DiskSupport,
+    Finite,
+    Machine,
+    Material,
+    NonNegative,
+    Positive,
+    Ratio,
+)
+from rubgen.machine.load import load_machine, preset_names
+
+__all__ = [
+    "STRICT",
+    "BladeRow",
+    "Casing",
+    "Damping",
+    "Disk",
+    "DiskSupport",
+    "Finite",
+    "Machine",
+    "Material",
+    "NonNegative",
+    "Positive",
+    "Ratio",
+    "load_machine",
+    "preset_names",
+]

@@ -1,0 +1,47 @@
+"""The whole job for one run, on one screen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from rubgen.labels import Labels, label
+from rubgen.reduction import reduce
+from rubgen.scenario import Scenario
+from rubgen.sensors import Recording, margin_seconds, measure
+from rubgen.solver import Response, Status, integrate
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """One simulated run; `recording` and `labels` are None when the response's status is not OK."""
+
+    scenario: Scenario
+    response: Response
+    recording: Recording | None
+    labels: Labels | None
+
+
+def simulate(scenario: Scenario) -> Run:
+    """The run of `scenario`: reduced model, contact integration, sensors, labels.
+
+    The same scenario gives the same bits on one machine, whatever the number of BLAS threads (one is used here) and
+    whether the reduced model comes from the cache. A run that fails is returned with its status, never labelled.
+    """
+    operation, sensing = scenario.operation, scenario.sensing
+    with threadpool_limits(1, user_api="blas"):
+        model = reduce(scenario.machine, scenario.reduction)
+        response = integrate(
+            model.at_speed(operation.speed_rad_per_s),
+            operation,
+            scenario.contact,
+            tail_seconds=scenario.signal_seconds + margin_seconds(sensing),
+            sample_rate_hz=sensing.sample_rate_hz,
+        )
+        if response.status is not Status.OK:
+            return Run(scenario=scenario, response=response, recording=None, labels=None)
+        rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(scenario.index,)))
+        recording = measure(response, sensing, seconds=scenario.signal_seconds, rng=rng)
+        return Run(scenario=scenario, response=response, recording=recording, labels=label(response))
