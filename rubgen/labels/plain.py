@@ -1,0 +1,50 @@
+"""Labels as a dictionary that JSON can hold: the names under which every file and command shows them."""
+
+from __future__ import annotations
+
+import math
+
+from rubgen.labels.labels import Labels
+
+
+def labels_dict(labels: Labels) -> dict[str, object]:
+    """The labels of one run by their public names, as JSON-ready Python values.
+
+    Unit suffixes are part of the names: `contact_impulse_per_turn_n_s` in N s, `contact_zone_centres_rad` and
+    `contact_zone_widths_rad` in rad; `<tap>_orders` holds the ten amplitudes at k f_r in the unit of the tap. What is
+    undefined (no period, a share of nothing) is None. The order of the keys is fixed.
+    """
+    plain: dict[str, object] = {
+        "rub": bool(labels.rub),
+        "contact_duty": _number(labels.contact_duty),
+        "contact_impulse_per_turn_n_s": _number(labels.impulse_per_turn),
+        "blades_touched": int(labels.blades_touched),
+        "contact_zones": int(labels.contact_zones),
+        "contact_zone_centres_rad": [_number(centre) for centre in labels.contact_zone_centres],
+        "contact_zone_widths_rad": [_number(width) for width in labels.contact_zone_widths],
+        "contact_zones_symmetric": labels.contact_zones_symmetric,
+        "motion_blisk": labels.motion_blisk.value,
+        "motion_casing": labels.motion_casing.value,
+        "motion": labels.motion.value,
+        "period_blisk": labels.period_blisk,
+        "period_casing": labels.period_casing,
+        "period": labels.period,
+        "has_2fr": bool(labels.has_2fr),
+    }
+    for tap in labels.orders:
+        plain |= _order_labels(labels, tap)
+    return plain
+
+
+def _order_labels(labels: Labels, tap: str) -> dict[str, object]:
+    return {
+        f"{tap}_orders": [_number(amplitude) for amplitude in labels.orders[tap]],
+        f"{tap}_even_share": _number(labels.even_share[tap]),
+        f"{tap}_odd_share": _number(labels.odd_share[tap]),
+        f"{tap}_dominant_order": int(labels.dominant_order[tap]),
+    }
+
+
+def _number(value: float) -> float | None:
+    """JSON has no NaN: what is undefined becomes None."""
+    return float(value) if math.isfinite(value) else None
