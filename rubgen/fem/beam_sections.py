@@ -1,0 +1,141 @@
+"""Rectangular sections of a pre-twisted, tapered blade: what the beam element integrates along its length.
+
+Section matrices act on (u_x, u_y, u_z, th_x, th_y, th_z) of the centre line or on the six section strains; a point
+s = (0, y, z) moves by u + th x s. Each has the shape (..., 6, 6) for sections of shape (...).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from rubgen.arrays import FloatArray
+from rubgen.machine.machine import BladeRow
+
+
+@dataclass(frozen=True, kw_only=True)
+class BladeSections:
+    """The rectangular sections of a blade at distances x (any shape) from the root.
+
+    `area` = int dA, `yy` = int y^2 dA, `zz` = int z^2 dA, `yz` = int y z dA, `torsion` the Saint-Venant constant,
+    `pull` the axial force of all mass outboard at 1 rad/s. Each has the shape of x.
+    """
+
+    area: FloatArray
+    yy: FloatArray
+    zz: FloatArray
+    yz: FloatArray
+    torsion: FloatArray
+    pull: FloatArray
+
+
+def cowper_shear_coefficient(poisson_ratio: float) -> float:
+    """Cowper's kappa = 10 (1 + nu) / (12 + 11 nu) of a rectangle (J. Appl. Mech. 33, 1966)."""
+    return 10 * (1 + poisson_ratio) / (12 + 11 * poisson_ratio)
+
+
+def rectangle_torsion_constant(long_side: FloatArray, short_side: FloatArray) -> FloatArray:
+    """Saint-Venant torsion constant of a rectangle, in m^4.
+
+    J = c h^3 / 3 (1 - 192 h / (pi^5 c) sum_{n odd} tanh(n pi c / (2 h)) / n^5) (Timoshenko and Goodier, art. 109).
+    The series is the same function for c < h, where it only converges to fewer digits.
+    """
+    ratio = short_side / long_side
+    series = sum(np.tanh(n * np.pi / (2 * ratio)) / n**5 for n in range(1, 40, 2))
+    constant: FloatArray = long_side * short_side**3 / 3 * (1 - 192 * ratio / np.pi**5 * series)
+    return constant
+
+
+def blade_sections(blades: BladeRow, root_radius: float, x: FloatArray) -> BladeSections:
+    """Section properties at distances `x` (m) from the root, which stands at `root_radius` (m).
+
+    Chord, thickness and angle are linear in x. The chord points along cos(angle) e_y + sin(angle) e_z, the thickness
+    normal along -sin(angle) e_y + cos(angle) e_z: at angle 0 the blade lies flat in the plane of the disk.
+    """
+    chord = _linear(blades.root_chord_m, blades.tip_chord_m, blades.length_m)
+    thickness = _linear(blades.root_thickness_m, blades.tip_thickness_m, blades.length_m)
+    angle = np.deg2rad(_linear(blades.root_angle_deg, blades.tip_angle_deg, blades.length_m)(x))
+    c, h = chord(x), thickness(x)
+    along_chord, along_normal = h * c**3 / 12, c * h**3 / 12
+    cos, sin = np.cos(angle), np.sin(angle)
+    inboard = (chord * thickness * Polynomial([root_radius, 1.0])).integ()
+    return BladeSections(
+        area=c * h,
+        yy=along_chord * cos**2 + along_normal * sin**2,
+        zz=along_chord * sin**2 + along_normal * cos**2,
+        yz=(along_chord - along_normal) * sin * cos,
+        torsion=rectangle_torsion_constant(c, h),
+        pull=blades.material.density_kg_per_m3 * (inboard(blades.length_m) - inboard(x)),
+    )
+
+
+def _linear(root: float, tip: float, length: float) -> Polynomial:
+    return Polynomial([root, (tip - root) / length])
+
+
+def section_stiffness(blades: BladeRow, s: BladeSections) -> FloatArray:
+    """Section forces (N, V_y, V_z, M_x, M_y, M_z) per strain (eps, gamma_y, gamma_z, th_x', th_y', th_z')."""
+    E, G = blades.material.youngs_modulus_pa, blades.material.shear_modulus_pa
+    shear = cowper_shear_coefficient(blades.material.poisson_ratio) * G * s.area
+    D = _bending(E * s.yy, E * s.zz, E * s.yz)
+    D[..., 0, 0], D[..., 1, 1], D[..., 2, 2], D[..., 3, 3] = E * s.area, shear, shear, G * s.torsion
+    return D
+
+
+def section_mass(s: BladeSections) -> FloatArray:
+    """|u + th x s|^2 over the section: translation and rotary inertia."""
+    m = _bending(s.yy, s.zz, s.yz)
+    m[..., 0, 0] = m[..., 1, 1] = m[..., 2, 2] = s.area
+    m[..., 3, 3] = s.yy + s.zz
+    return m
+
+
+def section_spin(s: BladeSections) -> FloatArray:
+    """u_x^2 + u_y^2 over the section, u_x = th_y z - th_z y, u_y = -th_x z."""
+    m = _bending(s.yy, s.zz, s.yz)
+    m[..., 0, 0] = m[..., 1, 1] = s.area
+    m[..., 3, 3] = s.zz
+    return m
+
+
+def section_coriolis(s: BladeSections) -> FloatArray:
+    """Virtual work du . (e_z x u) = du_y u_x - du_x u_y over the section."""
+    m = np.zeros((*s.area.shape, 6, 6))
+    m[..., 1, 0], m[..., 0, 1] = s.area, -s.area
+    m[..., 4, 3], m[..., 3, 4] = s.zz, -s.zz
+    m[..., 5, 3], m[..., 3, 5] = -s.yz, s.yz
+    return m
+
+
+def section_pull(s: BladeSections) -> FloatArray:
+    """P (u_y'^2 + u_z'^2) + P I_p / A th_x'^2, on (-, u_y', u_z', th_x', -, -)."""
+    m = np.zeros((*s.area.shape, 6, 6))
+    m[..., 1, 1] = m[..., 2, 2] = s.pull
+    m[..., 3, 3] = s.pull * (s.yy + s.zz) / s.area
+    return m
+
+
+def section_second_order(s: BladeSections) -> FloatArray:
+    """I_y2 (th_x^2 + th_z^2) - I_yz th_y th_z: twice the work of -(0, y, 0) on th x (th x s) / 2."""
+    m = np.zeros((*s.area.shape, 6, 6))
+    m[..., 3, 3] = m[..., 5, 5] = s.yy
+    m[..., 4, 5] = m[..., 5, 4] = -s.yz / 2
+    return m
+
+
+def section_load(s: BladeSections, radius: FloatArray) -> FloatArray:
+    """Work of r_perp on u + th x s, r_perp = (r, y, 0): a pull along x and the propeller moment about x."""
+    load = np.zeros((*s.area.shape, 6))
+    load[..., 0] = s.area * radius
+    load[..., 3] = -s.yz
+    return load
+
+
+def _bending(yy: FloatArray, zz: FloatArray, yz: FloatArray) -> FloatArray:
+    """(th_y z - th_z y)^2 over the section as the last two rows of a 6 x 6 matrix."""
+    m = np.zeros((*yy.shape, 6, 6))
+    m[..., 4, 4], m[..., 5, 5] = zz, yy
+    m[..., 4, 5] = m[..., 5, 4] = -yz
+    return m
