@@ -1,0 +1,126 @@
+"""The full finite-element blisk in the turning frame: disk centre, disk, blades and their couplings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import LinearOperator, eigsh
+
+from rubgen.arrays import FloatArray, IntArray, SparseMatrix
+from rubgen.errors import UserError
+from rubgen.fem.beam import BeamMatrices, blade_matrices
+from rubgen.fem.constraints import link_stress_stiffness, rigid_link, rim_joint
+from rubgen.fem.disk import DiskModel, assemble_disk
+from rubgen.fem.shell import shell_stress_stiffness
+from rubgen.fem.statics import HeldStiffness, factorize, on_springs, support_stiffness
+from rubgen.machine import BladeRow, Disk, DiskSupport
+
+CENTRE = np.arange(6)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BliskModel:
+    """Full model: M q'' + 2 Omega G q' + (K + Omega^2 (K_sigma - S)) q = Omega^2 f_c + loads, K without supports.
+
+    DoFs, six a node: O_d, the disk's nodes in o-xyz, then each blade's nodes from root to tip along the blade's own
+    axes. Matrices are (n, n), f_c (n,). `disk_size` counts the DoFs of O_d and the disk; `rim`, `roots`, `tips`
+    (blades, 6) are DoFs; `angles` (blades,) the polar angles of the blades in rad; `penalty` is k_p. `held` solves
+    static problems with O_d held laterally. `plate` and `beam` are the matrices of the disk and of one blade.
+    """
+
+    M: SparseMatrix
+    G: SparseMatrix
+    K: SparseMatrix
+    S: SparseMatrix
+    K_sigma: SparseMatrix
+    f_c: FloatArray
+    disk_size: int
+    rim: IntArray
+    roots: IntArray
+    tips: IntArray
+    angles: FloatArray
+    penalty: float
+    held: HeldStiffness
+    plate: DiskModel
+    beam: BeamMatrices
+
+
+def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskModel:
+    """Full model of the blisk, 14,478 DoFs in the preset; supports serve the centrifugal stress alone.
+
+    The steady state at 1 rad/s, blades pulling at the rim and the bore held by the rigid link, gives the disk's plane
+    stress, the forces in the link and the link's geometric term. So K_sigma - S on rigid-body motions is -m, -m, 0,
+    I_p - I_d, I_p - I_d, 0: tests/fem/test_blisk.py. Raises UserError when blades do not meet corner nodes of the
+    rim, and for a single blade, whose pull is no symmetric load.
+    """
+    plate, beam = assemble_disk(disk), blade_matrices(blades, disk.rim_radius_m)
+    rim_node = plate.rim[:: _elements_per_blade(disk, blades)]
+    disk_size, n_blade = 6 + plate.M.shape[0], len(beam.f_c)
+    size = disk_size + blades.count * n_blade
+    roots = _dof(disk_size // 6 + n_blade // 6 * np.arange(blades.count))
+    bore, rim, tips = _dof(1 + plate.bore), _dof(1 + rim_node), roots + n_blade - 6
+    angles = 2 * np.pi * np.arange(blades.count) / blades.count
+
+    penalty = float(plate.K.diagonal().max())
+    arm = plate.mesh.nodes[plate.bore]
+    link, joint = rigid_link(arm, bore, CENTRE, size), rim_joint(angles, rim, roots, size)
+    K = _blocks(plate.K, beam.K, blades.count) + penalty * (link.T @ link + joint.T @ joint)
+    f_c = np.concatenate([np.zeros(6), plate.f_c, *[beam.f_c] * blades.count])
+    held = HeldStiffness(K, support)
+    static = held.solve(f_c)
+    K_plate = shell_stress_stiffness(plate.mesh, disk.material, static[6:disk_size])
+    link_force = -penalty * (link @ static).reshape(-1, 6)[:, :3]
+    return BliskModel(
+        M=_blocks(plate.M, beam.M, blades.count),
+        G=_blocks(plate.G, beam.G, blades.count),
+        K=sp.csr_array(K),
+        S=_blocks(plate.S, beam.S, blades.count),
+        K_sigma=_blocks(K_plate, beam.K_sigma, blades.count, link_stress_stiffness(arm, link_force)),
+        f_c=f_c,
+        disk_size=disk_size,
+        rim=rim,
+        roots=roots,
+        tips=tips,
+        angles=angles,
+        penalty=penalty,
+        held=held,
+        plate=plate,
+        beam=beam,
+    )
+
+
+def blisk_frequencies(model: BliskModel, support: DiskSupport, modes: int) -> FloatArray:
+    """Lowest natural frequencies (modes,) in Hz of the full blisk at rest on its supports, undamped."""
+    K = on_springs(model.K, support_stiffness(support))
+    factor = factorize(K)
+    inverse = LinearOperator(K.shape, matvec=factor.solve, dtype=np.float64)
+    start = np.sin(1.0 + np.arange(K.shape[0]))
+    squares = eigsh(
+        K, k=modes, M=model.M, sigma=0.0, OPinv=inverse, v0=start, return_eigenvectors=False, tol=1e-12, ncv=2 * modes + 20
+    )
+    return np.sqrt(np.sort(squares)) / (2 * np.pi)
+
+
+def _elements_per_blade(disk: Disk, blades: BladeRow) -> int:
+    elements, count = disk.circumferential_elements, blades.count
+    if count < 2:
+        raise UserError(f"blades.count = {count}: a blisk needs at least 2 equal blades; raise it")
+    if elements % count:
+        raise UserError(
+            f"disk.circumferential_elements = {elements}: must be a multiple of blades.count = {count}, "
+            f"for every blade needs a node at the rim; try {count * max(1, round(elements / count))}"
+        )
+    return elements // count
+
+
+def _dof(nodes: IntArray) -> IntArray:
+    return 6 * nodes[:, None] + np.arange(6)
+
+
+def _blocks(plate: SparseMatrix, blade: FloatArray, count: int, centre: FloatArray | None = None) -> SparseMatrix:
+    """diag(O_d, disk, blade, ..., blade); O_d has no matrix of its own but the link's."""
+    first = np.zeros((6, 6)) if centre is None else centre
+    blocks = [sp.coo_array(first), plate, *[sp.coo_array(blade)] * count]
+    return sp.csr_array(sp.block_diag(blocks, format="csr"))

@@ -1,0 +1,71 @@
+"""Penalty couplings of the blisk: disk centre to bore, blade root to rim; and what they carry."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from rubgen.arrays import FloatArray, IntArray, SparseMatrix
+
+
+def rigid_rows(arm: FloatArray) -> FloatArray:
+    """Rows (n, 6, 12) of the rigid link between O_d and the nodes at `arm` (n, 2): T [q_O, q_i] = 0.
+
+    u_i - u_O + Y th_Z = 0, v_i - v_O - X th_Z = 0, w_i - w_O - Y th_X + X th_Y = 0, rotations equal
+    (Zeng et al. 2019, Eq. 1).
+    """
+    x, y = arm[:, 0], arm[:, 1]
+    T = np.zeros((len(arm), 6, 12))
+    T[:, :, 6:], T[:, :, :6] = np.eye(6), -np.eye(6)
+    T[:, 0, 5], T[:, 1, 5] = y, -x
+    T[:, 2, 3], T[:, 2, 4] = -y, x
+    return T
+
+
+def rigid_link(arm: FloatArray, node_dof: IntArray, centre_dof: IntArray, size: int) -> SparseMatrix:
+    """Constraint rows T (6 n, size) of O_d at `centre_dof` (6,) and the nodes with DoFs `node_dof` (n, 6).
+
+    The penalty stiffness is k_p T^T T, and the force of the link on node i is -k_p T_i q.
+    """
+    rows = rigid_rows(arm)
+    columns = np.concatenate([np.broadcast_to(centre_dof, node_dof.shape), node_dof], axis=1)
+    return _sparse_rows(rows, columns, size)
+
+
+def link_stress_stiffness(arm: FloatArray, force: FloatArray) -> FloatArray:
+    """Stiffness (6, 6) of O_d that steady forces in a rigid link cause, from the second order of its rotation.
+
+    The link pushes node i with F_i (force (n, 3) in N) at the arm r_i; turning it by th moves the node by
+    th x (th x r)/2 to second order, so the energy is -sum over the forces on the link (-F_i), that is
+    E2 = sum F_i . th x (th x r_i) / 2 and K = sum [(F r^T + r F^T)/2 - (F.r) I].
+    """
+    r = np.column_stack([arm, np.zeros(len(arm))])
+    product = force.T @ r
+    K = np.zeros((6, 6))
+    K[3:, 3:] = (product + product.T) / 2 - np.trace(product) * np.eye(3)
+    return K
+
+
+def blade_rotation(angle: float) -> FloatArray:
+    """T_k (6, 6), which turns DoFs in the axes of a blade at polar `angle` (rad) to o-xyz."""
+    c, s = np.cos(angle), np.sin(angle)
+    R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return np.kron(np.eye(2), R)
+
+
+def rim_joint(angle: FloatArray, rim_dof: IntArray, root_dof: IntArray, size: int) -> SparseMatrix:
+    """Constraint rows (6 n, size) that join blade roots (n, 6) to rim nodes (n, 6): q_rim - T_k q_root = 0.
+
+    The penalty stiffness is k_p [I -T_k]^T [I -T_k] (Zeng et al. 2019).
+    """
+    rows = np.stack([np.hstack([np.eye(6), -blade_rotation(a)]) for a in angle])
+    return _sparse_rows(rows, np.concatenate([rim_dof, root_dof], axis=1), size)
+
+
+def _sparse_rows(rows: FloatArray, columns: IntArray, size: int) -> SparseMatrix:
+    n, m, width = rows.shape
+    row = np.repeat(np.arange(n * m), width)
+    column = np.broadcast_to(columns[:, None, :], rows.shape).ravel()
+    matrix = sp.coo_array((rows.ravel(), (row, column)), shape=(n * m, size)).tocsr()
+    matrix.eliminate_zeros()
+    return matrix
