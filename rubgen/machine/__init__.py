@@ -1,5 +1,6 @@
 """What is simulated: frozen, validated descriptions of a blisk, its supports and its casing."""
 
+from rubgen.machine.load import load_machine, preset_names
 from rubgen.machine.machine import (
     STRICT,
     BladeRow,
@@ -14,7 +15,6 @@ from rubgen.machine.machine import (
     Positive,
     Ratio,
 )
-from rubgen.machine.load import load_machine, preset_names
 
 __all__ = [
     "STRICT",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import tomllib
 from pathlib import Path
 
@@ -9,6 +11,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from rubgen.errors import UserError
 from rubgen.machine.machine import Machine
+from rubgen.machine.problems import first_problem, nearest
 
 PRESETS = Path(__file__).parent / "presets"
 
@@ -18,20 +21,23 @@ def preset_names() -> list[str]:
     return sorted(path.stem for path in PRESETS.glob("*.toml"))
 
 
-def load_machine(name_or_path: str) -> Machine:
-    """The preset of that name, or the machine in that TOML file.
+def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
+    """The preset of that name, or the machine in that TOML file; relative paths start from `folder`.
 
     Raises UserError with file, key, value and what is allowed when there is none, or when it is not a valid machine.
     """
-    path = PRESETS / f"{name_or_path}.toml"
-    if name_or_path not in preset_names():
-        path = Path(name_or_path)
-        if path.suffix != ".toml":
-            presets = ", ".join(preset_names())
-            raise UserError(
-                f"machine = {name_or_path!r}: no such preset; give one of {presets}, or the path of a machine .toml"
-            )
-    return TypeAdapter(Machine).validate_python(read_toml(path)) if path.parent == PRESETS else _user_machine(path)
+    if name_or_path in preset_names():
+        return _machine_from(PRESETS / f"{name_or_path}.toml")
+    if not name_or_path.endswith(".toml"):
+        hint = nearest(name_or_path, preset_names())
+        raise UserError(f"machine = {name_or_path!r}: no such preset; {hint}, or the path of a machine .toml")
+    return _machine_from((folder or Path()) / name_or_path)
+
+
+def machine_id(machine: Machine) -> str:
+    """Twelve hexadecimal digits that stand for every value of the machine: sha256 of its sorted JSON."""
+    values = TypeAdapter(Machine).dump_python(machine, mode="json")
+    return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()[:12]
 
 
 def read_toml(path: Path) -> dict[str, object]:
@@ -40,23 +46,18 @@ def read_toml(path: Path) -> dict[str, object]:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise UserError(f"{path}: there is no such file; check the path") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise UserError(f"{path}: cannot be read ({error}); give a readable TOML file") from None
+    except UnicodeDecodeError:
+        raise UserError(f"{path}: not a text file in UTF-8; give a TOML file") from None
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror}); give a readable TOML file") from None
     except tomllib.TOMLDecodeError as error:
         raise UserError(f"{path}: not TOML ({error}); mend the line that is named") from None
 
 
-def first_problem(path: Path, error: ValidationError) -> UserError:
-    """A validation error as one line: file, key, value, what is allowed."""
-    problem = error.errors()[0]
-    key = ".".join(str(part) for part in problem["loc"])
-    value = problem.get("input")
-    shown = "" if isinstance(value, dict) or problem["type"] == "extra_forbidden" else f" = {value!r}"
-    return UserError(f"{path}: {key}{shown}: {problem['msg']}")
-
-
-def _user_machine(path: Path) -> Machine:
+def _machine_from(path: Path) -> Machine:
+    data = read_toml(path)
+    adapter = TypeAdapter(Machine)
     try:
-        return TypeAdapter(Machine).validate_python(read_toml(path))
+        return adapter.validate_python(data)
     except ValidationError as error:
-        raise first_problem(path, error) from None
+        raise first_problem(path, error, data, adapter) from None

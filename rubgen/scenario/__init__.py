@@ -1,5 +1,17 @@
 """What is varied: scenarios of single runs, and the recipes that draw them."""
 
+from rubgen.scenario.recipe import Recipe, load_recipe, parse_recipe
 from rubgen.scenario.scenario import ContactLaw, Operation, Reduction, Scenario, Sensing
+from rubgen.scenario.vary import make_scenario
 
-__all__ = ["ContactLaw", "Operation", "Reduction", "Scenario", "Sensing"]
+__all__ = [
+    "ContactLaw",
+    "Operation",
+    "Recipe",
+    "Reduction",
+    "Scenario",
+    "Sensing",
+    "load_recipe",
+    "make_scenario",
+    "parse_recipe",
+]

@@ -1,0 +1,80 @@
+"""Labelled blade-rub data from a finite-element blisk in a flexible oval casing.
+
+`make_scenario` and `simulate` make one run in memory, `generate` a whole data set, `open` reads one. Importing rubgen
+is fast: what a function needs is imported when it is called.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rubgen.errors import RubgenError, UserError
+
+if TYPE_CHECKING:
+    from rubgen.dataset.generate import Generated
+    from rubgen.dataset.open import DataSet
+    from rubgen.pipeline import Run
+    from rubgen.scenario import Recipe, Scenario
+
+__all__ = [
+    "RubgenError",
+    "UserError",
+    "__version__",
+    "generate",
+    "load_recipe",
+    "make_scenario",
+    "open",
+    "simulate",
+    "verify",
+]
+__version__ = "0.1.0"
+
+
+def make_scenario(machine: str = "zeng2019", **values: float) -> Scenario:
+    """A scenario of a machine (preset or path of a TOML) with keys of `[vary]` set: `make_scenario(speed_rpm=6780)`."""
+    from rubgen.scenario import make_scenario
+
+    return make_scenario(machine, **values)
+
+
+def simulate(scenario: Scenario) -> Run:
+    """The run of `scenario` in memory: true response, recorded channels and labels. See `rubgen.pipeline.simulate`."""
+    from rubgen.pipeline import simulate
+
+    return simulate(scenario)
+
+
+def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> Recipe:
+    """The recipe in that TOML file, or the one that comes with rubgen; `runs` overrides its number of runs."""
+    from rubgen.scenario import load_recipe
+
+    return load_recipe(path, runs=runs)
+
+
+def generate(
+    recipe: Recipe | Mapping[str, object] | Path | str | None,
+    out: Path | str,
+    *,
+    runs: int | None = None,
+    workers: int | None = None,
+) -> Generated:
+    """The data set of a recipe in the directory `out`, completed where it was begun. See `rubgen.dataset.generate`."""
+    from rubgen.dataset.generate import generate
+
+    return generate(recipe, out, runs=runs, workers=workers)
+
+
+def open(directory: Path | str) -> DataSet:  # noqa: A001
+    """The data set in that directory: `.runs` as a DataFrame, `.signals(run_id)` as arrays, read when asked for."""
+    from rubgen.dataset.open import DataSet
+
+    return DataSet(Path(directory))
+
+
+def verify(directory: Path | str) -> list[str]:
+    """What is wrong with the data set in that directory, one sentence each; empty when nothing is."""
+    from rubgen.dataset.verify import verify
+
+    return verify(Path(directory))

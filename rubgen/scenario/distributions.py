@@ -1,0 +1,153 @@
+"""How a varied value is drawn: each distribution maps u in [0, 1) to a value by its quantile function.
+
+In a recipe a plain number fixes the value; a table with one key draws it. A new distribution is one class with a
+field of its own name, and one line in `Distribution`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Self, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, RootModel, Tag, model_validator
+from scipy.special import ndtr, ndtri
+
+from rubgen.machine import Finite, Positive
+
+T = TypeVar("T")
+_FROZEN = ConfigDict(extra="forbid", frozen=True)
+
+
+class Constant(RootModel[Finite]):
+    """The same value in every run."""
+
+    model_config = ConfigDict(frozen=True)
+
+    def quantile(self, _u: float) -> float:
+        """The value itself."""
+        return self.root
+
+    def extremes(self) -> tuple[float, ...]:
+        """The values that bound what can be drawn."""
+        return (self.root,)
+
+
+class Uniform(BaseModel):
+    """`{ uniform = [a, b] }`: equal density between a and b."""
+
+    model_config = _FROZEN
+    uniform: tuple[Finite, Finite]
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        return _check_order(self, *self.uniform)
+
+    def quantile(self, u: float) -> float:
+        """The value a + u (b - a)."""
+        low, high = self.uniform
+        return low + u * (high - low)
+
+    def extremes(self) -> tuple[float, ...]:
+        """The values that bound what can be drawn."""
+        return self.uniform
+
+
+class LogUniform(BaseModel):
+    """`{ log_uniform = [a, b] }`: equal density of the logarithm between a and b, both above 0."""
+
+    model_config = _FROZEN
+    log_uniform: tuple[Finite, Finite]
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if min(self.log_uniform) <= 0:
+            raise ValueError("both ends must be above 0, there is no logarithm of 0; use uniform or raise the ends")
+        return _check_order(self, *self.log_uniform)
+
+    def quantile(self, u: float) -> float:
+        """The value a (b / a)^u."""
+        low, high = self.log_uniform
+        return float(low * (high / low) ** u)
+
+    def extremes(self) -> tuple[float, ...]:
+        """The values that bound what can be drawn."""
+        return self.log_uniform
+
+
+class NormalShape(BaseModel):
+    """Mean and standard deviation of the normal density before it is cut off at min and max."""
+
+    model_config = _FROZEN
+    mean: Finite
+    std: Positive
+    min: Finite
+    max: Finite
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        return _check_order(self, self.min, self.max)
+
+
+class Normal(BaseModel):
+    """`{ normal = { mean, std, min, max } }`: the normal density between min and max."""
+
+    model_config = _FROZEN
+    normal: NormalShape
+
+    def quantile(self, u: float) -> float:
+        """The value mean + std Phi^-1(Phi(a) + u (Phi(b) - Phi(a))), a and b the standardised min and max."""
+        shape = self.normal
+        low, high = (float(ndtr((end - shape.mean) / shape.std)) for end in (shape.min, shape.max))
+        value = shape.mean + shape.std * float(ndtri(low + u * (high - low)))
+        return min(max(value, shape.min), shape.max)
+
+    def extremes(self) -> tuple[float, ...]:
+        """The values that bound what can be drawn."""
+        return (self.normal.min, self.normal.max)
+
+
+class Choice(BaseModel):
+    """`{ choice = [a, b, ...] }`: each listed value with the same probability."""
+
+    model_config = _FROZEN
+    choice: Annotated[tuple[Finite, ...], Field(min_length=1)]
+
+    def quantile(self, u: float) -> float:
+        """The value number floor(u n)."""
+        return self.choice[min(math.floor(u * len(self.choice)), len(self.choice) - 1)]
+
+    def extremes(self) -> tuple[float, ...]:
+        """Every value that can be drawn."""
+        return self.choice
+
+
+KINDS = ("uniform", "log_uniform", "normal", "choice")
+
+
+def _kind(value: object) -> str | None:
+    if isinstance(value, bool):
+        return None
+    if isinstance(value, int | float | Constant):
+        return "number"
+    names = value if isinstance(value, dict) else type(value).model_fields if isinstance(value, BaseModel) else ()
+    return next((kind for kind in KINDS if kind in names), None)
+
+
+Distribution = Annotated[
+    Annotated[Constant, Tag("number")]
+    | Annotated[Uniform, Tag("uniform")]
+    | Annotated[LogUniform, Tag("log_uniform")]
+    | Annotated[Normal, Tag("normal")]
+    | Annotated[Choice, Tag("choice")],
+    Discriminator(
+        _kind,
+        custom_error_type="distribution",
+        custom_error_message=f"no such distribution; give a number or a table with one of {', '.join(KINDS)}",
+    ),
+]
+
+
+def _check_order(distribution: T, low: float, high: float) -> T:
+    if low > high:
+        raise ValueError(f"the lower end {low:g} is above the upper end {high:g}; swap them")
+    return distribution

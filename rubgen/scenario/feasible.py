@@ -1,0 +1,78 @@
+"""What a scenario must satisfy beyond the ranges of its single values, checked before anything is computed."""
+
+from __future__ import annotations
+
+from rubgen.errors import UserError
+from rubgen.scenario.scenario import Scenario
+
+MIN_RECORD_TURNS = 500
+"""Fewer strobed turns call quasi-periodic motion chaotic (49 do), so labels ask for these."""
+MAX_STEPS_PER_TURN = 16384
+"""The steps of a turn are doubled until they feed the sensors, up to here."""
+STEPS_PER_SAMPLE = 2.56
+"""Steps per recorded sample that leave room for the anti-alias filter."""
+QUARTERS = 4
+
+
+def check_feasible(scenario: Scenario, source: str = "") -> None:
+    """Raise UserError where the scenario cannot be run; keys are named as in a recipe, after `source` (its file)."""
+    for problem in (_record_problem, _tail_problem, _rate_problem, _steps_problem, _lobe_problem, _node_problem):
+        text = problem(scenario)
+        if text:
+            raise UserError(source + text)
+
+
+def _record_problem(scenario: Scenario) -> str | None:
+    turns = scenario.operation.record_turns
+    if turns >= MIN_RECORD_TURNS:
+        return None
+    return f"simulation.record_turns = {turns}: labels need at least {MIN_RECORD_TURNS} turns; raise it"
+
+
+def _tail_problem(scenario: Scenario) -> str | None:
+    operation = scenario.operation
+    longest = operation.record_turns / operation.rotation_frequency_hz
+    if scenario.signal_seconds <= longest:
+        return None
+    return (
+        f"output.signal_seconds = {scenario.signal_seconds:g}: the record lasts {longest:.4g} s "
+        f"({operation.record_turns} turns at {operation.speed_rpm:g} rev/min); lower it or raise record_turns"
+    )
+
+
+def _rate_problem(scenario: Scenario) -> str | None:
+    rate, operation = scenario.sensing.sample_rate_hz, scenario.operation
+    highest = MAX_STEPS_PER_TURN * operation.rotation_frequency_hz / STEPS_PER_SAMPLE
+    if rate <= highest:
+        return None
+    return (
+        f"sensors.sample_rate_hz = {rate:g}: at {operation.speed_rpm:g} rev/min the step feeds at most "
+        f"{highest:.6g} Hz; lower it or raise the lowest speed"
+    )
+
+
+def _steps_problem(scenario: Scenario) -> str | None:
+    steps = scenario.operation.steps_per_turn
+    if steps <= MAX_STEPS_PER_TURN:
+        return None
+    return f"simulation.steps_per_turn = {steps}: must be at most {MAX_STEPS_PER_TURN}; lower it"
+
+
+def _lobe_problem(scenario: Scenario) -> str | None:
+    # One casing mode is the rigid turn, the others are pairs of rising circumferential order from 1.
+    highest = (scenario.reduction.casing_modes - 1) // 2
+    lobes = scenario.machine.casing.lobes
+    if lobes <= highest:
+        return None
+    return (
+        f"lobes = {lobes}: {scenario.reduction.casing_modes} casing modes carry at most {highest} lobes; "
+        f"lower it or raise reduction.casing_modes to {2 * lobes + 1}"
+    )
+
+
+def _node_problem(scenario: Scenario) -> str | None:
+    casing = scenario.machine.casing
+    for divisor, what in ((QUARTERS, "4"), (casing.lobes, f"the number of lobes, {casing.lobes}")):
+        if casing.nodes % divisor:
+            return f"casing.nodes = {casing.nodes}: must be divisible by {what}; change casing.nodes or the lobes"
+    return None

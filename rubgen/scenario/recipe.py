@@ -1,0 +1,157 @@
+"""A recipe: the TOML file from which a whole data set follows, run by run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, TypeAdapter, ValidationError, create_model
+
+from rubgen.errors import UserError
+from rubgen.machine import Positive, load_machine
+from rubgen.machine.load import machine_id, read_toml
+from rubgen.machine.problems import first_problem
+from rubgen.scenario.distributions import Choice, Constant, Distribution
+from rubgen.scenario.feasible import check_feasible
+from rubgen.scenario.sampling import sobol_point
+from rubgen.scenario.scenario import Operation, Reduction, Scenario, Sensing, TurnCount
+from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, vary
+
+DEFAULT_RECIPE = Path(__file__).parent / "zeng2019-mini.toml"
+Format = Literal["parquet", "mcap", "rrd"]
+_STRICT = ConfigDict(extra="forbid", frozen=True)
+
+
+class Simulation(BaseModel):
+    """`[simulation]`: turns and steps of every run, as in `Operation`."""
+
+    model_config = _STRICT
+    settle_turns: TurnCount | Literal["auto"] = "auto"
+    record_turns: TurnCount = 500
+    steps_per_turn: TurnCount = 1024
+    closing_turns: TurnCount = 40
+
+
+class Output(BaseModel):
+    """`[output]`: files that are written, and the length of the signals: the end of the record."""
+
+    model_config = _STRICT
+    formats: Annotated[tuple[Format, ...], Field(min_length=1)] = ("parquet", "mcap", "rrd")
+    signal_seconds: Positive = 1.0
+
+
+def _vary_fields() -> dict[str, Any]:
+    return {
+        entry.key: (Distribution | None, Field(default=None, description=f"{entry.meaning}, {entry.unit}"))
+        for entry in PARAMETERS
+    }
+
+
+Vary = create_model(
+    "Vary", __config__=_STRICT, __doc__="`[vary]`: a number fixes a value, a table draws it.", **_vary_fields()
+)
+
+
+class Recipe(BaseModel):
+    """A data set before it exists: a machine, what varies in it, how long each run is, what is written."""
+
+    model_config = _STRICT
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
+    seed: Annotated[int, Field(ge=0)] = 0
+    runs: Annotated[int, Field(ge=1, le=1_000_000)]
+    machine: Annotated[str, Field(min_length=1)]
+    license: Annotated[str, Field(min_length=1)] = "CC-BY-4.0"
+    vary: Vary = Vary()
+    simulation: Simulation = Simulation()
+    sensors: Sensing = Sensing()
+    output: Output = Output()
+    reduction: Reduction = Reduction()
+    _folder: Path = PrivateAttr(default_factory=Path)
+
+    @cached_property
+    def base(self) -> Scenario:
+        """The scenario before `[vary]`: the machine as its file says, at the default speed."""
+        machine = load_machine(self.machine, self._folder)
+        return Scenario(
+            machine=machine,
+            operation=Operation(speed_rpm=DEFAULT_SPEED_RPM, **self.simulation.model_dump()),
+            reduction=self.reduction,
+            sensing=self.sensors,
+            signal_seconds=self.output.signal_seconds,
+            seed=self.seed,
+            machine_id=machine_id(machine),
+        )
+
+    def distributions(self) -> Iterator[tuple[Parameter, Distribution]]:
+        """The keys that the recipe names, with their distributions, in the order of the registry."""
+        for entry in PARAMETERS:
+            distribution = getattr(self.vary, entry.key)
+            if distribution is not None:
+                yield entry, distribution
+
+    def scenario(self, index: int) -> Scenario:
+        """Run number `index`, complete; it depends on no other run and not on how many there are."""
+        point = sobol_point(self.seed, index)
+        drawn = {entry.key: distribution.quantile(point[entry.key]) for entry, distribution in self.distributions()}
+        return vary(replace(self.base, index=index), drawn)
+
+    def corners(self, source: str = "") -> Iterator[Scenario]:
+        """Scenarios at the extreme values of each key, the other keys at their first: what checks must look at.
+
+        Raises UserError, beginning with `source`, where an extreme value is not allowed.
+        """
+        extremes = {entry.key: distribution.extremes() for entry, distribution in self.distributions()}
+        first = vary(self.base, {key: values[0] for key, values in extremes.items()}, f"{source}vary.")
+        yield first
+        for key, values in extremes.items():
+            for value in values[1:]:
+                yield vary(first, {key: value}, f"{source}vary.")
+
+
+def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> Recipe:
+    """The recipe in that TOML file, or the one that comes with rubgen; `runs` overrides its number of runs.
+
+    Raises UserError with file, key, value, what is allowed and how to mend it, before anything is computed.
+    """
+    file = DEFAULT_RECIPE if path is None else Path(path)
+    return parse_recipe(read_toml(file), source=str(file), folder=file.parent, runs=runs)
+
+
+def parse_recipe(
+    data: dict[str, Any], *, source: str = "recipe", folder: Path | None = None, runs: int | None = None
+) -> Recipe:
+    """The recipe of these TOML values; paths in it start from `folder`, errors begin with `source`."""
+    if runs is not None:
+        if runs < 1:
+            raise UserError(f"--runs {runs}: must be at least 1; give a whole number of runs")
+        data = {**data, "runs": runs}
+    try:
+        recipe = Recipe.model_validate(data)
+    except ValidationError as error:
+        raise first_problem(source, error, data, TypeAdapter(Recipe)) from None
+    recipe._folder = folder or Path()
+    check_recipe(recipe, source)
+    return recipe
+
+
+def check_recipe(recipe: Recipe, source: str = "recipe") -> None:
+    """Raise UserError where some run of the recipe could not be made: single values and extremes of `[vary]`."""
+    if len(set(recipe.output.formats)) != len(recipe.output.formats):
+        raise UserError(f"{source}: output.formats = {list(recipe.output.formats)}: name each format once")
+    _check_whole(recipe, source)
+    try:
+        recipe.base  # noqa: B018  (reads the machine file)
+    except UserError as error:
+        text = str(error)
+        raise UserError(f"{source}: {text}" if text.startswith("machine = ") else text) from None
+    for scenario in recipe.corners(f"{source}: "):
+        check_feasible(scenario, f"{source}: ")
+
+
+def _check_whole(recipe: Recipe, source: str) -> None:
+    for entry, distribution in recipe.distributions():
+        if entry.whole and not isinstance(distribution, Constant | Choice):
+            raise UserError(f"{source}: vary.{entry.key}: takes whole numbers only; give a number or a choice")
