@@ -1,0 +1,90 @@
+"""The measuring chain that every channel passes: anti-alias filter and resampling, then noise, range and ADC."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from scipy.signal import kaiser_beta
+
+from rubgen.arrays import FloatArray
+from rubgen.scenario import Sensing
+from rubgen.sensors._kernels import interpolate_rows
+
+PASS_BAND_SHARE = 2 / 2.56
+"""End of the pass band as a share of the Nyquist frequency: sample rate / 2.56, as in dynamic signal analysers."""
+ATTENUATION_DB = 90.0
+"""Attenuation the Kaiser window is designed for; at least 85 dB is kept at the Nyquist frequency and beyond."""
+LEAST_OVERSAMPLING = 2.56
+"""Least ratio of step rate to sample rate."""
+PHASES = 512
+"""Positions between two steps for which the weights are tabulated; linear in between, which errs by < -130 dB."""
+
+
+def half_width_seconds(sample_rate_hz: float) -> float:
+    """Half the length of the anti-alias filter, in s.
+
+    Kaiser's formula (Kaiser 1974): length = (A - 7.95) / (2.285 * 2 pi * transition width in Hz).
+    """
+    transition_hz = sample_rate_hz / 2 * (1 - PASS_BAND_SHARE)
+    return float((ATTENUATION_DB - 7.95) / (2.285 * 2 * np.pi * transition_hz) / 2)
+
+
+def margin_seconds(sensing: Sensing) -> float:
+    """Signal that the filter needs beyond the recorded one, in s: half its length on either side.
+
+    Two sample periods are added, so that rounding to whole steps and samples never falls short.
+    """
+    return 2 * half_width_seconds(sensing.sample_rate_hz) + 2 / sensing.sample_rate_hz
+
+
+def impulse_response(time: FloatArray, sample_rate_hz: float) -> FloatArray:
+    """h(t) of the anti-alias filter in 1/s: sinc cut off midway in the transition band, under a Kaiser window.
+
+    h(t) = 2 f_c sinc(2 f_c t) I0(beta sqrt(1 - (t/W)^2)) / I0(beta) for |t| < W, else 0: even, hence without delay.
+    """
+    half_width = half_width_seconds(sample_rate_hz)
+    cut_off = sample_rate_hz / 4 * (1 + PASS_BAND_SHARE)
+    beta = float(kaiser_beta(ATTENUATION_DB))
+    inside = 1 - (time / half_width) ** 2
+    window = np.i0(beta * np.sqrt(np.maximum(inside, 0.0))) / np.i0(beta)
+    return np.asarray(2 * cut_off * np.sinc(2 * cut_off * time) * window * (inside > 0), dtype=np.float64)
+
+
+@lru_cache(maxsize=4)
+def filter_bank(dt: float, sample_rate_hz: float) -> FloatArray:
+    """Weights (PHASES + 1, 2 half) of the filter for positions between two steps of length dt; every row sums to 1."""
+    half = int(np.ceil(half_width_seconds(sample_rate_hz) / dt))
+    phase = np.linspace(0.0, 1.0, PHASES + 1)[:, None]
+    steps = np.arange(-half + 1, half + 1)[None, :]
+    bank = impulse_response((phase - steps) * dt, sample_rate_hz)
+    bank /= bank.sum(axis=1, keepdims=True)
+    bank.setflags(write=False)
+    return bank
+
+
+def band_limit(signals: FloatArray, positions: FloatArray, *, dt: float, sample_rate_hz: float) -> FloatArray:
+    """Band-limited signals (samples, channels) at fractional step positions of `signals` (steps, channels).
+
+    Filter and interpolation in one: y(t) = sum_j h(t - j dt) x_j dt, with the weights' sum set to 1. The gain is 1
+    within 1e-4 up to sample_rate / 2.56 and below 1e-4 from sample_rate / 2 on; there is no delay. The step rate must
+    be at least 2.56 sample rates, and all positions at least half a filter length inside.
+    """
+    out = np.empty((positions.size, signals.shape[1]))
+    interpolate_rows(np.ascontiguousarray(signals), filter_bank(dt, sample_rate_hz), positions, out)
+    return out
+
+
+def adc_step(range_min: float, range_max: float, bits: int) -> float:
+    """Size of one ADC step: the range divided by 2^bits."""
+    return float((range_max - range_min) / 2**bits)
+
+
+def digitise(signal: FloatArray, *, range_min: float, range_max: float, bits: int) -> FloatArray:
+    """The signal as the ADC gives it: clipped to its range, rounded to range_min + code * step, code 0 .. 2^bits - 1.
+
+    The highest value is thus one step below range_max. float32 holds at most 24 bits: finer steps are lost on storage.
+    """
+    step = adc_step(range_min, range_max, bits)
+    code = np.clip(np.rint((signal - range_min) / step), 0, 2**bits - 1)
+    return np.asarray(range_min + code * step, dtype=np.float64)
