@@ -1,0 +1,175 @@
+"""One run as one MCAP file: every sample, a preview that plots by itself, contacts, labels and scenario."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections import defaultdict
+from collections.abc import Iterator
+from operator import itemgetter
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from mcap.writer import Writer
+
+from rubgen.io.joint_state import SCHEMA, SCHEMA_NAME, joint_states
+from rubgen.io.mcap_check import check_mcap
+from rubgen.io.mcap_messages import MESSAGES, PACKAGE, file_descriptor_set, message_class, sample_block, timestamp
+from rubgen.io.mcap_read import McapRun, read_mcap
+from rubgen.io.plain import labels_dict, scenario_dict
+from rubgen.sensors.channel import Channel, Float32Array, Recording
+from rubgen.sensors.contact_window import contact_intervals
+from rubgen.sensors.envelope import min_max, preview_bin
+
+if TYPE_CHECKING:  # Run carries the solver's imports; who reads or checks a file needs none of them
+    from rubgen.labels.labels import Labels
+    from rubgen.pipeline import Run
+
+__all__ = ["McapRun", "check_mcap", "read_mcap", "write_mcap"]
+
+LIBRARY = "rubgen"  # no version: the same run gives the same bytes
+BLOCK_SAMPLES = 1024
+CHUNK_BYTES = 512 * 1024
+Stamped = tuple[int, bytes]
+
+
+def write_mcap(run: Run, path: Path) -> None:
+    """Write `run` to `path`, complete or not at all; the same run gives the same bytes.
+
+    Topics: `/raw/<channel>` (`/clean/<channel>` where kept) blocks of 1024 float32 samples, `/preview/<quantity>`
+    minimum and maximum at about 1 kHz, `/contact`, `/once_per_rev`, `/labels/motion`. Times are integer ns from the
+    first sample. Scenario and labels stand in metadata records (`rubgen.scenario`, `rubgen.labels`; each value JSON)
+    and as attachments. Raises ValueError for a run without a recording, OSError when the file cannot be written.
+    """
+    if run.recording is None or run.labels is None:
+        raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to record")
+    part = path.with_name(f"{path.name}.part")
+    try:
+        with part.open("wb") as stream:
+            writer = Writer(stream, chunk_size=CHUNK_BYTES, enable_data_crcs=True)
+            writer.start(profile="", library=LIBRARY)
+            _write_records(writer, "scenario", scenario_dict(run.scenario))
+            _write_records(writer, "labels", labels_dict(run.labels))
+            _write_messages(writer, run, run.recording, run.labels)
+            writer.finish()  # type: ignore[no-untyped-call]
+            stream.flush()
+            os.fsync(stream.fileno())
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def nanoseconds(seconds: float) -> int:
+    """Time as the integer ns that files carry."""
+    return round(seconds * 1e9)
+
+
+def _write_records(writer: Writer, name: str, values: dict[str, object]) -> None:
+    writer.add_metadata(f"rubgen.{name}", {key: json.dumps(value) for key, value in values.items()})
+    content = json.dumps(values, indent=2).encode()
+    writer.add_attachment(0, 0, f"{name}.json", "application/json", content)
+
+
+def _write_messages(writer: Writer, run: Run, recording: Recording, labels: Labels) -> None:
+    """Every channel's messages, merged by time; at equal times in the order in which channels were registered."""
+    schemas = {
+        name: writer.register_schema(f"{PACKAGE}.{name}", "protobuf", file_descriptor_set()) for name in MESSAGES
+    }
+    joint_state = writer.register_schema(SCHEMA_NAME, "ros2msg", SCHEMA)
+    merged: list[tuple[int, int, int, bytes]] = []
+
+    def add(topic: str, schema: int, messages: Iterator[Stamped], metadata: dict[str, str] | None = None) -> None:
+        encoding = "cdr" if schema == joint_state else "protobuf"
+        channel = writer.register_channel(topic, encoding, schema, metadata or {})
+        merged.extend((time, channel, sequence, data) for sequence, (time, data) in enumerate(messages))
+
+    for name, channel in recording.channels.items():
+        metadata = _describe(channel)
+        add(f"/raw/{name}", schemas["SampleBlock"], _blocks(channel.values, recording.sample_rate_hz), metadata)
+        if channel.clean is not None:
+            add(f"/clean/{name}", schemas["SampleBlock"], _blocks(channel.clean, recording.sample_rate_hz), metadata)
+    for quantity, group in _groups(recording).items():
+        messages = _preview(group, recording.sample_rate_hz)
+        add(
+            f"/preview/{quantity}", joint_state, messages, {"unit": group[0].unit, "content": "min and max of each bin"}
+        )
+    add("/contact", schemas["Contact"], _contacts(run, recording))
+    add("/once_per_rev", schemas["OncePerRev"], _pulses(recording))
+    add("/labels/motion", schemas["MotionLabel"], iter([_motion(labels)]))
+    for time, channel_id, sequence, data in sorted(merged, key=itemgetter(0, 1, 2)):
+        writer.add_message(channel_id, time, data, publish_time=time, sequence=sequence)
+
+
+def _describe(channel: Channel) -> dict[str, str]:
+    """What the channel's numbers mean; samples are in `unit` already, so that their sensitivity is 1."""
+    return {
+        "unit": channel.unit,
+        "quantity": channel.quantity,
+        "axis": channel.axis,
+        "location": channel.location,
+        "range_min": repr(float(channel.range_min)),
+        "range_max": repr(float(channel.range_max)),
+        "resolution": repr(float(channel.resolution)),
+        "noise_rms": repr(float(channel.noise_rms)),
+        "sensitivity": "1.0",
+    }
+
+
+def _groups(recording: Recording) -> dict[str, list[Channel]]:
+    groups: dict[str, list[Channel]] = defaultdict(list)
+    for channel in recording.channels.values():
+        groups[channel.quantity.replace(" ", "_")].append(channel)
+    return groups
+
+
+def _blocks(values: Float32Array, sample_rate_hz: float) -> Iterator[Stamped]:
+    for first in range(0, values.size, BLOCK_SAMPLES):
+        time = nanoseconds(first / sample_rate_hz)
+        yield time, sample_block(values[first : first + BLOCK_SAMPLES], sample_rate_hz, first, time)
+
+
+def _preview(group: list[Channel], sample_rate_hz: float) -> Iterator[Stamped]:
+    samples = preview_bin(sample_rate_hz)
+    envelopes = [envelope for channel in group for envelope in min_max(channel.values, samples)]
+    names = [f"{channel.name}.{end}" for channel in group for end in ("min", "max")]
+    times = [nanoseconds(first / sample_rate_hz) for first in range(0, group[0].values.size, samples)]
+    positions = np.column_stack(envelopes).astype(np.float64)
+    return zip(times, joint_states(names, np.asarray(times, dtype=np.int64), positions), strict=True)
+
+
+def _contacts(run: Run, recording: Recording) -> Iterator[Stamped]:
+    touches = contact_intervals(run.response, recording)
+    message = message_class("Contact")
+    for row in range(touches.blade.size):
+        time = max(0, nanoseconds(touches.start[row]))
+        contact = message(
+            timestamp=timestamp(time),
+            start_s=touches.start[row],
+            duration_s=touches.duration[row],
+            blade=int(touches.blade[row]),
+            angle_rad=touches.angle[row],
+            impulse_n_s=touches.impulse[row],
+            friction_loss_j=touches.friction_loss[row],
+            normal_loss_j=touches.normal_loss[row],
+        )
+        yield time, contact.SerializeToString(deterministic=True)
+
+
+def _pulses(recording: Recording) -> Iterator[Stamped]:
+    message = message_class("OncePerRev")
+    for turn, time_s in enumerate(recording.once_per_rev.tolist()):
+        time = nanoseconds(time_s)
+        pulse = message(timestamp=timestamp(time), time_s=time_s, turn=turn)
+        yield time, pulse.SerializeToString(deterministic=True)
+
+
+def _motion(labels: Labels) -> Stamped:
+    motion = message_class("MotionLabel")(
+        timestamp=timestamp(0),
+        motion=labels.motion.value,
+        motion_blisk=labels.motion_blisk.value,
+        motion_casing=labels.motion_casing.value,
+        period=labels.period or 0,
+    )
+    return 0, motion.SerializeToString(deterministic=True)

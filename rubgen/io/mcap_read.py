@@ -1,0 +1,146 @@
+"""Runs back from MCAP files, with every checksum checked."""
+
+from __future__ import annotations
+
+import json
+import struct
+import zlib
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Channel, McapRecord, Message, Metadata
+from mcap.stream_reader import StreamReader
+from zstandard import ZstdError
+
+from rubgen.arrays import FloatArray
+from rubgen.errors import UserError
+from rubgen.io.mcap_messages import message_class, read_sample_block
+from rubgen.sensors.channel import Float32Array
+
+UNREADABLE = (McapError, ZstdError, ValueError, EOFError, struct.error, KeyError, MemoryError)
+"""What the mcap package raises for a file that is damaged or no MCAP (its CRC error is a ValueError)."""
+_MAGIC_BYTES = 8
+_FOOTER = struct.Struct("<BQQQI")  # opcode, length, summary start, summary offset start, CRC
+
+
+@dataclass(frozen=True, kw_only=True)
+class McapRun:
+    """One run from an MCAP file.
+
+    `signals` and `clean` map a channel's name to its samples (n,), float32, in the unit that `channels[name]` names
+    beside quantity, axis, location and range. `contacts` maps a field of rubgen.v1.Contact to its values (n_events,);
+    `once_per_rev` (n_pulses,) in s.
+    """
+
+    scenario: dict[str, Any]
+    labels: dict[str, Any]
+    sample_rate_hz: float
+    signals: dict[str, Float32Array]
+    clean: dict[str, Float32Array]
+    channels: dict[str, dict[str, str]]
+    contacts: dict[str, FloatArray]
+    once_per_rev: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class McapContent:
+    """All records of a file by name: messages by topic in file order, metadata, attachments."""
+
+    channels: dict[str, Channel]
+    messages: dict[str, list[Message]]
+    metadata: dict[str, dict[str, str]]
+    attachments: dict[str, bytes]
+
+
+def read_mcap(path: Path) -> McapRun:
+    """The run in the file at `path`; chunk, data and summary CRCs are validated.
+
+    Raises UserError, one line, when there is no such file, it is damaged, or no run of rubgen is in it.
+    """
+    try:
+        return _run(read_content(path))
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror}); give an existing .mcap file") from None
+    except UNREADABLE as error:
+        reason = f"{type(error).__name__}: {error}".strip(": ")
+        raise UserError(f"{path}: damaged or no run of rubgen ({reason}); generate it again") from None
+
+
+def read_content(path: Path) -> McapContent:
+    """Every record of the file, CRCs validated; raises OSError or one of `UNREADABLE`."""
+    content = McapContent(channels={}, messages=defaultdict(list), metadata={}, attachments={})
+    topics: dict[int, str] = {}
+    for record in _records(path):
+        if isinstance(record, Channel):
+            topics[record.id] = record.topic
+            content.channels[record.topic] = record
+        elif isinstance(record, Message):
+            content.messages[topics[record.channel_id]].append(record)
+        elif isinstance(record, Metadata):
+            content.metadata[record.name] = record.metadata
+        elif isinstance(record, Attachment):
+            content.attachments[record.name] = record.data
+    return content
+
+
+def _records(path: Path) -> Iterator[McapRecord]:
+    _validate_summary(path.read_bytes())
+    with path.open("rb") as stream:
+        yield from StreamReader(stream, validate_crcs=True).records
+
+
+def _validate_summary(data: bytes) -> None:
+    """Check the CRC of the summary section, which the mcap package leaves unchecked."""
+    footer = len(data) - _MAGIC_BYTES - _FOOTER.size
+    if footer < _MAGIC_BYTES:
+        raise EOFError("too short for an MCAP file")
+    opcode, _, summary_start, _, crc = _FOOTER.unpack_from(data, footer)
+    if opcode != Opcode.FOOTER:
+        raise EOFError("the file does not end with a footer")
+    if zlib.crc32(data[summary_start : footer + _FOOTER.size - 4]) != crc:
+        raise ValueError("crc validation failed in the summary")
+
+
+def _run(content: McapContent) -> McapRun:
+    rates = {rate for topic in content.messages if topic.startswith("/raw/") for rate in _rates(content, topic)}
+    (sample_rate,) = rates or {float("nan")}
+    return McapRun(
+        scenario=json.loads(content.attachments["scenario.json"]),
+        labels=json.loads(content.attachments["labels.json"]),
+        sample_rate_hz=sample_rate,
+        signals=_signals(content, "/raw/"),
+        clean=_signals(content, "/clean/"),
+        channels={
+            topic.removeprefix("/raw/"): channel.metadata
+            for topic, channel in content.channels.items()
+            if topic.startswith("/raw/")
+        },
+        contacts=_columns(content, "/contact", "Contact"),
+        once_per_rev=_columns(content, "/once_per_rev", "OncePerRev")["time_s"],
+    )
+
+
+def _rates(content: McapContent, topic: str) -> set[float]:
+    return {read_sample_block(message.data)[1] for message in content.messages[topic]}
+
+
+def _signals(content: McapContent, prefix: str) -> dict[str, Float32Array]:
+    """Samples of every channel under `prefix`, joined in the order of the blocks."""
+    signals = {}
+    for topic in (topic for topic in content.channels if topic.startswith(prefix)):
+        blocks = [read_sample_block(message.data)[3] for message in content.messages.get(topic, [])]
+        signals[topic.removeprefix(prefix)] = np.concatenate([np.empty(0, np.float32), *blocks])
+    return signals
+
+
+def _columns(content: McapContent, topic: str, message_name: str) -> dict[str, FloatArray]:
+    message = message_class(message_name)
+    rows = [message.FromString(record.data) for record in content.messages.get(topic, [])]
+    names = [field.name for field in message.DESCRIPTOR.fields if field.name != "timestamp"]
+    return {name: np.array([getattr(row, name) for row in rows], dtype=np.float64) for name in names}

@@ -1,0 +1,52 @@
+"""Contact events in the time of a recording."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rubgen.arrays import FloatArray, IntArray
+from rubgen.sensors.chain import half_width_seconds
+from rubgen.sensors.channel import Recording
+from rubgen.solver.response import Response
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactIntervals:
+    """Touches that overlap a recording, in order of their end; all arrays (n_events,).
+
+    `start` and `duration` are in s, time 0 being the first sample (a touch may have begun before it); `angle` is the
+    polar angle on the casing in rad, `impulse` the normal impulse in N s, the losses are works in J, <= 0.
+    """
+
+    blade: IntArray
+    start: FloatArray
+    duration: FloatArray
+    angle: FloatArray
+    impulse: FloatArray
+    friction_loss: FloatArray
+    normal_loss: FloatArray
+
+
+def contact_intervals(response: Response, recording: Recording) -> ContactIntervals:
+    """The contact events of `response` that overlap `recording`, in the time of its samples.
+
+    The last sample stands half a filter length before the last step of the record, see `measure`.
+    """
+    events, rate = response.events, recording.sample_rate_hz
+    samples = next(iter(recording.channels.values())).values.size
+    last_step = (response.record_turns * response.steps_per_turn - 1) * response.dt
+    first_sample = last_step - half_width_seconds(rate) - (samples - 1) / rate
+    start = np.asarray(events.start_step * response.dt - first_sample, dtype=np.float64)
+    duration = np.asarray(events.steps * response.dt, dtype=np.float64)
+    inside = (start + duration > 0) & (start < samples / rate)
+    return ContactIntervals(
+        blade=events.blade[inside],
+        start=start[inside],
+        duration=duration[inside],
+        angle=events.angle[inside],
+        impulse=events.impulse[inside],
+        friction_loss=events.friction_loss[inside],
+        normal_loss=events.normal_loss[inside],
+    )

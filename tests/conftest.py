@@ -1,0 +1,19 @@
+import pytest
+
+
+@pytest.fixture(scope="session")
+def make_synthetic_run():
+    """Makes runs with made-up signals (tests of files and pictures); imported late, for it needs the whole pipeline."""
+    from synthetic import make_run
+
+    return make_run
+
+
+@pytest.fixture(scope="session")
+def rub_run(make_synthetic_run):
+    return make_synthetic_run()
+
+
+@pytest.fixture(scope="session")
+def free_run(make_synthetic_run):
+    return make_synthetic_run(contact=False)

@@ -1,0 +1,175 @@
+import json
+import subprocess
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+from mcap.reader import NonSeekingReader, make_reader
+from mcap_ros2_support_fast.decoder import DecoderFactory
+from pydantic import TypeAdapter
+
+from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
+from rubgen.io.mcap_messages import message_class, proto_text, read_sample_block, sample_block, timestamp
+from rubgen.io.plain import labels_dict
+from rubgen.scenario import Scenario
+from rubgen.sensors.contact_window import contact_intervals
+
+SCHEMA = Path(__file__).parents[2] / "schemas" / "rubgen.v1.proto"
+
+
+@pytest.fixture(scope="session")
+def mcap_file(rub_run, tmp_path_factory):
+    path = tmp_path_factory.mktemp("mcap") / "run-000000.mcap"
+    write_mcap(rub_run, path)
+    return path
+
+
+def decoded(path):
+    """Every message, decoded with nothing but the schema in the file."""
+    messages = defaultdict(list)
+    with path.open("rb") as stream:
+        for schema, channel, message in make_reader(stream, validate_crcs=True).iter_messages():
+            if schema.encoding == "protobuf":
+                pool = descriptor_pool.DescriptorPool()
+                for file in descriptor_pb2.FileDescriptorSet.FromString(schema.data).file:
+                    pool.Add(file)
+                message_type = message_factory.GetMessageClass(pool.FindMessageTypeByName(schema.name))
+                messages[channel.topic].append((message.log_time, message_type.FromString(message.data)))
+    return messages
+
+
+def test_signals_read_back_to_the_bit(rub_run, mcap_file):
+    read = read_mcap(mcap_file)
+    assert list(read.signals) == list(rub_run.recording.channels)
+    for name, channel in rub_run.recording.channels.items():
+        assert read.signals[name].tobytes() == channel.values.tobytes()
+        assert read.channels[name]["unit"] == channel.unit
+        assert float(read.channels[name]["range_max"]) == channel.range_max
+    assert read.sample_rate_hz == rub_run.recording.sample_rate_hz
+    assert read.once_per_rev.tobytes() == rub_run.recording.once_per_rev.tobytes()
+    assert read.clean == {}
+
+
+def test_outside_reader_with_the_embedded_schema_sees_the_same_samples(rub_run, mcap_file):
+    messages = decoded(mcap_file)
+    rate = rub_run.recording.sample_rate_hz
+    for name, channel in rub_run.recording.channels.items():
+        blocks = messages[f"/raw/{name}"]
+        assert [len(block.values) for _, block in blocks] == [1024] * 7 + [512]
+        assert np.concatenate([block.values for _, block in blocks]).astype(np.float32).tobytes() == (
+            channel.values.tobytes()
+        )
+        for time, block in blocks:
+            assert block.timestamp.ToNanoseconds() == time == round(block.first_index / rate * 1e9)
+
+
+def test_labels_and_scenario_come_back_whole(rub_run, mcap_file):
+    read = read_mcap(mcap_file)
+    assert read.labels == labels_dict(rub_run.labels)
+    assert TypeAdapter(Scenario).validate_python(read.scenario) == rub_run.scenario
+    with mcap_file.open("rb") as stream:
+        records = {record.name: record.metadata for record in make_reader(stream).iter_metadata()}
+    assert json.loads(records["rubgen.labels"]["motion"]) == "period-k"
+    assert json.loads(records["rubgen.scenario"]["operation"])["speed_rpm"] == 10000.0
+
+
+def test_contacts_and_motion_as_events(rub_run, mcap_file):
+    messages = decoded(mcap_file)
+    expected = contact_intervals(rub_run.response, rub_run.recording)
+    by_start = np.argsort(np.maximum(expected.start, 0.0), kind="stable")
+    contacts = [contact for _, contact in messages["/contact"]]
+    assert len(contacts) > 100
+    assert [contact.blade for contact in contacts] == expected.blade[by_start].tolist()
+    assert [contact.start_s for contact in contacts] == expected.start[by_start].tolist()
+    assert [contact.impulse_n_s for contact in contacts] == expected.impulse[by_start].tolist()
+    ((time, motion),) = messages["/labels/motion"]
+    assert (time, motion.motion, motion.motion_casing, motion.period) == (0, "period-k", "period-k", 3)
+
+
+def test_contact_times_meet_the_contact_force(make_synthetic_run):
+    """A spike of force in the tap at one step stands in the recorded channel where the event says."""
+    run = make_synthetic_run()
+    response, recording = run.response, run.recording
+    intervals = contact_intervals(response, recording)
+    last_angle = recording.rotation_angle + response.speed * (7680 - 1) / recording.sample_rate_hz
+    event = response.events
+    row = int(np.flatnonzero(event.start_step == np.sort(event.start_step)[-40])[0])
+    kept = int(np.flatnonzero(intervals.impulse == event.impulse[row])[0])
+    # angle of the blisk at the event, by steps and by the time of the recording
+    by_steps = 2 * np.pi * (event.start_step[row] + 1) / response.steps_per_turn
+    by_time = recording.rotation_angle + response.speed * intervals.start[kept]
+    assert np.cos(by_steps - by_time) == pytest.approx(1.0, abs=1e-9)
+    assert intervals.start[kept] < 7680 / recording.sample_rate_hz
+    assert last_angle > by_time
+
+
+def test_preview_decoded_by_a_ros_reader_bounds_the_samples(rub_run, mcap_file):
+    channel = rub_run.recording.channels["contact_force"]
+    with mcap_file.open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        decoded_states = [item.decoded_message for item in reader.iter_decoded_messages(topics="/preview/force")]
+    names = list(decoded_states[0].name)
+    low, high = names.index("contact_force.min"), names.index("contact_force.max")
+    bins = channel.values[: 25 * 307].reshape(-1, 25)
+    assert len(decoded_states) == 308
+    np.testing.assert_array_equal([state.position[low] for state in decoded_states[:307]], bins.min(axis=1))
+    np.testing.assert_array_equal([state.position[high] for state in decoded_states[:307]], bins.max(axis=1))
+    stamp = decoded_states[100].header.stamp
+    assert stamp.sec * 10**9 + stamp.nanosec == round(2500 / 25600 * 1e9)
+
+
+def test_twin_message_has_the_wire_bytes_of_the_real_one():
+    values = np.random.default_rng(0).standard_normal(1024).astype(np.float32)
+    fields = {"timestamp": timestamp(1_500_000_007), "sample_rate": 25600.0, "first_index": 2048}
+    plain = message_class("SampleBlock")(**fields, values=values.tolist()).SerializeToString(deterministic=True)
+    fast = sample_block(values, 25600.0, 2048, 1_500_000_007)
+    assert fast == plain
+    time, rate, first, read = read_sample_block(plain)
+    assert (time, rate, first, read.tobytes()) == (1_500_000_007, 25600.0, 2048, values.tobytes())
+
+
+def test_schema_file_is_the_one_of_the_code():
+    assert SCHEMA.read_text(encoding="utf-8") == proto_text()
+
+
+def test_doctor_finds_nothing(mcap_file):
+    doctor = [str(Path(sys.executable).with_name("pymcap-cli")), "doctor", str(mcap_file)]
+    done = subprocess.run(doctor, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "error" not in done.stdout.lower().replace("0 error", "").replace("no error", ""), done.stdout
+
+
+def test_sequential_reader_validates_the_data_section(mcap_file):
+    with mcap_file.open("rb") as stream:
+        assert sum(1 for _ in NonSeekingReader(stream, validate_crcs=True).iter_messages()) > 1000
+
+
+def test_same_run_same_bytes(make_synthetic_run, mcap_file, tmp_path):
+    write_mcap(make_synthetic_run(), tmp_path / "again.mcap")
+    assert (tmp_path / "again.mcap").read_bytes() == mcap_file.read_bytes()
+    write_mcap(make_synthetic_run(seed=2), tmp_path / "other.mcap")
+    assert (tmp_path / "other.mcap").read_bytes() != mcap_file.read_bytes()
+
+
+def test_run_without_contact(free_run, tmp_path):
+    path = tmp_path / "free.mcap"
+    write_mcap(free_run, path)
+    assert check_mcap(path) == []
+    read = read_mcap(path)
+    assert read.contacts["blade"].size == 0
+    assert read.labels["rub"] is False
+    assert read.labels["contact_force_even_share"] is None
+    assert "/contact" not in decoded(path)
+
+
+def test_clean_channels_are_kept_beside_the_recorded_ones(make_synthetic_run, tmp_path):
+    run = make_synthetic_run(keep_clean=True)
+    write_mcap(run, tmp_path / "clean.mcap")
+    assert check_mcap(tmp_path / "clean.mcap") == []
+    read = read_mcap(tmp_path / "clean.mcap")
+    for name, channel in run.recording.channels.items():
+        assert read.clean[name].tobytes() == channel.clean.tobytes()
+    assert read.clean["proximity_x"].tobytes() != read.signals["proximity_x"].tobytes()

@@ -1,0 +1,103 @@
+"""A synthetic run for tests of files and pictures: made-up signals through the real sensors, no dynamics."""
+
+import numpy as np
+
+from rubgen.labels.labels import Labels, Motion
+from rubgen.machine import load_machine
+from rubgen.pipeline import Run
+from rubgen.scenario import Operation, Scenario, Sensing
+from rubgen.sensors import measure
+from rubgen.sensors.probes import PROBES
+from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status
+
+TURNS, STEPS = 120, 512
+BLADES, STATES = 38, 125
+
+
+def _taps(generator: np.random.Generator, speed: float, dt: float, contact: bool) -> dict[str, np.ndarray]:
+    time = dt * np.arange(1 - TURNS * STEPS, 1)
+    force = 4000.0 * np.maximum(0.0, np.cos(2 * speed * time)) ** 8 if contact else np.zeros_like(time)
+    scales = {"displacement": 1e-4, "acceleration": 300.0, "force": 2e4, "gap": 1e-3}
+    taps = {}
+    for probe in PROBES:
+        first, second = generator.uniform(0, 2 * np.pi, 2)
+        wave = np.cos(speed * time + first) + 0.3 * np.cos(3 * speed * time + second)
+        taps[probe.tap] = scales[probe.quantity] * (wave + (2.0 if probe.quantity == "gap" else 0.0))
+    return taps | {"contact_force": force}
+
+
+def _events(generator: np.random.Generator, count: int) -> ContactEvents:
+    start = np.sort(generator.integers(0, TURNS * STEPS - 40, count))
+    return ContactEvents(
+        blade=generator.integers(0, BLADES, count),
+        start_step=start,
+        steps=generator.integers(1, 30, count),
+        angle=np.mod(generator.normal(0.0, 0.1, count) + np.pi * generator.integers(0, 2, count), 2 * np.pi),
+        impulse=generator.gamma(2.0, 0.05, count),
+        friction_loss=-generator.gamma(2.0, 0.01, count),
+        normal_loss=-generator.gamma(2.0, 0.01, count),
+    )
+
+
+def _response(generator: np.random.Generator, scenario: Scenario, contact: bool) -> Response:
+    speed = scenario.operation.speed_rad_per_s
+    dt = 2 * np.pi / speed / STEPS
+    works = dict.fromkeys(EnergyBook.__dataclass_fields__, 1.0) | {"residual": 1e-13}
+    return Response(
+        status=Status.OK,
+        reason="",
+        speed=speed,
+        dt=dt,
+        steps_per_turn=STEPS,
+        settle_turns=100,
+        record_turns=TURNS,
+        taps=_taps(generator, speed, dt, contact),
+        section_q=1e-4 + 1e-6 * generator.standard_normal((TURNS, STATES)),
+        section_v=1e-2 * generator.standard_normal((TURNS, STATES)),
+        impulse_per_turn=np.full(TURNS, 1.5 if contact else 0.0),
+        contact_steps_per_turn=np.full(TURNS, 64 if contact else 0),
+        events=_events(generator, 600 if contact else 0),
+        energy=EnergyBook(**works),
+        n_blades=BLADES,
+        n_casing=11,
+    )
+
+
+def _labels(generator: np.random.Generator, contact: bool) -> Labels:
+    names = ["blisk_x", "casing_acc_0", "contact_force"]
+    return Labels(
+        rub=contact,
+        contact_duty=0.125 if contact else 0.0,
+        impulse_per_turn=1.5 if contact else 0.0,
+        blades_touched=BLADES if contact else 0,
+        contact_zones=2 if contact else 0,
+        contact_zone_centres=(0.0, np.pi) if contact else (),
+        contact_zone_widths=(0.3, 0.31) if contact else (),
+        contact_zones_symmetric=True if contact else None,
+        motion_blisk=Motion.PERIOD_1,
+        motion_casing=Motion.PERIOD_K if contact else Motion.STATIC,
+        motion=Motion.PERIOD_K if contact else Motion.PERIOD_1,
+        period_blisk=1,
+        period_casing=3 if contact else 1,
+        period=3 if contact else 1,
+        has_2fr=contact,
+        orders={name: generator.gamma(1.0, 1.0, 10) for name in names},
+        even_share={name: 0.75 if contact else float("nan") for name in names},
+        odd_share={name: 0.25 if contact else float("nan") for name in names},
+        dominant_order=dict.fromkeys(names, 2),
+    )
+
+
+def make_run(*, contact: bool = True, seconds: float = 0.3, keep_clean: bool = False, seed: int = 1) -> Run:
+    """A run with made-up signals: same arguments, same run."""
+    generator = np.random.default_rng(seed)
+    scenario = Scenario(
+        machine=load_machine("zeng2019"),
+        operation=Operation(speed_rpm=10000.0, record_turns=TURNS, steps_per_turn=STEPS),
+        sensing=Sensing(keep_clean=keep_clean),
+        signal_seconds=seconds,
+        seed=seed,
+    )
+    response = _response(generator, scenario, contact)
+    recording = measure(response, scenario.sensing, seconds=seconds, rng=generator)
+    return Run(scenario=scenario, response=response, recording=recording, labels=_labels(generator, contact))
