@@ -10,17 +10,20 @@ from pydantic import TypeAdapter, ValidationError
 
 from rubgen.errors import UserError
 
+UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
+
 
 def first_problem(
     source: object, error: ValidationError, data: object, adapter: TypeAdapter[Any] | None = None
 ) -> UserError:
     """The first problem in `data`, which came from the file `source` and does not fit the type of `adapter`."""
-    problem = error.errors()[0]
+    # A misspelt key is also a missing one: say what is there, not what is not.
+    problem = min(error.errors(), key=lambda each: each["type"] not in UNKNOWN)
     location = _path_in(data, problem["loc"], missing=problem["type"] == "missing")
     key = ".".join(str(part) for part in location) or "the file"
     if problem["type"] == "missing":
         return UserError(f"{source}: {key}: this key is missing; add it")
-    if problem["type"] in ("extra_forbidden", "unexpected_keyword_argument"):
+    if problem["type"] in UNKNOWN:
         known = sorted(_keys_at(adapter, location[:-1])) if adapter else []
         return UserError(f"{source}: {key}: unknown key; {nearest(str(location[-1]), known)}")
     message = problem["msg"].removeprefix("Value error, ")

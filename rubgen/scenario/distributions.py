@@ -125,24 +125,23 @@ KINDS = ("uniform", "log_uniform", "normal", "choice")
 
 
 def _kind(value: object) -> str | None:
-    if isinstance(value, bool):
-        return None
-    if isinstance(value, int | float | Constant):
-        return "number"
-    names = value if isinstance(value, dict) else type(value).model_fields if isinstance(value, BaseModel) else ()
-    return next((kind for kind in KINDS if kind in names), None)
+    """The tag of the union; in angle brackets, so that no key of a recipe has the same name."""
+    if isinstance(value, int | float | Constant) and not isinstance(value, bool):
+        return "<number>"
+    names = list(value) if isinstance(value, dict) else list(getattr(type(value), "model_fields", ()))
+    return f"<{names[0]}>" if len(names) == 1 and names[0] in KINDS else None
 
 
 Distribution = Annotated[
-    Annotated[Constant, Tag("number")]
-    | Annotated[Uniform, Tag("uniform")]
-    | Annotated[LogUniform, Tag("log_uniform")]
-    | Annotated[Normal, Tag("normal")]
-    | Annotated[Choice, Tag("choice")],
+    Annotated[Constant, Tag("<number>")]
+    | Annotated[Uniform, Tag("<uniform>")]
+    | Annotated[LogUniform, Tag("<log_uniform>")]
+    | Annotated[Normal, Tag("<normal>")]
+    | Annotated[Choice, Tag("<choice>")],
     Discriminator(
         _kind,
         custom_error_type="distribution",
-        custom_error_message=f"no such distribution; give a number or a table with one of {', '.join(KINDS)}",
+        custom_error_message=f"no such distribution; give a number or a table of one key: {', '.join(KINDS)}",
     ),
 ]
 

@@ -1,0 +1,64 @@
+import re
+from dataclasses import replace
+
+import pytest
+
+from rubgen.errors import UserError
+from rubgen.machine import load_machine, preset_names
+from rubgen.machine.load import PRESETS, machine_id
+
+TEXT = (PRESETS / "zeng2019.toml").read_text()
+BAD = {
+    "unknown key": (
+        "count = 36",
+        "count = 36\ncolour = 1",
+        "blades.colour: unknown key; did you mean count? allowed: count, ",
+    ),
+    "misspelt": ("rim_radius_m", "rim_radus_m", "disk.rim_radus_m: unknown key; did you mean rim_radius_m?"),
+    "negative clearance": (r"clearance_m = \S+", "clearance_m = -1e-4", "casing.clearance_m = -0.0001: "),
+    "nan": (r"ovality_m = \S+", "ovality_m = nan", "casing.ovality_m = nan: Input should be"),
+    "inf": (r"lateral_stiffness_n_per_m = \S+", "lateral_stiffness_n_per_m = inf", "disk_support.lateral_stiffness_n"),
+    "damping above 1": (r"lateral = \S+", "lateral = 1.5", "damping.lateral = 1.5: Input should be less than 1"),
+    "no blade": ("count = 36", "count = 0", "blades.count = 0: Input should be greater than or equal to 1"),
+    "no rim": (r"rim_radius_m = .*\n", "", "disk.rim_radius_m: this key is missing; add it"),
+    "half a blade": ("count = 36", "count = 35.5", "blades.count = 35.5: "),
+    "not TOML": ("count = 36", "count = ", "not TOML"),
+}
+
+
+def test_preset_has_the_published_tip_radius():
+    machine = load_machine("zeng2019")
+    assert preset_names() == ["zeng2019"]
+    assert machine.blades.count == 36
+    assert machine.tip_radius_m == pytest.approx(0.40)
+    casing = machine.casing
+    assert machine.casing_mean_radius_m == pytest.approx(0.4 + casing.clearance_m + casing.ovality_m / 2)
+
+
+@pytest.mark.parametrize("case", BAD.values(), ids=BAD.keys())
+def test_bad_machine_is_refused_in_one_line(case, tmp_path):
+    old, new, message = case
+    changed, count = re.subn(old, new, TEXT, count=1)
+    assert count == 1
+    path = tmp_path / "machine.toml"
+    path.write_text(changed)
+    with pytest.raises(UserError) as caught:
+        load_machine(str(path))
+    assert str(caught.value).startswith(f"{path}: ")
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_machine_id_depends_on_every_value_and_on_nothing_else():
+    machine = load_machine("zeng2019")
+    again = load_machine(str(PRESETS / "zeng2019.toml"))
+    assert machine_id(machine) == machine_id(again)
+    assert machine_id(machine) != machine_id(replace(machine, unbalance_kg_m=1.45e-2))
+    assert machine_id(machine) != machine_id(replace(machine, casing=replace(machine.casing, nodes=360)))
+
+
+def test_missing_machine_file_and_preset():
+    with pytest.raises(UserError, match=r"none.toml: there is no such file; check the path"):
+        load_machine("none.toml")
+    with pytest.raises(UserError, match=r"'zeng': no such preset; did you mean zeng2019\?"):
+        load_machine("zeng")

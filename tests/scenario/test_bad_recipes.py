@@ -1,0 +1,132 @@
+"""One case for each rule: the message names the file, the key, the value, what is allowed and how to mend it."""
+
+import pytest
+
+from rubgen.errors import UserError
+from rubgen.scenario import load_recipe, make_scenario, parse_recipe
+
+GOOD = 'name = "a"\nruns = 2\nmachine = "zeng2019"\n'
+VARY = GOOD + "[vary]\n"
+CASES = {
+    "unknown key": (GOOD + "sede = 3", "sede: unknown key; did you mean seed?"),
+    "unknown key of a table": (
+        GOOD + "[output]\nformat = ['mcap']",
+        "output.format: unknown key; did you mean formats?",
+    ),
+    "unknown key of vary": (VARY + "speed = 9000", "vary.speed: unknown key; did you mean speed_rpm?"),
+    "unknown distribution": (
+        VARY + "speed_rpm = { unifrom = [1, 2] }",
+        "vary.speed_rpm = {'unifrom': [1, 2]}: no such",
+    ),
+    "two distributions": (
+        VARY + "friction = { uniform = [0.1, 0.2], choice = [0.1] }",
+        "no such distribution; give a number or a table of one key: uniform, log_uniform, normal, choice",
+    ),
+    "missing key": ('name = "a"\nmachine = "zeng2019"', "runs: this key is missing; add it"),
+    "text for a number": (VARY + 'speed_rpm = "fast"', "vary.speed_rpm = 'fast': no such distribution; give a number"),
+    "negative clearance": (VARY + "clearance_m = -1e-4", "vary.clearance_m = -0.0001: must be above 0"),
+    "clearance reaches 0": (VARY + "clearance_m = { uniform = [0, 1e-3] }", "vary.clearance_m = 0: must be above 0"),
+    "speed 0": (VARY + "speed_rpm = 0", "vary.speed_rpm = 0: must be above 0"),
+    "nan": (VARY + "speed_rpm = nan", "vary.speed_rpm = nan: Input should be a finite number"),
+    "inf": (VARY + "speed_rpm = { uniform = [1000, inf] }", "vary.speed_rpm.uniform.1 = inf: Input should be a finite"),
+    "min above max": (
+        VARY + "speed_rpm = { uniform = [9000, 8000] }",
+        "vary.speed_rpm = {'uniform': [9000, 8000]}: the lower end 9000 is above the upper end 8000; swap them",
+    ),
+    "log of 0": (VARY + "friction = { log_uniform = [0, 0.1] }", "both ends must be above 0"),
+    "normal without width": (
+        VARY + "friction = { normal = { mean = 0.1, std = 0, min = 0, max = 0.2 } }",
+        "vary.friction.normal.std = 0: Input should be greater than 0",
+    ),
+    "normal turned round": (
+        VARY + "friction = { normal = { mean = 0.1, std = 0.1, min = 0.2, max = 0 } }",
+        "the lower end 0.2 is above the upper end 0; swap them",
+    ),
+    "empty choice": (VARY + "lobes = { choice = [] }", "vary.lobes.choice = []: "),
+    "friction too high": (VARY + "friction = 0.4", "vary.friction = 0.4: must be of at least 0 and at most 0.3"),
+    "half a lobe": (VARY + "lobes = 2.5", "vary.lobes = 2.5: must be a whole number of at least 2"),
+    "lobes from a range": (VARY + "lobes = { uniform = [2, 4] }", "vary.lobes: takes whole numbers only"),
+    "lobes beyond the modes": (
+        VARY + "lobes = { choice = [2, 6] }",
+        "lobes = 6: 11 casing modes carry at most 5 lobes",
+    ),
+    "nodes not divisible": (
+        VARY + "lobes = 7\n[reduction]\ncasing_modes = 15",
+        "casing.nodes = 180: must be divisible by the number of lobes, 7",
+    ),
+    "signal beyond the record": (
+        VARY + "speed_rpm = { uniform = [6000, 12000] }\n[output]\nsignal_seconds = 2.6",
+        "output.signal_seconds = 2.6: the record lasts 2.5 s (500 turns at 12000 rev/min)",
+    ),
+    "few turns": (GOOD + "[simulation]\nrecord_turns = 499", "simulation.record_turns = 499: labels need at least 500"),
+    "sample rate": (
+        VARY
+        + "speed_rpm = { uniform = [120, 9000] }\n[simulation]\nrecord_turns = 500\n[sensors]\nsample_rate_hz = 25600",
+        "sensors.sample_rate_hz = 25600: at 120 rev/min the step feeds at most 12800 Hz",
+    ),
+    "steps": (
+        GOOD + "[simulation]\nsteps_per_turn = 20000",
+        "simulation.steps_per_turn = 20000: must be at most 16384",
+    ),
+    "settle": (GOOD + "[simulation]\nsettle_turns = 0", "simulation.settle_turns"),
+    "no runs": ('name = "a"\nruns = 0\nmachine = "zeng2019"', "runs = 0: Input should be greater than or equal to 1"),
+    "unknown preset": (
+        'name = "a"\nruns = 1\nmachine = "zeng2018"',
+        "machine = 'zeng2018': no such preset; did you mean",
+    ),
+    "unknown format": (
+        GOOD + "[output]\nformats = ['csv']",
+        "output.formats.0 = 'csv': Input should be 'parquet', 'mcap'",
+    ),
+    "no format": (GOOD + "[output]\nformats = []", "output.formats = []: "),
+    "format twice": (GOOD + "[output]\nformats = ['mcap', 'mcap']", "output.formats = ['mcap', 'mcap']: name each"),
+    "name with a slash": ('name = "a/b"\nruns = 1\nmachine = "zeng2019"', "name = 'a/b': "),
+    "not TOML": ("name = ", "not TOML"),
+}
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
+def test_refused_in_one_line(case, tmp_path):
+    text, message = case
+    path = tmp_path / "recipe.toml"
+    path.write_text(text)
+    with pytest.raises(UserError) as caught:
+        load_recipe(path)
+    assert str(caught.value).startswith(f"{path}: ")
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_missing_file(tmp_path):
+    with pytest.raises(UserError, match=r"none.toml: there is no such file; check the path"):
+        load_recipe(tmp_path / "none.toml")
+
+
+def test_directory_for_a_file(tmp_path):
+    with pytest.raises(UserError, match="cannot be read"):
+        load_recipe(tmp_path)
+
+
+def test_not_text(tmp_path):
+    (tmp_path / "a.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(UserError, match="not a text file in UTF-8"):
+        load_recipe(tmp_path / "a.toml")
+
+
+def test_machine_file_of_the_recipe_is_named(tmp_path):
+    with pytest.raises(UserError, match=r"gone.toml: there is no such file"):
+        parse_recipe({"name": "a", "runs": 1, "machine": "gone.toml"}, folder=tmp_path)
+
+
+def test_runs_option():
+    with pytest.raises(UserError, match="--runs 0: must be at least 1"):
+        load_recipe(runs=0)
+
+
+def test_scenario_keys():
+    with pytest.raises(UserError, match="speed_rmp: unknown key; did you mean speed_rpm"):
+        make_scenario(speed_rmp=9000)
+    with pytest.raises(UserError, match="clearance_m = -1: must be above 0"):
+        make_scenario(clearance_m=-1.0)
+    with pytest.raises(UserError, match="'nothing': no such preset"):
+        make_scenario("nothing")

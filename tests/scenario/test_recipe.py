@@ -1,0 +1,157 @@
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from scipy.stats import qmc
+
+from rubgen.errors import UserError
+from rubgen.scenario import load_recipe, make_scenario, parse_recipe
+from rubgen.scenario.sampling import DIMENSIONS, sobol_point
+from rubgen.scenario.vary import KEYS, PARAMETERS, varied_values
+
+MINIMAL = {"name": "small", "runs": 4, "machine": "zeng2019"}
+ISSUE_KEYS = [
+    "speed_rpm",
+    "clearance_m",
+    "ovality_m",
+    "disk_support_stiffness_n_per_m",
+    "casing_support_stiffness_n_per_m",
+    "friction",
+    "lobes",
+    "unbalance_kg_m",
+    "casing_thickness_m",
+    "lateral_damping",
+]
+
+
+def test_keys_of_vary_are_those_users_were_promised():
+    assert list(KEYS) == ISSUE_KEYS
+
+
+def test_default_recipe_is_the_published_one():
+    recipe = load_recipe()
+    assert (recipe.name, recipe.runs, recipe.machine, recipe.license) == ("zeng2019-mini", 32, "zeng2019", "CC-BY-4.0")
+    assert recipe.output.formats == ("parquet", "mcap", "rrd")
+
+
+def test_recipes_in_the_repository_are_valid():
+    folder = Path(__file__).parents[2] / "datasets"
+    names = [load_recipe(path).name for path in sorted(folder.glob("*.toml"))]
+    assert names == [path.stem for path in sorted(folder.glob("*.toml"))]
+    assert names
+
+
+def test_runs_override_changes_no_run():
+    few, many = load_recipe(runs=2), load_recipe(runs=40)
+    assert (few.runs, many.runs) == (2, 40)
+    assert few.scenario(1) == many.scenario(1)
+
+
+def test_runs_stay_within_the_ranges_and_differ():
+    recipe = load_recipe()
+    speeds = [recipe.scenario(i).operation.speed_rpm for i in range(32)]
+    assert len(set(speeds)) == 32
+    assert min(speeds) >= 6500
+    assert max(speeds) <= 12500
+    # Sobol: with 32 points each 32nd of the range is hit exactly once.
+    assert np.unique(np.floor((np.array(speeds) - 6500) / 6000 * 32)).size == 32
+
+
+def test_points_are_the_sobol_sequence_of_scipy():
+    engine = qmc.Sobol(DIMENSIONS, scramble=True, rng=np.random.default_rng(np.random.SeedSequence(7)))
+    points = engine.random(8)[:, : len(KEYS)]
+    alone = np.array([list(sobol_point(7, i).values()) for i in (5, 0, 3)])
+    np.testing.assert_array_equal(alone, points[[5, 0, 3]])
+
+
+def test_another_seed_draws_other_runs():
+    one, two = (parse_recipe({**MINIMAL, "seed": s, "vary": {"speed_rpm": {"uniform": [7e3, 9e3]}}}) for s in (1, 2))
+    assert one.scenario(0).operation.speed_rpm != two.scenario(0).operation.speed_rpm
+
+
+def test_fixing_one_key_leaves_the_others():
+    drawn = {"friction": {"uniform": [0.0, 0.2]}, "speed_rpm": {"uniform": [7e3, 9e3]}}
+    both = parse_recipe({**MINIMAL, "vary": drawn}).scenario(3)
+    one = parse_recipe({**MINIMAL, "vary": {**drawn, "friction": 0.1}}).scenario(3)
+    assert one.operation == both.operation
+    assert one.contact.friction == 0.1
+
+
+def test_order_in_the_file_does_not_matter():
+    drawn = {"friction": {"uniform": [0.0, 0.2]}, "speed_rpm": {"uniform": [7e3, 9e3]}}
+    turned = dict(reversed(drawn.items()))
+    assert parse_recipe({**MINIMAL, "vary": drawn}).scenario(2) == parse_recipe({**MINIMAL, "vary": turned}).scenario(2)
+
+
+@pytest.mark.parametrize("entry", PARAMETERS, ids=lambda entry: entry.key)
+def test_each_key_changes_its_own_value_alone(entry):
+    base = make_scenario()
+    value = 3 if entry.whole else entry.read(base) * 1.25 + (0.05 if entry.key == "friction" else 0)
+    changed = entry.apply(base, value)
+    others = {key: v for key, v in varied_values(base).items() if key != entry.key}
+    assert entry.read(changed) == value
+    assert {key: v for key, v in varied_values(changed).items() if key != entry.key} == others
+    assert changed.machine_id == base.machine_id
+
+
+def test_support_stiffness_of_the_casing_is_the_same_both_ways():
+    casing = make_scenario(casing_support_stiffness_n_per_m=1.5e5).machine.casing
+    assert casing.radial_support_stiffness_n_per_m == casing.circumferential_support_stiffness_n_per_m == 1.5e5
+
+
+def test_machine_id_is_of_the_machine_before_vary():
+    recipe = load_recipe()
+    first, second = recipe.scenario(0), recipe.scenario(1)
+    assert first.machine != second.machine
+    assert first.machine_id == second.machine_id == make_scenario().machine_id
+    assert len(first.machine_id) == 12
+
+
+def test_simulation_sensors_and_output_reach_the_scenario():
+    recipe = parse_recipe(
+        {
+            **MINIMAL,
+            "simulation": {"settle_turns": 150, "record_turns": 700, "steps_per_turn": 2048, "closing_turns": 30},
+            "sensors": {"sample_rate_hz": 12800, "noise": 0, "adc_bits": 12, "keep_clean": True},
+            "output": {"formats": ["mcap"], "signal_seconds": 0.25},
+            "reduction": {"casing_modes": 13},
+        }
+    )
+    scenario = recipe.scenario(2)
+    assert asdict(scenario.operation) == {
+        "speed_rpm": 10000.0,
+        "settle_turns": 150,
+        "record_turns": 700,
+        "steps_per_turn": 2048,
+        "closing_turns": 30,
+    }
+    assert asdict(scenario.sensing) == {"sample_rate_hz": 12800, "noise": 0, "adc_bits": 12, "keep_clean": True}
+    assert (scenario.signal_seconds, scenario.reduction.casing_modes) == (0.25, 13)
+    assert (scenario.seed, scenario.index, scenario.run_id) == (0, 2, "run-000002")
+
+
+def test_machine_path_starts_from_the_recipe(tmp_path):
+    preset = Path(__file__).parents[2] / "rubgen/machine/presets/zeng2019.toml"
+    (tmp_path / "mine.toml").write_text(preset.read_text().replace("1.449e-2", "2.0e-2"))
+    (tmp_path / "recipe.toml").write_text('name = "a"\nruns = 1\nmachine = "mine.toml"\n')
+    assert load_recipe(tmp_path / "recipe.toml").scenario(0).machine.unbalance_kg_m == 2.0e-2
+
+
+@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(st.dictionaries(st.sampled_from([*KEYS, "speed", "x"]), st.floats() | st.text(max_size=3) | st.none()))
+def test_whatever_stands_in_vary_either_works_or_is_refused_in_one_line(table):
+    data = {**MINIMAL, "output": {"signal_seconds": 1e-3}, "vary": table}
+    message = ""
+    try:
+        recipe = parse_recipe(data, source="r.toml")
+    except UserError as error:
+        message = str(error)
+    if message:
+        assert "\n" not in message
+        assert message.startswith("r.toml: ")
+    else:
+        given = {k: v for k, v in table.items() if v is not None}
+        assert {key: varied_values(recipe.scenario(0))[key] for key in given} == given
