@@ -36,15 +36,15 @@ def cowper_shear_coefficient(poisson_ratio: float) -> float:
     return 10 * (1 + poisson_ratio) / (12 + 11 * poisson_ratio)
 
 
-def rectangle_torsion_constant(long_side: FloatArray, short_side: FloatArray) -> FloatArray:
-    """Saint-Venant torsion constant of a rectangle, in m^4.
+def rectangle_torsion_constant(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Saint-Venant torsion constant of rectangles of sides `a` and `b` (m, same shape), in m^4.
 
-    J = c h^3 / 3 (1 - 192 h / (pi^5 c) sum_{n odd} tanh(n pi c / (2 h)) / n^5) (Timoshenko and Goodier, art. 109).
-    The series is the same function for c < h, where it only converges to fewer digits.
+    J = c h^3 / 3 (1 - 192 h / (pi^5 c) sum_{n odd} tanh(n pi c / (2 h)) / n^5), c >= h (Timoshenko and Goodier,
+    Theory of Elasticity, art. 109); twenty terms leave 1e-7.
     """
-    ratio = short_side / long_side
-    series = sum(np.tanh(n * np.pi / (2 * ratio)) / n**5 for n in range(1, 40, 2))
-    constant: FloatArray = long_side * short_side**3 / 3 * (1 - 192 * ratio / np.pi**5 * series)
+    c, h = np.maximum(a, b), np.minimum(a, b)
+    series = sum(np.tanh(n * np.pi / 2 * c / h) / n**5 for n in range(1, 40, 2))
+    constant: FloatArray = c * h**3 / 3 * (1 - 192 * h / (np.pi**5 * c) * series)
     return constant
 
 
