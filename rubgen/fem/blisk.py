@@ -11,7 +11,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from rubgen.arrays import FloatArray, IntArray, SparseMatrix
 from rubgen.errors import UserError
 from rubgen.fem.beam import BeamMatrices, blade_matrices
-from rubgen.fem.constraints import link_stress_stiffness, rigid_link, rim_joint
+from rubgen.fem.constraints import blade_rotation, link_stress_stiffness, rigid_link, rim_joint
 from rubgen.fem.disk import DiskModel, assemble_disk
 from rubgen.fem.shell import shell_stress_stiffness
 from rubgen.fem.statics import HeldStiffness, factorize, on_springs, support_stiffness
@@ -25,14 +25,16 @@ class BliskModel:
     """Full model: M q'' + 2 Omega G q' + (K + Omega^2 (K_sigma - S)) q = Omega^2 f_c + loads, K without supports.
 
     DoFs, six a node: O_d, the disk's nodes in o-xyz, then each blade's nodes from root to tip along the blade's own
-    axes. Matrices are (n, n), f_c (n,). `disk_size` counts the DoFs of O_d and the disk; `rim`, `roots`, `tips`
-    (blades, 6) are DoFs; `angles` (blades,) the polar angles of the blades in rad; `penalty` is k_p. `held` solves
-    static problems with O_d held laterally. `plate` and `beam` are the matrices of the disk and of one blade.
+    axes. Matrices are (n, n), f_c (n,). `K_apart` is K before the blades are joined to the rim. `disk_size` counts the
+    DoFs of O_d and the disk; `rim`, `roots`, `tips` (blades, 6) are DoFs; `angles` (blades,) the polar angles of the
+    blades in rad, `blade_radius` the radii of a blade's nodes in m; `penalty` is k_p. `held` solves static problems
+    with O_d held laterally. `plate` and `beam` are the matrices of the disk and of one blade.
     """
 
     M: SparseMatrix
     G: SparseMatrix
     K: SparseMatrix
+    K_apart: SparseMatrix
     S: SparseMatrix
     K_sigma: SparseMatrix
     f_c: FloatArray
@@ -41,6 +43,7 @@ class BliskModel:
     roots: IntArray
     tips: IntArray
     angles: FloatArray
+    blade_radius: FloatArray
     penalty: float
     held: HeldStiffness
     plate: DiskModel
@@ -66,7 +69,8 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
     penalty = float(plate.K.diagonal().max())
     arm = plate.mesh.nodes[plate.bore]
     link, joint = rigid_link(arm, bore, CENTRE, size), rim_joint(angles, rim, roots, size)
-    K = _blocks(plate.K, beam.K, blades.count) + penalty * (link.T @ link + joint.T @ joint)
+    K_apart = sp.csr_array(_blocks(plate.K, beam.K, blades.count) + penalty * (link.T @ link))
+    K = sp.csr_array(K_apart + penalty * (joint.T @ joint))
     f_c = np.concatenate([np.zeros(6), plate.f_c, *[beam.f_c] * blades.count])
     held = HeldStiffness(K, support)
     static = held.solve(f_c)
@@ -75,7 +79,8 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
     return BliskModel(
         M=_blocks(plate.M, beam.M, blades.count),
         G=_blocks(plate.G, beam.G, blades.count),
-        K=sp.csr_array(K),
+        K=K,
+        K_apart=K_apart,
         S=_blocks(plate.S, beam.S, blades.count),
         K_sigma=_blocks(K_plate, beam.K_sigma, blades.count, link_stress_stiffness(arm, link_force)),
         f_c=f_c,
@@ -84,6 +89,7 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
         roots=roots,
         tips=tips,
         angles=angles,
+        blade_radius=disk.rim_radius_m + np.linspace(0.0, blades.length_m, blades.elements + 1),
         penalty=penalty,
         held=held,
         plate=plate,
@@ -98,9 +104,37 @@ def blisk_frequencies(model: BliskModel, support: DiskSupport, modes: int) -> Fl
     inverse = LinearOperator(K.shape, matvec=factor.solve, dtype=np.float64)
     start = np.sin(1.0 + np.arange(K.shape[0]))
     squares = eigsh(
-        K, k=modes, M=model.M, sigma=0.0, OPinv=inverse, v0=start, return_eigenvectors=False, tol=1e-12, ncv=2 * modes + 20
+        K,
+        k=modes,
+        M=model.M,
+        sigma=0.0,
+        OPinv=inverse,
+        v0=start,
+        return_eigenvectors=False,
+        tol=1e-12,
+        ncv=2 * modes + 20,
     )
     return np.sqrt(np.sort(squares)) / (2 * np.pi)
+
+
+def rigid_motions(model: BliskModel) -> FloatArray:
+    """Displacements (n, 6) of the blisk turned and moved as a whole by unit u, v, w (m), th_x, th_y, th_z (rad)."""
+    plate = model.plate.mesh.nodes
+    x, y = np.concatenate([[0.0], plate[:, 0]]), np.concatenate([[0.0], plate[:, 1]])
+    parts = [_rigid_nodes(x, y)]
+    radius = model.blade_radius
+    for angle in model.angles:
+        in_disk_axes = _rigid_nodes(radius * np.cos(angle), radius * np.sin(angle)).reshape(-1, 6, 6)
+        parts.append((blade_rotation(angle).T @ in_disk_axes).reshape(-1, 6))
+    return np.concatenate(parts)
+
+
+def _rigid_nodes(x: FloatArray, y: FloatArray) -> FloatArray:
+    R = np.zeros((len(x), 6, 6))
+    R[:] = np.eye(6)
+    R[:, 0, 5], R[:, 1, 5] = -y, x
+    R[:, 2, 3], R[:, 2, 4] = y, -x
+    return R.reshape(-1, 6)
 
 
 def _elements_per_blade(disk: Disk, blades: BladeRow) -> int:

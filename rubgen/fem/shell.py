@@ -116,7 +116,8 @@ def _quadrature(mesh: ShellMesh, order: int) -> _Quadrature:
 def _plane_stress(material: Material) -> FloatArray:
     nu = material.poisson_ratio
     D: FloatArray = np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
-    return material.youngs_modulus_pa / (1 - nu**2) * D
+    D *= material.youngs_modulus_pa / (1 - nu**2)
+    return D
 
 
 def _rows(points: _Quadrature, rows: int) -> FloatArray:
@@ -159,7 +160,8 @@ def _quadratic(B: FloatArray, D: FloatArray, weight: FloatArray) -> FloatArray:
     """Integral of B^T D B for every element: (e, 48, 48)."""
     e, q, rows, n = B.shape
     DB = np.einsum("ij,eqjb,eq->eqib", D, B, weight, optimize=True)
-    return B.reshape(e, q * rows, n).swapaxes(1, 2) @ DB.reshape(e, q * rows, n)
+    integral: FloatArray = B.reshape(e, q * rows, n).swapaxes(1, 2) @ DB.reshape(e, q * rows, n)
+    return integral
 
 
 def _by_direction(*blocks: FloatArray) -> FloatArray:

@@ -12,9 +12,7 @@ from rubgen.machine import DiskSupport
 
 def factorize(K: SparseMatrix) -> SuperLU:
     """LU factors of a symmetric positive definite stiffness, ordered for symmetric matrices, without pivoting."""
-    return splu(
-        sp.csc_array(K), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-    )
+    return splu(sp.csc_array(K), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 def support_stiffness(support: DiskSupport) -> FloatArray:
@@ -39,7 +37,8 @@ class HeldStiffness:
     """
 
     def __init__(self, K: SparseMatrix, support: DiskSupport) -> None:
-        self._factor = factorize(on_springs(K, support_stiffness(support))[2:, 2:])
+        self.K = on_springs(K, support_stiffness(support))
+        self._factor = factorize(self.K[2:, 2:])
 
     def solve(self, load: FloatArray) -> FloatArray:
         """Displacement (n,) under `load` (n,)."""

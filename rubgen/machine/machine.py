@@ -97,9 +97,9 @@ class DiskSupport:
 class Damping:
     """Damping ratios at rest, each of its own mechanism.
 
-    lateral, tilt, axial, torsion: dampers beside the support springs, in the inertial frame, sized so that the mode
-    of that name has the ratio. blade: elastic (internal) damping beta K_e with that ratio at the first blade mode.
-    casing: the same ratio for every casing mode.
+    lateral, tilt, axial, torsion: dampers beside the support springs, in the inertial frame, sized so that the blisk
+    moving as a rigid body on that spring has the ratio. blade: elastic (internal) damping beta K_e with that ratio at
+    the first mode of a blade clamped at its root. casing: the same ratio for every casing mode.
     """
 
     lateral: Ratio

@@ -56,4 +56,4 @@ class SpinningSystem:
     @property
     def casing_start(self) -> int:
         """Index of the first casing mode in q."""
-        return self.M.shape[0] - self.n_casing
+        return len(self.M) - self.n_casing

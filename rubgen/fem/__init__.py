@@ -1,0 +1,1 @@
+"""Finite elements: the full model of blisk and casing."""

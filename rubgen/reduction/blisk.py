@@ -1,0 +1,119 @@
+"""Two-step Craig-Bampton reduction of the blisk, its basis at rest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.linalg import eigh
+
+from rubgen.arrays import FloatArray, IntArray
+from rubgen.fem.beam import BeamMatrices
+from rubgen.fem.blisk import BliskModel, assemble_blisk, rigid_motions
+from rubgen.fem.constraints import rim_joint
+from rubgen.fem.statics import on_springs, support_stiffness
+from rubgen.machine import BladeRow, Disk, DiskSupport
+from rubgen.reduction.craig_bampton import craig_bampton
+from rubgen.reduction.growth import CentrifugalGrowth, centrifugal_growth
+from rubgen.scenario import Reduction
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReducedBlisk:
+    """Blisk with n DoFs: tips' translations along the blades' axes, O_d x and y, modes. No supports in it.
+
+    M, K elastic, G Coriolis (skew), A = K_sigma - S at 1 rad/s: (n, n). `centre` T (6, n) recovers all six DoFs of
+    O_d. `growth` is the tips' steady centrifugal displacement. `rigid_inertia` (6,) is m, m, m, I_d, I_d, I_p of the
+    whole in kg, kg m2; `blade_frequency` the first one of a blade clamped at its root, in rad/s; `full_size` the
+    number of DoFs of the full model.
+    """
+
+    M: FloatArray
+    K: FloatArray
+    G: FloatArray
+    A: FloatArray
+    centre: FloatArray
+    growth: CentrifugalGrowth
+    rigid_inertia: FloatArray
+    blade_frequency: float
+    full_size: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Joined:
+    """Blisk after the first step: matrices (n, n), O_d first, and the DoFs of the tips (blades, 6)."""
+
+    M: FloatArray
+    K: FloatArray
+    G: FloatArray
+    A: FloatArray
+    tips: IntArray
+
+
+def reduce_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> ReducedBlisk:
+    """Reduced blisk, the same for every lateral stiffness, for that acts on masters alone.
+
+    Step 1: each blade keeps root, tip and `blade_modes` fixed-interface modes, the disk keeps O_d, the rim nodes that
+    carry blades and `disk_modes`; blades and rim are joined by penalty. Step 2, on the axial, tilt and torsion
+    springs: the tips' translations and O_d x, y stay, with `blisk_modes`. Coriolis and centrifugal matrices are
+    projected on this basis of rest, which serves better than one of the spinning blisk.
+    """
+    model = assemble_blisk(disk, blades, support)
+    joined = _join_components(model, reduction)
+    masters = np.concatenate([joined.tips[:, :3].ravel(), [0, 1]])
+    held = on_springs(sp.csr_array(joined.K), support_stiffness(support))
+    V = craig_bampton(sp.csr_array(joined.M), held, masters, reduction.blisk_modes)
+    R = rigid_motions(model)
+    return ReducedBlisk(
+        M=_symmetric(V.T @ joined.M @ V),
+        K=_symmetric(V.T @ joined.K @ V),
+        G=_skew(V.T @ joined.G @ V),
+        A=_symmetric(V.T @ joined.A @ V),
+        centre=np.ascontiguousarray(V[:6]),
+        growth=centrifugal_growth(model),
+        rigid_inertia=np.einsum("ij,ij->j", R, model.M @ R),
+        blade_frequency=_clamped_frequency(model.beam),
+        full_size=model.M.shape[0],
+    )
+
+
+def _join_components(model: BliskModel, reduction: Reduction) -> _Joined:
+    """First step: disk [O_d, rim nodes, modes], then blades [root, tip, modes], joined at the rim."""
+    count, n_blade = len(model.angles), len(model.beam.f_c)
+    plate, blade = slice(0, model.disk_size), slice(model.disk_size, model.disk_size + n_blade)
+    ends = np.concatenate([np.arange(6), np.arange(n_blade - 6, n_blade)])
+    kept = np.concatenate([np.arange(6), model.rim.ravel()])
+    V_plate = craig_bampton(model.M[plate, plate], model.K_apart[plate, plate], kept, reduction.disk_modes)
+    V_blade = craig_bampton(model.M[blade, blade], model.K_apart[blade, blade], ends, reduction.blade_modes)
+
+    def project(X: sp.csr_array) -> FloatArray:
+        on_plate = V_plate.T @ (X[plate, plate] @ V_plate)
+        on_blade = V_blade.T @ (X[blade, blade] @ V_blade)
+        return np.asarray(sp.block_diag([on_plate, *[on_blade] * count]).toarray())
+
+    K = project(model.K_apart)
+    six = np.arange(6)
+    rim = 6 + 6 * np.arange(count)[:, None] + six
+    roots = V_plate.shape[1] + V_blade.shape[1] * np.arange(count)[:, None] + six
+    joint = rim_joint(model.angles, rim, roots, len(K))
+    return _Joined(
+        M=project(model.M),
+        K=K + model.penalty * (joint.T @ joint).toarray(),
+        G=project(model.G),
+        A=project(sp.csr_array(model.K_sigma - model.S)),
+        tips=roots + 6,
+    )
+
+
+def _clamped_frequency(beam: BeamMatrices) -> float:
+    squares: FloatArray = eigh(beam.K[6:, 6:], beam.M[6:, 6:], eigvals_only=True)
+    return float(np.sqrt(squares[0]))
+
+
+def _symmetric(X: FloatArray) -> FloatArray:
+    return np.ascontiguousarray((X + X.T) / 2)
+
+
+def _skew(X: FloatArray) -> FloatArray:
+    return np.ascontiguousarray((X - X.T) / 2)

@@ -1,0 +1,101 @@
+"""The reduced blisk on disk, by a hash of everything that enters it and of the code that makes it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from zipfile import BadZipFile
+
+import numpy as np
+import platformdirs
+import scipy
+from filelock import FileLock
+
+from rubgen.arrays import FloatArray
+from rubgen.machine import BladeRow, Disk, DiskSupport
+from rubgen.reduction.blisk import ReducedBlisk, reduce_blisk
+from rubgen.reduction.growth import CentrifugalGrowth
+from rubgen.scenario import Reduction
+
+CACHE_VARIABLE = "RUBGEN_CACHE_DIR"
+_PACKAGE = Path(__file__).parents[1]
+_ARRAYS = ("M", "K", "G", "A", "centre", "rigid_inertia")
+_NUMBERS = ("blade_frequency", "full_size")
+_GROWTH = ("K", "A", "f", "tips")
+
+
+def cache_directory() -> Path:
+    """Where reduced blisks are kept: $RUBGEN_CACHE_DIR or the user's cache directory, then `reduction`."""
+    root = os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_dir("rubgen")
+    return Path(root) / "reduction"
+
+
+def cached_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> ReducedBlisk:
+    """`reduce_blisk` from the cache, or made and kept there: the same bits either way.
+
+    Lateral stiffness and the number of casing modes do not enter, so runs that vary them share one file. A damaged
+    file is made anew; a directory that cannot be written costs time, not the run. Several processes make it once.
+    """
+    path = cache_directory() / f"{_key(disk, blades, support, reduction)}.npz"
+    stored = _load(path)
+    if stored is not None:
+        return stored
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with FileLock(path.with_suffix(".lock")):
+            stored = _load(path)
+            if stored is None:
+                stored = reduce_blisk(disk, blades, support, reduction)
+                _save(path, stored)
+    except OSError:
+        stored = stored or reduce_blisk(disk, blades, support, reduction)
+    return stored
+
+
+def _key(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> str:
+    springs, modes = asdict(support), asdict(reduction)
+    del springs["lateral_stiffness_n_per_m"], modes["casing_modes"]
+    what = [asdict(disk), asdict(blades), springs, modes, np.__version__, scipy.__version__]
+    digest = hashlib.sha256(json.dumps(what, sort_keys=True).encode())
+    for folder in ("fem", "reduction", "machine"):
+        for source in sorted((_PACKAGE / folder).glob("*.py")):
+            digest.update(source.read_bytes())
+    return digest.hexdigest()[:32]
+
+
+def _save(path: Path, blisk: ReducedBlisk) -> None:
+    fields = {name: getattr(blisk, name) for name in _ARRAYS + _NUMBERS}
+    fields |= {f"growth_{name}": getattr(blisk.growth, name) for name in _GROWTH}
+    temporary = path.with_suffix(f".{os.getpid()}.tmp")
+    try:
+        with temporary.open("wb") as file:
+            np.savez(file, allow_pickle=False, **fields)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _load(path: Path) -> ReducedBlisk | None:
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            return _restore({name: file[name] for name in file.files})
+    except (OSError, ValueError, KeyError, EOFError, BadZipFile):
+        return None
+
+
+def _restore(file: Mapping[str, FloatArray]) -> ReducedBlisk:
+    return ReducedBlisk(
+        M=file["M"],
+        K=file["K"],
+        G=file["G"],
+        A=file["A"],
+        centre=file["centre"],
+        rigid_inertia=file["rigid_inertia"],
+        blade_frequency=float(file["blade_frequency"]),
+        full_size=int(file["full_size"]),
+        growth=CentrifugalGrowth(**{name: file[f"growth_{name}"] for name in _GROWTH}),
+    )

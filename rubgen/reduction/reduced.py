@@ -1,0 +1,146 @@
+"""The reduced machine: matrices as functions of speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import block_diag, eig, eigh
+from threadpoolctl import threadpool_limits
+
+from rubgen.arrays import FloatArray
+from rubgen.fem.statics import support_stiffness
+from rubgen.machine import Machine
+from rubgen.reduction.blisk import ReducedBlisk
+from rubgen.reduction.cache import cached_blisk
+from rubgen.reduction.casing import ReducedCasing, reduce_casing
+from rubgen.reduction.damping import elastic_damping, support_damping
+from rubgen.reduction.model import SpinningSystem
+from rubgen.scenario import Reduction
+
+# e_z x on the translations and rotations of O_d.
+S6 = np.kron(np.eye(2), np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReducedModel:
+    """A machine reduced to n DoFs: the blisk in its turning frame, then the casing's modes.
+
+    `springs` and `dampers` (6,) stand at O_d in the inertial frame, `beta` (s) is the blisk's elastic damping.
+    """
+
+    machine: Machine
+    blisk: ReducedBlisk
+    casing: ReducedCasing
+    springs: FloatArray
+    dampers: FloatArray
+    beta: float
+
+    @property
+    def full_dof(self) -> int:
+        """DoFs of the full finite-element model, blisk and casing."""
+        return self.blisk.full_size + 3 * self.machine.casing.nodes
+
+    @property
+    def reduced_dof(self) -> int:
+        """DoFs of the reduced model, blisk and casing."""
+        return len(self.blisk.M) + len(self.casing.frequencies_hz)
+
+    def stiffness(self, speed: float) -> FloatArray:
+        """Undamped symmetric stiffness K_e + K_s + Omega^2 (K_sigma - S) of the blisk at `speed` (rad/s), in N/m."""
+        T = self.blisk.centre
+        K: FloatArray = self.blisk.K + T.T @ (self.springs[:, None] * T) + speed**2 * self.blisk.A
+        return K
+
+    def at_speed(self, speed: float) -> SpinningSystem:
+        """The system at `speed` (rad/s, positive): constant matrices of the turning frame.
+
+        Blisk: C = 2 Omega G + C_s + beta K_e, K = K_e + K_s + Omega^2 (K_sigma - S) + Omega H_s, with
+        C_s = T^T C T and H_s = T^T C S6 T of the dampers C = diag(c) in the inertial frame, which act on the absolute
+        velocity (S6 is e_z x). The term Omega H_s makes K unsymmetric. Casing modes: 1, 2 zeta omega, omega^2.
+        The unbalance Omega^2 U acts on O_d x.
+        """
+        with threadpool_limits(1, user_api="blas"):
+            return self._assemble(speed)
+
+    def _assemble(self, speed: float) -> SpinningSystem:
+        blisk, machine, T = self.blisk, self.machine, self.blisk.centre
+        damped = self.dampers[:, None] * T
+        C = 2 * speed * blisk.G + T.T @ damped + self.beta * blisk.K
+        K = self.stiffness(speed) + speed * (damped.T @ (S6 @ T))
+        omega = 2 * np.pi * self.casing.frequencies_hz
+        count = machine.blades.count
+        force = np.zeros(self.reduced_dof)
+        force[3 * count] = speed**2 * machine.unbalance_kg_m
+        return SpinningSystem(
+            speed=speed,
+            M=block_diag(blisk.M, np.eye(len(omega))),
+            C=block_diag(C, np.diag(2 * machine.damping.casing * omega)),
+            K=block_diag(K, np.diag(omega**2)),
+            force=force,
+            n_blades=count,
+            n_casing=len(omega),
+            tip_radius=machine.tip_radius_m,
+            blade_angles=2 * np.pi * np.arange(count) / count,
+            tip_static=blisk.growth.at(speed),
+            surface=self.casing.surface,
+            casing_modes=self.casing.modes_xy,
+            lateral_stiffness=float(self.springs[0]),
+            lateral_damping=float(self.dampers[0]),
+        )
+
+    def blisk_frequencies_hz(self, speed: float = 0.0) -> FloatArray:
+        """Undamped natural frequencies (blisk DoFs,) in Hz of the turning frame at `speed` (rad/s), ascending.
+
+        An inertial-frame whirl at omega shows at omega - Omega (forward) or omega + Omega (backward), without sign.
+        Above a critical speed the stiffness is indefinite, so the quadratic problem is solved as it stands.
+        """
+        M, K = self.blisk.M, self.stiffness(speed)
+        with threadpool_limits(1, user_api="blas"):
+            if speed == 0:
+                squares: FloatArray = eigh(K, M, eigvals_only=True)
+                return np.sqrt(squares) / (2 * np.pi)
+            n = len(M)
+            companion = np.block([[np.zeros((n, n)), np.eye(n)], [-K, -2 * speed * self.blisk.G]])
+            values = eig(companion, block_diag(np.eye(n), M), right=False)
+        frequencies: FloatArray = np.sort(np.abs(values.imag))[::2] / (2 * np.pi)
+        return frequencies
+
+    @property
+    def casing_frequencies_hz(self) -> FloatArray:
+        """Natural frequencies of the casing's modes in Hz, ascending."""
+        return self.casing.frequencies_hz
+
+    @property
+    def critical_speed_rpm(self) -> float:
+        """Speed in rev/min at which forward lateral whirl is synchronous with the rotation, undamped.
+
+        There K_e + K_s + Omega^2 (K_sigma - S) is singular: an unbalance, static in the turning frame, meets no
+        stiffness. Of all such speeds it is the one with the largest share of energy in the lateral springs.
+        """
+        with threadpool_limits(1, user_api="blas"):
+            inverse_squares, modes = eigh(-self.blisk.A, self.stiffness(0.0))
+        centre = 3 * self.machine.blades.count
+        share = self.springs[0] * (modes[centre] ** 2 + modes[centre + 1] ** 2)
+        lateral = np.argmax(np.where(inverse_squares > 0, share, 0.0))
+        return float(30 / np.pi / np.sqrt(inverse_squares[lateral]))
+
+
+def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:
+    """The reduced model of `machine`: two-step Craig-Bampton for the blisk, modes for the casing.
+
+    The blisk comes from the cache where it can; the result has the same bits then, and with any number of BLAS
+    threads. Raises UserError for meshes, mode numbers or lobes that do not fit.
+    """
+    with threadpool_limits(1, user_api="blas"):
+        blisk = cached_blisk(machine.disk, machine.blades, machine.disk_support, reduction)
+        casing = reduce_casing(machine, reduction.casing_modes)
+    springs = support_stiffness(machine.disk_support)
+    return ReducedModel(
+        machine=machine,
+        blisk=blisk,
+        casing=casing,
+        springs=springs,
+        dampers=support_damping(machine.damping, springs, blisk.rigid_inertia),
+        beta=elastic_damping(machine.damping, blisk.blade_frequency),
+    )
