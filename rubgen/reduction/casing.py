@@ -31,12 +31,26 @@ class ReducedCasing:
 
 
 def largest_casing_order(modes: int) -> int:
-    """Highest circumferential order that the first `modes` modes of a ring carry in full: (modes - 1) // 2.
-
-    A ring on springs has one mode of order 0 (it turns as a whole; breathing lies far above) and two of each order
-    from 1 on.
-    """
+    """Highest order that the first `modes` modes carry, (modes - 1) // 2, while k_t <= k_r; else `carried_orders`."""
     return (modes - 1) // 2
+
+
+def carried_orders(machine: Machine, modes: int) -> tuple[int, ...]:
+    """Circumferential orders that the first `modes` modes of the casing carry in full, ascending.
+
+    Ranked by the thin inextensible circular ring on an elastic foundation, omega_n^2 =
+    [E I n^2 (n^2 - 1)^2 / R^4 + k_r n^2 + k_t] / [rho A (n^2 + 1)], k_r and k_t per length: one mode of order 0, two of
+    each other. With k_t <= k_r these are 0 to `largest_casing_order`; stiffer tangential springs raise the low orders.
+    """
+    casing = machine.casing
+    order = np.arange(max(modes, 1) + 2)
+    radius, inertia = machine.casing_mean_radius_m, casing.width_m * casing.thickness_m**3 / 12
+    bending = casing.material.youngs_modulus_pa * inertia * order**2 * (order**2 - 1) ** 2 / radius**4
+    per_length = casing.nodes / (2 * np.pi * radius)
+    springs = casing.radial_support_stiffness_n_per_m * order**2 + casing.circumferential_support_stiffness_n_per_m
+    ranked = np.argsort((bending + per_length * springs) / (order**2 + 1), kind="stable")
+    taken = np.cumsum(np.where(ranked == 0, 1, 2)) <= modes
+    return tuple(sorted(int(n) for n in ranked[taken]))
 
 
 def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
@@ -46,10 +60,10 @@ def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
     to the lobe axis, where a symmetric mode is radial and an antisymmetric one tangential. Of two modes of the same
     frequency the second has no radial displacement there.
 
-    Raises UserError when the casing has more lobes than the modes can carry (`largest_casing_order`), or for a mesh
-    that `assemble_casing` refuses.
+    Raises UserError when the modes do not carry the order of the casing's lobes in full (`carried_orders`), or for a
+    mesh that `assemble_casing` refuses.
     """
-    _check_lobes(machine.casing.lobes, modes)
+    _check_lobes(machine, modes)
     model = assemble_casing(machine)
     eigenvalues, vectors = _lowest_modes(model, modes)
     displacements = vectors.reshape(-1, 3, modes)[:, :2]
@@ -66,12 +80,16 @@ def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
     )
 
 
-def _check_lobes(lobes: int, modes: int) -> None:
-    if lobes > largest_casing_order(modes):
-        raise UserError(
-            f"casing.lobes = {lobes}: {modes} casing modes carry orders up to {largest_casing_order(modes)}; "
-            f"take fewer lobes, or at least {2 * lobes + 1} casing modes"
-        )
+def _check_lobes(machine: Machine, modes: int) -> None:
+    lobes, carried = machine.casing.lobes, carried_orders(machine, modes)
+    if lobes in carried:
+        return
+    enough = next(n for n in range(modes, 4 * machine.casing.nodes) if lobes in carried_orders(machine, n))
+    held = f"the orders {carried[0]} to {carried[-1]}" if carried else "no order in full"
+    raise UserError(
+        f"casing.lobes = {lobes}: {modes} casing modes carry {held}; take another number of lobes, or at least "
+        f"{enough} casing modes"
+    )
 
 
 def _lowest_modes(model: CasingModel, modes: int) -> tuple[FloatArray, FloatArray]:
