@@ -1,4 +1,5 @@
 import dataclasses
+import resource
 
 import numpy as np
 import pytest
@@ -68,4 +69,16 @@ def test_nothing_half_written_is_left(rub_run, tmp_path, monkeypatch):
     monkeypatch.setattr("rubgen.io.mcap.labels_dict", lambda _: {"bad": object()})
     with pytest.raises(TypeError):
         write_mcap(rub_run, tmp_path / "run.mcap")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_leaves_nothing(rub_run, tmp_path):
+    """Writing stops at 100 kB, as on a full disk."""
+    _, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, hard))
+    try:
+        with pytest.raises(OSError, match="too large"):
+            write_mcap(rub_run, tmp_path / "full.mcap")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
     assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,1 @@
+"""Runs to look at: Rerun recordings and figures."""

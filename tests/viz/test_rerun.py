@@ -1,0 +1,151 @@
+import dataclasses
+import json
+import resource
+
+import numpy as np
+import pytest
+from rerun.chunk import RrdReader
+
+from rubgen.io.plain import labels_dict
+from rubgen.sensors.contact_window import contact_intervals
+from rubgen.viz.rerun import check_rrd, detail_window, recording_id, write_rrd
+
+
+@pytest.fixture(scope="module")
+def rrd_file(rub_run, tmp_path_factory):
+    path = tmp_path_factory.mktemp("rrd") / "run-000000.rrd"
+    write_rrd(rub_run, path)
+    return path
+
+
+def columns(path, entity):
+    """Every column of one entity, static ones included."""
+    found = {}
+    for chunk in RrdReader(path).stream().filter(content=entity).to_chunks():
+        batch = chunk.to_record_batch()
+        found |= {name: batch.column(name).to_pylist() for name in batch.schema.names}
+    return found
+
+
+def test_full_rate_excerpt_reads_back_to_the_bit(rub_run, rrd_file):
+    window = detail_window(rub_run, rub_run.recording)
+    read = columns(rrd_file, "/detail/acceleration")
+    angles = (0, 90, 180, 270)
+    sent = [rub_run.recording.channels[f"casing_acc_{angle}"].values[window] for angle in angles]
+    assert window.stop - window.start == 20 * 154 - 8  # 20 turns of 1/166.67 s at 25.6 kHz
+    assert np.array(read["Scalars:scalars"], dtype=np.float32).tobytes() == np.column_stack(sent).tobytes()
+    assert read["SeriesLines:names"] == [[f"casing_acc_{angle} [m/s2]" for angle in angles]]
+
+
+def test_preview_reads_back_as_minimum_and_maximum(rub_run, rrd_file):
+    values = rub_run.recording.channels["contact_force"].values
+    read = columns(rrd_file, "/preview/force")
+    names = read["SeriesLines:names"][0]
+    preview = np.array(read["Scalars:scalars"], dtype=np.float32)
+    bins = [values[first : first + 25] for first in range(0, values.size, 25)]
+    assert preview[:, names.index("contact_force.min [N]")].tolist() == [part.min() for part in bins]
+    assert preview[:, names.index("contact_force.max [N]")].tolist() == [part.max() for part in bins]
+
+
+def test_times_are_whole_nanoseconds_from_the_first_sample(rrd_file):
+    (chunk,) = [c for c in RrdReader(rrd_file).stream().filter(content="/preview/gap").to_chunks() if not c.is_static]
+    times = chunk.to_record_batch().column("time").cast("int64").to_pylist()
+    assert times[:3] == [0, round(25 / 25600 * 1e9), round(50 / 25600 * 1e9)]
+    assert len(times) == 308
+
+
+def test_contacts_read_back_in_order_of_time(rub_run, rrd_file):
+    touches = contact_intervals(rub_run.response, rub_run.recording)
+    order = np.argsort(touches.start, kind="stable")
+    read = columns(rrd_file, "/contact/impulse")
+    assert [value for (value,) in read["Scalars:scalars"]] == touches.impulse[order].tolist()
+
+
+def test_the_detail_window_holds_the_hardest_touch(rub_run):
+    window = detail_window(rub_run, rub_run.recording)
+    touches = contact_intervals(rub_run.response, rub_run.recording)
+    hardest = touches.start[np.argmax(touches.impulse)] * rub_run.recording.sample_rate_hz
+    assert window.start <= hardest <= window.stop
+
+
+def test_labels_and_scenario_are_properties(rub_run, rrd_file):
+    read = columns(rrd_file, "/__properties/labels")
+    known = {key: value for key, value in labels_dict(rub_run.labels).items() if value not in (None, [])}
+    assert set(known) <= set(read)
+    assert read["motion"] == [["period-k"]]
+    assert read["contact_zone_widths_rad"] == [[0.3, 0.31]]
+    assert read["contact_force_orders"] == [rub_run.labels.orders["contact_force"].tolist()]
+    scenario = json.loads(columns(rrd_file, "/__properties/scenario")["json"][0][0])
+    assert scenario["operation"]["speed_rpm"] == 10000.0
+
+
+def test_motion_lanes_show_each_part(rrd_file):
+    lanes = {part: columns(rrd_file, f"/labels/motion/{part}")["StateChange:state"] for part in ("system", "blisk")}
+    assert lanes == {"system": [["period-k"]], "blisk": [["period-1"]]}
+
+
+def test_section_points_are_the_disk_centre_once_a_turn(rub_run, rrd_file):
+    points = columns(rrd_file, "/orbit/plane/section")["Points2D:positions"][0]
+    centre = rub_run.response.section_q[:, 3 * 38 : 3 * 38 + 2]
+    np.testing.assert_allclose(points, 1e6 * centre, rtol=1e-6)
+
+
+def test_verify_passes_with_a_default_arrangement(rrd_file):
+    assert check_rrd(rrd_file) == []
+    assert len(RrdReader(rrd_file).blueprints()) == 1
+
+
+def test_recording_id_follows_from_the_scenario(rub_run, rrd_file):
+    (entry,) = RrdReader(rrd_file).recordings()
+    assert entry.recording_id == recording_id(rub_run.scenario)
+    other = dataclasses.replace(rub_run.scenario, seed=99)
+    assert recording_id(other) != recording_id(rub_run.scenario)
+    assert recording_id(other).startswith("run-000000-")
+
+
+def test_a_run_without_contact(free_run, tmp_path):
+    write_rrd(free_run, tmp_path / "free.rrd")
+    assert check_rrd(tmp_path / "free.rrd") == []
+    assert columns(tmp_path / "free.rrd", "/contact/angle") == {}
+
+
+def test_one_second_stays_below_two_megabytes(make_synthetic_run, tmp_path):
+    write_rrd(make_synthetic_run(seconds=0.65), tmp_path / "long.rrd")
+    assert (tmp_path / "long.rrd").stat().st_size < 0.65 * 2e6
+
+
+@pytest.mark.parametrize("damage", [lambda data: data[: len(data) // 2], lambda _: b"no recording", lambda _: b""])
+def test_damage_is_found(rrd_file, tmp_path, damage):
+    path = tmp_path / "damaged.rrd"
+    path.write_bytes(damage(rrd_file.read_bytes()))
+    assert len(check_rrd(path)) >= 1
+
+
+def test_missing_content_and_file_are_named(tmp_path):
+    import rerun as rr
+
+    stream = rr.RecordingStream("other")
+    stream.save(tmp_path / "other.rrd")
+    stream.log("/something", rr.TextLog("else"))
+    stream.disconnect()
+    assert any("/preview/" in problem for problem in check_rrd(tmp_path / "other.rrd"))
+    assert check_rrd(tmp_path / "none.rrd") == [f"{tmp_path / 'none.rrd'}: there is no such file"]
+
+
+def test_a_failed_run_is_not_written(rub_run, tmp_path):
+    failed = dataclasses.replace(rub_run, recording=None, labels=None)
+    with pytest.raises(ValueError, match="nothing to show"):
+        write_rrd(failed, tmp_path / "failed.rrd")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_leaves_nothing(rub_run, tmp_path):
+    """Writing stops at 100 kB, as on a full disk."""
+    _, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, hard))
+    try:
+        with pytest.raises(OSError, match=r"full\.rrd: could not be written whole"):
+            write_rrd(rub_run, tmp_path / "full.rrd")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
+    assert list(tmp_path.iterdir()) == []
