@@ -179,7 +179,7 @@ def test_one_second_of_all_channels_is_measured_fast() -> None:
     record(response, 1.0)  # compiles
     times = []
     for _ in range(3):
-        start = time.perf_counter()
+        start = time.process_time()
         record(response, 1.0)
-        times.append(time.perf_counter() - start)
-    assert min(times) < 1.0  # 0.1 s alone on one core; five times that would be a mistake, the rest is for a busy host
+        times.append(time.process_time() - start)
+    assert min(times) < 0.6  # 0.2 s of processor time expected

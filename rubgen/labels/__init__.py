@@ -1,0 +1,6 @@
+"""Labels: what the dynamics really did, from the true response alone."""
+
+from rubgen.labels.label import label
+from rubgen.labels.labels import Labels, Motion
+
+__all__ = ["Labels", "Motion", "label"]

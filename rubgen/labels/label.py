@@ -1,0 +1,44 @@
+"""All labels of one run."""
+
+from __future__ import annotations
+
+from rubgen.labels.contact_zones import contact_zones
+from rubgen.labels.harmonics import harmonics
+from rubgen.labels.labels import Labels
+from rubgen.labels.motion import motion
+from rubgen.solver.response import Response
+
+
+def label(response: Response) -> Labels:
+    """The labels of a run that ended with status OK; every one is defined in docs/labels.md.
+
+    Contact and motion come from the whole record, orders from its last 100 turns: nothing depends on how long the
+    tail of the taps is. Labels are those of the true response, before any sensor. A motion is safely told from 500
+    recorded turns on (recipes ask for them); fewer are taken too, down to 32, where UserError is raised.
+    """
+    contact_steps = int(response.contact_steps_per_turn.sum())
+    rub = contact_steps > 0
+    zones = contact_zones(response.events, step_angle=response.dt * response.speed)
+    parts = motion(response)
+    orders = harmonics(response)
+    return Labels(
+        rub=rub,
+        contact_duty=contact_steps / (response.record_turns * response.steps_per_turn),
+        impulse_per_turn=float(response.impulse_per_turn.mean()),
+        blades_touched=len(set(response.events.blade.tolist())),
+        contact_zones=len(zones.centres),
+        contact_zone_centres=zones.centres,
+        contact_zone_widths=zones.widths,
+        contact_zones_symmetric=zones.symmetric,
+        motion_blisk=parts.blisk.motion,
+        motion_casing=parts.casing.motion,
+        motion=parts.system.motion,
+        period_blisk=parts.blisk.period,
+        period_casing=parts.casing.period,
+        period=parts.system.period,
+        has_2fr=rub and orders.has_2fr,
+        orders=orders.amplitudes,
+        even_share=orders.even_share,
+        odd_share=orders.odd_share,
+        dominant_order=orders.dominant_order,
+    )

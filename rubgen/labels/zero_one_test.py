@@ -1,0 +1,43 @@
+"""The 0-1 test for chaos (Gottwald, Melbourne 2009, SIAM J. Appl. Dyn. Syst. 8, 129), by correlation."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+
+FREQUENCIES = np.pi * (0.2 + 0.6 * (np.arange(100) + 0.5) / 100 + 0.002 * np.sin(1.0 + np.arange(100) ** 2))
+"""100 fixed c in (pi/5, 4 pi/5): evenly spread, then shifted a little so that no c is a simple fraction of pi."""
+
+
+def growth_correlation(observable: FloatArray) -> float:
+    """K of a scalar observable (n,), n >= 32 points of a section: near 1 for chaos, near 0 for regular motion.
+
+    With the translation p_c(n) = sum_{j <= n} phi_j exp(i c j), the mean square displacement
+    M_c(n) = mean_j |p_c(j + n) - p_c(j)|^2 over n = 1 .. N/10 loses its oscillation,
+    D_c(n) = M_c(n) - mean(phi)^2 (1 - cos n c)/(1 - cos c); K_c = corr(n, D_c(n)), K = median of K_c over all c.
+    Meaningless for a constant with rounding noise: cluster first.
+    """
+    displacement = _mean_square_displacement(observable)
+    steps = np.arange(1, displacement.shape[1] + 1)
+    c = FREQUENCIES[:, None]
+    oscillation = observable.mean() ** 2 * (1 - np.cos(steps * c)) / (1 - np.cos(c))
+    return float(np.median(_correlation(steps.astype(np.float64), displacement - oscillation)))
+
+
+def _mean_square_displacement(observable: FloatArray) -> FloatArray:
+    """M_c(n), (frequencies, n_cut), every mean over the same N - n_cut starts."""
+    size = observable.size
+    cut = max(size // 10, 3)
+    walk = np.cumsum(observable * np.exp(1j * FREQUENCIES[:, None] * np.arange(1, size + 1)), axis=1)
+    start = walk[:, : size - cut]
+    moved = [walk[:, n : n + size - cut] - start for n in range(1, cut + 1)]
+    return np.stack([np.mean(m.real**2 + m.imag**2, axis=1) for m in moved], axis=1)
+
+
+def _correlation(steps: FloatArray, curves: FloatArray) -> FloatArray:
+    """Pearson correlation of each row of `curves` with `steps`; 0 for a constant row."""
+    s = steps - steps.mean()
+    d = curves - curves.mean(axis=1, keepdims=True)
+    norm = np.linalg.norm(d, axis=1) * np.linalg.norm(s)
+    return np.asarray(d @ s / np.where(norm > 0, norm, 1.0), dtype=np.float64)

@@ -1,0 +1,68 @@
+"""Maps whose nature is known from the literature; K as in Gottwald and Melbourne (2009)."""
+
+import numpy as np
+import pytest
+
+from rubgen.labels.zero_one_test import FREQUENCIES, growth_correlation
+
+GOLDEN = (np.sqrt(5) - 1) / 2
+
+
+def logistic(r: float, count: int = 500) -> np.ndarray:
+    x, orbit = 0.3, []
+    for _ in range(count + 200):
+        x = r * x * (1 - x)
+        orbit.append(x)
+    return np.array(orbit[200:])
+
+
+def henon(count: int = 500) -> np.ndarray:
+    x, y, orbit = 0.1, 0.1, []
+    for _ in range(count + 200):
+        x, y = 1 - 1.4 * x * x + y, 0.3 * x
+        orbit.append(x)
+    return np.array(orbit[200:])
+
+
+def circle_map(rotation: float, coupling: float, count: int = 500) -> np.ndarray:
+    angle, orbit = 0.1, []
+    for _ in range(count + 200):
+        angle += rotation - coupling / (2 * np.pi) * np.sin(2 * np.pi * angle)
+        orbit.append(np.cos(2 * np.pi * angle))
+    return np.array(orbit[200:])
+
+
+def test_logistic_map_at_4_is_chaotic() -> None:
+    assert growth_correlation(logistic(4.0)) > 0.99
+
+
+def test_henon_map_is_chaotic() -> None:
+    assert growth_correlation(henon()) > 0.99
+
+
+def test_logistic_map_of_period_4_does_not_grow() -> None:
+    assert abs(growth_correlation(logistic(3.5))) < 0.05
+
+
+@pytest.mark.parametrize(("rotation", "coupling"), [(GOLDEN, 0.0), (GOLDEN, 0.9), (0.0123, 0.0), (0.4987, 0.0)])
+def test_circle_map_is_not_chaotic_on_500_points(rotation: float, coupling: float) -> None:
+    assert abs(growth_correlation(circle_map(rotation, coupling))) < 0.15
+
+
+def test_49_points_are_too_few_for_quasi_periodic_motion() -> None:
+    # Why labels need 500 turns: on 49 points most rigid rotations of the circle look chaotic, on 500 none does.
+    rotations = np.random.default_rng(0).uniform(0.02, 0.98, 60)
+    few, many = (np.array([growth_correlation(circle_map(r, 0.0, n)) for r in rotations]) for n in (49, 500))
+    assert np.abs(many).max() < 0.05
+    assert np.mean(few > 0.9) > 0.5
+
+
+def test_an_offset_and_a_scale_do_not_matter() -> None:
+    orbit = henon()
+    assert growth_correlation(1e-6 * orbit) == pytest.approx(growth_correlation(orbit), abs=1e-9)
+    assert growth_correlation(orbit + 0.5) == pytest.approx(growth_correlation(orbit), abs=0.01)
+
+
+def test_frequencies_lie_where_the_test_is_valid() -> None:
+    assert FREQUENCIES.size == 100
+    assert np.pi / 5 < FREQUENCIES.min() < FREQUENCIES.max() < 4 * np.pi / 5
