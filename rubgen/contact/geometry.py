@@ -1,0 +1,73 @@
+"""The casing surface and the blade tips as the contact kernels take them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.contact.geometry_kernels import Surface, Tips, foot_of
+from rubgen.reduction.model import SpinningSystem
+
+
+def periodic_derivative(values: FloatArray) -> FloatArray:
+    """Derivative by angle of values (n, ...) at n equal steps of a full turn, exact for orders below n / 2."""
+    n = values.shape[0]
+    order = 1j * np.fft.rfftfreq(n, 1 / n)
+    if n % 2 == 0:
+        order[-1] = 0  # the sawtooth of order n / 2 has no slope at the nodes
+    spectrum = np.fft.rfft(values, axis=0) * order.reshape(-1, *[1] * (values.ndim - 1))
+    return np.asarray(np.fft.irfft(spectrum, n, axis=0))
+
+
+def casing_surface(system: SpinningSystem) -> Surface:
+    """The surface r(psi) e_r + u(psi) of a system: smooth undeformed curve, Hermite-interpolated displacement.
+
+    Nodal slopes come from the Fourier series of the nodal displacements, so u is exact to fourth order in the node
+    distance, and continuous in slope. A value between nodes is at most the largest nodal value plus a quarter of the
+    node distance times the largest slope: that bounds each mode's reach.
+    """
+    modes = np.ascontiguousarray(system.casing_modes, dtype=float)
+    nodes = modes.shape[0]
+    slopes = periodic_derivative(modes)
+    step = 2 * np.pi / nodes
+    size, slope_size = (np.sqrt((field**2).sum(axis=1)).max(axis=0) for field in (modes, slopes))
+    curve = system.surface
+    steepness = float(np.abs(curve.amplitude * curve.order).sum())
+    # Candidates are nearer than the surface's own size, so |x| > 0.9 tip_radius bounds |grad(r - |x|)| between them.
+    lipschitz = float(np.hypot(1.0, steepness / (0.9 * system.tip_radius)))
+    return Surface(
+        mean_radius=float(curve.mean_radius),
+        amplitude=np.asarray(curve.amplitude, dtype=float),
+        order=np.asarray(curve.order, dtype=float),
+        phase=np.asarray(curve.phase, dtype=float),
+        table=np.ascontiguousarray(np.concatenate([modes, slopes], axis=1).transpose(0, 2, 1)),
+        node_step=step,
+        reach=np.ascontiguousarray(size + 0.25 * step * slope_size),
+        steepness=steepness,
+        lipschitz=lipschitz,
+    )
+
+
+def blade_tips(system: SpinningSystem) -> Tips:
+    """The tips of a system: rest radius, steady displacement, place on the disk."""
+    angle = np.asarray(system.blade_angles, dtype=float)
+    orders = np.multiply.outer(np.asarray(system.surface.order, dtype=float), angle)
+    return Tips(
+        radius=float(system.tip_radius),
+        static=np.ascontiguousarray(system.tip_static, dtype=float),
+        cos_angle=np.cos(angle),
+        sin_angle=np.sin(angle),
+        cos_order=np.cos(orders),
+        sin_order=np.sin(orders),
+    )
+
+
+def gap_and_foot(surface: Surface, q_casing: FloatArray, point: FloatArray, opening: float = 0.0) -> FloatArray:
+    """Gap, foot parameter psi and the tangent's X and Y (4,) of an inertial point (2,) near the deformed surface.
+
+    Gap in m, positive inside the casing, along the inward normal of the deformed curve; psi in rad is the polar angle
+    of the foot on the undeformed curve. `opening` in m widens the surface. The point must lie much nearer to the
+    surface than the radius of curvature.
+    """
+    psi, gap, tx, ty = foot_of(surface, q_casing, opening, float(point[0]), float(point[1]), np.zeros(8))
+    return np.array([gap, psi, tx, ty])

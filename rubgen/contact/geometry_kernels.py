@@ -1,0 +1,219 @@
+"""Where a blade tip stands against the deformed casing surface.
+
+The surface is X(psi) = (r(psi) + opening) e_r(psi) + u(psi): the undeformed smooth curve plus the casing's elastic
+displacement, interpolated between the nodes by periodic cubic Hermite polynomials (continuous in slope).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from rubgen.arrays import FloatArray
+from rubgen.jit import kernel
+
+FOOT_TOLERANCE = 1e-10
+FOOT_ITERATIONS = 20
+
+
+class Surface(NamedTuple):
+    """The casing's inner surface as kernels take it; lengths in m, angles in rad.
+
+    `table` (nodes, n_casing, 4) holds X, Y and their derivatives by the polar angle for each node and mode; `reach`
+    (n_casing,) bounds the displacement anywhere on the ring per unit of each mode; `steepness` bounds |dr/dpsi| and
+    `lipschitz` the gradient of r(psi) - |x| near the surface.
+    """
+
+    mean_radius: float
+    amplitude: FloatArray
+    order: FloatArray
+    phase: FloatArray
+    table: FloatArray
+    node_step: float
+    reach: FloatArray
+    steepness: float
+    lipschitz: float
+
+
+class Tips(NamedTuple):
+    """The blade tips as kernels take them.
+
+    `radius` at rest, `static` (n_blades, 3) steady displacement along blade axes, `cos_angle`, `sin_angle` (n_blades,)
+    of the blade's place on the disk, `cos_order`, `sin_order` (n_harmonics, n_blades) of order_j times that angle.
+    """
+
+    radius: float
+    static: FloatArray
+    cos_angle: FloatArray
+    sin_angle: FloatArray
+    cos_order: FloatArray
+    sin_order: FloatArray
+
+
+@kernel
+def undeformed_radius(surface: Surface, psi: float) -> tuple[float, float, float]:
+    """r, dr/dpsi and d2r/dpsi2 of the undeformed surface."""
+    radius, slope, bend = surface.mean_radius, 0.0, 0.0
+    for j in range(surface.amplitude.shape[0]):
+        order = surface.order[j]
+        angle = order * (psi - surface.phase[j])
+        cosine, sine = surface.amplitude[j] * math.cos(angle), surface.amplitude[j] * math.sin(angle)
+        radius += cosine
+        slope -= order * sine
+        bend -= order * order * cosine
+    return radius, slope, bend
+
+
+@kernel
+def interval(psi: float, node_step: float, nodes: int) -> tuple[int, int, float]:
+    """The two nodes around the polar angle, and the share of the way between them in [0, 1]."""
+    position = psi / node_step
+    first = math.floor(position)
+    return int(first % nodes), int((first + 1) % nodes), position - first
+
+
+@kernel
+def load_interval(table: FloatArray, first: int, second: int, q_casing: FloatArray, ends_out: FloatArray) -> None:
+    """Displacement and slope (X, Y, X', Y') at two nodes, into `ends_out` (8,)."""
+    for c in range(4):
+        at_first, at_second = 0.0, 0.0
+        for j in range(q_casing.shape[0]):
+            at_first += table[first, j, c] * q_casing[j]
+            at_second += table[second, j, c] * q_casing[j]
+        ends_out[c] = at_first
+        ends_out[4 + c] = at_second
+
+
+@kernel
+def hermite(s: float, h: float) -> tuple[float, float, float, float]:
+    """Weights of first value, second value, first slope, second slope at share s of an interval of length h."""
+    return (1 + 2 * s) * (1 - s) * (1 - s), s * s * (3 - 2 * s), h * s * (1 - s) * (1 - s), h * s * s * (s - 1)
+
+
+@kernel
+def hermite_slope(s: float, h: float) -> tuple[float, float, float, float]:
+    """Derivatives of the `hermite` weights by the polar angle."""
+    bump = 6 * s * (1 - s) / h
+    return -bump, bump, (1 - s) * (1 - 3 * s), s * (3 * s - 2)
+
+
+@kernel
+def hermite_bend(s: float, h: float) -> tuple[float, float, float, float]:
+    """Second derivatives of the `hermite` weights by the polar angle."""
+    bend = (12 * s - 6) / (h * h)
+    return bend, -bend, (6 * s - 4) / h, (6 * s - 2) / h
+
+
+@kernel
+def blend(weights: tuple[float, float, float, float], ends: FloatArray, c: int) -> float:
+    """Component c (0: X, 1: Y) of the interpolated displacement, or of its derivative."""
+    return weights[0] * ends[c] + weights[1] * ends[4 + c] + weights[2] * ends[2 + c] + weights[3] * ends[6 + c]
+
+
+@kernel
+def foot_of(
+    surface: Surface, q_casing: FloatArray, opening: float, x: float, y: float, ends_work: FloatArray
+) -> tuple[float, float, float, float]:
+    """Foot of (x, y) on the deformed surface: polar parameter psi, gap, and the tangent's X and Y.
+
+    Newton's method on (P - X(psi)).X'(psi) = 0, from the polar angle of P. The gap is n.(P - X) with the inward
+    normal n = e_z x t, positive inside the casing. `ends_work` (8,) is scratch.
+    """
+    h, nodes = surface.node_step, surface.table.shape[0]
+    rho = math.sqrt(x * x + y * y)
+    cosine, sine = x / rho, y / rho
+    psi = math.atan2(y, x)
+    loaded = -1
+    gap, tx, ty = 0.0, 0.0, 0.0
+    for _ in range(FOOT_ITERATIONS):
+        first, second, s = interval(psi, h, nodes)
+        if first != loaded:
+            load_interval(surface.table, first, second, q_casing, ends_work)
+            loaded = first
+        radius, slope, bend = undeformed_radius(surface, psi)
+        radius += opening
+        value, derivative, second_derivative = hermite(s, h), hermite_slope(s, h), hermite_bend(s, h)
+        to_x = x - radius * cosine - blend(value, ends_work, 0)
+        to_y = y - radius * sine - blend(value, ends_work, 1)
+        dx = slope * cosine - radius * sine + blend(derivative, ends_work, 0)
+        dy = slope * sine + radius * cosine + blend(derivative, ends_work, 1)
+        ddx = (bend - radius) * cosine - 2 * slope * sine + blend(second_derivative, ends_work, 0)
+        ddy = (bend - radius) * sine + 2 * slope * cosine + blend(second_derivative, ends_work, 1)
+        length_squared = dx * dx + dy * dy
+        step = (to_x * dx + to_y * dy) / (length_squared - to_x * ddx - to_y * ddy)
+        length = math.sqrt(length_squared)
+        tx, ty = dx / length, dy / length
+        gap = ty * -to_x + tx * to_y
+        if abs(step) < FOOT_TOLERANCE:
+            break
+        psi += step
+        cosine, sine = math.cos(psi), math.sin(psi)
+    return psi, gap, tx, ty
+
+
+@kernel
+def casing_rows(surface: Surface, psi: float, rows_out: FloatArray) -> None:
+    """X and Y displacement at psi per unit of each casing mode, into `rows_out` (2, n_casing)."""
+    first, second, s = interval(psi, surface.node_step, surface.table.shape[0])
+    w = hermite(s, surface.node_step)
+    table = surface.table
+    for j in range(table.shape[1]):
+        for c in range(2):
+            rows_out[c, j] = (
+                w[0] * table[first, j, c]
+                + w[1] * table[second, j, c]
+                + w[2] * table[first, j, 2 + c]
+                + w[3] * table[second, j, 2 + c]
+            )
+
+
+@kernel
+def casing_reach(surface: Surface, q_casing: FloatArray) -> float:
+    """An upper bound of the casing's displacement anywhere on the ring, sum_j |q_j| reach_j."""
+    reach = 0.0
+    for j in range(q_casing.shape[0]):
+        reach += abs(q_casing[j]) * surface.reach[j]
+    return reach
+
+
+@kernel
+def tip_position(
+    tips: Tips, blade: int, q: FloatArray, cos_theta: float, sin_theta: float
+) -> tuple[float, float, float, float]:
+    """Inertial x, y of a blade's tip, then the cosine and sine of the blade's angle theta + blade_angle."""
+    cosine = cos_theta * tips.cos_angle[blade] - sin_theta * tips.sin_angle[blade]
+    sine = sin_theta * tips.cos_angle[blade] + cos_theta * tips.sin_angle[blade]
+    radial = tips.radius + tips.static[blade, 0] + q[3 * blade]
+    tangential = tips.static[blade, 1] + q[3 * blade + 1]
+    return radial * cosine - tangential * sine, radial * sine + tangential * cosine, cosine, sine
+
+
+@kernel
+def clearance_bounds(
+    surface: Surface,
+    tips: Tips,
+    q: FloatArray,
+    opening: float,
+    cos_orders: FloatArray,
+    sin_orders: FloatArray,
+    bounds_out: FloatArray,
+) -> None:
+    """A lower bound of every tip's distance to the undeformed surface, into `bounds_out` (n_blades,).
+
+    With f(x) = r(angle of x) + opening - |x|, |grad f| <= lipschitz, the distance is at least f / lipschitz. The tip's
+    polar angle differs from the blade's by at most |t| / a and |P| <= a + t^2 / (2 a), a and t the radial and
+    tangential place of the tip. Bounded by the casing's reach, the gap to the deformed surface follows.
+    `cos_orders`, `sin_orders` (n_harmonics,) are those of order_j (theta - phase_j).
+    """
+    base = surface.mean_radius + opening - tips.radius
+    for k in range(bounds_out.shape[0]):
+        a = tips.static[k, 0] + q[3 * k]
+        t = abs(tips.static[k, 1] + q[3 * k + 1])
+        shift = t / (tips.radius + a)
+        bounds_out[k] = base - a - shift * (surface.steepness + 0.5 * t)
+    for j in range(surface.amplitude.shape[0]):
+        cosine, sine = surface.amplitude[j] * cos_orders[j], surface.amplitude[j] * sin_orders[j]
+        for k in range(bounds_out.shape[0]):
+            bounds_out[k] += cosine * tips.cos_order[j, k] - sine * tips.sin_order[j, k]
+    for k in range(bounds_out.shape[0]):
+        bounds_out[k] /= surface.lipschitz

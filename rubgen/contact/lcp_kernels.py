@@ -1,0 +1,144 @@
+"""The linear complementarity problem of one step: 0 <= lam _|_ b + W lam >= 0."""
+
+from __future__ import annotations
+
+import math
+
+from rubgen.arrays import FloatArray, IntArray
+from rubgen.jit import kernel
+
+SOLVED = 0
+UNSOLVED = 1
+SWEEPS = 400
+TOLERANCE = 1e-14
+
+
+@kernel
+def is_positive_definite(W: FloatArray, m: int, work: FloatArray) -> bool:
+    """Whether the symmetric part of the leading m x m block of W is positive definite (by Cholesky, in `work`)."""
+    for i in range(m):
+        for j in range(i + 1):
+            total = 0.5 * (W[i, j] + W[j, i])
+            for c in range(j):
+                total -= work[i, c] * work[j, c]
+            if i == j:
+                if not total > 0.0:
+                    return False
+                work[i, i] = math.sqrt(total)
+            else:
+                work[i, j] = total / work[j, j]
+    return True
+
+
+@kernel
+def projected_gauss_seidel(W: FloatArray, b: FloatArray, m: int, lam_out: FloatArray) -> int:
+    """Sweeps from zero until no multiplier moves by more than 1e-14 of the largest; SOLVED or UNSOLVED."""
+    for i in range(m):
+        lam_out[i] = 0.0
+    for _ in range(SWEEPS):
+        change, largest = 0.0, 0.0
+        for i in range(m):
+            residual = b[i]
+            for j in range(m):
+                residual += W[i, j] * lam_out[j]
+            value = max(0.0, lam_out[i] - residual / W[i, i])
+            change = max(change, abs(value - lam_out[i]))
+            largest = max(largest, value)
+            lam_out[i] = value
+        if change <= TOLERANCE * largest:
+            return SOLVED
+    return UNSOLVED
+
+
+@kernel
+def _leaving_row(tableau: FloatArray, entering: int, m: int) -> int:
+    """Row of the smallest ratio; ties go to the artificial variable's row if last, else the first; -1 on a ray."""
+    best, row = math.inf, -1
+    for i in range(m):
+        if tableau[i, entering] > 1e-14:
+            ratio = tableau[i, 2 * m + 1] / tableau[i, entering]
+            if ratio < best:
+                best, row = ratio, i
+    return row
+
+
+@kernel
+def _pivot(tableau: FloatArray, row: int, column: int, m: int) -> None:
+    pivot = tableau[row, column]
+    for j in range(2 * m + 2):
+        tableau[row, j] /= pivot
+    for i in range(m):
+        factor = tableau[i, column]
+        if i != row and factor != 0.0:
+            for j in range(2 * m + 2):
+                tableau[i, j] -= factor * tableau[row, j]
+
+
+@kernel
+def _fill_tableau(W: FloatArray, b: FloatArray, m: int, scale: float, tableau: FloatArray, basis: IntArray) -> int:
+    """I w - W z - 1 z0 = b, scaled so that lam = scale z; gives the row of the most negative b."""
+    worst = 0
+    for i in range(m):
+        for j in range(m):
+            tableau[i, j] = 0.0
+            tableau[i, m + j] = -W[i, j] * scale
+        tableau[i, i] = 1.0
+        tableau[i, 2 * m] = -1.0
+        tableau[i, 2 * m + 1] = b[i]
+        basis[i] = i
+        if b[i] < b[worst]:
+            worst = i
+    return worst
+
+
+@kernel
+def lemke(W: FloatArray, b: FloatArray, m: int, lam_out: FloatArray, tableau: FloatArray, basis: IntArray) -> int:
+    """Lemke's complementary pivoting (Cottle, Pang, Stone, The Linear Complementarity Problem, 4.4).
+
+    `tableau` (m, 2 m + 2) and `basis` (m,) are scratch. SOLVED, or UNSOLVED when it ends on a ray.
+    """
+    size = 0.0
+    for i in range(m):
+        lam_out[i] = 0.0
+        for j in range(m):
+            size = max(size, abs(W[i, j]))
+    if size == 0.0:
+        return UNSOLVED
+    row = _fill_tableau(W, b, m, 1.0 / size, tableau, basis)
+    if b[row] >= 0.0:
+        return SOLVED
+    entering = 2 * m
+    for _ in range(50 * (m + 1)):
+        _pivot(tableau, row, entering, m)
+        left = basis[row]
+        basis[row] = entering
+        if left == 2 * m:
+            for i in range(m):
+                if m <= basis[i] < 2 * m:
+                    lam_out[basis[i] - m] = max(0.0, tableau[i, 2 * m + 1]) / size
+            return SOLVED
+        entering = left + m if left < m else left - m
+        row = _leaving_row(tableau, entering, m)
+        if row < 0:
+            return UNSOLVED
+    return UNSOLVED
+
+
+@kernel
+def solve_lcp(
+    W: FloatArray,
+    b: FloatArray,
+    m: int,
+    lam_out: FloatArray,
+    square: FloatArray,
+    tableau: FloatArray,
+    basis: IntArray,
+) -> int:
+    """The multipliers of the leading m contacts, into `lam_out`; SOLVED or UNSOLVED.
+
+    W positive definite (symmetric part): the solution is unique and projected Gauss-Seidel is tried first; in every
+    other case Lemke's pivoting.
+    """
+    if is_positive_definite(W, m, square) and projected_gauss_seidel(W, b, m, lam_out) == SOLVED:
+        return SOLVED
+    return lemke(W, b, m, lam_out, tableau, basis)

@@ -1,0 +1,20 @@
+"""Integration of a spinning system in time, with contact."""
+
+from rubgen.solver.integrate import integrate
+from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status
+from rubgen.solver.stability import automatic_settle_turns, eigenvalues, slowest_decay, stable_step, steps_per_turn
+from rubgen.solver.stepper import Stepper
+
+__all__ = [
+    "ContactEvents",
+    "EnergyBook",
+    "Response",
+    "Status",
+    "Stepper",
+    "automatic_settle_turns",
+    "eigenvalues",
+    "integrate",
+    "slowest_decay",
+    "stable_step",
+    "steps_per_turn",
+]

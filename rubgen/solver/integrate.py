@@ -1,0 +1,225 @@
+"""One run: from the rub-free motion through the closing of the clearance to the record."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.reduction.model import SpinningSystem
+from rubgen.scenario import ContactLaw, Operation
+from rubgen.solver.energy_kernels import (
+    ABSOLUTE,
+    CIRCULATORY,
+    CONTACT,
+    DAMPING,
+    DRIVE_LIMIT,
+    FRICTION,
+    NORMAL,
+    UNBALANCE,
+)
+from rubgen.solver.events import contact_events
+from rubgen.solver.response import EnergyBook, Response, Status
+from rubgen.solver.stability import settle_turns, slowest_decay, steps_per_turn
+from rubgen.solver.step_kernels import CONTACT_UNSOLVED, DIVERGED, ENERGY, OK
+from rubgen.solver.stepper import TAP_NAMES, Stepper, closing_ramp, start_opening
+from rubgen.solver.turn_kernels import STEPS, close_touches
+
+LEAST_TAIL_TURNS = 100
+ENERGY_TOLERANCE = 1e-8
+STATUS = {
+    OK: Status.OK,
+    CONTACT_UNSOLVED: Status.CONTACT_UNSOLVED,
+    DIVERGED: Status.DIVERGED,
+    ENERGY: Status.ENERGY,
+}
+
+
+class Integration:
+    """One run under way: the stepper, what is kept of the turns so far, and how it stands.
+
+    Kept are the taps of the last turns in a ring, and per turn of the record one section, one impulse, one count and
+    its touches: memory does not grow with the number of steps.
+    """
+
+    def __init__(self, stepper: Stepper, operation: Operation, settle: int, tail_turns: int) -> None:
+        self.stepper, self.settle, self.record = stepper, settle, operation.record_turns
+        self.closing = min(operation.closing_turns, settle)
+        self.opening = start_opening(stepper.system)
+        self.tail: deque[FloatArray] = deque(maxlen=min(tail_turns, settle + self.record))
+        n = stepper.system.M.shape[0]
+        self.section = np.zeros((self.record, 2, n))
+        self.impulse = np.zeros(self.record)
+        self.contact_steps = np.zeros(self.record, dtype=np.int64)
+        self.touches: list[FloatArray] = []
+        self.reaches: deque[float] = deque([0.0, 0.0], maxlen=2)
+        self.start_energy = self.largest_energy = stepper.energy()
+        self.status, self.reason = Status.OK, ""
+
+    def run(self) -> None:
+        """Integrate until the end of the record, or until the status is no longer OK."""
+        for turn in range(self.settle + self.record):
+            if turn == self.settle:
+                self.stepper.touches.open[:, STEPS] = 0.0  # a touch that began before is counted from here
+            self._run_turn(turn)
+            if self.status is not Status.OK:
+                return
+        touches = self.stepper.touches
+        still_open = close_touches(touches, self.record * self.stepper.steps, 0)
+        self.touches.append(touches.ended[:still_open].copy())
+
+    def _run_turn(self, turn: int) -> None:
+        stepper, result = self.stepper, self.stepper.result
+        code, step, ended = stepper.run_turn(self._opening_of(turn), (turn - self.settle) * stepper.steps)
+        self.reaches.append(float(result.summary[2]))
+        if code == OK and not self.energy_residual() <= ENERGY_TOLERANCE:
+            code = ENERGY
+        if code != OK:
+            self.status = STATUS[code]
+            self.reason = self._reason(turn, step)
+            return
+        self.tail.append(result.taps.copy())
+        row = turn - self.settle
+        if row >= 0:
+            self.section[row] = result.section
+            self.impulse[row], self.contact_steps[row] = result.summary[0], int(result.summary[1])
+            self.touches.append(stepper.touches.ended[:ended].copy())
+
+    def _opening_of(self, turn: int) -> FloatArray:
+        """Opening of the surface at steps -1 ... steps of a turn."""
+        steps = self.stepper.steps
+        elapsed = turn + np.arange(-1, steps + 1) / steps
+        return self.opening * closing_ramp(elapsed / self.closing)
+
+    def energy_residual(self) -> float:
+        """|E - E_start - works| over the summed absolute works, or over the largest |E| where no work is done."""
+        works, energy = self.stepper.book.works, self.stepper.energy()
+        self.largest_energy = max(self.largest_energy, abs(energy))
+        done = works[UNBALANCE] + works[DAMPING] + works[CIRCULATORY] + works[CONTACT]
+        scale = max(float(works[ABSOLUTE]), abs(self.largest_energy))
+        return abs(energy - self.start_energy - float(done)) / scale if scale > 0 else 0.0
+
+    def _reason(self, turn: int, step: int) -> str:
+        where = f"turn {turn} of {self.settle + self.record}, step {step} of {self.stepper.steps}"
+        match self.status:
+            case Status.DIVERGED:
+                before, after = self.reaches
+                growth = f"{after / before:.3g} times a turn" if before > 0 else "within one turn"
+                return f"a casing node or tip left {1e3 * self.stepper.limit:.3g} mm in {where}; it grew {growth}"
+            case Status.ENERGY:
+                return f"residual {self.energy_residual():.3g} above {ENERGY_TOLERANCE:g} after {where}"
+            case _:
+                return f"in {where}"
+
+
+def integrate(
+    system: SpinningSystem,
+    operation: Operation,
+    contact: ContactLaw,
+    *,
+    tail_seconds: float = 0.0,
+    sample_rate_hz: float = 0.0,
+) -> Response:
+    """The response of a spinning system with contact between blade tips and casing.
+
+    Central differences with Lagrange multipliers in forward increments (Carpenter, Taylor, Katona 1991), see
+    `step_kernels`; started from the exact rub-free motion with the surface opened so that nothing touches, closed
+    smoothly (continuous second derivative) over `operation.closing_turns`, at most the settle turns.
+
+    `tail_seconds` is what the taps must cover (100 turns at least; they may reach back before the record, but not
+    before the start); `sample_rate_hz` the sensors' rate that the steps must feed, 2.56 times. Taps stand at step n
+    together: displacements q_n, velocities and accelerations from q_n-1, q_n, q_n+1, and the contact force lam_n that
+    acts at that time; the record's last step is the last value. Taps: `blisk_x`, `blisk_y` displacement of O_d (m),
+    `casing_acc_*` radial acceleration of the surface at that polar angle, outward (m/s2), `support_force_*` force of
+    the disk on its lateral support (N), all inertial; `contact_force` the sum of normal multipliers (N, peaks go as
+    1/dt); `tip_clearance_*` (m) on the ray at that angle from the tips, interpolated between the two blades around it,
+    to the deformed casing.
+
+    A run that fails has the status and the reason; nothing else in it is data. Raises ValueError for a system whose
+    blisk and casing are coupled otherwise than by contact. Holds for constant speed and small casing displacements.
+    """
+    steps = steps_per_turn(system, operation.steps_per_turn, sample_rate_hz)
+    decay = slowest_decay(system)
+    if decay <= 0:
+        return _unstable(system, operation, steps, decay)
+    settle = settle_turns(system, operation)
+    stepper = Stepper(system, contact, steps)
+    turn_seconds = steps * stepper.dt
+    tail = max(LEAST_TAIL_TURNS, math.ceil(tail_seconds / turn_seconds))
+    integration = Integration(stepper, operation, settle, tail)
+    integration.run()
+    return _response(integration)
+
+
+def _response(integration: Integration) -> Response:
+    stepper = integration.stepper
+    tail = np.concatenate(list(integration.tail), axis=1) if integration.tail else np.zeros((len(TAP_NAMES), 0))
+    return Response(
+        status=integration.status,
+        reason=integration.reason,
+        speed=float(stepper.system.speed),
+        dt=float(stepper.dt),
+        steps_per_turn=stepper.steps,
+        settle_turns=integration.settle,
+        record_turns=integration.record,
+        taps={name: np.ascontiguousarray(tail[i]) for i, name in enumerate(TAP_NAMES)},
+        section_q=np.ascontiguousarray(integration.section[:, 0]),
+        section_v=np.ascontiguousarray(integration.section[:, 1]),
+        impulse_per_turn=integration.impulse,
+        contact_steps_per_turn=integration.contact_steps,
+        events=contact_events(integration.touches),
+        energy=_energy(integration),
+        n_blades=stepper.system.n_blades,
+        n_casing=stepper.system.n_casing,
+    )
+
+
+def _energy(integration: Integration) -> EnergyBook:
+    works = [float(work) for work in integration.stepper.book.works]
+    return EnergyBook(
+        start=integration.start_energy,
+        end=integration.stepper.energy(),
+        unbalance=works[UNBALANCE],
+        damping=works[DAMPING],
+        circulatory=works[CIRCULATORY],
+        contact=works[CONTACT],
+        normal_loss=works[NORMAL],
+        friction_loss=works[FRICTION],
+        drive_contact_work=works[CONTACT] - works[NORMAL] - works[FRICTION],
+        drive_contact_limit=works[DRIVE_LIMIT],
+        absolute_work=works[ABSOLUTE],
+        residual=integration.energy_residual(),
+    )
+
+
+def _unstable(system: SpinningSystem, operation: Operation, steps: int, decay: float) -> Response:
+    """The refusal of a system that grows by itself."""
+    n = system.M.shape[0]
+    nothing = np.zeros((0, n))
+    return Response(
+        status=Status.UNSTABLE,
+        reason=f"largest real part of the eigenvalues {-decay:.4g} 1/s at {system.speed:.6g} rad/s",
+        speed=float(system.speed),
+        dt=2 * math.pi / system.speed / steps,
+        steps_per_turn=steps,
+        settle_turns=0,
+        record_turns=operation.record_turns,
+        taps={name: np.zeros(0) for name in TAP_NAMES},
+        section_q=nothing,
+        section_v=nothing,
+        impulse_per_turn=np.zeros(0),
+        contact_steps_per_turn=np.zeros(0, dtype=np.int64),
+        events=contact_events([]),
+        energy=_no_energy(),
+        n_blades=system.n_blades,
+        n_casing=system.n_casing,
+    )
+
+
+def _no_energy() -> EnergyBook:
+    return EnergyBook(
+        start=0.0, end=0.0, unbalance=0.0, damping=0.0, circulatory=0.0, contact=0.0, normal_loss=0.0,
+        friction_loss=0.0, drive_contact_work=0.0, drive_contact_limit=0.0, absolute_work=0.0, residual=0.0,
+    )  # fmt: skip

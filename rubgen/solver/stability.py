@@ -1,0 +1,81 @@
+"""What the linear system says before a run: its eigenvalues, the step, the turns that transients need."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import scipy.linalg as la
+
+from rubgen.arrays import ComplexArray
+from rubgen.reduction.model import SpinningSystem
+from rubgen.scenario import Operation
+
+STEP_SAFETY = 0.95
+"""The step stays below this share of the stability limit 2 / omega_max."""
+SAMPLES_PER_HZ = 2.56
+"""Steps per second for each hertz of the sensors' sample rate."""
+TRANSIENT_DECAY = 100.0
+"""Transients have died when they have fallen by this factor."""
+MOST_STEPS_PER_TURN = 2**22
+
+
+def eigenvalues(system: SpinningSystem) -> ComplexArray:
+    """All 2 n eigenvalues s in 1/s of M q'' + C q' + K q = 0, from the first-order form, blisk and casing apart."""
+    start = system.casing_start
+    parts = []
+    for part in (slice(0, start), slice(start, None)):
+        M, C, K = system.M[part, part], system.C[part, part], system.K[part, part]
+        m = M.shape[0]
+        first_order = np.block([[np.zeros((m, m)), np.eye(m)], [-la.solve(M, K), -la.solve(M, C)]])
+        parts.append(la.eigvals(first_order))
+    return np.concatenate(parts)
+
+
+def slowest_decay(system: SpinningSystem) -> float:
+    """min(-Re s) in 1/s, which is 2 pi min(zeta f); negative for a linear system that grows by itself."""
+    return float(-eigenvalues(system).real.max())
+
+
+def stable_step(system: SpinningSystem) -> float:
+    """The largest stable step 2 / omega_max in s, omega_max of (K, M) without gyroscopic terms."""
+    start, largest = system.casing_start, 0.0
+    for part in (slice(0, start), slice(start, None)):
+        K, M = ((matrix[part, part] + matrix[part, part].T) / 2 for matrix in (system.K, system.M))
+        largest = max(largest, float(la.eigh(K, M, eigvals_only=True)[-1]))
+    return 2 / math.sqrt(largest)
+
+
+def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0.0) -> int:
+    """`least`, doubled until the step is below 0.95 * 2 / omega_max and feeds the sensors at 2.56 their rate.
+
+    A turn is a whole number of steps, so the section falls on steps exactly. Raises ValueError for a system that would
+    need more than 4,194,304 steps.
+    """
+    turn = 2 * math.pi / system.speed
+    longest = min(STEP_SAFETY * stable_step(system), 1 / (SAMPLES_PER_HZ * sample_rate_hz) if sample_rate_hz else turn)
+    steps = least
+    while turn / steps > longest:
+        steps *= 2
+        if steps > MOST_STEPS_PER_TURN:
+            raise ValueError(f"speed {system.speed:g} rad/s needs more than {MOST_STEPS_PER_TURN} steps a turn")
+    return steps
+
+
+def automatic_settle_turns(system: SpinningSystem, closing_turns: int) -> int:
+    """Turns until the clearance is closed and transients have fallen to a hundredth.
+
+    closing_turns + ln(100) f_r / (2 pi min(zeta f)) with the eigenvalues at speed, rounded up. Raises ValueError for
+    an unstable system.
+    """
+    decay = slowest_decay(system)
+    if decay <= 0:
+        raise ValueError(f"the linear system grows by itself: largest real part {-decay:g} 1/s")
+    return closing_turns + math.ceil(math.log(TRANSIENT_DECAY) * system.speed / (2 * math.pi) / decay)
+
+
+def settle_turns(system: SpinningSystem, operation: Operation) -> int:
+    """The operation's settle turns, or the automatic ones."""
+    if operation.settle_turns == "auto":
+        return automatic_settle_turns(system, operation.closing_turns)
+    return operation.settle_turns

@@ -1,0 +1,177 @@
+"""The scheme set up for one system: it holds a state and advances it turn by turn."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg as la
+
+from rubgen.arrays import FloatArray
+from rubgen.contact.contact_kernels import ContactWork
+from rubgen.contact.geometry import blade_tips, casing_surface
+from rubgen.contact.geometry_kernels import casing_rows
+from rubgen.reduction.model import SpinningSystem
+from rubgen.scenario import ContactLaw
+from rubgen.solver.central_difference import energy_book, scheme_blocks
+from rubgen.solver.energy_kernels import stored_energy
+from rubgen.solver.step_kernels import Angles, Laws, State
+from rubgen.solver.turn_kernels import Taps, Touches, TurnResult, run_turn
+
+CANDIDATE_MARGIN_SHARE = 5e-5
+"""Blades nearer than this share of the tip radius are solved together; the step widens it where forces reach farther."""
+DIVERGED_SHARE = 0.025
+"""A casing node or tip displaced by this share of the tip radius (10 mm at 0.4 m, eight times the preset casing's
+thickness and seven times its largest regular response) is beyond what a linear casing can mean."""
+START_CLEARANCE_SHARE = 2.5e-4
+"""The start leaves at least this share of the tip radius between tips and casing."""
+ACCELEROMETER_ANGLES = (0.0, np.pi / 2, np.pi, 3 * np.pi / 2)
+RAY_ANGLES = (0.0, np.pi / 2)
+TAP_NAMES = (
+    "blisk_x", "blisk_y", "casing_acc_0", "casing_acc_90", "casing_acc_180", "casing_acc_270",
+    "support_force_x", "support_force_y", "contact_force", "tip_clearance_0", "tip_clearance_90",
+)  # fmt: skip
+
+
+def steady_state(system: SpinningSystem) -> FloatArray:
+    """The exact rub-free motion q (n,): K q = force in the turning frame, the casing at rest."""
+    q = np.zeros(system.M.shape[0])
+    start = system.casing_start
+    q[:start] = la.solve(system.K[:start, :start], system.force[:start])
+    return q
+
+
+def start_opening(system: SpinningSystem) -> float:
+    """How far the surface must be opened, m, so that no tip of the steady state is nearer than the start clearance."""
+    tips = steady_state(system)[: 3 * system.n_blades].reshape(-1, 3) + system.tip_static
+    farthest = float(np.hypot(system.tip_radius + tips[:, 0], tips[:, 1]).max())
+    narrowest = system.surface.mean_radius - float(np.abs(system.surface.amplitude).sum())
+    return max(0.0, START_CLEARANCE_SHARE * system.tip_radius - (narrowest - farthest))
+
+
+def closing_ramp(share: FloatArray) -> FloatArray:
+    """1 - (10 x^3 - 15 x^4 + 6 x^5) for x clipped to [0, 1]: from one to zero with continuous second derivative."""
+    x = np.clip(share, 0.0, 1.0)
+    return np.asarray(1 - x**3 * (10 - 15 * x + 6 * x**2))
+
+
+class Stepper:
+    """A system, a contact law and a number of steps per turn, with the state between them.
+
+    `start_angle` is theta at the beginning of each turn, rad. `screen` False evaluates every blade's gap in every
+    step, which never changes a result. The state begins at the rub-free motion.
+    """
+
+    def __init__(
+        self,
+        system: SpinningSystem,
+        contact: ContactLaw,
+        steps: int,
+        *,
+        start_angle: float = 0.0,
+        screen: bool = True,
+    ) -> None:
+        self.system, self.steps = system, steps
+        self.dt = 2 * np.pi / system.speed / steps
+        self.surface, self.tips = casing_surface(system), blade_tips(system)
+        self.blisk, self.casing = scheme_blocks(system, self.dt)
+        margin = CANDIDATE_MARGIN_SHARE * system.tip_radius
+        self.laws = Laws(float(system.speed), float(self.dt), contact.friction, contact.restitution, margin, screen)
+        self.angles = _angles(system, steps, start_angle)
+        self.taps = _taps(self, start_angle)
+        self.book = energy_book(system)
+        self.limit = DIVERGED_SHARE * system.tip_radius
+        self.work = _contact_work(system, self.blisk.now.shape[1], self.casing.now.shape[1])
+        n, blades = system.M.shape[0], system.n_blades
+        self.state = State(
+            np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n),
+            np.zeros(self.blisk.now.shape[1]), np.zeros(self.casing.now.shape[1]),
+        )  # fmt: skip
+        self.touches = Touches(
+            np.zeros((blades, 8)), np.zeros(blades, dtype=np.int64), np.zeros((blades * (steps // 2 + 2), 8))
+        )
+        self.result = TurnResult(np.zeros((len(TAP_NAMES), steps)), np.zeros((2, n)), np.zeros(3))
+        rest = steady_state(system)
+        self.set_state(rest, rest)
+
+    def set_state(self, before: FloatArray, now: FloatArray) -> None:
+        """Set q at the step before the turn's first and at its first, each (n,)."""
+        self.state.before[:], self.state.now[:] = before, now
+        self.work.held[:] = np.nan
+
+    def run_turn(self, opening: FloatArray | None = None, clock: int = 0) -> tuple[int, int, int]:
+        """Advance by one turn; its outputs are in `result` and `touches`.
+
+        `opening` (steps + 2,) in m at steps -1, 0, ..., steps of the turn, none by default. `clock` is the number
+        that touches give to the first step. Returns a code of `step_kernels`, the step where the turn ended, and the
+        number of touches in `touches.ended`.
+        """
+        width = np.zeros(self.steps + 2) if opening is None else opening
+        return run_turn(
+            self.surface, self.tips, self.blisk, self.casing, self.laws, self.angles, width, self.limit, clock,
+            self.state, self.work, self.book, self.taps, self.touches, self.result,
+        )  # fmt: skip
+
+    def energy(self) -> float:
+        """Stored energy E half a step before now, J."""
+        return stored_energy(self.book.M, self.book.K, self.state.before, self.state.now, self.dt)
+
+
+def _angles(system: SpinningSystem, steps: int, start_angle: float) -> Angles:
+    """Tables over the steps of a turn; the last row repeats the first exactly."""
+    theta = start_angle + 2 * np.pi * (np.arange(steps + 1) % steps) / steps
+    orders = np.multiply.outer(theta, system.surface.order) - system.surface.order * system.surface.phase
+    return Angles(np.cos(theta), np.sin(theta), np.cos(orders), np.sin(orders))
+
+
+def _taps(stepper: Stepper, start_angle: float) -> Taps:
+    """Rows of the casing taps, and the blades around each ray at every step."""
+    system = stepper.system
+    columns = [_polar_rows(stepper, angle)[0] for angle in ACCELEROMETER_ANGLES]
+    for angle in RAY_ANGLES:
+        columns += _polar_rows(stepper, angle)
+    blades, shares = _blades_around_rays(system, stepper.steps, start_angle)
+    return Taps(
+        np.ascontiguousarray(np.array(columns).T), np.array(RAY_ANGLES), blades, shares, system.centre,
+        float(system.lateral_stiffness), float(system.lateral_damping), np.zeros((2, len(columns))),
+    )  # fmt: skip
+
+
+def _polar_rows(stepper: Stepper, angle: float) -> list[FloatArray]:
+    """Radial, tangential displacement and d(radial)/d(angle) at a polar angle per unit of each casing mode."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    at, aside = np.zeros((2, stepper.system.n_casing)), np.zeros((2, 2, stepper.system.n_casing))
+    casing_rows(stepper.surface, angle, at)
+    width = 1e-3 * stepper.surface.node_step
+    for side, sign in enumerate((1, -1)):
+        casing_rows(stepper.surface, angle + sign * width, aside[side])
+    slope = (aside[0] - aside[1]) / (2 * width)
+    radial, tangential = cosine * at[0] + sine * at[1], cosine * at[1] - sine * at[0]
+    return [radial, tangential, cosine * slope[0] + sine * slope[1] + tangential]
+
+
+def _blades_around_rays(system: SpinningSystem, steps: int, start_angle: float) -> tuple[np.ndarray, FloatArray]:
+    """For each step and ray the blades (steps, 2, 2) on either side, and the way from one to the other in [0, 1]."""
+    turn = 2 * np.pi
+    order = np.argsort(np.mod(system.blade_angles, turn), kind="stable")
+    placed = np.mod(system.blade_angles, turn)[order]
+    theta = start_angle + turn * np.arange(steps) / steps
+    local = np.mod(np.subtract.outer(np.array(RAY_ANGLES), theta).T, turn)
+    after = np.searchsorted(placed, local, side="right")
+    first, second = (after - 1) % len(placed), after % len(placed)
+    pitch = np.mod(placed[second] - placed[first], turn)
+    pitch = np.where(pitch == 0, turn, pitch)
+    share = np.mod(local - placed[first], turn) / pitch
+    return np.stack([order[first], order[second]], axis=-1).astype(np.int64), np.ascontiguousarray(share)
+
+
+def _contact_work(system: SpinningSystem, blisk_width: int, casing_width: int) -> ContactWork:
+    """Arrays of the contact step."""
+    m, c = system.n_blades, system.n_casing
+    return ContactWork(
+        bounds=np.zeros(m), near=np.zeros(m, dtype=np.bool_), psi=np.zeros(m), gap=np.zeros(m),
+        tangent=np.zeros((m, 2)), held=np.full((3, m), np.nan), blade=np.zeros(m, dtype=np.int64), lam=np.zeros(m),
+        b=np.zeros(m), W=np.zeros((m, m)), normal_tip=np.zeros((m, 3)), full_tip=np.zeros((m, 3)),
+        normal_casing=np.zeros((m, c)), full_casing=np.zeros((m, c)), slip=np.zeros((m, 2)),
+        blisk_response=np.zeros((m, blisk_width)), casing_response=np.zeros((m, casing_width)), ends=np.zeros(8),
+        rows=np.zeros((2, c)), square=np.zeros((m, m)), tableau=np.zeros((m, 2 * m + 2)),
+        basis=np.zeros(m, dtype=np.int64),
+    )  # fmt: skip
