@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.sensors.chain import half_width_seconds
 from rubgen.sensors.channel import Recording
+from rubgen.sensors.measure import first_sample_seconds
 from rubgen.solver.response import Response
 
 
@@ -32,13 +32,11 @@ class ContactIntervals:
 def contact_intervals(response: Response, recording: Recording) -> ContactIntervals:
     """The contact events of `response` that overlap `recording`, in the time of its samples.
 
-    The last sample stands half a filter length before the last step of the record, see `measure`.
+    See `first_sample_seconds` for where the recording lies in the record.
     """
     events, rate = response.events, recording.sample_rate_hz
     samples = next(iter(recording.channels.values())).values.size
-    last_step = (response.record_turns * response.steps_per_turn - 1) * response.dt
-    first_sample = last_step - half_width_seconds(rate) - (samples - 1) / rate
-    start = np.asarray(events.start_step * response.dt - first_sample, dtype=np.float64)
+    start = np.asarray(events.start_step * response.dt - first_sample_seconds(response, recording), dtype=np.float64)
     duration = np.asarray(events.steps * response.dt, dtype=np.float64)
     inside = (start + duration > 0) & (start < samples / rate)
     return ContactIntervals(

@@ -19,8 +19,8 @@ from rubgen.solver.response import Response
 def measure(response: Response, sensing: Sensing, *, seconds: float, rng: np.random.Generator) -> Recording:
     """The channels of a run over `seconds` (> 0) at the end of its record, at `sensing.sample_rate_hz`.
 
-    The last sample stands half a filter length before the end of the tail, so that no sample sees an edge. The last
-    step of the tail has theta = 0 mod 2 pi. Each channel has its own child of `rng`, in the fixed order of PROBES: its
+    The last sample stands half a filter length before the end of the tail, so that no sample sees an edge. The step
+    after the tail's last one would have theta = 0 mod 2 pi. Each channel has its own child of `rng`, in the fixed order of PROBES: its
     noise depends on nothing but the state of `rng` and its own length.
 
     Raises UserError where the tail is too short for `seconds` and the filter, or the step rate is below 2.56 sample
@@ -67,15 +67,16 @@ def sample_positions(response: Response, sensing: Sensing, seconds: float) -> Fl
 
 
 def first_sample_seconds(response: Response, recording: Recording) -> float:
-    """Time of the recording's first sample, counted from the start of the record, in s."""
+    """Time of the recording's first sample, in s; step s of the record stands at s dt, its first at theta = 0."""
     rate = recording.sample_rate_hz
     count = next(iter(recording.channels.values())).values.size
-    return response.record_turns * response.turn_seconds - half_width_seconds(rate) - (count - 1) / rate
+    last_step = (response.record_turns * response.steps_per_turn - 1) * response.dt
+    return last_step - half_width_seconds(rate) - (count - 1) / rate
 
 
 def _blisk_angle(response: Response, positions: FloatArray) -> FloatArray:
     tail = next(iter(response.taps.values())).size
-    angle = np.mod((positions - (tail - 1)) * (2 * np.pi / response.steps_per_turn), 2 * np.pi)
+    angle = np.mod((positions - tail) * (2 * np.pi / response.steps_per_turn), 2 * np.pi)
     return np.where(angle < 2 * np.pi, angle, 0.0)
 
 

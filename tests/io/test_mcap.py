@@ -99,7 +99,7 @@ def test_contact_times_meet_the_contact_force(make_synthetic_run):
     row = int(np.flatnonzero(event.start_step == np.sort(event.start_step)[-40])[0])
     kept = int(np.flatnonzero(intervals.impulse == event.impulse[row])[0])
     # angle of the blisk at the event, by steps and by the time of the recording
-    by_steps = 2 * np.pi * (event.start_step[row] + 1) / response.steps_per_turn
+    by_steps = 2 * np.pi * event.start_step[row] / response.steps_per_turn
     by_time = recording.rotation_angle + response.speed * intervals.start[kept]
     assert np.cos(by_steps - by_time) == pytest.approx(1.0, abs=1e-9)
     assert intervals.start[kept] < 7680 / recording.sample_rate_hz

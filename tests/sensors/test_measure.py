@@ -29,7 +29,7 @@ NO_ENERGY = EnergyBook(**dict.fromkeys(EnergyBook.__annotations__, 0.0))
 
 
 def response_of(seconds: float, **signals: np.ndarray) -> Response:
-    """A response whose taps are 0 but for the given signals; theta = 0 at the last step."""
+    """A response whose taps are 0 but for the given signals; theta = 0 one step after the last."""
     count = int(np.ceil((seconds + margin_seconds(SENSING)) / DT))
     taps = {probe.tap: signals.get(probe.tap, np.zeros(count)) for probe in PROBES}
     return Response(
@@ -53,9 +53,9 @@ def response_of(seconds: float, **signals: np.ndarray) -> Response:
 
 
 def time_before_end(seconds: float) -> np.ndarray:
-    """Time of each step of the tail, 0 at its end."""
+    """Time of each step of the tail, 0 at the step after its last one."""
     count = int(np.ceil((seconds + margin_seconds(SENSING)) / DT))
-    return (np.arange(count) - (count - 1)) * DT
+    return (np.arange(count) - count) * DT
 
 
 def record(response: Response, seconds: float, sensing: Sensing = SENSING, seed: int = 0) -> Recording:
