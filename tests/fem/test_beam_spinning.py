@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from numpy.polynomial import Legendre
 from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 from test_beam_statics import RADIUS, TWISTED, rigid_motion, volume
@@ -106,3 +107,44 @@ def test_section_terms_of_a_turn_about_the_blades_axis() -> None:
     r, mass = volume(upright)
     q = rigid_motion(upright, np.zeros(3), np.array([1.0, 0, 0]))
     assert q @ (m.K_sigma - m.S) @ q == pytest.approx(mass @ (r[:, 1] ** 2 - r[:, 2] ** 2), rel=1e-9)
+
+
+def test_torsion_of_a_spinning_blade() -> None:
+    """Omega^2 rho I_p th = -((G J + P I_p / A) th')' + Omega^2 rho (I_y2 - I_z2) th, by Galerkin in polynomials x P_k.
+
+    The pull stiffens a twisting strip like a bundle of strings (trapeze effect), the flat section turns back into the
+    plane of rotation (tennis-racket effect). Soft material makes both as large as the elastic torsion.
+    """
+    length, c, h, spin = 0.3, 60e-3, 4e-3, 1000.0
+    rubber = Material(youngs_modulus_pa=2e9, poisson_ratio=0.3, density_kg_per_m3=7850.0)
+    blades = dataclasses.replace(
+        TWISTED,
+        material=rubber,
+        length_m=length,
+        root_chord_m=c,
+        tip_chord_m=c,
+        root_thickness_m=h,
+        tip_thickness_m=h,
+        root_angle_deg=0.0,
+        tip_angle_deg=0.0,
+        elements=60,
+    )
+    m = blade_matrices(blades, RADIUS)
+    free = np.arange(9, m.M.shape[0], 6)
+    K = (m.K + spin**2 * (m.K_sigma - m.S))[np.ix_(free, free)]
+    ours = np.sqrt(eigh(K, m.M[np.ix_(free, free)], eigvals_only=True)[:2])
+
+    p, w = np.polynomial.legendre.leggauss(60)
+    x, w = (p + 1) / 2 * length, w / 2 * length
+    basis = [Legendre.basis(k, domain=[0, length]) * Legendre([length / 2, length / 2], [0, length]) for k in range(25)]
+    field, slope = np.array([b(x) for b in basis]), np.array([b.deriv()(x) for b in basis])
+    yy, zz = h * c**3 / 12, c * h**3 / 12
+    pull = 7850.0 * c * h * spin**2 * ((RADIUS + length) ** 2 - (RADIUS + x) ** 2) / 2
+    torsion = c * h**3 * (1 / 3 - 0.21 * h / c)
+    elastic, trapeze = 2e9 / 2.6 * torsion, pull * (yy + zz) / (c * h)
+    racket = spin**2 * 7850.0 * (yy - zz)
+    exact = (slope * w * (elastic + trapeze)) @ slope.T + racket * (field * w) @ field.T
+    np.testing.assert_allclose(
+        ours, np.sqrt(eigh(exact, 7850.0 * (yy + zz) * (field * w) @ field.T, eigvals_only=True)[:2]), rtol=5e-4
+    )
+    assert trapeze.mean() > 0.3 * elastic
