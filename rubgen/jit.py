@@ -10,7 +10,7 @@ import hashlib
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import ParamSpec, TypeVar, cast
+from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
 import platformdirs
@@ -36,9 +36,10 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
     Kernels live in files named `*_kernels.py`, take arrays and scalars only, and never raise. `NUMBA_DISABLE_JIT=1`
     runs them as plain Python.
     """
-    previous = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(kernel_cache_dir())
+    config: Any = numba.config
+    previous = config.CACHE_DIR
+    config.CACHE_DIR = str(kernel_cache_dir())
     try:
         return cast("Callable[P, R]", numba.njit(cache=True, nogil=True)(function))
     finally:
-        numba.config.CACHE_DIR = previous
+        config.CACHE_DIR = previous
