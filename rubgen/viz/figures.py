@@ -1,0 +1,198 @@
+"""Pictures of one run and of a data set, as matplotlib figures that no global state touches."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.projections.polar import PolarAxes
+from matplotlib.ticker import MaxNLocator
+
+from rubgen.labels.harmonics import order_spectrum, spectrum_turns
+from rubgen.labels.labels import Motion
+from rubgen.viz.colors import BLUE, GREY, MOTION_COLORS, VERMILION
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rubgen.pipeline import Run
+
+INK, PAPER_GREY = "#222222", "#dddddd"
+ORBIT_TURNS = 30
+WAVE_TURNS = 5
+HIGHEST_ORDER = 12
+SECTORS = 72
+MOTION_MARKERS = {
+    Motion.STATIC: "v",
+    Motion.PERIOD_1: "o",
+    Motion.PERIOD_K: "s",
+    Motion.QUASI_PERIODIC: "D",
+    Motion.CHAOTIC: "^",
+}
+AXES = {
+    "speed_rpm": "Speed, rev/min",
+    "clearance_m": "Clearance at rest, mm",
+    "ovality_m": "Ovality of the casing, mm",
+    "disk_support_stiffness_n_per_m": "Disk support stiffness, N/m",
+    "casing_support_stiffness_n_per_m": "Casing support stiffness, N/m",
+    "friction": "Coefficient of friction",
+}
+
+
+def overview(run: Run) -> Figure:
+    """Four panels: orbit with its section, casing acceleration, spectrum and polar map of the contact force.
+
+    Orbit, spectrum and map show the true response, the waveform the recorded channel. Raises ValueError for a run
+    without a recording.
+    """
+    if run.recording is None:
+        raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to show")
+    figure = _figure(10.0, 7.2)
+    grid = figure.add_gridspec(2, 2, width_ratios=[1, 1.25])
+    orbit(figure.add_subplot(grid[0, 0]), run)
+    waveform(figure.add_subplot(grid[0, 1]), run, "casing_acc_0")
+    contact_map(cast("PolarAxes", figure.add_subplot(grid[1, 0], projection="polar")), run)
+    force_spectrum(figure.add_subplot(grid[1, 1]), run)
+    return figure
+
+
+def dataset_overview(runs: pd.DataFrame) -> Figure:
+    """Runs in two parameter planes, speed against clearance and against casing stiffness, by class of motion.
+
+    `runs` is the table `runs.parquet`; failed runs are left out. Runs without contact are hollow.
+    """
+    shown = runs[runs["status"] == "ok"]
+    figure = _figure(10.0, 4.4)
+    axes = figure.subplots(1, 2)
+    parameter_plane(axes[0], shown, "speed_rpm", "clearance_m", 1e3)
+    parameter_plane(axes[1], shown, "speed_rpm", "casing_support_stiffness_n_per_m", 1.0)
+    axes[1].set_yscale("log")
+    figure.legend(handles=_motion_legend(shown), loc="outside lower center", ncols=6, frameon=False, fontsize=9)
+    return figure
+
+
+def save_png(figure: Figure, path: Path, *, dpi: int = 110) -> None:
+    """Write `figure` as PNG without a date or version in it: the same figure gives the same bytes."""
+    figure.savefig(path, dpi=dpi, metadata={"Software": None})
+
+
+def orbit(axes: Axes, run: Run) -> None:
+    """Path of the disk centre over the last 30 turns and its position once a turn over the whole record, in um."""
+    taps, steps = run.response.taps, ORBIT_TURNS * run.response.steps_per_turn
+    axes.plot(1e6 * taps["blisk_x"][-steps:], 1e6 * taps["blisk_y"][-steps:], color=BLUE, linewidth=0.6, alpha=0.8)
+    centre = 3 * run.response.n_blades
+    x, y = 1e6 * run.response.section_q[:, centre], 1e6 * run.response.section_q[:, centre + 1]
+    axes.plot(x, y, ".", color=VERMILION, markersize=5, markeredgewidth=0, label="once a turn", zorder=3)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(0.12)
+    _label(axes, "Disk centre $x$, µm", "Disk centre $y$, µm")
+    axes.legend(frameon=False, loc="lower right", bbox_to_anchor=(1, 0.98), fontsize=9, handletextpad=0.1)
+
+
+def waveform(axes: Axes, run: Run, name: str) -> None:
+    """The last five turns of one recorded channel; vertical lines mark the turns."""
+    if run.recording is None:
+        raise ValueError("a waveform needs a recording")
+    channel, rate = run.recording.channels[name], run.recording.sample_rate_hz
+    count = min(channel.values.size, round(WAVE_TURNS * run.response.turn_seconds * rate))
+    begin = (channel.values.size - count) / rate
+    pulses = run.recording.once_per_rev[run.recording.once_per_rev >= begin] - begin
+    axes.vlines(1e3 * pulses, 0, 1, color=PAPER_GREY, linewidth=1, transform=axes.get_xaxis_transform())
+    axes.plot(1e3 * np.arange(count) / rate, channel.values[-count:], color=BLUE, linewidth=0.9)
+    axes.margins(x=0)
+    unit = channel.unit.replace("m/s2", "m/s²")
+    _label(axes, "Time, ms (a line at every turn)", f"Casing acceleration at 0°, {unit}")
+
+
+def force_spectrum(axes: Axes, run: Run) -> None:
+    """Amplitudes of the total contact force over the order f / f_r, even orders marked."""
+    spectrum = order_spectrum(run.response.taps["contact_force"], run.response)
+    turns = spectrum_turns(run.response)
+    stop = HIGHEST_ORDER * turns + turns // 2
+    orders, amplitudes = np.arange(1, stop) / turns, spectrum[1:stop]
+    _label(axes, "Order $f / f_r$", "Total contact force, N")
+    axes.set_xlim(0, HIGHEST_ORDER + 0.5)
+    axes.set_xticks(range(HIGHEST_ORDER + 1))
+    if not amplitudes.any():
+        axes.set_yticks([0])
+        _note(axes, "no contact")
+        return
+    floor = amplitudes.max() * 1e-5
+    axes.semilogy(orders, np.maximum(amplitudes, floor), color=BLUE, linewidth=0.9)
+    _label(axes, "Order $f / f_r$", "Total contact force, N")
+    whole = np.arange(1, HIGHEST_ORDER + 1)
+    for parity, color, name in ((0, VERMILION, "even"), (1, GREY, "odd")):
+        marked = whole[whole % 2 == parity]
+        heights = np.maximum(spectrum[marked * turns], floor)
+        axes.plot(marked, heights, "o", color=color, markersize=4.5, label=f"{name} orders")
+    axes.set_ylim(floor, amplitudes.max() * 4)
+    axes.legend(frameon=False, loc="lower right", bbox_to_anchor=(1, 0.98), fontsize=9, ncols=2, handletextpad=0.1)
+
+
+def contact_map(axes: PolarAxes, run: Run) -> None:
+    """Normal impulse a turn by polar angle on the casing, in mN s, in sectors of 5 degrees."""
+    events = run.response.events
+    edges = np.linspace(0, 2 * np.pi, SECTORS + 1)
+    impulse, _ = np.histogram(events.angle, bins=edges, weights=events.impulse)
+    per_turn = 1e3 * impulse / run.response.record_turns
+    axes.bar(edges[:-1], per_turn, width=2 * np.pi / SECTORS, align="edge", color=BLUE, linewidth=0)
+    axes.set_xticks(np.radians(np.arange(0, 360, 45)))
+    axes.tick_params(labelsize=9, colors=INK)
+    axes.grid(color=PAPER_GREY, linewidth=0.7)
+    axes.spines["polar"].set_color(GREY)
+    axes.set_rlabel_position(112.5)
+    axes.yaxis.set_major_locator(MaxNLocator(4))
+    axes.set_xlabel("Contact impulse a turn and 5°, mN s, over the casing's angle", fontsize=10, color=INK, labelpad=8)
+    if not per_turn.any():
+        axes.set_yticks([])
+        _note(axes, "no contact")
+
+
+def parameter_plane(axes: Axes, runs: pd.DataFrame, x: str, y: str, scale: float) -> None:
+    """Runs over two parameters, `y` times `scale`, coloured and shaped by class of motion, hollow without contact."""
+    for motion, color in MOTION_COLORS.items():
+        for rub, fill in ((True, color), (False, "none")):
+            chosen = runs[(runs["motion"] == motion.value) & (runs["rub"] == rub)]
+            axes.plot(
+                chosen[x],
+                scale * chosen[y],
+                MOTION_MARKERS[motion],
+                markersize=6.5,
+                color=color,
+                markerfacecolor=fill,
+            )
+    _label(axes, AXES[x], AXES[y])
+
+
+def _motion_legend(runs: pd.DataFrame) -> list[Line2D]:
+    present = [motion for motion in Motion if (runs["motion"] == motion.value).any()]
+    marks = [(motion.value, MOTION_COLORS[motion], MOTION_MARKERS[motion], MOTION_COLORS[motion]) for motion in present]
+    if not runs["rub"].all():
+        marks.append(("hollow: no contact", INK, "o", "none"))
+    return [
+        Line2D([], [], linestyle="none", label=name, color=color, marker=marker, markerfacecolor=fill)
+        for name, color, marker, fill in marks
+    ]
+
+
+def _figure(width: float, height: float) -> Figure:
+    figure = Figure(figsize=(width, height), layout="constrained", facecolor="white")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def _label(axes: Axes, x: str, y: str) -> None:
+    axes.set_xlabel(x, fontsize=10, color=INK)
+    axes.set_ylabel(y, fontsize=10, color=INK)
+    axes.tick_params(labelsize=9, colors=INK)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.spines[["left", "bottom"]].set_color(GREY)
+
+
+def _note(axes: Axes, text: str) -> None:
+    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=11, color=GREY)
