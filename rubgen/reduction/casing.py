@@ -60,9 +60,13 @@ def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
     to the lobe axis, where a symmetric mode is radial and an antisymmetric one tangential. Of two modes of the same
     frequency the second has no radial displacement there.
 
-    Raises UserError when the modes do not carry the order of the casing's lobes in full (`carried_orders`), or for a
-    mesh that `assemble_casing` refuses.
+    Raises UserError for more modes than DoFs, when the modes do not carry the order of the casing's lobes in full
+    (`carried_orders`), or for a mesh that `assemble_casing` refuses.
     """
+    if not 1 <= modes <= 3 * machine.casing.nodes:
+        raise UserError(
+            f"casing_modes = {modes}: a ring of {machine.casing.nodes} nodes has {3 * machine.casing.nodes}"
+        )
     _check_lobes(machine, modes)
     model = assemble_casing(machine)
     eigenvalues, vectors = _lowest_modes(model, modes)

@@ -1,16 +1,25 @@
 """The casing's full model against rings in closed form."""
 
 import dataclasses
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.linalg import eigh
+from threadpoolctl import threadpool_limits
 
 from rubgen.errors import UserError
 from rubgen.fem.casing import CasingModel, assemble_casing
 from rubgen.machine.load import load_machine
 from rubgen.machine.machine import Machine
+
+
+@pytest.fixture(autouse=True, scope="module")
+def one_blas_thread() -> Iterator[None]:
+    """As in every run: `rubgen.reduction.reduce` sees to it."""
+    with threadpool_limits(1, user_api="blas"):
+        yield
 
 
 def machine(**casing: Any) -> Machine:

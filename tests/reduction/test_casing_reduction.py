@@ -1,10 +1,12 @@
 """The casing's modes: the published frequencies, symmetry, orientation."""
 
 import dataclasses
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_limits
 
 from rubgen.errors import UserError
 from rubgen.fem.casing import assemble_casing
@@ -14,6 +16,13 @@ from rubgen.reduction.casing import ReducedCasing, carried_orders, largest_casin
 
 # Zeng et al. (2019), doi 10.1016/j.ast.2019.105481.
 PUBLISHED_HZ = (180.98, 181.04, 181.05, 181.22, 181.54, 181.99, 181.99, 183.35, 183.36, 186.54, 186.54)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def one_blas_thread() -> Iterator[None]:
+    """As in every run: `rubgen.reduction.reduce` sees to it."""
+    with threadpool_limits(1, user_api="blas"):
+        yield
 
 
 def machine(**casing: Any) -> Machine:
@@ -157,3 +166,9 @@ def test_stiff_tangential_springs_leave_the_low_orders_out() -> None:
     reduced = reduce_casing(machine(ovality_m=0.0, lobes=9, **springs), 10)
     orders = np.argmax(np.abs(np.fft.rfft(radial(reduced), axis=0)), axis=0)
     assert np.unique(orders).tolist() == [6, 7, 8, 9, 10]
+
+
+@pytest.mark.parametrize("modes", [0, 541])
+def test_more_modes_than_the_ring_has_are_refused(modes: int) -> None:
+    with pytest.raises(UserError, match=f"casing_modes = {modes}: a ring of 180 nodes has 540"):
+        reduce_casing(machine(), modes)
