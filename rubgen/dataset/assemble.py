@@ -1,0 +1,68 @@
+"""From finished runs to the files of the set, a few runs in memory at a time."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import pyarrow as pa
+
+from rubgen.dataset.files import sync_directory
+from rubgen.dataset.layout import RUNS_PER_SHARD, Layout
+from rubgen.io.parquet import read_table, schema, write_table
+from rubgen.scenario import Recipe
+
+RUNS_PER_ROW_GROUP = 8
+"""Measured on 32 runs of 1 s: as small (634 kB a run; 723 with 1) and as fast to stream as 16, and one run is read in
+20 ms (35 with 16, 6 with 1)."""
+ROWS_PER_TABLE_GROUP = 4096
+
+
+def assemble(recipe: Recipe, layout: Layout) -> Counter[str]:
+    """Write `runs.parquet` and the data files from the staged runs; gives how many runs ended with which status."""
+    staged = [layout.staged(f"run-{index:06d}") for index in range(recipe.runs)]
+    status = _write_runs(staged, layout)
+    if "parquet" in recipe.output.formats:
+        _write_shards(_valid(staged), layout, clean=recipe.sensors.keep_clean)
+        sync_directory(layout.data)
+    sync_directory(layout.root)
+    return status
+
+
+def _write_runs(staged: Sequence[Path], layout: Layout) -> Counter[str]:
+    types = schema(signals=False)
+    status: Counter[str] = Counter()
+
+    def tables() -> Iterator[pa.Table]:
+        for paths in _batches(staged, ROWS_PER_TABLE_GROUP):
+            table = pa.concat_tables([read_table(path, types.names) for path in paths]).combine_chunks()
+            status.update(table["status"].to_pylist())
+            yield table.cast(types)
+
+    write_table(tables(), types, layout.runs)
+    return status
+
+
+def _valid(staged: Sequence[Path]) -> list[Path]:
+    return [path for path in staged if read_table(path, ["status"])["status"][0].as_py() == "ok"]
+
+
+def _write_shards(staged: Sequence[Path], layout: Layout, *, clean: bool) -> None:
+    types = schema(signals=True, clean=clean)
+    shards = list(_batches(staged, RUNS_PER_SHARD)) or [[]]
+    names = [layout.shard(number, len(shards)) for number in range(len(shards))]
+    for path in set(layout.shards()) - set(names):
+        path.unlink()
+    for name, paths in zip(names, shards, strict=True):
+        groups = (_joined(group, types) for group in _batches(paths, RUNS_PER_ROW_GROUP))
+        write_table(groups, types, name)
+
+
+def _joined(paths: Sequence[Path], types: pa.Schema) -> pa.Table:
+    return pa.concat_tables([read_table(path, types.names) for path in paths]).combine_chunks()
+
+
+def _batches(paths: Sequence[Path], size: int) -> Iterator[Sequence[Path]]:
+    for start in range(0, len(paths), size):
+        yield paths[start : start + size]

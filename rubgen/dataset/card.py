@@ -1,0 +1,104 @@
+"""The card of a data set: what it is, how to load it, what every column means, as the README.md that hubs read."""
+
+from __future__ import annotations
+
+import json
+
+from rubgen.dataset.files import write_text
+from rubgen.dataset.layout import SPLIT, Layout
+from rubgen.dataset.manifest import Identity
+from rubgen.io.columns import CLEAN_SIGNALS, SCALARS, SIGNALS, Column
+
+LOADING = {
+    "parquet": """\
+```python
+import rubgen
+data = rubgen.open("DIR")                    # data.runs: a DataFrame; data.signals("run-000000"): arrays
+
+import datasets, duckdb, pandas, polars
+pandas.read_parquet("DIR/runs.parquet")      # parameters and labels of every run, failed ones too
+datasets.load_dataset("DIR", split="train")  # with signals; offline
+polars.scan_parquet("DIR/data/*.parquet").select("run_id", "motion", "proximity_x").collect()
+duckdb.sql("select motion, count(*) from 'DIR/data/*.parquet' group by motion")
+```""",
+    "mcap": """\
+`mcap/<run_id>.mcap`: one file a run; `rubgen.io.mcap.read_mcap(path)`, the `mcap` package, or Foxglove. Blocks of
+1024 samples on `/raw/<channel>`, contacts on `/contact`, labels and scenario as metadata.""",
+    "rrd": """\
+`rrd/<run_id>.rrd`: the same run to look at, `rerun rrd/run-000000.rrd`. A derived view, without a hash.""",
+}
+
+
+def write_card(layout: Layout, identity: Identity, status: dict[str, int]) -> None:
+    """Write README.md; its bytes follow from the recipe and from how the runs ended."""
+    write_text(layout.card, card(identity, status))
+
+
+def card(identity: Identity, status: dict[str, int]) -> str:
+    """The text of the card; its YAML head names the files of each configuration and the licence."""
+    recipe = identity.recipe
+    formats = recipe["output"]["formats"]
+    signals = CLEAN_SIGNALS if recipe["sensors"]["keep_clean"] else SIGNALS
+    columns = SCALARS + (signals if "parquet" in formats else ())
+    loading = "\n\n".join(LOADING[kind] for kind in LOADING if kind in formats)
+    ended = ", ".join(f"{count} {name}" for name, count in status.items())
+    turns, seconds = recipe["simulation"]["record_turns"], recipe["output"]["signal_seconds"]
+    return f"""{_head(recipe)}
+# {recipe["name"]}
+
+{recipe["runs"]} runs of a bladed disk that may rub its flexible oval casing: machine `{recipe["machine"]}`, seed
+{recipe["seed"]}. Simulated with rubgen {identity.packages["rubgen"]}: a finite-element blisk and casing, reduced,
+integrated through unilateral contact with friction; virtual sensors with noise, range and ADC; labels from the true
+motion, never from the noisy channels. Runs by status: {ended}.
+
+Splits go by machine: runs of one machine never stand in two splits. This set has one machine, hence one split,
+`{SPLIT}`; split across data sets of several machines. The labels come from {turns} turns; the signals are the last
+{seconds:g} s of them.
+
+## Loading
+
+{loading}
+
+`manifest.json` holds the recipe, the machine, the versions and the sha256 of every file; `rubgen verify DIR` checks
+all of them, and labels against signals.
+
+## Columns
+
+| column | type | unit | meaning |
+|---|---|---|---|
+{_table(columns)}
+
+## Recipe
+
+```json
+{json.dumps(recipe, indent=2)}
+```
+
+## Limits
+
+Linear ring, constant speed, no heat, no wear, one contact point a blade. Clearance, unbalance and damping of the
+published machine are not known and were chosen. Simulated data: learn from it, do not certify with it.
+"""
+
+
+def _head(recipe: dict[str, object]) -> str:
+    """YAML that `datasets.load_dataset` and hubs understand; JSON strings are YAML strings."""
+    output = recipe["output"]
+    configs = [("runs", "runs.parquet")]
+    if isinstance(output, dict) and "parquet" in output["formats"]:
+        configs.insert(0, ("signals", f"data/{SPLIT}-*.parquet"))
+    lines = [
+        "---",
+        f"license: {json.dumps(str(recipe['license']).lower())}",
+        f"pretty_name: {json.dumps(recipe['name'])}",
+        "tags: [rotordynamics, blade-rub, condition-monitoring, time-series, simulated]",
+        "configs:",
+    ]
+    for position, (name, files) in enumerate(configs):
+        lines += [f"- config_name: {name}", *(["  default: true"] if position == 0 else [])]
+        lines += ["  data_files:", f"  - split: {SPLIT}", f"    path: {json.dumps(files)}"]
+    return "\n".join([*lines, "---"])
+
+
+def _table(columns: tuple[Column, ...]) -> str:
+    return "\n".join(f"| `{c.name}` | {c.kind} | {c.unit} | {c.meaning} |" for c in columns)

@@ -1,0 +1,133 @@
+"""A recipe becomes a data set: every run made once, whatever stops the work in between."""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from rubgen.dataset.assemble import assemble
+from rubgen.dataset.card import write_card
+from rubgen.dataset.claim import claimed, finished
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.manifest import identity_of, read_manifest, write_manifest
+from rubgen.dataset.stage import stage_run, warm_up
+from rubgen.dataset.verify import verify
+from rubgen.dataset.workers import unordered, worker_pool
+from rubgen.errors import UserError
+from rubgen.scenario import Recipe, load_recipe, parse_recipe
+from rubgen.scenario.recipe import check_recipe
+
+Progress = Callable[[int, int], None]
+"""Called with the number of finished runs and of all runs."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Generated:
+    """What `generate` left behind: `made` of the `runs` are new, `status` counts how all of them ended."""
+
+    directory: Path
+    runs: int
+    made: int
+    status: dict[str, int]
+
+
+def generate(
+    recipe: Recipe | Mapping[str, object] | Path | str | None,
+    out: Path | str,
+    *,
+    runs: int | None = None,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> Generated:
+    """Make the data set of `recipe` (a recipe, its TOML values, its file; None: the embedded one) in `out`.
+
+    Each run is simulated alone, in `workers` processes (the number of cores; 1 works in this process), and kept as
+    soon as it is finished: the same call after an interruption makes what is missing, to the same bytes. The number
+    of runs belongs to the recipe (`runs` overrides it): another one is another data set and needs another directory.
+    Failed runs are listed with their reason. A finished set is verified and left alone.
+
+    Raises UserError, one line, for bad input, a directory that is not ours or not writable, and a full disk.
+    """
+    recipe = _recipe(recipe, runs)
+    workers = _workers(workers)
+    layout, identity = Layout(Path(out)), identity_of(recipe)
+    try:
+        if finished(layout, identity):
+            return _nothing_to_do(layout)
+        with claimed(layout, identity):
+            made = _make_missing(recipe, layout, workers, progress)
+            status = dict(sorted(assemble(recipe, layout).items()))
+            write_card(layout, identity, status)
+            write_manifest(layout, identity, status)
+        shutil.rmtree(layout.staging)
+    except OSError as error:
+        raise _disk_problem(layout.root, error) from None
+    return Generated(directory=layout.root, runs=recipe.runs, made=made, status=status)
+
+
+def finished_runs(out: Path | str) -> int:
+    """How many runs of an unfinished set are kept."""
+    return len(list((Layout(Path(out)).staging / "runs").glob("run-*[0-9].parquet")))
+
+
+def _recipe(recipe: Recipe | Mapping[str, object] | Path | str | None, runs: int | None) -> Recipe:
+    if isinstance(recipe, Mapping):
+        return parse_recipe(dict(recipe), runs=runs)
+    if not isinstance(recipe, Recipe):
+        return load_recipe(recipe, runs=runs)
+    chosen = recipe if runs is None else recipe.model_copy(update={"runs": runs})
+    check_recipe(chosen)
+    return chosen
+
+
+def _workers(workers: int | None) -> int:
+    if workers is not None and workers < 1:
+        raise UserError(f"--workers {workers}: must be at least 1; give a number of processes")
+    return workers or len(os.sched_getaffinity(0))
+
+
+def _nothing_to_do(layout: Layout) -> Generated:
+    problems = verify(layout.root)
+    if problems:
+        raise UserError(f"{problems[0]} ({len(problems)} problems in all); delete {layout.root} and generate it again")
+    shutil.rmtree(layout.staging, ignore_errors=True)
+    manifest = read_manifest(layout)
+    return Generated(directory=layout.root, runs=manifest.runs, made=0, status=manifest.status)
+
+
+def _make_missing(recipe: Recipe, layout: Layout, workers: int, progress: Progress | None) -> int:
+    formats = recipe.output.formats
+    missing = [index for index in range(recipe.runs) if not _is_staged(layout, index)]
+    jobs = ((recipe.scenario(index), layout.root.resolve(), formats) for index in missing)
+    report = progress or (lambda _done, _all: None)
+    done = recipe.runs - len(missing)
+    report(done, recipe.runs)
+    if not missing:
+        return 0
+    first = recipe.scenario(missing[0]), tuple(recipe.corners())
+    if workers == 1 or len(missing) < 2:
+        warm_up(*first)
+        for job in jobs:
+            stage_run(*job)
+            report(done := done + 1, recipe.runs)
+        return len(missing)
+    with worker_pool(min(workers, len(missing))) as pool:
+        pool.submit(warm_up, *first).result()
+        for _status in unordered(pool, workers, stage_run, jobs):
+            report(done := done + 1, recipe.runs)
+    return len(missing)
+
+
+def _is_staged(layout: Layout, index: int) -> bool:
+    return layout.staged(f"run-{index:06d}").exists()
+
+
+def _disk_problem(root: Path, error: OSError) -> UserError:
+    where = error.filename or root
+    if error.errno == errno.ENOSPC:
+        return UserError(f"{root}: the disk is full; make room and give the same command again: finished runs are kept")
+    return UserError(f"{where}: cannot be written ({error.strerror or error}); give a directory that you may write to")

@@ -1,0 +1,70 @@
+"""Where the files of a data set stand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+SPLIT = "train"
+"""Splits go by machine, never by run; a recipe has one machine, hence one split."""
+RUNS_PER_SHARD = 256
+"""About 160 MB of signals of one second."""
+FOLDERS = {"mcap": "mcap", "rrd": "rrd"}
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Paths in the directory `root` of a data set."""
+
+    root: Path
+
+    @property
+    def manifest(self) -> Path:
+        """Recipe, seed, versions and the sha256 of every file."""
+        return self.root / "manifest.json"
+
+    @property
+    def digest(self) -> Path:
+        """The sha256 of the manifest."""
+        return self.root / "manifest.json.sha256"
+
+    @property
+    def runs(self) -> Path:
+        """All runs, failed ones too, without signals."""
+        return self.root / "runs.parquet"
+
+    @property
+    def card(self) -> Path:
+        """The data-set card."""
+        return self.root / "README.md"
+
+    @property
+    def data(self) -> Path:
+        """Folder of the Parquet files with signals."""
+        return self.root / "data"
+
+    @property
+    def staging(self) -> Path:
+        """Finished runs until the set is complete."""
+        return self.root / ".staging"
+
+    @property
+    def identity(self) -> Path:
+        """What an unfinished set is made from."""
+        return self.staging / "identity.json"
+
+    def staged(self, run_id: str) -> Path:
+        """The finished run: its existence proves that all its files are complete."""
+        return self.staging / "runs" / f"{run_id}.parquet"
+
+    def export(self, kind: str, run_id: str) -> Path:
+        """The MCAP or .rrd file of a run."""
+        return self.root / FOLDERS[kind] / f"{run_id}.{kind}"
+
+    def shard(self, number: int, count: int) -> Path:
+        """A data file."""
+        return self.data / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
+
+    def shards(self) -> list[Path]:
+        """The data files that are there, in order."""
+        return sorted(self.data.glob("*.parquet"))

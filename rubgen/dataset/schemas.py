@@ -1,0 +1,66 @@
+"""The JSON Schemas of what users write and read: `python -m rubgen.dataset.schemas DIRECTORY` writes them."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+from pydantic import TypeAdapter
+
+from rubgen.dataset.files import write_json
+from rubgen.dataset.manifest import Manifest
+from rubgen.io.columns import SCALARS, Column
+from rubgen.labels.labels import Motion
+from rubgen.machine import Machine
+from rubgen.scenario import Recipe
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+JSON_TYPES: dict[str, dict[str, Any]] = {
+    "text": {"type": "string"},
+    "flag": {"type": "boolean"},
+    "integer": {"type": "integer"},
+    "number": {"type": "number"},
+    "numbers": {"type": "array", "items": {"type": "number"}},
+}
+
+
+def schemas() -> dict[str, dict[str, Any]]:
+    """File name to schema: recipe, machine, manifest, and one row of `runs.parquet`."""
+    documents = {
+        "recipe.schema.json": Recipe.model_json_schema(),
+        "machine.schema.json": TypeAdapter(Machine).json_schema(),
+        "manifest.schema.json": Manifest.model_json_schema(),
+        "run.schema.json": _run_schema(),
+    }
+    return {name: {"$schema": DIALECT, **document} for name, document in documents.items()}
+
+
+def write_schemas(directory: Path) -> None:
+    """Write every schema into `directory`."""
+    directory.mkdir(parents=True, exist_ok=True)
+    for name, document in schemas().items():
+        write_json(directory / name, document)
+
+
+def _run_schema() -> dict[str, Any]:
+    return {
+        "title": "Run",
+        "description": "One row of runs.parquet. Labels are null where a run failed or has no such value.",
+        "type": "object",
+        "properties": {column.name: _property(column) for column in SCALARS},
+        "required": [column.name for column in SCALARS],
+        "additionalProperties": False,
+    }
+
+
+def _property(column: Column) -> dict[str, Any]:
+    kind = dict(JSON_TYPES[column.kind])
+    if column.name.startswith("motion"):
+        kind["enum"] = [motion.value for motion in Motion]
+    nullable = {"anyOf": [kind, {"type": "null"}]} if column.nullable else kind
+    return {"description": f"{column.meaning}{f', in {column.unit}' if column.unit else ''}", **nullable}
+
+
+if __name__ == "__main__":
+    write_schemas(Path(sys.argv[1]))

@@ -1,0 +1,56 @@
+"""One run of a data set: simulated, and its files written so that they are complete or not there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rubgen.dataset.files import write_durably
+from rubgen.dataset.layout import Layout
+from rubgen.scenario import Scenario
+
+if TYPE_CHECKING:
+    from rubgen.pipeline import Run
+
+WARM_UP_TURNS = 40
+
+
+def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
+    """Simulate one run and write its files; gives its status. The staged row comes last: it proves the others."""
+    from rubgen.io.parquet import run_table, write_table
+    from rubgen.pipeline import simulate
+
+    layout = Layout(root)
+    run = simulate(scenario)
+    if run.labels is not None:
+        _write_exports(run, layout, formats)
+    table = run_table(run, signals="parquet" in formats)
+    write_durably(layout.staged(scenario.run_id), lambda part: write_table([table], table.schema, part))
+    return run.response.status.code
+
+
+def warm_up(scenario: Scenario, corners: tuple[Scenario, ...]) -> None:
+    """Reduce the machine at the extremes of `[vary]`, then run a few turns.
+
+    What cannot be done fails before any run; kernels are compiled and the reduced model cached before workers start.
+    """
+    from rubgen.pipeline import simulate
+    from rubgen.reduction import reduce
+
+    for corner in corners:
+        reduce(corner.machine, corner.reduction)
+    operation = replace(scenario.operation, settle_turns=2 * WARM_UP_TURNS, record_turns=WARM_UP_TURNS)
+    operation = replace(operation, closing_turns=WARM_UP_TURNS)
+    simulate(replace(scenario, operation=operation, signal_seconds=5 / operation.rotation_frequency_hz))
+
+
+def _write_exports(run: Run, layout: Layout, formats: tuple[str, ...]) -> None:
+    if "mcap" in formats:
+        from rubgen.io.mcap import write_mcap
+
+        write_durably(layout.export("mcap", run.scenario.run_id), lambda part: write_mcap(run, part))
+    if "rrd" in formats:
+        from rubgen.viz.rerun import write_rrd
+
+        write_durably(layout.export("rrd", run.scenario.run_id), lambda part: write_rrd(run, part))

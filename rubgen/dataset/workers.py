@@ -1,0 +1,87 @@
+"""Worker processes that stop when they are told to, and when the process that started them is gone."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from itertools import islice
+from multiprocessing import connection
+from typing import TypeVar
+
+from rubgen.errors import RubgenError
+
+R = TypeVar("R")
+ONE_THREAD = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "RAYON_NUM_THREADS"), "1"
+)
+WAITING_PER_WORKER = 2
+
+
+@contextmanager
+def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
+    """A pool of fresh processes with one thread of BLAS each; left early, its processes are ended at once."""
+    before = set(multiprocessing.active_children())
+    with _environment(ONE_THREAD):
+        pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), initializer=_start_worker)
+        try:
+            yield pool
+        except BrokenProcessPool:
+            raise RubgenError(
+                "a worker process died, perhaps for want of memory; finished runs are kept: give the same command "
+                "again, with fewer --workers"
+            ) from None
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+            for process in set(multiprocessing.active_children()) - before:
+                process.terminate()
+                process.join()
+
+
+def unordered(
+    pool: ProcessPoolExecutor, workers: int, work: Callable[..., R], jobs: Iterable[tuple[object, ...]]
+) -> Iterator[R]:
+    """Results of `work(*job)` as they come; only a few jobs are in flight, whatever their number."""
+    remaining = iter(jobs)
+    running: set[Future[R]] = set()
+    while True:
+        room = workers * WAITING_PER_WORKER - len(running)
+        running |= {pool.submit(work, *job) for job in islice(remaining, room)}
+        if not running:
+            return
+        done, running = wait(running, return_when=FIRST_COMPLETED)
+        for future in done:
+            yield future.result()
+
+
+def _start_worker() -> None:
+    # Ctrl-C reaches the whole process group; the parent alone decides what it means.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """A worker whose parent was killed would wait for jobs for ever."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        connection.wait([parent.sentinel])
+        os._exit(1)
+
+
+@contextmanager
+def _environment(values: dict[str, str]) -> Iterator[None]:
+    saved = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in saved.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value

@@ -1,0 +1,123 @@
+"""The columns of `runs.parquet` and of the data files: names, types, units, meaning, in their fixed order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rubgen.scenario.vary import PARAMETERS
+from rubgen.sensors.probes import PROBES
+
+PULSE_CHANNEL = "once_per_rev"
+TAPS = tuple(dict.fromkeys(probe.tap for probe in PROBES))
+"""True signals whose order amplitudes are labels."""
+CHANNELS = (*(probe.name for probe in PROBES), PULSE_CHANNEL)
+"""Recorded signals, one list column each."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: `kind` is text, flag, integer, number, numbers (list of float64) or signal (list of float32).
+
+    What a failed run does not have is `nullable`.
+    """
+
+    name: str
+    kind: str
+    unit: str
+    meaning: str
+    nullable: bool = False
+
+
+def _identity() -> list[Column]:
+    return [
+        Column("run_id", "text", "", "name of the run and of its MCAP and .rrd file"),
+        Column("machine_id", "text", "", "hash of the machine before [vary]; splits never share one"),
+        Column("split", "text", "", "split of the data set"),
+        Column("seed", "integer", "", "seed of the recipe; with the number of the run it makes the run again"),
+        Column("status", "text", "", "ok, or why the run failed"),
+        Column("reason", "text", "", "where and by how much a run failed; empty for ok"),
+    ]
+
+
+def _parameters() -> list[Column]:
+    kinds = {True: "integer", False: "number"}
+    return [Column(entry.key, kinds[entry.whole], entry.unit, entry.meaning) for entry in PARAMETERS]
+
+
+def _operation() -> list[Column]:
+    return [
+        Column("steps_per_turn", "integer", "", "steps of the integration in one turn"),
+        Column("settle_turns", "integer", "", "turns before the record"),
+        Column("record_turns", "integer", "", "turns from which the labels come"),
+        Column("sample_rate_hz", "number", "Hz", "samples a second of every channel"),
+    ]
+
+
+def _label(name: str, kind: str, unit: str, meaning: str) -> Column:
+    return Column(name, kind, unit, meaning, nullable=True)
+
+
+def _labels() -> list[Column]:
+    return [
+        _label("rub", "flag", "", "a blade touched the casing within the record"),
+        _label("contact_duty", "number", "1", "share of the time in which any blade touches"),
+        _label("contact_impulse_per_turn_n_s", "number", "N s", "mean normal impulse a turn, all blades"),
+        _label("blades_touched", "integer", "", "number of blades that touched"),
+        _label("contact_zones", "integer", "", "number of separate contact zones on the casing"),
+        _label("contact_zone_centres_rad", "numbers", "rad", "polar angle of each zone"),
+        _label("contact_zone_widths_rad", "numbers", "rad", "angular width of each zone"),
+        _label("contact_zones_symmetric", "flag", "", "zones equal and evenly spread; null without contact"),
+        _label("motion_blisk", "text", "", "static, period-1, period-k, quasi-periodic or chaotic"),
+        _label("motion_casing", "text", "", "the same of the casing"),
+        _label("motion", "text", "", "the less regular of the two"),
+        _label("period_blisk", "integer", "turns", "turns after which the blisk repeats; null where it does not"),
+        _label("period_casing", "integer", "turns", "the same of the casing"),
+        _label("period", "integer", "turns", "least common multiple of the two; null where there is none"),
+        _label("has_2fr", "flag", "", "order 2 stands out of the casing acceleration at 0 degrees"),
+    ]
+
+
+def _orders(tap: str) -> list[Column]:
+    units = {probe.tap: probe.unit for probe in PROBES}
+    return [
+        _label(f"{tap}_orders", "numbers", units[tap], f"peak amplitudes of {tap} at k f_r, k = 1..10"),
+        _label(f"{tap}_even_share", "number", "1", "share of the squares on even k"),
+        _label(f"{tap}_odd_share", "number", "1", "share of the squares on odd k"),
+        _label(f"{tap}_dominant_order", "integer", "", "k of the largest amplitude"),
+    ]
+
+
+def _energy() -> list[Column]:
+    return [
+        _label("energy_residual", "number", "1", "error of the energy identity, share of all absolute works"),
+        _label("normal_loss_j", "number", "J", "energy lost in normal impacts, <= 0"),
+        _label("friction_loss_j", "number", "J", "energy lost in friction, <= 0"),
+    ]
+
+
+def _signals(clean: bool) -> list[Column]:
+    facts = {probe.name: (probe.unit, f"{probe.quantity} {probe.axis}, {probe.location}") for probe in PROBES}
+    facts[PULSE_CHANNEL] = ("1", "one pulse a turn, from theta = 0")
+    columns = [
+        Column("rotation_angle_rad", "number", "rad", "angle of the blisk at the first sample"),
+        Column("once_per_rev_s", "numbers", "s", "arrival times of the once_per_rev pulses"),
+    ]
+    columns += [Column(name, "signal", *facts[name]) for name in CHANNELS]
+    if clean:
+        columns += [Column(f"{name}_clean", "signal", unit, f"{text}, clean") for name, (unit, text) in facts.items()]
+    return columns
+
+
+SCALARS = (
+    *_identity(),
+    *_parameters(),
+    *_operation(),
+    *_labels(),
+    *(column for tap in TAPS for column in _orders(tap)),
+    *_energy(),
+)
+"""Columns of `runs.parquet`."""
+SIGNALS = tuple(_signals(clean=False))
+"""Columns that the data files have beside those of `runs.parquet`."""
+CLEAN_SIGNALS = tuple(_signals(clean=True))
+"""The same where the recipe keeps the clean channels."""

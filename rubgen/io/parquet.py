@@ -1,0 +1,169 @@
+"""Runs as Parquet: one row a run, scalars and labels as columns, each recorded channel one list<float32> column.
+
+zstd, BYTE_STREAM_SPLIT on every floating leaf, dictionaries on text alone, a checksum on every page. The bytes follow
+from the rows alone.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from rubgen.errors import UserError
+from rubgen.io.columns import CLEAN_SIGNALS, SCALARS, SIGNALS, Column
+from rubgen.io.plain import labels_dict
+from rubgen.scenario.vary import varied_values
+from rubgen.sensors.channel import Recording
+
+if TYPE_CHECKING:  # Run carries the solver's imports; who reads a file needs none of them
+    from rubgen.pipeline import Run
+
+TYPES = {
+    "text": pa.string(),
+    "flag": pa.bool_(),
+    "integer": pa.int64(),
+    "number": pa.float64(),
+    "numbers": pa.list_(pa.float64()),
+    "signal": pa.list_(pa.float32()),
+}
+COMPRESSION_LEVEL = 3
+
+
+def schema(*, signals: bool, clean: bool = False) -> pa.Schema:
+    """The Arrow schema of `runs.parquet`, or with `signals` of the data files; unit and meaning stand at each field."""
+    columns = SCALARS + ((CLEAN_SIGNALS if clean else SIGNALS) if signals else ())
+    return pa.schema([_field(column) for column in columns])
+
+
+def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Table:
+    """One row: the run's identity, parameters and labels, and with `signals` its channels.
+
+    A failed run has null labels, energies and signals. Raises ValueError where a label has no column.
+    """
+    row = _identity(run, split) | varied_values(run.scenario) | _operation(run)
+    if run.labels is not None:
+        row |= labels_dict(run.labels)
+        energy = run.response.energy
+        row |= {"energy_residual": energy.residual, "normal_loss_j": energy.normal_loss}
+        row |= {"friction_loss_j": energy.friction_loss}
+    if signals and run.recording is not None:
+        row |= _signals(run.recording)
+    types = schema(signals=signals, clean=run.scenario.sensing.keep_clean)
+    unknown = sorted(set(row) - set(types.names))
+    if unknown:
+        raise ValueError(f"no column for {', '.join(unknown)}")
+    return pa.table({field.name: pa.array([row.get(field.name)], field.type) for field in types}, schema=types)
+
+
+def write_table(tables: Iterable[pa.Table], types: pa.Schema, path: Path) -> int:
+    """Write tables of that schema to `path`, each as one row group, complete or not at all; gives the rows written."""
+    part, rows = path.with_name(f"{path.name}.part"), 0
+    try:
+        with part.open("wb") as stream:
+            with pq.ParquetWriter(stream, types, **_settings(types)) as writer:
+                for table in tables:
+                    writer.write_table(table, row_group_size=max(table.num_rows, 1))
+                    rows += table.num_rows
+            stream.flush()
+            os.fsync(stream.fileno())
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+    return rows
+
+
+def write_parquet(run: Run, path: Path) -> None:
+    """One run as a Parquet file of one row, with its signals; raises OSError when it cannot be written."""
+    table = run_table(run)
+    write_table([table], table.schema, path)
+
+
+def read_table(path: Path, columns: list[str] | None = None) -> pa.Table:
+    """The rows of a Parquet file, every page checked; UserError where it is missing or damaged."""
+    with open_parquet(path) as file:
+        try:
+            return file.read(columns=columns)
+        except (pa.ArrowException, OSError) as error:
+            raise damaged(path, error) from None
+
+
+def row_groups(path: Path) -> Iterator[pa.Table]:
+    """One row group after another, every page checked; UserError where the file is missing or damaged."""
+    with open_parquet(path) as file:
+        for group in range(file.num_row_groups):
+            try:
+                yield file.read_row_group(group)
+            except (pa.ArrowException, OSError) as error:
+                raise damaged(path, error) from None
+
+
+def open_parquet(path: Path) -> pq.ParquetFile:
+    """The file, not read yet, with page checksums switched on; UserError where it is missing or no Parquet."""
+    try:
+        return pq.ParquetFile(path, page_checksum_verification=True)
+    except (pa.ArrowException, OSError) as error:
+        raise damaged(path, error) from None
+
+
+def damaged(path: Path, error: Exception) -> UserError:
+    """One line for a Parquet file that cannot be read."""
+    reason = " ".join(str(error).split())
+    return UserError(f"{path}: missing, damaged or no Parquet file ({reason}); generate it again")
+
+
+def _field(column: Column) -> pa.Field:
+    return pa.field(column.name, TYPES[column.kind], metadata={"unit": column.unit, "meaning": column.meaning})
+
+
+def _settings(types: pa.Schema) -> dict[str, Any]:
+    # The leaf of a list must be named: the plain column's name is silently ignored.
+    leaves = {
+        field.name: f"{field.name}.list.element" if pa.types.is_list(field.type) else field.name for field in types
+    }
+    floats = [
+        leaves[f.name] for f in types if pa.types.is_floating(f.type.value_type if pa.types.is_list(f.type) else f.type)
+    ]
+    return {
+        "compression": "zstd",
+        "compression_level": COMPRESSION_LEVEL,
+        "use_dictionary": [field.name for field in types if pa.types.is_string(field.type)],
+        "use_byte_stream_split": floats,
+        "write_page_checksum": True,
+    }
+
+
+def _identity(run: Run, split: str) -> dict[str, object]:
+    return {
+        "run_id": run.scenario.run_id,
+        "machine_id": run.scenario.machine_id,
+        "split": split,
+        "seed": run.scenario.seed,
+        "status": run.response.status.code,
+        "reason": run.response.reason,
+    }
+
+
+def _operation(run: Run) -> dict[str, object]:
+    return {
+        "steps_per_turn": run.response.steps_per_turn,
+        "settle_turns": run.response.settle_turns,
+        "record_turns": run.response.record_turns,
+        "sample_rate_hz": run.scenario.sensing.sample_rate_hz,
+    }
+
+
+def _signals(recording: Recording) -> dict[str, object]:
+    values: dict[str, object] = {
+        "rotation_angle_rad": recording.rotation_angle,
+        "once_per_rev_s": recording.once_per_rev,
+    }
+    for name, channel in recording.channels.items():
+        values[name] = channel.values
+        if channel.clean is not None:
+            values[f"{name}_clean"] = channel.clean
+    return values
