@@ -5,17 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 
 from rubgen.arrays import FloatArray, IntArray, SparseMatrix
-from rubgen.fem.shell import ShellMesh, shell_mass, shell_stiffness
+from rubgen.fem.shell import shell_inertia, shell_stiffness
+from rubgen.fem.shell_strains import ShellMesh
 from rubgen.machine import Disk
 
-# Per node: what the rotation about Z does to (u, v, w, th_x, th_y, th_z), e_z x on both vectors.
-SPIN = np.kron(np.eye(2), np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]))
 
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class DiskModel:
     """Matrices (6 n, 6 n) of the disk alone, free: M mass, K elastic, G Coriolis (skew), S spin softening; f_c (6 n,).
 
@@ -34,22 +31,25 @@ class DiskModel:
 
 
 def assemble_disk(disk: Disk) -> DiskModel:
-    """Shell model of the disk, 7 x 72 elements in the preset.
+    """Shell model of the disk, 7 x 72 elements in the preset; rotary inertia enters M, G and S.
 
-    Rotary inertia enters M, G and S. S = int rho N^T (1 - e_z e_z^T) N is M on u, v, th_x, th_y;
-    G = int rho N^T (e_z x) N = (e_z x) S and f_c = int rho N^T r_perp = S r, both exactly in this element.
+    f_c = int rho N^T r_perp is S r, exactly, for the element holds the field r_perp.
     """
     mesh = annular_mesh(disk)
-    n = len(mesh.nodes)
-    M = shell_mass(mesh, disk.material)
-    turning = sp.diags_array(np.tile([1.0, 1.0, 0.0, 1.0, 1.0, 0.0], n))
-    S = (turning @ M @ turning).tocsr()
-    G = (sp.kron(sp.eye_array(n), SPIN) @ S).tocsr()
+    inertia = shell_inertia(mesh, disk.material)
+    n, n_c = len(mesh.nodes), disk.circumferential_elements
     position = np.zeros((n, 6))
     position[:, :2] = mesh.nodes
-    rim = n - 2 * disk.circumferential_elements + 2 * np.arange(disk.circumferential_elements)
-    bore = np.arange(2 * disk.circumferential_elements)
-    return DiskModel(mesh, M, shell_stiffness(mesh, disk.material), G, S, S @ position.ravel(), bore, rim)
+    return DiskModel(
+        mesh=mesh,
+        M=inertia.M,
+        K=shell_stiffness(mesh, disk.material),
+        G=inertia.G,
+        S=inertia.S,
+        f_c=inertia.S @ position.ravel(),
+        bore=np.arange(2 * n_c),
+        rim=n - 2 * n_c + 2 * np.arange(n_c),
+    )
 
 
 def annular_mesh(disk: Disk) -> ShellMesh:

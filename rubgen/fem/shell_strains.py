@@ -1,0 +1,114 @@
+"""Interpolation and strains of the eight-node shell at its quadrature points, for all elements at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from rubgen.arrays import FloatArray, IntArray
+
+# (xi, eta) of the element's nodes: four corners counter-clockwise, then the midsides between them.
+_XI = np.array([-1.0, 1.0, 1.0, -1.0, 0.0, 1.0, 0.0, -1.0])
+_ETA = np.array([-1.0, -1.0, 1.0, 1.0, -1.0, 0.0, 1.0, 0.0])
+# DoFs of an element: eight nodes and the bubble, six each; the bubble has th_x and th_y only.
+ELEMENT_DOFS = 54
+BUBBLE_DOFS = np.array([51, 52])
+
+
+@dataclass(frozen=True)
+class ShellMesh:
+    """Nodes (n, 2) in m, elements (e, 8) as in the order of serendipity nodes, thickness in m at points (..., 2)."""
+
+    nodes: FloatArray
+    elements: IntArray
+    thickness: Callable[[FloatArray], FloatArray]
+
+
+@dataclass(frozen=True)
+class Quadrature:
+    """Values at the points q of every element e: N (q, 9), dN/d(x, y) (e, q, 9, 2), h (e, q), dA (e, q).
+
+    The ninth function is the bubble (1 - xi^2)(1 - eta^2), which the rotations alone have.
+    """
+
+    N: FloatArray
+    gradient: FloatArray
+    thickness: FloatArray
+    area: FloatArray
+
+
+def serendipity(xi: FloatArray, eta: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Shape functions N (q, 8) and their derivatives (q, 8, 2) by xi, eta at the points (q,) of the square [-1, 1]^2.
+
+    Corners: (1 + a)(1 + b)(a + b - 1)/4 with a = xi xi_i, b = eta eta_i; midsides (1 - xi^2)(1 + b)/2 and so on
+    (Zienkiewicz and Taylor, The Finite Element Method, serendipity family).
+    """
+    x, y = xi[:, None], eta[:, None]
+    a, b = x * _XI, y * _ETA
+    corner = (1 + a) * (1 + b) * (a + b - 1) / 4
+    corner_x = _XI * (1 + b) * (2 * a + b) / 4
+    corner_y = _ETA * (1 + a) * (2 * b + a) / 4
+    along_xi, along_eta = (1 - x**2) * (1 + b) / 2, (1 + a) * (1 - y**2) / 2
+    N = np.where(_XI == 0, along_xi, np.where(_ETA == 0, along_eta, corner))
+    N_x = np.where(_XI == 0, -x * (1 + b), np.where(_ETA == 0, _XI * (1 - y**2) / 2, corner_x))
+    N_y = np.where(_XI == 0, _ETA * (1 - x**2) / 2, np.where(_ETA == 0, -y * (1 + a), corner_y))
+    return N, np.stack([N_x, N_y], axis=-1)
+
+
+def quadrature(mesh: ShellMesh, order: int) -> Quadrature:
+    """Gauss points, order x order in each element."""
+    points, weights = np.polynomial.legendre.leggauss(order)
+    xi, eta = (grid.ravel() for grid in np.meshgrid(points, points, indexing="ij"))
+    N, dN = serendipity(xi, eta)
+    nodes = mesh.nodes[mesh.elements]
+    jacobian = np.einsum("qak,eai->eqki", dN, nodes)
+    thickness = mesh.thickness(np.einsum("qa,eai->eqi", N, nodes))
+    bubble = (1 - xi**2) * (1 - eta**2)
+    bubble_slope = np.stack([-2 * xi * (1 - eta**2), -2 * eta * (1 - xi**2)], axis=-1)
+    N, dN = np.column_stack([N, bubble]), np.concatenate([dN, bubble_slope[:, None]], axis=1)
+    gradient = np.einsum("eqik,qak->eqai", np.linalg.inv(jacobian), dN)
+    area = np.linalg.det(jacobian) * np.outer(weights, weights).ravel()
+    return Quadrature(N, gradient, thickness, area)
+
+
+def in_plane_strain(points: Quadrature) -> FloatArray:
+    """Rows (e, q, 3, 54) of u_x, v_y, u_y + v_x."""
+    B, g = _strain_rows(points, 3), points.gradient[:, :, :8]
+    B[:, :, 0, :8, 0] = B[:, :, 2, :8, 1] = g[..., 0]
+    B[:, :, 1, :8, 1] = B[:, :, 2, :8, 0] = g[..., 1]
+    return B.reshape(*B.shape[:3], ELEMENT_DOFS)
+
+
+def curvature(points: Quadrature) -> FloatArray:
+    """Rows (e, q, 3, 54) of th_y,x, -th_x,y, th_y,y - th_x,x."""
+    B, g = _strain_rows(points, 3), points.gradient
+    B[:, :, 0, :, 4] = g[..., 0]
+    B[:, :, 1, :, 3] = -g[..., 1]
+    B[:, :, 2, :, 4] = g[..., 1]
+    B[:, :, 2, :, 3] = -g[..., 0]
+    return B.reshape(*B.shape[:3], ELEMENT_DOFS)
+
+
+def shear_strain(points: Quadrature) -> FloatArray:
+    """Rows (e, q, 2, 54) of w_x + th_y, w_y - th_x."""
+    B, g = _strain_rows(points, 2), points.gradient[:, :, :8]
+    B[:, :, :, :8, 2] = g.swapaxes(2, 3)
+    B[:, :, 0, :, 4] = points.N
+    B[:, :, 1, :, 3] = -points.N
+    return B.reshape(*B.shape[:3], ELEMENT_DOFS)
+
+
+def drilling(points: Quadrature) -> FloatArray:
+    """Row (e, q, 1, 54) of th_z - (v_x - u_y) / 2."""
+    B, g = _strain_rows(points, 1), points.gradient[:, :, :8]
+    B[:, :, 0, :8, 5] = points.N[:, :8]
+    B[:, :, 0, :8, 1] = -g[..., 0] / 2
+    B[:, :, 0, :8, 0] = g[..., 1] / 2
+    return B.reshape(*B.shape[:3], ELEMENT_DOFS)
+
+
+def _strain_rows(points: Quadrature, rows: int) -> FloatArray:
+    """Zero strain rows (e, q, rows, 9, 6): eight nodes and the bubble, six DoFs each."""
+    return np.zeros((*points.area.shape, rows, 9, 6))
