@@ -17,7 +17,7 @@ BLADES, STATES = 38, 125
 def _taps(generator: np.random.Generator, speed: float, dt: float, contact: bool) -> dict[str, np.ndarray]:
     time = dt * np.arange(1 - TURNS * STEPS, 1)
     force = 4000.0 * np.maximum(0.0, np.cos(2 * speed * time)) ** 8 if contact else np.zeros_like(time)
-    scales = {"displacement": 1e-4, "acceleration": 300.0, "force": 2e4, "gap": 1e-3}
+    scales = {"displacement": 1e-4, "acceleration": 300.0, "force": 2e4, "contact force": 1e3, "gap": 1e-3}
     taps = {}
     for probe in PROBES:
         first, second = generator.uniform(0, 2 * np.pi, 2)

@@ -48,7 +48,7 @@ PROBES: tuple[Probe, ...] = (
     _casing_acceleration(270),
     _support_force("support_force_x", "X"),
     _support_force("support_force_y", "Y"),
-    Probe("contact_force", "contact_force", "N", "force", "normal", "all blade tips", -1e5, 1e5, 5.0),
+    Probe("contact_force", "contact_force", "N", "contact force", "normal", "all blade tips", -1e5, 1e5, 5.0),
     _tip_clearance(0),
     _tip_clearance(90),
 )

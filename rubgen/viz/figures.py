@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
+from rubgen.arrays import FloatArray
 from rubgen.labels.harmonics import order_spectrum, spectrum_turns
 from rubgen.labels.labels import Motion
 from rubgen.viz.colors import BLUE, GREY, MOTION_COLORS, VERMILION
@@ -26,7 +27,7 @@ INK, PAPER_GREY = "#222222", "#dddddd"
 ORBIT_TURNS = 30
 WAVE_TURNS = 5
 HIGHEST_ORDER = 12
-SECTORS = 72
+SECTORS = 180
 MOTION_MARKERS = {
     Motion.STATIC: "v",
     Motion.PERIOD_1: "o",
@@ -82,16 +83,27 @@ def save_png(figure: Figure, path: Path, *, dpi: int = 110) -> None:
 
 
 def orbit(axes: Axes, run: Run) -> None:
-    """Path of the disk centre over the last 30 turns and its position once a turn over the whole record, in um."""
+    """Path of the disk centre over the last 30 turns and its position once a turn over the whole record."""
     taps, steps = run.response.taps, ORBIT_TURNS * run.response.steps_per_turn
     axes.plot(1e6 * taps["blisk_x"][-steps:], 1e6 * taps["blisk_y"][-steps:], color=BLUE, linewidth=0.6, alpha=0.8)
     centre = 3 * run.response.n_blades
     x, y = 1e6 * run.response.section_q[:, centre], 1e6 * run.response.section_q[:, centre + 1]
-    axes.plot(x, y, ".", color=VERMILION, markersize=5, markeredgewidth=0, label="once a turn", zorder=3)
+    axes.plot(x, y, ".", color=VERMILION, markersize=4, markeredgewidth=0, zorder=3)
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.12)
     _label(axes, "Disk centre $x$, µm", "Disk centre $y$, µm")
-    axes.legend(frameon=False, loc="lower right", bbox_to_anchor=(1, 0.98), fontsize=9, handletextpad=0.1)
+    _section(axes.inset_axes((0.37, 0.39, 0.3, 0.3)), x - x.mean(), y - y.mean())
+
+
+def _section(axes: Axes, x: FloatArray, y: FloatArray) -> None:
+    """The section points about their mean, enlarged."""
+    axes.plot(x, y, ".", color=VERMILION, markersize=3.5, markeredgewidth=0)
+    half = 1.25 * max(float(np.abs(x).max()), float(np.abs(y).max()), 1e-3)
+    axes.set(xlim=(-half, half), ylim=(-half, half), aspect="equal")
+    _label(axes, "once a turn, µm about the mean", "")
+    axes.xaxis.label.set(fontsize=8, color=VERMILION)
+    axes.tick_params(labelsize=7)
+    axes.locator_params(nbins=3)
 
 
 def waveform(axes: Axes, run: Run, name: str) -> None:
@@ -122,7 +134,7 @@ def force_spectrum(axes: Axes, run: Run) -> None:
         axes.set_yticks([0])
         _note(axes, "no contact")
         return
-    floor = amplitudes.max() * 1e-5
+    floor = max(float(np.percentile(amplitudes, 1)) / 2, amplitudes.max() * 1e-5)
     axes.semilogy(orders, np.maximum(amplitudes, floor), color=BLUE, linewidth=0.9)
     _label(axes, "Order $f / f_r$", "Total contact force, N")
     whole = np.arange(1, HIGHEST_ORDER + 1)
@@ -135,7 +147,7 @@ def force_spectrum(axes: Axes, run: Run) -> None:
 
 
 def contact_map(axes: PolarAxes, run: Run) -> None:
-    """Normal impulse a turn by polar angle on the casing, in mN s, in sectors of 5 degrees."""
+    """Normal impulse a turn by polar angle on the casing, in mN s, in sectors of 2 degrees."""
     events = run.response.events
     edges = np.linspace(0, 2 * np.pi, SECTORS + 1)
     impulse, _ = np.histogram(events.angle, bins=edges, weights=events.impulse)
@@ -147,7 +159,9 @@ def contact_map(axes: PolarAxes, run: Run) -> None:
     axes.spines["polar"].set_color(GREY)
     axes.set_rlabel_position(112.5)
     axes.yaxis.set_major_locator(MaxNLocator(4))
-    axes.set_xlabel("Contact impulse a turn and 5°, mN s, over the casing's angle", fontsize=10, color=INK, labelpad=8)
+    axes.set_xlabel(
+        "Contact impulse in a turn and 2°, mN s, over the casing's angle", fontsize=10, color=INK, labelpad=8
+    )
     if not per_turn.any():
         axes.set_yticks([])
         _note(axes, "no contact")

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    import rerun.blueprint as rrb
+import rerun.blueprint as rrb
 
+from rubgen.viz.signal_entities import quantities
+
+if TYPE_CHECKING:
     from rubgen.labels.labels import Labels
     from rubgen.sensors.channel import Recording
 
@@ -15,20 +17,10 @@ FIRST_ORDERS = ("contact_force", "blisk_x", "casing_acc_0")
 
 def arrangement(recording: Recording, labels: Labels) -> rrb.Blueprint:
     """Signals over time on the left, orbit, order amplitudes and labels on the right."""
-    import rerun.blueprint as rrb
-
-    quantities = dict.fromkeys(channel.quantity.replace(" ", "_") for channel in recording.channels.values())
     taps = sorted(labels.orders, key=lambda tap: FIRST_ORDERS.index(tap) if tap in FIRST_ORDERS else len(FIRST_ORDERS))
     signals = [
-        rrb.Tabs(
-            *(
-                rrb.TimeSeriesView(origin=f"/{rate}/{quantity}", name=f"{quantity} ({title})")
-                for quantity in quantities
-            ),
-            name=title,
-            active_tab=f"{active} ({title})",
-        )
-        for rate, title, active in (("preview", "whole run", "force"), ("detail", "full rate", "acceleration"))
+        _signal_tabs(recording, "preview", "whole run", active="contact_force"),
+        _signal_tabs(recording, "detail", "full rate", active="acceleration"),
     ]
     left = rrb.Vertical(
         *signals,
@@ -53,3 +45,9 @@ def arrangement(recording: Recording, labels: Labels) -> rrb.Blueprint:
         rrb.BlueprintPanel(state="collapsed"),
         auto_views=False,
     )
+
+
+def _signal_tabs(recording: Recording, rate: str, title: str, *, active: str) -> rrb.Tabs:
+    names = {quantity: f"{quantity} ({title})" for quantity in quantities(recording)}
+    views = [rrb.TimeSeriesView(origin=f"/{rate}/{quantity}", name=name) for quantity, name in names.items()]
+    return rrb.Tabs(*views, name=title, active_tab=names.get(active, 0))

@@ -110,7 +110,9 @@ def test_preview_decoded_by_a_ros_reader_bounds_the_samples(rub_run, mcap_file):
     channel = rub_run.recording.channels["contact_force"]
     with mcap_file.open("rb") as stream:
         reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
-        decoded_states = [item.decoded_message for item in reader.iter_decoded_messages(topics="/preview/force")]
+        decoded_states = [
+            item.decoded_message for item in reader.iter_decoded_messages(topics="/preview/contact_force")
+        ]
     names = list(decoded_states[0].name)
     low, high = names.index("contact_force.min"), names.index("contact_force.max")
     bins = channel.values[: 25 * 307].reshape(-1, 25)

@@ -47,8 +47,8 @@ def test_a_missing_file_is_named(tmp_path):
 
 def test_a_recording_shorter_than_asked_is_found(rub_run, tmp_path):
     channels = dict(rub_run.recording.channels)
-    channel = channels["contact_force"]
-    channels["contact_force"] = dataclasses.replace(channel, values=channel.values[:-5])
+    channel = channels["casing_acc_90"]
+    channels["casing_acc_90"] = dataclasses.replace(channel, values=channel.values[:-5])
     recording = dataclasses.replace(rub_run.recording, channels=channels)
     with pytest.raises(ValueError, match="size"):
         write_mcap(dataclasses.replace(rub_run, recording=recording), tmp_path / "short.mcap")

@@ -8,7 +8,8 @@ from rerun.chunk import RrdReader
 
 from rubgen.io.plain import labels_dict
 from rubgen.sensors.contact_window import contact_intervals
-from rubgen.viz.rerun import check_rrd, detail_window, recording_id, write_rrd
+from rubgen.viz.rerun import check_rrd, recording_id, write_rrd
+from rubgen.viz.signal_entities import detail_window
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +40,7 @@ def test_full_rate_excerpt_reads_back_to_the_bit(rub_run, rrd_file):
 
 def test_preview_reads_back_as_minimum_and_maximum(rub_run, rrd_file):
     values = rub_run.recording.channels["contact_force"].values
-    read = columns(rrd_file, "/preview/force")
+    read = columns(rrd_file, "/preview/contact_force")
     names = read["SeriesLines:names"][0]
     preview = np.array(read["Scalars:scalars"], dtype=np.float32)
     bins = [values[first : first + 25] for first in range(0, values.size, 25)]
