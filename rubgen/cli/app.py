@@ -1,0 +1,133 @@
+"""The commands, their options, and how they end: 0 done, 1 found wanting, 2 the user's mistake, 130 interrupted."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+from cyclopts import App, CycloptsError, Parameter
+
+from rubgen import __version__
+from rubgen.errors import RubgenError, UserError
+
+DONE, WANTING, MISTAKE, INTERRUPTED = 0, 1, 2, 130
+
+app = App(
+    name="rubgen",
+    help="Labelled blade-rub data from a finite-element blisk in a flexible oval casing.",
+    version=__version__,
+    version_flags=["--version"],
+    help_format="plaintext",
+)
+
+
+def _option(text: str) -> Parameter:
+    return Parameter(help=text)
+
+
+Json = Annotated[bool, Parameter(name="--json", negative=(), help="Print JSON, for programs.")]
+MachineName = Annotated[str, _option("Name of a preset, or path of a machine TOML.")]
+Directory = Annotated[Path, _option("Directory of a data set.")]
+
+
+def main(arguments: list[str] | None = None) -> NoReturn:
+    """Run the command line; always ends the process, with one line on stderr where it fails."""
+    try:
+        code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+        sys.stdout.flush()
+        sys.exit(DONE if code is None else code)
+    except CycloptsError as error:
+        _fail(f"{_one_line(error)}; see rubgen --help", MISTAKE)
+    except UserError as error:
+        _fail(str(error), MISTAKE)
+    except RubgenError as error:
+        _fail(str(error), WANTING)
+    except KeyboardInterrupt:
+        _fail("interrupted", INTERRUPTED)
+    except BrokenPipeError:
+        # Whoever read our output has gone; nothing may be flushed to it any more.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(WANTING)
+
+
+@app.command
+def generate(
+    recipe: Annotated[Path | None, _option("Recipe TOML; without it the embedded zeng2019-mini of 32 runs.")] = None,
+    /,
+    *,
+    out: Annotated[Path, _option("New or empty directory, or one of the same recipe, which is then completed.")],
+    runs: Annotated[int | None, _option("Number of runs, instead of the recipe's.")] = None,
+    workers: Annotated[int | None, _option("Number of processes; the number of cores when not given.")] = None,
+    json: Json = False,
+) -> int:
+    """Make the data set of a recipe, or complete it where it was interrupted."""
+    from rubgen.cli.generating import generate_command
+
+    return generate_command(recipe, out, runs, workers, as_json=json)
+
+
+@app.command
+def simulate(
+    *,
+    machine: MachineName = "zeng2019",
+    speed_rpm: Annotated[float | None, _option("Spin speed, rev/min; 10,000 when not given.")] = None,
+    clearance_m: Annotated[float | None, _option("Smallest gap at rest, m.")] = None,
+    ovality_m: Annotated[float | None, _option("Largest minus smallest radius of the casing, m.")] = None,
+    disk_support_stiffness_n_per_m: Annotated[float | None, _option("Lateral, X and Y, N/m.")] = None,
+    casing_support_stiffness_n_per_m: Annotated[
+        float | None, _option("Radial and tangential at each node, N/m.")
+    ] = None,
+    friction: Annotated[float | None, _option("Coulomb coefficient, 0 to 0.3.")] = None,
+    lobes: Annotated[float | None, _option("Number of lobes of the casing.")] = None,
+    unbalance_kg_m: Annotated[float | None, _option("Mass unbalance, kg m.")] = None,
+    casing_thickness_m: Annotated[float | None, _option("Thickness of the casing ring, m.")] = None,
+    lateral_damping: Annotated[float | None, _option("Damping ratio of the lateral mode.")] = None,
+    settle_turns: Annotated[int | None, _option("Turns before the record; automatic when not given.")] = None,
+    record_turns: Annotated[int, _option("Turns from which the labels come, at least 500.")] = 500,
+    steps_per_turn: Annotated[int, _option("Least number of integration steps in a turn.")] = 1024,
+    sample_rate_hz: Annotated[float, _option("Samples a second of the recorded channels.")] = 25600.0,
+    signal_seconds: Annotated[float, _option("Length of the recorded signals: the end of the record.")] = 1.0,
+    seed: Annotated[int, _option("Seed of the sensor noise.")] = 0,
+    out: Annotated[Path | None, _option("File to write: .mcap, .parquet or .rrd.")] = None,
+    json: Json = False,
+) -> int:
+    """Simulate one run and print its labels; with --out also write its signals."""
+    options = dict(locals())
+    from rubgen.cli.simulating import simulate_command
+
+    return simulate_command(options, out, as_json=json)
+
+
+@app.command
+def modes(machine: MachineName = "zeng2019", /, *, json: Json = False) -> int:
+    """Print degrees of freedom and natural frequencies of a machine, beside the published ones for zeng2019."""
+    from rubgen.cli.modes import modes_command
+
+    return modes_command(machine, as_json=json)
+
+
+@app.command
+def info(directory: Directory, /, *, json: Json = False) -> int:
+    """Count the runs of a data set by status, rub and motion."""
+    from rubgen.cli.inspecting import info_command
+
+    return info_command(directory, as_json=json)
+
+
+@app.command
+def verify(directory: Directory, /, *, json: Json = False) -> int:
+    """Check hashes, checksums, schemas, and labels against signals; exit 1 where something is wrong."""
+    from rubgen.cli.inspecting import verify_command
+
+    return verify_command(directory, as_json=json)
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split()).rstrip(".")
+
+
+def _fail(message: str, code: int) -> NoReturn:
+    sys.stderr.write(f"rubgen: {message}\n")
+    sys.exit(code)

@@ -1,0 +1,80 @@
+"""`rubgen generate`: progress for people, a summary for programs."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TextColumn, TimeRemainingColumn
+from rich.text import Text
+
+from rubgen.cli.printing import print_json, say
+from rubgen.dataset.generate import Generated, finished_runs, generate
+
+
+class Rate(ProgressColumn):
+    """Runs a minute."""
+
+    def render(self, task: Task) -> Text:
+        """The rate so far, or dots before the first run."""
+        return Text(f"{60 * task.speed:.1f} runs/min" if task.speed else "... runs/min")
+
+
+def generate_command(recipe: Path | None, out: Path, runs: int | None, workers: int | None, *, as_json: bool) -> int:
+    """Generate, and say what was made; a Ctrl-C says how to go on."""
+    console = Console(stderr=True, quiet=as_json)
+    try:
+        with _terminable(), _bar(console) as bar:
+            task = bar.add_task("runs", total=None)
+            made = generate(
+                recipe,
+                out,
+                runs=runs,
+                workers=workers,
+                progress=lambda done, total: bar.update(task, completed=done, total=total),
+            )
+    except KeyboardInterrupt:
+        Console(stderr=True, soft_wrap=True).print(
+            f"rubgen: interrupted; {finished_runs(out)} finished runs are kept in {out}: "
+            "the same command makes the rest",
+            highlight=False,
+        )
+        return 130
+    _report(made, as_json=as_json)
+    return 0
+
+
+def _bar(console: Console) -> Progress:
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Rate(), TimeRemainingColumn())
+    return Progress(*columns, console=console, transient=False)
+
+
+@contextmanager
+def _terminable() -> Iterator[None]:
+    """A polite kill ends like Ctrl-C, and so does Ctrl-C where the shell has switched it off."""
+
+    def interrupt(_signal: int, _frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    saved = {name: signal.signal(name, interrupt) for name in (signal.SIGTERM, signal.SIGINT)}
+    try:
+        yield
+    finally:
+        for name, handler in saved.items():
+            signal.signal(name, handler)
+
+
+def _report(made: Generated, *, as_json: bool) -> None:
+    if as_json:
+        print_json(
+            {"directory": str(made.directory), "runs": made.runs, "made": made.made, "status": dict(made.status)}
+        )
+    elif made.made == 0:
+        say(f"{made.directory}: complete and verified, {made.runs} runs; nothing to do")
+    else:
+        status = ", ".join(f"{count} {name}" for name, count in made.status.items())
+        say(f"{made.directory}: {made.runs} runs ({status}), {made.made} of them new")

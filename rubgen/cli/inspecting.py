@@ -1,0 +1,51 @@
+"""`rubgen info` and `rubgen verify`: what a data set holds, and whether it is whole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import rubgen
+from rubgen.cli.printing import print_json, print_pairs, say
+from rubgen.labels import Motion
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def info_command(directory: Path, *, as_json: bool) -> int:
+    """Count runs."""
+    data = rubgen.open(directory)
+    runs = data.runs
+    motions = [motion.value for motion in Motion]
+    result: dict[str, object] = {
+        "name": data.manifest.name,
+        "runs": len(runs),
+        "status": _counts(runs["status"]),
+        "rub": _counts(runs["rub"], ("true", "false")),
+        **{name: _counts(runs[name], motions) for name in ("motion", "motion_blisk", "motion_casing")},
+    }
+    (print_json if as_json else print_pairs)(result)
+    if not as_json:
+        for row in runs[runs["status"] != "ok"].itertuples():
+            say(f"{row.run_id}  {row.status}: {row.reason}")
+    return 0
+
+
+def verify_command(directory: Path, *, as_json: bool) -> int:
+    """Check, list the problems; 1 where there are any."""
+    problems = rubgen.verify(directory)
+    if as_json:
+        print_json({"ok": not problems, "problems": list(problems)})
+    elif problems:
+        say("\n".join(problems))
+    else:
+        say(f"{directory}: nothing wrong")
+    return 1 if problems else 0
+
+
+def _counts(values: pd.Series[Any], expected: Iterable[str] = ()) -> dict[str, int]:
+    """How often each value occurs, the expected ones even if never; runs without a value (failed) are not counted."""
+    counts = values.dropna().astype(str).str.lower().value_counts()
+    return {name: int(counts.get(name, 0)) for name in [*expected, *sorted(set(counts.index) - set(expected))]}

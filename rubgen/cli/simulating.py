@@ -1,0 +1,117 @@
+"""`rubgen simulate`: one run, its labels, its file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from rubgen.cli.printing import print_json, print_pairs
+from rubgen.dataset.files import write_durably
+from rubgen.errors import UserError
+from rubgen.labels.plain import labels_dict
+from rubgen.pipeline import Run, simulate
+from rubgen.scenario import Operation, Scenario, Sensing, make_scenario
+from rubgen.scenario.feasible import check_feasible
+from rubgen.scenario.vary import KEYS, varied_values
+from rubgen.solver import Status
+
+LABEL_NAMES = (
+    "rub",
+    "contact_duty",
+    "contact_impulse_per_turn_n_s",
+    "blades_touched",
+    "contact_zones",
+    "contact_zones_symmetric",
+    "motion_blisk",
+    "motion_casing",
+    "motion",
+    "period",
+    "has_2fr",
+    "contact_force_orders",
+    "blisk_x_orders",
+)
+"""What people are shown; programs get all labels."""
+
+
+def simulate_command(options: dict[str, Any], out: Path | None, *, as_json: bool) -> int:
+    """Simulate and print; 1 where the run failed."""
+    write = _writer(out)
+    run = simulate(_scenario(options))
+    labels = labels_dict(run.labels) if run.labels else {}
+    result: dict[str, object] = {
+        "status": run.response.status.code,
+        "reason": run.response.reason,
+        **varied_values(run.scenario),
+        "steps_per_turn": run.response.steps_per_turn,
+        "settle_turns": run.response.settle_turns,
+        "record_turns": run.response.record_turns,
+    }
+    if as_json:
+        print_json(result | dict.fromkeys(LABEL_NAMES) | labels)
+    else:
+        print_pairs(result | {name: labels[name] for name in LABEL_NAMES if name in labels})
+    if run.response.status is not Status.OK:
+        return 1
+    if out and write:
+        _write(run, out, write)
+    return 0
+
+
+def _scenario(options: dict[str, Any]) -> Scenario:
+    varied = {key: options[key] for key in KEYS if options[key] is not None}
+    scenario = make_scenario(options["machine"], **varied)
+    try:
+        scenario = replace(
+            scenario,
+            operation=_operation(scenario.operation, options),
+            sensing=Sensing(sample_rate_hz=options["sample_rate_hz"]),
+            signal_seconds=options["signal_seconds"],
+            seed=options["seed"],
+        )
+    except ValidationError as error:
+        problem = error.errors()[0]
+        key = str(problem["loc"][-1]) if problem["loc"] else "option"
+        raise UserError(f"{key} = {problem['input']!r}: {problem['msg']}; correct this value") from None
+    check_feasible(scenario)
+    return scenario
+
+
+def _operation(operation: Operation, options: dict[str, Any]) -> Operation:
+    return replace(
+        operation,
+        settle_turns=options["settle_turns"] or "auto",
+        record_turns=options["record_turns"],
+        steps_per_turn=options["steps_per_turn"],
+    )
+
+
+def _writer(out: Path | None) -> Callable[[Run, Path], None] | None:
+    """How to write that kind of file; refused before the run where the name or the folder will not do."""
+    if out is None:
+        return None
+    if not out.parent.is_dir():
+        raise UserError(f"--out {out}: there is no directory {out.parent}; make it first")
+    if out.suffix == ".mcap":
+        from rubgen.io.mcap import write_mcap
+
+        return write_mcap
+    if out.suffix == ".parquet":
+        from rubgen.io.parquet import write_parquet
+
+        return write_parquet
+    if out.suffix == ".rrd":
+        from rubgen.viz.rerun import write_rrd
+
+        return write_rrd
+    raise UserError(f"--out {out}: unknown kind of file; end the name in .mcap, .parquet or .rrd")
+
+
+def _write(run: Run, out: Path, write: Callable[[Run, Path], None]) -> None:
+    try:
+        write_durably(out, lambda part: write(run, part))
+    except OSError as error:
+        raise UserError(f"--out {out}: cannot be written ({error.strerror or error}); choose another place") from None

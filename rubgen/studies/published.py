@@ -1,0 +1,33 @@
+"""What Zeng et al. (2019) published of their machine, doi 10.1016/j.ast.2019.105481, to compare with."""
+
+from __future__ import annotations
+
+FULL_DOF = 15021
+REDUCED_DOF = 125
+BLISK_HZ = {
+    1: 68.55,
+    2: 68.55,
+    3: 143.65,
+    4: 143.65,
+    5: 155.37,
+    39: 164.43,
+    40: 164.43,
+    41: 210.60,
+    42: 417.32,
+}
+"""Natural frequencies at rest by the number of the mode, counted from 1: tilt twice, lateral twice, blade umbrella,
+blades with one nodal diameter twice, axial, torsion."""
+CASING_HZ = (180.98, 181.04, 181.05, 181.22, 181.54, 181.99, 181.99, 183.35, 183.36, 186.54, 186.54)
+CRITICAL_SPEED_RPM = (8100.0, 8910.0)
+"""The range of speeds that the paper calls near the critical speed."""
+
+
+def blisk_deviation(frequencies_hz: list[float]) -> dict[int, float]:
+    """Relative deviation of computed blisk frequencies (ascending) from the published ones, by mode number."""
+    return {mode: frequencies_hz[mode - 1] / hz - 1 for mode, hz in BLISK_HZ.items() if mode <= len(frequencies_hz)}
+
+
+def casing_deviation(frequencies_hz: list[float]) -> dict[int, float]:
+    """Relative deviation of computed casing frequencies (ascending) from the published ones, by mode number."""
+    pairs = zip(frequencies_hz, CASING_HZ, strict=False)
+    return {mode: hz / published - 1 for mode, (hz, published) in enumerate(pairs, start=1)}
