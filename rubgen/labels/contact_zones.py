@@ -18,42 +18,57 @@ SPECK = 0.02
 SPACING_TOLERANCE = np.deg2rad(3.0)
 WIDTH_TOLERANCE = np.deg2rad(3.0)
 IMPULSE_TOLERANCE = 0.05
-"""Symmetric: centres within 3 deg of equal spacing, widths within 3 deg, impulses within 5 % of their means."""
+"""Symmetric: spacings within 3 deg of 2 pi / N, widths within 3 deg, and in the rms over turns the impulse of a zone
+within 5 % of the mean of all zones in that turn."""
+PHASES = 64
 
 
 @dataclass(frozen=True, kw_only=True)
 class ContactZones:
-    """Arcs of the casing that are touched, by rising centre; `symmetric` is None without contact. Angles in rad."""
+    """Arcs of the casing that are touched, by rising centre; `symmetric` is None without contact. Angles in rad.
+
+    `shares` of the record's impulse; `imbalance` is the rms over turns of a zone's impulse less the mean of all zones,
+    over the mean.
+    """
 
     centres: tuple[float, ...]
     widths: tuple[float, ...]
     shares: tuple[float, ...]
+    imbalance: float
     symmetric: bool | None
 
 
-def contact_zones(events: ContactEvents, *, step_angle: float) -> ContactZones:
-    """The contact zones of a record, `step_angle` being the angle the blisk turns in one step, in rad.
+def contact_zones(events: ContactEvents, *, steps_per_turn: int) -> ContactZones:
+    """The contact zones of a record.
 
     A zone is a connected arc of the impulse histogram: arcs are separated by gaps of more than 10 deg; specks, 2 % of
     the impulse, do not count. Its centre is the mean angle by impulse, its width the arc from its first to its last
-    bin. A circle without such a gap is one zone of width 2 pi.
+    bin. A circle without such a gap is one zone of width 2 pi. Zones are symmetric when their widths and spacings are
+    equal and so are their impulses in each turn: over many turns even a chaotic rub has equal means.
     """
-    density = impulse_histogram(events, step_angle)
+    density = impulse_histogram(events, steps_per_turn)
     if density.sum() <= 0:
-        return ContactZones(centres=(), widths=(), shares=(), symmetric=None)
+        return ContactZones(centres=(), widths=(), shares=(), imbalance=0.0, symmetric=None)
     arcs = touched_arcs(_without_lightest(density) > 0)
     zones = [_zone(density / density.sum(), first, count) for first, count in arcs]
     zones = sorted(zone for zone in zones if zone[2] >= SPECK)
     centres, widths, shares = (tuple(zone[i] for zone in zones) for i in range(3))
-    return ContactZones(centres=centres, widths=widths, shares=shares, symmetric=is_symmetric(centres, widths, shares))
+    imbalance = turn_imbalance(events, np.array(centres), steps_per_turn)
+    return ContactZones(
+        centres=centres,
+        widths=widths,
+        shares=shares,
+        imbalance=imbalance,
+        symmetric=_evenly_placed(centres, widths) and imbalance <= IMPULSE_TOLERANCE,
+    )
 
 
-def impulse_histogram(events: ContactEvents, step_angle: float) -> FloatArray:
+def impulse_histogram(events: ContactEvents, steps_per_turn: int) -> FloatArray:
     """Impulse in each of BINS bins of casing angle from 0, in N s; its sum is the impulse of all events.
 
-    Each event is spread evenly over the angle that the blade swept while it pushed, steps * step_angle, about its mean.
+    Each event is spread evenly over the angle that the blade swept while it pushed, steps dt Omega, about its mean.
     """
-    sweep = np.minimum(events.steps * step_angle, 2 * np.pi)
+    sweep = np.minimum(events.steps * (2 * np.pi / steps_per_turn), 2 * np.pi)
     start = np.mod(events.angle - sweep / 2, 2 * np.pi) / (2 * np.pi) * BINS
     end = start + np.maximum(sweep / (2 * np.pi) * BINS, 1e-6)
     density = events.impulse / (end - start)
@@ -103,13 +118,28 @@ def _zone(share: FloatArray, first: int, count: int) -> tuple[float, float, floa
     return float(np.mod(centre, 2 * np.pi)), 2 * np.pi * count / BINS, float(share[bins].sum())
 
 
-def is_symmetric(centres: tuple[float, ...], widths: tuple[float, ...], shares: tuple[float, ...]) -> bool:
-    """Whether N >= 2 zones have equal widths, impulses and spacings; a single zone only if it is the whole circle."""
+def turn_imbalance(events: ContactEvents, centres: FloatArray, steps_per_turn: int) -> float:
+    """Rms over turns and zones of the impulse less the mean of all zones in that turn, over the mean impulse.
+
+    An event belongs to the zone whose centre is nearest. Turns are cut where there is least contact, so that no touch
+    of a periodic rub falls now into one turn, now into the next; the cut first and last turn are left out.
+    """
+    middle = (events.start_step + events.steps / 2) / steps_per_turn
+    load, edges = np.histogram(np.mod(middle, 1.0), PHASES, (0.0, 1.0), weights=events.impulse)
+    turn = np.floor(middle - edges[np.argmin(load)]).astype(np.int64)
+    zone = np.abs(np.angle(np.exp(1j * (events.angle[:, None] - centres)))).argmin(axis=1)
+    impulse = np.zeros((turn.max() - turn.min() + 1, centres.size))
+    np.add.at(impulse, (turn - turn.min(), zone), events.impulse)
+    whole = impulse[1:-1] if impulse.shape[0] > 2 else impulse
+    if whole.sum() == 0:
+        return 0.0
+    return float(np.sqrt(np.mean((whole - whole.mean(axis=1, keepdims=True)) ** 2)) / whole.mean())
+
+
+def _evenly_placed(centres: tuple[float, ...], widths: tuple[float, ...]) -> bool:
+    """Whether N >= 2 zones have equal widths and spacings; a single zone only if it is the whole circle."""
     if len(centres) == 1:
         return bool(widths[0] >= 2 * np.pi - 1e-9)
     spacing = np.diff(centres, append=centres[0] + 2 * np.pi)
-    return bool(
-        np.abs(spacing - 2 * np.pi / len(centres)).max() <= SPACING_TOLERANCE
-        and np.ptp(widths) <= WIDTH_TOLERANCE
-        and np.abs(np.array(shares) / np.mean(shares) - 1).max() <= IMPULSE_TOLERANCE
-    )
+    even = np.abs(spacing - 2 * np.pi / len(centres)).max() <= SPACING_TOLERANCE
+    return bool(even and np.ptp(widths) <= WIDTH_TOLERANCE)

@@ -16,7 +16,7 @@ SECOND_ORDER_TAP = "casing_acc_0"
 SECOND_ORDER_RATIO = 10.0
 """20 dB above the median of the neighbourhood."""
 SECOND_ORDER_FLOOR = 0.1
-"""Least amplitude of order 2, in m/s2: 0.01 g, three times what the sensor's own noise puts into a line of 1 s."""
+"""Least amplitude of order 2, in m/s2: 20 dB above what the sensor's noise of 1 m/s2 puts into a line over 1 s."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,7 +18,7 @@ def label(response: Response) -> Labels:
     """
     contact_steps = int(response.contact_steps_per_turn.sum())
     rub = contact_steps > 0
-    zones = contact_zones(response.events, step_angle=response.dt * response.speed)
+    zones = contact_zones(response.events, steps_per_turn=response.steps_per_turn)
     parts = motion(response)
     orders = harmonics(response)
     return Labels(

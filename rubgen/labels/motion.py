@@ -16,7 +16,9 @@ from rubgen.solver.response import Response
 LEAST_TURNS = 32
 LONGEST_PERIOD = 16
 CLUSTER_RADIUS = 0.01
-"""Points of one cluster lie within 1 % of the part's dynamic motion around their mean."""
+"""Points stray from the mean of their cluster by 1 % of the part's motion at most, rms over turns: by -40 dB."""
+EXCURSION = 0.03
+"""No single point strays by more than this."""
 CHAOTIC_FROM = 0.7
 """K of the 0-1 test from which a motion is chaotic: chaotic maps of exponent > 0.1 give 0.8 to 1 on 500 points."""
 OBSERVABLES = 3
@@ -86,14 +88,15 @@ def blisk_points(response: Response) -> FloatArray:
 
 
 def casing_points(response: Response) -> FloatArray:
-    """Section of the casing (turns, 1, 2 modes) over the rms speed of its modes: Omega times modal displacement, speed.
+    """Section of the casing (turns, 1, 2 modes): Omega times modal displacement, and speed, over their rms norm.
 
-    The speed alone measures the size: it does not know the static offset by which the blades push the casing aside.
+    Between two touches the casing swings freely about its rest shape, so its displacement there is motion. The time
+    average that touches leave is no offset of the section; only a touch that never ends would make it one.
     """
     modes = slice(response.section_q.shape[1] - response.n_casing, None)
-    q, v = response.section_q[:, modes], response.section_v[:, modes]
-    size = np.sqrt(np.mean(np.sum(v**2, axis=1)))
-    return np.asarray(np.concatenate([response.speed * q, v], axis=1)[:, None, :] / size, dtype=np.float64)
+    states = np.concatenate([response.speed * response.section_q[:, modes], response.section_v[:, modes]], axis=1)
+    size = np.sqrt(np.mean(np.sum(states**2, axis=1)))
+    return np.asarray(states[:, None, :] / size, dtype=np.float64)
 
 
 def classify(points: FloatArray) -> MotionClass:
@@ -119,14 +122,15 @@ def chaos_indicator(points: FloatArray) -> float:
 def cluster_period(points: FloatArray) -> int | None:
     """Smallest k <= 16 after which the points come back, or None.
 
-    Looks at the second half of the record, where transients have died. Every point must lie within CLUSTER_RADIUS of
-    the mean of its cluster, in every group (so that one chattering tip counts), and the distances must not grow.
+    Looks at the second half of the record, where transients have died. A point's distance to the mean of its cluster is
+    that of its farthest group (so that one chattering tip counts); rms over turns it must be CLUSTER_RADIUS at most,
+    for no turn above EXCURSION, and it must not grow.
     """
     late = points[points.shape[0] // 2 :]
     longest = min(LONGEST_PERIOD, late.shape[0] // 4)
     for period in range(1, longest + 1):
         distance = cluster_distances(late, period)
-        if distance.max() <= CLUSTER_RADIUS and not _grows(distance):
+        if _rms(distance) <= CLUSTER_RADIUS and distance.max() <= EXCURSION and not _grows(distance):
             return period
     return None
 
@@ -170,8 +174,12 @@ def principal_components(points: FloatArray) -> FloatArray:
 def _grows(distance: FloatArray) -> bool:
     """Whether the later half is more than twice as far as the earlier one and no longer tiny: an orbit being left."""
     half = distance.size // 2
-    earlier, later = distance[:half].max(), distance[half:].max()
-    return bool(later > 2 * earlier and later > CLUSTER_RADIUS / 10)
+    earlier, later = _rms(distance[:half]), _rms(distance[half:])
+    return later > 2 * earlier and later > CLUSTER_RADIUS / 10
+
+
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
 
 
 def _casing_rests(response: Response) -> bool:

@@ -20,8 +20,8 @@ def measure(response: Response, sensing: Sensing, *, seconds: float, rng: np.ran
     """The channels of a run over `seconds` (> 0) at the end of its record, at `sensing.sample_rate_hz`.
 
     The last sample stands half a filter length before the end of the tail, so that no sample sees an edge. The step
-    after the tail's last one would have theta = 0 mod 2 pi. Each channel has its own child of `rng`, in the fixed order of PROBES: its
-    noise depends on nothing but the state of `rng` and its own length.
+    after the tail's last one would have theta = 0 mod 2 pi. Each channel has its own child of `rng`, in the fixed order
+    of PROBES: its noise depends on nothing but the state of `rng` and its own length.
 
     Raises UserError where the tail is too short for `seconds` and the filter, or the step rate is below 2.56 sample
     rates.

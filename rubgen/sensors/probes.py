@@ -26,7 +26,7 @@ def _proximity(name: str, tap: str, axis: str) -> Probe:
 
 def _casing_acceleration(angle: int) -> Probe:
     name = f"casing_acc_{angle}"
-    return Probe(name, name, "m/s2", "acceleration", "radial outward", f"casing at {angle} deg", -5e4, 5e4, 2.0)
+    return Probe(name, name, "m/s2", "acceleration", "radial outward", f"casing at {angle} deg", -5e4, 5e4, 1.0)
 
 
 def _support_force(name: str, axis: str) -> Probe:
@@ -35,7 +35,7 @@ def _support_force(name: str, axis: str) -> Probe:
 
 def _tip_clearance(angle: int) -> Probe:
     name = f"tip_clearance_{angle}"
-    return Probe(name, name, "m", "gap", "radial", f"casing at {angle} deg", 0.0, 1.2e-2, 5e-6)
+    return Probe(name, name, "m", "gap", "radial", f"casing at {angle} deg", -1e-3, 1.2e-2, 5e-6)
 
 
 # A sensor's place decides which random numbers it gets: append new ones at the end.

@@ -13,11 +13,13 @@ ORBIT = 3e-4
 """Radius of the made orbit of the disk centre, in m."""
 
 
-def made_events(angle: np.ndarray, impulse: np.ndarray, steps: np.ndarray, blade: np.ndarray) -> ContactEvents:
+def made_events(
+    angle: np.ndarray, impulse: np.ndarray, steps: np.ndarray, blade: np.ndarray, start: np.ndarray
+) -> ContactEvents:
     nothing = np.zeros(angle.size)
     return ContactEvents(
         blade=blade.astype(np.int64),
-        start_step=np.arange(angle.size) * 100,
+        start_step=start.astype(np.int64),
         steps=steps.astype(np.int64),
         angle=np.mod(angle, 2 * np.pi),
         impulse=impulse.astype(float),
@@ -28,14 +30,19 @@ def made_events(angle: np.ndarray, impulse: np.ndarray, steps: np.ndarray, blade
 
 @pytest.fixture
 def events() -> Callable[..., ContactEvents]:
-    """Events at angles, of equal impulse 0.1 N s and ten steps where nothing else is said."""
+    """Events at angles: 0.1 N s, ten steps, one every 100 steps, five blades where nothing else is said."""
 
     def make(
-        angle: np.ndarray, impulse: np.ndarray | None = None, steps: np.ndarray | None = None, blades: int = 5
+        angle: np.ndarray,
+        impulse: np.ndarray | None = None,
+        steps: np.ndarray | None = None,
+        start: np.ndarray | None = None,
+        blades: int = 5,
     ) -> ContactEvents:
         impulse = np.full(angle.size, 0.1) if impulse is None else impulse
         steps = np.full(angle.size, 10) if steps is None else steps
-        return made_events(angle, impulse, steps, np.arange(angle.size) % blades)
+        start = 100 * np.arange(angle.size) if start is None else start
+        return made_events(angle, impulse, steps, np.arange(angle.size) % blades, start)
 
     return make
 
@@ -79,7 +86,7 @@ def respond() -> Callable[..., Response]:
             section_v=v,
             impulse_per_turn=np.full(turns, 1.5 if contact else 0.0),
             contact_steps_per_turn=np.full(turns, steps // 4 if contact else 0, dtype=np.int64),
-            events=touches or made_events(none, none, none, none),
+            events=touches or made_events(none, none, none, none, none),
             energy=EnergyBook(**dict.fromkeys(EnergyBook.__dataclass_fields__, 0.0)),
             n_blades=BLADES,
             n_casing=MODES,

@@ -17,12 +17,12 @@ def acceleration(turns: int, order: float = 2.0) -> np.ndarray:
 
 
 def test_labels_of_a_run_with_two_zones(respond: Respond, events: Events) -> None:
-    angles = np.deg2rad(np.concatenate([np.linspace(-10, 10, 99), np.linspace(170, 190, 99)]))
+    angles = np.repeat(np.deg2rad(np.linspace(-10, 10, 99)), 2) + np.tile([0.0, np.pi], 99)
     casing = np.ones((500, 11))
     response = respond(
         casing=casing,
         casing_velocity=casing,
-        touches=events(angles, blades=7),
+        touches=events(angles, start=50 + 128 * np.arange(198), blades=7),
         taps={"casing_acc_0": acceleration(100)},
     )
     labels = label(response)

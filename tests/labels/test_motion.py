@@ -113,10 +113,16 @@ def test_casing_may_be_chaotic_while_the_blisk_is_period_1(respond: Respond) -> 
     assert (parts.blisk, parts.casing, parts.system) == (period(1), CHAOTIC, CHAOTIC)
 
 
-def test_static_offset_of_the_casing_does_not_hide_its_motion(respond: Respond) -> None:
-    wobble = 1e-6 * logistic(4.0)[:, None] * np.ones(11)
-    parts = motion(respond(casing=1e-2 + wobble, casing_velocity=1000 * wobble))
+def test_an_offset_as_large_as_the_motion_does_not_hide_it(respond: Respond) -> None:
+    wobble = 1e-4 * logistic(4.0)[:, None] * np.ones(11)
+    parts = motion(respond(casing=1e-4 + wobble, casing_velocity=100 * wobble))
     assert parts.casing == CHAOTIC
+
+
+@pytest.mark.parametrize(("size", "expected"), [(0.02, period(1)), (0.06, CHAOTIC)])
+def test_what_is_40_db_below_the_motion_does_not_count(size: float, expected: MotionClass) -> None:
+    # The logistic map at r = 4 has rms 1 / sqrt(8) about its mean, so 0.02 of it is -43 dB, 0.06 is -33 dB.
+    assert classify(1 + size * section(logistic(4.0))) == expected
 
 
 def test_casing_that_came_to_rest_is_static(respond: Respond) -> None:
