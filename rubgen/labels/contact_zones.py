@@ -18,8 +18,7 @@ SPECK = 0.02
 SPACING_TOLERANCE = np.deg2rad(3.0)
 WIDTH_TOLERANCE = np.deg2rad(3.0)
 IMPULSE_TOLERANCE = 0.05
-"""Symmetric: spacings within 3 deg of 2 pi / N, widths within 3 deg, and in the rms over turns the impulse of a zone
-within 5 % of the mean of all zones in that turn."""
+"""Symmetric: spacings within 3 deg of 2 pi / N, widths within 3 deg, impulses of zones in turns within 5 %, rms."""
 PHASES = 64
 
 
@@ -27,8 +26,7 @@ PHASES = 64
 class ContactZones:
     """Arcs of the casing that are touched, by rising centre; `symmetric` is None without contact. Angles in rad.
 
-    `shares` of the record's impulse; `imbalance` is the rms over turns of a zone's impulse less the mean of all zones,
-    over the mean.
+    `shares` are those of the record's impulse; `imbalance` is that of `turn_imbalance`.
     """
 
     centres: tuple[float, ...]
@@ -119,8 +117,9 @@ def _zone(share: FloatArray, first: int, count: int) -> tuple[float, float, floa
 
 
 def turn_imbalance(events: ContactEvents, centres: FloatArray, steps_per_turn: int) -> float:
-    """Rms over turns and zones of the impulse less the mean of all zones in that turn, over the mean impulse.
+    """Rms of the impulse that a zone gets in a turn, less its mean over all zones and turns, over that mean.
 
+    Symmetric motion, q(t + T/N) = q(t), gives every zone the same in every turn, so this is 0.
     An event belongs to the zone whose centre is nearest. Turns are cut where there is least contact, so that no touch
     of a periodic rub falls now into one turn, now into the next; the cut first and last turn are left out.
     """
@@ -133,7 +132,7 @@ def turn_imbalance(events: ContactEvents, centres: FloatArray, steps_per_turn: i
     whole = impulse[1:-1] if impulse.shape[0] > 2 else impulse
     if whole.sum() == 0:
         return 0.0
-    return float(np.sqrt(np.mean((whole - whole.mean(axis=1, keepdims=True)) ** 2)) / whole.mean())
+    return float(whole.std() / whole.mean())
 
 
 def _evenly_placed(centres: tuple[float, ...], widths: tuple[float, ...]) -> bool:

@@ -68,11 +68,11 @@ def test_zones_of_unequal_impulse_are_not_symmetric(events: Events, strength: fl
 
 
 def test_zones_that_differ_from_turn_to_turn_are_not_symmetric_though_their_means_are_equal(events: Events) -> None:
-    # 0.1 and 0.2 N s change places every turn: each turn 0.05 off a mean of 0.15.
+    # 0.1 and 0.2 N s change places every turn: each 0.05 off the mean of 0.15.
     impulse = np.tile([0.1, 0.2, 0.2, 0.1], 100)
     zones = contact_zones(events(alternating(), impulse, start=half_turns()), steps_per_turn=STEPS)
     assert zones.shares[0] == pytest.approx(zones.shares[1])
-    assert zones.imbalance == pytest.approx(1 / 3)
+    assert zones.imbalance == pytest.approx(1 / 3, rel=1e-3)  # the first and the last turn are cut
     assert zones.symmetric is False
 
 
