@@ -21,10 +21,10 @@ R = TypeVar("R")
 
 @cache
 def kernel_cache_dir() -> Path:
-    """Folder of the compiled kernels: the user's cache folder, then a hash of numba's version and all kernel sources."""
+    """Folder of the compiled kernels: the user's cache folder, then a hash of numba's version and kernel sources."""
     root = Path(__file__).parent
     digest = hashlib.sha256(numba.__version__.encode())
-    for source in sorted(root.rglob("*_kernels.py")) + [Path(__file__)]:
+    for source in [*sorted(root.rglob("*_kernels.py")), Path(__file__)]:
         digest.update(source.relative_to(root).as_posix().encode())
         digest.update(source.read_bytes())
     return Path(platformdirs.user_cache_dir("rubgen")) / "kernels" / digest.hexdigest()[:16]
@@ -33,13 +33,27 @@ def kernel_cache_dir() -> Path:
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile `function` with numba, without the GIL, without fastmath, cached in `kernel_cache_dir()`.
 
-    Kernels live in files named `*_kernels.py`, take arrays and scalars only, and never raise. `NUMBA_DISABLE_JIT=1`
-    runs them as plain Python.
+    Kernels live in files named `*_kernels.py`, take arrays and scalars only, and never raise (a division by zero gives
+    inf or NaN). `NUMBA_DISABLE_JIT=1` runs them as plain Python.
     """
+    return _compiled(function)
+
+
+def allocation_free_kernel(function: Callable[P, R]) -> Callable[P, R]:
+    """A `kernel` for inner loops that allocates nothing: one that does fails to compile.
+
+    Without allocation numba need not count references, which cost a third of a step of the solver where arrays come in
+    named tuples.
+    """
+    return _compiled(function, _nrt=False)
+
+
+def _compiled(function: Callable[P, R], **options: bool) -> Callable[P, R]:
     config: Any = numba.config
+    njit: Any = numba.njit
     previous = config.CACHE_DIR
     config.CACHE_DIR = str(kernel_cache_dir())
     try:
-        return cast("Callable[P, R]", numba.njit(cache=True, nogil=True)(function))
+        return cast("Callable[P, R]", njit(cache=True, nogil=True, error_model="numpy", **options)(function))
     finally:
         config.CACHE_DIR = previous

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from rubgen.arrays import BoolArray, FloatArray, IntArray
+from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.friction_kernels import friction_direction, slip_velocity
 from rubgen.contact.geometry_kernels import (
     Surface,
@@ -19,20 +19,19 @@ from rubgen.contact.geometry_kernels import (
     foot_of,
     tip_position,
 )
-from rubgen.jit import kernel
+from rubgen.jit import allocation_free_kernel
 
 
 class ContactWork(NamedTuple):
     """Arrays of the contact step, allocated once; row m of the contact arrays belongs to blade `blade[m]`.
 
-    Per blade: `bounds`, `near`, `psi`, `gap` (the free gap at q*; NaN when the blade is provably farther than the
+    Per blade: `bounds`, `psi`, `gap` (the free gap at q*; NaN when the blade is provably farther than the
     margin), `tangent` (n_blades, 2), `held` (3, n_blades): the scheme's gaps at steps n - 1, n, n + 1.
     Per contact: `lam`, `b`, `W`, `normal_tip` and `full_tip` (n_blades, 3), `normal_casing` and `full_casing`
     (n_blades, n_casing), `slip` (n_blades, 2) the friction direction, `blisk_response` and `casing_response`: A^-1 B.
     """
 
     bounds: FloatArray
-    near: BoolArray
     psi: FloatArray
     gap: FloatArray
     tangent: FloatArray
@@ -55,7 +54,7 @@ class ContactWork(NamedTuple):
     basis: IntArray
 
 
-@kernel
+@allocation_free_kernel
 def find_near(
     surface: Surface,
     tips: Tips,
@@ -72,7 +71,6 @@ def find_near(
     reach = casing_reach(surface, q[casing_start:])
     count, penetrates = 0, False
     for k in range(work.bounds.shape[0]):
-        work.near[k] = False
         work.gap[k] = math.nan
         if screen and work.bounds[k] - reach > margin:
             continue
@@ -82,14 +80,13 @@ def find_near(
             continue
         work.psi[k], work.gap[k] = psi, gap
         work.tangent[k, 0], work.tangent[k, 1] = tx, ty
-        work.near[k] = True
         work.blade[count] = k
         count += 1
         penetrates = penetrates or gap < 0.0
     return count, penetrates
 
 
-@kernel
+@allocation_free_kernel
 def gap_at(
     surface: Surface,
     tips: Tips,
@@ -106,7 +103,7 @@ def gap_at(
     return foot_of(surface, q[casing_start:], opening, x, y, ends_work)[1]
 
 
-@kernel
+@allocation_free_kernel
 def contact_slip(
     tips: Tips, m: int, velocity: FloatArray, q: FloatArray, speed: float, cosine: float, sine: float, work: ContactWork
 ) -> tuple[float, float]:
@@ -123,7 +120,7 @@ def contact_slip(
     return slip_velocity(tip, (casing_x, casing_y), (work.tangent[k, 0], work.tangent[k, 1]))
 
 
-@kernel
+@allocation_free_kernel
 def build_rows(
     surface: Surface,
     tips: Tips,
@@ -158,7 +155,7 @@ def build_rows(
         work.full_casing[m, j] = -fx * work.rows[0, j] - fy * work.rows[1, j]
 
 
-@kernel
+@allocation_free_kernel
 def build_response(m: int, blisk_inverse: FloatArray, casing_inverse: FloatArray, work: ContactWork) -> None:
     """A^-1 B of contact m; `*_inverse[j]` is column j of the inverse of that block of A, padded."""
     base = 3 * work.blade[m]
@@ -175,7 +172,7 @@ def build_response(m: int, blisk_inverse: FloatArray, casing_inverse: FloatArray
             work.casing_response[m, i] += force * casing_inverse[j, i]
 
 
-@kernel
+@allocation_free_kernel
 def build_compliance(count: int, work: ContactWork) -> None:
     """W = B_n^T A^-1 B of all contacts together."""
     for row in range(count):
@@ -189,7 +186,7 @@ def build_compliance(count: int, work: ContactWork) -> None:
             work.W[row, column] = total
 
 
-@kernel
+@allocation_free_kernel
 def apply_contacts(count: int, q: FloatArray, casing_start: int, work: ContactWork) -> None:
     """Q += A^-1 B lam."""
     for m in range(count):
@@ -201,7 +198,7 @@ def apply_contacts(count: int, q: FloatArray, casing_start: int, work: ContactWo
                 q[casing_start + j] += lam * work.casing_response[m, j]
 
 
-@kernel
+@allocation_free_kernel
 def largest_approach(
     surface: Surface, q_new: FloatArray, q_free: FloatArray, casing_start: int, n_blades: int
 ) -> float:

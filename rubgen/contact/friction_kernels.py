@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from rubgen.jit import kernel
+from rubgen.jit import allocation_free_kernel
 
 
-@kernel
+@allocation_free_kernel
 def slip_velocity(
     tip: tuple[float, float, float], casing: tuple[float, float], tangent: tuple[float, float]
 ) -> tuple[float, float]:
@@ -15,7 +15,7 @@ def slip_velocity(
     return (tip[0] - casing[0]) * tangent[0] + (tip[1] - casing[1]) * tangent[1], tip[2]
 
 
-@kernel
+@allocation_free_kernel
 def friction_direction(along: float, axial: float) -> tuple[float, float]:
     """-v_rel / |v_rel| in the plane of tangent and e_z; zero without slip."""
     speed = math.sqrt(along * along + axial * axial)

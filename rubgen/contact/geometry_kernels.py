@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray
-from rubgen.jit import kernel
+from rubgen.jit import allocation_free_kernel
 
 FOOT_TOLERANCE = 1e-10
 FOOT_ITERATIONS = 20
@@ -50,7 +50,7 @@ class Tips(NamedTuple):
     sin_order: FloatArray
 
 
-@kernel
+@allocation_free_kernel
 def undeformed_radius(surface: Surface, psi: float) -> tuple[float, float, float]:
     """r, dr/dpsi and d2r/dpsi2 of the undeformed surface."""
     radius, slope, bend = surface.mean_radius, 0.0, 0.0
@@ -64,7 +64,7 @@ def undeformed_radius(surface: Surface, psi: float) -> tuple[float, float, float
     return radius, slope, bend
 
 
-@kernel
+@allocation_free_kernel
 def interval(psi: float, node_step: float, nodes: int) -> tuple[int, int, float]:
     """The two nodes around the polar angle, and the share of the way between them in [0, 1]."""
     position = psi / node_step
@@ -72,7 +72,7 @@ def interval(psi: float, node_step: float, nodes: int) -> tuple[int, int, float]
     return int(first % nodes), int((first + 1) % nodes), position - first
 
 
-@kernel
+@allocation_free_kernel
 def load_interval(table: FloatArray, first: int, second: int, q_casing: FloatArray, ends_out: FloatArray) -> None:
     """Displacement and slope (X, Y, X', Y') at two nodes, into `ends_out` (8,)."""
     for c in range(4):
@@ -84,33 +84,35 @@ def load_interval(table: FloatArray, first: int, second: int, q_casing: FloatArr
         ends_out[4 + c] = at_second
 
 
-@kernel
+@allocation_free_kernel
 def hermite(s: float, h: float) -> tuple[float, float, float, float]:
     """Weights of first value, second value, first slope, second slope at share s of an interval of length h."""
     return (1 + 2 * s) * (1 - s) * (1 - s), s * s * (3 - 2 * s), h * s * (1 - s) * (1 - s), h * s * s * (s - 1)
 
 
-@kernel
+@allocation_free_kernel
 def hermite_slope(s: float, h: float) -> tuple[float, float, float, float]:
     """Derivatives of the `hermite` weights by the polar angle."""
     bump = 6 * s * (1 - s) / h
     return -bump, bump, (1 - s) * (1 - 3 * s), s * (3 * s - 2)
 
 
-@kernel
+@allocation_free_kernel
 def hermite_bend(s: float, h: float) -> tuple[float, float, float, float]:
     """Second derivatives of the `hermite` weights by the polar angle."""
     bend = (12 * s - 6) / (h * h)
     return bend, -bend, (6 * s - 4) / h, (6 * s - 2) / h
 
 
-@kernel
+@allocation_free_kernel
 def blend(weights: tuple[float, float, float, float], ends: FloatArray, c: int) -> float:
     """Component c (0: X, 1: Y) of the interpolated displacement, or of its derivative."""
-    return weights[0] * ends[c] + weights[1] * ends[4 + c] + weights[2] * ends[2 + c] + weights[3] * ends[6 + c]
+    total: float = weights[0] * ends[c] + weights[1] * ends[4 + c]
+    total += weights[2] * ends[2 + c] + weights[3] * ends[6 + c]
+    return total
 
 
-@kernel
+@allocation_free_kernel
 def foot_of(
     surface: Surface, q_casing: FloatArray, opening: float, x: float, y: float, ends_work: FloatArray
 ) -> tuple[float, float, float, float]:
@@ -151,7 +153,7 @@ def foot_of(
     return psi, gap, tx, ty
 
 
-@kernel
+@allocation_free_kernel
 def casing_rows(surface: Surface, psi: float, rows_out: FloatArray) -> None:
     """X and Y displacement at psi per unit of each casing mode, into `rows_out` (2, n_casing)."""
     first, second, s = interval(psi, surface.node_step, surface.table.shape[0])
@@ -167,16 +169,16 @@ def casing_rows(surface: Surface, psi: float, rows_out: FloatArray) -> None:
             )
 
 
-@kernel
+@allocation_free_kernel
 def casing_reach(surface: Surface, q_casing: FloatArray) -> float:
     """An upper bound of the casing's displacement anywhere on the ring, sum_j |q_j| reach_j."""
-    reach = 0.0
+    reach: float = 0.0
     for j in range(q_casing.shape[0]):
         reach += abs(q_casing[j]) * surface.reach[j]
     return reach
 
 
-@kernel
+@allocation_free_kernel
 def tip_position(
     tips: Tips, blade: int, q: FloatArray, cos_theta: float, sin_theta: float
 ) -> tuple[float, float, float, float]:
@@ -188,7 +190,7 @@ def tip_position(
     return radial * cosine - tangential * sine, radial * sine + tangential * cosine, cosine, sine
 
 
-@kernel
+@allocation_free_kernel
 def clearance_bounds(
     surface: Surface,
     tips: Tips,

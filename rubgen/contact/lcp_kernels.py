@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.jit import kernel
+from rubgen.jit import allocation_free_kernel
 
 SOLVED = 0
 UNSOLVED = 1
@@ -13,7 +13,7 @@ SWEEPS = 400
 TOLERANCE = 1e-14
 
 
-@kernel
+@allocation_free_kernel
 def is_positive_definite(W: FloatArray, m: int, work: FloatArray) -> bool:
     """Whether the symmetric part of the leading m x m block of W is positive definite (by Cholesky, in `work`)."""
     for i in range(m):
@@ -30,7 +30,7 @@ def is_positive_definite(W: FloatArray, m: int, work: FloatArray) -> bool:
     return True
 
 
-@kernel
+@allocation_free_kernel
 def projected_gauss_seidel(W: FloatArray, b: FloatArray, m: int, lam_out: FloatArray) -> int:
     """Sweeps from zero until no multiplier moves by more than 1e-14 of the largest; SOLVED or UNSOLVED."""
     for i in range(m):
@@ -50,7 +50,7 @@ def projected_gauss_seidel(W: FloatArray, b: FloatArray, m: int, lam_out: FloatA
     return UNSOLVED
 
 
-@kernel
+@allocation_free_kernel
 def _leaving_row(tableau: FloatArray, entering: int, m: int) -> int:
     """Row of the smallest ratio; ties go to the artificial variable's row if last, else the first; -1 on a ray."""
     best, row = math.inf, -1
@@ -62,7 +62,7 @@ def _leaving_row(tableau: FloatArray, entering: int, m: int) -> int:
     return row
 
 
-@kernel
+@allocation_free_kernel
 def _pivot(tableau: FloatArray, row: int, column: int, m: int) -> None:
     pivot = tableau[row, column]
     for j in range(2 * m + 2):
@@ -74,7 +74,7 @@ def _pivot(tableau: FloatArray, row: int, column: int, m: int) -> None:
                 tableau[i, j] -= factor * tableau[row, j]
 
 
-@kernel
+@allocation_free_kernel
 def _fill_tableau(W: FloatArray, b: FloatArray, m: int, scale: float, tableau: FloatArray, basis: IntArray) -> int:
     """I w - W z - 1 z0 = b, scaled so that lam = scale z; gives the row of the most negative b."""
     worst = 0
@@ -91,7 +91,7 @@ def _fill_tableau(W: FloatArray, b: FloatArray, m: int, scale: float, tableau: F
     return worst
 
 
-@kernel
+@allocation_free_kernel
 def lemke(W: FloatArray, b: FloatArray, m: int, lam_out: FloatArray, tableau: FloatArray, basis: IntArray) -> int:
     """Lemke's complementary pivoting (Cottle, Pang, Stone, The Linear Complementarity Problem, 4.4).
 
@@ -124,7 +124,7 @@ def lemke(W: FloatArray, b: FloatArray, m: int, lam_out: FloatArray, tableau: Fl
     return UNSOLVED
 
 
-@kernel
+@allocation_free_kernel
 def solve_lcp(
     W: FloatArray,
     b: FloatArray,

@@ -63,16 +63,17 @@ def energy_book(system: SpinningSystem) -> Book:
     skew = (system.K - system.K.T) / 2
     left, size, right = la.svd(skew)
     rank = int(np.sum(size > RANK_TOLERANCE * np.abs(system.K).max()))
-    factors = np.zeros((2, skew.shape[0], rank + 1))
-    factors[0, :, :rank], factors[1, :, :rank] = left[:, :rank] * size[:rank], right[:rank].T
-    factors[0, :, rank] = system.force
+    factors = np.zeros((2, rank + 1, skew.shape[0]))
+    factors[0, 0] = system.force
+    factors[0, 1:], factors[1, 1:] = (left[:, :rank] * size[:rank]).T, right[:rank]
+    columns = padded_columns(factors[0]), padded_columns(factors[1])
     return Book(
         blisk_damping=half_diagonal_triangle(system.C[:start, :start]),
         casing_damping=half_diagonal_triangle(system.C[start:, start:]),
-        left=factors[0],
-        right=factors[1],
+        left=columns[0],
+        right=columns[1],
         M=np.ascontiguousarray((system.M + system.M.T) / 2),
         K=np.ascontiguousarray((system.K + system.K.T) / 2),
-        products=np.zeros((2, rank + 1)),
+        products=np.zeros((2, columns[0].shape[1])),
         works=np.zeros(8),
     )

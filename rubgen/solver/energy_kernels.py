@@ -11,7 +11,7 @@ from typing import NamedTuple
 from rubgen.arrays import FloatArray
 from rubgen.contact.contact_kernels import ContactWork, contact_slip
 from rubgen.contact.geometry_kernels import Surface, Tips, casing_rows, tip_position
-from rubgen.jit import kernel
+from rubgen.jit import allocation_free_kernel
 from rubgen.solver.step_kernels import Angles, Laws, State, add_columns, previous_gap
 
 UNBALANCE, DAMPING, CIRCULATORY, CONTACT, NORMAL, FRICTION, DRIVE_LIMIT, ABSOLUTE = range(8)
@@ -21,35 +21,37 @@ class Book(NamedTuple):
     """Matrices of the energy terms.
 
     `blisk_damping`, `casing_damping`: columns of the lower triangle of C_sym with half its diagonal, padded like the
-    scheme's blocks, so that d^T C d = 2 d^T (triangle d). K_skew = left right^T (n, rank); the column after the last
-    of `left` is the unbalance force. `M`, `K` (n, n) symmetric parts; `works` (8,) the sums so far.
+    scheme's blocks, so that d^T C d = 2 d^T (triangle d). K_skew = left right^T over all columns but the first,
+    (n, rank + 1) padded; the first of `left` is the unbalance force, of `right` zero. `products` is scratch. `M`, `K`
+    (n, n) are the symmetric parts; `works` (8,) the sums so far.
     """
 
     blisk_damping: FloatArray
     casing_damping: FloatArray
     left: FloatArray
     right: FloatArray
+    products: FloatArray
     M: FloatArray
     K: FloatArray
-    products: FloatArray
     works: FloatArray
 
 
-@kernel
+@allocation_free_kernel
 def add_triangle(columns: FloatArray, x: FloatArray, sum_out: FloatArray) -> None:
-    """sum_out += triangle x for a lower triangle whose rows begin at the multiple of 4 at or before the diagonal."""
+    """sum_out += triangle x for a lower triangle, four columns at a time from their common first row."""
     quads = x.shape[0] // 4 * 4
-    width = sum_out.shape[0]
     for j in range(0, quads, 4):
         a, b, c, d = x[j], x[j + 1], x[j + 2], x[j + 3]
-        first, second, third, fourth = columns[j], columns[j + 1], columns[j + 2], columns[j + 3]
-        for i in range(j, width):
-            sum_out[i] += a * first[i] + b * second[i] + c * third[i] + d * fourth[i]
+        first, second = columns[j, j:], columns[j + 1, j:]
+        third, fourth = columns[j + 2, j:], columns[j + 3, j:]
+        total = sum_out[j:]
+        for i in range(total.shape[0]):
+            total[i] += a * first[i] + b * second[i] + c * third[i] + d * fourth[i]
     if quads < x.shape[0]:
         add_columns(columns[quads:], x[quads:], sum_out)
 
 
-@kernel
+@allocation_free_kernel
 def dot(a: FloatArray, b: FloatArray) -> float:
     """a.b over the length of a, in four interleaved sums."""
     s0, s1, s2, s3 = 0.0, 0.0, 0.0, 0.0
@@ -64,7 +66,7 @@ def dot(a: FloatArray, b: FloatArray) -> float:
     return (s0 + s1) + (s2 + s3)
 
 
-@kernel
+@allocation_free_kernel
 def dissipated(triangle: FloatArray, d: FloatArray, sum_work: FloatArray) -> float:
     """d^T C_sym d of one block."""
     sum_work[:] = 0.0
@@ -72,7 +74,7 @@ def dissipated(triangle: FloatArray, d: FloatArray, sum_work: FloatArray) -> flo
     return 2.0 * dot(d, sum_work)
 
 
-@kernel
+@allocation_free_kernel
 def stored_energy(M: FloatArray, K: FloatArray, before: FloatArray, now: FloatArray, dt: float) -> float:
     """v^T M v / 2 + now^T K_sym before / 2 with v = (now - before) / dt."""
     n = now.shape[0]
@@ -87,28 +89,26 @@ def stored_energy(M: FloatArray, K: FloatArray, before: FloatArray, now: FloatAr
     return 0.5 * kinetic / (dt * dt) + 0.5 * elastic
 
 
-@kernel
+@allocation_free_kernel
 def book_linear(book: Book, state: State, dt: float, casing_start: int) -> None:
     """Works of unbalance, dampers and circulatory stiffness in one step; `state.change` holds d."""
     d, now = state.change, state.now
-    left, right, rank = book.products[0], book.products[1], book.right.shape[1] - 1
+    left, right = book.products[0], book.products[1]
     book.products[:, :] = 0.0
-    for i in range(d.shape[0]):
-        for r in range(left.shape[0]):
-            left[r] += book.left[i, r] * d[i]
-            right[r] += book.right[i, r] * now[i]
-    circulatory = 0.0
-    for r in range(rank):
+    add_columns(book.left, d, left)
+    add_columns(book.right, now, right)
+    unbalance, circulatory = left[0], 0.0
+    for r in range(1, left.shape[0]):
         circulatory -= left[r] * right[r]
     damping = -dissipated(book.blisk_damping, d[:casing_start], state.blisk_sum) / dt
     damping -= dissipated(book.casing_damping, d[casing_start:], state.casing_sum) / dt
-    book.works[UNBALANCE] += left[rank]
+    book.works[UNBALANCE] += unbalance
     book.works[DAMPING] += damping
     book.works[CIRCULATORY] += circulatory
-    book.works[ABSOLUTE] += abs(left[rank]) + abs(damping) + abs(circulatory)
+    book.works[ABSOLUTE] += abs(unbalance) + abs(damping) + abs(circulatory)
 
 
-@kernel
+@allocation_free_kernel
 def book_contact(
     m: int,
     surface: Surface,

@@ -4,8 +4,8 @@
     q*    = A^-1 [f - K q_n + 2 M / dt^2 q_n - (M / dt^2 - C / (2 dt)) q_n-1]
     q_n+1 = q* + A^-1 B lam,   0 <= lam  _|_  g(q*) + e g_n-1 + W lam >= 0
 
-(Carpenter, Taylor, Katona 1991; restitution e of Paoli and Schatzman.) Blisk and casing are coupled by contact alone, so
-each has its own block.
+(Carpenter, Taylor, Katona 1991; restitution e of Paoli and Schatzman.) Contact alone couples blisk and casing, so each
+has its own block.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from rubgen.contact.contact_kernels import (
 )
 from rubgen.contact.geometry_kernels import Surface, Tips, clearance_bounds
 from rubgen.contact.lcp_kernels import SOLVED, solve_lcp
-from rubgen.jit import kernel
+from rubgen.jit import allocation_free_kernel
 
 OK, CONTACT_UNSOLVED, DIVERGED, ENERGY = 0, 1, 2, 3
 MARGIN_TRIES = 6
@@ -78,7 +78,7 @@ class State(NamedTuple):
     casing_sum: FloatArray
 
 
-@kernel
+@allocation_free_kernel
 def add_columns(columns: FloatArray, x: FloatArray, sum_out: FloatArray) -> None:
     """sum_out += sum_j columns[j] x[j]; four columns at a time, vectorised along the padded rows."""
     quads = x.shape[0] // 4 * 4
@@ -94,7 +94,7 @@ def add_columns(columns: FloatArray, x: FloatArray, sum_out: FloatArray) -> None
             sum_out[i] += a * first[i]
 
 
-@kernel
+@allocation_free_kernel
 def free_step(block: Block, before: FloatArray, now: FloatArray, after_out: FloatArray, sum_work: FloatArray) -> None:
     """q* of one block."""
     for i in range(sum_work.shape[0]):
@@ -105,7 +105,7 @@ def free_step(block: Block, before: FloatArray, now: FloatArray, after_out: Floa
         after_out[i] = sum_work[i]
 
 
-@kernel
+@allocation_free_kernel
 def previous_gap(
     surface: Surface,
     tips: Tips,
@@ -117,13 +117,15 @@ def previous_gap(
     work: ContactWork,
 ) -> float:
     """The gap of a blade at step n - 1: the scheme's own value where it was near, else from the geometry."""
-    if math.isnan(work.held[0, blade]):
+    held: float = work.held[0, blade]
+    if math.isnan(held):
         start = state.now.shape[0] - work.rows.shape[1]
-        work.held[0, blade] = gap_at(surface, tips, blade, state.before, start, opening, cosine, sine, work.ends)
-    return work.held[0, blade]
+        held = gap_at(surface, tips, blade, state.before, start, opening, cosine, sine, work.ends)
+        work.held[0, blade] = held
+    return held
 
 
-@kernel
+@allocation_free_kernel
 def starting_margin(laws: Laws, held: FloatArray) -> float:
     """The least margin, widened by restitution times the deepest gap held at step n - 1."""
     deepest = 0.0
@@ -134,7 +136,7 @@ def starting_margin(laws: Laws, held: FloatArray) -> float:
     return laws.margin - laws.restitution * deepest
 
 
-@kernel
+@allocation_free_kernel
 def solve_contacts(
     count: int,
     surface: Surface,
@@ -168,7 +170,7 @@ def solve_contacts(
     return solve_lcp(work.W, work.b, count, work.lam, work.square, work.tableau, work.basis)
 
 
-@kernel
+@allocation_free_kernel
 def contact_step(
     surface: Surface,
     tips: Tips,

@@ -8,7 +8,7 @@ import scipy.linalg as la
 from rubgen.arrays import FloatArray
 from rubgen.contact.contact_kernels import ContactWork
 from rubgen.contact.geometry import blade_tips, casing_surface
-from rubgen.contact.geometry_kernels import casing_rows
+from rubgen.contact.geometry_kernels import casing_rows, undeformed_radius
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw
 from rubgen.solver.central_difference import energy_book, scheme_blocks
@@ -17,7 +17,7 @@ from rubgen.solver.step_kernels import Angles, Laws, State
 from rubgen.solver.turn_kernels import Taps, Touches, TurnResult, run_turn
 
 CANDIDATE_MARGIN_SHARE = 5e-5
-"""Blades nearer than this share of the tip radius are solved together; the step widens it where forces reach farther."""
+"""Blades nearer than this share of the tip radius are solved together; a step widens it where forces reach farther."""
 DIVERGED_SHARE = 0.025
 """A casing node or tip displaced by this share of the tip radius (10 mm at 0.4 m, eight times the preset casing's
 thickness and seven times its largest regular response) is beyond what a linear casing can mean."""
@@ -129,8 +129,10 @@ def _taps(stepper: Stepper, start_angle: float) -> Taps:
     for angle in RAY_ANGLES:
         columns += _polar_rows(stepper, angle)
     blades, shares = _blades_around_rays(system, stepper.steps, start_angle)
+    undeformed = np.array([undeformed_radius(stepper.surface, angle) for angle in RAY_ANGLES])
     return Taps(
-        np.ascontiguousarray(np.array(columns).T), np.array(RAY_ANGLES), blades, shares, system.centre,
+        np.ascontiguousarray(np.array(columns).T), undeformed[:, 0].copy(), undeformed[:, 1].copy(),
+        blades, shares, system.centre,
         float(system.lateral_stiffness), float(system.lateral_damping), np.zeros((2, len(columns))),
     )  # fmt: skip
 
@@ -167,7 +169,7 @@ def _contact_work(system: SpinningSystem, blisk_width: int, casing_width: int) -
     """Arrays of the contact step."""
     m, c = system.n_blades, system.n_casing
     return ContactWork(
-        bounds=np.zeros(m), near=np.zeros(m, dtype=np.bool_), psi=np.zeros(m), gap=np.zeros(m),
+        bounds=np.zeros(m), psi=np.zeros(m), gap=np.zeros(m),
         tangent=np.zeros((m, 2)), held=np.full((3, m), np.nan), blade=np.zeros(m, dtype=np.int64), lam=np.zeros(m),
         b=np.zeros(m), W=np.zeros((m, m)), normal_tip=np.zeros((m, 3)), full_tip=np.zeros((m, 3)),
         normal_casing=np.zeros((m, c)), full_casing=np.zeros((m, c)), slip=np.zeros((m, 2)),

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.contact_kernels import ContactWork
-from rubgen.contact.geometry_kernels import Surface, Tips, casing_reach, undeformed_radius
-from rubgen.jit import kernel
+from rubgen.contact.geometry_kernels import Surface, Tips, casing_reach
+from rubgen.jit import allocation_free_kernel
 from rubgen.solver.energy_kernels import Book, book_contact, book_linear
 from rubgen.solver.step_kernels import DIVERGED, OK, Angles, Block, Laws, State, contact_step, free_step
 
@@ -20,12 +20,14 @@ class Taps(NamedTuple):
     """What the taps need.
 
     `casing` (n_casing, 10): radial displacement at the four accelerometers, then for each of two rays the radial and
-    tangential displacement and the derivative of the radial one. `ray_angle` (2,); `ray_blade` (steps, 2, 2) the
-    blades before and after the ray and `ray_share` (steps, 2) the way between them. `centre` the index of O_d x.
+    tangential displacement and the derivative of the radial one. `ray_radius`, `ray_slope` (2,) of the undeformed
+    surface there; `ray_blade` (steps, 2, 2) the blades before and after the ray and `ray_share` (steps, 2) the way
+    between them. `centre` the index of O_d x.
     """
 
     casing: FloatArray
-    ray_angle: FloatArray
+    ray_radius: FloatArray
+    ray_slope: FloatArray
     ray_blade: IntArray
     ray_share: FloatArray
     centre: int
@@ -53,15 +55,16 @@ class TurnResult(NamedTuple):
     summary: FloatArray
 
 
-@kernel
+@allocation_free_kernel
 def close_touch(touches: Touches, blade: int, ended: int) -> int:
     """Move a blade's touch to the ended ones."""
-    touches.ended[ended, :] = touches.open[blade, :]
+    for c in range(touches.open.shape[1]):
+        touches.ended[ended, c] = touches.open[blade, c]
     touches.open[blade, STEPS] = 0.0
     return ended + 1
 
 
-@kernel
+@allocation_free_kernel
 def add_touch(
     touches: Touches, blade: int, now: int, psi: float, impulse: float, friction: float, normal: float, ended: int
 ) -> int:
@@ -82,7 +85,7 @@ def add_touch(
     return ended
 
 
-@kernel
+@allocation_free_kernel
 def close_touches(touches: Touches, now: int, ended: int) -> int:
     """End all touches without force at step `now`; their number in `touches.ended`."""
     for k in range(touches.last.shape[0]):
@@ -91,7 +94,7 @@ def close_touches(touches: Touches, now: int, ended: int) -> int:
     return ended
 
 
-@kernel
+@allocation_free_kernel
 def largest_nodal_displacement(surface: Surface, q_casing: FloatArray) -> float:
     """The largest displacement of a casing node, m; NaN when any is."""
     largest = 0.0
@@ -106,7 +109,7 @@ def largest_nodal_displacement(surface: Surface, q_casing: FloatArray) -> float:
     return math.sqrt(largest)
 
 
-@kernel
+@allocation_free_kernel
 def has_diverged(surface: Surface, q: FloatArray, casing_start: int, n_blades: int, limit: float) -> bool:
     """Whether a casing node or a blade tip has moved beyond the limit, or is not a number."""
     for k in range(3 * n_blades):
@@ -116,7 +119,7 @@ def has_diverged(surface: Surface, q: FloatArray, casing_start: int, n_blades: i
     return not reach <= limit and not largest_nodal_displacement(surface, q[casing_start:]) <= limit
 
 
-@kernel
+@allocation_free_kernel
 def tip_radius_on_ray(tips: Tips, taps: Taps, q: FloatArray, step: int, ray: int) -> float:
     """Radius of the tips on a ray: linear in angle between the two blades around it."""
     radius = 0.0
@@ -129,19 +132,18 @@ def tip_radius_on_ray(tips: Tips, taps: Taps, q: FloatArray, step: int, ray: int
     return radius
 
 
-@kernel
-def casing_radius_on_ray(surface: Surface, taps: Taps, opening: float, ray: int) -> float:
+@allocation_free_kernel
+def casing_radius_on_ray(taps: Taps, opening: float, ray: int) -> float:
     """Radius at which the ray meets the deformed surface, to second order in the displacements in `taps.sums[1]`."""
     base = ACCELERATIONS + 3 * ray
     radial, tangential, slope = taps.sums[1, base], taps.sums[1, base + 1], taps.sums[1, base + 2]
-    radius, undeformed_slope, _ = undeformed_radius(surface, taps.ray_angle[ray])
-    radius += opening + radial
-    return radius - tangential / radius * (undeformed_slope + slope)
+    radius: float = taps.ray_radius[ray] + opening + radial
+    radius -= tangential / radius * (taps.ray_slope[ray] + slope)
+    return radius
 
 
-@kernel
+@allocation_free_kernel
 def record_taps(
-    surface: Surface,
     tips: Tips,
     taps: Taps,
     state: State,
@@ -177,12 +179,12 @@ def record_taps(
     out[7, step] = sine * fx + cosine * fy
     out[8, step] = force
     for ray in range(RAYS):
-        out[9 + ray, step] = casing_radius_on_ray(surface, taps, opening, ray) - tip_radius_on_ray(
+        out[9 + ray, step] = casing_radius_on_ray(taps, opening, ray) - tip_radius_on_ray(
             tips, taps, state.now, step, ray
         )
 
 
-@kernel
+@allocation_free_kernel
 def run_turn(
     surface: Surface,
     tips: Tips,
@@ -232,7 +234,7 @@ def run_turn(
             result.summary[0] += force * laws.dt
             result.summary[1] += 1
         record_taps(
-            surface, tips, taps, state, s, opening[s + 1], angles.cosine[s], angles.sine[s], laws.speed, laws.dt, force,
+            tips, taps, state, s, opening[s + 1], angles.cosine[s], angles.sine[s], laws.speed, laws.dt, force,
             result.taps,
         )  # fmt: skip
         if s == 0:
