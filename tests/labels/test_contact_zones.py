@@ -72,7 +72,7 @@ def test_zones_that_differ_from_turn_to_turn_are_not_symmetric_though_their_mean
     impulse = np.tile([0.1, 0.2, 0.2, 0.1], 100)
     zones = contact_zones(events(alternating(), impulse, start=half_turns()), steps_per_turn=STEPS)
     assert zones.shares[0] == pytest.approx(zones.shares[1])
-    assert zones.imbalance == pytest.approx(1 / 3, rel=1e-3)  # the first and the last turn are cut
+    assert zones.imbalance == pytest.approx(1 / 3, rel=1e-2)  # the first and the last turn are cut
     assert zones.symmetric is False
 
 
