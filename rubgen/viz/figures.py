@@ -27,7 +27,7 @@ INK, PAPER_GREY = "#222222", "#dddddd"
 ORBIT_TURNS = 30
 WAVE_TURNS = 5
 HIGHEST_ORDER = 12
-SECTORS = 180
+SECTORS = 90
 MOTION_MARKERS = {
     Motion.STATIC: "v",
     Motion.PERIOD_1: "o",
@@ -98,7 +98,7 @@ def orbit(axes: Axes, run: Run) -> None:
 def _section(axes: Axes, x: FloatArray, y: FloatArray) -> None:
     """The section points about their mean, enlarged."""
     axes.plot(x, y, ".", color=VERMILION, markersize=3.5, markeredgewidth=0)
-    half = 1.25 * max(float(np.abs(x).max()), float(np.abs(y).max()), 1e-3)
+    half = 1.25 * max(float(np.abs(x).max()), float(np.abs(y).max()), 0.1)
     axes.set(xlim=(-half, half), ylim=(-half, half), aspect="equal")
     _label(axes, "once a turn, µm about the mean", "")
     axes.xaxis.label.set(fontsize=8, color=VERMILION)
@@ -147,22 +147,25 @@ def force_spectrum(axes: Axes, run: Run) -> None:
 
 
 def contact_map(axes: PolarAxes, run: Run) -> None:
-    """Normal impulse a turn by polar angle on the casing, in mN s, in sectors of 2 degrees."""
+    """Normal impulse a turn by polar angle on the casing, in mN s, in sectors of 4 degrees, one about 0."""
     events = run.response.events
-    edges = np.linspace(0, 2 * np.pi, SECTORS + 1)
-    impulse, _ = np.histogram(events.angle, bins=edges, weights=events.impulse)
+    width = 2 * np.pi / SECTORS
+    sector = np.floor(np.mod(events.angle + width / 2, 2 * np.pi) / width).astype(np.int64)
+    impulse = np.bincount(sector, weights=events.impulse, minlength=SECTORS)
     per_turn = 1e3 * impulse / run.response.record_turns
-    axes.bar(edges[:-1], per_turn, width=2 * np.pi / SECTORS, align="edge", color=BLUE, linewidth=0)
+    axes.bar(width * np.arange(SECTORS), per_turn, width=width, color=BLUE, linewidth=0, zorder=3)
     axes.set_xticks(np.radians(np.arange(0, 360, 45)))
     axes.tick_params(labelsize=9, colors=INK)
     axes.grid(color=PAPER_GREY, linewidth=0.7)
-    axes.spines["polar"].set_color(GREY)
+    axes.spines[["polar", "inner"]].set_color(GREY)
     axes.set_rlabel_position(112.5)
-    axes.yaxis.set_major_locator(MaxNLocator(4))
+    axes.yaxis.set_major_locator(MaxNLocator(3))
     axes.set_xlabel(
-        "Contact impulse in a turn and 2°, mN s, over the casing's angle", fontsize=10, color=INK, labelpad=8
+        "Contact impulse in a turn and 4°, mN s, over the casing's angle", fontsize=10, color=INK, labelpad=8
     )
-    if not per_turn.any():
+    if per_turn.any():
+        axes.set_rorigin(-0.6 * per_turn.max())  # a ring: near a point no sector could be told from its neighbour
+    else:
         axes.set_yticks([])
         _note(axes, "no contact")
 
