@@ -1,4 +1,4 @@
-"""The JSON Schemas of what users write and read: `python -m rubgen.dataset.schemas DIRECTORY` writes them."""
+"""The schemas of what users write and read: `python -m rubgen.dataset.schemas DIRECTORY` writes them."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
-from rubgen.dataset.files import write_json
+from rubgen.dataset.files import write_json, write_text
 from rubgen.dataset.manifest import Manifest
 from rubgen.io.columns import SCALARS, Column
+from rubgen.io.mcap_messages import proto_text
 from rubgen.labels.labels import Motion
 from rubgen.machine import Machine
 from rubgen.scenario import Recipe
@@ -37,10 +38,11 @@ def schemas() -> dict[str, dict[str, Any]]:
 
 
 def write_schemas(directory: Path) -> None:
-    """Write every schema into `directory`."""
+    """Write every schema into `directory`, and the protobuf messages of MCAP files."""
     directory.mkdir(parents=True, exist_ok=True)
     for name, document in schemas().items():
         write_json(directory / name, document)
+    write_text(directory / "rubgen.v1.proto", proto_text())
 
 
 def _run_schema() -> dict[str, Any]:
