@@ -33,11 +33,11 @@ def rigid_link(arm: FloatArray, node_dof: IntArray, centre_dof: IntArray, size: 
 
 
 def link_stress_stiffness(arm: FloatArray, force: FloatArray) -> FloatArray:
-    """Stiffness (6, 6) of O_d that steady forces in a rigid link cause, from the second order of its rotation.
+    """Stiffness (6, 6) of O_d from the steady forces in a rigid link, the second order of its rotation.
 
-    The link pushes node i with F_i (force (n, 3) in N) at the arm r_i; turning it by th moves the node by
-    th x (th x r)/2 to second order, so the energy is -sum over the forces on the link (-F_i), that is
-    E2 = sum F_i . th x (th x r_i) / 2 and K = sum [(F r^T + r F^T)/2 - (F.r) I].
+    The link pushes node i with F_i (`force` (n, 3) in N) at the arm r_i (`arm` (n, 2) in m). Turned by th it carries
+    the arm's end by th x r + th x (th x r) / 2, so the second-order energy is E2 = sum F_i . th x (th x r_i) / 2 and
+    K = sum [(F r^T + r F^T) / 2 - (F . r) I] on the rotations. Without it the gyroscopic terms of the whole are wrong.
     """
     r = np.column_stack([arm, np.zeros(len(arm))])
     product = force.T @ r

@@ -81,7 +81,7 @@ def _save(path: Path, blisk: ReducedBlisk) -> None:
 
 def _load(path: Path) -> ReducedBlisk | None:
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             return _restore({name: file[name] for name in file.files})
     except (OSError, ValueError, KeyError, EOFError, BadZipFile):
         return None
