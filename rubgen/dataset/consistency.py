@@ -73,7 +73,7 @@ def _probe_problems(row: Row, probe: Probe, values: Float32Array, noise: float, 
             yield f"rub is false, but contact_force reaches {np.abs(values).max():.4g} N (noise allows {limit:.4g})"
     if probe.name == "contact_force" and row["motion"] == Motion.PERIOD_1.value and row["rub"]:
         yield from _force_problems(row, values)
-    yield from _order_problems(row, probe, values, noise * probe.noise_rms + step)
+    yield from _order_problems(row, probe, values, noise * probe.noise_rms, step)
 
 
 def _force_problems(row: Row, force: Float32Array) -> Iterator[str]:
@@ -83,16 +83,23 @@ def _force_problems(row: Row, force: Float32Array) -> Iterator[str]:
         yield f"contact_impulse_per_turn_n_s is {label:.4g}, the channel gives {impulse:.4g}"
 
 
-def _order_problems(row: Row, probe: Probe, values: Float32Array, floor: float) -> Iterator[str]:
+def _order_problems(row: Row, probe: Probe, values: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
     samples = round(min(ORDER_TURNS, row["record_turns"]) * row["sample_rate_hz"] * 60 / row["speed_rpm"])
     if values.size < samples:
         return
     amplitudes = order_amplitudes(values[-samples:], row["speed_rpm"] / 60 / row["sample_rate_hz"])
     labels = np.asarray(row[f"{probe.tap}_orders"])
     error = np.abs(amplitudes - labels)
-    if error.max() > ORDER_TOLERANCE * labels.max() + floor:
+    if error.max() > ORDER_TOLERANCE * labels.max() + _spectral_floor(noise_rms, step, samples):
         k = int(error.argmax())
         yield f"{probe.tap}_orders: order {k + 1} is {labels[k]:.4g}, the channel gives {amplitudes[k]:.4g}"
+
+
+def _spectral_floor(noise_rms: float, step: float, samples: int) -> float:
+    """Largest amplitude that noise and ADC steps put into a line: white where the noise dithers the steps."""
+    if noise_rms < step / 2:
+        return step
+    return NOISE_PEAK * math.sqrt((noise_rms**2 + step**2 / 12) * 2 / samples)
 
 
 def order_amplitudes(values: Float32Array, turns_per_sample: float) -> np.ndarray[Any, np.dtype[np.float64]]:

@@ -1,0 +1,105 @@
+"""generate, info and verify on a set of made-up signals; real ones are generated in tests/dataset."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from rubgen.cli import main
+from rubgen.solver.response import Status
+
+
+@pytest.fixture
+def run(capsys):
+    def run(*arguments):
+        with pytest.raises(SystemExit) as ended:
+            main(list(arguments))
+        output = capsys.readouterr()
+        return ended.value.code, output.out, output.err
+
+    return run
+
+
+@pytest.fixture
+def generate(run, make_synthetic_run, tmp_path, monkeypatch):
+    """Runs `rubgen generate` for three runs without contact, the last of which diverges."""
+    monkeypatch.setattr("rubgen.dataset.generate.warm_up", lambda *_: None)
+    template = make_synthetic_run(contact=False, seconds=0.1)
+
+    def simulate(scenario):
+        if scenario.index < 2:
+            return replace(template, scenario=scenario)
+        response = replace(template.response, status=Status.DIVERGED, reason="in turn 7")
+        return replace(template, scenario=scenario, response=response, recording=None, labels=None)
+
+    monkeypatch.setattr("rubgen.pipeline.simulate", simulate)
+    recipe = tmp_path / "recipe.toml"
+    recipe.write_text(
+        'name = "free"\nruns = 3\nmachine = "zeng2019"\n[output]\nsignal_seconds = 0.1\nformats = ["mcap"]\n'
+    )
+    return lambda *more: run("generate", str(recipe), "--out", str(tmp_path / "set"), "--workers", "1", *more)
+
+
+def test_generate_says_what_it_made(generate, tmp_path):
+    code, output, errors = generate()
+    assert (code, output) == (0, f"{tmp_path / 'set'}: 3 runs (1 diverged, 2 ok), 3 of them new\n")
+    assert "3/3" in errors
+
+
+def test_generate_for_programs(generate, tmp_path):
+    code, output, errors = generate("--json")
+    assert (code, errors) == (0, "")
+    assert json.loads(output) == {
+        "directory": str(tmp_path / "set"),
+        "runs": 3,
+        "made": 3,
+        "status": {"diverged": 1, "ok": 2},
+    }
+
+
+def test_another_number_of_runs_is_refused(generate):
+    generate()
+    code, _, errors = generate("--runs", "2")
+    assert code == 2
+    assert "holds the output of another recipe (runs = 3, asked for 2); give another directory" in errors
+
+
+def test_info_counts(generate, run, tmp_path):
+    generate()
+    code, output, _ = run("info", str(tmp_path / "set"), "--json")
+    values = json.loads(output)
+    assert code == 0
+    assert (values["runs"], values["status"], values["rub"]) == (3, {"diverged": 1, "ok": 2}, {"true": 0, "false": 2})
+    assert values["motion"] == {"static": 0, "period-1": 2, "period-k": 0, "quasi-periodic": 0, "chaotic": 0}
+    code, output, _ = run("info", str(tmp_path / "set"))
+    assert "run-000002  diverged: in turn 7" in output
+
+
+def test_verify_ends_with_1_where_something_is_wrong(generate, run, tmp_path):
+    generate()
+    (tmp_path / "set/mcap/run-000000.mcap").unlink()
+    code, output, _ = run("verify", str(tmp_path / "set"), "--json")
+    values = json.loads(output)
+    assert (code, values["ok"]) == (1, False)
+    assert "mcap/run-000000.mcap: listed in the manifest, but not there" in values["problems"]
+    code, output, _ = run("verify", str(tmp_path / "set"))
+    assert code == 1
+    assert "mcap/run-000000.mcap: missing" in output
+
+
+def test_ctrl_c_says_how_to_go_on(generate, run, tmp_path, monkeypatch):
+    from rubgen.dataset import generate as generating
+
+    stage = generating.stage_run
+
+    def interrupted(scenario, root, formats):
+        if scenario.index == 1:
+            raise KeyboardInterrupt
+        return stage(scenario, root, formats)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(generating, "stage_run", interrupted)
+        code, _, errors = generate()
+    assert code == 130
+    assert f"interrupted; 1 finished runs are kept in {tmp_path / 'set'}: the same command makes the rest" in errors
+    assert generate()[1].endswith("2 of them new\n")

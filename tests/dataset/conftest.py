@@ -1,0 +1,44 @@
+"""One small set that really was simulated: short records, made once for all tests of data sets."""
+
+import shutil
+from types import SimpleNamespace
+
+import pytest
+
+import rubgen
+
+RECIPE = {
+    "name": "small",
+    "seed": 3,
+    "runs": 4,
+    "machine": "zeng2019",
+    "vary": {
+        "speed_rpm": {"choice": [6000.0, 10000.0]},
+        "friction": {"uniform": [0.0, 0.1]},
+        "disk_support_stiffness_n_per_m": 2e8,
+    },
+    "simulation": {"settle_turns": 90, "record_turns": 110},
+    "output": {"formats": ["parquet", "mcap"], "signal_seconds": 0.62},
+}
+
+
+@pytest.fixture(scope="session")
+def short_records():
+    """Recipes ask for 500 turns; for tests of files 100 will do."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("rubgen.scenario.feasible.MIN_RECORD_TURNS", 100)
+        yield
+
+
+@pytest.fixture(scope="session")
+def small_set(short_records, tmp_path_factory):
+    """Directory, recipe, and what `generate` returned."""
+    directory = tmp_path_factory.mktemp("sets") / "small"
+    made = rubgen.generate(RECIPE, directory, workers=1)
+    return SimpleNamespace(directory=directory, recipe=RECIPE, made=made)
+
+
+@pytest.fixture
+def copied_set(small_set, tmp_path):
+    """A copy that a test may damage."""
+    return shutil.copytree(small_set.directory, tmp_path / "copy")

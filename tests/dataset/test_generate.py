@@ -1,0 +1,249 @@
+import errno
+import hashlib
+import json
+import shutil
+from dataclasses import replace
+
+import pyarrow.parquet as pq
+import pytest
+
+import rubgen
+from rubgen.dataset import generate as generating
+from rubgen.dataset.files import sha256_of
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.stage import stage_run
+from rubgen.errors import UserError
+from rubgen.solver.response import Status
+
+
+@pytest.fixture
+def fake_simulate(short_records, make_synthetic_run, monkeypatch):
+    """Runs with made-up signals instead of simulated ones, for tests of what happens around them; keeps a list."""
+    made = []
+    template = make_synthetic_run(seconds=0.1)
+
+    def simulate(scenario):
+        made.append(scenario.index)
+        return replace(template, scenario=scenario)
+
+    monkeypatch.setattr("rubgen.pipeline.simulate", simulate)
+    monkeypatch.setattr(generating, "warm_up", lambda *_: None)
+    return made
+
+
+def tree(directory):
+    """Path and content of every file but the derived ones."""
+    files = [path for path in sorted(directory.rglob("*")) if path.is_file() and path.suffix != ".rrd"]
+    return {path.relative_to(directory).as_posix(): path.read_bytes() for path in files}
+
+
+def recipe(**changes):
+    return {"name": "fake", "runs": 3, "machine": "zeng2019", "output": {"signal_seconds": 0.1}, **changes}
+
+
+def test_the_set_has_every_file_and_nothing_else(small_set):
+    names = {path.relative_to(small_set.directory).as_posix() for path in small_set.directory.rglob("*.*")}
+    exports = {f"mcap/run-{i:06d}.mcap" for i in range(4)}
+    assert names == exports | {
+        "README.md",
+        "data/train-00000-of-00001.parquet",
+        "manifest.json",
+        "manifest.json.sha256",
+        "runs.parquet",
+    }
+    assert small_set.made.made == small_set.made.runs == 4
+    assert small_set.made.status == {"ok": 4}
+
+
+def test_simulated_runs_hold_both_classes_of_rub(small_set):
+    runs = rubgen.open(small_set.directory).runs
+    assert set(runs["rub"]) == {True, False}
+    assert (runs["rub"] == (runs["speed_rpm"] == 10000.0)).all()
+
+
+def test_manifest_proves_every_file(small_set):
+    directory = small_set.directory
+    manifest = json.loads((directory / "manifest.json").read_text())
+    assert {entry["path"] for entry in manifest["files"]} | {"manifest.json", "manifest.json.sha256"} == set(
+        tree(directory)
+    )
+    for entry in manifest["files"]:
+        content = (directory / entry["path"]).read_bytes()
+        assert entry["sha256"] == hashlib.sha256(content).hexdigest()
+        assert entry["bytes"] == len(content)
+    digest = hashlib.sha256((directory / "manifest.json").read_bytes()).hexdigest()
+    assert (directory / "manifest.json.sha256").read_text().split() == [digest, "manifest.json"]
+    assert {"rubgen", "numpy", "numba", "pyarrow"} <= set(manifest["identity"]["packages"])
+
+
+def test_a_finished_set_is_left_alone(small_set, fake_simulate):
+    before = {path: path.stat().st_mtime_ns for path in small_set.directory.rglob("*")}
+    again = rubgen.generate(small_set.recipe, small_set.directory)
+    assert (again.made, again.runs, again.status) == (0, 4, {"ok": 4})
+    assert fake_simulate == []
+    assert {path: path.stat().st_mtime_ns for path in small_set.directory.rglob("*")} == before
+
+
+def test_an_interrupted_set_is_completed_to_the_same_bytes(fake_simulate, tmp_path, monkeypatch):
+    rubgen.generate(recipe(), tmp_path / "whole", workers=1)
+
+    def interrupted(scenario, root, formats):
+        if scenario.index == 2:
+            raise KeyboardInterrupt
+        return stage_run(scenario, root, formats)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(generating, "stage_run", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            rubgen.generate(recipe(), tmp_path / "parts", workers=1)
+    assert generating.finished_runs(tmp_path / "parts") == 2
+    assert not (tmp_path / "parts/manifest.json").exists()
+    (tmp_path / "parts/mcap/run-000002.part.mcap").write_bytes(b"half-written")
+    fake_simulate.clear()
+    made = rubgen.generate(recipe(), tmp_path / "parts", workers=1)
+    assert (made.made, made.runs, fake_simulate) == (1, 3, [2])
+    assert tree(tmp_path / "parts") == tree(tmp_path / "whole")
+
+
+def test_a_stop_after_the_manifest_leaves_only_the_staging_to_remove(small_set, copied_set, monkeypatch):
+    (copied_set / ".staging/runs").mkdir(parents=True)
+    again = rubgen.generate(small_set.recipe, copied_set)
+    assert again.made == 0
+    assert not (copied_set / ".staging").exists()
+
+
+def test_failed_runs_are_listed_and_have_no_files(fake_simulate, tmp_path, make_synthetic_run, monkeypatch):
+    good = make_synthetic_run(seconds=0.1)
+
+    def simulate(scenario):
+        if scenario.index != 1:
+            return replace(good, scenario=scenario)
+        response = replace(good.response, status=Status.DIVERGED, reason="in turn 7")
+        return replace(good, scenario=scenario, response=response, recording=None, labels=None)
+
+    monkeypatch.setattr("rubgen.pipeline.simulate", simulate)
+    made = rubgen.generate(recipe(), tmp_path / "set", workers=1)
+    assert made.status == {"diverged": 1, "ok": 2}
+    runs = rubgen.open(tmp_path / "set").runs
+    assert runs.loc["run-000001", ["status", "reason"]].tolist() == ["diverged", "in turn 7"]
+    data = pq.read_table(tmp_path / "set/data/train-00000-of-00001.parquet", columns=["run_id"])
+    assert data["run_id"].to_pylist() == ["run-000000", "run-000002"]
+    assert sorted(path.name for path in (tmp_path / "set/mcap").iterdir()) == ["run-000000.mcap", "run-000002.mcap"]
+
+
+def test_a_set_without_one_valid_run_is_still_whole(fake_simulate, tmp_path, make_synthetic_run, monkeypatch):
+    run = make_synthetic_run(seconds=0.1)
+    response = replace(run.response, status=Status.DIVERGED, reason="at once")
+    monkeypatch.setattr(
+        "rubgen.pipeline.simulate",
+        lambda scenario: replace(run, scenario=scenario, response=response, recording=None, labels=None),
+    )
+    assert rubgen.generate(recipe(), tmp_path / "set", workers=1).status == {"diverged": 3}
+    assert rubgen.verify(tmp_path / "set") == []
+
+
+def test_many_runs_go_into_several_files_and_groups(fake_simulate, tmp_path, monkeypatch):
+    monkeypatch.setattr("rubgen.dataset.assemble.RUNS_PER_SHARD", 5)
+    monkeypatch.setattr("rubgen.dataset.assemble.RUNS_PER_ROW_GROUP", 2)
+    rubgen.generate(recipe(runs=7, output={"signal_seconds": 0.1, "formats": ["parquet"]}), tmp_path / "set", workers=1)
+    shards = Layout(tmp_path / "set").shards()
+    assert [path.name for path in shards] == ["train-00000-of-00002.parquet", "train-00001-of-00002.parquet"]
+    groups = [pq.ParquetFile(path).metadata for path in shards]
+    assert [[g.row_group(i).num_rows for i in range(g.num_row_groups)] for g in groups] == [[2, 2, 1], [2]]
+    signals = rubgen.open(tmp_path / "set").signals("run-000006")
+    assert signals["proximity_x"].size == 2560
+    assert not (tmp_path / "set/mcap").exists()
+
+
+def test_another_recipe_or_number_of_runs_is_refused(small_set):
+    with pytest.raises(UserError, match=r"holds the output of another recipe \(runs = 4, asked for 5\); give another"):
+        rubgen.generate(small_set.recipe, small_set.directory, runs=5)
+    with pytest.raises(UserError, match=r"another recipe \(seed = 3, asked for 4\)"):
+        rubgen.generate({**small_set.recipe, "seed": 4}, small_set.directory)
+
+
+def test_an_unfinished_set_of_another_recipe_or_version_is_refused(fake_simulate, tmp_path, monkeypatch):
+    monkeypatch.setattr(generating, "stage_run", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    with pytest.raises(KeyboardInterrupt):
+        rubgen.generate(recipe(), tmp_path / "set", workers=1)
+    with pytest.raises(UserError, match=r"another recipe \(name = 'fake', asked for 'other'\)"):
+        rubgen.generate(recipe(name="other"), tmp_path / "set", workers=1)
+    identity = tmp_path / "set/.staging/identity.json"
+    values = json.loads(identity.read_text())
+    values["packages"]["numpy"] = "1.0"
+    identity.write_text(json.dumps(values))
+    with pytest.raises(UserError, match=r"begun with numpy 1\.0, now it is"):
+        rubgen.generate(recipe(), tmp_path / "set", workers=1)
+
+
+def test_a_directory_that_is_not_ours_is_refused_and_left_alone(fake_simulate, tmp_path):
+    (tmp_path / "letter.txt").write_text("dear")
+    with pytest.raises(UserError, match="not empty and no data set of rubgen; give a new or empty directory"):
+        rubgen.generate(recipe(), tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
+    with pytest.raises(UserError, match=r"letter.txt: is a file; give a new or empty directory"):
+        rubgen.generate(recipe(), tmp_path / "letter.txt")
+
+
+def test_a_directory_that_cannot_be_written_is_refused(fake_simulate):
+    with pytest.raises(UserError, match=r"/proc/rubgen: cannot be written \(.+\); give a directory that you may"):
+        rubgen.generate(recipe(), "/proc/rubgen", workers=1)
+
+
+def test_two_at_once_are_refused(fake_simulate, tmp_path, monkeypatch):
+    def second(scenario, root, formats):
+        with pytest.raises(UserError, match="another rubgen is writing there"):
+            rubgen.generate(recipe(), root, workers=1)
+        return stage_run(scenario, root, formats)
+
+    monkeypatch.setattr(generating, "stage_run", second)
+    assert rubgen.generate(recipe(), tmp_path / "set", workers=1).made == 3
+
+
+def test_a_full_disk_is_one_line_and_loses_nothing(fake_simulate, tmp_path, monkeypatch):
+    rubgen.generate(recipe(), tmp_path / "whole", workers=1)
+
+    def full(scenario, root, formats):
+        if scenario.index == 1:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return stage_run(scenario, root, formats)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(generating, "stage_run", full)
+        with pytest.raises(UserError, match=r"set: the disk is full; make room and give the same command again"):
+            rubgen.generate(recipe(), tmp_path / "set", workers=1)
+    assert not list((tmp_path / "set").rglob("*.part*"))
+    rubgen.generate(recipe(), tmp_path / "set", workers=1)
+    assert tree(tmp_path / "set") == tree(tmp_path / "whole")
+
+
+def test_a_damaged_finished_set_is_not_called_finished(small_set, copied_set):
+    (copied_set / "mcap/run-000001.mcap").unlink()
+    with pytest.raises(UserError, match=r"mcap/run-000001.mcap: listed in the manifest, but not there"):
+        rubgen.generate(small_set.recipe, copied_set)
+
+
+def test_workers_below_one_are_refused(tmp_path):
+    with pytest.raises(UserError, match="--workers 0: must be at least 1; give a number of processes"):
+        rubgen.generate(None, tmp_path / "x", workers=0)
+    assert not (tmp_path / "x").exists()
+
+
+def test_what_physics_refuses_fails_before_any_run(tmp_path, short_records):
+    machine = tmp_path / "few.toml"
+    shutil.copy("rubgen/machine/presets/zeng2019.toml", machine)
+    machine.write_text(machine.read_text().replace("circumferential_elements = 72", "circumferential_elements = 70"))
+    with pytest.raises(UserError, match=r"circumferential_elements = 70: must be a multiple"):
+        rubgen.generate(recipe(machine=str(machine)), tmp_path / "set", workers=1)
+    assert generating.finished_runs(tmp_path / "set") == 0
+
+
+def test_progress_counts_every_run(fake_simulate, tmp_path):
+    seen = []
+    generating.generate(recipe(), tmp_path / "set", workers=1, progress=lambda *counts: seen.append(counts))
+    assert seen == [(0, 3), (1, 3), (2, 3), (3, 3)]
+
+
+def test_hash_of_a_file(tmp_path):
+    (tmp_path / "a").write_bytes(b"abc")
+    assert sha256_of(tmp_path / "a") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"

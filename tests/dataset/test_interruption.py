@@ -1,0 +1,109 @@
+"""Two workers, a kill -9 in the middle, a Ctrl-C, and the bytes of one quiet process."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from rubgen.dataset.layout import Layout
+
+COMMAND = """
+import sys
+import rubgen.scenario.feasible
+from rubgen.cli import main
+if __name__ == "__main__":
+    rubgen.scenario.feasible.MIN_RECORD_TURNS = 100
+    main(sys.argv[1:])
+"""
+PATIENCE_S = 120
+
+
+@pytest.fixture
+def start(small_set, tmp_path):
+    """Starts the generation of the small set in `tmp_path/set` with two workers, as a process of its own."""
+    (tmp_path / "recipe.toml").write_text(_toml(small_set.recipe))
+    (tmp_path / "command.py").write_text(COMMAND)
+    processes = []
+
+    def start():
+        arguments = ["generate", str(tmp_path / "recipe.toml"), "--out", str(tmp_path / "set"), "--workers", "2"]
+        command = [sys.executable, str(tmp_path / "command.py"), *arguments]
+        processes.append(subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True))
+        return processes[-1]
+
+    yield start
+    for process in processes:
+        process.kill()
+        process.communicate()
+
+
+def _toml(recipe):
+    """JSON's values are TOML's, but for the tables."""
+    inline = {key: value for key, value in recipe.items() if not isinstance(value, dict)}
+    lines = [f"{key} = {json.dumps(value)}" for key, value in inline.items()]
+    for table in recipe.keys() - inline.keys():
+        lines.append(f"[{table}]")
+        lines += [f"{key} = {json.dumps(value).replace(':', ' =')}" for key, value in recipe[table].items()]
+    return "\n".join(lines).replace('{"', "{ ").replace('" =', " =")
+
+
+def _wait_for_a_run(directory):
+    deadline = time.monotonic() + PATIENCE_S
+    while not list((Layout(directory).staging / "runs").glob("run-*[0-9].parquet")):
+        assert time.monotonic() < deadline, "no run was finished"
+        time.sleep(0.02)
+
+
+def _children(pid):
+    listing = subprocess.run(["ps", "--ppid", str(pid), "-o", "pid="], capture_output=True, text=True, check=False)
+    return [int(line) for line in listing.stdout.split()]
+
+
+def _alive(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    status = subprocess.run(["ps", "-o", "stat=", "-p", str(pid)], capture_output=True, text=True, check=False)
+    return not status.stdout.startswith("Z")
+
+
+def _wait_until_gone(pids):
+    deadline = time.monotonic() + PATIENCE_S
+    while any(map(_alive, pids)):
+        assert time.monotonic() < deadline, "workers outlived the process that started them"
+        time.sleep(0.02)
+
+
+def test_killed_interrupted_and_completed_to_the_same_bytes(start, small_set, tmp_path):
+    directory = tmp_path / "set"
+    killed = start()
+    _wait_for_a_run(directory)
+    workers = _children(killed.pid)
+    assert workers
+    killed.send_signal(signal.SIGKILL)
+    _wait_until_gone([*workers, killed.pid] if killed.wait() else workers)
+    kept = len(list((Layout(directory).staging / "runs").glob("run-*[0-9].parquet")))
+    assert not (directory / "manifest.json").exists()
+
+    stopped = start()
+    time.sleep(1.0)
+    stopped.send_signal(signal.SIGINT)
+    _, errors = stopped.communicate(timeout=PATIENCE_S)
+    if stopped.returncode:  # it may have been done already
+        assert stopped.returncode == 130
+        assert "rubgen: interrupted; " in errors.splitlines()[-1]
+        assert "the same command makes the rest" in errors.splitlines()[-1]
+        assert "Traceback" not in errors
+    assert len(list((Layout(directory).staging / "runs").glob("run-*[0-9].parquet"))) >= kept
+
+    output, errors = start().communicate(timeout=PATIENCE_S)
+    assert "4 runs (4 ok)" in output, errors
+    for path in small_set.directory.rglob("*"):
+        if path.is_file():
+            assert (directory / path.relative_to(small_set.directory)).read_bytes() == path.read_bytes()
+    assert not (directory / ".staging").exists()

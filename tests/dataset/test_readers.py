@@ -1,0 +1,94 @@
+"""Others read what rubgen writes, to the bit: memory, Parquet and MCAP carry the same floats."""
+
+import duckdb
+import numpy as np
+import pandas as pd
+import polars as pl
+import pytest
+import yaml
+
+import datasets
+import rubgen
+from rubgen.dataset.manifest import read_manifest
+from rubgen.errors import UserError
+from rubgen.io.columns import CHANNELS, SCALARS, SIGNALS
+from rubgen.io.mcap import read_mcap
+from rubgen.scenario import parse_recipe
+
+DATA = "data/train-00000-of-00001.parquet"
+
+
+@pytest.fixture(scope="module")
+def data(small_set):
+    return rubgen.open(small_set.directory)
+
+
+@pytest.fixture(scope="module")
+def memory(small_set, short_records):
+    """Run 1 again, alone and in memory."""
+    run = rubgen.simulate(parse_recipe(small_set.recipe).scenario(1))
+    return {name: channel.values for name, channel in run.recording.channels.items()}
+
+
+def assert_same(signals, memory):
+    assert set(signals) == set(memory) == set(CHANNELS)
+    for name, values in memory.items():
+        assert signals[name].dtype == values.dtype == np.float32
+        np.testing.assert_array_equal(signals[name], values)
+
+
+def test_memory_parquet_and_mcap_agree_to_the_bit(small_set, data, memory):
+    assert_same(data.signals("run-000001"), memory)
+    assert_same(read_mcap(small_set.directory / "mcap/run-000001.mcap").signals, memory)
+
+
+def test_datasets_loads_the_directory(small_set, memory, tmp_path, monkeypatch):
+    monkeypatch.setattr(datasets.config, "HF_HUB_OFFLINE", True)
+    loaded = datasets.load_dataset(str(small_set.directory), split="train", cache_dir=str(tmp_path))
+    assert loaded.column_names == [column.name for column in SCALARS + SIGNALS]
+    row = loaded.with_format("numpy")[1]
+    np.testing.assert_array_equal(row["proximity_x"], memory["proximity_x"])
+    runs = datasets.load_dataset(str(small_set.directory), "runs", split="train", cache_dir=str(tmp_path))
+    assert runs.column_names == [column.name for column in SCALARS]
+    assert runs["motion"][:] == loaded["motion"][:]
+
+
+def test_polars_duckdb_and_pandas_read_the_data(small_set, memory):
+    path = small_set.directory / DATA
+    polars = pl.scan_parquet(path).filter(pl.col("run_id") == "run-000001").select("contact_force").collect()
+    np.testing.assert_array_equal(polars["contact_force"][0].to_numpy(), memory["contact_force"])
+    ((values,),) = duckdb.read_parquet(str(path)).filter("run_id = 'run-000001'").select("contact_force").fetchall()
+    np.testing.assert_array_equal(np.array(values, np.float32), memory["contact_force"])
+    frame = pd.read_parquet(path).set_index("run_id")
+    np.testing.assert_array_equal(frame.loc["run-000001", "contact_force"], memory["contact_force"])
+
+
+def test_the_card_describes_every_column_and_its_head_is_yaml(small_set):
+    text = (small_set.directory / "README.md").read_text()
+    _, head, body = text.split("---\n", 2)
+    values = yaml.safe_load(head)
+    assert values["license"] == "cc-by-4.0"
+    assert [config["config_name"] for config in values["configs"]] == ["signals", "runs"]
+    for column in SCALARS + SIGNALS:
+        assert f"| `{column.name}` | {column.kind} | {column.unit} |" in body
+    assert "4 runs" in body
+
+
+def test_open_gives_runs_as_a_frame(data, small_set):
+    runs = data.runs
+    assert runs.index.tolist() == [f"run-{i:06d}" for i in range(4)]
+    assert runs["speed_rpm"].isin([6000.0, 10000.0]).all()
+    assert data.manifest == read_manifest(data._layout)
+
+
+def test_open_reads_mcap_where_there_is_no_parquet(copied_set, memory):
+    for path in (copied_set / "data").iterdir():
+        path.unlink()
+    assert_same(rubgen.open(copied_set).signals("run-000001"), memory)
+
+
+def test_open_says_what_is_missing(data, tmp_path):
+    with pytest.raises(UserError, match=r"no run 'run-7'; give one of runs.run_id, like 'run-000000'"):
+        data.signals("run-7")
+    with pytest.raises(UserError, match="no finished data set of rubgen"):
+        rubgen.open(tmp_path)

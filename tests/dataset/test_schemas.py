@@ -1,0 +1,49 @@
+import json
+import tomllib
+from pathlib import Path
+
+import jsonschema
+import pyarrow.parquet as pq
+import pytest
+
+from rubgen.dataset.schemas import schemas, write_schemas
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize("name", sorted(schemas()))
+def test_checked_in_schemas_are_those_of_the_code(name, tmp_path):
+    write_schemas(tmp_path)
+    assert (ROOT / "schemas" / name).read_text() == (tmp_path / name).read_text(), "run `make schemas`"
+
+
+def test_no_schema_is_left_over():
+    assert sorted(path.name for path in (ROOT / "schemas").glob("*.schema.json")) >= sorted(schemas())
+
+
+@pytest.mark.parametrize(
+    "path", [ROOT / "rubgen/scenario/zeng2019-mini.toml", *sorted((ROOT / "datasets").glob("*.toml"))]
+)
+def test_recipes_fit_the_schema(path):
+    jsonschema.validate(tomllib.loads(path.read_text()), schemas()["recipe.schema.json"])
+
+
+@pytest.mark.parametrize(
+    "change", [{"runs": 0}, {"sed": 1}, {"vary": {"speed": 3}}, {"vary": {"friction": {"uniform": [1]}}}]
+)
+def test_wrong_recipes_do_not_fit_the_schema(change):
+    recipe = {"name": "a", "runs": 1, "machine": "zeng2019", **change}
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(recipe, schemas()["recipe.schema.json"])
+
+
+def test_machine_preset_fits_the_schema():
+    preset = tomllib.loads((ROOT / "rubgen/machine/presets/zeng2019.toml").read_text())
+    jsonschema.validate(preset, schemas()["machine.schema.json"])
+
+
+def test_a_real_set_fits_the_schemas(small_set):
+    manifest = json.loads((small_set.directory / "manifest.json").read_text())
+    jsonschema.validate(manifest, schemas()["manifest.schema.json"])
+    for row in pq.read_table(small_set.directory / "runs.parquet").to_pylist():
+        jsonschema.validate(row, schemas()["run.schema.json"])
