@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.fft import fft, ifft, next_fast_len
 
 from rubgen.arrays import FloatArray
 
@@ -26,13 +27,18 @@ def growth_correlation(observable: FloatArray) -> float:
 
 
 def _mean_square_displacement(observable: FloatArray) -> FloatArray:
-    """M_c(n), (frequencies, n_cut), every mean over the same N - n_cut starts."""
+    """M_c(n), (frequencies, n_cut), every mean over the same L = N - n_cut starts.
+
+    L M_c(n) = sum |p(j + n)|^2 + sum |p(j)|^2 - 2 Re sum conj(p(j)) p(j + n), the last by Fourier transform.
+    """
     size = observable.size
     cut = max(size // 10, 3)
+    starts, length = size - cut, next_fast_len(size)
     walk = np.cumsum(observable * np.exp(1j * FREQUENCIES[:, None] * np.arange(1, size + 1)), axis=1)
-    start = walk[:, : size - cut]
-    moved = [walk[:, n : n + size - cut] - start for n in range(1, cut + 1)]
-    return np.stack([np.mean(m.real**2 + m.imag**2, axis=1) for m in moved], axis=1)
+    cross = ifft(np.conj(fft(walk[:, :starts], length)) * fft(walk, length))[:, : cut + 1].real
+    squares = np.cumsum(np.pad(walk.real**2 + walk.imag**2, ((0, 0), (1, 0))), axis=1)
+    energy = squares[:, starts:] - squares[:, : cut + 1]
+    return np.asarray((energy + energy[:, :1] - 2 * cross)[:, 1:] / starts, dtype=np.float64)
 
 
 def _correlation(steps: FloatArray, curves: FloatArray) -> FloatArray:

@@ -5,7 +5,15 @@ import pytest
 
 from rubgen.errors import UserError
 from rubgen.labels import Motion
-from rubgen.labels.motion import MotionClass, classify, cluster_distances, combined, motion
+from rubgen.labels.motion import (
+    MotionClass,
+    chaos_indicator,
+    cluster_distances,
+    cluster_period,
+    combined,
+    motion,
+    motion_class,
+)
 from rubgen.solver.response import Response
 
 Respond = Callable[..., Response]
@@ -23,6 +31,10 @@ def period(k: int) -> MotionClass:
 def section(*columns: np.ndarray) -> np.ndarray:
     """Points (turns, 1, values), of the size of the part's motion."""
     return np.stack(columns, axis=1)[:, None, :]
+
+
+def classify(points: np.ndarray) -> MotionClass:
+    return motion_class(cluster_period(points), chaos_indicator(points))
 
 
 def logistic(r: float, count: int = 500) -> np.ndarray:
@@ -100,6 +112,38 @@ def test_one_rare_excursion_is_not_period_1() -> None:
     points = np.ones((500, 1, 2))
     points[400] += 0.1
     assert classify(points).motion is not Motion.PERIOD_1
+
+
+def narrow_band(noise: np.ndarray, decay: float) -> np.ndarray:
+    """Displacement of a lightly damped oscillator that is kicked once a turn; its correlation lasts 1 / decay turns."""
+    state, out = 0.0 + 0.0j, []
+    for kick in noise:
+        state = state * np.exp(-decay + 0.9j) + kick
+        out.append(state.real)
+    return np.array(out)
+
+
+def test_chaos_that_shakes_a_lightly_damped_blade_makes_the_blisk_chaotic(respond: Respond) -> None:
+    # By itself the blade looks regular: within the test's N / 10 = 50 turns it does not forget its phase.
+    kicks = logistic(4.0, 1000) - 0.5
+    tip = 1e-4 * narrow_band(kicks, 1 / 150)[500:]
+    assert classify(section(tip / 1e-4)).motion is Motion.QUASI_PERIODIC
+    blisk = np.zeros((500, 114))
+    blisk[:, 3 * 5 + 1] = tip
+    blisk[:, 108] = 1e-6 * kicks[500:]
+    casing = np.ones((500, 11))
+    assert motion(respond(blisk=blisk, casing=casing, casing_velocity=casing)).blisk == CHAOTIC
+    shaken = 1 + 0.1 * kicks[500:, None] * np.ones(11)
+    blisk[:, 108] = 0
+    parts = motion(respond(blisk=blisk, casing=shaken, casing_velocity=shaken))
+    assert (parts.blisk, parts.casing) == (CHAOTIC, CHAOTIC)
+
+
+def test_chaos_that_died_out_in_the_first_half_does_not_count() -> None:
+    phase = 2 * np.pi * GOLDEN * TURN
+    transient = np.where(TURN < 200, 3.0, 0.0) * logistic(4.0)
+    assert classify(section(np.cos(phase) + transient)) == QUASI
+    assert classify(section(np.cos(phase) + 3.0 * logistic(4.0))) == CHAOTIC
 
 
 def test_without_contact_the_casing_is_static_and_the_blisk_period_1(respond: Respond) -> None:
