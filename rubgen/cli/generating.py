@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
@@ -28,15 +28,8 @@ def generate_command(recipe: Path | None, out: Path, runs: int | None, workers: 
     """Generate, and say what was made; a Ctrl-C says how to go on."""
     console = Console(stderr=True, quiet=as_json)
     try:
-        with _terminable(), _bar(console) as bar:
-            task = bar.add_task("runs", total=None)
-            made = generate(
-                recipe,
-                out,
-                runs=runs,
-                workers=workers,
-                progress=lambda done, total: bar.update(task, completed=done, total=total),
-            )
+        with _terminable(), _shown(console) as progress:
+            made = generate(recipe, out, runs=runs, workers=workers, progress=progress)
     except KeyboardInterrupt:
         Console(stderr=True, soft_wrap=True).print(
             f"rubgen: interrupted; {finished_runs(out)} finished runs are kept in {out}: "
@@ -48,9 +41,22 @@ def generate_command(recipe: Path | None, out: Path, runs: int | None, workers: 
     return 0
 
 
-def _bar(console: Console) -> Progress:
+@contextmanager
+def _shown(console: Console) -> Iterator[Callable[[int, int], None]]:
+    """A progress bar that appears with the first report: what is refused before shows its one line alone."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Rate(), TimeRemainingColumn())
-    return Progress(*columns, console=console, transient=False)
+    bar = Progress(*columns, console=console)
+    task = bar.add_task("runs", total=None)
+
+    def report(done: int, total: int) -> None:
+        bar.start()
+        bar.update(task, completed=done, total=total)
+
+    try:
+        yield report
+    finally:
+        if bar.live.is_started:
+            bar.stop()
 
 
 @contextmanager

@@ -74,8 +74,7 @@ def _scenario(options: dict[str, Any]) -> Scenario:
         )
     except ValidationError as error:
         problem = error.errors()[0]
-        key = str(problem["loc"][-1]) if problem["loc"] else "option"
-        raise UserError(f"{key} = {problem['input']!r}: {problem['msg']}; correct this value") from None
+        raise UserError(f"{problem['loc'][0]} = {problem['input']!r}: {problem['msg']}; correct this value") from None
     check_feasible(scenario)
     return scenario
 
@@ -83,7 +82,7 @@ def _scenario(options: dict[str, Any]) -> Scenario:
 def _operation(operation: Operation, options: dict[str, Any]) -> Operation:
     return replace(
         operation,
-        settle_turns=options["settle_turns"] or "auto",
+        settle_turns="auto" if options["settle_turns"] is None else options["settle_turns"],
         record_turns=options["record_turns"],
         steps_per_turn=options["steps_per_turn"],
     )

@@ -147,7 +147,8 @@ def _common_period(row: Row) -> bool:
 
 def _shares_fit(row: Row, tap: str) -> bool:
     orders = np.asarray(row[f"{tap}_orders"])
+    even, odd = row[f"{tap}_even_share"], row[f"{tap}_odd_share"]
     if not orders.any():
-        return row[f"{tap}_even_share"] is None and row[f"{tap}_dominant_order"] == 0
-    total = row[f"{tap}_even_share"] + row[f"{tap}_odd_share"]
+        return even is None and odd is None and row[f"{tap}_dominant_order"] == 0
+    total = math.nan if even is None or odd is None else even + odd
     return bool(abs(total - 1) < SHARE_TOLERANCE and row[f"{tap}_dominant_order"] == int(orders.argmax()) + 1)

@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from rubgen.dataset.layout import Layout
+from rubgen.dataset.generate import finished_runs
 
 COMMAND = """
 import sys
@@ -51,10 +51,10 @@ def _toml(recipe):
     return "\n".join(lines).replace('{"', "{ ").replace('" =', " =")
 
 
-def _wait_for_a_run(directory):
+def _wait_for(condition):
     deadline = time.monotonic() + PATIENCE_S
-    while not list((Layout(directory).staging / "runs").glob("run-*[0-9].parquet")):
-        assert time.monotonic() < deadline, "no run was finished"
+    while not condition():
+        assert time.monotonic() < deadline, "it did not happen"
         time.sleep(0.02)
 
 
@@ -72,26 +72,20 @@ def _alive(pid):
     return not status.stdout.startswith("Z")
 
 
-def _wait_until_gone(pids):
-    deadline = time.monotonic() + PATIENCE_S
-    while any(map(_alive, pids)):
-        assert time.monotonic() < deadline, "workers outlived the process that started them"
-        time.sleep(0.02)
-
-
 def test_killed_interrupted_and_completed_to_the_same_bytes(start, small_set, tmp_path):
     directory = tmp_path / "set"
     killed = start()
-    _wait_for_a_run(directory)
+    _wait_for(lambda: finished_runs(directory) > 0)
     workers = _children(killed.pid)
     assert workers
     killed.send_signal(signal.SIGKILL)
-    _wait_until_gone([*workers, killed.pid] if killed.wait() else workers)
-    kept = len(list((Layout(directory).staging / "runs").glob("run-*[0-9].parquet")))
+    killed.wait()
+    _wait_for(lambda: not any(map(_alive, workers)))
+    kept = finished_runs(directory)
     assert not (directory / "manifest.json").exists()
 
     stopped = start()
-    time.sleep(1.0)
+    _wait_for(lambda: _children(stopped.pid) or stopped.poll() is not None)
     stopped.send_signal(signal.SIGINT)
     _, errors = stopped.communicate(timeout=PATIENCE_S)
     if stopped.returncode:  # it may have been done already
@@ -99,7 +93,7 @@ def test_killed_interrupted_and_completed_to_the_same_bytes(start, small_set, tm
         assert "rubgen: interrupted; " in errors.splitlines()[-1]
         assert "the same command makes the rest" in errors.splitlines()[-1]
         assert "Traceback" not in errors
-    assert len(list((Layout(directory).staging / "runs").glob("run-*[0-9].parquet"))) >= kept
+        assert finished_runs(directory) >= kept > 0
 
     output, errors = start().communicate(timeout=PATIENCE_S)
     assert "4 runs (4 ok)" in output, errors
