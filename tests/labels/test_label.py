@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_limits
 
 from rubgen.labels import Motion, label
 from rubgen.solver.response import ContactEvents, Response
@@ -64,7 +65,8 @@ def test_labelling_500_turns_is_fast(respond: Respond) -> None:
     )
     times = []
     for _ in range(3):
-        start = time.process_time()
-        label(response)
-        times.append(time.process_time() - start)
+        with threadpool_limits(1, user_api="blas"):  # as the pipeline does: BLAS threads that wait burn time as well
+            start = time.process_time()
+            label(response)
+            times.append(time.process_time() - start)
     assert min(times) < 0.9  # 0.3 s of processor time expected
