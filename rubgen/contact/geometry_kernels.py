@@ -200,7 +200,7 @@ def clearance_bounds(
     sin_orders: FloatArray,
     bounds_out: FloatArray,
 ) -> None:
-    """A lower bound of every tip's distance to the undeformed surface, into `bounds_out` (n_blades,).
+    """A lower bound of every tip's distance to the undeformed surface where positive, into `bounds_out` (n_blades,).
 
     With f(x) = r(angle of x) + opening - |x|, |grad f| <= lipschitz, the distance is at least f / lipschitz. The tip's
     polar angle differs from the blade's by at most |t| / a and |P| <= a + t^2 / (2 a), a and t the radial and

@@ -13,7 +13,7 @@ from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw
 from rubgen.solver.central_difference import energy_book, scheme_blocks
 from rubgen.solver.energy_kernels import stored_energy
-from rubgen.solver.step_kernels import Angles, Laws, State
+from rubgen.solver.step_kernels import Angles, Laws, State, contact_step, free_step
 from rubgen.solver.turn_kernels import Taps, Touches, TurnResult, run_turn
 
 CANDIDATE_MARGIN_SHARE = 5e-5
@@ -109,6 +109,26 @@ class Stepper:
             self.surface, self.tips, self.blisk, self.casing, self.laws, self.angles, width, self.limit, clock,
             self.state, self.work, self.book, self.taps, self.touches, self.result,
         )  # fmt: skip
+
+    def step(self, index: int, opening: FloatArray | None = None) -> tuple[int, int]:
+        """One step from the turn's step `index`, without book, taps and touches; `work` holds its contacts.
+
+        Gives a code of `step_kernels` and the number of contacts that were solved: `work.lam`, `work.blade` and so on
+        up to that number.
+        """
+        width = np.zeros(self.steps + 2) if opening is None else opening
+        start, state, work = self.system.casing_start, self.state, self.work
+        for block, part, scratch in (
+            (self.blisk, slice(0, start), state.blisk_sum),
+            (self.casing, slice(start, None), state.casing_sum),
+        ):
+            free_step(block, state.before[part], state.now[part], state.after[part], scratch)
+        code, count = contact_step(
+            self.surface, self.tips, self.blisk, self.casing, self.laws, self.angles, index, width, state, work
+        )
+        work.held[:2] = work.held[1:]
+        state.before[:], state.now[:] = state.now, state.after
+        return code, count
 
     def energy(self) -> float:
         """Stored energy E half a step before now, J."""

@@ -1,0 +1,111 @@
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from rubgen.arrays import FloatArray
+from rubgen.reduction.model import CasingSurface, SpinningSystem
+from rubgen.scenario import Operation
+
+Build = Callable[..., SpinningSystem]
+
+
+def ring_modes(nodes: int, radius: float, mass_per_angle: float, orders: tuple[int, ...]) -> FloatArray:
+    """Inextensional ring modes cos n t and sin n t, mass-normalised, (nodes, 2, 2 len(orders))."""
+    t = 2 * np.pi * np.arange(nodes) / nodes
+    modes = []
+    for n in orders:
+        for phase in (0.0, np.pi / 2):
+            radial, tangential = np.cos(n * t - phase), -np.sin(n * t - phase) / n
+            field = np.stack([radial * np.cos(t) - tangential * np.sin(t), radial * np.sin(t) + tangential * np.cos(t)])
+            modes.append(field.T / np.sqrt(np.pi * mass_per_angle * (1 + 1 / n**2)))
+    return np.stack(modes, axis=-1)
+
+
+def build_small_system(
+    speed: float = 400.0,
+    lobes: int = 2,
+    ovality: float = 2e-3,
+    clearance: float = 1e-4,
+    unbalance: float = 4e-3,
+    turned_nodes: int = 0,
+    casing_damping: float = 0.1,
+    lateral_damping: float = 0.1,
+    blades: int = 6,
+) -> SpinningSystem:
+    """Point masses on springs at a disk on springs, in a ring of the orders 1 to 3, all exact by hand."""
+    radius, tip_mass, disk_mass = 0.2, 0.05, 8.0
+    springs = np.array([4e6, 1.5e6, 1.5e6])
+    lateral = 6e6
+    angles = 2 * np.pi * np.arange(blades) / blades
+    m = 3 * blades + 2
+    M, C, K = np.zeros((3, m, m))
+    drag = 2 * lateral_damping * np.sqrt(lateral * (disk_mass + blades * tip_mass))
+    for k, angle in enumerate(angles):
+        tip, axes = slice(3 * k, 3 * k + 3), np.zeros((3, 2))
+        axes[:2] = [[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]
+        stretch = np.zeros((3, m))
+        stretch[:, tip], stretch[:, m - 2 :] = np.eye(3), -axes
+        M[tip, tip] += tip_mass * np.eye(3)
+        C[3 * k : 3 * k + 2, 3 * k : 3 * k + 2] += 2 * speed * tip_mass * np.array([[0, -1], [1, 0]])
+        K[tip, tip] -= speed**2 * tip_mass * np.diag([1, 1, 0])
+        K += stretch.T @ np.diag(springs) @ stretch
+        C += stretch.T @ np.diag(2 * 0.01 * np.sqrt(springs * tip_mass)) @ stretch
+    centre, whirl = slice(m - 2, m), np.array([[0, -1], [1, 0]])
+    M[centre, centre] += disk_mass * np.eye(2)
+    C[centre, centre] += 2 * speed * disk_mass * whirl + drag * np.eye(2)
+    K[centre, centre] += (lateral - speed**2 * disk_mass) * np.eye(2) + drag * speed * whirl
+    static = np.zeros((blades, 3))
+    static[:, 0] = speed**2 * tip_mass * radius / (springs[0] - speed**2 * tip_mass)
+    nodes, orders, mass = 36, (1, 2, 3), 1.5 / (2 * np.pi)
+    modes = ring_modes(nodes, radius, mass, orders)
+    turn = 2 * np.pi * turned_nodes / nodes
+    turned = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    modes = np.einsum("ab,nbm->nam", turned, np.roll(modes, turned_nodes, axis=0))
+    omega = 2 * np.pi * np.repeat([120.0, 210.0, 390.0], 2)
+    c = len(omega)
+    zero = np.zeros((m, c))
+    force = np.zeros(m + c)
+    force[m - 2] = unbalance * speed**2
+    return SpinningSystem(
+        speed=speed,
+        M=np.block([[M, zero], [zero.T, np.eye(c)]]),
+        C=np.block([[C, zero], [zero.T, np.diag(2 * casing_damping * omega)]]),
+        K=np.block([[K, zero], [zero.T, np.diag(omega**2)]]),
+        force=force,
+        n_blades=blades,
+        n_casing=c,
+        tip_radius=radius,
+        blade_angles=angles,
+        tip_static=static,
+        surface=CasingSurface(
+            mean_radius=radius + clearance + ovality / 2,
+            amplitude=np.array([-ovality / 2]),
+            order=np.array([float(lobes)]),
+            phase=np.array([turn]),
+        ),
+        casing_modes=modes,
+        lateral_stiffness=lateral,
+        lateral_damping=drag,
+    )
+
+
+@pytest.fixture(scope="session")
+def small_system() -> Build:
+    return build_small_system
+
+
+def build_operation(
+    system: SpinningSystem, record_turns: int = 100, steps_per_turn: int = 256, settle_turns: int | str = "auto"
+) -> Operation:
+    return Operation(
+        speed_rpm=system.speed * 30 / np.pi,
+        record_turns=record_turns,
+        steps_per_turn=steps_per_turn,
+        settle_turns=settle_turns,
+    )
+
+
+@pytest.fixture(scope="session")
+def operation() -> Callable[..., Operation]:
+    return build_operation

@@ -1,0 +1,207 @@
+import numpy as np
+import pytest
+
+from rubgen.contact import gap_and_foot
+from rubgen.scenario import ContactLaw
+from rubgen.solver import Status, Stepper, integrate
+from rubgen.solver.stepper import closing_ramp
+
+
+@pytest.fixture(scope="module")
+def rub(small_system, operation):
+    system = small_system(speed=500.0)
+    return system, integrate(system, operation(system), ContactLaw(friction=0.1))
+
+
+def test_the_rub_happens_and_the_identity_holds(rub):
+    _, response = rub
+    assert response.status is Status.OK
+    assert np.all(response.impulse_per_turn > 1)
+    assert np.all(response.contact_steps_per_turn > 50)
+    book = response.energy
+    works = book.unbalance + book.damping + book.circulatory + book.contact
+    assert abs(book.contact) > 1
+    assert abs(book.end - book.start - works) <= 1e-8 * book.absolute_work
+    assert response.energy.residual < 1e-10
+
+
+def test_no_loss_is_ever_a_gain(rub):
+    _, response = rub
+    book, events = response.energy, response.events
+    assert book.normal_loss < 0
+    assert book.friction_loss < 0
+    assert book.damping < 0
+    allowed = 1e-8 * book.absolute_work
+    assert events.normal_loss.max() <= allowed
+    assert events.friction_loss.max() <= allowed
+
+
+def test_touches_add_up_to_the_impulse_of_the_record(rub):
+    _, response = rub
+    events = response.events
+    assert events.impulse.sum() == pytest.approx(response.impulse_per_turn.sum(), rel=1e-12)
+    tap = response.taps["contact_force"]
+    assert tap.sum() * response.dt == pytest.approx(response.impulse_per_turn[-100:].sum(), rel=1e-12)
+    assert np.count_nonzero(tap) == response.contact_steps_per_turn[-100:].sum()
+    assert set(events.blade) == set(range(6))
+    assert np.all(events.start_step >= 0)
+    end = events.start_step + events.steps
+    assert np.all(np.diff(end) >= 0)
+    assert end.max() <= 100 * response.steps_per_turn
+    for blade in range(6):
+        mine = events.blade == blade
+        assert np.all(events.start_step[mine][1:] > end[mine][:-1])
+
+
+def test_touches_lie_where_the_tips_were(rub):
+    system, response = rub
+    events = response.events
+    middle = events.start_step + 0.5 * events.steps
+    theta = 2 * np.pi * (middle + 0.5) / response.steps_per_turn
+    away = np.angle(np.exp(1j * (events.angle - theta - system.blade_angles[events.blade])))
+    assert np.abs(away).max() < 0.1
+
+
+def test_two_lobes_give_two_zones_at_the_minor_axis(rub):
+    _, response = rub
+    events = response.events
+    doubled = np.sum(events.impulse * np.exp(2j * events.angle)) / events.impulse.sum()
+    assert doubled.real > 0.3
+
+
+def test_sections_are_the_states_at_whole_turns(rub):
+    system, response = rub
+    x = response.taps["blisk_x"][:: response.steps_per_turn]
+    np.testing.assert_allclose(x, response.section_q[-len(x) :, system.centre], rtol=0, atol=1e-18)
+    y = response.taps["blisk_y"]
+    speed = (y[response.steps_per_turn + 1] - y[response.steps_per_turn - 1]) / (2 * response.dt)
+    inertial = response.section_v[1, system.centre + 1] + system.speed * response.section_q[1, system.centre]
+    assert inertial == pytest.approx(speed, rel=1e-3)
+
+
+def test_accelerations_are_outward_and_those_of_the_section(rub):
+    """A casing on springs, pushed outward at its zones: acceleration integrates to the modes' motion."""
+    system, response = rub
+    start, steps = system.casing_start, response.steps_per_turn
+    modes = response.section_q[:, start:]
+    radial = system.casing_modes[9, 1]  # node 9 of 36 stands at 90 degrees, where Y is outward
+    acceleration = response.taps["casing_acc_90"].reshape(-1, steps)
+    velocity = response.section_v[:, start:] @ radial
+    gained = response.dt * (acceleration[:-1].sum(axis=1) - 0.5 * (acceleration[:-1, 0] - acceleration[1:, 0]))
+    np.testing.assert_allclose(gained, np.diff(velocity), atol=1e-9 * np.abs(acceleration).max() * response.dt * steps)
+    assert np.abs(modes @ radial).max() > 1e-5
+
+
+def test_orders_of_two_and_three_lobes(small_system, operation):
+    for lobes, speed, clearance, damping in ((2, 400.0, 5e-5, 0.1), (3, 350.0, 3e-5, 0.4)):
+        system = small_system(lobes=lobes, speed=speed, clearance=clearance, casing_damping=damping)
+        response = integrate(system, operation(system, steps_per_turn=384, settle_turns=120), ContactLaw(friction=0.1))
+        assert response.status is Status.OK
+        signals = {name: np.abs(np.fft.rfft(tap))[::100][:10] for name, tap in response.taps.items()}
+        orders = np.arange(10)
+        force, blisk = signals["contact_force"], signals["blisk_x"]
+        assert force[lobes] > 1e-4 * force[0]
+        assert force[orders % lobes != 0].max() < 1e-9 * force.max()
+        allowed = (orders % lobes == 1) | (orders % lobes == lobes - 1)
+        assert blisk[allowed][1:].max() > 1e-3 * blisk[1]
+        assert blisk[~allowed].max() < 1e-9 * blisk[1]
+
+
+def complementary_steps(system, law, turns=4, steps=256):
+    stepper = Stepper(system, law, steps)
+    opening = np.concatenate([np.linspace(5e-4, 0, (turns - 2) * steps), np.zeros(2 * steps + 2)])
+    for turn in range(turns):
+        for s in range(steps):
+            code, count = stepper.step(s, opening[turn * steps :])
+            assert code == 0
+            yield stepper, s, opening[turn * steps + s + 2], count
+
+
+def test_complementarity_in_every_step_with_contact(small_system):
+    system = small_system(speed=500.0)
+    touched = 0
+    for stepper, s, opening, count in complementary_steps(system, ContactLaw(friction=0.2)):
+        work = stepper.work
+        lam, gap = work.lam[:count], work.held[1][work.blade[:count]]
+        assert np.all(lam >= 0)
+        assert np.all(gap >= -1e-15)
+        assert np.all(lam * gap <= 1e-14 * max(lam.max(initial=0), 1))
+        theta = 2 * np.pi * (s + 1) / stepper.steps
+        tips = stepper.state.now[: 3 * system.n_blades].reshape(-1, 3) + system.tip_static
+        point = (system.tip_radius + tips[:, 0] + 1j * tips[:, 1]) * np.exp(1j * (theta + system.blade_angles))
+        for k in range(system.n_blades):
+            q_casing = stepper.state.now[system.casing_start :]
+            true = gap_and_foot(stepper.surface, q_casing, np.array([point[k].real, point[k].imag]), opening)[0]
+            # What is left is the change of the geometry by the contact itself, of second order.
+            assert true > -1e-8
+        touched += np.count_nonzero(lam)
+    assert touched > 200
+
+
+def test_restitution_throws_back_with_the_same_share(small_system):
+    system = small_system(speed=500.0)
+    touched = 0
+    for stepper, _, _, count in complementary_steps(system, ContactLaw(restitution=0.6)):
+        work = stepper.work
+        for m in range(count):
+            if work.lam[m] > 0:
+                before = work.b[m] - work.gap[work.blade[m]]
+                assert work.held[1][work.blade[m]] == pytest.approx(-before, abs=1e-14)
+                touched += 1
+    assert touched > 50
+
+
+def test_screening_changes_no_bit(small_system):
+    system = small_system(speed=500.0)
+    ends = []
+    for screen in (True, False):
+        stepper = Stepper(system, ContactLaw(friction=0.15), 256, screen=screen)
+        impulse = 0.0
+        for turn in range(12):
+            stepper.run_turn(np.full(258, 5e-4 * max(0, 1 - turn / 6)))
+            impulse += stepper.result.summary[0]
+        ends.append(np.concatenate([stepper.state.now, stepper.book.works, stepper.result.taps.ravel(), [impulse]]))
+    assert ends[0][-1] > 1
+    np.testing.assert_array_equal(ends[0], ends[1])
+
+
+def test_turning_casing_and_start_together_changes_nothing(small_system):
+    ends = []
+    for nodes in (0, 5, 16):
+        system = small_system(speed=500.0, turned_nodes=nodes)
+        stepper = Stepper(system, ContactLaw(friction=0.1), 256, start_angle=2 * np.pi * nodes / 36)
+        impulse = 0.0
+        for turn in range(8):
+            stepper.run_turn(np.full(258, 5e-4 * max(0, 1 - turn / 5)))
+            impulse += stepper.result.summary[0]
+        ends.append(np.append(stepper.state.now / np.abs(stepper.state.now).max(), impulse))
+    assert ends[0][-1] > 1
+    np.testing.assert_allclose(ends[1], ends[0], atol=1e-8)
+    np.testing.assert_allclose(ends[2], ends[0], atol=1e-8)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+def test_the_drive_pays_for_contact_and_impact_loss_does_not_vanish_with_the_step(small_system, friction):
+    """Contact work less its losses tends to -Omega integral of the contact torque, with the first power of the step."""
+    apart, losses = [], []
+    for steps in (512, 1024, 2048):
+        stepper = Stepper(small_system(casing_damping=0.4), ContactLaw(friction=friction), steps)
+        for turn in range(40):
+            if turn == 30:
+                stepper.book.works[:] = 0
+            stepper.run_turn(5e-4 * closing_ramp((turn + np.arange(-1, steps + 1) / steps) / 20))
+        contact, normal, rubbing, limit = stepper.book.works[3:7]
+        apart.append(contact - normal - rubbing - limit)
+        losses.append(normal)
+    assert limit > 5
+    assert np.array(apart[:2]) / apart[1:] == pytest.approx([2, 2], rel=0.1)
+    assert losses[1] == pytest.approx(losses[2], rel=0.05)
+    assert losses[2] < -0.5
+
+
+def test_a_deep_overlap_diverges_with_turn_and_growth(small_system, operation):
+    system = small_system(ovality=3e-2, clearance=-1e-2)
+    response = integrate(system, operation(system), ContactLaw(friction=0.3))
+    assert response.status is Status.DIVERGED
+    assert "turn" in response.reason
+    assert "grew" in response.reason

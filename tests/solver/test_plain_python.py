@@ -1,0 +1,42 @@
+"""The compiled kernels and the same functions as plain Python give the same run."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from rubgen.scenario import ContactLaw
+from rubgen.solver import Stepper
+
+SCRIPT = """
+import numpy as np
+from conftest import build_small_system
+from test_plain_python import short_run
+np.save({out!r}, short_run(build_small_system))
+"""
+
+
+def short_run(build):
+    """State, works and impulse after a turn in contact, from a start with the casing close."""
+    system = build(speed=500.0, clearance=-2e-4)
+    stepper = Stepper(system, ContactLaw(friction=0.2), 128)
+    stepper.run_turn(np.linspace(4e-4, 0, 130))
+    return np.concatenate([stepper.state.now, stepper.book.works, stepper.result.summary, stepper.result.taps.ravel()])
+
+
+def test_compiled_and_plain_runs_agree(small_system, tmp_path):
+    out = tmp_path / "plain.npy"
+    subprocess.run(
+        [sys.executable, "-c", SCRIPT.format(out=str(out))],
+        cwd=Path(__file__).parent,
+        env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+        check=True,
+    )
+    compiled, plain = short_run(small_system), np.load(out)
+    n = small_system().M.shape[0]
+    assert plain[n + 8] > 0.01  # N s: it touched
+    np.testing.assert_allclose(compiled[:n], plain[:n], rtol=0, atol=1e-11 * np.abs(plain[:n]).max())
+    np.testing.assert_allclose(compiled[n : n + 8], plain[n : n + 8], rtol=1e-8, atol=1e-12)
+    np.testing.assert_allclose(compiled[n + 8 :], plain[n + 8 :], rtol=1e-6, atol=1e-6)

@@ -1,0 +1,55 @@
+import numpy as np
+import pytest
+from threadpoolctl import threadpool_limits
+
+from rubgen.machine import load_machine
+from rubgen.reduction import reduce
+from rubgen.scenario import ContactLaw, Reduction
+from rubgen.solver import Stepper
+from rubgen.solver.reference import ReferenceStepper, differentiation_matrix
+
+
+def compare_turns(system, friction, steps, turns, opening, settle=6):
+    """Largest relative differences over one turn each, restarted from the reference, and touching steps."""
+    stepper = Stepper(system, ContactLaw(friction=friction), steps)
+    reference = ReferenceStepper(system, friction, steps)
+    for turn in range(settle):
+        stepper.run_turn(np.full(steps + 2, opening * (1 - turn / settle)))
+    reference.before, reference.now = stepper.state.before.copy(), stepper.state.now.copy()
+    start, worst, touched = system.casing_start, 0.0, 0
+    for _ in range(turns):
+        stepper.set_state(reference.before, reference.now)
+        assert stepper.run_turn()[0] == 0
+        blades = np.array([reference.step(s) for s in range(steps)])
+        assert np.count_nonzero(blades) == stepper.result.summary[1]
+        for part in (slice(0, start), slice(start, None)):
+            size = np.abs(reference.now[part]).max()
+            worst = max(worst, np.abs(stepper.state.now[part] - reference.now[part]).max() / size)
+        touched += np.count_nonzero(blades)
+    return worst, touched
+
+
+@pytest.mark.parametrize(
+    ("lobes", "speed", "friction"), [(2, 400.0, 0.1), (2, 500.0, 0.0), (3, 400.0, 0.1), (3, 350.0, 0.3)]
+)
+def test_fifty_turns_restarted_from_plain_numpy(small_system, lobes, speed, friction):
+    """Period-1 with two lobes, irregular with three."""
+    with threadpool_limits(1):
+        system = small_system(lobes=lobes, speed=speed)
+        worst, touched = compare_turns(system, friction, 256, 50 if lobes == 3 else 10, 5e-4)
+    assert touched > 1000
+    assert worst < 1e-6
+
+
+@pytest.mark.parametrize(("rpm", "friction"), [(6900.0, 0.0), (8700.0, 0.15)])
+def test_the_preset_agrees_with_plain_numpy(rpm, friction):
+    system = reduce(load_machine("zeng2019"), Reduction()).at_speed(rpm * np.pi / 30)
+    with threadpool_limits(1):
+        worst, touched = compare_turns(system, friction, 1024, 5, 2e-4)
+    assert touched > 50
+    assert worst < 1e-6
+
+
+def test_the_differentiation_matrix_is_exact_for_low_orders():
+    t = 2 * np.pi * np.arange(24) / 24
+    np.testing.assert_allclose(differentiation_matrix(24) @ np.cos(5 * t), -5 * np.sin(5 * t), atol=1e-12)
