@@ -55,15 +55,17 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
 
     The steady state at 1 rad/s, blades pulling at the rim and the bore held by the rigid link, gives the disk's plane
     stress, the forces in the link and the link's geometric term. So K_sigma - S on rigid-body motions is -m, -m, 0,
-    I_p - I_d, I_p - I_d, 0: tests/fem/test_blisk.py. Raises UserError when blades do not meet corner nodes of the
-    rim, and for a single blade, whose pull is no symmetric load.
+    I_p - I_d, I_p - I_d, 0: tests/fem/test_blisk_assembly.py.
+
+    Raises UserError when blades do not meet corner nodes of the rim, for a single blade, whose pull is no symmetric
+    load, and for a bore outside the rim.
     """
+    pitch = _elements_per_blade(disk, blades)
     plate, beam = assemble_disk(disk), blade_matrices(blades, disk.rim_radius_m)
-    rim_node = plate.rim[:: _elements_per_blade(disk, blades)]
     disk_size, n_blade = 6 + plate.M.shape[0], len(beam.f_c)
     size = disk_size + blades.count * n_blade
     roots = _dof(disk_size // 6 + n_blade // 6 * np.arange(blades.count))
-    bore, rim, tips = _dof(1 + plate.bore), _dof(1 + rim_node), roots + n_blade - 6
+    bore, rim, tips = _dof(1 + plate.bore), _dof(1 + plate.rim[::pitch]), roots + n_blade - 6
     angles = 2 * np.pi * np.arange(blades.count) / blades.count
 
     penalty = float(plate.K.diagonal().max())
@@ -139,6 +141,9 @@ def _rigid_nodes(x: FloatArray, y: FloatArray) -> FloatArray:
 
 def _elements_per_blade(disk: Disk, blades: BladeRow) -> int:
     elements, count = disk.circumferential_elements, blades.count
+    if disk.bore_radius_m >= disk.rim_radius_m:
+        bore, rim = disk.bore_radius_m, disk.rim_radius_m
+        raise UserError(f"disk.bore_radius_m = {bore}: must be below disk.rim_radius_m = {rim}; lower it")
     if count < 2:
         raise UserError(f"blades.count = {count}: a blisk needs at least 2 equal blades; raise it")
     if elements % count:

@@ -9,7 +9,7 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.fem.blisk import BliskModel
 
-# The residual falls by more than a decade with each vector; see tests/reduction/test_growth.py.
+# In the preset the tips are then right to 1e-10 at 15,000 rev/min and 1e-7 at 30,000.
 BASIS_SIZE = 10
 
 
@@ -33,7 +33,7 @@ def centrifugal_growth(model: BliskModel) -> CentrifugalGrowth:
     """Galerkin solution of (K + Omega^2 (K_sigma - S)) u = Omega^2 f_c in the Krylov space of K^-1 A and K^-1 f_c.
 
     K is on its axial, tilt and torsion springs with O_d held laterally, where a symmetric load leaves it. Equal to the
-    direct solution to 1e-9 of its size up to twice the preset's top speed.
+    direct solution to 1e-9 of its size at the preset's top speed: tests/reduction/test_reduced_model.py.
     """
     K, A = model.held.K, model.K_sigma - model.S
     basis = np.zeros((len(model.f_c), 0))

@@ -117,8 +117,10 @@ def test_full_model_lies_within_two_per_cent_of_the_published_frequencies(preset
     np.testing.assert_allclose(found[[0, 2, 38]], found[[1, 3, 39]], rtol=1e-6)
 
 
-def test_blades_must_meet_nodes_of_the_rim(machine):
+def test_a_machine_that_cannot_be_meshed_is_refused(machine):
     with pytest.raises(UserError, match=r"circumferential_elements = 72: must be a multiple of blades.count = 35.* 70"):
         assemble_blisk(machine.disk, replace(machine.blades, count=35), machine.disk_support)
     with pytest.raises(UserError, match=r"blades.count = 1: "):
         assemble_blisk(machine.disk, replace(machine.blades, count=1), machine.disk_support)
+    with pytest.raises(UserError, match=r"disk.bore_radius_m = 0.3: must be below disk.rim_radius_m = 0.25"):
+        assemble_blisk(replace(machine.disk, bore_radius_m=0.3), machine.blades, machine.disk_support)
