@@ -18,9 +18,9 @@ from rubgen.solver.stepper import closing_ramp
 SPEED_RPM = 6900.0
 STEPS = 1024
 CLOSING_TURNS = 40
-TURNS = 40
-NUMPY_STEPS = 512
-REPEATS = 5
+TURNS = 4
+NUMPY_STEPS = 128
+REPEATS = 20
 
 
 def fastest(job: Callable[[], float]) -> float:
@@ -59,16 +59,12 @@ def measure() -> list[dict[str, object]]:
     ours, plain = min(pair[0] for pair in pairs), min(pair[1] for pair in pairs)
     if not touched:
         raise RuntimeError("the benchmark's run had no contact")
+    share = float(touched / (2 * REPEATS * TURNS * STEPS))
     return [
-        {"name": "solver_step", "value": ours, "unit": "us", "target": "about 5"},
-        {"name": "solver_numpy_step", "value": plain, "unit": "us", "target": "for comparison"},
-        {"name": "solver_step_ratio", "value": ours / plain, "unit": "1", "target": "<= 1/15"},
-        {
-            "name": "solver_contact_share",
-            "value": touched / (2 * REPEATS * TURNS * STEPS),
-            "unit": "1",
-            "target": "> 0",
-        },
+        {"name": "solver step, preset in light contact", "value": ours, "unit": "us", "target": "about 5"},
+        {"name": "the same step in plain numpy", "value": plain, "unit": "us", "target": "recorded"},
+        {"name": "plain numpy step over solver step", "value": plain / ours, "unit": "ratio", "target": ">= 15"},
+        {"name": "share of those steps with contact", "value": share, "unit": "1", "target": "recorded"},
     ]
 
 
