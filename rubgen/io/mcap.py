@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mcap.writer import Writer
 
-from rubgen.io.joint_state import SCHEMA, SCHEMA_NAME, joint_states
 from rubgen.io.mcap_check import check_mcap
 from rubgen.io.mcap_messages import MESSAGES, PACKAGE, file_descriptor_set, message_class, sample_block, timestamp
 from rubgen.io.mcap_read import McapRun, read_mcap
+from rubgen.io.multi_array import SCHEMA, SCHEMA_NAME, multi_arrays
 from rubgen.io.plain import labels_dict, scenario_dict
 from rubgen.sensors.channel import Channel, Float32Array, Recording
 from rubgen.sensors.contact_window import contact_intervals
@@ -76,11 +76,11 @@ def _write_messages(writer: Writer, run: Run, recording: Recording, labels: Labe
     schemas = {
         name: writer.register_schema(f"{PACKAGE}.{name}", "protobuf", file_descriptor_set()) for name in MESSAGES
     }
-    joint_state = writer.register_schema(SCHEMA_NAME, "ros2msg", SCHEMA)
+    multi_array = writer.register_schema(SCHEMA_NAME, "ros2msg", SCHEMA)
     merged: list[tuple[int, int, int, bytes]] = []
 
     def add(topic: str, schema: int, messages: Iterator[Stamped], metadata: dict[str, str] | None = None) -> None:
-        encoding = "cdr" if schema == joint_state else "protobuf"
+        encoding = "cdr" if schema == multi_array else "protobuf"
         channel = writer.register_channel(topic, encoding, schema, metadata or {})
         merged.extend((time, channel, sequence, data) for sequence, (time, data) in enumerate(messages))
 
@@ -90,10 +90,9 @@ def _write_messages(writer: Writer, run: Run, recording: Recording, labels: Labe
         if channel.clean is not None:
             add(f"/clean/{name}", schemas["SampleBlock"], _blocks(channel.clean, recording.sample_rate_hz), metadata)
     for quantity, group in _groups(recording).items():
-        messages = _preview(group, recording.sample_rate_hz)
-        add(
-            f"/preview/{quantity}", joint_state, messages, {"unit": group[0].unit, "content": "min and max of each bin"}
-        )
+        names = _preview_names(group)
+        metadata = {"unit": group[0].unit, "names": ", ".join(names)}
+        add(f"/preview/{quantity}", multi_array, _preview(group, names, recording.sample_rate_hz), metadata)
     add("/contact", schemas["Contact"], _contacts(run, recording))
     add("/once_per_rev", schemas["OncePerRev"], _pulses(recording))
     add("/labels/motion", schemas["MotionLabel"], iter([_motion(labels)]))
@@ -129,13 +128,15 @@ def _blocks(values: Float32Array, sample_rate_hz: float) -> Iterator[Stamped]:
         yield time, sample_block(values[first : first + BLOCK_SAMPLES], sample_rate_hz, first, time)
 
 
-def _preview(group: list[Channel], sample_rate_hz: float) -> Iterator[Stamped]:
+def _preview_names(group: list[Channel]) -> list[str]:
+    return [f"{channel.name}.{end}" for channel in group for end in ("min", "max")]
+
+
+def _preview(group: list[Channel], names: list[str], sample_rate_hz: float) -> Iterator[Stamped]:
     samples = preview_bin(sample_rate_hz)
     envelopes = [envelope for channel in group for envelope in min_max(channel.values, samples)]
-    names = [f"{channel.name}.{end}" for channel in group for end in ("min", "max")]
     times = [nanoseconds(first / sample_rate_hz) for first in range(0, group[0].values.size, samples)]
-    positions = np.column_stack(envelopes).astype(np.float64)
-    return zip(times, joint_states(names, np.asarray(times, dtype=np.int64), positions), strict=True)
+    return zip(times, multi_arrays(names, np.column_stack(envelopes).astype(np.float64)), strict=True)
 
 
 def _contacts(run: Run, recording: Recording) -> Iterator[Stamped]:

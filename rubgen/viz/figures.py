@@ -89,7 +89,7 @@ def orbit(axes: Axes, run: Run) -> None:
     centre = 3 * run.response.n_blades
     x, y = 1e6 * run.response.section_q[:, centre], 1e6 * run.response.section_q[:, centre + 1]
     axes.plot(x, y, ".", color=VERMILION, markersize=4, markeredgewidth=0, zorder=3)
-    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_aspect("equal")
     axes.margins(0.12)
     _label(axes, "Disk centre $x$, µm", "Disk centre $y$, µm")
     _section(axes.inset_axes((0.37, 0.39, 0.3, 0.3)), x - x.mean(), y - y.mean())

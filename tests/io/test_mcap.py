@@ -10,6 +10,7 @@ from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 from mcap.reader import NonSeekingReader, make_reader
 from mcap_ros2_support_fast.decoder import DecoderFactory
 from pydantic import TypeAdapter
+from rerun.chunk import McapReader as RerunReader
 
 from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
 from rubgen.io.mcap_messages import message_class, proto_text, read_sample_block, sample_block, timestamp
@@ -107,20 +108,29 @@ def test_contact_times_meet_the_contact_force(make_synthetic_run):
 
 
 def test_preview_decoded_by_a_ros_reader_bounds_the_samples(rub_run, mcap_file):
-    channel = rub_run.recording.channels["contact_force"]
+    channel = rub_run.recording.channels["casing_acc_180"]
     with mcap_file.open("rb") as stream:
         reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
-        decoded_states = [
-            item.decoded_message for item in reader.iter_decoded_messages(topics="/preview/contact_force")
-        ]
-    names = list(decoded_states[0].name)
-    low, high = names.index("contact_force.min"), names.index("contact_force.max")
-    bins = channel.values[: 25 * 307].reshape(-1, 25)
-    assert len(decoded_states) == 308
-    np.testing.assert_array_equal([state.position[low] for state in decoded_states[:307]], bins.min(axis=1))
-    np.testing.assert_array_equal([state.position[high] for state in decoded_states[:307]], bins.max(axis=1))
-    stamp = decoded_states[100].header.stamp
-    assert stamp.sec * 10**9 + stamp.nanosec == round(2500 / 25600 * 1e9)
+        arrays = list(reader.iter_decoded_messages(topics="/preview/acceleration"))
+    (dimension,) = arrays[0].decoded_message.layout.dim
+    names = dimension.label.split(", ")
+    assert names == arrays[0].channel.metadata["names"].split(", ")
+    assert (dimension.size, dimension.stride, arrays[0].channel.metadata["unit"]) == (8, 8, "m/s2")
+    low, high = names.index("casing_acc_180.min"), names.index("casing_acc_180.max")
+    bins = [channel.values[first : first + 25] for first in range(0, channel.values.size, 25)]
+    assert [item.decoded_message.data[low] for item in arrays] == [part.min() for part in bins]
+    assert [item.decoded_message.data[high] for item in arrays] == [part.max() for part in bins]
+    assert [item.message.log_time for item in arrays[:3]] == [0, round(25 / 25600 * 1e9), round(50 / 25600 * 1e9)]
+
+
+def test_rerun_plots_the_preview_without_set_up(rub_run, mcap_file):
+    """Rerun's own reader turns each quantity into one entity of scalars, a line for each minimum and maximum."""
+    values = rub_run.recording.channels["contact_force"].values
+    chunks = RerunReader(mcap_file).stream().filter(content="/preview/contact_force").to_chunks()
+    (chunk,) = [chunk for chunk in chunks if not chunk.is_static]
+    scalars = np.array(chunk.to_record_batch().column("Scalars:scalars").to_pylist())
+    assert scalars.shape == (308, 2)
+    assert scalars[:, 1].max() == values.max()
 
 
 def test_twin_message_has_the_wire_bytes_of_the_real_one():

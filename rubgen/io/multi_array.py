@@ -1,0 +1,50 @@
+"""ROS 2 Float64MultiArray messages in CDR: the form that Rerun and Foxglove plot without set-up.
+
+JointState carries a name for each line, but Rerun opens an empty view for each of its two unused fields.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+
+SCHEMA_NAME = "std_msgs/msg/Float64MultiArray"
+_RULE = "=" * 80
+SCHEMA = f"""std_msgs/MultiArrayLayout layout
+float64[] data
+{_RULE}
+MSG: std_msgs/MultiArrayLayout
+std_msgs/MultiArrayDimension[] dim
+uint32 data_offset
+{_RULE}
+MSG: std_msgs/MultiArrayDimension
+string label
+uint32 size
+uint32 stride
+""".encode()
+_ENCAPSULATION = b"\x00\x01\x00\x00"  # plain CDR, little endian; alignment counts from here
+
+
+def multi_arrays(names: Sequence[str], values: FloatArray) -> list[bytes]:
+    """One CDR message for each row of `values` (n, len(names)); the label of its one dimension lists the names.
+
+    All messages share their head, so that one template is filled for all of them at once.
+    """
+    count = len(names)
+    label = ", ".join(names).encode() + b"\0"
+    head = struct.pack("<II", 1, len(label)) + label
+    head = _padded(head, 4) + struct.pack("<IIII", count, count, 0, count)  # size, stride, data_offset, length
+    head = _ENCAPSULATION + _padded(head, 8)
+    layout = np.dtype([("head", np.void, len(head)), ("values", "<f8", (count,))])
+    messages = np.zeros(len(values), dtype=layout)
+    messages["head"] = np.void(head)
+    messages["values"] = values
+    return [message.tobytes() for message in messages]
+
+
+def _padded(data: bytes, size: int) -> bytes:
+    return data + bytes(-len(data) % size)
