@@ -1,0 +1,1 @@
+"""Studies of models and data sets: what follows from many runs, or from a model alone."""
