@@ -91,6 +91,7 @@ def orbit(axes: Axes, run: Run) -> None:
     axes.plot(x, y, ".", color=VERMILION, markersize=4, markeredgewidth=0, zorder=3)
     axes.set_aspect("equal")
     axes.margins(0.12)
+    axes.locator_params(nbins=6)
     _label(axes, "Disk centre $x$, µm", "Disk centre $y$, µm")
     _section(axes.inset_axes((0.37, 0.39, 0.3, 0.3)), x - x.mean(), y - y.mean())
 
@@ -100,7 +101,7 @@ def _section(axes: Axes, x: FloatArray, y: FloatArray) -> None:
     axes.plot(x, y, ".", color=VERMILION, markersize=3.5, markeredgewidth=0)
     half = 1.25 * max(float(np.abs(x).max()), float(np.abs(y).max()), 0.1)
     axes.set(xlim=(-half, half), ylim=(-half, half), aspect="equal")
-    _label(axes, "once a turn, µm about the mean", "")
+    _label(axes, "once a turn, µm", "")
     axes.xaxis.label.set(fontsize=8, color=VERMILION)
     axes.tick_params(labelsize=7)
     axes.locator_params(nbins=3)
@@ -140,7 +141,7 @@ def force_spectrum(axes: Axes, run: Run) -> None:
     whole = np.arange(1, HIGHEST_ORDER + 1)
     for parity, color, name in ((0, VERMILION, "even"), (1, GREY, "odd")):
         marked = whole[whole % 2 == parity]
-        heights = np.maximum(spectrum[marked * turns], floor)
+        heights = np.where(spectrum[marked * turns] >= floor, spectrum[marked * turns], np.nan)
         axes.plot(marked, heights, "o", color=color, markersize=4.5, label=f"{name} orders")
     axes.set_ylim(floor, amplitudes.max() * 4)
     axes.legend(frameon=False, loc="lower right", bbox_to_anchor=(1, 0.98), fontsize=9, ncols=2, handletextpad=0.1)

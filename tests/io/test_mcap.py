@@ -127,8 +127,8 @@ def test_rerun_plots_the_preview_without_set_up(rub_run, mcap_file):
     """Rerun's own reader turns each quantity into one entity of scalars, a line for each minimum and maximum."""
     values = rub_run.recording.channels["contact_force"].values
     chunks = RerunReader(mcap_file).stream().filter(content="/preview/contact_force").to_chunks()
-    (chunk,) = [chunk for chunk in chunks if not chunk.is_static]
-    scalars = np.array(chunk.to_record_batch().column("Scalars:scalars").to_pylist())
+    batches = [chunk.to_record_batch() for chunk in chunks if not chunk.is_static]
+    scalars = np.concatenate([batch.column("Scalars:scalars").to_pylist() for batch in batches])
     assert scalars.shape == (308, 2)
     assert scalars[:, 1].max() == values.max()
 
