@@ -116,7 +116,7 @@ def _make_missing(recipe: Recipe, layout: Layout, workers: int, progress: Progre
             report(done := done + 1, recipe.runs)
         return len(missing)
     with worker_pool(min(workers, len(missing))) as pool:
-        pool.submit(warm_up, *first).result()
+        list(unordered(pool, 1, warm_up, [first]))
         for _status in unordered(pool, workers, stage_run, jobs):
             report(done := done + 1, recipe.runs)
     return len(missing)

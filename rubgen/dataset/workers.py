@@ -51,7 +51,8 @@ def unordered(
     running: set[Future[R]] = set()
     while True:
         room = workers * WAITING_PER_WORKER - len(running)
-        running |= {pool.submit(work, *job) for job in islice(remaining, room)}
+        with _interrupts_held():
+            running |= {pool.submit(work, *job) for job in islice(remaining, room)}
         if not running:
             return
         done, running = wait(running, return_when=FIRST_COMPLETED)
@@ -62,6 +63,7 @@ def unordered(
 def _start_worker() -> None:
     # Ctrl-C reaches the whole process group; the parent alone decides what it means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
@@ -71,6 +73,16 @@ def _end_with_parent() -> None:
     if parent is not None:
         connection.wait([parent.sentinel])
         os._exit(1)
+
+
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Ctrl-C waits: processes started in here inherit that, until they are ready to ignore it."""
+    previous = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, previous)
 
 
 @contextmanager

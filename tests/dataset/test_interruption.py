@@ -32,7 +32,9 @@ def start(small_set, tmp_path):
     def start():
         arguments = ["generate", str(tmp_path / "recipe.toml"), "--out", str(tmp_path / "set"), "--workers", "2"]
         command = [sys.executable, str(tmp_path / "command.py"), *arguments]
-        processes.append(subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True))
+        processes.append(
+            subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, start_new_session=True)
+        )
         return processes[-1]
 
     yield start
@@ -86,7 +88,7 @@ def test_killed_interrupted_and_completed_to_the_same_bytes(start, small_set, tm
 
     stopped = start()
     _wait_for(lambda: _children(stopped.pid) or stopped.poll() is not None)
-    stopped.send_signal(signal.SIGINT)
+    os.killpg(stopped.pid, signal.SIGINT)  # as a terminal does
     _, errors = stopped.communicate(timeout=PATIENCE_S)
     if stopped.returncode:  # it may have been done already
         assert stopped.returncode == 130

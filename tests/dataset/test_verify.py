@@ -152,7 +152,7 @@ def test_a_force_without_rub_is_found(rows):
 def test_a_channel_of_wrong_scale_is_found(name, rows):
     row, signals = rows[True]
     assert list(signal_problems(row, signals, 1.0, 16)) == []
-    wrong = {**signals, name: (signals[name] * np.float32(0.9)).astype(np.float32)}
+    wrong = {**signals, name: (signals[name] * np.float32(0.8)).astype(np.float32)}
     assert any("_orders: order" in problem for problem in signal_problems(row, wrong, 1.0, 16))
 
 
