@@ -105,13 +105,20 @@ class Integration:
         where = f"turn {turn} of {self.settle + self.record}, step {step} of {self.stepper.steps}"
         match self.status:
             case Status.DIVERGED:
-                before, after = self.reaches
-                growth = f"{after / before:.3g} times a turn" if before > 0 else "within one turn"
-                return f"a casing node or tip left {1e3 * self.stepper.limit:.3g} mm in {where}; it grew {growth}"
+                return f"{self._what_diverged()} in {where}"
             case Status.ENERGY:
                 return f"residual {self.energy_residual():.3g} above {ENERGY_TOLERANCE:g} after {where}"
             case _:
                 return f"in {where}"
+
+    def _what_diverged(self) -> str:
+        system, laws = self.stepper.system, self.stepper.laws
+        tips = np.abs(self.stepper.state.after[: 3 * system.n_blades])
+        if not np.all(tips <= laws.tip_limit):
+            return f"blade {int(np.argmax(~(tips <= laws.tip_limit))) // 3} bent beyond {1e3 * laws.tip_limit:.3g} mm"
+        before, after = self.reaches
+        growth = f"{after / before:.3g} times in the last turn" if before > 0 else "within one turn"
+        return f"the casing grew {growth} and left {1e3 * laws.casing_limit:.3g} mm"
 
 
 def integrate(

@@ -45,13 +45,19 @@ class Block(NamedTuple):
 
 
 class Laws(NamedTuple):
-    """Numbers of the step: Omega, dt, friction, restitution, the candidates' margin in m, screening on or off."""
+    """Numbers of the step: Omega, dt, friction, restitution; lengths in m; screening on or off.
+
+    `margin` is the candidates' least one; a casing node displaced by more than `casing_limit` or a tip by more than
+    `tip_limit` in one direction means divergence.
+    """
 
     speed: float
     dt: float
     friction: float
     restitution: float
     margin: float
+    casing_limit: float
+    tip_limit: float
     screen: bool
 
 

@@ -18,9 +18,12 @@ from rubgen.solver.turn_kernels import Taps, Touches, TurnResult, run_turn
 
 CANDIDATE_MARGIN_SHARE = 5e-5
 """Blades nearer than this share of the tip radius are solved together; a step widens it where forces reach farther."""
-DIVERGED_SHARE = 0.025
-"""A casing node or tip displaced by this share of the tip radius (10 mm at 0.4 m, eight times the preset casing's
-thickness and seven times its largest regular response) is beyond what a linear casing can mean."""
+CASING_LIMIT_SHARE = 0.025
+"""A casing node displaced by this share of the tip radius (10 mm at 0.4 m: eight times the preset casing's thickness,
+seven times its largest regular response) is beyond what a linear ring can mean."""
+TIP_LIMIT_SHARE = 0.05
+"""The same for a tip (20 mm at 0.4 m, 13 % of the length of the preset's blades) and a linear beam. Friction of 0.15 in
+irregular rub bends the preset's lightly damped blades by 5 to 10 mm."""
 START_CLEARANCE_SHARE = 2.5e-4
 """The start leaves at least this share of the tip radius between tips and casing."""
 ACCELEROMETER_ANGLES = (0.0, np.pi / 2, np.pi, 3 * np.pi / 2)
@@ -74,11 +77,13 @@ class Stepper:
         self.surface, self.tips = casing_surface(system), blade_tips(system)
         self.blisk, self.casing = scheme_blocks(system, self.dt)
         margin = CANDIDATE_MARGIN_SHARE * system.tip_radius
-        self.laws = Laws(float(system.speed), float(self.dt), contact.friction, contact.restitution, margin, screen)
+        limits = CASING_LIMIT_SHARE * system.tip_radius, TIP_LIMIT_SHARE * system.tip_radius
+        self.laws = Laws(
+            float(system.speed), float(self.dt), contact.friction, contact.restitution, margin, *limits, screen
+        )
         self.angles = _angles(system, steps, start_angle)
         self.taps = _taps(self, start_angle)
         self.book = energy_book(system)
-        self.limit = DIVERGED_SHARE * system.tip_radius
         self.work = _contact_work(system, self.blisk.now.shape[1], self.casing.now.shape[1])
         n, blades = system.M.shape[0], system.n_blades
         self.state = State(
@@ -106,7 +111,7 @@ class Stepper:
         """
         width = np.zeros(self.steps + 2) if opening is None else opening
         return run_turn(
-            self.surface, self.tips, self.blisk, self.casing, self.laws, self.angles, width, self.limit, clock,
+            self.surface, self.tips, self.blisk, self.casing, self.laws, self.angles, width, clock,
             self.state, self.work, self.book, self.taps, self.touches, self.result,
         )  # fmt: skip
 

@@ -110,13 +110,15 @@ def largest_nodal_displacement(surface: Surface, q_casing: FloatArray) -> float:
 
 
 @allocation_free_kernel
-def has_diverged(surface: Surface, q: FloatArray, casing_start: int, n_blades: int, limit: float) -> bool:
-    """Whether a casing node or a blade tip has moved beyond the limit, or is not a number."""
+def has_diverged(surface: Surface, laws: Laws, q: FloatArray, casing_start: int, n_blades: int) -> bool:
+    """Whether a casing node or a blade tip has moved beyond its limit, or is not a number."""
     for k in range(3 * n_blades):
-        if not abs(q[k]) <= limit:
+        if not abs(q[k]) <= laws.tip_limit:
             return True
-    reach = casing_reach(surface, q[casing_start:])
-    return not reach <= limit and not largest_nodal_displacement(surface, q[casing_start:]) <= limit
+    q_casing = q[casing_start:]
+    if casing_reach(surface, q_casing) <= laws.casing_limit:
+        return False
+    return not largest_nodal_displacement(surface, q_casing) <= laws.casing_limit
 
 
 @allocation_free_kernel
@@ -193,7 +195,6 @@ def run_turn(
     laws: Laws,
     angles: Angles,
     opening: FloatArray,
-    limit: float,
     clock: int,
     state: State,
     work: ContactWork,
@@ -214,7 +215,7 @@ def run_turn(
     for s in range(steps):
         free_step(blisk, state.before[:start], state.now[:start], state.after[:start], state.blisk_sum)
         free_step(casing, state.before[start:], state.now[start:], state.after[start:], state.casing_sum)
-        if has_diverged(surface, state.after, start, n_blades, limit):
+        if has_diverged(surface, laws, state.after, start, n_blades):
             return DIVERGED, s, ended
         code, count = contact_step(surface, tips, blisk, casing, laws, angles, s, opening, state, work)
         if code != OK:

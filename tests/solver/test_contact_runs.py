@@ -1,3 +1,5 @@
+import re
+
 import numpy as np
 import pytest
 
@@ -203,5 +205,4 @@ def test_a_deep_overlap_diverges_with_turn_and_growth(small_system, operation):
     system = small_system(ovality=3e-2, clearance=-1e-2)
     response = integrate(system, operation(system), ContactLaw(friction=0.3))
     assert response.status is Status.DIVERGED
-    assert "turn" in response.reason
-    assert "grew" in response.reason
+    assert re.search(r"(the casing grew .* and left 5 mm|blade \d bent beyond 10 mm) in turn \d+ of", response.reason)

@@ -19,8 +19,8 @@ def run(model, rpm, friction=0.0, settle_turns=60, record_turns=100):
     return integrate(model.at_speed(operation.speed_rad_per_s), operation, ContactLaw(friction=friction))
 
 
-def test_no_contact_at_6600_and_the_casing_at_rest(model):
-    response = run(model, 6600.0)
+def test_no_contact_at_6660_and_the_casing_at_rest(model):
+    response = run(model, 6660.0)
     assert response.status is Status.OK
     assert not response.impulse_per_turn.any()
     assert not response.section_q[:, -11:].any()
@@ -41,3 +41,9 @@ def test_two_zones_at_6900_with_all_losses_negative(model):
     assert events.friction_loss.max() <= allowed
     assert response.energy.normal_loss < 0
     assert response.energy.residual <= 1e-8
+
+
+def test_rubbing_has_begun_at_6780(model):
+    response = run(model, 6780.0, settle_turns=80)
+    assert response.status is Status.OK
+    assert np.all(response.impulse_per_turn > 0)
