@@ -26,9 +26,9 @@ def check_mcap(path: Path) -> list[str]:
         content = read_content(path)
         return [*_document_problems(content), *_topic_problems(content), *_sample_problems(content)]
     except OSError as error:
-        return [f"{path}: cannot be read ({error.strerror})"]
+        return [f"cannot be read ({error.strerror})"]
     except (*UNREADABLE, DecodeError) as error:
-        return [f"{path}: damaged ({type(error).__name__}: {error})"]
+        return [f"damaged ({type(error).__name__}: {error})"]
 
 
 def _document_problems(content: McapContent) -> Iterator[str]:

@@ -59,17 +59,17 @@ def check_rrd(path: Path) -> list[str]:
     from rerun.chunk import RrdReader
 
     if not path.is_file():
-        return [f"{path}: there is no such file"]
+        return ["there is no such file"]
     command = [sys.executable, "-m", "rerun", "rrd", "verify", str(path)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own interpreter
     if done.returncode != 0:
         lines = (done.stderr.strip() or done.stdout.strip() or "no reason given").splitlines()
-        return [f"{path}: rerun rrd verify: {lines[-1]}"]
+        return [f"rerun rrd verify: {lines[-1]}"]
     try:
         entities = {chunk.entity_path for chunk in RrdReader(path).stream().to_chunks()}
     except RuntimeError as error:
-        return [f"{path}: {error}"]
-    return [f"{path}: no {name}" for name in ENTITIES if not any(entity.startswith(name) for entity in entities)]
+        return [str(error)]
+    return [f"no {name}" for name in ENTITIES if not any(entity.startswith(name) for entity in entities)]
 
 
 def _require_whole(part: Path, path: Path) -> None:

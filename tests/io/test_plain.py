@@ -8,9 +8,23 @@ from rubgen.io.plain import labels_dict, scenario_dict
 from rubgen.machine import load_machine
 from rubgen.scenario import Operation, Scenario
 
-NAMES = """rub contact_duty contact_impulse_per_turn_n_s blades_touched contact_zones contact_zone_centres_rad
-contact_zone_widths_rad contact_zones_symmetric motion_blisk motion_casing motion period_blisk period_casing period
-has_2fr""".split()
+NAMES = [
+    "rub",
+    "contact_duty",
+    "contact_impulse_per_turn_n_s",
+    "blades_touched",
+    "contact_zones",
+    "contact_zone_centres_rad",
+    "contact_zone_widths_rad",
+    "contact_zones_symmetric",
+    "motion_blisk",
+    "motion_casing",
+    "motion",
+    "period_blisk",
+    "period_casing",
+    "period",
+    "has_2fr",
+]
 
 
 def test_labels_have_their_public_names(rub_run):

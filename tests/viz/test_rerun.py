@@ -130,7 +130,7 @@ def test_missing_content_and_file_are_named(tmp_path):
     stream.log("/something", rr.TextLog("else"))
     stream.disconnect()
     assert any("/preview/" in problem for problem in check_rrd(tmp_path / "other.rrd"))
-    assert check_rrd(tmp_path / "none.rrd") == [f"{tmp_path / 'none.rrd'}: there is no such file"]
+    assert check_rrd(tmp_path / "none.rrd") == ["there is no such file"]
 
 
 def test_a_failed_run_is_not_written(rub_run, tmp_path):
