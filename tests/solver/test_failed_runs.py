@@ -1,0 +1,65 @@
+"""What is wrong with the machinery must come out as a status, with a reason, and never as data."""
+
+import numpy as np
+import pytest
+
+from rubgen.scenario import ContactLaw
+from rubgen.solver import Status, Stepper, integrate
+from rubgen.solver.integrate import Integration
+from rubgen.solver.stepper import closing_ramp
+
+
+@pytest.fixture
+def integration(small_system, operation):
+    system = small_system(speed=500.0)
+    return Integration(Stepper(system, ContactLaw(friction=0.1), 256), operation(system, record_turns=5), 40, 100)
+
+
+def test_a_wrong_mass_in_the_book_breaks_the_energy_identity(integration):
+    integration.stepper.book.M[:] *= 1 + 1e-6
+    integration.run()
+    assert integration.status is Status.ENERGY
+    assert "above 1e-08 after turn" in integration.reason
+
+
+def test_a_damping_work_that_is_left_out_breaks_the_energy_identity(integration):
+    integration.stepper.book.blisk_damping[:] = 0
+    integration.run()
+    assert integration.status is Status.ENERGY
+
+
+def test_a_compliance_that_pulls_has_no_contact_force(integration):
+    integration.stepper.blisk.inverse[:] *= -1
+    integration.stepper.casing.inverse[:] *= -1
+    integration.run()
+    assert integration.status is Status.CONTACT_UNSOLVED
+    assert "in turn" in integration.reason
+
+
+def test_a_state_that_is_not_a_number_ends_the_run(integration):
+    integration.stepper.state.now[-1] = np.nan
+    integration.run()
+    assert integration.status is Status.DIVERGED
+
+
+def test_coupling_of_blisk_and_casing_by_a_matrix_is_refused(small_system, operation):
+    system = small_system()
+    system.K[0, -1] = 1.0
+    with pytest.raises(ValueError, match="contact alone"):
+        integrate(system, operation(system), ContactLaw())
+
+
+def test_the_margin_of_candidates_changes_no_result(small_system):
+    ends = []
+    for margin in (1e-5, 1e-12, 5e-4):
+        stepper = Stepper(small_system(speed=500.0), ContactLaw(friction=0.1), 256)
+        stepper.laws = stepper.laws._replace(margin=margin)
+        impulse = 0.0
+        for turn in range(10):
+            code = stepper.run_turn(5e-4 * closing_ramp((turn + np.arange(-1, 257) / 256) / 6))[0]
+            assert code == 0
+            impulse += stepper.result.summary[0]
+        ends.append(np.append(stepper.state.now / np.abs(stepper.state.now).max(), impulse))
+    assert ends[0][-1] > 1
+    np.testing.assert_allclose(ends[1], ends[0], atol=1e-9)
+    np.testing.assert_allclose(ends[2], ends[0], atol=1e-9)
