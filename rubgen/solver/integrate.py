@@ -6,6 +6,7 @@ import math
 from collections import deque
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from rubgen.arrays import FloatArray
 from rubgen.reduction.model import SpinningSystem
@@ -147,17 +148,18 @@ def integrate(
     A run that fails has the status and the reason; nothing else in it is data. Raises ValueError for a system whose
     blisk and casing are coupled otherwise than by contact. Holds for constant speed and small casing displacements.
     """
-    steps = steps_per_turn(system, operation.steps_per_turn, sample_rate_hz)
-    decay = slowest_decay(system)
-    if decay <= 0:
-        return _unstable(system, operation, steps, decay)
-    settle = settle_turns(system, operation)
-    stepper = Stepper(system, contact, steps)
-    turn_seconds = steps * stepper.dt
-    tail = max(LEAST_TAIL_TURNS, math.ceil(tail_seconds / turn_seconds))
-    integration = Integration(stepper, operation, settle, tail)
-    integration.run()
-    return _response(integration)
+    # More BLAS threads split sums otherwise and change the last bits of A^-1, which irregular motion makes large.
+    with threadpool_limits(1, user_api="blas"):
+        steps = steps_per_turn(system, operation.steps_per_turn, sample_rate_hz)
+        decay = slowest_decay(system)
+        if decay <= 0:
+            return _unstable(system, operation, steps, decay)
+        settle = settle_turns(system, operation)
+        stepper = Stepper(system, contact, steps)
+        tail = max(LEAST_TAIL_TURNS, math.ceil(tail_seconds / (steps * stepper.dt)))
+        integration = Integration(stepper, operation, settle, tail)
+        integration.run()
+        return _response(integration)
 
 
 def _response(integration: Integration) -> Response:

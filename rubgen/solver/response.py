@@ -46,7 +46,11 @@ class ContactEvents:
 class EnergyBook:
     """Works over the whole integration, in J, as the scheme books them.
 
-    residual = |E_end - E_start - sum of works| / (sum of absolute works); the identity is exact but for rounding.
+    residual = |E_end - E_start - sum of works| / (sum of absolute works); the identity is exact but for rounding, and
+    where hardly any work is done (no rub) the largest |E| stands for the works. `contact` is lam^T B^T d;
+    `normal_loss` and `friction_loss` are losses of the contact itself, <= 0; the drive that keeps the speed constant
+    pays drive_contact_work = contact - normal_loss - friction_loss, which tends to drive_contact_limit = -Omega times
+    the time integral of the contact torque on the blisk, both positive where contact brakes.
     """
 
     start: float
@@ -68,7 +72,8 @@ class Response:
     """The true response of one run: never a history of the state.
 
     `taps` maps a name to the signal at every step of the end of the record, (n_tail,), the last step of the record
-    being the last value; the tail covers the asked seconds or 100 turns, whichever is longer. `section_q`,
+    being the last value; the tail covers the asked seconds or 100 turns, whichever is longer, and reaches back into the
+    settling where the record is shorter. `section_q`,
     `section_v` (record_turns, n) are state and velocity once a turn at theta = 0 mod 2 pi (blisk coordinates in the
     turning frame, which coincides with the inertial one there). `impulse_per_turn` (record_turns,) in N s.
     `contact_steps_per_turn` (record_turns,) counts the steps of each turn in which any blade touched.

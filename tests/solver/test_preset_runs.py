@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_limits
 
 from rubgen.machine import load_machine
 from rubgen.reduction import reduce
@@ -47,3 +48,12 @@ def test_rubbing_has_begun_at_6780(model):
     response = run(model, 6780.0, settle_turns=80)
     assert response.status is Status.OK
     assert np.all(response.impulse_per_turn > 0)
+
+
+def test_the_number_of_blas_threads_changes_no_bit(model):
+    runs = []
+    for threads in (1, 2):
+        with threadpool_limits(threads):
+            runs.append(run(model, 6900.0, friction=0.1, settle_turns=40, record_turns=10))
+    np.testing.assert_array_equal(runs[0].section_q, runs[1].section_q)
+    np.testing.assert_array_equal(runs[0].taps["contact_force"], runs[1].taps["contact_force"])
