@@ -12,6 +12,7 @@ from pathlib import Path
 from rubgen.dataset.assemble import assemble
 from rubgen.dataset.card import write_card
 from rubgen.dataset.claim import claimed, finished
+from rubgen.dataset.croissant import write_croissant
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import identity_of, read_manifest, write_manifest
 from rubgen.dataset.stage import stage_run, warm_up
@@ -62,6 +63,7 @@ def generate(
             made = _make_missing(recipe, layout, workers, progress)
             status = dict(sorted(assemble(recipe, layout).items()))
             write_card(layout, identity, status)
+            write_croissant(layout, identity)
             write_manifest(layout, identity, status)
         shutil.rmtree(layout.staging)
     except OSError as error:

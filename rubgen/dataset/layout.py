@@ -39,6 +39,11 @@ class Layout:
         return self.root / "README.md"
 
     @property
+    def croissant(self) -> Path:
+        """The description for machine-learning tools."""
+        return self.root / "croissant.json"
+
+    @property
     def data(self) -> Path:
         """Folder of the Parquet files with signals."""
         return self.root / "data"

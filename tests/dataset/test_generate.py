@@ -46,6 +46,7 @@ def test_the_set_has_every_file_and_nothing_else(small_set):
     exports = {f"mcap/run-{i:06d}.mcap" for i in range(4)}
     assert names == exports | {
         "README.md",
+        "croissant.json",
         "data/train-00000-of-00001.parquet",
         "manifest.json",
         "manifest.json.sha256",

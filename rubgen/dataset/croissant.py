@@ -1,0 +1,118 @@
+"""The data set's description in Croissant 1.0 (JSON-LD), which machine-learning tools load."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from rubgen.dataset.files import sha256_of, write_json
+from rubgen.dataset.layout import SPLIT, Layout
+from rubgen.dataset.manifest import Identity
+from rubgen.io.columns import CLEAN_SIGNALS, SCALARS, SIGNALS, Column
+
+PARQUET = "application/x-parquet"
+TYPES = {
+    "text": "sc:Text",
+    "flag": "sc:Boolean",
+    "integer": "sc:Integer",
+    "number": "sc:Float",
+    "numbers": "sc:Float",
+    "signal": "sc:Float",
+}
+CONTEXT: dict[str, Any] = {
+    "@language": "en",
+    "@vocab": "https://schema.org/",
+    "citeAs": "cr:citeAs",
+    "column": "cr:column",
+    "conformsTo": "dct:conformsTo",
+    "cr": "http://mlcommons.org/croissant/",
+    "rai": "http://mlcommons.org/croissant/RAI/",
+    "data": {"@id": "cr:data", "@type": "@json"},
+    "dataType": {"@id": "cr:dataType", "@type": "@vocab"},
+    "dct": "http://purl.org/dc/terms/",
+    "equivalentProperty": "cr:equivalentProperty",
+    "examples": {"@id": "cr:examples", "@type": "@json"},
+    "extract": "cr:extract",
+    "field": "cr:field",
+    "fileProperty": "cr:fileProperty",
+    "fileObject": "cr:fileObject",
+    "fileSet": "cr:fileSet",
+    "format": "cr:format",
+    "includes": "cr:includes",
+    "isLiveDataset": "cr:isLiveDataset",
+    "jsonPath": "cr:jsonPath",
+    "key": "cr:key",
+    "md5": "cr:md5",
+    "parentField": "cr:parentField",
+    "path": "cr:path",
+    "recordSet": "cr:recordSet",
+    "references": "cr:references",
+    "regex": "cr:regex",
+    "repeated": "cr:repeated",
+    "replace": "cr:replace",
+    "samplingRate": "cr:samplingRate",
+    "sc": "https://schema.org/",
+    "separator": "cr:separator",
+    "source": "cr:source",
+    "subField": "cr:subField",
+    "transform": "cr:transform",
+}
+
+
+def write_croissant(layout: Layout, identity: Identity) -> None:
+    """Write croissant.json beside the files that it describes; `runs.parquet` must be there."""
+    write_json(layout.croissant, croissant(layout, identity))
+
+
+def croissant(layout: Layout, identity: Identity) -> dict[str, Any]:
+    """The description: the record set `runs`, and `signals` where the set has Parquet data."""
+    recipe = identity.recipe
+    runs_file = {
+        "@type": "cr:FileObject",
+        "@id": "runs.parquet",
+        "name": "runs.parquet",
+        "contentUrl": layout.runs.name,
+        "encodingFormat": PARQUET,
+        "sha256": sha256_of(layout.runs),
+    }
+    distribution = [runs_file]
+    records = [_record_set("runs", SCALARS, {"fileObject": {"@id": "runs.parquet"}})]
+    if "parquet" in recipe["output"]["formats"]:
+        includes = f"data/{SPLIT}-*.parquet"
+        distribution.append({"@type": "cr:FileSet", "@id": "data", "includes": includes, "encodingFormat": PARQUET})
+        signals = CLEAN_SIGNALS if recipe["sensors"]["keep_clean"] else SIGNALS
+        records.append(_record_set("signals", SCALARS + signals, {"fileSet": {"@id": "data"}}))
+    return {
+        "@context": CONTEXT,
+        "@type": "sc:Dataset",
+        "name": recipe["name"],
+        "description": f"{recipe['runs']} simulated runs of a bladed disk that may rub its flexible oval casing.",
+        "conformsTo": "http://mlcommons.org/croissant/1.0",
+        "license": recipe["license"],
+        "version": _semantic(identity.packages["rubgen"]),
+        "distribution": distribution,
+        "recordSet": records,
+    }
+
+
+def _record_set(name: str, columns: tuple[Column, ...], source: dict[str, Any]) -> dict[str, Any]:
+    fields = [_field(name, column, source) for column in columns]
+    return {"@type": "cr:RecordSet", "@id": name, "name": name, "key": {"@id": f"{name}/run_id"}, "field": fields}
+
+
+def _field(record_set: str, column: Column, source: dict[str, Any]) -> dict[str, Any]:
+    unit = f", in {column.unit}" if column.unit else ""
+    field: dict[str, Any] = {
+        "@type": "cr:Field",
+        "@id": f"{record_set}/{column.name}",
+        "name": column.name,
+        "description": f"{column.meaning}{unit}",
+        "dataType": TYPES[column.kind],
+        "source": {**source, "extract": {"column": column.name}},
+    }
+    return field | ({"repeated": True} if column.kind in ("numbers", "signal") else {})
+
+
+def _semantic(version: str) -> str:
+    """The three leading numbers of a version, which is all that Croissant allows."""
+    return ".".join([*re.findall(r"\d+", version), "0", "0"][:3])
