@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-FULL_DOF = 15021
-REDUCED_DOF = 125
 BLISK_HZ = {
     1: 68.55,
     2: 68.55,
@@ -18,8 +16,6 @@ BLISK_HZ = {
 """Natural frequencies at rest by the number of the mode, counted from 1: tilt twice, lateral twice, blade umbrella,
 blades with one nodal diameter twice, axial, torsion."""
 CASING_HZ = (180.98, 181.04, 181.05, 181.22, 181.54, 181.99, 181.99, 183.35, 183.36, 186.54, 186.54)
-CRITICAL_SPEED_RPM = (8100.0, 8910.0)
-"""The range of speeds that the paper calls near the critical speed."""
 
 
 def blisk_deviation(frequencies_hz: list[float]) -> dict[int, float]:

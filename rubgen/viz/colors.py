@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from rubgen.labels.labels import Motion
 
-BLUE, SKY, GREEN, YELLOW = "#0072b2", "#56b4e9", "#009e73", "#f0e442"
-ORANGE, VERMILION, PURPLE, GREY = "#e69f00", "#d55e00", "#cc79a7", "#8c8c8c"
+BLUE, GREEN, ORANGE, VERMILION, GREY = "#0072b2", "#009e73", "#e69f00", "#d55e00", "#8c8c8c"
 MOTION_COLORS = {
     Motion.STATIC: GREY,
     Motion.PERIOD_1: BLUE,
@@ -13,3 +12,8 @@ MOTION_COLORS = {
     Motion.QUASI_PERIODIC: ORANGE,
     Motion.CHAOTIC: VERMILION,
 }
+
+
+def rgba(color: str) -> int:
+    """An opaque colour `#rrggbb` as the number 0xrrggbbff that Rerun takes."""
+    return int(f"{color.lstrip('#')}ff", 16)

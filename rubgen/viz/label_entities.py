@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import rerun as rr
 
+from rubgen.labels.harmonics import HIGHEST_ORDER
 from rubgen.labels.labels import Labels, Motion
 from rubgen.labels.plain import labels_dict
 from rubgen.scenario import Scenario
 from rubgen.scenario.plain import scenario_dict
-from rubgen.viz.colors import MOTION_COLORS
+from rubgen.viz.colors import MOTION_COLORS, rgba
 from rubgen.viz.signal_entities import TIMELINE, times_ns
 
 BAR_WIDTH = 0.8
@@ -27,14 +28,15 @@ def send_labels(stream: rr.RecordingStream, scenario: Scenario, labels: Labels) 
     stream.log("/labels/text", rr.TextDocument(_table(scenario, plain), media_type="text/markdown"), static=True)
     _send_motions(stream, labels)
     for tap, amplitudes in labels.orders.items():
-        bars = rr.BarChart(amplitudes, abscissa=np.arange(1, 11) - BAR_WIDTH / 2, widths=np.full(10, BAR_WIDTH))
+        left = np.arange(1, HIGHEST_ORDER + 1) - BAR_WIDTH / 2
+        bars = rr.BarChart(amplitudes, abscissa=left, widths=np.full(HIGHEST_ORDER, BAR_WIDTH))
         stream.log(f"/orders/{tap}", bars, static=True)
 
 
 def _send_motions(stream: rr.RecordingStream, labels: Labels) -> None:
     """One lane each for system, blisk and casing, every class in its colour."""
     index = [rr.TimeColumn(TIMELINE, duration=times_ns(np.zeros(1)))]
-    colors = [int(MOTION_COLORS[motion].lstrip("#") + "ff", 16) for motion in Motion]
+    colors = [rgba(MOTION_COLORS[motion]) for motion in Motion]
     motions = {"system": labels.motion, "blisk": labels.motion_blisk, "casing": labels.motion_casing}
     for part, motion in motions.items():
         named = rr.StateConfiguration(

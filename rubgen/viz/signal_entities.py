@@ -12,6 +12,7 @@ from rubgen.arrays import FloatArray
 from rubgen.sensors.channel import Channel, Recording
 from rubgen.sensors.contact_window import contact_intervals
 from rubgen.sensors.envelope import min_max, preview_bin
+from rubgen.viz.colors import BLUE, VERMILION, rgba
 
 if TYPE_CHECKING:
     from rubgen.pipeline import Run
@@ -85,7 +86,7 @@ def send_contacts(stream: rr.RecordingStream, run: Run, recording: Recording) ->
         ("impulse", "N s", touches.impulse),
         ("blade", "number", touches.blade.astype(np.float64)),
     ):
-        points = rr.SeriesPoints(names=f"{name} [{unit}]", markers="circle", marker_sizes=1.5, colors=[0, 114, 178])
+        points = rr.SeriesPoints(names=f"{name} [{unit}]", markers="circle", marker_sizes=1.5, colors=rgba(BLUE))
         stream.log(f"/contact/{name}", points, static=True)
         stream.send_columns(f"/contact/{name}", index, rr.Scalars.columns(scalars=values[order]))
 
@@ -98,12 +99,12 @@ def send_orbit(stream: rr.RecordingStream, run: Run, recording: Recording) -> No
         path = 1e6 * np.column_stack([x.values[window], y.values[window]])
         stream.log(
             "/orbit/plane/path",
-            rr.LineStrips2D([path], colors=[[0, 114, 178]], radii=rr.Radius.ui_points(0.75)),
+            rr.LineStrips2D([path], colors=rgba(BLUE), radii=rr.Radius.ui_points(0.75)),
             static=True,
         )
     centre = 3 * run.response.n_blades
     section = 1e6 * run.response.section_q[:, centre : centre + 2]
     upwards = rr.Transform3D(mat3x3=np.diag([1.0, -1.0, 1.0]))  # the viewer's 2D views have Y downwards
     stream.log("/orbit/plane", upwards, static=True)
-    points = rr.Points2D(section, colors=[[213, 94, 0]], radii=rr.Radius.ui_points(2.5))
+    points = rr.Points2D(section, colors=rgba(VERMILION), radii=rr.Radius.ui_points(2.5))
     stream.log("/orbit/plane/section", points, static=True)
