@@ -17,7 +17,8 @@ from rubgen.io.mcap_check import check_mcap
 from rubgen.io.mcap_messages import MESSAGES, PACKAGE, file_descriptor_set, message_class, sample_block, timestamp
 from rubgen.io.mcap_read import McapRun, read_mcap
 from rubgen.io.multi_array import SCHEMA, SCHEMA_NAME, multi_arrays
-from rubgen.io.plain import labels_dict, scenario_dict
+from rubgen.labels.plain import labels_dict
+from rubgen.scenario.plain import scenario_dict
 from rubgen.sensors.channel import Channel, Float32Array, Recording
 from rubgen.sensors.contact_window import contact_intervals
 from rubgen.sensors.envelope import min_max, preview_bin

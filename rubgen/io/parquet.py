@@ -16,7 +16,7 @@ import pyarrow.parquet as pq
 
 from rubgen.errors import UserError
 from rubgen.io.columns import CLEAN_SIGNALS, SCALARS, SIGNALS, Column
-from rubgen.io.plain import labels_dict
+from rubgen.labels.plain import labels_dict
 from rubgen.scenario.vary import varied_values
 from rubgen.sensors.channel import Recording
 

@@ -14,7 +14,7 @@ from rerun.chunk import McapReader as RerunReader
 
 from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
 from rubgen.io.mcap_messages import message_class, proto_text, read_sample_block, sample_block, timestamp
-from rubgen.io.plain import labels_dict
+from rubgen.labels.plain import labels_dict
 from rubgen.scenario import Scenario
 from rubgen.sensors.contact_window import contact_intervals
 

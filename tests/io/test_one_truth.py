@@ -7,7 +7,7 @@ from rerun.chunk import RrdReader
 from rubgen.io.columns import SCALARS
 from rubgen.io.mcap import read_mcap, write_mcap
 from rubgen.io.parquet import read_table, write_parquet
-from rubgen.io.plain import labels_dict
+from rubgen.labels.plain import labels_dict
 from rubgen.viz.rerun import write_rrd
 from rubgen.viz.signal_entities import detail_window, quantities
 

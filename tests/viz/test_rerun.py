@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from rerun.chunk import RrdReader
 
-from rubgen.io.plain import labels_dict
+from rubgen.labels.plain import labels_dict
 from rubgen.sensors.contact_window import contact_intervals
 from rubgen.viz.rerun import check_rrd, recording_id, write_rrd
 from rubgen.viz.signal_entities import detail_window

@@ -1,12 +1,6 @@
 import json
 
-from hypothesis import given
-from hypothesis import strategies as st
-from pydantic import TypeAdapter
-
-from rubgen.io.plain import labels_dict, scenario_dict
-from rubgen.machine import load_machine
-from rubgen.scenario import Operation, Scenario
+from rubgen.labels.plain import labels_dict
 
 NAMES = [
     "rub",
@@ -44,10 +38,3 @@ def test_what_is_undefined_is_null(free_run):
     assert plain["contact_force_even_share"] is None
     assert plain["contact_zones_symmetric"] is None
     assert plain["contact_zone_centres_rad"] == []
-
-
-@given(speed=st.floats(min_value=1e-3, max_value=1e6), seed=st.integers(min_value=0, max_value=2**63))
-def test_a_scenario_comes_back_from_json_with_every_bit(speed, seed):
-    scenario = Scenario(machine=load_machine("zeng2019"), operation=Operation(speed_rpm=speed), seed=seed)
-    text = json.dumps(scenario_dict(scenario), allow_nan=False)
-    assert TypeAdapter(Scenario).validate_python(json.loads(text)) == scenario
