@@ -89,7 +89,10 @@ def _recipe(recipe: Recipe | Mapping[str, object] | Path | str | None, runs: int
 def _workers(workers: int | None) -> int:
     if workers is not None and workers < 1:
         raise UserError(f"--workers {workers}: must be at least 1; give a number of processes")
-    return workers or len(os.sched_getaffinity(0))
+    if workers is not None:
+        return workers
+    # Cores that this process may use, where the system can tell.
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _nothing_to_do(layout: Layout) -> Generated:

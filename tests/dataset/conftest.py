@@ -1,6 +1,7 @@
 """One small set that really was simulated: short records, made once for all tests of data sets."""
 
 import shutil
+from contextlib import contextmanager
 from types import SimpleNamespace
 
 import pytest
@@ -22,19 +23,32 @@ RECIPE = {
 }
 
 
-@pytest.fixture(scope="session")
-def short_records():
+@contextmanager
+def _short_records():
     """Recipes ask for 500 turns; for tests of files 100 will do."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("rubgen.scenario.feasible.MIN_RECORD_TURNS", 100)
         yield
 
 
+@pytest.fixture
+def short_records():
+    with _short_records():
+        yield
+
+
+@pytest.fixture(scope="module")
+def module_with_short_records():
+    with _short_records():
+        yield
+
+
 @pytest.fixture(scope="session")
-def small_set(short_records, tmp_path_factory):
+def small_set(tmp_path_factory):
     """Directory, recipe, and what `generate` returned."""
     directory = tmp_path_factory.mktemp("sets") / "small"
-    made = rubgen.generate(RECIPE, directory, workers=1)
+    with _short_records():
+        made = rubgen.generate(RECIPE, directory, workers=1)
     return SimpleNamespace(directory=directory, recipe=RECIPE, made=made)
 
 

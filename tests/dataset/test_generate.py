@@ -106,7 +106,7 @@ def test_an_interrupted_set_is_completed_to_the_same_bytes(fake_simulate, tmp_pa
     assert tree(tmp_path / "parts") == tree(tmp_path / "whole")
 
 
-def test_a_stop_after_the_manifest_leaves_only_the_staging_to_remove(small_set, copied_set, monkeypatch):
+def test_a_stop_after_the_manifest_leaves_only_the_staging_to_remove(small_set, copied_set, short_records):
     (copied_set / ".staging/runs").mkdir(parents=True)
     again = rubgen.generate(small_set.recipe, copied_set)
     assert again.made == 0
@@ -156,7 +156,7 @@ def test_many_runs_go_into_several_files_and_groups(fake_simulate, tmp_path, mon
     assert not (tmp_path / "set/mcap").exists()
 
 
-def test_another_recipe_or_number_of_runs_is_refused(small_set):
+def test_another_recipe_or_number_of_runs_is_refused(small_set, short_records):
     with pytest.raises(UserError, match=r"holds the output of another recipe \(runs = 4, asked for 5\); give another"):
         rubgen.generate(small_set.recipe, small_set.directory, runs=5)
     with pytest.raises(UserError, match=r"another recipe \(seed = 3, asked for 4\)"):
@@ -218,7 +218,7 @@ def test_a_full_disk_is_one_line_and_loses_nothing(fake_simulate, tmp_path, monk
     assert tree(tmp_path / "set") == tree(tmp_path / "whole")
 
 
-def test_a_damaged_finished_set_is_not_called_finished(small_set, copied_set):
+def test_a_damaged_finished_set_is_not_called_finished(small_set, copied_set, short_records):
     (copied_set / "mcap/run-000001.mcap").unlink()
     with pytest.raises(UserError, match=r"mcap/run-000001.mcap: listed in the manifest, but not there"):
         rubgen.generate(small_set.recipe, copied_set)

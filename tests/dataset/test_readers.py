@@ -24,7 +24,7 @@ def data(small_set):
 
 
 @pytest.fixture(scope="module")
-def memory(small_set, short_records):
+def memory(small_set, module_with_short_records):
     """Run 1 again, alone and in memory."""
     run = rubgen.simulate(parse_recipe(small_set.recipe).scenario(1))
     return {name: channel.values for name, channel in run.recording.channels.items()}
