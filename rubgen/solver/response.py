@@ -12,7 +12,7 @@ class Status(StrEnum):
     """How an integration ended; each value is a sentence for the user."""
 
     OK = "ok"
-    DIVERGED = "diverged: displacements left the range in which a linear casing means anything"
+    DIVERGED = "diverged: displacements left the range in which linear casing and blades mean anything"
     UNSTABLE = "unstable: the linear system without contact grows by itself"
     CONTACT_UNSOLVED = "contact-unsolved: no unique contact force was found in a step"
     ENERGY = "energy: the energy identity of the scheme was not kept"

@@ -7,6 +7,7 @@ from rubgen.scenario import ContactLaw
 from rubgen.solver import Status, Stepper, integrate
 from rubgen.solver.integrate import Integration
 from rubgen.solver.stepper import closing_ramp
+from rubgen.solver.turn_kernels import has_diverged
 
 
 @pytest.fixture
@@ -40,6 +41,27 @@ def test_a_state_that_is_not_a_number_ends_the_run(integration):
     integration.stepper.state.now[-1] = np.nan
     integration.run()
     assert integration.status is Status.DIVERGED
+
+
+@pytest.mark.parametrize(("share", "beyond"), [(0.0249, False), (-0.0249, False), (0.0251, True), (-0.0251, True)])
+def test_a_fortieth_of_the_tip_radius_is_the_limit_of_tips_and_of_the_casings_nodes(small_system, share, beyond):
+    system = small_system()
+    stepper = Stepper(system, ContactLaw(), 256)
+    start, size = system.casing_start, share * system.tip_radius
+
+    def diverged(q):
+        return has_diverged(stepper.surface, stepper.laws, q, start, system.n_blades)
+
+    for direction in range(3):
+        tip = np.zeros(start + system.n_casing)
+        tip[3 * 4 + direction] = size
+        assert diverged(tip) is beyond
+    # Modes 0 and 1 shift the ring as a whole along X and Y: half of each is a node displacement of `size`, although
+    # the sum of the modes' reaches is far more.
+    ring = np.zeros(start + system.n_casing)
+    ring[start : start + 2] = size / np.sqrt(2) / system.casing_modes[0, 0, 0]
+    assert np.hypot(*(system.casing_modes[7] @ ring[start:])) == pytest.approx(abs(size))
+    assert diverged(ring) is beyond
 
 
 def test_coupling_of_blisk_and_casing_by_a_matrix_is_refused(small_system, operation):
