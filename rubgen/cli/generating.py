@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from shutil import which
 from types import FrameType
 
 from rich.console import Console
@@ -84,3 +87,24 @@ def _report(made: Generated, *, as_json: bool) -> None:
     else:
         status = ", ".join(f"{count} {name}" for name, count in made.status.items())
         say(f"{made.directory}: {made.runs} runs ({status}), {made.made} of them new")
+    if not as_json:
+        for line in _ways_to_look(made.directory):
+            say(line)
+
+
+def _ways_to_look(directory: Path) -> Iterator[str]:
+    """What stands where, and the command that shows it."""
+    yield f"  {directory}/runs.parquet, data/: parameters, labels, signals; for pandas, polars, datasets"
+    recordings = sorted((directory / "rrd").glob("*.rrd"))
+    if recordings:
+        yield f"  see a run:      {_command('rerun')} {recordings[0]}"
+    if (directory / "mcap").is_dir():
+        yield f"  for Foxglove:   {directory}/mcap/"
+    yield f"  count classes:  {_command('rubgen')} info {directory}"
+    yield f"  check it all:   {_command('rubgen')} verify {directory}"
+    yield f"  {directory}/README.md tells what every column means and how to load it"
+
+
+def _command(name: str) -> str:
+    """How to call a program of this environment from here: by name where the shell finds it, else by path."""
+    return name if which(name) else os.path.relpath(Path(sys.executable).with_name(name))
