@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check bench pictures schemas clean
+.PHONY: setup demo test check bench verification pictures schemas clean
 
 setup: $(VENV)/.installed-dev
 
@@ -12,7 +12,7 @@ demo: $(VENV)/.installed
 	$(BIN)/rubgen info out/demo
 
 test: $(VENV)/.installed-dev
-	$(BIN)/pytest
+	$(BIN)/pytest -n auto --dist loadscope
 
 check: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
@@ -22,6 +22,9 @@ check: $(VENV)/.installed-dev
 
 bench: $(VENV)/.installed-dev
 	$(BIN)/python -m benchmarks
+
+verification: $(VENV)/.installed-dev
+	$(BIN)/python -m rubgen.studies.verification
 
 pictures: $(VENV)/.installed-dev
 	$(BIN)/python docs/pictures.py
