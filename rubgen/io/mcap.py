@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-from collections import defaultdict
 from collections.abc import Iterator
 from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
 from mcap.writer import Writer
 
 from rubgen.io.mcap_check import check_mcap
@@ -21,7 +19,7 @@ from rubgen.labels.plain import labels_dict
 from rubgen.scenario.plain import scenario_dict
 from rubgen.sensors.channel import Channel, Float32Array, Recording
 from rubgen.sensors.contact_window import contact_intervals
-from rubgen.sensors.envelope import min_max, preview_bin
+from rubgen.sensors.envelope import Preview, preview
 
 if TYPE_CHECKING:  # Run carries the solver's imports; who reads or checks a file needs none of them
     from rubgen.labels.labels import Labels
@@ -90,10 +88,10 @@ def _write_messages(writer: Writer, run: Run, recording: Recording, labels: Labe
         add(f"/raw/{name}", schemas["SampleBlock"], _blocks(channel.values, recording.sample_rate_hz), metadata)
         if channel.clean is not None:
             add(f"/clean/{name}", schemas["SampleBlock"], _blocks(channel.clean, recording.sample_rate_hz), metadata)
-    for quantity, group in _groups(recording).items():
-        names = _preview_names(group)
-        metadata = {"unit": group[0].unit, "names": ", ".join(names)}
-        add(f"/preview/{quantity}", multi_array, _preview(group, names, recording.sample_rate_hz), metadata)
+    for quantity, group in recording.by_quantity().items():
+        shown = preview(group, recording.sample_rate_hz)
+        metadata = {"unit": group[0].unit, "names": ", ".join(shown.names)}
+        add(f"/preview/{quantity}", multi_array, _arrays(shown, recording.sample_rate_hz), metadata)
     add("/contact", schemas["Contact"], _contacts(run, recording))
     add("/once_per_rev", schemas["OncePerRev"], _pulses(recording))
     add("/labels/motion", schemas["MotionLabel"], iter([_motion(labels)]))
@@ -116,28 +114,15 @@ def _describe(channel: Channel) -> dict[str, str]:
     }
 
 
-def _groups(recording: Recording) -> dict[str, list[Channel]]:
-    groups: dict[str, list[Channel]] = defaultdict(list)
-    for channel in recording.channels.values():
-        groups[channel.quantity.replace(" ", "_")].append(channel)
-    return groups
-
-
 def _blocks(values: Float32Array, sample_rate_hz: float) -> Iterator[Stamped]:
     for first in range(0, values.size, BLOCK_SAMPLES):
         time = nanoseconds(first / sample_rate_hz)
         yield time, sample_block(values[first : first + BLOCK_SAMPLES], sample_rate_hz, first, time)
 
 
-def _preview_names(group: list[Channel]) -> list[str]:
-    return [f"{channel.name}.{end}" for channel in group for end in ("min", "max")]
-
-
-def _preview(group: list[Channel], names: list[str], sample_rate_hz: float) -> Iterator[Stamped]:
-    samples = preview_bin(sample_rate_hz)
-    envelopes = [envelope for channel in group for envelope in min_max(channel.values, samples)]
-    times = [nanoseconds(first / sample_rate_hz) for first in range(0, group[0].values.size, samples)]
-    return zip(times, multi_arrays(names, np.column_stack(envelopes).astype(np.float64)), strict=True)
+def _arrays(shown: Preview, sample_rate_hz: float) -> Iterator[Stamped]:
+    times = [nanoseconds(first / sample_rate_hz) for first in shown.first.tolist()]
+    return zip(times, multi_arrays(shown.names, shown.values), strict=True)
 
 
 def _contacts(run: Run, recording: Recording) -> Iterator[Stamped]:

@@ -10,6 +10,7 @@ from google.protobuf.message import DecodeError
 
 from rubgen.io.mcap_messages import read_sample_block
 from rubgen.io.mcap_read import UNREADABLE, McapContent, read_content
+from rubgen.sensors.channel import quantity_key
 
 TOPICS = ("/contact", "/once_per_rev", "/labels/motion")
 CHANNEL_KEYS = ("unit", "quantity", "axis", "location", "range_min", "range_max", "resolution", "sensitivity")
@@ -49,7 +50,7 @@ def _topic_problems(content: McapContent) -> Iterator[str]:
         if missing:
             yield f"{topic}: metadata lacks {', '.join(missing)}"
         elif topic.startswith("/raw/"):
-            preview = f"/preview/{channel.metadata['quantity'].replace(' ', '_')}"
+            preview = f"/preview/{quantity_key(channel.metadata['quantity'])}"
             if not content.messages.get(preview):
                 yield f"{topic}: {preview} is missing"
     for topic, messages in content.messages.items():

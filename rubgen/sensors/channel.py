@@ -29,6 +29,11 @@ class Channel:
     clean: Float32Array | None = None
 
 
+def quantity_key(quantity: str) -> str:
+    """A quantity as a part of topics and entity paths, which take no blanks."""
+    return quantity.replace(" ", "_")
+
+
 @dataclass(frozen=True, kw_only=True)
 class Recording:
     """All channels of one run over the last `signal_seconds` of its record.
@@ -41,3 +46,15 @@ class Recording:
     rotation_angle: float
     channels: dict[str, Channel]
     once_per_rev: FloatArray
+
+    @property
+    def samples(self) -> int:
+        """Number of samples of every channel."""
+        return next(iter(self.channels.values())).values.size
+
+    def by_quantity(self) -> dict[str, list[Channel]]:
+        """Channels by the key of what they measure, both in the order of the recording."""
+        groups: dict[str, list[Channel]] = {}
+        for channel in self.channels.values():
+            groups.setdefault(quantity_key(channel.quantity), []).append(channel)
+        return groups

@@ -35,10 +35,9 @@ def contact_intervals(response: Response, recording: Recording) -> ContactInterv
     See `first_sample_seconds` for where the recording lies in the record.
     """
     events, rate = response.events, recording.sample_rate_hz
-    samples = next(iter(recording.channels.values())).values.size
     start = np.asarray(events.start_step * response.dt - first_sample_seconds(response, recording), dtype=np.float64)
     duration = np.asarray(events.steps * response.dt, dtype=np.float64)
-    inside = (start + duration > 0) & (start < samples / rate)
+    inside = (start + duration > 0) & (start < recording.samples / rate)
     return ContactIntervals(
         blade=events.blade[inside],
         start=start[inside],

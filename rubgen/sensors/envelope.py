@@ -1,17 +1,39 @@
-"""Minimum and maximum of a signal in equal bins: a preview that keeps every spike."""
+"""Minimum and maximum of signals in equal bins: a preview that keeps every spike."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
-from rubgen.sensors.channel import Float32Array
+from rubgen.arrays import FloatArray, IntArray
+from rubgen.sensors.channel import Channel, Float32Array
 
 PREVIEW_RATE_HZ = 1024.0
 
 
-def preview_bin(sample_rate_hz: float) -> int:
-    """Samples a bin so that a preview has about 1024 bins a second, one at least."""
-    return max(1, round(sample_rate_hz / PREVIEW_RATE_HZ))
+@dataclass(frozen=True, kw_only=True)
+class Preview:
+    """Channels at about 1024 bins a second: `values` (bins, columns) in their unit, bin i from sample `first[i]` on.
+
+    Each channel has two columns, `<channel>.min` and `<channel>.max`, as `names` says.
+    """
+
+    names: tuple[str, ...]
+    first: IntArray
+    values: FloatArray
+
+
+def preview(channels: Sequence[Channel], sample_rate_hz: float) -> Preview:
+    """Minimum and maximum of channels (one at least) of the same length in bins of `sample_rate_hz` / 1024 samples."""
+    samples_per_bin = max(1, round(sample_rate_hz / PREVIEW_RATE_HZ))
+    ends = [end for channel in channels for end in min_max(channel.values, samples_per_bin)]
+    return Preview(
+        names=tuple(f"{channel.name}.{end}" for channel in channels for end in ("min", "max")),
+        first=np.arange(0, channels[0].values.size, samples_per_bin),
+        values=np.column_stack(ends).astype(np.float64),
+    )
 
 
 def min_max(values: Float32Array, samples_per_bin: int) -> tuple[Float32Array, Float32Array]:

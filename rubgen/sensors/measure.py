@@ -53,7 +53,7 @@ def sample_positions(response: Response, sensing: Sensing, seconds: float) -> Fl
             f"sample_rate_hz = {rate:g}: at most {highest:.6g} Hz with {1 / dt:.6g} steps a second; "
             "lower sample_rate_hz or raise steps_per_turn"
         )
-    tail = next(iter(response.taps.values())).size
+    tail = _tail_steps(response)
     half_width = half_width_seconds(rate) / dt
     count = round(seconds * rate)
     positions = (tail - 1 - half_width) - np.arange(count - 1, -1, -1) / (rate * dt)
@@ -69,14 +69,16 @@ def sample_positions(response: Response, sensing: Sensing, seconds: float) -> Fl
 def first_sample_seconds(response: Response, recording: Recording) -> float:
     """Time of the recording's first sample, in s; step s of the record stands at s dt, its first at theta = 0."""
     rate = recording.sample_rate_hz
-    count = next(iter(recording.channels.values())).values.size
     last_step = (response.record_turns * response.steps_per_turn - 1) * response.dt
-    return last_step - half_width_seconds(rate) - (count - 1) / rate
+    return last_step - half_width_seconds(rate) - (recording.samples - 1) / rate
+
+
+def _tail_steps(response: Response) -> int:
+    return next(iter(response.taps.values())).size
 
 
 def _blisk_angle(response: Response, positions: FloatArray) -> FloatArray:
-    tail = next(iter(response.taps.values())).size
-    angle = np.mod((positions - tail) * (2 * np.pi / response.steps_per_turn), 2 * np.pi)
+    angle = np.mod((positions - _tail_steps(response)) * (2 * np.pi / response.steps_per_turn), 2 * np.pi)
     return np.where(angle < 2 * np.pi, angle, 0.0)
 
 

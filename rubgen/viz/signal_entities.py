@@ -9,9 +9,9 @@ import numpy.typing as npt
 import rerun as rr
 
 from rubgen.arrays import FloatArray
-from rubgen.sensors.channel import Channel, Recording
+from rubgen.sensors.channel import Recording
 from rubgen.sensors.contact_window import contact_intervals
-from rubgen.sensors.envelope import min_max, preview_bin
+from rubgen.sensors.envelope import preview
 from rubgen.viz.colors import BLUE, VERMILION, rgba
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ Nanoseconds = npt.NDArray[np.timedelta64]
 
 def detail_window(run: Run, recording: Recording) -> slice:
     """Samples of the 20 turns around the touch with the largest impulse, the middle of the recording without one."""
-    samples = next(iter(recording.channels.values())).values.size
+    samples = recording.samples
     length = min(samples, round(DETAIL_TURNS * run.response.turn_seconds * recording.sample_rate_hz))
     touches = contact_intervals(run.response, recording)
     centre = samples // 2
@@ -32,14 +32,6 @@ def detail_window(run: Run, recording: Recording) -> slice:
         centre = round(float(touches.start[np.argmax(touches.impulse)]) * recording.sample_rate_hz)
     first = min(max(centre - length // 2, 0), samples - length)
     return slice(first, first + length)
-
-
-def quantities(recording: Recording) -> dict[str, list[Channel]]:
-    """Channels by what they measure, in the order of the recording."""
-    groups: dict[str, list[Channel]] = {}
-    for channel in recording.channels.values():
-        groups.setdefault(channel.quantity.replace(" ", "_"), []).append(channel)
-    return groups
 
 
 def times_ns(seconds: FloatArray) -> Nanoseconds:
@@ -60,13 +52,11 @@ def _send_scalars(
 def send_signals(stream: rr.RecordingStream, run: Run, recording: Recording) -> None:
     """Every channel as preview and at full rate over the detail window, one entity a quantity."""
     rate = recording.sample_rate_hz
-    step, window = preview_bin(rate), detail_window(run, recording)
-    for quantity, group in quantities(recording).items():
-        envelopes = [envelope for channel in group for envelope in min_max(channel.values, step)]
-        names = [f"{channel.name}.{end} [{channel.unit}]" for channel in group for end in ("min", "max")]
-        values = np.column_stack(envelopes).astype(np.float64)
-        times = times_ns(np.arange(len(values)) * step / rate)
-        _send_scalars(stream, f"/preview/{quantity}", times, values, names)
+    window = detail_window(run, recording)
+    for quantity, group in recording.by_quantity().items():
+        shown = preview(group, rate)
+        names = [f"{name} [{group[0].unit}]" for name in shown.names]
+        _send_scalars(stream, f"/preview/{quantity}", times_ns(shown.first / rate), shown.values, names)
         values = np.column_stack([channel.values[window] for channel in group]).astype(np.float64)
         names = [f"{channel.name} [{channel.unit}]" for channel in group]
         _send_scalars(

@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING
 
 import rerun.blueprint as rrb
 
-from rubgen.viz.signal_entities import quantities
-
 if TYPE_CHECKING:
     from rubgen.labels.labels import Labels
     from rubgen.sensors.channel import Recording
@@ -48,6 +46,6 @@ def arrangement(recording: Recording, labels: Labels) -> rrb.Blueprint:
 
 
 def _signal_tabs(recording: Recording, rate: str, title: str, *, active: str) -> rrb.Tabs:
-    names = {quantity: f"{quantity} ({title})" for quantity in quantities(recording)}
+    names = {quantity: f"{quantity} ({title})" for quantity in recording.by_quantity()}
     views = [rrb.TimeSeriesView(origin=f"/{rate}/{quantity}", name=name) for quantity, name in names.items()]
     return rrb.Tabs(*views, name=title, active_tab=names.get(active, 0))

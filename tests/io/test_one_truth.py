@@ -9,7 +9,7 @@ from rubgen.io.mcap import read_mcap, write_mcap
 from rubgen.io.parquet import read_table, write_parquet
 from rubgen.labels.plain import labels_dict
 from rubgen.viz.rerun import write_rrd
-from rubgen.viz.signal_entities import detail_window, quantities
+from rubgen.viz.signal_entities import detail_window
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +33,7 @@ def test_signals_agree_to_the_bit(rub_run, folder):
 def test_rerun_shows_the_same_samples(rub_run, folder):
     window = detail_window(rub_run, rub_run.recording)
     mcap = read_mcap(folder / "run.mcap").signals
-    for quantity, group in quantities(rub_run.recording).items():
+    for quantity, group in rub_run.recording.by_quantity().items():
         (chunk,) = [
             chunk
             for chunk in RrdReader(folder / "run.rrd").stream().filter(content=f"/detail/{quantity}").to_chunks()
