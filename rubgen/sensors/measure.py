@@ -9,7 +9,8 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
 from rubgen.scenario import Sensing
-from rubgen.sensors.chain import LEAST_OVERSAMPLING, adc_step, band_limit, digitise, half_width_seconds
+from rubgen.scenario.feasible import STEPS_PER_SAMPLE
+from rubgen.sensors.chain import adc_step, band_limit, digitise, half_width_seconds
 from rubgen.sensors.channel import Channel, Recording
 from rubgen.sensors.once_per_rev import arrival_times, pulse_channel
 from rubgen.sensors.probes import PROBES, Probe
@@ -47,8 +48,8 @@ def measure(response: Response, sensing: Sensing, *, seconds: float, rng: np.ran
 def sample_positions(response: Response, sensing: Sensing, seconds: float) -> FloatArray:
     """Times of the samples, counted in steps from the start of the tail; round(seconds * sample rate) of them."""
     dt, rate = response.dt, sensing.sample_rate_hz
-    if dt * rate * LEAST_OVERSAMPLING > 1 + 1e-9:
-        highest = 1 / dt / LEAST_OVERSAMPLING
+    if dt * rate * STEPS_PER_SAMPLE > 1 + 1e-9:
+        highest = 1 / dt / STEPS_PER_SAMPLE
         raise UserError(
             f"sample_rate_hz = {rate:g}: at most {highest:.6g} Hz with {1 / dt:.6g} steps a second; "
             "lower sample_rate_hz or raise steps_per_turn"

@@ -45,6 +45,18 @@ def test_at_least_85_db_at_nyquist_and_everywhere_beyond(step_rate: float) -> No
     assert 20 * np.log10(worst) < -85
 
 
+@pytest.mark.parametrize(("step_rate", "decibel"), [(STEP_RATES[0], -117), (STEP_RATES[2], -109)])
+def test_weights_between_two_tabulated_places_err_little(step_rate: float, decibel: float) -> None:
+    bank = filter_bank(1 / step_rate, RATE)
+    half = bank.shape[1] // 2
+    phase = (np.arange(bank.shape[0] - 1) + 0.5) / (bank.shape[0] - 1)
+    steps = np.arange(-half + 1, half + 1)
+    exact = impulse_response((phase[:, None] - steps) / step_rate, RATE)
+    error = (bank[1:] + bank[:-1]) / 2 - exact / exact.sum(axis=1, keepdims=True)
+    tones = np.exp(2j * np.pi * np.outer(steps, np.linspace(0, 0.5, 200)))
+    assert 20 * np.log10(np.abs(error @ tones).max()) < decibel
+
+
 def test_half_the_amplitude_midway_in_the_transition_band() -> None:
     gain = tone_response((1 + PASS_BAND_SHARE) / 2 * NYQUIST, 170666.7)
     assert np.abs(gain) == pytest.approx(0.5, abs=1e-3)
