@@ -10,7 +10,6 @@ from typing import Any
 from pydantic import ValidationError
 
 from rubgen.cli.printing import print_json, print_pairs
-from rubgen.dataset.files import write_durably
 from rubgen.errors import UserError
 from rubgen.labels.plain import labels_dict
 from rubgen.pipeline import Run, simulate
@@ -111,6 +110,6 @@ def _writer(out: Path | None) -> Callable[[Run, Path], None] | None:
 
 def _write(run: Run, out: Path, write: Callable[[Run, Path], None]) -> None:
     try:
-        write_durably(out, lambda part: write(run, part))
+        write(run, out)
     except OSError as error:
         raise UserError(f"--out {out}: cannot be written ({error.strerror or error}); choose another place") from None

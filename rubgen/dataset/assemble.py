@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from rubgen.dataset.files import sync_directory
 from rubgen.dataset.layout import RUNS_PER_SHARD, Layout
+from rubgen.io.durable import sync_directory
 from rubgen.io.parquet import read_table, schema, write_table
 from rubgen.scenario import Recipe
 

@@ -10,10 +10,11 @@ from pathlib import Path
 from filelock import FileLock, Timeout
 from pydantic import ValidationError
 
-from rubgen.dataset.files import remove_parts, sync_directory, write_json
+from rubgen.dataset.files import remove_parts, write_json
 from rubgen.dataset.layout import FOLDERS, Layout
 from rubgen.dataset.manifest import Identity, read_manifest
 from rubgen.errors import UserError
+from rubgen.io.durable import sync_directory
 
 
 def finished(layout: Layout, identity: Identity) -> bool:

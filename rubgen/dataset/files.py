@@ -1,28 +1,12 @@
-"""Files that are either complete and durable or not there."""
+"""Small files of a data set, and what keeps its directory clean."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-import os
-from collections.abc import Callable
 from pathlib import Path
 
-PART = ".part"
-"""End of the name under which a file is written before it is complete."""
-
-
-def write_durably(path: Path, write: Callable[[Path], object]) -> None:
-    """Let `write` make the file under a temporary name, flush it to the disk, then give it its name."""
-    part = path.with_name(f"{path.stem}{PART}{path.suffix}")
-    try:
-        write(part)
-        with part.open("rb+") as stream:
-            os.fsync(stream.fileno())
-        part.replace(path)
-        sync_directory(path.parent)
-    finally:
-        part.unlink(missing_ok=True)
+from rubgen.io.durable import PART, write_durably
 
 
 def write_text(path: Path, text: str) -> None:
@@ -38,15 +22,6 @@ def write_json(path: Path, values: object) -> None:
 def json_text(values: object) -> str:
     """JSON as rubgen writes it."""
     return json.dumps(values, indent=2, ensure_ascii=False) + "\n"
-
-
-def sync_directory(directory: Path) -> None:
-    """Make the names in a directory durable."""
-    descriptor = os.open(directory, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
 
 
 def remove_parts(directory: Path) -> None:

@@ -6,8 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rubgen.dataset.files import write_durably
 from rubgen.dataset.layout import Layout
+from rubgen.io.durable import write_durably
 from rubgen.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
     if run.labels is not None:
         _write_exports(run, layout, formats)
     table = run_table(run, signals="parquet" in formats)
-    write_durably(layout.staged(scenario.run_id), lambda part: write_table([table], table.schema, part))
+    write_table([table], table.schema, layout.staged(scenario.run_id))
     return run.response.status.code
 
 
@@ -49,7 +49,7 @@ def _write_exports(run: Run, layout: Layout, formats: tuple[str, ...]) -> None:
     if "mcap" in formats:
         from rubgen.io.mcap import write_mcap
 
-        write_durably(layout.export("mcap", run.scenario.run_id), lambda part: write_mcap(run, part))
+        write_mcap(run, layout.export("mcap", run.scenario.run_id))
     if "rrd" in formats:
         from rubgen.viz.rerun import write_rrd
 

@@ -77,12 +77,27 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _interrupts_held() -> Iterator[None]:
-    """Ctrl-C waits: processes started in here inherit that, until they are ready to ignore it."""
-    previous = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    """Ctrl-C and a polite kill wait until the end of the block.
+
+    A process that is being started needs its parent to finish. The mask is for the new processes, which inherit it
+    until they are ready to ignore Ctrl-C; the handlers are for this one, where a signal may reach another thread.
+    """
+    held: list[int] = []
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    main = threading.current_thread() is threading.main_thread()
+    handlers = {
+        name: signal.signal(name, lambda number, _frame: held.append(number))
+        for name in (signal.SIGINT, signal.SIGTERM)
+        if main
+    }
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, previous)
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        for name, handler in handlers.items():
+            signal.signal(name, handler)
+    if held:
+        signal.raise_signal(held[0])
 
 
 @contextmanager

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterator
 from operator import itemgetter
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from mcap.writer import Writer
 
+from rubgen.io.durable import write_durably
 from rubgen.io.mcap_check import check_mcap
 from rubgen.io.mcap_messages import MESSAGES, PACKAGE, file_descriptor_set, message_class, sample_block, timestamp
 from rubgen.io.mcap_read import McapRun, read_mcap
@@ -43,25 +43,23 @@ def write_mcap(run: Run, path: Path) -> None:
     """
     if run.recording is None or run.labels is None:
         raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to record")
-    part = path.with_name(f"{path.name}.part")
-    try:
-        with part.open("wb") as stream:
-            writer = Writer(stream, chunk_size=CHUNK_BYTES, enable_data_crcs=True)
-            writer.start(profile="", library=LIBRARY)
-            _write_records(writer, "scenario", scenario_dict(run.scenario))
-            _write_records(writer, "labels", labels_dict(run.labels))
-            _write_messages(writer, run, run.recording, run.labels)
-            writer.finish()  # type: ignore[no-untyped-call]
-            stream.flush()
-            os.fsync(stream.fileno())
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
+    recording, labels = run.recording, run.labels
+    write_durably(path, lambda part: _write_file(part, run, recording, labels))
 
 
 def nanoseconds(seconds: float) -> int:
     """Time as the integer ns that files carry."""
     return round(seconds * 1e9)
+
+
+def _write_file(path: Path, run: Run, recording: Recording, labels: Labels) -> None:
+    with path.open("wb") as stream:
+        writer = Writer(stream, chunk_size=CHUNK_BYTES, enable_data_crcs=True)
+        writer.start(profile="", library=LIBRARY)
+        _write_records(writer, "scenario", scenario_dict(run.scenario))
+        _write_records(writer, "labels", labels_dict(labels))
+        _write_messages(writer, run, recording, labels)
+        writer.finish()  # type: ignore[no-untyped-call]  # the mcap package annotates no return type
 
 
 def _write_records(writer: Writer, name: str, values: dict[str, object]) -> None:

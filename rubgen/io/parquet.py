@@ -6,7 +6,6 @@ from the rows alone.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +15,7 @@ import pyarrow.parquet as pq
 
 from rubgen.errors import UserError
 from rubgen.io.columns import CLEAN_SIGNALS, SCALARS, SIGNALS, Column
+from rubgen.io.durable import write_durably
 from rubgen.labels.plain import labels_dict
 from rubgen.scenario.vary import varied_values
 from rubgen.sensors.channel import Recording
@@ -62,18 +62,16 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
 
 def write_table(tables: Iterable[pa.Table], types: pa.Schema, path: Path) -> int:
     """Write tables of that schema to `path`, each as one row group, complete or not at all; gives the rows written."""
-    part, rows = path.with_name(f"{path.name}.part"), 0
-    try:
-        with part.open("wb") as stream:
-            with pq.ParquetWriter(stream, types, **_settings(types)) as writer:
-                for table in tables:
-                    writer.write_table(table, row_group_size=max(table.num_rows, 1))
-                    rows += table.num_rows
-            stream.flush()
-            os.fsync(stream.fileno())
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
+    rows = 0
+
+    def write(part: Path) -> None:
+        nonlocal rows
+        with part.open("wb") as stream, pq.ParquetWriter(stream, types, **_settings(types)) as writer:
+            for table in tables:
+                writer.write_table(table, row_group_size=max(table.num_rows, 1))
+                rows += table.num_rows
+
+    write_durably(path, write)
     return rows
 
 
