@@ -92,6 +92,39 @@ def test_tilt_damper_has_its_ratio_at_rest(preset):
     np.testing.assert_allclose(-found.real / np.abs(found), 0.07, rtol=1e-3)
 
 
+@pytest.mark.parametrize("thickness", [0.1, 0.6])
+@pytest.mark.parametrize("ratio", [0.5, 3.0])
+def test_tilt_dampers_in_the_inertial_frame_damp_whirl_at_any_speed(preset, thickness, ratio):
+    # Inertial frame, th_x + i th_y: I_d s^2 + (c - i I_p Omega) s + k = 0, turned by -i Omega. The thicker rotor is a
+    # drum, I_p < I_d: its forward tilt whirl is overtaken, and damping of the co-rotating tilt would make it unstable.
+    _, diametral, polar = inertia(plain_disk(preset, thickness))
+    assert (polar < diametral) is (thickness == 0.6)
+    rest, zeta = 10.0, 0.1
+    machine = plain_disk(preset, thickness, tilt_stiffness_nm_per_rad=diametral * rest**2)
+    speed = ratio * rest
+    drag = 2 * zeta * rest * diametral
+    inertial = np.roots([diametral, drag - 1j * polar * speed, diametral * rest**2])
+    expected = sorted([complex(s.real, abs(s.imag - speed)) for s in inertial], key=abs)
+    found = slowest(reduce(replace(machine, damping=replace(NO_DAMPING, tilt=zeta)), Reduction()).at_speed(speed), 2)
+    np.testing.assert_allclose(found, expected, atol=1e-3 * rest)
+    assert found.real.max() < 0
+
+
+@pytest.mark.parametrize("number", [2, 5])
+def test_axial_and_torsion_dampers_have_their_ratio_at_any_speed(preset, number):
+    # Along and about Z nothing is transported by the rotation: a plain oscillator at any speed.
+    mass, _, polar = inertia(plain_disk(preset, 0.1))
+    spring, name, load = {
+        2: ("axial_stiffness_n_per_m", "axial", mass),
+        5: ("torsion_stiffness_nm_per_rad", "torsion", polar),
+    }[number]
+    machine = plain_disk(preset, 0.1, **{spring: load * 20.0**2})
+    found = slowest(
+        reduce(replace(machine, damping=replace(NO_DAMPING, **{name: 0.07})), Reduction()).at_speed(60.0), 1
+    )
+    np.testing.assert_allclose(found, 20 * complex(-0.07, np.sqrt(1 - 0.07**2)), atol=1e-3 * 20)
+
+
 def test_modes_of_the_preset_have_their_damping_ratios(preset):
     model = reduce(preset, Reduction())
     values = slowest(model.at_speed(1e-6), 60)
