@@ -54,6 +54,18 @@ def test_centrifugal_stiffness_on_rigid_motions_is_the_gyroscopic_one(preset):
     np.testing.assert_allclose(found, expected, atol=1e-9 * mass)
 
 
+def test_coriolis_and_centrifugal_forces_on_rigid_motions(small):
+    """G v is the mass of the plane, S, on e_z x v: shifts, -r_perp, and for (0, -z, y), (z, 0, -x) the other tilt."""
+    R = rigid_motions(small)
+    S_R = small.S @ R
+    expected = np.column_stack([S_R[:, 1], -S_R[:, 0], 0 * S_R[:, 2], S_R[:, 4], -S_R[:, 3], -small.f_c])
+    np.testing.assert_allclose(small.G @ R, expected, atol=1e-13 * np.abs(small.G).max())
+    assert np.abs(S_R[:, 3:5]).max() > 1e-6 * np.abs(small.G).max()
+    # A shift brings -S shift alone: the steady stress is in equilibrium and does not feel it.
+    A = small.K_sigma - small.S
+    np.testing.assert_allclose(A @ R[:, :3], -S_R[:, :3], atol=1e-9 * np.abs(A).max())
+
+
 def test_mass_properties_of_the_preset(preset, machine):
     inertia = np.einsum("ij,ij->j", rigid_motions(preset), preset.M @ rigid_motions(preset))
     blades, rho = machine.blades, machine.blades.material.density_kg_per_m3
