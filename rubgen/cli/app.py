@@ -84,7 +84,7 @@ def simulate(
     lobes: Annotated[float | None, _option("Number of lobes of the casing.")] = None,
     unbalance_kg_m: Annotated[float | None, _option("Mass unbalance, kg m.")] = None,
     casing_thickness_m: Annotated[float | None, _option("Thickness of the casing ring, m.")] = None,
-    lateral_damping: Annotated[float | None, _option("Damping ratio of the lateral mode.")] = None,
+    lateral_damping: Annotated[float | None, _option("Damping ratio of the rigid blisk's lateral motion.")] = None,
     settle_turns: Annotated[int | None, _option("Turns before the record; automatic when not given.")] = None,
     record_turns: Annotated[int, _option("Turns from which the labels come, at least 500.")] = 500,
     steps_per_turn: Annotated[int, _option("Least number of integration steps in a turn.")] = 1024,

@@ -98,7 +98,8 @@ class Damping:
     """Damping ratios at rest, each of its own mechanism.
 
     lateral, tilt, axial, torsion: dampers beside the support springs, in the inertial frame, sized so that the blisk
-    moving as a rigid body on that spring has the ratio. blade: elastic (internal) damping beta K_e with that ratio at
+    moving as a rigid body on that spring has the ratio, c = 2 zeta sqrt(k m); its elastic modes have somewhat less
+    (docs/preset-zeng2019.md). blade: elastic (internal) damping beta K_e with that ratio at
     the first mode of a blade clamped at its root. casing: the same ratio for every casing mode.
     """
 

@@ -158,7 +158,7 @@ PARAMETERS = (
     Parameter(
         key="lateral_damping",
         unit="1",
-        meaning="damping ratio of the lateral mode, from the dampers beside the disk support",
+        meaning="damping ratio of the blisk moving laterally as a rigid body, from the dampers beside the disk support",
         read=lambda scenario: scenario.machine.damping.lateral,
         apply=_lateral_damping,
         maximum=0.99,
