@@ -1,0 +1,136 @@
+"""What the documents name exists: commands, options, files, functions, labels; and their examples parse."""
+
+import ast
+import importlib
+import re
+import shlex
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import rubgen
+from rubgen.cli.app import app
+from rubgen.io.columns import CHANNELS, SCALARS
+from rubgen.labels.plain import labels_dict
+from rubgen.scenario import load_recipe, parse_recipe
+from rubgen.solver import Status
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+DOCUMENTS = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in ROOT.glob("docs/*.md")}
+DOCUMENTS |= {"README.md": README, "CHANGELOG.md": (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")}
+FOLDERS = ("rubgen", "tests", "docs", "schemas", "datasets", "benchmarks")
+
+
+def blocks(text: str, language: str = "") -> list[str]:
+    """Contents of the fenced blocks of that language."""
+    return re.findall(rf"^```{language}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+
+
+def commands(text: str) -> list[list[str]]:
+    """The calls of rubgen in code, fenced or indented, without comments."""
+    lines = re.findall(r"^(?: {4})?(?:\.venv/bin/)?rubgen (.*)$", text, re.MULTILINE)
+    return [shlex.split(line, comments=True) for line in lines]
+
+
+def resolve(dotted: str) -> object:
+    """The object of that dotted name; AttributeError or ImportError when there is none."""
+    found: object = importlib.import_module(dotted.split(".")[0])
+    name = "rubgen"
+    for part in dotted.split(".")[1:]:
+        name = f"{name}.{part}"
+        found = getattr(found, part) if hasattr(found, part) else importlib.import_module(name)
+    return found
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_commands_are_understood(name):
+    for arguments in commands(DOCUMENTS[name]):
+        app.parse_args(arguments, exit_on_error=False, print_error=False)
+
+
+def test_readme_shows_every_command():
+    shown = {arguments[0] for arguments in commands(README)}
+    assert shown == {name for name in app if not name.startswith("-")}
+
+
+def test_targets_of_make_exist():
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    named = re.findall(r"\bmake ([a-z]+)\b(?! and)", "\n".join(blocks(README, "sh")))
+    assert set(named) >= {"demo", "test"}
+    for target in named:
+        assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_links_lead_to_files(name):
+    for target in re.findall(r"\]\(([^)#\s]+)", DOCUMENTS[name]):
+        assert target.startswith("https://") or ((ROOT / name).parent / target).exists(), target
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_files_that_are_named_exist(name):
+    for path in re.findall(rf"`((?:{'|'.join(FOLDERS)})/[^`\s]*)`", DOCUMENTS[name]):
+        assert list(ROOT.glob(path.rstrip("/"))), path
+
+
+def test_every_document_is_linked_from_the_readme():
+    linked = set(re.findall(r"\]\(([^)#\s]+)", README))
+    assert {name for name in DOCUMENTS if name.startswith("docs/")} <= linked
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_functions_that_are_named_exist(name):
+    for dotted in re.findall(r"`(rubgen(?:\.\w+)+)\b", DOCUMENTS[name]):
+        if not dotted.startswith("rubgen.v1"):  # the package of the protobuf messages
+            assert resolve(dotted) is not None
+
+
+def test_python_of_the_readme_uses_public_names():
+    trees = [ast.parse(code) for code in blocks(README, "python")]
+    used = {
+        node.attr
+        for tree in trees
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "rubgen"
+    }
+    assert used
+    assert used <= set(rubgen.__all__)
+
+
+def test_columns_and_channels_of_the_readme_exist():
+    (code,) = blocks(README, "python")
+    strings = {node.value for node in ast.walk(ast.parse(code)) if isinstance(node, ast.Constant)}
+    named = strings - {"out/demo", "run-000000"}
+    assert len(named) >= 5
+    assert named <= {column.name for column in SCALARS} | set(CHANNELS)
+
+
+def test_the_recipe_of_the_readme_is_a_recipe():
+    (text,) = blocks(README, "toml")
+    recipe = parse_recipe(tomllib.loads(text))
+    assert (recipe.name, recipe.seed, recipe.runs) == ("my-data", 7, 100)
+    assert 6500 <= recipe.scenario(3).operation.speed_rpm <= 12000
+    assert recipe.scenario(3).contact.friction == 0.01
+
+
+@pytest.mark.parametrize("path", sorted(ROOT.glob("datasets/*.toml")), ids=lambda path: path.stem)
+def test_recipes_that_come_with_the_sources_can_be_run(path):
+    recipe = load_recipe(path)
+    assert recipe.name == path.stem
+    assert recipe.scenario(recipe.runs - 1).index == recipe.runs - 1
+
+
+def test_labels_and_statuses_are_described(rub_run):
+    orders = ("_orders", "_share", "_dominant_order")
+    labels = [name for name in labels_dict(rub_run.labels) if not name.endswith(orders)]
+    assert [name for name in labels if f"`{name}`" not in DOCUMENTS["docs/labels.md"]] == []
+    assert [status.code for status in Status if f"`{status.code}`" not in DOCUMENTS["docs/model.md"]] == []
+
+
+def test_one_version_everywhere():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert project["version"] == rubgen.__version__
+    assert f"\nversion: {rubgen.__version__}\n" in citation
