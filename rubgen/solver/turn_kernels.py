@@ -136,11 +136,15 @@ def tip_radius_on_ray(tips: Tips, taps: Taps, q: FloatArray, step: int, ray: int
 
 @allocation_free_kernel
 def casing_radius_on_ray(taps: Taps, opening: float, ray: int) -> float:
-    """Radius at which the ray meets the deformed surface, to second order in the displacements in `taps.sums[1]`."""
+    """Radius at which the ray meets the deformed surface, from the displacements in `taps.sums[1]`.
+
+    The point that comes to the ray stood u_t / r before it: r + u_r - (r' + u_r') u_t / r + u_t^2 / (2 r), right to
+    second order in the displacements on a circle, where r' = r'' = 0.
+    """
     base = ACCELERATIONS + 3 * ray
     radial, tangential, slope = taps.sums[1, base], taps.sums[1, base + 1], taps.sums[1, base + 2]
     radius: float = taps.ray_radius[ray] + opening + radial
-    radius -= tangential / radius * (taps.ray_slope[ray] + slope)
+    radius -= tangential / radius * (taps.ray_slope[ray] + slope - 0.5 * tangential)
     return radius
 
 

@@ -71,6 +71,22 @@ def test_taps_of_a_run_without_rub_are_those_of_a_circular_whirl(small_system, o
     assert response.taps["tip_clearance_0"][0] == pytest.approx(gap, abs=1e-12)
 
 
+@pytest.mark.parametrize("direction", [0.4, 2.5])
+def test_the_clearance_of_a_shifted_round_casing_is_that_of_the_shifted_circle(small_system, direction):
+    system = small_system(ovality=0.0, clearance=8e-3, unbalance=0.0)
+    stepper, start = Stepper(system, ContactLaw(), 256), system.casing_start
+    shift = 4e-3 * np.array([np.cos(direction), np.sin(direction)])
+    q = steady_state(system)
+    q[start : start + 2] = shift / system.casing_modes[0, 0, 0]  # cos t and sin t move the ring along X and Y
+    stepper.set_state(q, q)
+    stepper.run_turn()
+    tip = system.tip_radius + system.tip_static[0, 0]
+    for ray, (along, across) in ((9, shift), (10, shift[::-1])):
+        exact = along + np.sqrt(system.surface.mean_radius**2 - across**2) - tip
+        # Third order, 4 mm (4 / 208)^2 / 2, and the interpolation between 36 nodes; the second order is up to 38 um.
+        assert stepper.result.taps[ray, 0] == pytest.approx(exact, abs=1e-6)
+
+
 def test_settle_turns_follow_from_the_slowest_decay(small_system):
     system = small_system()
     flow = exact_flow(system, 1.0)
