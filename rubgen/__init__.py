@@ -33,21 +33,31 @@ __version__ = "0.1.0"
 
 
 def make_scenario(machine: str = "zeng2019", **values: float) -> Scenario:
-    """A scenario of a machine (preset or path of a TOML) with keys of `[vary]` set: `make_scenario(speed_rpm=6780)`."""
+    """A scenario of a machine (preset or path of a TOML) with keys of `[vary]` set: `make_scenario(speed_rpm=6780)`.
+
+    Raises UserError for an unknown machine or key and for a value that is not allowed.
+    """
     from rubgen.scenario import make_scenario
 
     return make_scenario(machine, **values)
 
 
 def simulate(scenario: Scenario) -> Run:
-    """The run of `scenario` in memory: true response, recorded channels and labels. See `rubgen.pipeline.simulate`."""
+    """The run of `scenario` in memory: true response, recorded channels and labels. See `rubgen.pipeline.simulate`.
+
+    A run that fails has `response.status` and `response.reason`, but no recording and no labels. Raises UserError for a
+    machine that cannot be modelled or reduced as asked, or a record too short for its signals.
+    """
     from rubgen.pipeline import simulate
 
     return simulate(scenario)
 
 
 def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> Recipe:
-    """The recipe in that TOML file, or the one that comes with rubgen; `runs` overrides its number of runs."""
+    """The recipe in that TOML file, or the one that comes with rubgen; `runs` overrides its number of runs.
+
+    Raises UserError with file, key, value and what is allowed.
+    """
     from rubgen.scenario import load_recipe
 
     return load_recipe(path, runs=runs)
@@ -60,21 +70,31 @@ def generate(
     runs: int | None = None,
     workers: int | None = None,
 ) -> Generated:
-    """The data set of a recipe in the directory `out`, completed where it was begun. See `rubgen.dataset.generate`."""
+    """The data set of a recipe in the directory `out`, completed where it was begun.
+
+    See `rubgen.dataset.generate`. Raises UserError for bad input, a directory that holds something else or cannot be
+    written, and a full disk; RubgenError where a worker process dies.
+    """
     from rubgen.dataset.generate import generate
 
     return generate(recipe, out, runs=runs, workers=workers)
 
 
 def open(directory: Path | str) -> DataSet:  # noqa: A001
-    """The data set in that directory: `.runs` as a DataFrame, `.signals(run_id)` as arrays, read when asked for."""
+    """The data set in that directory: `.runs` as a DataFrame, `.signals(run_id)` as arrays, read when asked for.
+
+    Raises UserError where the directory holds no finished data set.
+    """
     from rubgen.dataset.open import DataSet
 
     return DataSet(Path(directory))
 
 
 def verify(directory: Path | str) -> list[str]:
-    """What is wrong with the data set in that directory, one sentence each; empty when nothing is."""
+    """What is wrong with the data set in that directory, one sentence each; empty when nothing is.
+
+    Raises UserError where the directory holds no finished data set.
+    """
     from rubgen.dataset.verify import verify
 
     return verify(Path(directory))
