@@ -8,18 +8,20 @@ from rubgen.contact.contact_kernels import build_rows
 from rubgen.contact.geometry_kernels import casing_rows
 from rubgen.scenario import ContactLaw
 from rubgen.solver import Stepper
+from rubgen.solver.energy_kernels import CONTACT, DRIVE_LIMIT, FRICTION, NORMAL, book_contact
 
-FRICTION, THETA, BLADE = 0.3, 0.7, 2
+MU, THETA, BLADE = 0.3, 0.7, 2
 
 
 class Touch:
     """One blade at the casing in a random state, bent by millimetres and moving at tens of m/s in all directions."""
 
     def __init__(self, system, seed):
-        self.system, self.stepper = system, Stepper(system, ContactLaw(friction=FRICTION), 256)
+        self.system, self.stepper = system, Stepper(system, ContactLaw(friction=MU), 256)
         rng = np.random.default_rng(seed)
         self.q, self.v = rng.normal(size=(2, len(system.M))) * [[2e-3], [40.0]]
         self.q[system.casing_start :] *= 0.1
+        self.v[3 * BLADE + 2] = 30.0
         self.work = self.stepper.work
         found = gap_and_foot(self.stepper.surface, self.q[system.casing_start :], self.place(self.q, THETA)[:2])
         self.gap, self.psi, self.tangent = found[0], found[1], found[2:]
@@ -27,9 +29,7 @@ class Touch:
         casing_rows(self.stepper.surface, self.psi, self.rows)
         self.work.blade[0], self.work.psi[BLADE], self.work.tangent[BLADE] = BLADE, self.psi, self.tangent
         turned = np.cos(THETA), np.sin(THETA)
-        build_rows(
-            self.stepper.surface, self.stepper.tips, 0, self.q, self.v, system.speed, FRICTION, *turned, self.work
-        )
+        build_rows(self.stepper.surface, self.stepper.tips, 0, self.q, self.v, system.speed, MU, *turned, self.work)
 
     def place(self, q, theta):
         """Inertial position (3,) of the tip."""
@@ -62,7 +62,7 @@ def test_rows_do_the_work_of_the_force_on_tip_and_casing(touch):
     """Delta q . B is the work of n + mu tau on the tip's move and of its opposite, in the plane, on the casing's."""
     normal = np.array([-touch.tangent[1], touch.tangent[0], 0.0])
     along, axial = touch.work.slip[0]
-    force = normal + FRICTION * np.array([*(along * touch.tangent), axial])
+    force = normal + MU * np.array([*(along * touch.tangent), axial])
     start, rng = touch.system.casing_start, np.random.default_rng(1)
     for full, acting in ((True, force), (False, normal)):
         on_tip, on_casing = (
@@ -88,3 +88,30 @@ def test_the_normal_row_is_the_slope_of_the_gap(touch):
         slopes.append((gaps[1] - gaps[0]) / (2 * h))
     expected = np.concatenate([touch.work.normal_tip[0], touch.work.normal_casing[0]])
     np.testing.assert_allclose(expected, slopes, atol=1e-7)
+
+
+def test_works_of_a_contact_are_those_of_its_force(touch):
+    """One step of motion d = v dt: lam B.d, the normal and the friction loss, and the drive's -Omega dt e_z.(P x F)."""
+    stepper, work, lam, dt = touch.stepper, touch.work, 700.0, touch.stepper.dt
+    d = touch.v * dt
+    stepper.state.after[:], stepper.state.change[:] = touch.q, d
+    work.lam[0], work.held[0, BLADE], work.held[2, BLADE] = lam, 5e-5, -3e-5
+    step = 40
+    angles = stepper.angles._replace(cosine=np.full(257, np.cos(THETA)), sine=np.full(257, np.sin(THETA)))
+    normal, friction = book_contact(
+        0, stepper.surface, stepper.tips, stepper.laws, angles, step, np.zeros(258), stepper.state, work, stepper.book
+    )
+    inward = np.array([-touch.tangent[1], touch.tangent[0]])
+    along, axial = work.slip[0]
+    force = lam * (inward + MU * along * touch.tangent)
+    tip_move, casing_move = touch.along(d), touch.rows @ d[touch.system.casing_start :]
+    turn = touch.system.speed * dt * np.array([-touch.place(touch.q, THETA)[1], touch.place(touch.q, THETA)[0]])
+    slip = (tip_move[:2] + turn - casing_move) @ touch.tangent, tip_move[2]
+    works = stepper.book.works
+    assert works[CONTACT] == pytest.approx(
+        force @ (tip_move[:2] - casing_move) + MU * lam * axial * tip_move[2], rel=1e-9
+    )
+    assert works[NORMAL] == normal == pytest.approx(0.5 * lam * -8e-5)
+    assert abs(slip[1]) > 0.1 * abs(slip[0])  # the axial part counts
+    assert works[FRICTION] == friction == pytest.approx(-MU * lam * np.hypot(*slip), rel=1e-9)
+    assert works[DRIVE_LIMIT] == pytest.approx(-force @ turn, rel=1e-9)

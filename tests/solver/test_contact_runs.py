@@ -153,6 +153,24 @@ def test_restitution_throws_back_with_the_same_share(small_system):
     assert touched > 50
 
 
+def test_restitution_reaches_a_blade_that_leaves_by_itself(small_system):
+    """From 100 um inside, a share of 0.6 throws it 60 um out, not the 30 um, beyond the margin, where it would be."""
+    system = small_system()
+    stepper = Stepper(system, ContactLaw(restitution=0.6), 256)
+    angle = 2 * np.pi / 256
+    radial, tangential, _ = stepper.state.now[:3] + system.tip_static[0]
+    tip = (system.tip_radius + radial + 1j * tangential) * np.exp(1j * angle)
+    free = gap_and_foot(stepper.surface, np.zeros(system.n_casing), np.array([tip.real, tip.imag]))[0]
+    stepper.work.held[0, 0] = -1e-4
+    assert stepper.laws.margin < 3e-5
+    code, count = stepper.step(0, np.full(258, 3e-5 - free))
+    assert code == 0
+    assert stepper.work.blade[:count].tolist() == [0]
+    assert stepper.work.gap[0] == pytest.approx(3e-5, abs=1e-7)
+    assert stepper.work.lam[0] > 0
+    assert stepper.work.held[1, 0] == pytest.approx(6e-5, rel=1e-9)
+
+
 def test_screening_changes_no_bit(small_system):
     system = small_system(speed=500.0)
     ends = []

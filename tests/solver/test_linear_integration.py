@@ -71,6 +71,20 @@ def test_taps_of_a_run_without_rub_are_those_of_a_circular_whirl(small_system, o
     assert response.taps["tip_clearance_0"][0] == pytest.approx(gap, abs=1e-12)
 
 
+def test_the_clearance_on_a_ray_is_that_of_the_blade_which_passes_it(small_system):
+    """In an unbalanced whirl every blade is another distance away; 384 steps put each of the six on both rays."""
+    system = small_system(clearance=2e-3, ovality=2e-3)
+    stepper = Stepper(system, ContactLaw(), 384)
+    q = steady_state(system)[: 3 * system.n_blades].reshape(-1, 3) + system.tip_static
+    radius = np.hypot(system.tip_radius + q[:, 0], q[:, 1])
+    assert np.ptp(radius) > 1e-4
+    stepper.run_turn()
+    for tap, ray, undeformed in ((9, 0.0, -1e-3), (10, np.pi / 2, 1e-3)):
+        passing = np.rint(np.mod(ray - system.blade_angles, 2 * np.pi) * 384 / (2 * np.pi)).astype(int) % 384
+        expected = system.surface.mean_radius + undeformed - radius
+        np.testing.assert_allclose(stepper.result.taps[tap, passing], expected, atol=1e-12)
+
+
 @pytest.mark.parametrize("direction", [0.4, 2.5])
 def test_the_clearance_of_a_shifted_round_casing_is_that_of_the_shifted_circle(small_system, direction):
     system = small_system(ovality=0.0, clearance=8e-3, unbalance=0.0)
@@ -79,10 +93,10 @@ def test_the_clearance_of_a_shifted_round_casing_is_that_of_the_shifted_circle(s
     q = steady_state(system)
     q[start : start + 2] = shift / system.casing_modes[0, 0, 0]  # cos t and sin t move the ring along X and Y
     stepper.set_state(q, q)
-    stepper.run_turn()
+    stepper.run_turn(np.full(258, 3e-4))
     tip = system.tip_radius + system.tip_static[0, 0]
     for ray, (along, across) in ((9, shift), (10, shift[::-1])):
-        exact = along + np.sqrt(system.surface.mean_radius**2 - across**2) - tip
+        exact = along + np.sqrt((system.surface.mean_radius + 3e-4) ** 2 - across**2) - tip
         # Third order, 4 mm (4 / 208)^2 / 2, and the interpolation between 36 nodes; the second order is up to 38 um.
         assert stepper.result.taps[ray, 0] == pytest.approx(exact, abs=1e-6)
 
@@ -123,6 +137,13 @@ def test_a_step_beyond_the_limit_diverges_and_says_where(small_system):
     stepper.state.now[0] += 1e-9
     codes = [stepper.run_turn(np.full(66, 1e-2))[0] for _ in range(4)]
     assert codes[-1] == 2
+
+
+def test_the_stable_step_is_the_casings_where_that_is_the_stiffer(small_system):
+    system = small_system()
+    start = system.casing_start
+    system.K[start:, start:] *= 1e6
+    assert stable_step(system) == pytest.approx(2 / (1e3 * 2 * np.pi * 390.0), rel=1e-9)
 
 
 def test_an_unstable_linear_system_is_refused_with_its_growth(small_system, operation):
