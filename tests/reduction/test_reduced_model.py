@@ -111,6 +111,8 @@ def test_system_holds_the_casing_beside_the_blisk(model):
     np.testing.assert_array_equal(system.M[a:, a:], np.eye(11))
     np.testing.assert_allclose(np.diag(system.K)[a:], omega**2, rtol=1e-14)
     np.testing.assert_allclose(np.diag(system.C)[a:], 2 * 0.02 * omega, rtol=1e-14)
+    assert system.lateral_stiffness == 1e8
+    assert system.lateral_damping == pytest.approx(2 * 0.10 * np.sqrt(1e8 * 118.14), rel=1e-4)
 
 
 def test_reduction_has_the_same_bits_whatever_the_number_of_blas_threads(preset, model):

@@ -125,6 +125,14 @@ def test_axial_and_torsion_dampers_have_their_ratio_at_any_speed(preset, number)
     np.testing.assert_allclose(found, 20 * complex(-0.07, np.sqrt(1 - 0.07**2)), atol=1e-3 * 20)
 
 
+def test_blade_damping_is_elastic_and_leaves_the_motion_on_the_supports_alone(preset):
+    mass, _, _ = inertia(plain_disk(preset, 0.1))
+    machine = plain_disk(preset, 0.1, lateral_stiffness_n_per_m=mass * 20.0**2)
+    found = slowest(reduce(replace(machine, damping=replace(NO_DAMPING, blade=0.5)), Reduction()).at_speed(1e-6), 2)
+    np.testing.assert_allclose(np.abs(found), 20.0, rtol=1e-3)
+    assert np.abs(found.real).max() < 1e-6 * 20.0
+
+
 def test_modes_of_the_preset_have_their_damping_ratios(preset):
     model = reduce(preset, Reduction())
     values = slowest(model.at_speed(1e-6), 60)
