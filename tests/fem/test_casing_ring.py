@@ -10,7 +10,7 @@ from scipy.linalg import eigh
 from threadpoolctl import threadpool_limits
 
 from rubgen.errors import UserError
-from rubgen.fem.casing import CasingModel, assemble_casing
+from rubgen.fem.casing import CasingModel, assemble_casing, element_matrices
 from rubgen.machine.load import load_machine
 from rubgen.machine.machine import Machine
 
@@ -120,6 +120,14 @@ def test_mass_and_polar_inertia(oval: CasingModel) -> None:
     # The polygon of 180 sides is (2 pi / 180)^2 / 24 = 5e-5 shorter.
     assert shift @ oval.M @ shift == pytest.approx(line * ds.sum(), rel=1e-4)
     assert turn @ oval.M @ turn == pytest.approx(line * (r**2 * ds).sum(), rel=3e-4)
+
+
+def test_an_element_that_turns_about_its_middle_has_the_inertia_of_the_solid() -> None:
+    material, width, thickness, length = machine().casing.material, 0.03, 0.02, 0.05
+    _, mass = element_matrices(material, width, thickness, np.array([length]))
+    turn = np.array([0, -length / 2, 1, 0, length / 2, 1])
+    solid = material.density_kg_per_m3 * width * thickness * length * (length**2 + thickness**2) / 12
+    assert turn @ mass[0] @ turn == pytest.approx(solid, rel=1e-12)
 
 
 def test_springs_resist_along_the_polar_directions() -> None:
