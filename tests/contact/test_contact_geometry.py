@@ -3,6 +3,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from rubgen.contact import blade_tips, casing_surface, gap_and_foot
+from rubgen.contact.contact_kernels import largest_approach
 from rubgen.contact.geometry import periodic_derivative
 from rubgen.contact.geometry_kernels import casing_reach, clearance_bounds
 from rubgen.reduction.model import CasingSurface, SpinningSystem
@@ -147,6 +148,24 @@ def test_screening_bound_lies_below_the_true_gap_and_near_it():
                 assert bounds[k] <= undeformed
                 assert bounds[k] - casing_reach(surface, q[29:]) <= deformed
     assert np.max(np.abs(tightness)) < 1e-4
+
+
+@pytest.mark.parametrize("moved", ["tips", "casing", "both"])
+def test_no_gap_closes_by_more_than_the_largest_approach(moved):
+    system, rng = ring(ovality=2e-3), np.random.default_rng(9)
+    surface, closest = casing_surface(system), 0.0
+    for _ in range(30):
+        free, change = rng.normal(size=(2, 32)) * 2e-4
+        change[29:] *= moved != "tips"
+        change[:27] *= moved != "casing"
+        bound = largest_approach(surface, free + change, free, 29, 9)
+        for k in range(9):
+            gaps = []
+            for q in (free, free + change):
+                tip = (RADIUS + q[3 * k] + 1j * q[3 * k + 1]) * np.exp(1j * system.blade_angles[k])
+                gaps.append(gap_and_foot(surface, q[29:], np.array([tip.real, tip.imag]))[0])
+            closest = max(closest, (gaps[0] - gaps[1]) / bound)
+    assert 0.3 < closest <= 1
 
 
 def test_spectral_derivative_is_exact_below_the_highest_order():
