@@ -101,6 +101,29 @@ def test_the_clearance_of_a_shifted_round_casing_is_that_of_the_shifted_circle(s
         assert stepper.result.taps[ray, 0] == pytest.approx(exact, abs=1e-6)
 
 
+def test_the_clearance_of_a_bent_casing_is_to_where_the_ray_meets_the_curve(small_system):
+    """The casing turned by 50 degrees, shifted and ovalised: the point of the exact curve that lies on the ray."""
+    system = small_system(ovality=6e-3, clearance=8e-3, unbalance=0.0, turned_nodes=5)
+    stepper, start = Stepper(system, ContactLaw(), 256), system.casing_start
+    q = steady_state(system)
+    q[start : start + 4] = np.array([1.5e-3, -1e-3, 1e-3, 1.5e-3]) / np.hypot(*system.casing_modes[0, :, 0])
+    stepper.set_state(q, q)
+    stepper.run_turn()
+    nodes = 2 * np.pi * np.arange(36) / 36
+    undeformed = system.surface.mean_radius - 3e-3 * np.cos(2 * (nodes - 5 * np.pi / 18))
+    at_nodes = undeformed * np.exp(1j * nodes) + system.casing_modes @ q[start:] @ [1, 1j]
+    orders, weights = np.fft.fftfreq(36, 1 / 36), np.fft.fft(at_nodes) / 36
+    t = np.linspace(0, 2 * np.pi, 20001)
+    curve = np.exp(1j * np.multiply.outer(t, orders)) @ weights
+    tip = system.tip_radius + system.tip_static[0, 0]
+    for tap, ray in ((9, 0.0), (10, np.pi / 2)):
+        off = np.angle(curve * np.exp(-1j * ray))
+        near = np.argsort(np.abs(off))[:8]
+        exact = np.polyval(np.polyfit(off[near], np.abs(curve[near]), 2), 0.0) - tip
+        # Left out are u_t^2 (r'' + u_r'') / (2 r^2) and the interpolation; u_r' u_t / r is up to 40 um.
+        assert stepper.result.taps[tap, 0] == pytest.approx(exact, abs=2e-6)
+
+
 def test_settle_turns_follow_from_the_slowest_decay(small_system):
     system = small_system()
     flow = exact_flow(system, 1.0)
