@@ -1,0 +1,79 @@
+"""A Jeffcott rotor in a rigid ring on springs, as the solver takes it, and its full annular rub in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from rubgen.reduction import CasingSurface, SpinningSystem
+
+SPEED = 800.0
+FRICTION = 0.1
+CLEARANCE = 3e-4
+ROTOR_MASS, ROTOR_STIFFNESS, ROTOR_DAMPING = 10.0, 1e7, 2000.0
+STATOR_MASS, STATOR_STIFFNESS, STATOR_DAMPING = 2.0, 2e7, 1200.0
+UNBALANCE = 6e-3
+NODES = 12
+
+
+def jeffcott_system() -> SpinningSystem:
+    """One "tip" that is the rotor's centre, in a ring whose radius is the clearance.
+
+    A tip radius of 1 m, with a steady displacement of -1 m that takes it back to the axis, sets the scale of the
+    solver's margins. Axial motion and O_d take no part.
+    """
+    whirl = np.array([[0.0, -1.0], [1.0, 0.0]])
+    drag, idle = ROTOR_DAMPING * np.eye(2), np.eye(3)
+    M = ROTOR_MASS * np.eye(2)
+    C = 2 * SPEED * ROTOR_MASS * whirl + drag
+    K = (ROTOR_STIFFNESS - SPEED**2 * ROTOR_MASS) * np.eye(2) + SPEED * drag @ whirl
+    stator = np.eye(2) / STATOR_MASS
+    force = np.zeros(7)
+    force[0] = UNBALANCE * SPEED**2
+    modes = np.zeros((NODES, 2, 2))
+    modes[:] = np.eye(2) / np.sqrt(STATOR_MASS)
+    return SpinningSystem(
+        speed=SPEED,
+        M=block_diag(M, idle, np.eye(2)),
+        C=block_diag(C, 100 * idle, STATOR_DAMPING * stator),
+        K=block_diag(K, 1e6 * idle, STATOR_STIFFNESS * stator),
+        force=force,
+        n_blades=1,
+        n_casing=2,
+        tip_radius=1.0,
+        blade_angles=np.zeros(1),
+        tip_static=np.array([[-1.0, 0.0, 0.0]]),
+        surface=CasingSurface(mean_radius=CLEARANCE, amplitude=np.zeros(1), order=np.full(1, 2.0), phase=np.zeros(1)),
+        casing_modes=modes,
+        lateral_stiffness=1e6,
+        lateral_damping=0.0,
+    )
+
+
+@dataclass(frozen=True)
+class AnnularRub:
+    """Synchronous rub: normal force in N, rotor and stator displacement in the turning frame in m (complex)."""
+
+    force: float
+    rotor: complex
+    stator: complex
+
+
+def annular_rub() -> AnnularRub:
+    """The closed form of synchronous full annular rub.
+
+    D_r z_r = U Omega^2 - N (1 + i mu) e^(i phi), D_s z_s = N (1 + i mu) e^(i phi), z_r - z_s = c e^(i phi) with the
+    dynamic stiffness D = k - m Omega^2 + i c Omega. So |D_r c + N (1 + i mu)(1 + D_r / D_s)| = U Omega^2: a quadratic
+    equation in N; friction opposes the slip Omega c of the rotor's centre along the ring.
+    """
+    rotor = complex(ROTOR_STIFFNESS - ROTOR_MASS * SPEED**2, ROTOR_DAMPING * SPEED)
+    stator = complex(STATOR_STIFFNESS - STATOR_MASS * SPEED**2, STATOR_DAMPING * SPEED)
+    push = UNBALANCE * SPEED**2
+    a, b = rotor * CLEARANCE, complex(1, FRICTION) * (1 + rotor / stator)
+    roots = np.roots([abs(b) ** 2, 2 * (a * b.conjugate()).real, abs(a) ** 2 - push**2])
+    force = float(roots.real.max())
+    direction = push / (a + force * b)
+    z_s = force * complex(1, FRICTION) * direction / stator
+    return AnnularRub(force, z_s + CLEARANCE * direction, z_s)
