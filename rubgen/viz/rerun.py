@@ -6,7 +6,6 @@ import hashlib
 import json
 import subprocess
 import sys
-import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -37,20 +36,22 @@ def write_rrd(run: Run, path: Path) -> None:
 
     if run.recording is None or run.labels is None:
         raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to show")
-    part = path.with_name(f"{path.name}.part")
     stream = rr.RecordingStream(APPLICATION, recording_id=recording_id(run.scenario), send_properties=False)
+    # Rerun's own file writer is a thread that only logs a full disk, and that its stream may then wait for without end.
+    memory = stream.memory_recording()
+    stream.send_blueprint(arrangement(run.recording, run.labels), make_active=False, make_default=True)
+    stream.send_recording_name(run.scenario.run_id)
+    send_signals(stream, run, run.recording)
+    send_contacts(stream, run, run.recording)
+    send_orbit(stream, run, run.recording)
+    send_labels(stream, run.scenario, run.labels)
+    content = memory.drain_as_bytes()
+    stream.disconnect()
+    part = path.with_name(f"{path.name}.part")
     try:
-        stream.save(part, default_blueprint=arrangement(run.recording, run.labels))
-        stream.send_recording_name(run.scenario.run_id)
-        send_signals(stream, run, run.recording)
-        send_contacts(stream, run, run.recording)
-        send_orbit(stream, run, run.recording)
-        send_labels(stream, run.scenario, run.labels)
-        stream.disconnect()
-        _require_whole(part, path)
+        part.write_bytes(content)
         part.replace(path)
     finally:
-        stream.disconnect()
         part.unlink(missing_ok=True)
 
 
@@ -70,18 +71,6 @@ def check_rrd(path: Path) -> list[str]:
     except RuntimeError as error:
         return [str(error)]
     return [f"no {name}" for name in ENTITIES if not any(entity.startswith(name) for entity in entities)]
-
-
-def _require_whole(part: Path, path: Path) -> None:
-    """Rerun writes in a thread of its own and only logs a full disk: a file whose footer is missing is an OSError."""
-    from rerun.chunk import RrdReader
-    from rerun.error_utils import RerunWarning
-
-    try:
-        with warnings.catch_warnings(action="error", category=RerunWarning):
-            RrdReader(part).store()
-    except (RerunWarning, RuntimeError, ValueError) as error:
-        raise OSError(f"{path}: could not be written whole; is the disk full? ({error})") from None
 
 
 def recording_id(scenario: Scenario) -> str:

@@ -87,7 +87,7 @@ def test_motion_lanes_show_each_part(rrd_file):
 
 def test_section_points_are_the_disk_centre_once_a_turn(rub_run, rrd_file):
     points = columns(rrd_file, "/orbit/plane/section")["Points2D:positions"][0]
-    centre = rub_run.response.section_q[:, 3 * 38 : 3 * 38 + 2]
+    centre = rub_run.response.section_q[:, 3 * 36 : 3 * 36 + 2]
     np.testing.assert_allclose(points, 1e6 * centre, rtol=1e-6)
 
 
@@ -145,7 +145,7 @@ def test_a_full_disk_leaves_nothing(rub_run, tmp_path):
     _, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, hard))
     try:
-        with pytest.raises(OSError, match=r"full\.rrd: could not be written whole"):
+        with pytest.raises(OSError, match="too large"):
             write_rrd(rub_run, tmp_path / "full.rrd")
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
