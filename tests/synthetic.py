@@ -11,7 +11,7 @@ from rubgen.sensors.probes import PROBES
 from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status
 
 TURNS, STEPS = 120, 512
-BLADES, STATES = 38, 125
+BLADES, STATES = 36, 125
 
 
 def _taps(generator: np.random.Generator, speed: float, dt: float, contact: bool) -> dict[str, np.ndarray]:
@@ -78,7 +78,7 @@ def _labels(generator: np.random.Generator, contact: bool) -> Labels:
         motion_casing=Motion.PERIOD_K if contact else Motion.STATIC,
         motion=Motion.PERIOD_K if contact else Motion.PERIOD_1,
         period_blisk=1,
-        period_casing=3 if contact else 1,
+        period_casing=3 if contact else None,
         period=3 if contact else 1,
         has_2fr=contact,
         orders={name: generator.gamma(1.0, 1.0, 10) for name in names},

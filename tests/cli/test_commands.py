@@ -7,25 +7,11 @@ import numpy as np
 import pytest
 
 import rubgen
-from rubgen.cli import main
 from rubgen.cli.app import app, simulate
 from rubgen.io.mcap import read_mcap
 from rubgen.scenario.vary import KEYS
 
 HEAVY = {"numba", "pandas", "rerun", "pyarrow", "scipy", "numpy", "pydantic", "mcap", "matplotlib"}
-
-
-@pytest.fixture
-def run(capsys):
-    """Runs the command line; gives exit code, stdout, stderr."""
-
-    def run(*arguments):
-        with pytest.raises(SystemExit) as ended:
-            main(list(arguments))
-        output = capsys.readouterr()
-        return ended.value.code, output.out, output.err
-
-    return run
 
 
 @pytest.fixture

@@ -5,19 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from rubgen.cli import main
 from rubgen.solver.response import Status
-
-
-@pytest.fixture
-def run(capsys):
-    def run(*arguments):
-        with pytest.raises(SystemExit) as ended:
-            main(list(arguments))
-        output = capsys.readouterr()
-        return ended.value.code, output.out, output.err
-
-    return run
 
 
 @pytest.fixture

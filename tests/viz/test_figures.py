@@ -56,7 +56,7 @@ def test_the_spectrum_shows_the_amplitudes_of_the_force(figure, rub_run):
 def test_orbit_and_section_are_in_micrometres(figure, rub_run):
     path, section = figure.axes[0].lines[:2]
     assert path.get_xdata()[-1] == pytest.approx(1e6 * rub_run.response.taps["blisk_x"][-1])
-    assert section.get_ydata()[7] == pytest.approx(1e6 * rub_run.response.section_q[7, 3 * 38 + 1])
+    assert section.get_ydata()[7] == pytest.approx(1e6 * rub_run.response.section_q[7, 3 * 36 + 1])
     assert figure.axes[0].get_aspect() == 1.0
 
 
