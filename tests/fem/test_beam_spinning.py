@@ -1,4 +1,4 @@
-"""The blade element in rotation: published rotating beams, and the exact centrifugal potential of a rigid blade."""
+"""The blade element in rotation, beside the published rotating beams of tests/studies/test_verification.py."""
 
 import dataclasses
 
@@ -7,73 +7,24 @@ import pytest
 from numpy.polynomial import Legendre
 from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
-from test_beam_statics import RADIUS, TWISTED, rigid_motion, volume
+from test_beam_statics import rigid_motion, volume
 
 from rubgen.fem.beam import blade_matrices
-from rubgen.machine.machine import BladeRow, Material
-
-# E / (kappa G) = (12 + 11 nu) / 5 = 3.059
-MATERIAL = Material(youngs_modulus_pa=1.0, poisson_ratio=(5 * 3.059 - 12) / 11, density_kg_per_m3=1.0)
-FLAP, LAG = (2, 4), (1, 5)
-EULER_BERNOULLI = {0: (3.5160, 22.0345, 61.6972), 2: (4.1373, 22.6149, 62.2732), 4: (5.5850, 24.2733, 63.9668)}
-TIMOSHENKO = {0: (3.4798, 20.5892, 53.3398), 2: (4.0971, 21.1766, 53.9544), 4: (5.5314,)}
-
-
-def frequencies(spin: float, slenderness: float, plane: tuple[int, int], elements: int) -> np.ndarray:
-    """omega sqrt(rho A L^4 / EI) of a uniform cantilever of radius of gyration `slenderness` in that plane, hub 0."""
-    depth, width = slenderness * np.sqrt(12), 0.3
-    chord, thickness = (width, depth) if plane == FLAP else (depth, width)
-    blades = BladeRow(
-        material=MATERIAL,
-        count=1,
-        length_m=1.0,
-        root_chord_m=chord,
-        tip_chord_m=chord,
-        root_thickness_m=thickness,
-        tip_thickness_m=thickness,
-        root_angle_deg=0.0,
-        tip_angle_deg=0.0,
-        elements=elements,
-    )
-    m = blade_matrices(blades, 0.0)
-    scale = depth**2 / 12  # EI / (rho A L^4)
-    free = np.sort(np.concatenate([np.arange(6 + dof, m.M.shape[0], 6) for dof in plane]))
-    K = m.K + spin**2 * scale * (m.K_sigma - m.S)
-    return np.sqrt(eigh(K[np.ix_(free, free)], m.M[np.ix_(free, free)], eigvals_only=True)[:3] / scale)
-
-
-@pytest.mark.parametrize("spin", [0, 2, 4])
-def test_rotating_euler_bernoulli_beam_flapwise(spin: int) -> None:
-    # r / L = 1e-4 takes shear away; the table has four decimals.
-    np.testing.assert_allclose(frequencies(spin, 1e-4, FLAP, 40), EULER_BERNOULLI[spin], atol=1.5e-4)
-
-
-@pytest.mark.parametrize("spin", [0, 2, 4])
-def test_rotating_euler_bernoulli_beam_lagwise(spin: int) -> None:
-    expected = np.sqrt(np.array(EULER_BERNOULLI[spin]) ** 2 - spin**2)
-    np.testing.assert_allclose(frequencies(spin, 1e-4, LAG, 40), expected, atol=1.5e-4)
-
-
-@pytest.mark.parametrize("spin", [0, 2, 4])
-def test_rotating_timoshenko_beam(spin: int) -> None:
-    # Order 2 in the element length once shear matters: Richardson's extrapolation of 40 and 80 elements meets the
-    # table's four decimals, 40 elements alone stay within 0.03 %.
-    coarse, fine = (frequencies(spin, 1 / 30, FLAP, n) for n in (40, 80))
-    n = len(TIMOSHENKO[spin])
-    np.testing.assert_allclose(coarse[:n], TIMOSHENKO[spin], rtol=3e-4)
-    np.testing.assert_allclose((fine + (fine - coarse) / 3)[:n], TIMOSHENKO[spin], atol=1.5e-4)
+from rubgen.machine.machine import Material
+from rubgen.studies.verification.beams import FLAP, THICK, TIMOSHENKO, cantilever_frequencies
+from rubgen.studies.verification.twisted_blades import RADIUS, TWISTED
 
 
 def test_rotary_spin_softening_is_seen() -> None:
     # 5.5381 is the published value without it.
-    assert abs(frequencies(4, 1 / 30, FLAP, 80)[0] - 5.5381) > 6e-3
+    assert abs(cantilever_frequencies(4, THICK, FLAP, 80)[0] - 5.5381) > 6e-3
 
 
-@pytest.mark.parametrize(("slenderness", "order"), [(1e-4, 4.0), (1 / 30, 2.0)])
-def test_observed_convergence_order(slenderness: float, order: float) -> None:
-    f = np.array([frequencies(2, slenderness, FLAP, n) for n in (8, 16, 32)])
-    observed = np.log2((f[0] - f[1]) / (f[1] - f[2]))
-    np.testing.assert_allclose(observed, order, atol=0.15)
+@pytest.mark.parametrize("spin", [0, 2, 4])
+def test_forty_elements_hold_a_thick_beam_to_three_in_ten_thousand(spin: int) -> None:
+    np.testing.assert_allclose(
+        cantilever_frequencies(spin, THICK, FLAP, 40)[: len(TIMOSHENKO[spin])], TIMOSHENKO[spin], rtol=3e-4
+    )
 
 
 def test_rigid_rotation_sees_the_exact_centrifugal_potential() -> None:

@@ -4,26 +4,12 @@ import dataclasses
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from rubgen.fem.beam import BeamMatrices, blade_matrices
 from rubgen.fem.beam_sections import rectangle_torsion_constant
-from rubgen.machine.machine import BladeRow, Material
-
-STEEL = Material(youngs_modulus_pa=2.06e11, poisson_ratio=0.3, density_kg_per_m3=7850.0)
-TWISTED = BladeRow(
-    material=STEEL,
-    count=1,
-    length_m=0.15,
-    root_chord_m=48e-3,
-    tip_chord_m=30e-3,
-    root_thickness_m=6e-3,
-    tip_thickness_m=3e-3,
-    root_angle_deg=-20.0,
-    tip_angle_deg=70.0,
-    elements=6,
-)
-RADIUS = 0.25
+from rubgen.machine.machine import BladeRow
+from rubgen.studies.verification.blade_oracles import section
+from rubgen.studies.verification.twisted_blades import RADIUS, TWISTED
 
 
 def rigid_motion(blades: BladeRow, translation: np.ndarray, rotation: np.ndarray) -> np.ndarray:
@@ -33,69 +19,9 @@ def rigid_motion(blades: BladeRow, translation: np.ndarray, rotation: np.ndarray
     return np.hstack([translation + np.cross(rotation, arm), np.tile(rotation, (x.size, 1))]).ravel()
 
 
-def section(blades: BladeRow, x: float) -> tuple[float, float, float]:
-    """Chord, thickness and angle in rad."""
-    s = x / blades.length_m
-    chord = blades.root_chord_m + s * (blades.tip_chord_m - blades.root_chord_m)
-    thickness = blades.root_thickness_m + s * (blades.tip_thickness_m - blades.root_thickness_m)
-    return chord, thickness, np.deg2rad(blades.root_angle_deg + s * (blades.tip_angle_deg - blades.root_angle_deg))
-
-
-def section_moments(chord: float, thickness: float, angle: float) -> tuple[float, float, float]:
-    """Int y^2, z^2, y z by brute force over a grid of the rectangle."""
-    points, weights = np.polynomial.legendre.leggauss(3)
-    a, b = np.meshgrid(points * chord / 2, points * thickness / 2, indexing="ij")
-    w = np.outer(weights, weights) * chord * thickness / 4
-    y, z = a * np.cos(angle) - b * np.sin(angle), a * np.sin(angle) + b * np.cos(angle)
-    return float(np.sum(w * y * y)), float(np.sum(w * z * z)), float(np.sum(w * y * z))
-
-
-def tip_flexibility(blades: BladeRow) -> np.ndarray:
-    """Tip motion per unit tip force and moment of the clamped blade: the beam equations, integrated by Runge-Kutta."""
-    E, G = blades.material.youngs_modulus_pa, blades.material.shear_modulus_pa
-    kappa = 10 * 1.3 / (12 + 11 * 0.3)
-    length = blades.length_m
-
-    def slope(x: float, q: np.ndarray, load: np.ndarray) -> np.ndarray:
-        chord, thickness, angle = section(blades, x)
-        yy, zz, yz = section_moments(chord, thickness, angle)
-        area = chord * thickness
-        torsion = float(rectangle_torsion_constant(np.array(chord), np.array(thickness)))
-        force, moment = load[:3], load[3:] + np.cross([length - x, 0, 0], load[:3])
-        # M_y = int sigma z = E (I_z2 th_y' - I_yz th_z'), M_z = -int sigma y = E (I_y2 th_z' - I_yz th_y')
-        bend = np.linalg.solve(E * np.array([[zz, -yz], [-yz, yy]]), moment[1:])
-        return np.array(
-            [
-                force[0] / (E * area),
-                q[5] + force[1] / (kappa * G * area),
-                -q[4] + force[2] / (kappa * G * area),
-                moment[0] / (G * torsion),
-                bend[0],
-                bend[1],
-            ]
-        )
-
-    columns = [
-        solve_ivp(slope, (0, length), np.zeros(6), args=(load,), rtol=1e-10, atol=1e-18, method="DOP853").y[:, -1]
-        for load in np.eye(6)
-    ]
-    return np.array(columns).T
-
-
 @pytest.fixture(scope="module")
 def twisted() -> BeamMatrices:
     return blade_matrices(TWISTED, RADIUS)
-
-
-@pytest.mark.parametrize("elements", [1, 6])
-def test_tip_flexibility_is_exact_for_any_number_of_elements(elements: int) -> None:
-    blades = dataclasses.replace(TWISTED, elements=elements)
-    K = blade_matrices(blades, RADIUS).K
-    flexibility = np.linalg.inv(K[6:, 6:])[-6:, -6:]
-    exact = tip_flexibility(blades)
-    scale = np.sqrt(np.outer(np.diag(exact), np.diag(exact)))
-    # Relative to the diagonal. One element spans 90 degrees of twist with eight Gauss points, hence its 1e-7.
-    assert np.abs((flexibility - exact) / scale).max() < (1e-7 if elements == 1 else 1e-9)
 
 
 def test_slender_uniform_cantilever_has_the_textbook_deflections() -> None:

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.linalg import eigh
 from threadpoolctl import threadpool_limits
 
 from rubgen.errors import UserError
-from rubgen.fem.casing import CasingModel, assemble_casing, element_matrices
+from rubgen.fem.casing import CasingModel, assemble_casing
 from rubgen.machine.load import load_machine
 from rubgen.machine.machine import Machine
+from rubgen.studies.verification.rings import by_order, order_three, ring, ring_theory
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -27,70 +27,18 @@ def machine(**casing: Any) -> Machine:
     return dataclasses.replace(preset, casing=dataclasses.replace(preset.casing, **casing))
 
 
-def frequencies(model: CasingModel, count: int) -> np.ndarray:
-    eigenvalues = eigh(model.K.toarray(), model.M.toarray(), eigvals_only=True, subset_by_index=[0, count - 1])
-    return np.asarray(np.sqrt(eigenvalues))
-
-
-def ring_squares(m: Machine, radial: float, tangential: float, extensible: bool) -> np.ndarray:
-    """Omega^2 of a thin circular ring, the lowest eleven: order 0 (turning) once, others twice; springs in N/m a node.
-
-    Inextensible: [E I n^2 (n^2 - 1)^2 / R^4 + k_r n^2 + k_t] / [rho A (n^2 + 1)]. Extensible: the lower root with
-    energies E A (v' + w)^2 / R^2 and E I (w'' - v')^2 / R^4.
-    """
-    c = m.casing
-    R = m.casing_mean_radius_m + c.thickness_m / 2
-    E, area, inertia = c.material.youngs_modulus_pa, c.width_m * c.thickness_m, c.width_m * c.thickness_m**3 / 12
-    mass = c.material.density_kg_per_m3 * area
-    k_r, k_t = (c.nodes * k / (2 * np.pi * R) for k in (radial, tangential))
-    squares = []
-    for n in range(20):
-        if extensible:
-            membrane, bend = E * area / R**2, E * inertia / R**4
-            cross = membrane * n + bend * n**3
-            K = [[membrane + bend * n**4 + k_r, cross], [cross, (membrane + bend) * n**2 + k_t]]
-            square = np.linalg.eigvalsh(K)[0] / mass
-        else:
-            square = (E * inertia * n**2 * (n**2 - 1) ** 2 / R**4 + k_r * n**2 + k_t) / (mass * (n**2 + 1))
-        squares += [square] * (1 if n == 0 else 2)
-    return np.sort(squares)[:11]
-
-
-def test_inextensible_ring_on_elastic_foundation() -> None:
-    # Inextensibility needs springs soft against E A / R^2: 5 N/m a node, one 1e-6th of it. The rest of the
-    # deviation is the polygon of 180 sides, (2 pi / 180)^2 / 4 = 3e-4.
-    m = machine(ovality_m=0.0, radial_support_stiffness_n_per_m=5.0, circumferential_support_stiffness_n_per_m=3.0)
-    expected = np.sqrt(ring_squares(m, 5.0, 3.0, extensible=False))
-    np.testing.assert_allclose(frequencies(assemble_casing(m), 11), expected, rtol=5e-4)
-
-
-@pytest.mark.parametrize(("radial", "tangential"), [(5e4, 5e4), (2e5, 5e4), (5e4, 2e5)])
+@pytest.mark.parametrize(("radial", "tangential"), [(5e4, 5e4), (2e5, 5e4)])
 def test_extensible_ring_on_elastic_foundation(radial: float, tangential: float) -> None:
-    m = machine(
-        ovality_m=0.0,
-        radial_support_stiffness_n_per_m=radial,
-        circumferential_support_stiffness_n_per_m=tangential,
-    )
-    expected = np.sqrt(ring_squares(m, radial, tangential, extensible=True))
-    np.testing.assert_allclose(frequencies(assemble_casing(m), 11), expected, rtol=5e-4)
+    orders, expected, found = zip(*by_order(ring(radial, tangential), extensible=True), strict=True)
+    assert orders == (0, 1, 2, 3, 4, 5)
+    np.testing.assert_allclose(found, expected, rtol=5e-4)
 
 
-def test_second_order_convergence_to_the_ring() -> None:
-    # Springs of 100 N/m a node (180 nodes) leave orders 3, 4, 5 to the ring's own bending.
-    f = []
-    for nodes in (60, 120, 240):
-        k = 100.0 * 180 / nodes
-        m = machine(
-            ovality_m=0.0,
-            nodes=nodes,
-            radial_support_stiffness_n_per_m=k,
-            circumferential_support_stiffness_n_per_m=k,
-        )
-        f.append(frequencies(assemble_casing(m), 11)[[5, 7, 9]])
-    np.testing.assert_allclose(np.log2((f[0] - f[1]) / (f[1] - f[2])), 2.0, atol=0.05)
-    limit = f[2] + (f[2] - f[1]) / 3
-    # What is left is thin-ring theory: shear and rotary inertia are (n h / R)^2, 1e-4 at order 5.
-    np.testing.assert_allclose(limit, np.sqrt(ring_squares(m, k, k, extensible=True))[[5, 7, 9]], rtol=1e-4)
+def test_frequencies_tend_to_those_of_the_ring() -> None:
+    # Springs of 100 N/m a node (180 nodes) leave order 3 to the ring's own bending. What is left is thin-ring theory:
+    # shear and rotary inertia are (n h / R)^2, 4e-5 at order 3.
+    coarse, fine = order_three(120), order_three(240)
+    assert fine + (fine - coarse) / 3 == pytest.approx(ring_theory(ring(100.0, 100.0), 3, extensible=True), rel=1e-4)
 
 
 @pytest.fixture(scope="module")
@@ -105,29 +53,6 @@ def test_rigid_motion_of_the_ring_costs_no_energy(oval: CasingModel) -> None:
     assert np.abs(motions @ oval.K_ring).max() < 1e-11 * np.abs(oval.K_ring).max()
     eigenvalues = np.linalg.eigvalsh(oval.K_ring.toarray())
     assert eigenvalues[3] > 1e3 * np.abs(eigenvalues[:3]).max()
-
-
-def test_mass_and_polar_inertia(oval: CasingModel) -> None:
-    m = machine(ovality_m=20e-3, lobes=3, lobe_angle_deg=20.0)
-    theta = 2 * np.pi * np.arange(4096) / 4096
-    wave = 3 * (theta - np.deg2rad(20.0))
-    r = m.casing_mean_radius_m + m.casing.thickness_m / 2 - 10e-3 * np.cos(wave)
-    ds = np.hypot(r, 30e-3 * np.sin(wave)) * 2 * np.pi / 4096
-    line = 7850.0 * m.casing.width_m * m.casing.thickness_m
-    x, y = oval.nodes_xy.T
-    shift = np.column_stack([np.ones_like(x), 0 * x, 0 * x]).ravel()
-    turn = np.column_stack([-y, x, np.ones_like(x)]).ravel()
-    # The polygon of 180 sides is (2 pi / 180)^2 / 24 = 5e-5 shorter.
-    assert shift @ oval.M @ shift == pytest.approx(line * ds.sum(), rel=1e-4)
-    assert turn @ oval.M @ turn == pytest.approx(line * (r**2 * ds).sum(), rel=3e-4)
-
-
-def test_an_element_that_turns_about_its_middle_has_the_inertia_of_the_solid() -> None:
-    material, width, thickness, length = machine().casing.material, 0.03, 0.02, 0.05
-    _, mass = element_matrices(material, width, thickness, np.array([length]))
-    turn = np.array([0, -length / 2, 1, 0, length / 2, 1])
-    solid = material.density_kg_per_m3 * width * thickness * length * (length**2 + thickness**2) / 12
-    assert turn @ mass[0] @ turn == pytest.approx(solid, rel=1e-12)
 
 
 def test_springs_resist_along_the_polar_directions() -> None:

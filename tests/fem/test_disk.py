@@ -1,38 +1,14 @@
-"""The disk against closed forms: mass properties, plates, membranes and rotating stress."""
+"""The disk against closed forms; tests/studies/test_verification.py holds the frequencies of plates and membranes."""
 
 import numpy as np
 import pytest
-from scipy.sparse.linalg import LinearOperator, eigsh
 
 from rubgen.fem.disk import assemble_disk
-from rubgen.fem.shell import shell_stress_stiffness
-from rubgen.fem.statics import factorize
-from rubgen.machine import Disk, Material, load_machine
+from rubgen.machine import load_machine
+from rubgen.studies.verification.plates import annulus, lowest, out_of_plane
+from rubgen.studies.verification.spinning_disks import growth_constants, membrane_squares, rotating_displacement
 
-STEEL = Material(youngs_modulus_pa=2.06e11, poisson_ratio=0.3, density_kg_per_m3=7850.0)
-NU = 0.3
 U, V, W, TH_X, TH_Y, TH_Z = range(6)
-
-
-def annulus(bore, thickness, radial=7, circumferential=72):
-    return Disk(
-        material=STEEL,
-        bore_radius_m=bore,
-        rim_radius_m=1.0,
-        bore_thickness_m=thickness,
-        rim_thickness_m=thickness,
-        radial_elements=radial,
-        circumferential_elements=circumferential,
-    )
-
-
-def lowest(M, K, free, count):
-    """Lowest eigenvalues omega^2 and vectors of the free DoFs."""
-    K, M = K[free][:, free], M[free][:, free]
-    inverse = LinearOperator(K.shape, matvec=factorize(K).solve, dtype=float)
-    squares, modes = eigsh(K, count, M, sigma=0.0, OPinv=inverse, v0=np.sin(1.0 + np.arange(len(free))), tol=1e-11)
-    order = np.argsort(squares)
-    return squares[order], modes[:, order]
 
 
 def polynomial_integral(power, bore, rim, disk):
@@ -86,60 +62,23 @@ def test_coriolis_matrix_is_skew_and_spin_softening_leaves_out_the_axis():
     np.testing.assert_allclose(R @ (model.G @ R.T), expected, atol=1e-9 * mass)
 
 
-@pytest.mark.parametrize(
-    ("thickness", "expected", "tolerance"),
-    [
-        (0.1, (6.5178, 6.3173, 7.5538, 12.6929), 2e-4),  # Mindlin, h/a = 0.1, kappa = 5/6
-        (0.01, (6.6604, 6.5523, 7.9565, 13.2757), 2e-3),  # Kirchhoff; h/a = 0.01 lies 0.02 to 0.16 % below it
-    ],
-)
-def test_frequencies_of_an_annular_plate_clamped_inside(thickness, expected, tolerance):
-    model = assemble_disk(annulus(0.3, thickness))
-    n = model.M.shape[0] // 6
-    plate = (6 * np.arange(n)[:, None] + np.array([W, TH_X, TH_Y])).ravel()
-    free = np.setdiff1d(plate, (6 * model.bore[:, None] + np.arange(6)).ravel())
-    squares, _ = lowest(model.M, model.K, free, 7)
-    D = STEEL.youngs_modulus_pa * thickness**3 / 12 / (1 - NU**2)
-    scaled = np.sqrt(squares * STEEL.density_kg_per_m3 * thickness / D)
-    by_diameters = scaled[[2, 0, 3, 5]]  # ascending: 1, 1, 0, 2, 2, 3, 3
-    np.testing.assert_allclose(by_diameters, expected, rtol=tolerance)
-    np.testing.assert_allclose(scaled[[0, 3, 5]], scaled[[1, 4, 6]], rtol=1e-8)
+def test_annular_plate_has_its_modes_in_pairs_but_those_without_nodal_diameters():
+    model = assemble_disk(annulus(0.3, 0.1))
+    squares = lowest(model.M, model.K, out_of_plane(model), 7)  # nodal diameters 1, 1, 0, 2, 2, 3, 3
+    np.testing.assert_allclose(squares[[0, 3, 5]], squares[[1, 4, 6]], rtol=2e-8)
+    assert squares[2] > 1.01 * squares[1]
 
 
-def rotating_displacement(model):
-    """Static displacement at 1 rad/s, the bore held."""
-    n = model.M.shape[0] // 6
-    membrane = (6 * np.arange(n)[:, None] + np.array([U, V, TH_Z])).ravel()
-    free = np.setdiff1d(membrane, (6 * model.bore[:, None] + np.arange(6)).ravel())
-    q = np.zeros(6 * n)
-    q[free] = factorize(model.K[free][:, free]).solve(model.f_c[free])
-    return q
-
-
-def test_rotating_disk_grows_as_in_plane_stress():
-    # u = A r + B/r - (1 - nu^2) rho r^3 / (8 E) with u(bore) = 0 and sigma_r(rim) = 0 (Timoshenko).
-    a, E, rho = 0.3, STEEL.youngs_modulus_pa, STEEL.density_kg_per_m3
-    c = (1 - NU**2) * rho / (8 * E)
-    A, B = np.linalg.solve([[a, 1 / a], [1 + NU, -(1 - NU)]], [c * a**3, c * (3 + NU)])
-    model = assemble_disk(annulus(a, 0.1))
+def test_growth_of_a_rotating_disk_is_right_at_every_node():
+    A, B, c = growth_constants(0.3)
+    model = assemble_disk(annulus(0.3, 0.1))
     q = rotating_displacement(model).reshape(-1, 6)
     r = np.linalg.norm(model.mesh.nodes, axis=1)
     radial = np.einsum("ij,ij->i", q[:, :2], model.mesh.nodes) / r
     np.testing.assert_allclose(radial, A * r + B / r - c * r**3, atol=2e-4 * radial.max())
 
 
-def test_spinning_membrane_disk_has_the_frequencies_of_lamb_and_southwell():
-    # (omega/Omega)^2 = [(n+2s)(n+2s+2)(3+nu) - n^2 (1+3 nu)] / 8, s = 0, n = 0..4 and s = 1, n = 0, 1.
-    # Its stress is given here; the small bore is free, which matters little where the modes r^n vanish.
-    model = assemble_disk(annulus(0.03, 1e-4, radial=16, circumferential=48))
-    r = np.linalg.norm(model.mesh.nodes, axis=1)
-    factor = STEEL.density_kg_per_m3 / (8 * STEEL.youngs_modulus_pa)
-    growth = factor * ((1 - NU) * (3 + NU) - (1 - NU**2) * r**2)  # u / r of the solid disk (Timoshenko)
-    q = np.zeros((len(r), 6))
-    q[:, :2] = growth[:, None] * model.mesh.nodes
-    K = shell_stress_stiffness(model.mesh, STEEL, q.ravel())
-    out_of_plane = 6 * np.arange(len(r)) + W
-    # The uniform motion has omega = 0: a shift by 1 makes the membrane regular.
-    squares, _ = lowest(model.M, (K + model.M).tocsr(), out_of_plane, 12)
-    expected = [0, 1, 1, 2.35, 2.35, 3.3, 4.05, 4.05, 5.95, 5.95, 6.1, 6.1]
-    np.testing.assert_allclose(squares - 1, expected, rtol=5e-3, atol=1e-10)
+def test_uniform_motion_of_a_membrane_disk_has_no_frequency():
+    squares = membrane_squares(3)
+    assert abs(squares[0]) < 1e-10
+    assert squares[1] == pytest.approx(squares[2], rel=5e-3)

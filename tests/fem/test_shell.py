@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from scipy.linalg import eigh, null_space
-from scipy.sparse.linalg import eigsh, spsolve
+from scipy.linalg import null_space
+from scipy.sparse.linalg import spsolve
 
-from rubgen.fem.shell import shell_inertia, shell_stiffness, shell_stress_stiffness
+from rubgen.fem.shell import shell_stiffness, shell_stress_stiffness
 from rubgen.fem.shell_strains import ShellMesh, serendipity
 from rubgen.machine import Material
+from rubgen.studies.verification.plates import clamped_centre_deflection, navier_frequency, supported_frequency
 
 STEEL = Material(youngs_modulus_pa=2.06e11, poisson_ratio=0.3, density_kg_per_m3=7850.0)
 NU = STEEL.poisson_ratio
@@ -121,20 +122,6 @@ def test_only_the_six_rigid_motions_cost_no_energy():
     assert overlap == pytest.approx(np.sqrt(6), rel=1e-9)
 
 
-def clamped_centre_deflection(elements, slenderness):
-    """w D / (p L^4) at the centre of a clamped square plate under uniform pressure."""
-    mesh = rectangle(elements, elements, thickness=slenderness)
-    K, M = shell_stiffness(mesh, STEEL), shell_inertia(mesh, STEEL).M
-    load = np.zeros((len(mesh.nodes), 6))
-    load[:, W] = 1.0
-    pressure = M @ load.ravel() / (STEEL.density_kg_per_m3 * slenderness)
-    free = np.setdiff1d(np.arange(K.shape[0]), dof(np.flatnonzero(on_boundary(mesh, 1.0)), *range(6)))
-    q = np.zeros(K.shape[0])
-    q[free] = spsolve(K[free][:, free].tocsc(), pressure[free])
-    centre = np.argmin(np.linalg.norm(mesh.nodes - 0.5, axis=1))
-    return q[6 * centre + W] * STEEL.youngs_modulus_pa * slenderness**3 / 12 / (1 - NU**2)
-
-
 @pytest.mark.parametrize("slenderness", [1e-3, 1e-4, 1e-5])
 def test_thin_clamped_plate_does_not_lock(slenderness):
     # 0.0012653 (Timoshenko, Woinowsky-Krieger). Locking would make the coarse plate ever stiffer as it gets thinner.
@@ -142,34 +129,10 @@ def test_thin_clamped_plate_does_not_lock(slenderness):
     assert clamped_centre_deflection(16, slenderness) == pytest.approx(0.0012653, rel=2e-3)
 
 
-def navier_mindlin(thickness):
-    """First frequency (rad/s) of the simply supported unit square Mindlin plate, from its closed form."""
-    E, h, rho = STEEL.youngs_modulus_pa, thickness, STEEL.density_kg_per_m3
-    D, shear, a = E * h**3 / 12 / (1 - NU**2), 5 / 6 * STEEL.shear_modulus_pa * h, np.pi
-    # w = sin sin; th_y = B cos sin, -th_x = B sin cos by symmetry: curvature energy 2 D a^2 B^2 per quarter area.
-    K = np.array([[2 * shear * a**2, 2 * shear * a], [2 * shear * a, 2 * (shear + 2 * D * a**2)]])
-    M = np.diag([rho * h, 2 * rho * h**3 / 12])
-    return np.sqrt(eigh(K, M, eigvals_only=True)[0])
-
-
-def supported_plate_frequency(elements, thickness):
-    """First frequency (rad/s) of the unit square plate with w and the rotation along the edge held at its edges."""
-    mesh = rectangle(elements, elements, thickness=thickness)
-    K, M = shell_stiffness(mesh, STEEL), shell_inertia(mesh, STEEL).M
-    x, y = mesh.nodes.T
-    side, end = np.isclose(x, 0) | np.isclose(x, 1), np.isclose(y, 0) | np.isclose(y, 1)
-    held = [dof(np.flatnonzero(side | end), W), dof(np.flatnonzero(side), TH_X), dof(np.flatnonzero(end), TH_Y)]
-    held.append(dof(np.arange(len(x)), U, V, TH_Z))
-    free = np.setdiff1d(np.arange(K.shape[0]), np.concatenate(held))
-    start = np.sin(1.0 + np.arange(len(free)))
-    square = eigsh(K[free][:, free].tocsc(), 1, M[free][:, free].tocsc(), sigma=0, v0=start, return_eigenvectors=False)
-    return np.sqrt(square[0])
-
-
 @pytest.mark.parametrize(("thickness", "order", "tolerance"), [(0.05, 4.0, 0.15), (0.1, 4.0, 0.4)])
 def test_frequencies_of_a_plate_converge_with_order_four(thickness, order, tolerance):
     meshes = (6, 12, 24)
-    errors = np.array([supported_plate_frequency(n, thickness) / navier_mindlin(thickness) - 1 for n in meshes])
+    errors = np.array([supported_frequency(n, thickness) / navier_frequency(thickness) - 1 for n in meshes])
     assert np.all(errors > 0)
     assert errors[-1] < 3e-6
     assert np.log2(errors[:-1] / errors[1:]) == pytest.approx(order, abs=tolerance)

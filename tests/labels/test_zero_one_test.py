@@ -1,27 +1,12 @@
-"""Maps whose nature is known from the literature; K as in Gottwald and Melbourne (2009)."""
+"""The 0-1 test on circle maps; tests/studies/test_verification.py holds K of the logistic map and Henon's."""
 
 import numpy as np
 import pytest
 
 from rubgen.labels.zero_one_test import FREQUENCIES, growth_correlation
+from rubgen.studies.verification.chaos_indicators import henon
 
 GOLDEN = (np.sqrt(5) - 1) / 2
-
-
-def logistic(r: float, count: int = 500) -> np.ndarray:
-    x, orbit = 0.3, []
-    for _ in range(count + 200):
-        x = r * x * (1 - x)
-        orbit.append(x)
-    return np.array(orbit[200:])
-
-
-def henon(count: int = 500) -> np.ndarray:
-    x, y, orbit = 0.1, 0.1, []
-    for _ in range(count + 200):
-        x, y = 1 - 1.4 * x * x + y, 0.3 * x
-        orbit.append(x)
-    return np.array(orbit[200:])
 
 
 def circle_map(rotation: float, coupling: float, count: int = 500) -> np.ndarray:
@@ -30,18 +15,6 @@ def circle_map(rotation: float, coupling: float, count: int = 500) -> np.ndarray
         angle += rotation - coupling / (2 * np.pi) * np.sin(2 * np.pi * angle)
         orbit.append(np.cos(2 * np.pi * angle))
     return np.array(orbit[200:])
-
-
-def test_logistic_map_at_4_is_chaotic() -> None:
-    assert growth_correlation(logistic(4.0)) > 0.99
-
-
-def test_henon_map_is_chaotic() -> None:
-    assert growth_correlation(henon()) > 0.99
-
-
-def test_logistic_map_of_period_4_does_not_grow() -> None:
-    assert abs(growth_correlation(logistic(3.5))) < 0.05
 
 
 @pytest.mark.parametrize(("rotation", "coupling"), [(GOLDEN, 0.0), (GOLDEN, 0.9), (0.0123, 0.0), (0.4987, 0.0)])
