@@ -28,7 +28,8 @@ def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     """A pool of fresh processes with one thread of BLAS each; left early, its processes are ended at once."""
     before = set(multiprocessing.active_children())
     with _environment(ONE_THREAD):
-        pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), initializer=_start_worker)
+        with _interrupts_held():
+            pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), initializer=_start_worker)
         try:
             yield pool
         except BrokenProcessPool:
@@ -41,6 +42,7 @@ def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
             for process in set(multiprocessing.active_children()) - before:
                 process.terminate()
                 process.join()
+            pool.shutdown(wait=True)  # its thread has seen the processes end, and gives back what they shared
 
 
 def unordered(
