@@ -22,6 +22,7 @@ GROUPS = (
     "bouncing_bar",
     "impact_oscillator",
     "annular_rub",
+    "misaligned_rub",
     "chaos_indicators",
     "preset",
 )

@@ -18,11 +18,11 @@ UNBALANCE = 6e-3
 NODES = 12
 
 
-def jeffcott_system() -> SpinningSystem:
+def jeffcott_system(unbalance: float = UNBALANCE, side_force: float = 0.0) -> SpinningSystem:
     """One "tip" that is the rotor's centre, in a ring whose radius is the clearance.
 
     A tip radius of 1 m, with a steady displacement of -1 m that takes it back to the axis, sets the scale of the
-    solver's margins. Axial motion and O_d take no part.
+    solver's margins. Axial motion and O_d take no part. `unbalance` in kg m; `side_force` in N pushes the ring along X.
     """
     whirl = np.array([[0.0, -1.0], [1.0, 0.0]])
     drag, idle = ROTOR_DAMPING * np.eye(2), np.eye(3)
@@ -31,7 +31,7 @@ def jeffcott_system() -> SpinningSystem:
     K = (ROTOR_STIFFNESS - SPEED**2 * ROTOR_MASS) * np.eye(2) + SPEED * drag @ whirl
     stator = np.eye(2) / STATOR_MASS
     force = np.zeros(7)
-    force[0] = UNBALANCE * SPEED**2
+    force[0], force[-2] = unbalance * SPEED**2, side_force / STATOR_MASS**0.5
     modes = np.zeros((NODES, 2, 2))
     modes[:] = np.eye(2) / np.sqrt(STATOR_MASS)
     return SpinningSystem(
