@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from rubgen.labels.harmonics import HIGHEST_ORDER, SPECTRUM_TURNS
 from rubgen.labels.labels import Motion
 from rubgen.sensors.channel import Float32Array
 from rubgen.sensors.probes import PROBES, Probe
@@ -19,8 +20,6 @@ NOISE_PEAK = 6.5
 ORDER_TOLERANCE = {True: 0.01, False: 0.1}
 """Of the largest amplitude, for a motion that repeats and one that does not: the channel ends half a filter length
 before the label's window. In 23 runs of the default recipe nothing and 0.016 went beyond the noise."""
-ORDER_TURNS = 100
-"""Turns from which the order labels come."""
 FORCE_TOLERANCE = 0.01
 """For period-1 motion; seen: 0.0003."""
 SHARE_TOLERANCE = 1e-9
@@ -86,7 +85,7 @@ def _force_problems(row: Row, force: Float32Array) -> Iterator[str]:
 
 
 def _order_problems(row: Row, probe: Probe, values: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
-    samples = round(min(ORDER_TURNS, row["record_turns"]) * row["sample_rate_hz"] * 60 / row["speed_rpm"])
+    samples = round(min(SPECTRUM_TURNS, row["record_turns"]) * row["sample_rate_hz"] * 60 / row["speed_rpm"])
     if values.size < samples:
         return
     amplitudes = order_amplitudes(values[-samples:], row["speed_rpm"] / 60 / row["sample_rate_hz"])
@@ -110,7 +109,7 @@ def order_amplitudes(values: Float32Array, turns_per_sample: float) -> np.ndarra
     """Peak amplitudes at k = 1..10 times the rotation frequency: 2/n |sum x exp(-2 pi i k turns)|, mean removed."""
     turns = np.arange(values.size) * turns_per_sample
     centred = values.astype(np.float64) - values.mean(dtype=np.float64)
-    sums = [np.exp(-2j * np.pi * k * turns) @ centred for k in range(1, 11)]
+    sums = [np.exp(-2j * np.pi * k * turns) @ centred for k in range(1, HIGHEST_ORDER + 1)]
     return np.asarray(2 / values.size * np.abs(sums))
 
 
