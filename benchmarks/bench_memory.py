@@ -27,13 +27,13 @@ signal_seconds = 1.0
 
 
 def measure() -> list[dict[str, object]]:
-    base = _peak_megabytes(runs=2, settle=60, turns=500)
-    more_runs = _peak_megabytes(runs=12, settle=60, turns=500)
-    more_turns = _peak_megabytes(runs=2, settle=60, turns=2000)
+    base = _peak_megabytes(runs=10, settle=60, turns=500)
+    more_runs = _peak_megabytes(runs=30, settle=60, turns=500)
+    more_turns = _peak_megabytes(runs=10, settle=60, turns=1500)
     return [
-        {"name": "memory, two workers, 2 runs of 500 turns", "value": base, "unit": "MB", "target": "<= 1500"},
-        {"name": "memory, 12 runs over 2 runs", "value": more_runs / base, "unit": "ratio", "target": "about 1"},
-        {"name": "memory, 2000 turns over 500 turns", "value": more_turns / base, "unit": "ratio", "target": "about 1"},
+        {"name": "memory, two workers, 10 runs of 500 turns", "value": base, "unit": "MB", "target": "<= 1500"},
+        {"name": "memory, 30 runs over 10 runs", "value": more_runs / base, "unit": "ratio", "target": "about 1"},
+        {"name": "memory, 1500 turns over 500 turns", "value": more_turns / base, "unit": "ratio", "target": "about 1"},
     ]
 
 
