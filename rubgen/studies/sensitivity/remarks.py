@@ -1,0 +1,54 @@
+"""What the page says about the studies besides their numbers."""
+
+from __future__ import annotations
+
+INTRODUCTION = """
+# Sensitivity
+
+What a user does not see moves results too: the step, the numbers of modes and nodes, the turns that are thrown away.
+Each is varied alone, all else by default, in five runs of the preset `zeng2019`:
+
+- light: 10,000 rev/min with a lateral support stiffness of 2e8 N/m, without friction and with 0.01;
+- heavier: 11,400 rev/min; without friction;
+- chaotic: 9,000 rev/min, without friction and with 0.01.
+
+Records have 500 turns, orders cover the last 100. `+-` is the standard error of the mean impulse from ten parts of the
+record: what a chaotic run's numbers are uncertain by, whatever is varied. Changes are relative to the yardstick of each
+study, given in its section; figures are linear within 1 % and logarithmic beyond, the grey bar stands at the default,
+the mark's shape is the class of motion. Zones are `equal` when the label says symmetric.
+
+`make sensitivity` makes this page, its figures and `out/sensitivity/`; finished runs are kept there, so a study that
+was stopped goes on where it stood. `python -m rubgen.studies.sensitivity steps` makes one of them, `--quick` a small
+version of all in `out/sensitivity-quick/`.
+"""
+FOLLOWS = ""
+REMARKS = {
+    "halving": """
+The paper's sweep, 2,460 to 14,940 rev/min by 120, at 1,024 and at 2,048 steps a turn. `K` is the indicator of the 0-1
+test (chaotic from 0.7), `stray` the rms distance of the section's points from their mean over the size of the motion
+(period-1 up to 0.01), both as `docs/labels.md` defines them.
+""",
+    "steps": """
+Yardstick: 8,192. Gap and normal are taken at n+1, the force acts from n: in contact the scheme is of first order in the
+step, without contact of second. The verification measures it: the stator's phase in full annular rub is off by 5.4e-3
+rad at 1,024 steps. With three lobes, take a number of steps that three divides, so that all lobes see the same steps.
+""",
+    "blade_modes": "Fixed-interface modes of each blade in the first step of the reduction. Yardstick: 16.",
+    "disk_modes": "Fixed-interface modes of the disk in the first step of the reduction. Yardstick: 40.",
+    "blisk_modes": """
+Fixed-interface modes of the coupled blisk in the second step; the tips' translations stay in any case. Yardstick: 86,
+the paper's own reference. Modes of higher frequency need smaller steps; where stability raised them, the table says so.
+""",
+    "casing_modes": """
+Yardstick: 11. This is no convergence study, for there is none: tips pass at 419 m/s, waves of the ring travel at 66 to
+153 m/s, so contact feeds each wave that is added. The number of casing modes belongs to the definition of the model.
+""",
+    "casing_nodes": """
+Yardstick: 720. Springs stand at the nodes, so their stiffness is divided as nodes are added; the ring stays the same.
+The undeformed surface is smooth with any number of nodes.
+""",
+    "settle_turns": """
+Turns before the record, the closing of the clearance (40 turns) included. Yardstick: 800. `auto` follows from the
+slowest decay of the linear system: here 266 turns (light), 365 (heavier) and 211 (chaotic).
+""",
+}
