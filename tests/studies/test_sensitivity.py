@@ -157,10 +157,24 @@ def test_pairs_compare_labels_and_impulses(rub):
     assert not doubled.equal
 
 
-def test_the_step_is_halved():
+def test_the_step_is_halved(rub):
     asked = []
-    halve(lambda scenario: asked.append(scenario.operation), [6780], lambda scenario: scenario)
+    halve(lambda scenario: asked.append(scenario.operation) or rub, [6780], lambda scenario: scenario)
     assert [(operation.speed_rpm, operation.steps_per_turn) for operation in asked] == [(6780, 1024), (6780, 2048)]
+
+
+def test_where_labels_differ_the_next_record_is_looked_at(rub):
+    asked = []
+    answers = [replace(rub, motion=name, period=None) for name in ("chaotic", "quasi-periodic", "quasi-periodic")]
+
+    def outcome(scenario):
+        asked.append(scenario.operation)
+        return answers[len(asked) - 1]
+
+    (pair,) = halve(outcome, [6780], lambda scenario: scenario)
+    assert (asked[2].steps_per_turn, asked[2].settle_turns) == (1024, rub.settle_turns + rub.record_turns)
+    assert pair.changes_by_itself
+    assert not replace(pair, later=pair.whole).changes_by_itself
 
 
 def test_changes_are_relative_and_undefined_for_failed_runs(rub):
@@ -174,9 +188,9 @@ def test_results_come_back_from_json(tmp_path, rub):
     results = [Result(case="light", value=4, outcome=rub)]
     write_results(results, tmp_path / "a.json")
     assert read_results(tmp_path / "a.json") == results
-    write_pairs([Pair(speed_rpm=5.0, whole=failed(rub), half=rub)], tmp_path / "b.json")
+    write_pairs([Pair(speed_rpm=5.0, whole=failed(rub), half=rub, later=rub)], tmp_path / "b.json")
     (pair,) = read_pairs(tmp_path / "b.json")
-    assert pair.half == rub
+    assert pair.half == pair.later == rub
     assert math.isnan(pair.whole.impulse)
     assert pair.whole.period == rub.period
     assert "NaN" not in (tmp_path / "b.json").read_text(encoding="utf-8")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rubgen.labels import Motion
 from rubgen.scenario import Scenario, make_scenario
@@ -18,11 +18,15 @@ EQUAL_LABELS = 0.9
 
 @dataclass(frozen=True, kw_only=True)
 class Pair:
-    """The outcomes at one speed with the step and with half of it."""
+    """The outcomes at one speed with the step and with half of it.
+
+    `later` is the record that follows that of the whole step, where labels differ: they may do so without a new step.
+    """
 
     speed_rpm: float
     whole: Outcome
     half: Outcome
+    later: Outcome | None = None
 
     @property
     def equal(self) -> bool:
@@ -33,6 +37,11 @@ class Pair:
     def equal_zones(self) -> bool:
         """Whether the number of contact zones and their symmetry are equal as well."""
         return (self.whole.zones, self.whole.symmetric) == (self.half.zones, self.half.symmetric)
+
+    @property
+    def changes_by_itself(self) -> bool:
+        """Whether the label changes from one record to the next with the same step."""
+        return self.later is not None and _label(self.whole) != _label(self.later)
 
     @property
     def impulse_change(self) -> float | None:
@@ -56,14 +65,16 @@ def halve(
     outcome: Callable[[Scenario], Outcome], speeds_rpm: Sequence[float], shorter: Callable[[Scenario], Scenario]
 ) -> list[Pair]:
     """The pairs at these speeds; `outcome` runs a scenario, `shorter` may cut its turns."""
-    return [
-        Pair(
-            speed_rpm=speed,
-            whole=outcome(shorter(scenario(speed, STEPS))),
-            half=outcome(shorter(scenario(speed, 2 * STEPS))),
-        )
-        for speed in speeds_rpm
-    ]
+    return [_pair(outcome, speed, shorter) for speed in speeds_rpm]
+
+
+def _pair(outcome: Callable[[Scenario], Outcome], speed: float, shorter: Callable[[Scenario], Scenario]) -> Pair:
+    asked = shorter(scenario(speed, STEPS))
+    pair = Pair(speed_rpm=speed, whole=outcome(asked), half=outcome(shorter(scenario(speed, 2 * STEPS))))
+    if pair.equal:
+        return pair
+    turns = pair.whole.settle_turns + pair.whole.record_turns
+    return replace(pair, later=outcome(with_operation(asked, settle_turns=turns)))
 
 
 def equal_share(pairs: Sequence[Pair]) -> float:

@@ -115,7 +115,7 @@ def _halving(pairs: Sequence[Pair]) -> str:
     ]
     others = [pair for pair in pairs if not pair.equal]
     if others:
-        text += ["Every other speed, with its indicators (1,024 / 2,048 steps):", _others(others)]
+        text += [_others_sentence(others), _others(others)]
     return "\n\n".join(text)
 
 
@@ -145,8 +145,26 @@ def _impulse_sentence(changes: Mapping[float, float], beyond: Mapping[float, flo
     return f"{start}; beyond {100 * IMPULSE_TOLERANCE:.0f} %: {named}." if beyond else f"{start}."
 
 
+def _others_sentence(others: Sequence[Pair]) -> str:
+    themselves = sum(pair.changes_by_itself for pair in others)
+    return (
+        f"The {len(others)} other speeds, with their indicators (1,024 / 2,048 steps). `next record` is the motion of "
+        f"the 500 turns after those, at 1,024 steps: at {themselves} of these speeds the label changes by itself."
+    )
+
+
 def _others(pairs: Sequence[Pair]) -> str:
-    header = ["rev/min", "motion", "K blisk", "K casing", "stray blisk", "stray casing", "zones", "impulse, N s"]
+    header = [
+        "rev/min",
+        "motion",
+        "next record",
+        "K blisk",
+        "K casing",
+        "stray blisk",
+        "stray casing",
+        "zones",
+        "impulse, N s",
+    ]
     rows = []
     for pair in pairs:
         both = (pair.whole, pair.half)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from rubgen.scenario import Scenario
@@ -66,14 +66,21 @@ def read_results(path: Path) -> Results:
 
 
 def write_pairs(pairs: Sequence[Pair], path: Path) -> None:
-    """Write pairs as a JSON list of `speed_rpm`, `whole` and `half`."""
-    _write([{"speed_rpm": p.speed_rpm, "whole": p.whole.as_dict(), "half": p.half.as_dict()} for p in pairs], path)
+    """Write pairs as a JSON list of `speed_rpm`, `whole`, `half` and `later`."""
+    _write([asdict(pair) for pair in pairs], path)
 
 
 def read_pairs(path: Path) -> list[Pair]:
     """The pairs as `write_pairs` wrote them."""
-    rows = json.loads(path.read_text(encoding="utf-8"))
-    return [Pair(speed_rpm=row["speed_rpm"], whole=_outcome(row["whole"]), half=_outcome(row["half"])) for row in rows]
+    return [
+        Pair(
+            speed_rpm=row["speed_rpm"],
+            whole=_outcome(row["whole"]),
+            half=_outcome(row["half"]),
+            later=_outcome(row["later"]) if row["later"] else None,
+        )
+        for row in json.loads(path.read_text(encoding="utf-8"))
+    ]
 
 
 def _write(rows: list[dict[str, object]], path: Path) -> None:
