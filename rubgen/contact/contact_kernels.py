@@ -10,16 +10,10 @@ import math
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
+from rubgen.contact.clearance_kernels import deformation_bounds, is_clear, tip_angle
 from rubgen.contact.friction_kernels import friction_direction, slip_velocity
-from rubgen.contact.geometry_kernels import (
-    Surface,
-    Tips,
-    casing_reach,
-    casing_rows,
-    foot_of,
-    tip_position,
-)
-from rubgen.jit import allocation_free_kernel
+from rubgen.contact.geometry_kernels import Surface, Tips, casing_rows, foot_of, tip_position
+from rubgen.jit import allocation_free_kernel, inlined_kernel
 
 
 class ContactWork(NamedTuple):
@@ -28,7 +22,7 @@ class ContactWork(NamedTuple):
     Per blade: `bounds`, `psi`, `gap` (the free gap at q*; NaN when the blade is provably farther than the
     margin), `tangent` (n_blades, 2), `held` (3, n_blades): the scheme's gaps at steps n - 1, n, n + 1.
     Per contact: `lam`, `b`, `W`, `normal_tip` and `full_tip` (n_blades, 3), `normal_casing` and `full_casing`
-    (n_blades, n_casing), `slip` (n_blades, 2) the friction direction, `blisk_response` and `casing_response`: A^-1 B.
+    (n_blades, n_casing), `slip` (n_blades, 2) the friction direction, `casing_response` (n_blades, n_casing) A^-1 B.
     """
 
     bounds: FloatArray
@@ -45,7 +39,6 @@ class ContactWork(NamedTuple):
     normal_casing: FloatArray
     full_casing: FloatArray
     slip: FloatArray
-    blisk_response: FloatArray
     casing_response: FloatArray
     ends: FloatArray
     rows: FloatArray
@@ -54,28 +47,41 @@ class ContactWork(NamedTuple):
     basis: IntArray
 
 
-@allocation_free_kernel
+@inlined_kernel
 def find_near(
     surface: Surface,
     tips: Tips,
     q: FloatArray,
+    displacement: FloatArray,
     casing_start: int,
     opening: float,
+    theta: float,
     cos_theta: float,
     sin_theta: float,
     margin: float,
+    reach: float,
     screen: bool,
     work: ContactWork,
 ) -> tuple[int, bool]:
-    """Free gaps of all blades that may be nearer than `margin`; how many are, and whether any penetrates."""
-    reach = casing_reach(surface, q[casing_start:])
+    """Free gaps of all blades that may be nearer than `margin`; how many are, and whether any penetrates.
+
+    `reach` is the casing's; `displacement` (2, any) the tips' radial and tangential one, which goes into q for the
+    blades that are looked at.
+    """
     count, penetrates = 0, False
+    q_casing = q[casing_start:]
+    limits = deformation_bounds(surface, q_casing)
+    # The linear interpolation of u_r lies within the reach.
+    far = (reach + limits[0]) + margin * (1.0 + 0.5 * limits[1] * limits[1])
     for k in range(work.bounds.shape[0]):
         work.gap[k] = math.nan
-        if screen and work.bounds[k] - reach > margin:
+        if screen and work.bounds[k] > far:
+            continue
+        q[3 * k], q[3 * k + 1] = displacement[0, k], displacement[1, k]
+        if screen and is_clear(surface, q_casing, tip_angle(tips, k, q, theta), work.bounds[k], margin, limits):
             continue
         x, y, _, _ = tip_position(tips, k, q, cos_theta, sin_theta)
-        psi, gap, tx, ty = foot_of(surface, q[casing_start:], opening, x, y, work.ends)
+        psi, gap, tx, ty = foot_of(surface, q_casing, opening, x, y, work.ends)
         if gap >= margin:
             continue
         work.psi[k], work.gap[k] = psi, gap
@@ -103,14 +109,14 @@ def gap_at(
     return foot_of(surface, q[casing_start:], opening, x, y, ends_work)[1]
 
 
-@allocation_free_kernel
+@inlined_kernel
 def contact_slip(
     tips: Tips, m: int, velocity: FloatArray, q: FloatArray, speed: float, cosine: float, sine: float, work: ContactWork
 ) -> tuple[float, float]:
     """Relative velocity of contact m along tangent and axis; `velocity` (n,) is q' in the coordinates' own frames."""
     k, n_casing = work.blade[m], work.rows.shape[1]
-    radial = velocity[3 * k] - speed * (tips.static[k, 1] + q[3 * k + 1])
-    tangential = velocity[3 * k + 1] + speed * (tips.radius + tips.static[k, 0] + q[3 * k])
+    radial = velocity[3 * k] - speed * (tips.static[1, k] + q[3 * k + 1])
+    tangential = velocity[3 * k + 1] + speed * (tips.radius + tips.static[0, k] + q[3 * k])
     casing_x, casing_y = 0.0, 0.0
     start = velocity.shape[0] - n_casing
     for j in range(n_casing):
@@ -120,7 +126,7 @@ def contact_slip(
     return slip_velocity(tip, (casing_x, casing_y), (work.tangent[k, 0], work.tangent[k, 1]))
 
 
-@allocation_free_kernel
+@inlined_kernel
 def build_rows(
     surface: Surface,
     tips: Tips,
@@ -155,57 +161,50 @@ def build_rows(
         work.full_casing[m, j] = -fx * work.rows[0, j] - fy * work.rows[1, j]
 
 
-@allocation_free_kernel
-def build_response(m: int, blisk_inverse: FloatArray, casing_inverse: FloatArray, work: ContactWork) -> None:
-    """A^-1 B of contact m; `*_inverse[j]` is column j of the inverse of that block of A, padded."""
-    base = 3 * work.blade[m]
-    f0, f1, f2 = work.full_tip[m, 0], work.full_tip[m, 1], work.full_tip[m, 2]
-    for i in range(blisk_inverse.shape[1]):
-        work.blisk_response[m, i] = (
-            f0 * blisk_inverse[base, i] + f1 * blisk_inverse[base + 1, i] + f2 * blisk_inverse[base + 2, i]
-        )
-    for i in range(casing_inverse.shape[1]):
+@inlined_kernel
+def build_casing_response(m: int, compliance: FloatArray, work: ContactWork) -> None:
+    """A^-1 B of contact m on the casing; `compliance[j]` is column j of the casing's A^-1."""
+    n_casing = work.rows.shape[1]
+    for i in range(n_casing):
         work.casing_response[m, i] = 0.0
-    for j in range(casing_inverse.shape[0]):
+    for j in range(n_casing):
         force = work.full_casing[m, j]
-        for i in range(casing_inverse.shape[1]):
-            work.casing_response[m, i] += force * casing_inverse[j, i]
+        for i in range(n_casing):
+            work.casing_response[m, i] += force * compliance[j, i]
 
 
-@allocation_free_kernel
-def build_compliance(count: int, work: ContactWork) -> None:
-    """W = B_n^T A^-1 B of all contacts together."""
+@inlined_kernel
+def build_compliance(count: int, compliance: FloatArray, work: ContactWork) -> None:
+    """W = B_n^T A^-1 B of all contacts together; `compliance[j]` is column j of A^-1 between tip coordinates."""
     for row in range(count):
         base = 3 * work.blade[row]
         for column in range(count):
-            total = 0.0
+            total, other = 0.0, 3 * work.blade[column]
             for a in range(3):
-                total += work.normal_tip[row, a] * work.blisk_response[column, base + a]
+                for b in range(3):
+                    force = work.normal_tip[row, a] * work.full_tip[column, b]
+                    total += force * compliance[other + b, base + a]
             for j in range(work.rows.shape[1]):
                 total += work.normal_casing[row, j] * work.casing_response[column, j]
             work.W[row, column] = total
 
 
-@allocation_free_kernel
-def apply_contacts(count: int, q: FloatArray, casing_start: int, work: ContactWork) -> None:
-    """Q += A^-1 B lam."""
-    for m in range(count):
-        lam = work.lam[m]
-        if lam > 0.0:
-            for i in range(casing_start):
-                q[i] += lam * work.blisk_response[m, i]
-            for j in range(q.shape[0] - casing_start):
-                q[casing_start + j] += lam * work.casing_response[m, j]
-
-
-@allocation_free_kernel
+@inlined_kernel
 def largest_approach(
-    surface: Surface, q_new: FloatArray, q_free: FloatArray, casing_start: int, n_blades: int
+    surface: Surface,
+    tips_new: FloatArray,
+    tips_free: FloatArray,
+    q_new: FloatArray,
+    q_free: FloatArray,
+    casing_start: int,
 ) -> float:
-    """A bound of how much the contact forces may have closed any gap: tip movement plus casing movement."""
+    """A bound of how much the contact forces may have closed any gap: tip movement plus casing movement.
+
+    Tips (2, any): radial and tangential; of q (n,) the casing counts.
+    """
     tip = 0.0
-    for k in range(n_blades):
-        radial, tangential = q_new[3 * k] - q_free[3 * k], q_new[3 * k + 1] - q_free[3 * k + 1]
+    for k in range(tips_new.shape[1]):
+        radial, tangential = tips_new[0, k] - tips_free[0, k], tips_new[1, k] - tips_free[1, k]
         tip = max(tip, radial * radial + tangential * tangential)
     casing = 0.0
     for j in range(surface.reach.shape[0]):

@@ -19,6 +19,14 @@ def periodic_derivative(values: FloatArray) -> FloatArray:
     return np.asarray(np.fft.irfft(spectrum, n, axis=0))
 
 
+def hermite_bends(values: FloatArray, slopes: FloatArray, step: float) -> FloatArray:
+    """The largest second derivative of each mode (n_casing,) between nodes, where it is linear in the angle."""
+    following, next_slopes = np.roll(values, -1, axis=0), np.roll(slopes, -1, axis=0)
+    rise = 6 * (following - values) / step**2
+    ends = rise - (4 * slopes + 2 * next_slopes) / step, (2 * slopes + 4 * next_slopes) / step - rise
+    return np.asarray(np.max([np.sqrt((end**2).sum(axis=1)).max(axis=0) for end in ends], axis=0))
+
+
 def casing_surface(system: SpinningSystem) -> Surface:
     """The surface r(psi) e_r + u(psi) of a system: smooth undeformed curve, Hermite-interpolated displacement.
 
@@ -33,8 +41,9 @@ def casing_surface(system: SpinningSystem) -> Surface:
     size, slope_size = (np.sqrt((field**2).sum(axis=1)).max(axis=0) for field in (modes, slopes))
     curve = system.surface
     steepness = float(np.abs(curve.amplitude * curve.order).sum())
-    # Candidates are nearer than the surface's own size, so |x| > 0.9 tip_radius bounds |grad(r - |x|)| between them.
-    lipschitz = float(np.hypot(1.0, steepness / (0.9 * system.tip_radius)))
+    bends = hermite_bends(modes, slopes, step)
+    between = slope_size + 0.5 * step * bends
+    angle = step * np.arange(nodes)[:, None]
     return Surface(
         mean_radius=float(curve.mean_radius),
         amplitude=np.asarray(curve.amplitude, dtype=float),
@@ -43,8 +52,11 @@ def casing_surface(system: SpinningSystem) -> Surface:
         table=np.ascontiguousarray(np.concatenate([modes, slopes], axis=1).transpose(0, 2, 1)),
         node_step=step,
         reach=np.ascontiguousarray(size + 0.25 * step * slope_size),
+        mode_slope=np.ascontiguousarray(between + size),
+        mode_bend=np.ascontiguousarray(bends + 2 * between + size + 0.25 * step * slope_size),
+        radial=np.ascontiguousarray(modes[:, 0] * np.cos(angle) + modes[:, 1] * np.sin(angle)),
         steepness=steepness,
-        lipschitz=lipschitz,
+        bend=float(np.abs(curve.amplitude * curve.order**2).sum()),
     )
 
 
@@ -54,7 +66,8 @@ def blade_tips(system: SpinningSystem) -> Tips:
     orders = np.multiply.outer(np.asarray(system.surface.order, dtype=float), angle)
     return Tips(
         radius=float(system.tip_radius),
-        static=np.ascontiguousarray(system.tip_static, dtype=float),
+        static=np.ascontiguousarray(system.tip_static.T, dtype=float),
+        angle=angle,
         cos_angle=np.cos(angle),
         sin_angle=np.sin(angle),
         cos_order=np.cos(orders),

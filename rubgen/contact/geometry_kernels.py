@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray
-from rubgen.jit import allocation_free_kernel
+from rubgen.jit import allocation_free_kernel, inlined_kernel
 
 FOOT_TOLERANCE = 1e-10
 FOOT_ITERATIONS = 20
@@ -20,8 +20,9 @@ class Surface(NamedTuple):
     """The casing's inner surface as kernels take it; lengths in m, angles in rad.
 
     `table` (nodes, n_casing, 4) holds X, Y and their derivatives by the polar angle for each node and mode; `reach`
-    (n_casing,) bounds the displacement anywhere on the ring per unit of each mode; `steepness` bounds |dr/dpsi| and
-    `lipschitz` the gradient of r(psi) - |x| near the surface.
+    (n_casing,) bounds the displacement anywhere on the ring per unit of each mode, `mode_slope` and `mode_bend` the
+    first and second derivative of its radial part; `radial` (nodes, n_casing) is that part at the nodes. `steepness`
+    bounds |dr/dpsi|, `bend` |d2r/dpsi2|.
     """
 
     mean_radius: float
@@ -31,19 +32,23 @@ class Surface(NamedTuple):
     table: FloatArray
     node_step: float
     reach: FloatArray
+    mode_slope: FloatArray
+    mode_bend: FloatArray
+    radial: FloatArray
     steepness: float
-    lipschitz: float
+    bend: float
 
 
 class Tips(NamedTuple):
     """The blade tips as kernels take them.
 
-    `radius` at rest, `static` (n_blades, 3) steady displacement along blade axes, `cos_angle`, `sin_angle` (n_blades,)
-    of the blade's place on the disk, `cos_order`, `sin_order` (n_harmonics, n_blades) of order_j times that angle.
+    `radius` at rest, `static` (3, n_blades) steady displacement along blade axes, `angle` (n_blades,) of its place
+    on the disk with `cos_angle`, `sin_angle`, `cos_order`, `sin_order` (n_harmonics, n_blades) of order_j times it.
     """
 
     radius: float
     static: FloatArray
+    angle: FloatArray
     cos_angle: FloatArray
     sin_angle: FloatArray
     cos_order: FloatArray
@@ -112,7 +117,7 @@ def blend(weights: tuple[float, float, float, float], ends: FloatArray, c: int) 
     return total
 
 
-@allocation_free_kernel
+@inlined_kernel
 def foot_of(
     surface: Surface, q_casing: FloatArray, opening: float, x: float, y: float, ends_work: FloatArray
 ) -> tuple[float, float, float, float]:
@@ -153,7 +158,7 @@ def foot_of(
     return psi, gap, tx, ty
 
 
-@allocation_free_kernel
+@inlined_kernel
 def casing_rows(surface: Surface, psi: float, rows_out: FloatArray) -> None:
     """X and Y displacement at psi per unit of each casing mode, into `rows_out` (2, n_casing)."""
     first, second, s = interval(psi, surface.node_step, surface.table.shape[0])
@@ -169,53 +174,13 @@ def casing_rows(surface: Surface, psi: float, rows_out: FloatArray) -> None:
             )
 
 
-@allocation_free_kernel
-def casing_reach(surface: Surface, q_casing: FloatArray) -> float:
-    """An upper bound of the casing's displacement anywhere on the ring, sum_j |q_j| reach_j."""
-    reach: float = 0.0
-    for j in range(q_casing.shape[0]):
-        reach += abs(q_casing[j]) * surface.reach[j]
-    return reach
-
-
-@allocation_free_kernel
+@inlined_kernel
 def tip_position(
     tips: Tips, blade: int, q: FloatArray, cos_theta: float, sin_theta: float
 ) -> tuple[float, float, float, float]:
     """Inertial x, y of a blade's tip, then the cosine and sine of the blade's angle theta + blade_angle."""
     cosine = cos_theta * tips.cos_angle[blade] - sin_theta * tips.sin_angle[blade]
     sine = sin_theta * tips.cos_angle[blade] + cos_theta * tips.sin_angle[blade]
-    radial = tips.radius + tips.static[blade, 0] + q[3 * blade]
-    tangential = tips.static[blade, 1] + q[3 * blade + 1]
+    radial = tips.radius + tips.static[0, blade] + q[3 * blade]
+    tangential = tips.static[1, blade] + q[3 * blade + 1]
     return radial * cosine - tangential * sine, radial * sine + tangential * cosine, cosine, sine
-
-
-@allocation_free_kernel
-def clearance_bounds(
-    surface: Surface,
-    tips: Tips,
-    q: FloatArray,
-    opening: float,
-    cos_orders: FloatArray,
-    sin_orders: FloatArray,
-    bounds_out: FloatArray,
-) -> None:
-    """A lower bound of every tip's distance to the undeformed surface where positive, into `bounds_out` (n_blades,).
-
-    With f(x) = r(angle of x) + opening - |x|, |grad f| <= lipschitz, the distance is at least f / lipschitz. The tip's
-    polar angle differs from the blade's by at most |t| / a and |P| <= a + t^2 / (2 a), a and t the radial and
-    tangential place of the tip. Bounded by the casing's reach, the gap to the deformed surface follows.
-    `cos_orders`, `sin_orders` (n_harmonics,) are those of order_j (theta - phase_j).
-    """
-    base = surface.mean_radius + opening - tips.radius
-    for k in range(bounds_out.shape[0]):
-        a = tips.static[k, 0] + q[3 * k]
-        t = abs(tips.static[k, 1] + q[3 * k + 1])
-        shift = t / (tips.radius + a)
-        bounds_out[k] = base - a - shift * (surface.steepness + 0.5 * t)
-    for j in range(surface.amplitude.shape[0]):
-        cosine, sine = surface.amplitude[j] * cos_orders[j], surface.amplitude[j] * sin_orders[j]
-        for k in range(bounds_out.shape[0]):
-            bounds_out[k] += cosine * tips.cos_order[j, k] - sine * tips.sin_order[j, k]
-    for k in range(bounds_out.shape[0]):
-        bounds_out[k] /= surface.lipschitz

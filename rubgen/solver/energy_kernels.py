@@ -8,107 +8,56 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from rubgen.arrays import FloatArray
+from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.contact_kernels import ContactWork, contact_slip
 from rubgen.contact.geometry_kernels import Surface, Tips, casing_rows, tip_position
-from rubgen.jit import allocation_free_kernel
-from rubgen.solver.step_kernels import Angles, Laws, State, add_columns, previous_gap
+from rubgen.jit import allocation_free_kernel, inlined_kernel
+from rubgen.solver.block_kernels import Product, quadratic
+from rubgen.solver.model_kernels import Angles, Laws, State
+from rubgen.solver.step_kernels import previous_gap
 
 UNBALANCE, DAMPING, CIRCULATORY, CONTACT, NORMAL, FRICTION, DRIVE_LIMIT, ABSOLUTE = range(8)
 
 
 class Book(NamedTuple):
-    """Matrices of the energy terms.
+    """Matrices of the energy terms in blocks, and the works.
 
-    `blisk_damping`, `casing_damping`: columns of the lower triangle of C_sym with half its diagonal, padded like the
-    scheme's blocks, so that d^T C d = 2 d^T (triangle d). K_skew = left right^T over all columns but the first,
-    (n, rank + 1) padded; the first of `left` is the unbalance force, of `right` zero. `products` is scratch. `M`, `K`
-    (n, n) are the symmetric parts; `works` (8,) the sums so far.
+    `damping` is the lower triangle of C_sym with half its diagonal, so that d^T C d = 2 d^T (triangle d); `circulatory`
+    K_skew; `M`, `K` the symmetric parts. `force` are the numbers of the unbalance force that are not zero, at
+    `force_places` of z. `works` (8,) the sums so far.
     """
 
-    blisk_damping: FloatArray
-    casing_damping: FloatArray
-    left: FloatArray
-    right: FloatArray
-    products: FloatArray
-    M: FloatArray
-    K: FloatArray
+    damping: Product
+    circulatory: Product
+    M: Product
+    K: Product
+    force: FloatArray
+    force_places: IntArray
     works: FloatArray
 
 
 @allocation_free_kernel
-def add_triangle(columns: FloatArray, x: FloatArray, sum_out: FloatArray) -> None:
-    """sum_out += triangle x for a lower triangle, four columns at a time from their common first row."""
-    quads = x.shape[0] // 4 * 4
-    for j in range(0, quads, 4):
-        a, b, c, d = x[j], x[j + 1], x[j + 2], x[j + 3]
-        first, second = columns[j, j:], columns[j + 1, j:]
-        third, fourth = columns[j + 2, j:], columns[j + 3, j:]
-        total = sum_out[j:]
-        for i in range(total.shape[0]):
-            total[i] += a * first[i] + b * second[i] + c * third[i] + d * fourth[i]
-    if quads < x.shape[0]:
-        add_columns(columns[quads:], x[quads:], sum_out)
+def stored_energy(book: Book, before: FloatArray, now: FloatArray, difference: FloatArray, dt: float) -> float:
+    """v^T M v / 2 + now^T K_sym before / 2, all in z; `difference` is dt v = now - before."""
+    kinetic = quadratic(book.M, difference, difference) / (dt * dt)
+    return 0.5 * (kinetic + quadratic(book.K, now, before))
 
 
-@allocation_free_kernel
-def dot(a: FloatArray, b: FloatArray) -> float:
-    """a.b over the length of a, in four interleaved sums."""
-    s0, s1, s2, s3 = 0.0, 0.0, 0.0, 0.0
-    quads = a.shape[0] // 4 * 4
-    for i in range(0, quads, 4):
-        s0 += a[i] * b[i]
-        s1 += a[i + 1] * b[i + 1]
-        s2 += a[i + 2] * b[i + 2]
-        s3 += a[i + 3] * b[i + 3]
-    for i in range(quads, a.shape[0]):
-        s0 += a[i] * b[i]
-    return (s0 + s1) + (s2 + s3)
-
-
-@allocation_free_kernel
-def dissipated(triangle: FloatArray, d: FloatArray, sum_work: FloatArray) -> float:
-    """d^T C_sym d of one block."""
-    sum_work[:] = 0.0
-    add_triangle(triangle, d, sum_work)
-    return 2.0 * dot(d, sum_work)
-
-
-@allocation_free_kernel
-def stored_energy(M: FloatArray, K: FloatArray, before: FloatArray, now: FloatArray, dt: float) -> float:
-    """v^T M v / 2 + now^T K_sym before / 2 with v = (now - before) / dt."""
-    n = now.shape[0]
-    kinetic, elastic = 0.0, 0.0
-    for i in range(n):
-        momentum, force = 0.0, 0.0
-        for j in range(n):
-            momentum += M[i, j] * (now[j] - before[j])
-            force += K[i, j] * before[j]
-        kinetic += (now[i] - before[i]) * momentum
-        elastic += now[i] * force
-    return 0.5 * kinetic / (dt * dt) + 0.5 * elastic
-
-
-@allocation_free_kernel
-def book_linear(book: Book, state: State, dt: float, casing_start: int) -> None:
-    """Works of unbalance, dampers and circulatory stiffness in one step; `state.change` holds d."""
-    d, now = state.change, state.now
-    left, right = book.products[0], book.products[1]
-    book.products[:, :] = 0.0
-    add_columns(book.left, d, left)
-    add_columns(book.right, now, right)
-    unbalance, circulatory = left[0], 0.0
-    for r in range(1, left.shape[0]):
-        circulatory -= left[r] * right[r]
-    damping = -dissipated(book.blisk_damping, d[:casing_start], state.blisk_sum) / dt
-    damping -= dissipated(book.casing_damping, d[casing_start:], state.casing_sum) / dt
+@inlined_kernel
+def book_linear(book: Book, now: FloatArray, change: FloatArray, dt: float) -> None:
+    """Works of unbalance, dampers and circulatory stiffness in one step; `change` is d, in z as `now`."""
+    unbalance = 0.0
+    for i in range(book.force.shape[0]):
+        unbalance += book.force[i] * change[book.force_places[i]]
+    damping = -2.0 * quadratic(book.damping, change, change) / dt
+    circulatory = -quadratic(book.circulatory, change, now)
     book.works[UNBALANCE] += unbalance
     book.works[DAMPING] += damping
     book.works[CIRCULATORY] += circulatory
     book.works[ABSOLUTE] += abs(unbalance) + abs(damping) + abs(circulatory)
 
 
-@allocation_free_kernel
+@inlined_kernel
 def book_contact(
     m: int,
     surface: Surface,
@@ -142,8 +91,8 @@ def book_contact(
     _, _, cosine, sine = tip_position(tips, k, state.after, angles.cosine[step + 1], angles.sine[step + 1])
     along, axial = contact_slip(tips, m, state.change, state.after, laws.speed * laws.dt, cosine, sine, work)
     friction = laws.friction * lam * (work.slip[m, 0] * along + work.slip[m, 1] * axial)
-    radial = tips.radius + tips.static[k, 0] + state.after[3 * k]
-    tangential = tips.static[k, 1] + state.after[3 * k + 1]
+    radial = tips.radius + tips.static[0, k] + state.after[3 * k]
+    tangential = tips.static[1, k] + state.after[3 * k + 1]
     torque = lam * (radial * work.full_tip[m, 1] - tangential * work.full_tip[m, 0])
     book.works[CONTACT] += lam * done
     book.works[NORMAL] += normal

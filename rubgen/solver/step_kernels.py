@@ -4,111 +4,43 @@
     q*    = A^-1 [f - K q_n + 2 M / dt^2 q_n - (M / dt^2 - C / (2 dt)) q_n-1]
     q_n+1 = q* + A^-1 B lam,   0 <= lam  _|_  g(q*) + e g_n-1 + W lam >= 0
 
-(Carpenter, Taylor, Katona 1991; restitution e of Paoli and Schatzman.) Contact alone couples blisk and casing, so each
-has its own block.
+(Carpenter, Taylor, Katona 1991; restitution e of Paoli and Schatzman.) The matrices are held in blocks
+(`block_kernels`); contact is solved in physical coordinates.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 from rubgen.arrays import FloatArray
+from rubgen.contact.clearance_kernels import casing_reach, clearance_bounds, largest_nodal_displacement
 from rubgen.contact.contact_kernels import (
     ContactWork,
-    apply_contacts,
+    build_casing_response,
     build_compliance,
-    build_response,
     build_rows,
     find_near,
     gap_at,
     largest_approach,
 )
-from rubgen.contact.geometry_kernels import Surface, Tips, clearance_bounds
+from rubgen.contact.geometry_kernels import Surface, Tips
 from rubgen.contact.lcp_kernels import SOLVED, solve_lcp
-from rubgen.jit import allocation_free_kernel
+from rubgen.jit import allocation_free_kernel, inlined_kernel
+from rubgen.solver.block_kernels import (
+    Motion,
+    Product,
+    free_step,
+    multiply,
+    recover,
+    recover_all,
+    recover_blade,
+    spread_tip_force,
+)
+from rubgen.solver.lanes_kernels import LANES, dot_rows
+from rubgen.solver.model_kernels import Laws, Model, Scratch, State
 
 OK, CONTACT_UNSOLVED, DIVERGED, ENERGY = 0, 1, 2, 3
 MARGIN_TRIES = 6
-
-
-class Block(NamedTuple):
-    """The scheme's matrices of one uncoupled block of size m: row j holds column j, padded with zeros.
-
-    q* = sum_j now[j] q_n,j + before[j] q_n-1,j + constant; `inverse[j]` is column j of A^-1.
-    """
-
-    now: FloatArray
-    before: FloatArray
-    constant: FloatArray
-    inverse: FloatArray
-
-
-class Laws(NamedTuple):
-    """Numbers of the step: Omega, dt, friction, restitution; lengths in m; screening on or off.
-
-    `margin` is the candidates' least one; a casing node displaced by more than `casing_limit` or a tip by more than
-    `tip_limit` in one direction means divergence.
-    """
-
-    speed: float
-    dt: float
-    friction: float
-    restitution: float
-    margin: float
-    casing_limit: float
-    tip_limit: float
-    screen: bool
-
-
-class Angles(NamedTuple):
-    """Tables over the steps of one turn, each with one row more than steps (the last is the first of the next turn).
-
-    `cosine`, `sine` of theta; `cos_orders`, `sin_orders` (steps + 1, n_harmonics) of order_j (theta - phase_j).
-    """
-
-    cosine: FloatArray
-    sine: FloatArray
-    cos_orders: FloatArray
-    sin_orders: FloatArray
-
-
-class State(NamedTuple):
-    """q at steps n - 1, n, n + 1, each (n,), and scratch: d or the velocity (n,), one padded vector for each block."""
-
-    before: FloatArray
-    now: FloatArray
-    after: FloatArray
-    change: FloatArray
-    blisk_sum: FloatArray
-    casing_sum: FloatArray
-
-
-@allocation_free_kernel
-def add_columns(columns: FloatArray, x: FloatArray, sum_out: FloatArray) -> None:
-    """sum_out += sum_j columns[j] x[j]; four columns at a time, vectorised along the padded rows."""
-    quads = x.shape[0] // 4 * 4
-    width = sum_out.shape[0]
-    for j in range(0, quads, 4):
-        a, b, c, d = x[j], x[j + 1], x[j + 2], x[j + 3]
-        first, second, third, fourth = columns[j], columns[j + 1], columns[j + 2], columns[j + 3]
-        for i in range(width):
-            sum_out[i] += a * first[i] + b * second[i] + c * third[i] + d * fourth[i]
-    for j in range(quads, x.shape[0]):
-        a, first = x[j], columns[j]
-        for i in range(width):
-            sum_out[i] += a * first[i]
-
-
-@allocation_free_kernel
-def free_step(block: Block, before: FloatArray, now: FloatArray, after_out: FloatArray, sum_work: FloatArray) -> None:
-    """q* of one block."""
-    for i in range(sum_work.shape[0]):
-        sum_work[i] = block.constant[i]
-    add_columns(block.now, now, sum_work)
-    add_columns(block.before, before, sum_work)
-    for i in range(after_out.shape[0]):
-        after_out[i] = sum_work[i]
 
 
 @allocation_free_kernel
@@ -131,7 +63,7 @@ def previous_gap(
     return held
 
 
-@allocation_free_kernel
+@inlined_kernel
 def starting_margin(laws: Laws, held: FloatArray) -> float:
     """The least margin, widened by restitution times the deepest gap held at step n - 1."""
     deepest = 0.0
@@ -142,91 +74,115 @@ def starting_margin(laws: Laws, held: FloatArray) -> float:
     return laws.margin - laws.restitution * deepest
 
 
-@allocation_free_kernel
-def solve_contacts(
-    count: int,
-    surface: Surface,
-    tips: Tips,
-    blisk: Block,
-    casing: Block,
-    laws: Laws,
-    angles: Angles,
-    step: int,
-    opening: FloatArray,
-    state: State,
-    work: ContactWork,
-) -> int:
+@inlined_kernel
+def recover_contacts(
+    count: int, model: Model, before: Motion, after: Motion, scale: float, work: ContactWork, change_out: FloatArray
+) -> None:
+    """The q of the contacts' blades before and after, and (q_after - q_before) scale there and on the casing."""
+    for m in range(count):
+        k = work.blade[m]
+        recover_blade(model.harmonics, before, k)
+        recover_blade(model.harmonics, after, k)
+        for i in range(3 * k, 3 * k + 3):
+            change_out[i] = scale * (after.q[i] - before.q[i])
+    for i in range(change_out.shape[0] - work.rows.shape[1], change_out.shape[0]):
+        change_out[i] = scale * (after.q[i] - before.q[i])
+
+
+@inlined_kernel
+def solve_contacts(count: int, model: Model, step: int, opening: FloatArray, state: State, work: ContactWork) -> int:
     """The multipliers of the near blades at q* (in `state.after`), solved together; SOLVED or UNSOLVED."""
+    surface, tips, laws, angles = model.surface, model.tips, model.laws, model.angles
     last = angles.cosine.shape[0] - 1
     back = step - 1 if step > 0 else last - 1
-    for i in range(state.change.shape[0]):
-        state.change[i] = (state.after[i] - state.before[i]) / (2 * laws.dt)
     for m in range(count):
         k = work.blade[m]
         build_rows(
             surface, tips, m, state.after, state.change, laws.speed, laws.friction,
             angles.cosine[step + 1], angles.sine[step + 1], work,
         )  # fmt: skip
-        build_response(m, blisk.inverse, casing.inverse, work)
+        build_casing_response(m, model.casing_compliance, work)
         work.b[m] = work.gap[k]
         if laws.restitution > 0.0:
             held = previous_gap(surface, tips, k, state, opening[step], angles.cosine[back], angles.sine[back], work)
             work.b[m] += laws.restitution * held
-    build_compliance(count, work)
+    build_compliance(count, model.tip_compliance, work)
     return solve_lcp(work.W, work.b, count, work.lam, work.square, work.tableau, work.basis)
 
 
-@allocation_free_kernel
+@inlined_kernel
+def apply_contacts(count: int, model: Model, after: Motion, work: ContactWork, scratch: Scratch) -> None:
+    """Q += A^-1 B lam."""
+    force, harmonics = scratch.z_force, model.harmonics
+    start = harmonics.rest.shape[0] - work.rows.shape[1]
+    force[:] = 0.0
+    for m in range(count):
+        lam = work.lam[m]
+        if lam > 0.0:
+            spread_tip_force(harmonics, work.blade[m], work.full_tip[m], lam, force)
+            for j in range(work.rows.shape[1]):
+                force[harmonics.rest[start + j]] += lam * work.full_casing[m, j]
+    multiply(Product(model.scheme.lines, model.scheme.inverse), force, after.z)
+    recover(harmonics, after, scratch.share)
+
+
+@inlined_kernel
+def copy_motion(source: Motion, target: Motion) -> None:
+    """Copy what always holds of a motion: z, tips, and q."""
+    for i in range(source.z.shape[0]):
+        target.z[i] = source.z[i]
+    for a in range(2):
+        for k in range(source.tips.shape[1]):
+            target.tips[a, k] = source.tips[a, k]
+    for i in range(source.q.shape[0]):
+        target.q[i] = source.q[i]
+
+
+@inlined_kernel
 def contact_step(
-    surface: Surface,
-    tips: Tips,
-    blisk: Block,
-    casing: Block,
-    laws: Laws,
-    angles: Angles,
+    model: Model,
     step: int,
     opening: FloatArray,
-    state: State,
+    before: Motion,
+    now: Motion,
+    after: Motion,
+    reach: float,
     work: ContactWork,
+    scratch: Scratch,
 ) -> tuple[int, int]:
-    """Turn q* in `state.after` into q_n+1; OK or CONTACT_UNSOLVED, and the number of contacts that were solved.
+    """Turn q* in `after` into q_n+1; OK or CONTACT_UNSOLVED, and the number of contacts that were solved.
 
     Only blades whose free gap is below the margin enter. What the forces then close is bounded; where it exceeds the
-    margin, the margin is widened and the step solved again, so no blade can be missed.
+    margin, the margin is widened and the step solved again, so no blade can be missed. `reach` is the casing's in q*.
     """
     n_blades = work.bounds.shape[0]
-    start = state.now.shape[0] - work.rows.shape[1]
+    start = after.q.shape[0] - work.rows.shape[1]
+    surface, laws, angles = model.surface, model.laws, model.angles
+    state = State(before.q, now.q, after.q, scratch.change)
     new, inside = opening[step + 2], step + 1
     margin = starting_margin(laws, work.held)
-    clearance_bounds(surface, tips, state.after, new, angles.cos_orders[inside], angles.sin_orders[inside], work.bounds)
+    clearance_bounds(
+        surface, model.tips, after.tips, new, angles.cos_orders[inside], angles.sin_orders[inside], work.bounds
+    )
     for _ in range(MARGIN_TRIES):
         count, penetrates = find_near(
-            surface,
-            tips,
-            state.after,
-            start,
-            new,
-            angles.cosine[inside],
-            angles.sine[inside],
-            margin,
-            laws.screen,
-            work,
-        )
+            surface, model.tips, after.q, after.tips, start, new,
+            angles.theta[inside], angles.cosine[inside], angles.sine[inside], margin, reach, laws.screen, work,
+        )  # fmt: skip
         for k in range(n_blades):
             work.held[2, k] = work.gap[k]
         if count == 0 or not (penetrates or laws.restitution > 0.0):
             return OK, 0
-        if solve_contacts(count, surface, tips, blisk, casing, laws, angles, step, opening, state, work) != SOLVED:
+        recover_contacts(count, model, before, after, 0.5 / laws.dt, work, scratch.change)
+        if solve_contacts(count, model, step, opening, state, work) != SOLVED:
             return CONTACT_UNSOLVED, count
-        for i in range(state.now.shape[0]):
-            state.change[i] = state.after[i]
-        apply_contacts(count, state.after, start, work)
-        approach = largest_approach(surface, state.after, state.change, start, n_blades)
+        copy_motion(after, scratch.free)
+        apply_contacts(count, model, after, work, scratch)
+        approach = largest_approach(surface, after.tips, scratch.free.tips, after.q, scratch.free.q, start)
         if approach <= margin or count == n_blades:
             break
         margin = 2 * approach
-        for i in range(state.now.shape[0]):
-            state.after[i] = state.change[i]
+        copy_motion(scratch.free, after)
     else:
         return CONTACT_UNSOLVED, count
     for m in range(count):
@@ -235,3 +191,54 @@ def contact_step(
             gap += work.W[m, column] * work.lam[column]
         work.held[2, work.blade[m]] = gap
     return OK, count
+
+
+@allocation_free_kernel
+def has_diverged(surface: Surface, laws: Laws, q: FloatArray, casing_start: int, n_blades: int) -> bool:
+    """Whether a casing node or a blade tip has moved beyond its limit, or is not a number."""
+    for k in range(3 * n_blades):
+        if not abs(q[k]) <= laws.tip_limit:
+            return True
+    q_casing = q[casing_start:]
+    if casing_reach(surface, q_casing) <= laws.casing_limit:
+        return False
+    return not largest_nodal_displacement(surface, q_casing) <= laws.casing_limit
+
+
+@inlined_kernel
+def leaves_range(model: Model, motion: Motion, reach: float, scratch: Scratch) -> bool:
+    """`has_diverged`, decided by bounds where they suffice: no tip coordinate is beyond the norm of z."""
+    norm = dot_rows(motion.z, motion.z, motion.z.shape[0] // LANES)
+    if norm <= model.laws.tip_limit**2 and reach <= model.laws.casing_limit:
+        return False
+    recover_all(model.harmonics, motion.z, scratch.share, scratch.tips, motion.q)
+    start = motion.q.shape[0] - model.surface.reach.shape[0]
+    return has_diverged(model.surface, model.laws, motion.q, start, model.harmonics.basis.shape[0])
+
+
+@inlined_kernel
+def advance(
+    model: Model,
+    step: int,
+    opening: FloatArray,
+    before: Motion,
+    now: Motion,
+    after: Motion,
+    work: ContactWork,
+    scratch: Scratch,
+) -> tuple[int, int]:
+    """One step: q_n+1 into `after`; OK, DIVERGED or CONTACT_UNSOLVED, and the number of contacts that were solved."""
+    free_step(model.scheme, before.z, now.z, after.z)
+    recover(model.harmonics, after, scratch.share)
+    reach = casing_reach(model.surface, after.q[after.q.shape[0] - work.rows.shape[1] :])
+    if leaves_range(model, after, reach, scratch):
+        return DIVERGED, 0
+    return contact_step(model, step, opening, before, now, after, reach, work, scratch)
+
+
+@inlined_kernel
+def shift_held(work: ContactWork) -> None:
+    """The gaps held at steps n and n + 1 become those at n - 1 and n."""
+    for k in range(work.held.shape[1]):
+        work.held[0, k] = work.held[1, k]
+        work.held[1, k] = work.held[2, k]

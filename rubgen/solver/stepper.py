@@ -11,9 +11,13 @@ from rubgen.contact.geometry import blade_tips, casing_surface
 from rubgen.contact.geometry_kernels import casing_rows, undeformed_radius
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw
-from rubgen.solver.central_difference import energy_book, scheme_blocks
+from rubgen.solver.block_kernels import Motion, recover
+from rubgen.solver.blocks import aligned, system_harmonics
+from rubgen.solver.central_difference import compliances, energy_book, scheme, system_blocks
 from rubgen.solver.energy_kernels import stored_energy
-from rubgen.solver.step_kernels import Angles, Laws, State, contact_step, free_step
+from rubgen.solver.lanes_kernels import LANES
+from rubgen.solver.model_kernels import Angles, Laws, Model, Scratch, State
+from rubgen.solver.step_kernels import advance, shift_held
 from rubgen.solver.turn_kernels import Taps, Touches, TurnResult, run_turn
 
 CANDIDATE_MARGIN_SHARE = 5e-5
@@ -76,31 +80,53 @@ class Stepper:
         self.system, self.steps = system, steps
         self.dt = 2 * np.pi / system.speed / steps
         self.surface, self.tips = casing_surface(system), blade_tips(system)
-        self.blisk, self.casing = scheme_blocks(system, self.dt)
         margin = CANDIDATE_MARGIN_SHARE * system.tip_radius
         limits = CASING_LIMIT_SHARE * system.tip_radius, TIP_LIMIT_SHARE * system.tip_radius
         self.laws = Laws(
             float(system.speed), float(self.dt), contact.friction, contact.restitution, margin, *limits, screen
         )
+        self.blocks = system_blocks(system)
+        self.scheme = scheme(system.M, system.C, system.K, system.force, self.dt, self.blocks)
+        self.harmonics = system_harmonics(self.blocks, system.n_blades)
+        self.compliances = compliances(system, self.dt)
         self.angles = _angles(system, steps, start_angle)
         self.taps = _taps(self, start_angle)
-        self.book = energy_book(system)
-        self.work = _contact_work(system, self.blisk.now.shape[1], self.casing.now.shape[1])
+        self.book = energy_book(system, self.blocks)
+        self.work = _contact_work(system)
         n, blades = system.M.shape[0], system.n_blades
-        self.state = State(
-            np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n),
-            np.zeros(self.blisk.now.shape[1]), np.zeros(self.casing.now.shape[1]),
-        )  # fmt: skip
         self.touches = Touches(
             np.zeros((blades, 8)), np.zeros(blades, dtype=np.int64), np.zeros((blades * (steps // 2 + 2), 8))
         )
         self.result = TurnResult(np.zeros((len(TAP_NAMES), steps)), np.zeros((2, n)), np.zeros(3))
+        self.motions = (self._motion(), self._motion(), self._motion())
+        self.scratch = self._scratch()
         rest = steady_state(system)
         self.set_state(rest, rest)
 
+    @property
+    def model(self) -> Model:
+        """What the kernels take of all that does not change."""
+        return Model(
+            self.surface, self.tips, self.laws, self.angles, self.scheme, self.harmonics, *self.compliances
+        )  # fmt: skip
+
+    @property
+    def state(self) -> State:
+        """Copies of q at the step before the next turn's first, at its first, and of the last that was written.
+
+        Change the state by `set_state`. `change` is d of the last two and the one before, without meaning at a start.
+        """
+        before, now, after = (self.blocks.to_q(motion.z) for motion in self.motions)
+        for q in (before, now, after):
+            q.flags.writeable = False
+        return State(before, now, after, (now - before) / 2)
+
     def set_state(self, before: FloatArray, now: FloatArray) -> None:
         """Set q at the step before the turn's first and at its first, each (n,)."""
-        self.state.before[:], self.state.now[:] = before, now
+        for motion, q in zip(self.motions[:2], (before, now), strict=True):
+            motion.z[:] = self.blocks.to_z(q)
+            recover(self.harmonics, motion, self.scratch.share)
+        self.motions[2].z[:] = self.motions[1].z
         self.work.held[:] = np.nan
 
     def run_turn(self, opening: FloatArray | None = None, clock: int = 0) -> tuple[int, int, int]:
@@ -111,10 +137,12 @@ class Stepper:
         number of touches in `touches.ended`.
         """
         width = np.zeros(self.steps + 2) if opening is None else opening
-        return run_turn(
-            self.surface, self.tips, self.blisk, self.casing, self.laws, self.angles, width, clock,
-            self.state, self.work, self.book, self.taps, self.touches, self.result,
+        code, step, ended = run_turn(
+            self.model, width, clock, self.motions, self.work, self.scratch, self.book, self.taps, self.touches,
+            self.result,
         )  # fmt: skip
+        self._turn_motions(step)
+        return code, step, ended
 
     def step(self, index: int, opening: FloatArray | None = None) -> tuple[int, int]:
         """One step from the turn's step `index`, without book, taps and touches; `work` holds its contacts.
@@ -123,29 +151,40 @@ class Stepper:
         up to that number.
         """
         width = np.zeros(self.steps + 2) if opening is None else opening
-        start, state, work = self.system.casing_start, self.state, self.work
-        for block, part, scratch in (
-            (self.blisk, slice(0, start), state.blisk_sum),
-            (self.casing, slice(start, None), state.casing_sum),
-        ):
-            free_step(block, state.before[part], state.now[part], state.after[part], scratch)
-        code, count = contact_step(
-            self.surface, self.tips, self.blisk, self.casing, self.laws, self.angles, index, width, state, work
-        )
-        work.held[:2] = work.held[1:]
-        state.before[:], state.now[:] = state.now, state.after
+        code, count = advance(self.model, index, width, *self.motions, self.work, self.scratch)
+        shift_held(self.work)
+        self._turn_motions(1)
         return code, count
 
     def energy(self) -> float:
         """Stored energy E half a step before now, J."""
-        return stored_energy(self.book.M, self.book.K, self.state.before, self.state.now, self.dt)
+        before, now, _ = self.motions
+        return stored_energy(self.book, before.z, now.z, aligned(now.z - before.z), self.dt)
+
+    def _turn_motions(self, steps: int) -> None:
+        """The motions as they stand after so many steps."""
+        first = steps % 3
+        order = self.motions[first:] + self.motions[:first]
+        self.motions = (order[0], order[1], order[2])
+
+    def _motion(self) -> Motion:
+        rows, width = self.blocks.rows, self.harmonics.basis.shape[1]
+        n = self.system.M.shape[0]
+        return Motion(aligned(np.zeros(rows * LANES)), aligned(np.zeros((2, width))), aligned(np.zeros(n)))
+
+    def _scratch(self) -> Scratch:
+        numbers, width = self.blocks.rows * LANES, self.harmonics.basis.shape[1]
+        return Scratch(
+            self._motion(), aligned(np.zeros(numbers)), aligned(np.zeros(numbers)), aligned(np.zeros((3, width))),
+            aligned(np.zeros(self.system.M.shape[0])), aligned(np.zeros((3, width))),
+        )  # fmt: skip
 
 
 def _angles(system: SpinningSystem, steps: int, start_angle: float) -> Angles:
     """Tables over the steps of a turn; the last row repeats the first exactly."""
     theta = start_angle + 2 * np.pi * (np.arange(steps + 1) % steps) / steps
     orders = np.multiply.outer(theta, system.surface.order) - system.surface.order * system.surface.phase
-    return Angles(np.cos(theta), np.sin(theta), np.cos(orders), np.sin(orders))
+    return Angles(theta, np.cos(theta), np.sin(theta), np.cos(orders), np.sin(orders))
 
 
 def _taps(stepper: Stepper, start_angle: float) -> Taps:
@@ -156,10 +195,14 @@ def _taps(stepper: Stepper, start_angle: float) -> Taps:
         columns += _polar_rows(stepper, angle)
     blades, shares = _blades_around_rays(system, stepper.steps, start_angle)
     undeformed = np.array([undeformed_radius(stepper.surface, angle) for angle in RAY_ANGLES])
+    padding = np.zeros((2 * LANES - len(columns), system.n_casing))
+    rows = np.array([*columns, *padding]).reshape(2, LANES, system.n_casing).transpose(0, 2, 1)
     return Taps(
-        np.ascontiguousarray(np.array(columns).T), undeformed[:, 0].copy(), undeformed[:, 1].copy(),
+        aligned(rows.reshape(-1, LANES)), undeformed[:, 0].copy(), undeformed[:, 1].copy(),
         blades, shares, system.centre,
-        float(system.lateral_stiffness), float(system.lateral_damping), np.zeros((2, len(columns))),
+        float(system.lateral_stiffness), float(system.lateral_damping), aligned(np.zeros((2, 2 * LANES))),
+        np.zeros(system.n_casing),
+        np.array([(1, row, row * system.n_casing, 0, system.n_casing) for row in range(2)]),
     )  # fmt: skip
 
 
@@ -191,7 +234,7 @@ def _blades_around_rays(system: SpinningSystem, steps: int, start_angle: float) 
     return np.stack([order[first], order[second]], axis=-1).astype(np.int64), np.ascontiguousarray(share)
 
 
-def _contact_work(system: SpinningSystem, blisk_width: int, casing_width: int) -> ContactWork:
+def _contact_work(system: SpinningSystem) -> ContactWork:
     """Arrays of the contact step."""
     m, c = system.n_blades, system.n_casing
     return ContactWork(
@@ -199,7 +242,7 @@ def _contact_work(system: SpinningSystem, blisk_width: int, casing_width: int) -
         tangent=np.zeros((m, 2)), held=np.full((3, m), np.nan), blade=np.zeros(m, dtype=np.int64), lam=np.zeros(m),
         b=np.zeros(m), W=np.zeros((m, m)), normal_tip=np.zeros((m, 3)), full_tip=np.zeros((m, 3)),
         normal_casing=np.zeros((m, c)), full_casing=np.zeros((m, c)), slip=np.zeros((m, 2)),
-        blisk_response=np.zeros((m, blisk_width)), casing_response=np.zeros((m, casing_width)), ends=np.zeros(8),
+        casing_response=np.zeros((m, c)), ends=np.zeros(8),
         rows=np.zeros((2, c)), square=np.zeros((m, m)), tableau=np.zeros((m, 2 * m + 2)),
         basis=np.zeros(m, dtype=np.int64),
     )  # fmt: skip

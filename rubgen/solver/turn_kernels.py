@@ -6,11 +6,15 @@ import math
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
+from rubgen.contact.clearance_kernels import casing_reach
 from rubgen.contact.contact_kernels import ContactWork
-from rubgen.contact.geometry_kernels import Surface, Tips, casing_reach
-from rubgen.jit import allocation_free_kernel
+from rubgen.contact.geometry_kernels import Tips
+from rubgen.jit import allocation_free_kernel, inlined_kernel
+from rubgen.solver.block_kernels import Motion, recover_all
 from rubgen.solver.energy_kernels import Book, book_contact, book_linear
-from rubgen.solver.step_kernels import DIVERGED, OK, Angles, Block, Laws, State, contact_step, free_step
+from rubgen.solver.lanes_kernels import add_lines
+from rubgen.solver.model_kernels import Model, Scratch, State
+from rubgen.solver.step_kernels import OK, advance, recover_contacts, shift_held
 
 BLADE, START, STEPS, COSINE, SINE, IMPULSE, FRICTION_LOSS, NORMAL_LOSS = range(8)
 ACCELERATIONS, RAYS = 4, 2
@@ -19,10 +23,11 @@ ACCELERATIONS, RAYS = 4, 2
 class Taps(NamedTuple):
     """What the taps need.
 
-    `casing` (n_casing, 10): radial displacement at the four accelerometers, then for each of two rays the radial and
-    tangential displacement and the derivative of the radial one. `ray_radius`, `ray_slope` (2,) of the undeformed
-    surface there; `ray_blade` (steps, 2, 2) the blades before and after the ray and `ray_share` (steps, 2) the way
-    between them. `centre` the index of O_d x.
+    `casing` (2 n_casing, 8), rows of eight, mode by mode: radial displacement at the four accelerometers, then for each
+    of two rays the radial and tangential displacement and the derivative of the radial one. `ray_radius`, `ray_slope`
+    (2,) of the undeformed surface there; `ray_blade` (steps, 2, 2) the blades before and after the ray and `ray_share`
+    (steps, 2) the way between them. `centre` the index of O_d x. `sums`, `bend` are scratch,
+    `lines` those of `casing`.
     """
 
     casing: FloatArray
@@ -34,6 +39,8 @@ class Taps(NamedTuple):
     lateral_stiffness: float
     lateral_damping: float
     sums: FloatArray
+    bend: FloatArray
+    lines: IntArray
 
 
 class Touches(NamedTuple):
@@ -94,47 +101,20 @@ def close_touches(touches: Touches, now: int, ended: int) -> int:
     return ended
 
 
-@allocation_free_kernel
-def largest_nodal_displacement(surface: Surface, q_casing: FloatArray) -> float:
-    """The largest displacement of a casing node, m; NaN when any is."""
-    largest = 0.0
-    for i in range(surface.table.shape[0]):
-        x, y = 0.0, 0.0
-        for j in range(q_casing.shape[0]):
-            x += surface.table[i, j, 0] * q_casing[j]
-            y += surface.table[i, j, 1] * q_casing[j]
-        size = x * x + y * y
-        if not size <= largest:
-            largest = size
-    return math.sqrt(largest)
-
-
-@allocation_free_kernel
-def has_diverged(surface: Surface, laws: Laws, q: FloatArray, casing_start: int, n_blades: int) -> bool:
-    """Whether a casing node or a blade tip has moved beyond its limit, or is not a number."""
-    for k in range(3 * n_blades):
-        if not abs(q[k]) <= laws.tip_limit:
-            return True
-    q_casing = q[casing_start:]
-    if casing_reach(surface, q_casing) <= laws.casing_limit:
-        return False
-    return not largest_nodal_displacement(surface, q_casing) <= laws.casing_limit
-
-
-@allocation_free_kernel
-def tip_radius_on_ray(tips: Tips, taps: Taps, q: FloatArray, step: int, ray: int) -> float:
+@inlined_kernel
+def tip_radius_on_ray(tips: Tips, taps: Taps, displacement: FloatArray, step: int, ray: int) -> float:
     """Radius of the tips on a ray: linear in angle between the two blades around it."""
     radius = 0.0
     for side in range(2):
         k = taps.ray_blade[step, ray, side]
-        radial = tips.radius + tips.static[k, 0] + q[3 * k]
-        tangential = tips.static[k, 1] + q[3 * k + 1]
+        radial = tips.radius + tips.static[0, k] + displacement[0, k]
+        tangential = tips.static[1, k] + displacement[1, k]
         share = taps.ray_share[step, ray] if side == 1 else 1 - taps.ray_share[step, ray]
         radius += share * math.sqrt(radial * radial + tangential * tangential)
     return radius
 
 
-@allocation_free_kernel
+@inlined_kernel
 def casing_radius_on_ray(taps: Taps, opening: float, ray: int) -> float:
     """Radius at which the ray meets the deformed surface, from the displacements in `taps.sums[1]`.
 
@@ -148,30 +128,35 @@ def casing_radius_on_ray(taps: Taps, opening: float, ray: int) -> float:
     return radius
 
 
-@allocation_free_kernel
+@inlined_kernel
+def record_casing(taps: Taps, state: State, dt: float) -> None:
+    """Into `taps.sums`: the casing's accelerations, then its displacements at rays."""
+    n_casing, start = taps.bend.shape[0], state.now.shape[0] - taps.bend.shape[0]
+    for j in range(start, start + n_casing):
+        taps.bend[j - start] = (state.after[j] - 2 * state.now[j] + state.before[j]) / (dt * dt)
+    taps.sums[:, :] = 0.0
+    add_lines(taps.lines, taps.casing, taps.bend, taps.sums[0])
+    add_lines(taps.lines, taps.casing, state.now[start:], taps.sums[1])
+
+
+@inlined_kernel
 def record_taps(
-    tips: Tips,
+    model: Model,
     taps: Taps,
     state: State,
+    displacement: FloatArray,
     step: int,
     opening: float,
-    cosine: float,
-    sine: float,
-    speed: float,
-    dt: float,
     force: float,
     out: FloatArray,
 ) -> None:
-    """All taps at step n, where q is `state.now`, velocity and acceleration are central differences."""
-    n, width = state.now.shape[0], taps.casing.shape[1]
-    start = n - taps.casing.shape[0]
-    taps.sums[:, :] = 0.0
-    for j in range(taps.casing.shape[0]):
-        now = state.now[start + j]
-        bend = (state.after[start + j] - 2 * now + state.before[start + j]) / (dt * dt)
-        for c in range(width):
-            taps.sums[0, c] += taps.casing[j, c] * bend
-            taps.sums[1, c] += taps.casing[j, c] * now
+    """All taps at step n, where q is `state.now`, velocity and acceleration are central differences.
+
+    `displacement` (2, any) is that of the tips at step n.
+    """
+    speed, dt = model.laws.speed, model.laws.dt
+    cosine, sine = model.angles.cosine[step], model.angles.sine[step]
+    record_casing(taps, state, dt)
     x, y = state.now[taps.centre], state.now[taps.centre + 1]
     vx = (state.after[taps.centre] - state.before[taps.centre]) / (2 * dt) - speed * y
     vy = (state.after[taps.centre + 1] - state.before[taps.centre + 1]) / (2 * dt) + speed * x
@@ -185,23 +170,27 @@ def record_taps(
     out[7, step] = sine * fx + cosine * fy
     out[8, step] = force
     for ray in range(RAYS):
-        out[9 + ray, step] = casing_radius_on_ray(taps, opening, ray) - tip_radius_on_ray(
-            tips, taps, state.now, step, ray
-        )
+        tip = tip_radius_on_ray(model.tips, taps, displacement, step, ray)
+        out[9 + ray, step] = casing_radius_on_ray(taps, opening, ray) - tip
+
+
+@allocation_free_kernel
+def record_section(model: Model, now: Motion, scratch: Scratch, section_out: FloatArray) -> None:
+    """The q and v (2, n) at the turn's first step."""
+    recover_all(model.harmonics, now.z, scratch.share, scratch.tips, section_out[0])
+    recover_all(model.harmonics, scratch.z_change, scratch.share, scratch.tips, section_out[1])
+    for i in range(section_out.shape[1]):
+        section_out[1, i] /= model.laws.dt
 
 
 @allocation_free_kernel
 def run_turn(
-    surface: Surface,
-    tips: Tips,
-    blisk: Block,
-    casing: Block,
-    laws: Laws,
-    angles: Angles,
+    model: Model,
     opening: FloatArray,
     clock: int,
-    state: State,
+    motions: tuple[Motion, Motion, Motion],
     work: ContactWork,
+    scratch: Scratch,
     book: Book,
     taps: Taps,
     touches: Touches,
@@ -210,49 +199,42 @@ def run_turn(
     """Integrate one turn from theta = start; a code, the step where it ended, and the number of ended touches.
 
     `opening` (steps + 2,) widens the surface at steps -1, 0, ..., steps of the turn. `clock` is the number of the
-    turn's first step. Taps of step n (from `state.now`) carry the force lam_n that acts at that time.
+    turn's first step. `motions` are those at step -1, at step 0 and one to write; they change places with every step.
+    Taps of step n carry the force lam_n that acts at that time.
     """
-    steps, n = angles.cosine.shape[0] - 1, state.now.shape[0]
-    start, n_blades = n - taps.casing.shape[0], work.bounds.shape[0]
+    laws, steps = model.laws, model.angles.cosine.shape[0] - 1
+    before, now, after = motions
     ended = 0
     result.summary[:] = 0.0
     for s in range(steps):
-        free_step(blisk, state.before[:start], state.now[:start], state.after[:start], state.blisk_sum)
-        free_step(casing, state.before[start:], state.now[start:], state.after[start:], state.casing_sum)
-        if has_diverged(surface, laws, state.after, start, n_blades):
-            return DIVERGED, s, ended
-        code, count = contact_step(surface, tips, blisk, casing, laws, angles, s, opening, state, work)
+        code, count = advance(model, s, opening, before, now, after, work, scratch)
         if code != OK:
             return code, s, ended
-        for i in range(n):
-            state.change[i] = 0.5 * (state.after[i] - state.before[i])
-        book_linear(book, state, laws.dt, start)
+        state = State(before.q, now.q, after.q, scratch.change)
+        for i in range(scratch.z_change.shape[0]):
+            scratch.z_change[i] = 0.5 * (after.z[i] - before.z[i])
+        book_linear(book, now.z, scratch.z_change, laws.dt)
         force = 0.0
+        if count > 0:
+            recover_contacts(count, model, before, after, 0.5, work, scratch.change)
         for m in range(count):
             lam = work.lam[m]
             if lam > 0.0:
                 force += lam
-                normal, friction = book_contact(m, surface, tips, laws, angles, s, opening, state, work, book)
+                normal, friction = book_contact(
+                    m, model.surface, model.tips, laws, model.angles, s, opening, state, work, book
+                )
                 k = work.blade[m]
                 ended = add_touch(touches, k, clock + s, work.psi[k], lam * laws.dt, friction, normal, ended)
         if force > 0.0:
             result.summary[0] += force * laws.dt
             result.summary[1] += 1
-        record_taps(
-            tips, taps, state, s, opening[s + 1], angles.cosine[s], angles.sine[s], laws.speed, laws.dt, force,
-            result.taps,
-        )  # fmt: skip
+        record_taps(model, taps, state, now.tips, s, opening[s + 1], force, result.taps)
         if s == 0:
-            for i in range(n):
-                result.section[0, i] = state.now[i]
-                result.section[1, i] = state.change[i] / laws.dt
-        reach = casing_reach(surface, state.after[start:])
+            record_section(model, now, scratch, result.section)
+        reach = casing_reach(model.surface, after.q[after.q.shape[0] - taps.bend.shape[0] :])
         result.summary[2] = max(result.summary[2], reach)
-        for i in range(n):
-            state.before[i] = state.now[i]
-            state.now[i] = state.after[i]
-        for k in range(n_blades):
-            work.held[0, k] = work.held[1, k]
-            work.held[1, k] = work.held[2, k]
+        before, now, after = now, after, before
+        shift_held(work)
     ended = close_touches(touches, clock + steps - 1, ended)
     return OK, steps, ended

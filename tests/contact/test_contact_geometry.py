@@ -3,9 +3,9 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from rubgen.contact import blade_tips, casing_surface, gap_and_foot
+from rubgen.contact.clearance_kernels import casing_reach, clearance_bounds, deformation_bounds, is_clear, tip_angle
 from rubgen.contact.contact_kernels import largest_approach
 from rubgen.contact.geometry import periodic_derivative
-from rubgen.contact.geometry_kernels import casing_reach, clearance_bounds
 from rubgen.reduction.model import CasingSurface, SpinningSystem
 
 NODES, RADIUS = 60, 0.4
@@ -131,23 +131,32 @@ def test_screening_bound_lies_below_the_true_gap_and_near_it():
     system = ring(static=2e-4)
     surface, tips = casing_surface(system), blade_tips(system)
     rng = np.random.default_rng(5)
-    tightness = []
+    tightness, decided = [], []
     for _ in range(50):
         q = np.concatenate([rng.normal(size=29) * 3e-4, rng.normal(size=3) * 2e-4])
         theta = rng.uniform(0, 2 * np.pi)
         orders = system.surface.order * (theta - system.surface.phase)
         bounds = np.zeros(9)
-        clearance_bounds(surface, tips, q, 1e-4, np.cos(orders), np.sin(orders), bounds)
+        displacement = np.ascontiguousarray(q[:27].reshape(9, 3).T)
+        clearance_bounds(surface, tips, displacement, 1e-4, np.cos(orders), np.sin(orders), bounds)
+        limits = deformation_bounds(surface, q[29:])
         for k in range(9):
             place = system.tip_static[k] + q[3 * k : 3 * k + 3]
             point = (RADIUS + place[0] + 1j * place[1]) * np.exp(1j * (theta + system.blade_angles[k]))
-            undeformed = gap_and_foot(surface, np.zeros(3), np.array([point.real, point.imag]), 1e-4)[0]
+            curve, angle = system.surface, np.angle(point)
+            radius = curve.mean_radius + curve.amplitude[0] * np.cos(2 * (angle - curve.phase[0])) + 1e-4
+            tightness.append(radius - abs(point) - bounds[k])
             deformed = gap_and_foot(surface, q[29:], np.array([point.real, point.imag]), 1e-4)[0]
-            tightness.append(undeformed - bounds[k])
-            if bounds[k] > 0:  # where it is not, nothing is screened
-                assert bounds[k] <= undeformed
-                assert bounds[k] - casing_reach(surface, q[29:]) <= deformed
-    assert np.max(np.abs(tightness)) < 1e-4
+            at = tip_angle(tips, k, q, theta)
+            assert abs(point / abs(point) - np.exp(1j * at)) < 1e-12
+            for margin in (2e-5, 1e-3):
+                clear = is_clear(surface, q[29:], at, bounds[k], margin, limits)
+                assert deformed > margin or not clear
+                if deformed > margin:
+                    decided.append(clear)
+    assert min(tightness) >= 0
+    assert max(tightness) < 1e-6
+    assert np.mean(decided) > 0.9
 
 
 @pytest.mark.parametrize("moved", ["tips", "casing", "both"])
@@ -158,7 +167,9 @@ def test_no_gap_closes_by_more_than_the_largest_approach(moved):
         free, change = rng.normal(size=(2, 32)) * 2e-4
         change[29:] *= moved != "tips"
         change[:27] *= moved != "casing"
-        bound = largest_approach(surface, free + change, free, 29, 9)
+        new = free + change
+        tips_new, tips_free = (np.ascontiguousarray(q[:27].reshape(9, 3).T) for q in (new, free))
+        bound = largest_approach(surface, tips_new, tips_free, new, free, 29)
         for k in range(9):
             gaps = []
             for q in (free, free + change):

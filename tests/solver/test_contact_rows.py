@@ -9,6 +9,7 @@ from rubgen.contact.geometry_kernels import casing_rows
 from rubgen.scenario import ContactLaw
 from rubgen.solver import Stepper
 from rubgen.solver.energy_kernels import CONTACT, DRIVE_LIMIT, FRICTION, NORMAL, book_contact
+from rubgen.solver.model_kernels import State
 
 MU, THETA, BLADE = 0.3, 0.7, 2
 
@@ -94,12 +95,12 @@ def test_works_of_a_contact_are_those_of_its_force(touch):
     """One step of motion d = v dt: lam B.d, the normal and the friction loss, and the drive's -Omega dt e_z.(P x F)."""
     stepper, work, lam, dt = touch.stepper, touch.work, 700.0, touch.stepper.dt
     d = touch.v * dt
-    stepper.state.after[:], stepper.state.change[:] = touch.q, d
+    state = State(touch.q, touch.q, touch.q, d)
     work.lam[0], work.held[0, BLADE], work.held[2, BLADE] = lam, 5e-5, -3e-5
     step = 40
     angles = stepper.angles._replace(cosine=np.full(257, np.cos(THETA)), sine=np.full(257, np.sin(THETA)))
     normal, friction = book_contact(
-        0, stepper.surface, stepper.tips, stepper.laws, angles, step, np.zeros(258), stepper.state, work, stepper.book
+        0, stepper.surface, stepper.tips, stepper.laws, angles, step, np.zeros(258), state, work, stepper.book
     )
     inward = np.array([-touch.tangent[1], touch.tangent[0]])
     along, axial = work.slip[0]

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
 
-from rubgen.machine import load_machine
+from rubgen import make_scenario
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
 from rubgen.solver import Stepper
@@ -41,9 +41,15 @@ def test_fifty_turns_restarted_from_plain_numpy(small_system, lobes, speed, fric
     assert worst < 1e-6
 
 
-@pytest.mark.parametrize(("rpm", "friction"), [(6900.0, 0.0), (8700.0, 0.15)])
-def test_the_preset_agrees_with_plain_numpy(rpm, friction):
-    system = reduce(load_machine("zeng2019"), Reduction()).at_speed(rpm * np.pi / 30)
+@pytest.mark.parametrize(
+    ("rpm", "support", "friction"),
+    [(10000.0, 2e8, 0.1), (6900.0, 1e8, 0.1), (6900.0, 1e8, 0.0), (8700.0, 1e8, 0.15)],
+    ids=["period-1", "chaotic", "no friction", "much friction"],
+)
+def test_the_preset_agrees_with_plain_numpy(rpm, support, friction):
+    """Five turns each; `make bench` holds 50 turns of the first two and of heavy rub to the same bound."""
+    scenario = make_scenario("zeng2019", speed_rpm=rpm, disk_support_stiffness_n_per_m=support)
+    system = reduce(scenario.machine, Reduction()).at_speed(rpm * np.pi / 30)
     with threadpool_limits(1):
         worst, touched = compare_turns(system, friction, 1024, 5, 2e-4)
     assert touched > 50

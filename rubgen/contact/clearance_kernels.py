@@ -1,0 +1,124 @@
+"""How far from the casing a blade tip certainly is, and the casing from rest: bounds that save work, never decide."""
+
+from __future__ import annotations
+
+import math
+
+from rubgen.arrays import FloatArray
+from rubgen.contact.geometry_kernels import Surface, Tips
+from rubgen.jit import allocation_free_kernel, inlined_kernel
+
+
+@inlined_kernel
+def casing_reach(surface: Surface, q_casing: FloatArray) -> float:
+    """An upper bound of the casing's displacement anywhere on the ring, sum_j |q_j| reach_j."""
+    reach: float = 0.0
+    for j in range(q_casing.shape[0]):
+        reach += abs(q_casing[j]) * surface.reach[j]
+    return reach
+
+
+@allocation_free_kernel
+def largest_nodal_displacement(surface: Surface, q_casing: FloatArray) -> float:
+    """The largest displacement of a casing node, m; NaN when any is."""
+    largest = 0.0
+    for i in range(surface.table.shape[0]):
+        x, y = 0.0, 0.0
+        for j in range(q_casing.shape[0]):
+            x += surface.table[i, j, 0] * q_casing[j]
+            y += surface.table[i, j, 1] * q_casing[j]
+        size = x * x + y * y
+        if not size <= largest:
+            largest = size
+    return math.sqrt(largest)
+
+
+@inlined_kernel
+def tip_angle(tips: Tips, blade: int, q: FloatArray, theta: float) -> float:
+    """Polar angle of a blade's tip."""
+    radial = tips.radius + tips.static[0, blade] + q[3 * blade]
+    angle: float = theta + tips.angle[blade] + math.atan((tips.static[1, blade] + q[3 * blade + 1]) / radial)
+    return angle
+
+
+@inlined_kernel
+def clearance_bounds(
+    surface: Surface,
+    tips: Tips,
+    displacement: FloatArray,
+    opening: float,
+    cos_orders: FloatArray,
+    sin_orders: FloatArray,
+    bounds_out: FloatArray,
+) -> None:
+    """A lower bound of r(angle of P) + opening - |P| for every tip P, into `bounds_out` (n_blades,).
+
+    With a and t the radial and tangential place of the tip and x = t / a, its polar angle differs from the blade's by
+    x but for |x|^3 / 3, r there from r + r' x by at most |r''| x^2 / 2, and |P| <= a + t x / 2. `displacement` (2 or
+    more, any) holds the radial and the tangential displacement of each blade's tip; `cos_orders`, `sin_orders`
+    (n_harmonics,) are those of order_j (theta - phase_j).
+    """
+    base = surface.mean_radius + opening - tips.radius
+    nearest = 1.0 / tips.radius
+    for k in range(bounds_out.shape[0]):
+        a = tips.static[0, k] + displacement[0, k]
+        t = tips.static[1, k] + displacement[1, k]
+        # 1 / (radius + a) but for its square; the tip limit bounds |a|.
+        x = abs(t) * nearest
+        spread = abs(a) * nearest
+        bound = base - a - 0.5 * x * (1.0 + 2.0 * spread) * abs(t)
+        bound -= x * (surface.bend * x + surface.steepness * (2.0 * spread + x * x))
+        bounds_out[k] = bound
+    for j in range(surface.amplitude.shape[0]):
+        cosine, sine = surface.amplitude[j] * cos_orders[j], surface.amplitude[j] * sin_orders[j]
+        order = surface.order[j] * nearest
+        for k in range(bounds_out.shape[0]):
+            t = tips.static[1, k] + displacement[1, k]
+            at = cosine * tips.cos_order[j, k] - sine * tips.sin_order[j, k]
+            aside = sine * tips.cos_order[j, k] + cosine * tips.sin_order[j, k]
+            bounds_out[k] += at - order * t * aside
+
+
+@inlined_kernel
+def deformation_bounds(surface: Surface, q_casing: FloatArray) -> tuple[float, float]:
+    """Bounds of the deformed surface on the whole ring, for `is_clear`.
+
+    First, how far its radius at a polar angle may lie below r + opening + u_r at that angle, u_r interpolated linearly
+    between the nodes; second, the slope of r + opening + u_r by the angle. A surface point at psi stands at a polar
+    angle that differs by at most |u_t| / |X|, so the radius is less by at most that times the slope.
+    """
+    reach, slope, bend = 0.0, surface.steepness, 0.0
+    for j in range(q_casing.shape[0]):
+        size = abs(q_casing[j])
+        reach += size * surface.reach[j]
+        slope += size * surface.mode_slope[j]
+        bend += size * surface.mode_bend[j]
+    h = surface.node_step
+    nearest: float = 0.9 * surface.mean_radius
+    return slope * reach / nearest + 0.125 * h * h * bend, slope / nearest
+
+
+@inlined_kernel
+def is_clear(
+    surface: Surface,
+    q_casing: FloatArray,
+    angle: float,
+    bound: float,
+    margin: float,
+    limits: tuple[float, float],
+) -> bool:
+    """Whether a tip at polar angle `angle` is certainly farther than `margin` inside of the deformed surface.
+
+    `bound` is its clearance bound, `limits` the deformation bounds. A point nearer than the margin would have a
+    radius nearer to the surface's at its angle than the margin times the Lipschitz constant of that radius.
+    """
+    position = angle / surface.node_step
+    first = math.floor(position)
+    share, nodes = position - first, surface.radial.shape[0]
+    at, after = int(first % nodes), int((first + 1) % nodes)
+    inward, next_inward = 0.0, 0.0
+    for j in range(q_casing.shape[0]):
+        inward += surface.radial[at, j] * q_casing[j]
+        next_inward += surface.radial[after, j] * q_casing[j]
+    clearance = bound + (1.0 - share) * inward + share * next_inward - limits[0]
+    return bool(clearance > margin * (1.0 + 0.5 * limits[1] * limits[1]))

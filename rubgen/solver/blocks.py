@@ -1,0 +1,194 @@
+"""The blocks into which a system's matrices fall, found from the matrices themselves.
+
+Blades that are all alike couple only within one nodal diameter, so harmonics over the blades split the blisk into small
+blocks. Nothing is assumed: the blocks are the connected sets of coordinates that no matrix couples. With mistuned
+blades one large block is left, and everything works as before.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse.csgraph import connected_components
+
+from rubgen.arrays import BoolArray, FloatArray, IntArray
+from rubgen.solver.block_kernels import Harmonics, Product
+from rubgen.solver.lanes_kernels import LANES
+
+COUPLING_TOLERANCE = 1e-9
+"""An entry couples when it exceeds this share of the geometric mean of its row's and its column's largest entry.
+Rounding of the reduction leaves 1e-12 to 1e-10 between nodal diameters; a mistuned blade couples far above."""
+
+
+def aligned(array: FloatArray) -> FloatArray:
+    """A C-contiguous copy that begins at a cache line: rows of eight that straddle two lines load half as fast."""
+    buffer = np.zeros(array.size + LANES)
+    start = (-buffer.ctypes.data // 8) % LANES
+    out = buffer[start : start + array.size].reshape(array.shape)
+    out[...] = array
+    return out
+
+
+def padded(size: int) -> int:
+    """The next multiple of eight."""
+    return -(-size // LANES) * LANES
+
+
+def blade_harmonics(blades: int) -> FloatArray:
+    """Orthonormal real harmonics (blades, blades) over the number of the blade: 1, cos, sin, cos 2, ..., (-1)^k."""
+    k = np.arange(blades)
+    columns = [np.ones(blades) / np.sqrt(blades)]
+    for d in range(1, (blades + 1) // 2):
+        columns += [np.sqrt(2 / blades) * wave(2 * np.pi * ((d * k) % blades) / blades) for wave in (np.cos, np.sin)]
+    if blades % 2 == 0:
+        columns.append((-1.0) ** k / np.sqrt(blades))
+    return np.stack(columns, axis=1)
+
+
+def coupled(matrix: FloatArray) -> BoolArray:
+    """Which entries couple two coordinates."""
+    size = np.abs(matrix)
+    scale = np.sqrt(np.maximum(size.max(axis=0), size.max(axis=1)))
+    return np.asarray(size > COUPLING_TOLERANCE * np.multiply.outer(scale, scale))
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """Blocks of coordinates and where they stand in z.
+
+    `transform` T (n, n) is orthonormal, q = T y. `lanes` are arrays (8, m) of the coordinates of up to eight blocks of
+    one size, -1 where there is none: coordinate i of all eight is one row of z. `single` are arrays (m,): one block,
+    whose coordinates follow one another. `place` (n,) is the number of z of each y.
+    """
+
+    transform: FloatArray
+    lanes: list[IntArray]
+    single: list[IntArray]
+    place: IntArray
+    rows: int
+
+    def product(self, matrix: FloatArray) -> Product:
+        """A physical matrix (n, n) in blocks; what couples different blocks is dropped."""
+        return self._packed(self.transform.T @ matrix @ self.transform, triangle=False)
+
+    def without_zeros(self, matrix: FloatArray) -> Product:
+        """The same without lines of zeros."""
+        product = self.product(matrix)
+        _, _, first, _, count = product.lines.T
+        kept = [bool(product.entries[f : f + c].any()) for f, c in zip(first, count, strict=True)]
+        return Product(np.ascontiguousarray(product.lines[kept]), product.entries)
+
+    def damping(self, matrix: FloatArray) -> Product:
+        """The lower triangle of the symmetric part with half its diagonal: d^T C d = 2 d^T (triangle d)."""
+        Y = self.transform.T @ matrix @ self.transform
+        Y = (Y + Y.T) / 2
+        order = np.argsort(self.place)
+        lower = np.zeros_like(Y)
+        ordered = Y[np.ix_(order, order)]
+        lower[np.ix_(order, order)] = np.tril(ordered, -1) + np.diag(np.diag(ordered)) / 2
+        return self._packed(lower, triangle=True)
+
+    def vector(self, y: FloatArray) -> FloatArray:
+        """Numbers y (n,) as z."""
+        z = np.zeros(self.rows * LANES)
+        z[self.place] = y
+        return aligned(z)
+
+    def to_z(self, q: FloatArray) -> FloatArray:
+        """Z of physical coordinates."""
+        return self.vector(self.transform.T @ q)
+
+    def to_q(self, z: FloatArray) -> FloatArray:
+        """Physical coordinates (n,) of z."""
+        return np.asarray(self.transform @ z[self.place])
+
+    def _packed(self, Y: FloatArray, *, triangle: bool) -> Product:
+        """Lines and entries of a matrix in y."""
+        lines: list[tuple[int, int, int, int, int]] = []
+        entries: list[FloatArray] = []
+        row = 0
+        for bundle in self.lanes:
+            size = bundle.shape[1]
+            for i in range(size):
+                count = i + 1 if triangle else size
+                block = np.where(bundle[:, :1] >= 0, Y[bundle[:, i : i + 1], bundle[:, :count]], 0.0).T
+                _append(lines, entries, (0, row + i, row), block)
+            row += size
+        for block_of in self.single:
+            size = len(block_of)
+            Z = np.zeros((padded(size), size))
+            Z[:size] = Y[np.ix_(block_of, block_of)]
+            for i in range(0, size, LANES):
+                count = min(i + LANES, size) if triangle else size
+                _append(lines, entries, (1, row + i // LANES, row * LANES), Z[i : i + LANES, :count].T)
+            row += padded(size) // LANES
+        table = np.array(lines, dtype=np.int64).reshape(-1, 5)
+        return Product(table, aligned(np.concatenate([np.zeros((0, LANES)), *entries])))
+
+
+def _append(
+    lines: list[tuple[int, int, int, int, int]], entries: list[FloatArray], line: tuple[int, int, int], part: FloatArray
+) -> None:
+    scaled, row, start = line
+    lines.append((scaled, row, sum(map(len, entries)), start, len(part)))
+    entries.append(part)
+
+
+def find_blocks(matrices: list[FloatArray], blades: int) -> Blocks:
+    """Blocks of all `matrices` (n, n), whose first 3 blades coordinates are tips, three to a blade."""
+    n = len(matrices[0])
+    T = np.eye(n)
+    for a in range(3):
+        tips = np.arange(a, 3 * blades, 3)
+        T[np.ix_(tips, tips)] = blade_harmonics(blades) if blades else 0
+    adjacent = np.any([coupled(T.T @ matrix @ T) for matrix in matrices], axis=0)
+    count, label = connected_components(adjacent, directed=False)
+    parts = [np.flatnonzero(label == i) for i in range(count)]
+    lanes, single = _arranged(parts)
+    place, row = np.zeros(n, dtype=np.int64), 0
+    for bundle in lanes:
+        lane, i = np.nonzero(bundle >= 0)
+        place[bundle[lane, i]] = (row + i) * LANES + lane
+        row += bundle.shape[1]
+    for block in single:
+        place[block] = row * LANES + np.arange(len(block))
+        row += padded(len(block)) // LANES
+    return Blocks(T, lanes, single, place, row)
+
+
+def _arranged(parts: list[IntArray]) -> tuple[list[IntArray], list[IntArray]]:
+    """Blocks of one size side by side in lanes where that is less work than one by one."""
+    lanes: list[IntArray] = []
+    single: list[IntArray] = []
+    for size in sorted({len(part) for part in parts}, reverse=True):
+        alike = [part for part in parts if len(part) == size]
+        bundles = -(-len(alike) // LANES)
+        if bundles * size > len(alike) * -(-size // LANES):
+            single += alike
+            continue
+        for first in range(0, len(alike), LANES):
+            bundle = np.full((LANES, size), -1, dtype=np.int64)
+            for lane, part in enumerate(alike[first : first + LANES]):
+                bundle[lane] = part
+            lanes.append(bundle)
+    return lanes, single
+
+
+def system_harmonics(blocks: Blocks, blades: int) -> Harmonics:
+    """The harmonics of a system's blades, and where they stand in z."""
+    width, n = padded(blades), len(blocks.place)
+    basis = np.zeros((width, width))
+    basis[:blades, :blades] = blade_harmonics(blades)
+    columns = basis.reshape(width // LANES, LANES, width)[:, :, :blades].transpose(0, 2, 1).reshape(-1, LANES)
+    places = np.zeros((3, width), dtype=np.int64)
+    places[:, :blades] = blocks.place[: 3 * blades].reshape(blades, 3).T
+    rows = width // LANES
+    lines = [(1, a * rows + row, row * blades, a * width, blades) for a in range(3) for row in range(rows)]
+    return Harmonics(
+        aligned(basis[:blades]),
+        aligned(columns),
+        np.array(lines, dtype=np.int64),
+        places,
+        blocks.place[3 * blades : n].copy(),
+    )

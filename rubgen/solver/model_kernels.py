@@ -1,0 +1,78 @@
+"""What a step of the solver takes: laws, angles, states, the model, scratch."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from rubgen.arrays import FloatArray
+from rubgen.contact.geometry_kernels import Surface, Tips
+from rubgen.solver.block_kernels import Harmonics, Motion, Scheme
+
+
+class Laws(NamedTuple):
+    """Numbers of the step: Omega, dt, friction, restitution; lengths in m; screening on or off.
+
+    `margin` is the candidates' least one; a casing node displaced by more than `casing_limit` or a tip by more than
+    `tip_limit` in one direction means divergence.
+    """
+
+    speed: float
+    dt: float
+    friction: float
+    restitution: float
+    margin: float
+    casing_limit: float
+    tip_limit: float
+    screen: bool
+
+
+class Angles(NamedTuple):
+    """Tables over the steps of one turn, each with one row more than steps (the last is the first of the next turn).
+
+    `theta` and its `cosine`, `sine`; `cos_orders`, `sin_orders` (steps + 1, n_harmonics) of order_j (theta - phase_j).
+    """
+
+    theta: FloatArray
+    cosine: FloatArray
+    sine: FloatArray
+    cos_orders: FloatArray
+    sin_orders: FloatArray
+
+
+class State(NamedTuple):
+    """q at steps n - 1, n, n + 1, and d or the velocity, each (n,).
+
+    Within a turn, of the tips only those of the blades in contact hold.
+    """
+
+    before: FloatArray
+    now: FloatArray
+    after: FloatArray
+    change: FloatArray
+
+
+class Model(NamedTuple):
+    """What does not change from step to step.
+
+    `tip_compliance` (3 blades, 3 blades) and `casing_compliance` (n_casing, n_casing) hold the columns of A^-1.
+    """
+
+    surface: Surface
+    tips: Tips
+    laws: Laws
+    angles: Angles
+    scheme: Scheme
+    harmonics: Harmonics
+    tip_compliance: FloatArray
+    casing_compliance: FloatArray
+
+
+class Scratch(NamedTuple):
+    """Arrays of a step: a motion to go back to, d in z, a force in z, numbers of one tip coordinate, d or v, tips."""
+
+    free: Motion
+    z_change: FloatArray
+    z_force: FloatArray
+    share: FloatArray
+    change: FloatArray
+    tips: FloatArray
