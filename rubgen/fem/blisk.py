@@ -28,7 +28,8 @@ class BliskModel:
     axes. Matrices are (n, n), f_c (n,). `K_apart` is K before the blades are joined to the rim. `disk_size` counts the
     DoFs of O_d and the disk; `rim`, `roots`, `tips` (blades, 6) are DoFs; `angles` (blades,) the polar angles of the
     blades in rad, `blade_radius` the radii of a blade's nodes in m; `penalty` is k_p. `held` solves static problems
-    with O_d held laterally. `plate` and `beam` are the matrices of the disk and of one blade.
+    with O_d held laterally. `plate` and `beam` are the matrices of the disk and of one blade without mistuning;
+    blade k has the stiffness `blade_stiffness` (blades,)[k] times that one's.
     """
 
     M: SparseMatrix
@@ -48,6 +49,7 @@ class BliskModel:
     held: HeldStiffness
     plate: DiskModel
     beam: BeamMatrices
+    blade_stiffness: FloatArray
 
 
 def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskModel:
@@ -55,7 +57,9 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
 
     The steady state at 1 rad/s, blades pulling at the rim and the bore held by the rigid link, gives the disk's plane
     stress, the forces in the link and the link's geometric term. So K_sigma - S on rigid-body motions is -m, -m, 0,
-    I_p - I_d, I_p - I_d, 0: tests/fem/test_blisk_assembly.py.
+    I_p - I_d, I_p - I_d, 0: tests/fem/test_blisk_assembly.py. A mistuned blade has (1 + deviation) K and nothing else
+    of its own: E scales every term of K, the shape functions depend on ratios of stiffness alone, and its pull on the
+    rim follows from its mass.
 
     Raises UserError when blades do not meet corner nodes of the rim, for a single blade, whose pull is no symmetric
     load, and for a bore outside the rim.
@@ -67,11 +71,12 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
     roots = _dof(disk_size // 6 + n_blade // 6 * np.arange(blades.count))
     bore, rim, tips = _dof(1 + plate.bore), _dof(1 + plate.rim[::pitch]), roots + n_blade - 6
     angles = 2 * np.pi * np.arange(blades.count) / blades.count
+    equal, stiffness = np.ones(blades.count), 1 + np.array(blades.stiffness_deviations)
 
     penalty = float(plate.K.diagonal().max())
     arm = plate.mesh.nodes[plate.bore]
     link, joint = rigid_link(arm, bore, CENTRE, size), rim_joint(angles, rim, roots, size)
-    K_apart = sp.csr_array(_blocks(plate.K, beam.K, blades.count) + penalty * (link.T @ link))
+    K_apart = sp.csr_array(_blocks(plate.K, beam.K, stiffness) + penalty * (link.T @ link))
     K = sp.csr_array(K_apart + penalty * (joint.T @ joint))
     f_c = np.concatenate([np.zeros(6), plate.f_c, *[beam.f_c] * blades.count])
     held = HeldStiffness(K, support)
@@ -79,12 +84,12 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
     K_plate = shell_stress_stiffness(plate.mesh, disk.material, static[6:disk_size])
     link_force = -penalty * (link @ static).reshape(-1, 6)[:, :3]
     return BliskModel(
-        M=_blocks(plate.M, beam.M, blades.count),
-        G=_blocks(plate.G, beam.G, blades.count),
+        M=_blocks(plate.M, beam.M, equal),
+        G=_blocks(plate.G, beam.G, equal),
         K=K,
         K_apart=K_apart,
-        S=_blocks(plate.S, beam.S, blades.count),
-        K_sigma=_blocks(K_plate, beam.K_sigma, blades.count, link_stress_stiffness(arm, link_force)),
+        S=_blocks(plate.S, beam.S, equal),
+        K_sigma=_blocks(K_plate, beam.K_sigma, equal, link_stress_stiffness(arm, link_force)),
         f_c=f_c,
         disk_size=disk_size,
         rim=rim,
@@ -96,6 +101,7 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
         held=held,
         plate=plate,
         beam=beam,
+        blade_stiffness=stiffness,
     )
 
 
@@ -158,8 +164,11 @@ def _dof(nodes: IntArray) -> IntArray:
     return 6 * nodes[:, None] + np.arange(6)
 
 
-def _blocks(plate: SparseMatrix, blade: FloatArray, count: int, centre: FloatArray | None = None) -> SparseMatrix:
-    """diag(O_d, disk, blade, ..., blade); O_d has no matrix of its own but the link's."""
+def _blocks(
+    plate: SparseMatrix, blade: FloatArray, scale: FloatArray, centre: FloatArray | None = None
+) -> SparseMatrix:
+    """diag(O_d, disk, scale_0 blade, scale_1 blade, ...); O_d has no matrix of its own but the link's."""
     first = np.zeros((6, 6)) if centre is None else centre
-    blocks = [sp.coo_array(first), plate, *[sp.coo_array(blade)] * count]
+    one = sp.coo_array(blade)
+    blocks = [sp.coo_array(first), plate, *[factor * one for factor in scale]]
     return sp.csr_array(sp.block_diag(blocks, format="csr"))

@@ -5,15 +5,17 @@ All lengths in m, stiffness in N/m or N m/rad, density in kg/m3. Values are chec
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import ConfigDict, Field
+import numpy as np
+from pydantic import ConfigDict, Field, model_validator
 from pydantic.dataclasses import dataclass
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Ratio = Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)]
+Deviation = Annotated[float, Field(gt=-1, allow_inf_nan=False)]
 STRICT = ConfigDict(extra="forbid")
 
 
@@ -45,10 +47,39 @@ class Disk:
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
-class BladeRow:
-    """Equal blades on the rim: chord, thickness and stagger are linear from root to tip.
+class Mistuning:
+    """Relative deviation of each blade's elastic stiffness: `pattern`, or one drawn by `relative_std` and `seed`.
 
-    The angle is the one between the thickness normal and the axis of rotation Z, in degrees.
+    Blade k has Young's modulus E (1 + deviation_k), and its shear modulus with it; mass and shape are those of every
+    blade. A pattern gives blade 0 first, on x, where the unbalance is, and goes on counter-clockwise. Draws are
+    independent and normal with mean 0, so the mean of one draw is not exactly 0.
+    """
+
+    pattern: Annotated[tuple[Deviation, ...], Field(min_length=1)] | None = None
+    relative_std: Ratio | None = None
+    seed: Annotated[int, Field(ge=0)] | None = None
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> Self:
+        given = (self.pattern is not None, self.relative_std is not None, self.seed is not None)
+        if given not in ((True, False, False), (False, True, True)):
+            raise ValueError("must have pattern alone, or relative_std with its seed; give one of the two")
+        return self
+
+    def deviations(self, count: int) -> tuple[float, ...]:
+        """The pattern itself, or `count` values drawn by numpy's default generator: the same for the same seed."""
+        if self.pattern is not None:
+            return self.pattern
+        drawn = np.random.default_rng(self.seed).standard_normal(count)
+        return tuple((drawn * (self.relative_std or 0.0)).tolist())
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class BladeRow:
+    """Blades on the rim, equal but for their mistuning: chord, thickness and stagger are linear from root to tip.
+
+    The angle is the one between the thickness normal and the axis of rotation Z, in degrees. Without `mistuning` all
+    blades have the material's stiffness.
     """
 
     material: Material
@@ -61,6 +92,21 @@ class BladeRow:
     root_angle_deg: Finite
     tip_angle_deg: Finite
     elements: Annotated[int, Field(ge=1)] = 20
+    mistuning: Mistuning | None = None
+
+    @model_validator(mode="after")
+    def _every_blade_is_stiff(self) -> Self:
+        found = self.stiffness_deviations
+        if len(found) != self.count:
+            raise ValueError(f"mistuning.pattern has {len(found)} values for count = {self.count}; give one a blade")
+        if min(found) <= -1:
+            raise ValueError(f"mistuning draws a deviation of {min(found):.3g}, no stiffness; lower relative_std")
+        return self
+
+    @property
+    def stiffness_deviations(self) -> tuple[float, ...]:
+        """Relative deviation of stiffness of each blade (count,), 0 without mistuning."""
+        return self.mistuning.deviations(self.count) if self.mistuning else (0.0,) * self.count
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)

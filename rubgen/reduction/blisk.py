@@ -25,8 +25,8 @@ class ReducedBlisk:
 
     M, K elastic, G Coriolis (skew), A = K_sigma - S at 1 rad/s: (n, n). `centre` T (6, n) recovers all six DoFs of
     O_d. `growth` is the tips' steady centrifugal displacement. `rigid_inertia` (6,) is m, m, m, I_d, I_d, I_p of the
-    whole in kg, kg m2; `blade_frequency` the first one of a blade clamped at its root, in rad/s; `full_size` the
-    number of DoFs of the full model.
+    whole in kg, kg m2; `blade_frequency` the first one of a blade without mistuning clamped at its root, in rad/s;
+    `full_size` the number of DoFs of the full model.
     """
 
     M: FloatArray
@@ -85,24 +85,29 @@ def _join_components(model: BliskModel, reduction: Reduction) -> _Joined:
     plate, blade = slice(0, model.disk_size), slice(model.disk_size, model.disk_size + n_blade)
     ends = np.concatenate([np.arange(6), np.arange(n_blade - 6, n_blade)])
     kept = np.concatenate([np.arange(6), model.rim.ravel()])
+    K_blade = sp.csr_array(model.beam.K)
     V_plate = craig_bampton(model.M[plate, plate], model.K_apart[plate, plate], kept, reduction.disk_modes)
-    V_blade = craig_bampton(model.M[blade, blade], model.K_apart[blade, blade], ends, reduction.blade_modes)
+    # Blades that differ by a factor of K alone have one basis: statics and shapes of modes do not know the factor.
+    V_blade = craig_bampton(model.M[blade, blade], K_blade, ends, reduction.blade_modes)
 
-    def project(X: sp.csr_array) -> FloatArray:
+    def project(X: sp.csr_array, one_blade: sp.csr_array, scale: FloatArray) -> FloatArray:
         on_plate = V_plate.T @ (X[plate, plate] @ V_plate)
-        on_blade = V_blade.T @ (X[blade, blade] @ V_blade)
-        return np.asarray(sp.block_diag([on_plate, *[on_blade] * count]).toarray())
+        on_blade = V_blade.T @ (one_blade @ V_blade)
+        return np.asarray(sp.block_diag([on_plate, *[factor * on_blade for factor in scale]]).toarray())
 
-    K = project(model.K_apart)
+    def of_equal_blades(X: sp.csr_array) -> FloatArray:
+        return project(X, X[blade, blade], np.ones(count))
+
+    K = project(model.K_apart, K_blade, model.blade_stiffness)
     six = np.arange(6)
     rim = 6 + 6 * np.arange(count)[:, None] + six
     roots = V_plate.shape[1] + V_blade.shape[1] * np.arange(count)[:, None] + six
     joint = rim_joint(model.angles, rim, roots, len(K))
     return _Joined(
-        M=project(model.M),
+        M=of_equal_blades(model.M),
         K=K + model.penalty * (joint.T @ joint).toarray(),
-        G=project(model.G),
-        A=project(sp.csr_array(model.K_sigma - model.S)),
+        G=of_equal_blades(model.G),
+        A=of_equal_blades(sp.csr_array(model.K_sigma - model.S)),
         tips=roots + 6,
     )
 

@@ -25,7 +25,7 @@ CACHE_VARIABLE = "RUBGEN_CACHE_DIR"
 _PACKAGE = Path(__file__).parents[1]
 _ARRAYS = ("M", "K", "G", "A", "centre", "rigid_inertia")
 _NUMBERS = ("blade_frequency", "full_size")
-_GROWTH = ("K", "A", "f", "tips")
+_GROWTH = ("K", "A", "f", "tips", "moment")
 
 
 def cache_directory() -> Path:

@@ -27,8 +27,9 @@ class SpinningSystem:
     inertial frame and are mass-normalised.
 
     `M`, `C`, `K` are (n, n) and contain every gyroscopic, centrifugal, support and damping term; `force` (n,) is the
-    unbalance. `tip_static` (n_blades, 3) is the steady centrifugal displacement of the full model at this speed along
-    the same axes as the tips; it is added to the tips wherever a position is needed, and is no part of q.
+    unbalance, on O_d x, and where mistuned blades grow unevenly a little on O_d x and y. `tip_static` (n_blades, 3) is
+    the steady centrifugal displacement of the full model at this speed along the same axes as the tips; it is added to
+    the tips wherever a position is needed, and is no part of q.
     `casing_modes` (nodes, 2, n_casing) holds the X and Y displacement of each mode at the nodes, which stand at equal
     steps of polar angle from 0. `lateral_stiffness` and `lateral_damping` are the support's, per axis, in N/m, N s/m.
     """

@@ -58,7 +58,7 @@ class ReducedModel:
         Blisk: C = 2 Omega G + C_s + beta K_e, K = K_e + K_s + Omega^2 (K_sigma - S) + Omega H_s, with
         C_s = T^T C T and H_s = T^T C S6 T of the dampers C = diag(c) in the inertial frame, which act on the absolute
         velocity (S6 is e_z x). The term Omega H_s makes K unsymmetric. Casing modes: 1, 2 zeta omega, omega^2.
-        The unbalance Omega^2 U acts on O_d x.
+        The unbalance Omega^2 U acts on O_d x, that of uneven growth (mistuned blades) on O_d x and y.
         """
         with threadpool_limits(1, user_api="blas"):
             return self._assemble(speed)
@@ -71,7 +71,8 @@ class ReducedModel:
         omega = 2 * np.pi * self.casing.frequencies_hz
         count = machine.blades.count
         force = np.zeros(self.reduced_dof)
-        force[3 * count] = speed**2 * machine.unbalance_kg_m
+        force[3 * count : 3 * count + 2] = speed**2 * blisk.growth.unbalance(speed)
+        force[3 * count] += speed**2 * machine.unbalance_kg_m
         return SpinningSystem(
             speed=speed,
             M=block_diag(blisk.M, np.eye(len(omega))),
