@@ -1,6 +1,7 @@
 import dataclasses
 import json
 import resource
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -150,3 +151,12 @@ def test_a_full_disk_leaves_nothing(rub_run, tmp_path):
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_of_a_recording_stays_behind(rub_run, tmp_path):
+    """A stream of Rerun that is not released keeps two threads and its data."""
+    write_rrd(rub_run, tmp_path / "first.rrd")
+    threads = len(list(Path("/proc/self/task").iterdir()))
+    for _ in range(4):
+        write_rrd(rub_run, tmp_path / "more.rrd")
+    assert len(list(Path("/proc/self/task").iterdir())) <= threads
