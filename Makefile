@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check bench verification pictures schemas clean
+.PHONY: setup demo test check bench verification sensitivity pictures schemas clean
 
 setup: $(VENV)/.installed-dev
 
@@ -25,6 +25,9 @@ bench: $(VENV)/.installed-dev
 
 verification: $(VENV)/.installed-dev
 	$(BIN)/python -m rubgen.studies.verification
+
+sensitivity: $(VENV)/.installed-dev
+	$(BIN)/python -m rubgen.studies.sensitivity
 
 pictures: $(VENV)/.installed-dev
 	$(BIN)/python docs/pictures.py
