@@ -66,8 +66,10 @@ def _changes(axes: Axes, study: Study, results: Results, read: Callable[[Outcome
         y = [100 * change(outcome, outcomes[yardstick], read) for outcome in outcomes.values()]
         axes.plot(x, y, color=color, linewidth=0.8, alpha=0.6)
         for place, height, outcome in zip(x, y, outcomes.values(), strict=True):
-            marker = MOTION_MARKERS[Motion(outcome.motion)] if outcome.motion else "x"
-            axes.plot(place, height, marker, color=color, markersize=5.5)
+            if outcome.motion:
+                axes.plot(place, height, MOTION_MARKERS[Motion(outcome.motion)], color=color, markersize=5.5)
+            else:
+                axes.plot(place, 0.04, "x", color=color, markersize=6.5, transform=axes.get_xaxis_transform())
     axes.set_yscale("symlog", linthresh=1, linscale=1.5)
     _percent_ticks(axes)
     axes.set_xticks(range(len(values)), [study.text(value) for value in values])
@@ -147,7 +149,7 @@ def _motion_legend(outcomes: Sequence[Outcome], *, colored: bool = False) -> lis
         for motion in Motion
         if motion.value in found
     ]
-    failed = [("failed", "x", GREY)] if "" in found else []
+    failed = [("failed run, at the foot", "x", GREY)] if "" in found else []
     return [
         Line2D([], [], linestyle="none", marker=marker, color=color, label=name)
         for name, marker, color in marks + failed

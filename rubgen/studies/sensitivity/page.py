@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from textwrap import fill
 
 from rubgen.studies.sensitivity.cases import CASES, STUDIES, Study
 from rubgen.studies.sensitivity.figures import QUANTITIES
@@ -35,8 +36,8 @@ def page(results: Mapping[str, Results], pairs: Sequence[Pair]) -> str:
 
 
 def _section(study: Study, results: Results) -> str:
-    lines = [f"## {study.quantity}", f"![{study.quantity}](sensitivity-{study.name}.png)", REMARKS[study.name]]
-    lines.append(_equal_labels(study, results))
+    lines = [f"## {study.quantity}", f"![{study.quantity}](sensitivity-{study.name}.png)", REMARKS[study.name].strip()]
+    lines.append(_wrapped(_equal_labels(study, results)))
     lines.append(_table(_COLUMNS, [_row(study, results, value, name) for value in _values(results) for name in CASES]))
     if study.model:
         header = [
@@ -109,13 +110,13 @@ def _halving(pairs: Sequence[Pair]) -> str:
     text = [
         "## Half the step",
         "![Impulse over speed with either step](sensitivity-halving.png)",
-        REMARKS["halving"],
-        done + _equal_sentence(pairs, rubbing),
-        _impulse_sentence(changes, beyond),
+        REMARKS["halving"].strip(),
+        done + _wrapped(_equal_sentence(pairs, rubbing)),
+        _wrapped(_impulse_sentence(changes, beyond)),
     ]
     others = [pair for pair in pairs if not pair.equal]
     if others:
-        text += [_others_sentence(others), _others(others)]
+        text += [_wrapped(_others_sentence(others)), _others(others)]
     return "\n\n".join(text)
 
 
@@ -171,6 +172,7 @@ def _others(pairs: Sequence[Pair]) -> str:
         rows.append([
             f"{pair.speed_rpm:.0f}",
             " / ".join(run.label for run in both),
+            pair.later.label if pair.later else "-",
             " / ".join(f"{run.indicator_blisk:.2f}" for run in both),
             " / ".join(f"{run.indicator_casing:.2f}" for run in both),
             " / ".join(f"{run.stray_blisk:.1e}" for run in both),
@@ -196,6 +198,10 @@ def _impulse(outcome: Outcome) -> str:
 
 def _percent(value: float) -> str:
     return f"{100 * value:+.2f}" if math.isfinite(value) else "-"
+
+
+def _wrapped(sentence: str) -> str:
+    return fill(sentence, 120, break_on_hyphens=False, break_long_words=False)
 
 
 def _table(header: list[str], rows: list[list[str]]) -> str:

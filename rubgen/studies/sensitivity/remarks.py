@@ -33,10 +33,11 @@ FOLLOWS = """
 - **Modes of blades and disk: 4 and 4 are enough**, fewer would do. In period-1 runs more of them change impulses by
   less than 0.01 % and orders by less than 1 %.
 - **Modes of the blisk: 4 keep labels, impulses and the orders of the force within 0.3 %, but not order 3 of the disk
-  centre**: it is 5 % too large in the light rub and 45 % in the heavier one, and 12 modes do not mend it. Who needs
-  it sets `blisk_modes = 86`; order 1, far larger, is good to 0.1 %.
+  centre**: it is 5 % too large in the light rub and 45 % in the heavier one; 12 modes do not mend it, 40 do. Who
+  needs it sets `blisk_modes = 40` in the reduction; order 1, far larger, is good to 0.1 % with 4.
 - **Casing modes: 11 by definition, as in the paper.** Two more or fewer change impulses by up to some tens of
-  percent, and classes with them. Nothing converges here: data with different numbers are data of different machines.
+  percent, and classes with them; with 5 and with 23 some of the runs end as diverged. Nothing converges here: data
+  with different numbers are data of different machines.
 - **Casing nodes: 180 are enough** for labels, and for impulses within 0.1 %; 60 are not for order 4 of the force.
 - **Settle turns: `auto` is on the safe side.** In these five runs 50 turns, 10 after closing, give the same labels
   and the same period-1 impulses within 0.02 %: contact damps more than the linear system, on whose slowest decay
@@ -44,7 +45,7 @@ FOLLOWS = """
 - **Period-1 means within 1 % of the motion**, the radius inside which `docs/labels.md` takes points as one. The
   casing of the light rub strays by half of that, and the 0-1 test alone would call it chaotic. Close to the bound any
   small change turns a label: with friction 0.01 and 8,192 steps that run is period-3 by name.
-- Mean impulses of the chaotic runs scatter by up to some 6 % whatever is varied, without a trend (casing modes and
+- Mean impulses of the chaotic runs scatter by up to some 7 % whatever is varied, without a trend (casing modes and
   256 steps apart): 500 turns tell no more.
 """
 REMARKS = {
