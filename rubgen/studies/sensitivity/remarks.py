@@ -45,7 +45,7 @@ FOLLOWS = """
 - **Period-1 means within 1 % of the motion**, the radius inside which `docs/labels.md` takes points as one. The
   casing of the light rub strays by half of that, and the 0-1 test alone would call it chaotic. Close to the bound any
   small change turns a label: with friction 0.01 and 8,192 steps that run is period-3 by name.
-- Mean impulses of the chaotic runs scatter by up to some 7 % whatever is varied, without a trend (casing modes and
+- Mean impulses of the chaotic runs scatter by up to some 8 % whatever is varied, without a trend (casing modes and
   256 steps apart): 500 turns tell no more.
 """
 REMARKS = {
