@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg import eigh
+from scipy.linalg import block_diag, eigh
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.fem.beam import BeamMatrices
@@ -93,7 +93,7 @@ def _join_components(model: BliskModel, reduction: Reduction) -> _Joined:
     def project(X: sp.csr_array, one_blade: sp.csr_array, scale: FloatArray) -> FloatArray:
         on_plate = V_plate.T @ (X[plate, plate] @ V_plate)
         on_blade = V_blade.T @ (one_blade @ V_blade)
-        return np.asarray(sp.block_diag([on_plate, *[factor * on_blade for factor in scale]]).toarray())
+        return np.asarray(block_diag(on_plate, *[factor * on_blade for factor in scale]))
 
     def of_equal_blades(X: sp.csr_array) -> FloatArray:
         return project(X, X[blade, blade], np.ones(count))
