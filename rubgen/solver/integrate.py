@@ -26,6 +26,7 @@ from rubgen.solver.response import EnergyBook, Response, Status
 from rubgen.solver.stability import settle_turns, slowest_decay, steps_per_turn
 from rubgen.solver.step_kernels import CONTACT_UNSOLVED, DIVERGED, ENERGY, OK
 from rubgen.solver.stepper import TAP_NAMES, Stepper, closing_ramp, start_opening
+from rubgen.solver.track import TrackKeeper
 from rubgen.solver.turn_kernels import STEPS, close_touches
 
 LEAST_TAIL_TURNS = 100
@@ -41,11 +42,13 @@ STATUS = {
 class Integration:
     """One run under way: the stepper, what is kept of the turns so far, and how it stands.
 
-    Kept are the taps of the last turns in a ring, and per turn of the record one section, one impulse, one count and
-    its touches: memory does not grow with the number of steps.
+    Kept are the taps of the last turns in a ring, the replay track of the last `signal_turns`, and per turn of the
+    record one section, one impulse, one count and its touches: memory does not grow with the number of steps.
     """
 
-    def __init__(self, stepper: Stepper, operation: Operation, settle: int, tail_turns: int) -> None:
+    def __init__(
+        self, stepper: Stepper, operation: Operation, settle: int, tail_turns: int, signal_turns: int = 0
+    ) -> None:
         self.stepper, self.settle, self.record = stepper, settle, operation.record_turns
         self.closing = min(operation.closing_turns, settle)
         self.opening = start_opening(stepper.system)
@@ -55,6 +58,7 @@ class Integration:
         self.impulse = np.zeros(self.record)
         self.contact_steps = np.zeros(self.record, dtype=np.int64)
         self.touches: list[FloatArray] = []
+        self.track = TrackKeeper(settle + self.record - signal_turns)
         self.reaches: deque[float] = deque([0.0, 0.0], maxlen=2)
         self.start_energy = self.largest_energy = stepper.energy()
         self.status, self.reason = Status.OK, ""
@@ -68,6 +72,7 @@ class Integration:
             if self.status is not Status.OK:
                 return
         touches = self.stepper.touches
+        self.track.finish(self.settle + self.record - 1)
         still_open = close_touches(touches, self.record * self.stepper.steps, 0)
         self.touches.append(touches.ended[:still_open].copy())
 
@@ -82,6 +87,7 @@ class Integration:
             self.reason = self._reason(turn, step)
             return
         self.tail.append(result.taps.copy())
+        self.track.add(turn, stepper, ended)
         row = turn - self.settle
         if row >= 0:
             self.section[row] = result.section
@@ -156,8 +162,9 @@ def integrate(
             return _unstable(system, operation, steps, decay)
         settle = settle_turns(system, operation)
         stepper = Stepper(system, contact, steps)
-        tail = max(LEAST_TAIL_TURNS, math.ceil(tail_seconds / (steps * stepper.dt)))
-        integration = Integration(stepper, operation, settle, tail)
+        signal_turns = tail_seconds / (steps * stepper.dt)
+        tail = max(LEAST_TAIL_TURNS, math.ceil(signal_turns))
+        integration = Integration(stepper, operation, settle, tail, math.floor(signal_turns))
         integration.run()
         return _response(integration)
 
@@ -182,6 +189,7 @@ def _response(integration: Integration) -> Response:
         energy=_energy(integration),
         n_blades=stepper.system.n_blades,
         n_casing=stepper.system.n_casing,
+        track=integration.track.track(stepper, integration.settle) if integration.track.kept else None,
     )
 
 

@@ -68,6 +68,21 @@ class EnergyBook:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Track:
+    """The whole motion over the few turns about the hardest touch, and what places it in space.
+
+    `step` (frames,) counts from the first of the record; `q` (frames, n) is the state as in `SpinningSystem`, the blisk
+    in its turning frame. `tip_growth` (n_blades, 3), steady, is added to the tips. `casing_modes` (nodes, 2, n_casing)
+    are the X and Y displacements of each casing mode at its nodes.
+    """
+
+    step: IntArray
+    q: FloatArray
+    tip_growth: FloatArray
+    casing_modes: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True)
 class Response:
     """The true response of one run: never a history of the state.
 
@@ -76,7 +91,8 @@ class Response:
     settling where the record is shorter. `section_q`,
     `section_v` (record_turns, n) are state and velocity once a turn at theta = 0 mod 2 pi (blisk coordinates in the
     turning frame, which coincides with the inertial one there). `impulse_per_turn` (record_turns,) in N s.
-    `contact_steps_per_turn` (record_turns,) counts the steps of each turn in which any blade touched.
+    `contact_steps_per_turn` (record_turns,) counts the steps of each turn in which any blade touched. `track` is None
+    where no signal was asked for.
     When `status` is not OK, `reason` says where and by how much, and no array may be used as data.
     """
 
@@ -96,6 +112,7 @@ class Response:
     energy: EnergyBook
     n_blades: int
     n_casing: int
+    track: Track | None = None
 
     @property
     def turn_seconds(self) -> float:

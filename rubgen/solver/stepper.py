@@ -33,6 +33,8 @@ START_CLEARANCE_SHARE = 2.5e-4
 """The start leaves at least this share of the tip radius between tips and casing."""
 ACCELEROMETER_ANGLES = (0.0, np.pi / 2, np.pi, 3 * np.pi / 2)
 RAY_ANGLES = (0.0, np.pi / 2)
+FRAMES = 32
+"""Frames of a turn that the solver hands out: blade modes up to the 16th order of rotation move smoothly."""
 TAP_NAMES = (
     "blisk_x", "blisk_y", "casing_acc_0", "casing_acc_90", "casing_acc_180", "casing_acc_270",
     "support_force_x", "support_force_y", "contact_force", "tip_clearance_0", "tip_clearance_90",
@@ -97,7 +99,10 @@ class Stepper:
         self.touches = Touches(
             np.zeros((blades, 8)), np.zeros(blades, dtype=np.int64), np.zeros((blades * (steps // 2 + 2), 8))
         )
-        self.result = TurnResult(np.zeros((len(TAP_NAMES), steps)), np.zeros((2, n)), np.zeros(3))
+        self.result = TurnResult(
+            np.zeros((len(TAP_NAMES), steps)), np.zeros((2, n)), np.zeros(3),
+            np.zeros((min(FRAMES, steps), self.blocks.rows * LANES)),
+        )  # fmt: skip
         self.motions = (self._motion(), self._motion(), self._motion())
         self.scratch = self._scratch()
         rest = steady_state(system)

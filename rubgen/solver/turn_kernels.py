@@ -52,14 +52,16 @@ class Touches(NamedTuple):
 
 
 class TurnResult(NamedTuple):
-    """Outputs of a turn: `taps` (11, steps), section (2, n): q and v at its start, `summary` (3,).
+    """Outputs of a turn: `taps` (11, steps), section (2, n): q and v at its start, `summary` (3,), `frames`.
 
-    `summary`: impulse in N s, steps with contact, largest bound of the casing's displacement in m.
+    `summary`: impulse in N s, steps with contact, largest bound of the casing's displacement in m. `frames` (count, any)
+    are z at equal steps from the turn's first on, count <= steps.
     """
 
     taps: FloatArray
     section: FloatArray
     summary: FloatArray
+    frames: FloatArray
 
 
 @allocation_free_kernel
@@ -183,6 +185,16 @@ def record_section(model: Model, now: Motion, scratch: Scratch, section_out: Flo
         section_out[1, i] /= model.laws.dt
 
 
+@inlined_kernel
+def record_frame(frames: FloatArray, frame: int, step: int, steps: int, z: FloatArray) -> int:
+    """Copy z where the next frame is due; the number of frames so far."""
+    if step * frames.shape[0] < frame * steps:
+        return frame
+    for i in range(z.shape[0]):
+        frames[frame, i] = z[i]
+    return frame + 1
+
+
 @allocation_free_kernel
 def run_turn(
     model: Model,
@@ -204,7 +216,7 @@ def run_turn(
     """
     laws, steps = model.laws, model.angles.cosine.shape[0] - 1
     before, now, after = motions
-    ended = 0
+    ended = frame = 0
     result.summary[:] = 0.0
     for s in range(steps):
         code, count = advance(model, s, opening, before, now, after, work, scratch)
@@ -230,6 +242,7 @@ def run_turn(
             result.summary[0] += force * laws.dt
             result.summary[1] += 1
         record_taps(model, taps, state, now.tips, s, opening[s + 1], force, result.taps)
+        frame = record_frame(result.frames, frame, s, steps, now.z)
         if s == 0:
             record_section(model, now, scratch, result.section)
         reach = casing_reach(model.surface, after.q[after.q.shape[0] - taps.bend.shape[0] :])
