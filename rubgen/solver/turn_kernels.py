@@ -54,8 +54,8 @@ class Touches(NamedTuple):
 class TurnResult(NamedTuple):
     """Outputs of a turn: `taps` (11, steps), section (2, n): q and v at its start, `summary` (3,), `frames`.
 
-    `summary`: impulse in N s, steps with contact, largest bound of the casing's displacement in m. `frames` (count, any)
-    are z at equal steps from the turn's first on, count <= steps.
+    `summary`: impulse in N s, steps with contact, largest bound of the casing's displacement in m. `frames` (any, any)
+    hold z at equal steps from the turn's first on; at most one a step.
     """
 
     taps: FloatArray
