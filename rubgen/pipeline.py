@@ -11,7 +11,7 @@ from rubgen.labels import Labels, label
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario
 from rubgen.sensors import Recording, margin_seconds, measure
-from rubgen.solver import Response, Status, integrate
+from rubgen.solver import Response, Status, integrate, no_response
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +29,7 @@ def simulate(scenario: Scenario) -> Run:
 
     The same scenario gives the same bits on one machine, whatever the number of BLAS threads (one is used here) and
     whether the reduced model comes from the cache. A run that fails is returned with its status, never labelled.
+    Raises UserError for a machine that cannot be modelled, reduced or run as asked.
     """
     operation, sensing = scenario.operation, scenario.sensing
     with threadpool_limits(1, user_api="blas"):
@@ -45,3 +46,18 @@ def simulate(scenario: Scenario) -> Run:
         rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(scenario.index,)))
         recording = measure(response, sensing, seconds=scenario.signal_seconds, rng=rng)
         return Run(scenario=scenario, response=response, recording=recording, labels=label(response))
+
+
+def refused(scenario: Scenario, reason: str) -> Run:
+    """The run of a scenario that `simulate` refused with a UserError: status REFUSED, and nothing else."""
+    operation = scenario.operation
+    turn = 1 / operation.rotation_frequency_hz
+    response = no_response(
+        Status.REFUSED,
+        reason,
+        speed=operation.speed_rad_per_s,
+        dt=turn / operation.steps_per_turn,
+        steps_per_turn=operation.steps_per_turn,
+        record_turns=operation.record_turns,
+    )
+    return Run(scenario=scenario, response=response, recording=None, labels=None)

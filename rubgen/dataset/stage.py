@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rubgen.dataset.layout import Layout
+from rubgen.errors import UserError
 from rubgen.io.durable import write_durably
 from rubgen.scenario import Scenario
 
@@ -17,12 +19,18 @@ WARM_UP_TURNS = 40
 
 
 def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
-    """Simulate one run and write its files; gives its status. The staged row comes last: it proves the others."""
+    """Simulate one run and write its files; gives its status. The staged row comes last: it proves the others.
+
+    A run that cannot be made of the values that were drawn is recorded as refused, with the reason.
+    """
     from rubgen.io.parquet import run_table, write_table
-    from rubgen.pipeline import simulate
+    from rubgen.pipeline import refused, simulate
 
     layout = Layout(root)
-    run = simulate(scenario)
+    try:
+        run = simulate(scenario)
+    except UserError as error:
+        run = refused(scenario, str(error))
     if run.labels is not None:
         _write_exports(run, layout, formats)
     table = run_table(run, signals="parquet" in formats)
@@ -42,7 +50,8 @@ def warm_up(scenario: Scenario, corners: tuple[Scenario, ...]) -> None:
         reduce(corner.machine, corner.reduction)
     operation = replace(scenario.operation, settle_turns=2 * WARM_UP_TURNS, record_turns=WARM_UP_TURNS)
     operation = replace(operation, closing_turns=WARM_UP_TURNS)
-    simulate(replace(scenario, operation=operation, signal_seconds=5 / operation.rotation_frequency_hz))
+    with suppress(UserError):  # this run's own values, not the recipe's ends: it will be recorded as refused
+        simulate(replace(scenario, operation=operation, signal_seconds=5 / operation.rotation_frequency_hz))
 
 
 def _write_exports(run: Run, layout: Layout, formats: tuple[str, ...]) -> None:

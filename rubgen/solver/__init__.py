@@ -1,6 +1,7 @@
 """Integration of a spinning system in time, with contact."""
 
 from rubgen.solver.integrate import integrate
+from rubgen.solver.refusal import no_response
 from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status
 from rubgen.solver.stability import automatic_settle_turns, eigenvalues, slowest_decay, stable_step, steps_per_turn
 from rubgen.solver.stepper import Stepper
@@ -14,6 +15,7 @@ __all__ = [
     "automatic_settle_turns",
     "eigenvalues",
     "integrate",
+    "no_response",
     "slowest_decay",
     "stable_step",
     "steps_per_turn",

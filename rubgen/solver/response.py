@@ -13,9 +13,10 @@ class Status(StrEnum):
 
     OK = "ok"
     DIVERGED = "diverged: displacements left the range in which linear casing and blades mean anything"
-    UNSTABLE = "unstable: the linear system without contact grows by itself"
+    UNSTABLE = "unstable: the linear system without contact grows by itself, or never forgets"
     CONTACT_UNSOLVED = "contact-unsolved: no unique contact force was found in a step"
     ENERGY = "energy: the energy identity of the scheme was not kept"
+    REFUSED = "refused: these values make no run"
 
     @property
     def code(self) -> str:

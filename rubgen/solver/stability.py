@@ -8,6 +8,7 @@ import numpy as np
 import scipy.linalg as la
 
 from rubgen.arrays import ComplexArray
+from rubgen.errors import UserError
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Operation
 
@@ -49,7 +50,7 @@ def stable_step(system: SpinningSystem) -> float:
 def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0.0) -> int:
     """`least`, doubled until the step is below 0.95 * 2 / omega_max and feeds the sensors at 2.56 their rate.
 
-    A turn is a whole number of steps, so the section falls on steps exactly. Raises ValueError for a system that would
+    A turn is a whole number of steps, so the section falls on steps exactly. Raises UserError for a system that would
     need more than 4,194,304 steps.
     """
     turn = 2 * math.pi / system.speed
@@ -58,7 +59,10 @@ def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0
     while turn / steps > longest:
         steps *= 2
         if steps > MOST_STEPS_PER_TURN:
-            raise ValueError(f"speed {system.speed:g} rad/s needs more than {MOST_STEPS_PER_TURN} steps a turn")
+            raise UserError(
+                f"speed_rpm = {system.speed * 30 / math.pi:.6g}: a stable step of {longest:.3g} s needs more than "
+                f"{MOST_STEPS_PER_TURN} steps a turn; raise the speed"
+            )
     return steps
 
 

@@ -11,6 +11,7 @@ from rubgen.contact.geometry import blade_tips, casing_surface
 from rubgen.contact.geometry_kernels import casing_rows, undeformed_radius
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw
+from rubgen.solver.admissible import check_step
 from rubgen.solver.block_kernels import Motion, recover
 from rubgen.solver.blocks import aligned, system_harmonics
 from rubgen.solver.central_difference import compliances, energy_book, scheme, system_blocks
@@ -67,7 +68,8 @@ class Stepper:
     """A system, a contact law and a number of steps per turn, with the state between them.
 
     `start_angle` is theta at the beginning of each turn, rad. `screen` False evaluates every blade's gap in every
-    step, which never changes a result. The state begins at the rub-free motion.
+    step, which never changes a result. The state begins at the rub-free motion. Raises UserError for a step above the
+    stability limit.
     """
 
     def __init__(
@@ -79,6 +81,7 @@ class Stepper:
         start_angle: float = 0.0,
         screen: bool = True,
     ) -> None:
+        check_step(system, steps)
         self.system, self.steps = system, steps
         self.dt = 2 * np.pi / system.speed / steps
         self.surface, self.tips = casing_surface(system), blade_tips(system)

@@ -248,3 +248,25 @@ def test_progress_counts_every_run(fake_simulate, tmp_path):
 def test_hash_of_a_file(tmp_path):
     (tmp_path / "a").write_bytes(b"abc")
     assert sha256_of(tmp_path / "a") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+
+
+def test_a_run_that_its_own_values_forbid_is_recorded_with_its_reason(tmp_path, short_records):
+    """Run 1 draws a speed at which blades grow beyond a round casing; the others are made, the first warms up."""
+    asked = {
+        "name": "refusals",
+        "seed": 3,
+        "runs": 4,
+        "machine": "zeng2019",
+        "vary": {"speed_rpm": {"choice": [5000.0, 16000.0]}, "ovality_m": 0.0, "clearance_m": 3e-4},
+        "simulation": {"settle_turns": 20, "record_turns": 100, "closing_turns": 20},
+        "output": {"formats": ["parquet"], "signal_seconds": 0.3},
+    }
+    made = rubgen.generate(asked, tmp_path / "set", workers=1)
+    runs = rubgen.open(tmp_path / "set").runs
+    fast = runs["speed_rpm"] == 16000.0
+    assert set(runs["status"][fast]) == {"refused"}
+    assert set(runs["status"][~fast]) == {"ok"}
+    assert made.status == {"ok": int((~fast).sum()), "refused": int(fast.sum())}
+    assert runs["reason"][fast].str.contains("pass the casing everywhere, its widest gap at rest is 0.0003 m").all()
+    assert runs["motion"][fast].isna().all()
+    assert rubgen.verify(tmp_path / "set") == []

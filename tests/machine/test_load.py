@@ -21,6 +21,7 @@ BAD = {
     "damping above 1": (r"lateral = \S+", "lateral = 1.5", "damping.lateral = 1.5: Input should be less than 1"),
     "no blade": ("count = 36", "count = 0", "blades.count = 0: Input should be greater than or equal to 1"),
     "no rim": (r"rim_radius_m = .*\n", "", "disk.rim_radius_m: this key is missing; add it"),
+    "zero density": (r"density_kg_per_m3 = 7850.0", "density_kg_per_m3 = 0.0", "density_kg_per_m3 = 0.0: Input should"),
     "half a blade": ("count = 36", "count = 35.5", "blades.count = 35.5: "),
     "not TOML": ("count = 36", "count = ", "not TOML"),
 }

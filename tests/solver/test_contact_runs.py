@@ -1,4 +1,5 @@
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -219,8 +220,18 @@ def test_the_drive_pays_for_contact_and_impact_loss_does_not_vanish_with_the_ste
     assert losses[2] < -0.5
 
 
-def test_a_deep_overlap_diverges_with_turn_and_growth(small_system, operation):
-    system = small_system(ovality=3e-2, clearance=-1e-2)
+def test_a_deep_rub_diverges_with_its_branch_turn_and_rates_of_growth(small_system, operation):
+    system = small_system(ovality=3e-2)
+    system = replace(system, tip_static=np.tile([1e-2, 0.0, 0.0], (system.n_blades, 1)))
     response = integrate(system, operation(system), ContactLaw(friction=0.3))
     assert response.status is Status.DIVERGED
-    assert re.search(r"(the casing grew .* and left 5 mm|blade \d bent beyond 5 mm) in turn \d+ of", response.reason)
+    found = re.fullmatch(
+        r"(the casing left 5 mm|blade \d bent beyond 5 mm) in turn \d+ of \d+, step \d+ of 256; rate of growth over "
+        r"the last (\d+) turns: blades (\S+) a turn \((\S+) 1/s\), casing (\S+) a turn \((\S+) 1/s\)",
+        response.reason,
+    )
+    assert found
+    turns, *rates = (float(number) for number in found.groups()[1:])
+    assert 1 <= turns <= 10
+    assert max(rates) > 0
+    assert rates[0] / response.turn_seconds == pytest.approx(rates[1], rel=0.01)

@@ -1,0 +1,48 @@
+"""The response of a run that never began."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubgen.solver.events import contact_events
+from rubgen.solver.response import EnergyBook, Response, Status
+from rubgen.solver.stepper import TAP_NAMES
+
+NO_ENERGY = EnergyBook(
+    start=0.0, end=0.0, unbalance=0.0, damping=0.0, circulatory=0.0, contact=0.0, normal_loss=0.0,
+    friction_loss=0.0, drive_contact_work=0.0, drive_contact_limit=0.0, absolute_work=0.0, residual=0.0,
+)  # fmt: skip
+
+
+def no_response(
+    status: Status,
+    reason: str,
+    *,
+    speed: float,
+    dt: float,
+    steps_per_turn: int,
+    record_turns: int,
+    n_blades: int = 0,
+    n_casing: int = 0,
+    size: int = 0,
+) -> Response:
+    """A response with a status, its reason, and nothing else; `size` is the number of coordinates."""
+    nothing = np.zeros((0, size))
+    return Response(
+        status=status,
+        reason=reason,
+        speed=speed,
+        dt=dt,
+        steps_per_turn=steps_per_turn,
+        settle_turns=0,
+        record_turns=record_turns,
+        taps={name: np.zeros(0) for name in TAP_NAMES},
+        section_q=nothing,
+        section_v=nothing,
+        impulse_per_turn=np.zeros(0),
+        contact_steps_per_turn=np.zeros(0, dtype=np.int64),
+        events=contact_events([]),
+        energy=NO_ENERGY,
+        n_blades=n_blades,
+        n_casing=n_casing,
+    )
