@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
-import platformdirs
+
+from rubgen.cache_root import cache_root
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -21,13 +22,13 @@ R = TypeVar("R")
 
 @cache
 def kernel_cache_dir() -> Path:
-    """Folder of the compiled kernels: the user's cache folder, then a hash of numba's version and kernel sources."""
+    """Folder of the compiled kernels: `cache_root()`, `kernels`, then a hash of numba's version and kernel sources."""
     root = Path(__file__).parent
     digest = hashlib.sha256(numba.__version__.encode())
     for source in [*sorted(root.rglob("*_kernels.py")), Path(__file__)]:
         digest.update(source.relative_to(root).as_posix().encode())
         digest.update(source.read_bytes())
-    return Path(platformdirs.user_cache_dir("rubgen")) / "kernels" / digest.hexdigest()[:16]
+    return cache_root() / "kernels" / digest.hexdigest()[:16]
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:

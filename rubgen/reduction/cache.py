@@ -11,17 +11,16 @@ from pathlib import Path
 from zipfile import BadZipFile
 
 import numpy as np
-import platformdirs
 import scipy
 from filelock import FileLock
 
 from rubgen.arrays import FloatArray
+from rubgen.cache_root import cache_root
 from rubgen.machine import BladeRow, Disk, DiskSupport
 from rubgen.reduction.blisk import ReducedBlisk, reduce_blisk
 from rubgen.reduction.growth import CentrifugalGrowth
 from rubgen.scenario import Reduction
 
-CACHE_VARIABLE = "RUBGEN_CACHE_DIR"
 _PACKAGE = Path(__file__).parents[1]
 _ARRAYS = ("M", "K", "G", "A", "centre", "rigid_inertia")
 _NUMBERS = ("blade_frequency", "full_size")
@@ -29,9 +28,8 @@ _GROWTH = ("K", "A", "f", "tips", "moment")
 
 
 def cache_directory() -> Path:
-    """Where reduced blisks are kept: $RUBGEN_CACHE_DIR or the user's cache directory, then `reduction`."""
-    root = os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_dir("rubgen")
-    return Path(root) / "reduction"
+    """Where reduced blisks are kept."""
+    return cache_root() / "reduction"
 
 
 def cached_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> ReducedBlisk:

@@ -11,11 +11,10 @@ from rubgen.arrays import ComplexArray
 from rubgen.errors import UserError
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Operation
+from rubgen.scenario.feasible import STEPS_PER_SAMPLE
 
 STEP_SAFETY = 0.95
 """The step stays below this share of the stability limit 2 / omega_max."""
-SAMPLES_PER_HZ = 2.56
-"""Steps per second for each hertz of the sensors' sample rate."""
 TRANSIENT_DECAY = 100.0
 """Transients have died when they have fallen by this factor."""
 MOST_STEPS_PER_TURN = 2**22
@@ -54,7 +53,8 @@ def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0
     need more than 4,194,304 steps.
     """
     turn = 2 * math.pi / system.speed
-    longest = min(STEP_SAFETY * stable_step(system), 1 / (SAMPLES_PER_HZ * sample_rate_hz) if sample_rate_hz else turn)
+    sampled = 1 / (STEPS_PER_SAMPLE * sample_rate_hz) if sample_rate_hz else turn
+    longest = min(STEP_SAFETY * stable_step(system), sampled)
     steps = least
     while turn / steps > longest:
         steps *= 2

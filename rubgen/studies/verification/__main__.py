@@ -14,7 +14,7 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from rubgen.reduction.cache import CACHE_VARIABLE
+from rubgen.cache_root import CACHE_VARIABLE
 from rubgen.studies.verification import GROUPS, check
 from rubgen.studies.verification.report import Group, line, page, summary
 
