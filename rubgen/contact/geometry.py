@@ -6,7 +6,12 @@ import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.contact.geometry_kernels import Surface, Tips, foot_of
+from rubgen.errors import UserError
 from rubgen.reduction.model import SpinningSystem
+from rubgen.scenario import ContactLaw
+
+CENTRE_LINE = ContactLaw()
+"""Contact without options: on the smooth surface, which moves as the ring's centre line does."""
 
 
 def periodic_derivative(values: FloatArray) -> FloatArray:
@@ -27,14 +32,33 @@ def hermite_bends(values: FloatArray, slopes: FloatArray, step: float) -> FloatA
     return np.asarray(np.max([np.sqrt((end**2).sum(axis=1)).max(axis=0) for end in ends], axis=0))
 
 
-def casing_surface(system: SpinningSystem) -> Surface:
+def surface_modes(system: SpinningSystem, contact: ContactLaw) -> FloatArray:
+    """X and Y displacement (nodes, 2, n_casing) that each mode gives the surface on which contact acts, at the nodes.
+
+    That of the ring's centre line, u; with `contact.half_thickness` that of the inner surface, half a thickness inside
+    of it along e_r: u - (h / 2) phi e_theta, phi the section's rotation. Force and velocity of that point follow from
+    it alike, so a force F there also turns the section by the moment (-(h / 2) e_r) x F, to no loss of work.
+
+    Raises UserError where the system does not hold the rotations.
+    """
+    modes = np.ascontiguousarray(system.casing_modes, dtype=float)
+    if not contact.half_thickness:
+        return modes
+    if system.casing_rotations is None:
+        raise UserError("half_thickness = true: the system holds no rotations of the casing's sections; add them")
+    angle = 2 * np.pi * np.arange(len(modes)) / len(modes)
+    e_theta = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
+    return modes - system.half_thickness * e_theta[:, :, None] * system.casing_rotations[:, None, :]
+
+
+def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) -> Surface:
     """The surface r(psi) e_r + u(psi) of a system: smooth undeformed curve, Hermite-interpolated displacement.
 
     Nodal slopes come from the Fourier series of the nodal displacements, so u is exact to fourth order in the node
     distance, and continuous in slope. A value between nodes is at most the largest nodal value plus a quarter of the
     node distance times the largest slope: that bounds each mode's reach.
     """
-    modes = np.ascontiguousarray(system.casing_modes, dtype=float)
+    modes = surface_modes(system, contact)
     nodes = modes.shape[0]
     slopes = periodic_derivative(modes)
     step = 2 * np.pi / nodes

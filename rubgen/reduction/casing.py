@@ -22,11 +22,13 @@ class ReducedCasing:
     """The first modes of the casing on its springs.
 
     `frequencies_hz` (n,) ascending; `modes_xy` (nodes, 2, n) the X and Y displacements of the mass-normalised modes
-    (in kg^-1/2) at nodes that stand at equal steps of polar angle from 0; `surface` the undeformed inner surface.
+    (in kg^-1/2) at nodes that stand at equal steps of polar angle from 0, `rotations` (nodes, n) the rotation of the
+    section about Z there (in m^-1 kg^-1/2); `surface` the undeformed inner surface.
     """
 
     frequencies_hz: FloatArray
     modes_xy: FloatArray
+    rotations: FloatArray
     surface: CasingSurface
 
 
@@ -70,11 +72,13 @@ def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
     _check_lobes(machine, modes)
     model = assemble_casing(machine)
     eigenvalues, vectors = _lowest_modes(model, modes)
-    displacements = vectors.reshape(-1, 3, modes)[:, :2]
+    fields = vectors.reshape(-1, 3, modes)
     lobe_angle = np.deg2rad(machine.casing.lobe_angle_deg)
+    modes_xy, rotations = _oriented(fields[:, :2], fields[:, 2], eigenvalues, model.angles, float(lobe_angle))
     return ReducedCasing(
         frequencies_hz=np.sqrt(eigenvalues) / (2 * np.pi),
-        modes_xy=_oriented(displacements, eigenvalues, model.angles, float(lobe_angle)),
+        modes_xy=modes_xy,
+        rotations=rotations,
         surface=CasingSurface(
             mean_radius=machine.casing_mean_radius_m,
             amplitude=np.array([-machine.casing.ovality_m / 2]),
@@ -103,20 +107,23 @@ def _lowest_modes(model: CasingModel, modes: int) -> tuple[FloatArray, FloatArra
     return eigenvalues, vectors
 
 
-def _oriented(displacements: FloatArray, eigenvalues: FloatArray, angles: FloatArray, lobe_angle: float) -> FloatArray:
+def _oriented(
+    displacements: FloatArray, rotations: FloatArray, eigenvalues: FloatArray, angles: FloatArray, lobe_angle: float
+) -> tuple[FloatArray, FloatArray]:
     """The same modes with pairs of equal frequency turned to the lobe axis and every sign fixed."""
-    oriented = np.array(displacements)
+    oriented, turned = np.array(displacements), np.array(rotations)
     node = round(lobe_angle / (angles[1] - angles[0])) % angles.size
     e_r = np.array([np.cos(angles[node]), np.sin(angles[node])])
     e_t = np.array([-e_r[1], e_r[0]])
     mode = 0
     while mode + 1 < eigenvalues.size:
         if eigenvalues[mode + 1] - eigenvalues[mode] < DEGENERATE * eigenvalues[mode]:
-            first, second = e_r @ oriented[node, :, mode : mode + 2]
+            pair = slice(mode, mode + 2)
+            first, second = e_r @ oriented[node, :, pair]
             c, s = np.array([first, second]) / np.hypot(first, second)
-            oriented[:, :, mode : mode + 2] = oriented[:, :, mode : mode + 2] @ np.array([[c, -s], [s, c]])
+            oriented[:, :, pair] = oriented[:, :, pair] @ np.array([[c, -s], [s, c]])
+            turned[:, pair] = turned[:, pair] @ np.array([[c, -s], [s, c]])
             mode += 1
         mode += 1
     signs = np.where((e_r + e_t) @ oriented[node] < 0, -1.0, 1.0)
-    result: FloatArray = oriented * signs
-    return result
+    return oriented * signs, turned * signs

@@ -32,6 +32,8 @@ class SpinningSystem:
     the tips wherever a position is needed, and is no part of q.
     `casing_modes` (nodes, 2, n_casing) holds the X and Y displacement of each mode at the nodes, which stand at equal
     steps of polar angle from 0. `lateral_stiffness` and `lateral_damping` are the support's, per axis, in N/m, N s/m.
+    `casing_rotations` (nodes, n_casing) is the rotation of the ring's section about Z of each mode at the nodes, and
+    `half_thickness` (m) how far the inner surface lies inside the centre line; None and 0 where they are not known.
     """
 
     speed: float
@@ -48,6 +50,8 @@ class SpinningSystem:
     casing_modes: FloatArray
     lateral_stiffness: float
     lateral_damping: float
+    casing_rotations: FloatArray | None = None
+    half_thickness: float = 0.0
 
     @property
     def centre(self) -> int:

@@ -86,6 +86,8 @@ class ReducedModel:
             tip_static=blisk.growth.at(speed),
             surface=self.casing.surface,
             casing_modes=self.casing.modes_xy,
+            casing_rotations=self.casing.rotations,
+            half_thickness=machine.casing.thickness_m / 2,
             lateral_stiffness=float(self.springs[0]),
             lateral_damping=float(self.dampers[0]),
         )

@@ -17,7 +17,7 @@ from rubgen.machine.problems import first_problem
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.sampling import sobol_point
-from rubgen.scenario.scenario import Operation, Reduction, Scenario, Sensing, TurnCount
+from rubgen.scenario.scenario import ContactLaw, Operation, Reduction, Scenario, Sensing, TurnCount
 from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, vary
 
 DEFAULT_RECIPE = Path(__file__).parent / "zeng2019-mini.toml"
@@ -69,6 +69,7 @@ class Recipe(BaseModel):
     sensors: Sensing = Sensing()
     output: Output = Output()
     reduction: Reduction = Reduction()
+    contact: ContactLaw = ContactLaw()
     _folder: Path = PrivateAttr(default_factory=Path)
 
     @cached_property
@@ -78,6 +79,7 @@ class Recipe(BaseModel):
         return Scenario(
             machine=machine,
             operation=Operation(speed_rpm=DEFAULT_SPEED_RPM, **self.simulation.model_dump()),
+            contact=self.contact,
             reduction=self.reduction,
             sensing=self.sensors,
             signal_seconds=self.output.signal_seconds,

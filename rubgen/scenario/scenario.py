@@ -52,10 +52,15 @@ class Operation:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class ContactLaw:
-    """Unilateral contact with sliding Coulomb friction; restitution 0 is a plastic impact."""
+    """Unilateral contact with sliding Coulomb friction; restitution 0 is a plastic impact.
+
+    With `half_thickness` contact acts on the casing's inner surface, half the ring's thickness inside its centre line:
+    friction then turns the ring's section as well, and the surface moves with that rotation.
+    """
 
     friction: Annotated[float, Field(ge=0, le=0.3, allow_inf_nan=False)] = 0.0
     restitution: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] = 0.0
+    half_thickness: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)

@@ -84,7 +84,7 @@ class Stepper:
         check_step(system, steps)
         self.system, self.steps = system, steps
         self.dt = 2 * np.pi / system.speed / steps
-        self.surface, self.tips = casing_surface(system), blade_tips(system)
+        self.surface, self.tips = casing_surface(system, contact), blade_tips(system)
         margin = CANDIDATE_MARGIN_SHARE * system.tip_radius
         limits = CASING_LIMIT_SHARE * system.tip_radius, TIP_LIMIT_SHARE * system.tip_radius
         self.laws = Laws(

@@ -44,6 +44,8 @@ CASES = {
     ),
     "empty choice": (VARY + "lobes = { choice = [] }", "vary.lobes.choice = []: "),
     "friction too high": (VARY + "friction = 0.4", "vary.friction = 0.4: must be of at least 0 and at most 0.3"),
+    "unknown key of contact": (GOOD + "[contact]\nmu = 0.1", "contact.mu: unknown key; "),
+    "restitution above 1": (GOOD + "[contact]\nrestitution = 1.2", "contact.restitution = 1.2: Input should be less"),
     "half a lobe": (VARY + "lobes = 2.5", "vary.lobes = 2.5: must be a whole number of at least 2"),
     "lobes from a range": (VARY + "lobes = { uniform = [2, 4] }", "vary.lobes: takes whole numbers only"),
     "lobes beyond the modes": (

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rubgen.arrays import FloatArray
+from rubgen.contact.geometry import periodic_derivative
 from rubgen.reduction.model import CasingSurface, SpinningSystem
 from rubgen.scenario import Operation
 
@@ -20,6 +21,15 @@ def ring_modes(nodes: int, radius: float, mass_per_angle: float, orders: tuple[i
             field = np.stack([radial * np.cos(t) - tangential * np.sin(t), radial * np.sin(t) + tangential * np.cos(t)])
             modes.append(field.T / np.sqrt(np.pi * mass_per_angle * (1 + 1 / n**2)))
     return np.stack(modes, axis=-1)
+
+
+def ring_rotations(modes: FloatArray, radius: float) -> FloatArray:
+    """Rotation (u_t - u_r') / r of a thin ring's sections, (nodes, modes)."""
+    t = 2 * np.pi * np.arange(len(modes)) / len(modes)
+    e_r = np.stack([np.cos(t), np.sin(t)], axis=1)
+    radial = np.einsum("ic,icm->im", e_r, modes)
+    tangential = np.einsum("ic,icm->im", np.stack([-e_r[:, 1], e_r[:, 0]], axis=1), modes)
+    return (tangential - periodic_derivative(radial)) / radius
 
 
 def build_small_system(
@@ -59,9 +69,11 @@ def build_small_system(
     static[:, 0] = speed**2 * tip_mass * radius / (springs[0] - speed**2 * tip_mass)
     nodes, orders, mass = 36, (1, 2, 3), 1.5 / (2 * np.pi)
     modes = ring_modes(nodes, radius, mass, orders)
+    rotations = ring_rotations(modes, radius)
     turn = 2 * np.pi * turned_nodes / nodes
     turned = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     modes = np.einsum("ab,nbm->nam", turned, np.roll(modes, turned_nodes, axis=0))
+    rotations = np.roll(rotations, turned_nodes, axis=0)
     omega = 2 * np.pi * np.repeat([120.0, 210.0, 390.0], 2)
     c = len(omega)
     zero = np.zeros((m, c))
@@ -85,6 +97,8 @@ def build_small_system(
             phase=np.array([turn]),
         ),
         casing_modes=modes,
+        casing_rotations=rotations,
+        half_thickness=3e-3,
         lateral_stiffness=lateral,
         lateral_damping=drag,
     )

@@ -235,3 +235,31 @@ def test_a_deep_rub_diverges_with_its_branch_turn_and_rates_of_growth(small_syst
     assert 1 <= turns <= 10
     assert max(rates) > 0
     assert rates[0] / response.turn_seconds == pytest.approx(rates[1], rel=0.01)
+
+
+def test_contact_on_the_inner_surface_keeps_the_identity_and_pays_for_the_sections_turn(small_system, operation):
+    """Of six works the identity leaves nothing over; a thicker ring of the same stiffness moves otherwise."""
+    law, ends = ContactLaw(friction=0.3, half_thickness=True), []
+    for half in (0.0, 3e-3):
+        system = replace(small_system(speed=500.0), half_thickness=half)
+        response = integrate(system, operation(system, record_turns=5, settle_turns=45), law)
+        assert response.status is Status.OK
+        assert response.energy.residual < 1e-10
+        assert response.energy.friction_loss < -1
+        ends.append(response.section_q[-1])
+    assert np.abs(ends[1] - ends[0]).max() > 1e-6
+
+
+def test_works_on_the_inner_surface_add_up_to_what_the_drive_pays(small_system):
+    apart = []
+    for steps in (512, 1024):
+        law = ContactLaw(friction=0.2, half_thickness=True)
+        stepper = Stepper(small_system(casing_damping=0.4), law, steps)
+        for turn in range(30):
+            if turn == 20:
+                stepper.book.works[:] = 0
+            stepper.run_turn(5e-4 * closing_ramp((turn + np.arange(-1, steps + 1) / steps) / 15))
+        contact, normal, rubbing, limit = stepper.book.works[3:7]
+        apart.append(abs(contact - normal - rubbing - limit) / limit)
+    assert apart[1] < 0.02
+    assert apart[0] / apart[1] == pytest.approx(2, rel=0.15)
