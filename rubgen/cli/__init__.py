@@ -1,4 +1,4 @@
-"""The command line: `rubgen generate`, `simulate`, `modes`, `info`, `verify`. Heavy imports wait for the command."""
+"""The command line: `rubgen generate`, `simulate`, `modes`, `reproduce`, `info`, `verify`; imports wait for them."""
 
 from rubgen.cli.app import main
 

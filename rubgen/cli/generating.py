@@ -20,18 +20,22 @@ from rubgen.dataset.generate import Generated, finished_runs, generate
 
 
 class Rate(ProgressColumn):
-    """Runs a minute."""
+    """Runs a minute, or whatever is counted."""
+
+    def __init__(self, unit: str) -> None:
+        super().__init__()
+        self.unit = unit
 
     def render(self, task: Task) -> Text:
-        """The rate so far, or dots before the first run."""
-        return Text(f"{60 * task.speed:.1f} runs/min" if task.speed else "... runs/min")
+        """The rate so far, or dots before the first is done."""
+        return Text(f"{60 * task.speed:.1f} {self.unit}/min" if task.speed else f"... {self.unit}/min")
 
 
 def generate_command(recipe: Path | None, out: Path, runs: int | None, workers: int | None, *, as_json: bool) -> int:
     """Generate, and say what was made; a Ctrl-C says how to go on."""
     console = Console(stderr=True, quiet=as_json)
     try:
-        with _terminable(), _shown(console) as progress:
+        with terminable(), shown_progress(console, "runs") as progress:
             made = generate(recipe, out, runs=runs, workers=workers, progress=progress)
     except KeyboardInterrupt:
         Console(stderr=True, soft_wrap=True).print(
@@ -45,11 +49,11 @@ def generate_command(recipe: Path | None, out: Path, runs: int | None, workers: 
 
 
 @contextmanager
-def _shown(console: Console) -> Iterator[Callable[[int, int], None]]:
+def shown_progress(console: Console, unit: str) -> Iterator[Callable[[int, int], None]]:
     """A progress bar that appears with the first report: what is refused before shows its one line alone."""
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Rate(), TimeRemainingColumn())
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Rate(unit), TimeRemainingColumn())
     bar = Progress(*columns, console=console)
-    task = bar.add_task("runs", total=None)
+    task = bar.add_task(unit, total=None)
 
     def report(done: int, total: int) -> None:
         bar.start()
@@ -63,7 +67,7 @@ def _shown(console: Console) -> Iterator[Callable[[int, int], None]]:
 
 
 @contextmanager
-def _terminable() -> Iterator[None]:
+def terminable() -> Iterator[None]:
     """A polite kill ends like Ctrl-C, and so does Ctrl-C where the shell has switched it off."""
 
     def interrupt(_signal: int, _frame: FrameType | None) -> None:

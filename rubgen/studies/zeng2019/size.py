@@ -1,0 +1,56 @@
+"""How much is computed: all of it, or little for a look."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from rubgen.scenario import Scenario
+
+
+@dataclass(frozen=True, kw_only=True)
+class Size:
+    """Turns of each run, and every how many values of a full sweep are taken.
+
+    `thin` thins sweeps, keeping their ends; `campbell_step` is that of the reduced models, `full_speeds` are the
+    speeds of the full one, in rev/min; `samples` is the number of Sobol base points, a power of two.
+    """
+
+    name: str
+    settle_turns: int | Literal["auto"]
+    record_turns: int
+    thin: int
+    campbell_step: int
+    full_speeds: tuple[float, ...]
+    samples: int
+
+    def shortened(self, scenario: Scenario) -> Scenario:
+        """The scenario with the turns of this size."""
+        turns = replace(scenario.operation, settle_turns=self.settle_turns, record_turns=self.record_turns)
+        return replace(scenario, operation=turns)
+
+    def of(self, values: Sequence[float]) -> tuple[float, ...]:
+        """The values of a sweep at this size, with its first and its last."""
+        kept = list(values[:: self.thin])
+        return tuple(kept if kept[-1] == values[-1] else [*kept, values[-1]])
+
+
+FULL = Size(
+    name="full",
+    settle_turns="auto",
+    record_turns=500,
+    thin=1,
+    campbell_step=250,
+    full_speeds=(0.0, 5000.0, 10000.0, 15000.0),
+    samples=64,
+)
+QUICK = Size(
+    name="quick",
+    settle_turns=60,
+    record_turns=128,
+    thin=12,
+    campbell_step=2500,
+    full_speeds=(0.0, 15000.0),
+    samples=4,
+)

@@ -1,0 +1,59 @@
+"""One published statement, what was found, and the verdict; and the rules by which verdicts are given."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+AGREES, DIFFERS, UNKNOWABLE = "agrees", "differs", "unknowable"
+ROUNDING, TOLERANCE = 0.005, 0.05
+"""A number agrees within half a percent, agrees within what it is off by up to 5 %, and differs beyond."""
+MOST, HALF = 0.9, 0.5
+"""A statement about many runs agrees where nine in ten bear it out, agrees within the rest down to half of them."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Statement:
+    """A published statement (in our words) and its verdict: `agrees`, `agrees within X`, `differs` or `unknowable`.
+
+    `found` is what rubgen found, `why` what explains it. `used_for_fitting` marks what the preset was fitted to: its
+    agreement is no evidence.
+    """
+
+    statement: str
+    verdict: str
+    found: str
+    why: str = ""
+    used_for_fitting: bool = False
+
+    def __post_init__(self) -> None:
+        kinds = (AGREES, DIFFERS, UNKNOWABLE)
+        if self.verdict not in kinds and not self.verdict.startswith(f"{AGREES} within "):
+            raise ValueError(f"verdict {self.verdict!r}: must be one of {', '.join(kinds)} or `agrees within X`")
+
+
+def yes_or_no(holds: bool) -> str:
+    """Verdict of a statement that holds or does not."""
+    return AGREES if holds else DIFFERS
+
+
+def by_deviation(deviation: float, tolerance: float = TOLERANCE) -> str:
+    """Verdict of a number by its relative deviation: see ROUNDING and TOLERANCE."""
+    size = abs(deviation)
+    if size <= ROUNDING:
+        return AGREES
+    return f"{AGREES} within {100 * size:.2g} %" if size <= tolerance else DIFFERS
+
+
+def by_share(true: int, total: int) -> str:
+    """Verdict of a statement about many runs by how many bear it out: see MOST and HALF. Of no run: unknowable."""
+    if total == 0:
+        return UNKNOWABLE
+    share = true / total
+    if share >= MOST:
+        return AGREES
+    return f"{AGREES} within {100 * (1 - share):.0f} % of the runs" if share >= HALF else DIFFERS
+
+
+def counted(true: int, total: int, what: str = "runs") -> str:
+    """`17 of 20 runs (85 %)`."""
+    return f"{true} of {total} {what} ({100 * true / total:.0f} %)" if total else f"no {what}"
