@@ -13,7 +13,7 @@ from rubgen.studies.zeng2019.full_model import _around
 from rubgen.studies.zeng2019.mode_shapes import nodal_diameters
 from rubgen.studies.zeng2019.piece import Piece
 from rubgen.studies.zeng2019.reduced_model import seen_frequencies, whirl
-from rubgen.studies.zeng2019.reproduce import sections_of
+from rubgen.studies.zeng2019.reproducing import sections_of
 from rubgen.studies.zeng2019.sections import SECTIONS
 from rubgen.studies.zeng2019.statement import Statement, by_deviation, by_share
 from rubgen.studies.zeng2019.store import Store

@@ -1,5 +1,5 @@
 """Zeng et al. (2019) done again: every figure and statement, with a verdict. See `docs/zeng2019.md`."""
 
-from rubgen.studies.zeng2019.reproduce import Reproduced, reproduce
+from rubgen.studies.zeng2019.reproducing import Reproduced, reproduce
 
 __all__ = ["Reproduced", "reproduce"]
