@@ -40,6 +40,7 @@ def simulate(scenario: Scenario) -> Run:
             scenario.contact,
             tail_seconds=scenario.signal_seconds + margin_seconds(sensing),
             sample_rate_hz=sensing.sample_rate_hz,
+            twin=scenario.labelling.lyapunov,
         )
         if response.status is not Status.OK:
             return Run(scenario=scenario, response=response, recording=None, labels=None)

@@ -91,6 +91,7 @@ def simulate(
     sample_rate_hz: Annotated[float, _option("Samples a second of the recorded channels.")] = 25600.0,
     signal_seconds: Annotated[float, _option("Length of the recorded signals: the end of the record.")] = 1.0,
     seed: Annotated[int, _option("Seed of the sensor noise.")] = 0,
+    lyapunov: Annotated[bool, _option("Whether to compute the Lyapunov exponent, half as long again.")] = True,
     out: Annotated[Path | None, _option("File to write: .mcap, .parquet or .rrd.")] = None,
     json: Json = False,
 ) -> int:

@@ -13,7 +13,7 @@ from rubgen.cli.printing import print_json, print_pairs
 from rubgen.errors import UserError
 from rubgen.labels.plain import labels_dict
 from rubgen.pipeline import Run, simulate
-from rubgen.scenario import Operation, Scenario, Sensing, make_scenario
+from rubgen.scenario import Labelling, Operation, Scenario, Sensing, make_scenario
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.vary import KEYS, varied_values
 from rubgen.solver import Status
@@ -30,6 +30,8 @@ LABEL_NAMES = (
     "motion",
     "period",
     "has_2fr",
+    "lyapunov_per_turn",
+    "lyapunov_error",
     "contact_force_orders",
     "blisk_x_orders",
 )
@@ -68,6 +70,7 @@ def _scenario(options: dict[str, Any]) -> Scenario:
             scenario,
             operation=_operation(scenario.operation, options),
             sensing=Sensing(sample_rate_hz=options["sample_rate_hz"]),
+            labelling=Labelling(lyapunov=options["lyapunov"]),
             signal_seconds=options["signal_seconds"],
             seed=options["seed"],
         )

@@ -74,6 +74,10 @@ def _labels() -> list[Column]:
         _label("period_casing", "integer", "turns", "the same of the casing"),
         _label("period", "integer", "turns", "least common multiple of the two; null where there is none"),
         _label("has_2fr", "flag", "", "order 2 stands out of the casing acceleration at 0 degrees"),
+        _label("lyapunov_per_turn", "number", "1/turn", "largest Lyapunov exponent; null where switched off"),
+        _label("lyapunov_per_second", "number", "1/s", "the same by the second"),
+        _label("lyapunov_error", "number", "1/turn", "its standard error"),
+        _label("lyapunov_convergence", "numbers", "1/turn", "it from 1/10, 2/10, ... of the turns that count"),
     ]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from rubgen.labels.contact_zones import contact_zones
 from rubgen.labels.harmonics import harmonics
 from rubgen.labels.labels import Labels
+from rubgen.labels.lyapunov import lyapunov_of
 from rubgen.labels.motion import motion
 from rubgen.solver.response import Response
 
@@ -21,6 +22,7 @@ def label(response: Response) -> Labels:
     zones = contact_zones(response.events, steps_per_turn=response.steps_per_turn)
     parts = motion(response)
     orders = harmonics(response)
+    exponent = lyapunov_of(response)
     return Labels(
         rub=rub,
         contact_duty=contact_steps / (response.record_turns * response.steps_per_turn),
@@ -41,4 +43,6 @@ def label(response: Response) -> Labels:
         even_share=orders.even_share,
         odd_share=orders.odd_share,
         dominant_order=orders.dominant_order,
+        lyapunov=exponent,
+        lyapunov_per_second=exponent.per_turn / response.turn_seconds if exponent else None,
     )

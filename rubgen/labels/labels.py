@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from rubgen.arrays import FloatArray
+from rubgen.labels.lyapunov import Exponent
 
 
 class Motion(StrEnum):
@@ -25,6 +26,7 @@ class Labels:
     Angles in rad, impulse in N s. `period*` is None unless the motion repeats after that many turns. The dictionaries
     are keyed by tap name: `orders` holds peak amplitudes at k f_r, k = 1..10, in the tap's unit; `even_share` and
     `odd_share` the shares of sum of squared amplitudes on even and odd k; `dominant_order` the k of the largest.
+    `lyapunov` is the largest exponent of the whole system in 1/turn, None where it was switched off.
     """
 
     rub: bool
@@ -46,3 +48,5 @@ class Labels:
     even_share: dict[str, float]
     odd_share: dict[str, float]
     dominant_order: dict[str, int]
+    lyapunov: Exponent | None = None
+    lyapunov_per_second: float | None = None

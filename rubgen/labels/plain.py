@@ -11,8 +11,9 @@ def labels_dict(labels: Labels) -> dict[str, object]:
     """The labels of one run by their public names, as JSON-ready Python values.
 
     Unit suffixes are part of the names: `contact_impulse_per_turn_n_s` in N s, `contact_zone_centres_rad` and
-    `contact_zone_widths_rad` in rad; `<tap>_orders` holds the ten amplitudes at k f_r in the unit of the tap. What is
-    undefined (no period, a share of nothing) is None. The order of the keys is fixed.
+    `contact_zone_widths_rad` in rad; `lyapunov_*` in 1/turn but for `lyapunov_per_second`; `<tap>_orders` holds the ten
+    amplitudes at k f_r in the unit of the tap. What is undefined (no period, a share of nothing) is None. The order of
+    the keys is fixed.
     """
     plain: dict[str, object] = {
         "rub": bool(labels.rub),
@@ -30,10 +31,21 @@ def labels_dict(labels: Labels) -> dict[str, object]:
         "period_casing": labels.period_casing,
         "period": labels.period,
         "has_2fr": bool(labels.has_2fr),
+        **_lyapunov_labels(labels),
     }
     for tap in labels.orders:
         plain |= _order_labels(labels, tap)
     return plain
+
+
+def _lyapunov_labels(labels: Labels) -> dict[str, object]:
+    exponent, per_second = labels.lyapunov, labels.lyapunov_per_second
+    return {
+        "lyapunov_per_turn": _number(exponent.per_turn) if exponent else None,
+        "lyapunov_per_second": None if per_second is None else _number(per_second),
+        "lyapunov_error": _number(exponent.error) if exponent else None,
+        "lyapunov_convergence": [_number(value) for value in exponent.convergence] if exponent else [],
+    }
 
 
 def _order_labels(labels: Labels, tap: str) -> dict[str, object]:

@@ -1,11 +1,12 @@
 """What is varied: scenarios of single runs, and the recipes that draw them."""
 
 from rubgen.scenario.recipe import Recipe, load_recipe, parse_recipe
-from rubgen.scenario.scenario import ContactLaw, Operation, Reduction, Scenario, Sensing
+from rubgen.scenario.scenario import ContactLaw, Labelling, Operation, Reduction, Scenario, Sensing
 from rubgen.scenario.vary import make_scenario
 
 __all__ = [
     "ContactLaw",
+    "Labelling",
     "Operation",
     "Recipe",
     "Reduction",

@@ -17,7 +17,7 @@ from rubgen.machine.problems import first_problem
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.sampling import sobol_point
-from rubgen.scenario.scenario import ContactLaw, Operation, Reduction, Scenario, Sensing, TurnCount
+from rubgen.scenario.scenario import ContactLaw, Labelling, Operation, Reduction, Scenario, Sensing, TurnCount
 from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, vary
 
 DEFAULT_RECIPE = Path(__file__).parent / "zeng2019-mini.toml"
@@ -67,6 +67,7 @@ class Recipe(BaseModel):
     vary: Vary = Vary()
     simulation: Simulation = Simulation()
     sensors: Sensing = Sensing()
+    labels: Labelling = Labelling()
     output: Output = Output()
     reduction: Reduction = Reduction()
     contact: ContactLaw = ContactLaw()
@@ -82,6 +83,7 @@ class Recipe(BaseModel):
             contact=self.contact,
             reduction=self.reduction,
             sensing=self.sensors,
+            labelling=self.labels,
             signal_seconds=self.output.signal_seconds,
             seed=self.seed,
             machine_id=machine_id(machine),

@@ -78,6 +78,13 @@ class Sensing:
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
+class Labelling:
+    """What is computed for the labels alone: the Lyapunov exponent, which takes a second trajectory."""
+
+    lyapunov: bool = True
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
 class Scenario:
     """One run, complete: the same scenario gives the same bytes."""
 
@@ -86,6 +93,7 @@ class Scenario:
     contact: ContactLaw = ContactLaw()
     reduction: Reduction = Reduction()
     sensing: Sensing = Sensing()
+    labelling: Labelling = Labelling()
     signal_seconds: Positive = 1.0
     seed: Annotated[int, Field(ge=0)] = 0
     index: Annotated[int, Field(ge=0)] = 0

@@ -24,6 +24,7 @@ from rubgen.solver.energy_kernels import (
     UNBALANCE,
 )
 from rubgen.solver.events import contact_events
+from rubgen.solver.fractions import Fractions
 from rubgen.solver.refusal import no_response
 from rubgen.solver.response import EnergyBook, Response, Status
 from rubgen.solver.stability import settle_turns, slowest_decay, steps_per_turn
@@ -31,6 +32,7 @@ from rubgen.solver.step_kernels import CONTACT_UNSOLVED, DIVERGED, ENERGY, OK
 from rubgen.solver.stepper import TAP_NAMES, Stepper, closing_ramp, start_opening
 from rubgen.solver.track import TrackKeeper
 from rubgen.solver.turn_kernels import STEPS, close_touches
+from rubgen.solver.twin import Twin, check_turns, piece_ends
 
 LEAST_TAIL_TURNS = 100
 ENERGY_TOLERANCE = 1e-8
@@ -54,7 +56,14 @@ class Integration:
     """
 
     def __init__(
-        self, stepper: Stepper, operation: Operation, settle: int, tail_turns: int, signal_turns: int = 0
+        self,
+        stepper: Stepper,
+        operation: Operation,
+        settle: int,
+        tail_turns: int,
+        signal_turns: int = 0,
+        *,
+        twin: bool = False,
     ) -> None:
         self.stepper, self.settle, self.record = stepper, settle, operation.record_turns
         self.closing = min(operation.closing_turns, settle)
@@ -62,6 +71,10 @@ class Integration:
         self.tail: deque[FloatArray] = deque(maxlen=min(tail_turns, settle + self.record))
         n = stepper.system.M.shape[0]
         self.section = np.zeros((self.record, 2, n))
+        self.twin: Twin | None = None
+        self.twin_growth = np.zeros(self.record if twin else 0)
+        self.fractions = Fractions(stepper.system, stepper.steps)
+        stepper.marks = stepper.marks_at(sorted({*self.fractions.steps, *(piece_ends(stepper.steps) if twin else ())}))
         self.impulse = np.zeros(self.record)
         self.contact_steps = np.zeros(self.record, dtype=np.int64)
         self.touches: list[FloatArray] = []
@@ -77,6 +90,7 @@ class Integration:
         for turn in range(self.settle + self.record):
             if turn == self.settle:
                 self.stepper.touches.open[:, STEPS] = 0.0  # a touch that began before is counted from here
+                self.twin = Twin(self.stepper) if self.twin_growth.size else None
             self._run_turn(turn)
             if self.status is not Status.OK:
                 return
@@ -87,7 +101,8 @@ class Integration:
 
     def _run_turn(self, turn: int) -> None:
         stepper, result = self.stepper, self.stepper.result
-        code, step, ended = stepper.run_turn(self._opening_of(turn), (turn - self.settle) * stepper.steps)
+        opening = self._opening_of(turn)
+        code, step, ended = stepper.run_turn(opening, (turn - self.settle) * stepper.steps)
         self.growth.add(float(result.summary[2]), result.section[0])
         if code == OK and not self.energy_residual() <= ENERGY_TOLERANCE:
             code = ENERGY
@@ -102,6 +117,8 @@ class Integration:
             self.section[row] = result.section
             self.impulse[row], self.contact_steps[row] = result.summary[0], int(result.summary[1])
             self.touches.append(stepper.touches.ended[:ended].copy())
+            if self.twin is not None:
+                self.twin_growth[row] = self.twin.run_turn(opening).sum()
 
     def _opening_of(self, turn: int) -> FloatArray:
         """Opening of the surface at steps -1 ... steps of a turn."""
@@ -146,6 +163,7 @@ def integrate(
     *,
     tail_seconds: float = 0.0,
     sample_rate_hz: float = 0.0,
+    twin: bool = False,
 ) -> Response:
     """The response of a spinning system with contact between blade tips and casing.
 
@@ -162,10 +180,16 @@ def integrate(
     1/dt); `tip_clearance_*` (m) on the ray at that angle from the tips, interpolated between the two blades around it,
     to the deformed casing.
 
+    With `twin` a second trajectory runs beside the record for the Lyapunov exponent (`solver.twin`), which takes half
+    as long again and leaves the first as it is.
+
     A run that fails has the status and the reason; nothing else in it is data. Raises UserError for a system that
-    `check_system` refuses, and for a speed so low that a turn would need more than 4,194,304 steps; ValueError where
-    anything but contact couples blisk and casing. Holds for constant speed and small casing displacements.
+    `check_system` refuses, for a record too short for an exponent that is asked for, and for a speed so low that a turn
+    would need more than 4,194,304 steps; ValueError where anything but contact couples blisk and casing. Holds for
+    constant speed and small casing displacements.
     """
+    if twin:
+        check_turns(operation.record_turns)
     # More BLAS threads split sums otherwise and change the last bits of A^-1, which irregular motion makes large.
     with threadpool_limits(1, user_api="blas"):
         check_system(system)
@@ -177,7 +201,7 @@ def integrate(
         stepper = Stepper(system, contact, steps)
         signal_turns = tail_seconds / (steps * stepper.dt)
         tail = max(LEAST_TAIL_TURNS, math.ceil(signal_turns))
-        integration = Integration(stepper, operation, settle, tail, math.floor(signal_turns))
+        integration = Integration(stepper, operation, settle, tail, math.floor(signal_turns), twin=twin)
         integration.run()
         return _response(integration)
 
@@ -205,6 +229,8 @@ def _response(integration: Integration) -> Response:
         impulse_per_turn=integration.impulse,
         contact_steps_per_turn=integration.contact_steps,
         events=contact_events(integration.touches),
+        twin_growth=integration.twin_growth,
+        fractions=integration.fractions.of(stepper),
         energy=_energy(integration),
         n_blades=stepper.system.n_blades,
         n_casing=stepper.system.n_casing,

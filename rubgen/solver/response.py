@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
+
+import numpy as np
 
 from rubgen.arrays import FloatArray, IntArray
 
@@ -94,6 +96,9 @@ class Response:
     turning frame, which coincides with the inertial one there). `impulse_per_turn` (record_turns,) in N s.
     `contact_steps_per_turn` (record_turns,) counts the steps of each turn in which any blade touched. `track` is None
     where no signal was asked for.
+    `twin_growth` (record_turns,) is ln of what the distance to a trajectory beside the run grew by in each turn, empty
+    where none was asked for. `fractions` (N, 2, n) are q and v after 1/N, 2/N, ... 1 of the last turn, N the lobes of
+    the casing, the casing turned back by as much: all equal where the motion is symmetric, q(t + T/N) = q(t).
     When `status` is not OK, `reason` says where and by how much, and no array may be used as data.
     """
 
@@ -114,6 +119,8 @@ class Response:
     n_blades: int
     n_casing: int
     track: Track | None = None
+    twin_growth: FloatArray = field(default_factory=lambda: np.zeros(0))
+    fractions: FloatArray = field(default_factory=lambda: np.zeros((0, 2, 0)))
 
     @property
     def turn_seconds(self) -> float:

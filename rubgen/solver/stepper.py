@@ -17,6 +17,7 @@ from rubgen.solver.blocks import aligned, system_harmonics
 from rubgen.solver.central_difference import compliances, energy_book, scheme, system_blocks
 from rubgen.solver.energy_kernels import stored_energy
 from rubgen.solver.lanes_kernels import LANES
+from rubgen.solver.mark_kernels import Marks
 from rubgen.solver.model_kernels import Angles, Laws, Model, Scratch, State
 from rubgen.solver.step_kernels import advance, shift_held
 from rubgen.solver.turn_kernels import Taps, Touches, TurnResult, run_turn
@@ -106,8 +107,9 @@ class Stepper:
             np.zeros((len(TAP_NAMES), steps)), np.zeros((2, n)), np.zeros(3),
             np.zeros((min(FRAMES, steps), self.blocks.rows * LANES)),
         )  # fmt: skip
-        self.motions = (self._motion(), self._motion(), self._motion())
+        self.motions = self.new_motions()
         self.scratch = self._scratch()
+        self.marks = self.marks_at([steps])
         rest = steady_state(system)
         self.set_state(rest, rest)
 
@@ -147,10 +149,23 @@ class Stepper:
         width = np.zeros(self.steps + 2) if opening is None else opening
         code, step, ended = run_turn(
             self.model, width, clock, self.motions, self.work, self.scratch, self.book, self.taps, self.touches,
-            self.result,
+            self.marks, self.result,
         )  # fmt: skip
         self._turn_motions(step)
         return code, step, ended
+
+    def marks_at(self, steps: list[int]) -> Marks:
+        """Marks at rising steps of a turn, the last of which ends it; set as `marks`, turns fill them."""
+        numbers, blades = self.blocks.rows * LANES, self.system.n_blades
+        return Marks(np.array(steps), np.zeros((len(steps), 2, numbers)), np.full((len(steps), 2, blades), np.nan))
+
+    def new_motions(self) -> tuple[Motion, Motion, Motion]:
+        """Room for the states of three steps."""
+        return self._motion(), self._motion(), self._motion()
+
+    def new_work(self) -> tuple[ContactWork, Scratch]:
+        """Scratch of another trajectory of the same system."""
+        return _contact_work(self.system), self._scratch()
 
     def step(self, index: int, opening: FloatArray | None = None) -> tuple[int, int]:
         """One step from the turn's step `index`, without book, taps and touches; `work` holds its contacts.

@@ -13,6 +13,7 @@ from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.solver.block_kernels import Motion, recover_all
 from rubgen.solver.energy_kernels import Book, book_contact, book_linear
 from rubgen.solver.lanes_kernels import add_lines
+from rubgen.solver.mark_kernels import Marks, keep_mark
 from rubgen.solver.model_kernels import Model, Scratch, State
 from rubgen.solver.step_kernels import OK, advance, recover_contacts, shift_held
 
@@ -206,19 +207,22 @@ def run_turn(
     book: Book,
     taps: Taps,
     touches: Touches,
+    marks: Marks,
     result: TurnResult,
 ) -> tuple[int, int, int]:
     """Integrate one turn from theta = start; a code, the step where it ended, and the number of ended touches.
 
     `opening` (steps + 2,) widens the surface at steps -1, 0, ..., steps of the turn. `clock` is the number of the
     turn's first step. `motions` are those at step -1, at step 0 and one to write; they change places with every step.
-    Taps of step n carry the force lam_n that acts at that time.
+    Taps of step n carry the force lam_n that acts at that time. The last of `marks` is the turn's end.
     """
     laws, steps = model.laws, model.angles.cosine.shape[0] - 1
     before, now, after = motions
-    ended = frame = 0
+    ended = frame = mark = 0
     result.summary[:] = 0.0
     for s in range(steps):
+        if marks.steps[mark] == s:
+            mark = keep_mark(marks, mark, before, now, work)
         code, count = advance(model, s, opening, before, now, after, work, scratch)
         if code != OK:
             return code, s, ended
@@ -249,5 +253,6 @@ def run_turn(
         result.summary[2] = max(result.summary[2], reach)
         before, now, after = now, after, before
         shift_held(work)
+    keep_mark(marks, mark, before, now, work)
     ended = close_touches(touches, clock + steps - 1, ended)
     return OK, steps, ended

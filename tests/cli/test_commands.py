@@ -100,6 +100,15 @@ def test_simulate_without_contact(run, short):
     assert blisk.size == 10
     assert blisk[0] > 1e-5
     assert blisk[1:].max() < 1e-9 * blisk[0]
+    assert values["lyapunov_per_turn"] < 0
+    assert len(values["lyapunov_convergence"]) == 10
+
+
+def test_the_exponent_can_be_switched_off(run, short):
+    code, output, _ = run("simulate", "--speed-rpm", "6000", *short, "--no-lyapunov", "--json")
+    values = json.loads(output)
+    assert (code, values["lyapunov_per_turn"], values["lyapunov_error"]) == (0, None, None)
+    assert values["lyapunov_convergence"] == []
 
 
 def test_simulate_with_contact_writes_a_file(run, short, tmp_path):

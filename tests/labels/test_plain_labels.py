@@ -18,6 +18,10 @@ NAMES = [
     "period_casing",
     "period",
     "has_2fr",
+    "lyapunov_per_turn",
+    "lyapunov_per_second",
+    "lyapunov_error",
+    "lyapunov_convergence",
 ]
 
 

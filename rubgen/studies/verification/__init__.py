@@ -24,6 +24,7 @@ GROUPS = (
     "annular_rub",
     "misaligned_rub",
     "chaos_indicators",
+    "lyapunov_exponents",
     "preset",
 )
 

@@ -1,0 +1,113 @@
+import numpy as np
+import pytest
+
+from rubgen.errors import UserError
+from rubgen.labels.lyapunov import lyapunov
+from rubgen.scenario import ContactLaw
+from rubgen.solver import Stepper, integrate, slowest_decay
+from rubgen.solver.fractions import turned_back
+from rubgen.solver.twin import Twin, piece_ends
+
+STEPS = 256
+
+
+def in_contact(system, restitution: float = 0.0, marks: list[int] | None = None) -> tuple[Stepper, np.ndarray]:
+    """A stepper that has settled into a rub, and an opening of zero."""
+    stepper, closed = Stepper(system, ContactLaw(friction=0.1, restitution=restitution), STEPS), np.zeros(STEPS + 2)
+    stepper.marks = stepper.marks_at(marks or piece_ends(STEPS))
+    stepper.run_turn(np.linspace(6e-4, 0, STEPS + 2))
+    for _ in range(12):
+        stepper.run_turn(closed)
+    return stepper, closed
+
+
+def test_the_run_keeps_its_bits(small_system, operation):
+    system = small_system(speed=500.0)
+    short = operation(system, record_turns=40, settle_turns=60)
+    for law in (ContactLaw(friction=0.1), ContactLaw(friction=0.1, restitution=0.5)):
+        alone, beside = (integrate(system, short, law, twin=twin) for twin in (False, True))
+        assert alone.impulse_per_turn.min() > 0
+        assert np.array_equal(alone.section_q, beside.section_q)
+        assert np.array_equal(alone.section_v, beside.section_v)
+        assert np.array_equal(alone.taps["contact_force"], beside.taps["contact_force"])
+        assert alone.energy == beside.energy
+        assert (alone.twin_growth.size, beside.twin_growth.size) == (0, 40)
+        assert np.isfinite(beside.twin_growth).all()
+
+
+def test_without_contact_the_exponent_is_the_slowest_decay(small_system, operation):
+    system = small_system(clearance=2e-3, casing_damping=0.02, lateral_damping=0.1)
+    response = integrate(system, operation(system, record_turns=400, settle_turns=60), ContactLaw(), twin=True)
+    assert response.contact_steps_per_turn.sum() == 0
+    exponent = lyapunov(response.twin_growth)
+    assert exponent.per_turn == pytest.approx(-slowest_decay(system) * response.turn_seconds, rel=5e-3)
+    assert exponent.is_negative
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_pieces_multiply_to_the_growth_of_a_second_run(small_system, restitution):
+    system = small_system(speed=500.0)
+    stepper, closed = in_contact(system, restitution)
+    twin = Twin(stepper)
+    second = Stepper(system, ContactLaw(friction=0.1, restitution=restitution), STEPS)
+    rows = stepper.blocks.to_q(twin.motions[0].z), stepper.blocks.to_q(twin.motions[1].z)
+    second.set_state(*rows)
+    second.work.held[:] = stepper.work.held
+    before = np.array([second.state.before, second.state.now]) - np.array([stepper.state.before, stepper.state.now])
+    stepper.run_turn(closed)
+    second.run_turn(closed)
+    touched = stepper.result.summary[1]
+    growth = twin.run_turn(closed)
+    after = np.array([second.state.before, second.state.now]) - np.array([stepper.state.before, stepper.state.now])
+
+    def size(away):
+        d_v = (away[1] - away[0]) / stepper.dt
+        return np.sqrt(d_v @ system.M @ d_v + system.speed**2 * away[1] @ system.M @ away[1])
+
+    assert touched > 20
+    assert len(growth) == 16
+    assert growth.sum() == pytest.approx(np.log(size(after) / size(before)), abs=2e-3)
+    assert size(before) == pytest.approx(twin.closeness)
+
+
+def test_a_turn_of_odd_steps_ends_with_its_last_piece():
+    assert piece_ends(1024) == list(range(64, 1025, 64))
+    assert piece_ends(9) == list(range(1, 10))
+    assert piece_ends(100)[-1] == 100
+
+
+def test_an_exponent_of_ten_turns_is_refused(small_system, operation):
+    with pytest.raises(UserError, match=r"record_turns = 10: a Lyapunov exponent needs at least 32 turns.*raise it"):
+        integrate(small_system(), operation(small_system(), record_turns=10), ContactLaw(), twin=True)
+
+
+def test_modes_of_a_ring_turn_back_by_their_order(small_system):
+    system = small_system()
+    share = 1 / 3
+    back = turned_back(system.casing_modes, share)
+    for order in (1, 2, 3):
+        angle = 2 * np.pi * share * order
+        pair = slice(2 * order - 2, 2 * order)
+        expected = [[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]
+        assert back[pair, pair] == pytest.approx(np.array(expected), abs=1e-12)
+    assert np.linalg.norm(back @ back @ back - np.eye(6)) < 1e-12
+
+
+def test_without_contact_all_fractions_of_a_turn_are_alike(small_system, operation):
+    for lobes in (2, 3):
+        system = small_system(clearance=3e-3, lobes=lobes)
+        response = integrate(system, operation(system, record_turns=20, settle_turns=60), ContactLaw())
+        assert response.fractions.shape == (lobes, 2, len(system.M))
+        q, orbit = response.fractions[:, 0], np.abs(response.section_q[-1]).max()
+        assert np.abs(q - q[0]).max() < 1e-6 * orbit
+
+
+def test_a_rub_of_two_equal_lobes_is_alike_after_half_a_turn(small_system, operation):
+    system = small_system(speed=500.0)
+    response = integrate(system, operation(system, settle_turns=200), ContactLaw(friction=0.1))
+    assert response.contact_steps_per_turn.min() > 0
+    first, second = response.fractions[:, 0]
+    stray = np.abs(response.section_q[-20:] - response.section_q[-1]).max()
+    assert np.abs(second - first).max() < 1e-3 * np.abs(first).max() + 2 * stray
+    assert np.abs(second[-6:]).max() > 1e-6
+    assert second == pytest.approx(response.section_q[-1], abs=1e-3 * np.abs(second).max())
