@@ -12,6 +12,7 @@ from rubgen.arrays import FloatArray, IntArray
 from rubgen.fem.beam import BeamMatrices
 from rubgen.fem.blisk import BliskModel, assemble_blisk, rigid_motions
 from rubgen.fem.constraints import rim_joint
+from rubgen.fem.root_strain import root_strain_row
 from rubgen.fem.statics import on_springs, support_stiffness
 from rubgen.machine import BladeRow, Disk, DiskSupport
 from rubgen.reduction.craig_bampton import craig_bampton
@@ -24,7 +25,8 @@ class ReducedBlisk:
     """Blisk with n DoFs: tips' translations along the blades' axes, O_d x and y, modes. No supports in it.
 
     M, K elastic, G Coriolis (skew), A = K_sigma - S at 1 rad/s: (n, n). `centre` T (6, n) recovers all six DoFs of
-    O_d. `growth` is the tips' steady centrifugal displacement. `rigid_inertia` (6,) is m, m, m, I_d, I_d, I_p of the
+    O_d. `root_strain` (blades, n) is the spanwise strain at each blade's root (`root_strain_row`). `growth` is the
+    tips' steady centrifugal displacement. `rigid_inertia` (6,) is m, m, m, I_d, I_d, I_p of the
     whole in kg, kg m2; `blade_frequency` the first one of a blade without mistuning clamped at its root, in rad/s;
     `full_size` the number of DoFs of the full model.
     """
@@ -34,6 +36,7 @@ class ReducedBlisk:
     G: FloatArray
     A: FloatArray
     centre: FloatArray
+    root_strain: FloatArray
     growth: CentrifugalGrowth
     rigid_inertia: FloatArray
     blade_frequency: float
@@ -42,13 +45,14 @@ class ReducedBlisk:
 
 @dataclass(frozen=True, kw_only=True)
 class _Joined:
-    """Blisk after the first step: matrices (n, n), O_d first, and the DoFs of the tips (blades, 6)."""
+    """Blisk after the first step: matrices (n, n), O_d first, DoFs of the tips (blades, 6), root strain (blades, n)."""
 
     M: FloatArray
     K: FloatArray
     G: FloatArray
     A: FloatArray
     tips: IntArray
+    root_strain: FloatArray
 
 
 def reduce_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> ReducedBlisk:
@@ -61,7 +65,8 @@ def reduce_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: 
     cuts a pair in two, as 4 does in the preset, splits frequency pairs by up to 1e-5.
     """
     model = assemble_blisk(disk, blades, support)
-    joined = _join_components(model, reduction)
+    strain = root_strain_row(blades, disk.rim_radius_m, model.beam)
+    joined = _join_components(model, reduction, strain)
     masters = np.concatenate([joined.tips[:, :3].ravel(), [0, 1]])
     held = on_springs(sp.csr_array(joined.K), support_stiffness(support))
     V = craig_bampton(sp.csr_array(joined.M), held, masters, reduction.blisk_modes)
@@ -72,6 +77,7 @@ def reduce_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: 
         G=_skew(V.T @ joined.G @ V),
         A=_symmetric(V.T @ joined.A @ V),
         centre=np.ascontiguousarray(V[:6]),
+        root_strain=np.ascontiguousarray(joined.root_strain @ V),
         growth=centrifugal_growth(model),
         rigid_inertia=np.einsum("ij,ij->j", R, model.M @ R),
         blade_frequency=_clamped_frequency(model.beam),
@@ -79,7 +85,7 @@ def reduce_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: 
     )
 
 
-def _join_components(model: BliskModel, reduction: Reduction) -> _Joined:
+def _join_components(model: BliskModel, reduction: Reduction, strain: FloatArray) -> _Joined:
     """First step: disk [O_d, rim nodes, modes], then blades [root, tip, modes], joined at the rim."""
     count, n_blade = len(model.angles), len(model.beam.f_c)
     plate, blade = slice(0, model.disk_size), slice(model.disk_size, model.disk_size + n_blade)
@@ -109,6 +115,9 @@ def _join_components(model: BliskModel, reduction: Reduction) -> _Joined:
         G=of_equal_blades(model.G),
         A=of_equal_blades(sp.csr_array(model.K_sigma - model.S)),
         tips=roots + 6,
+        root_strain=np.asarray(
+            block_diag(np.zeros((0, V_plate.shape[1])), np.kron(np.eye(count), strain @ V_blade[: len(strain)]))
+        ),
     )
 
 

@@ -18,6 +18,25 @@ class CasingSurface:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Recovery:
+    """What sensors see beside the coordinates: linear functionals of the blisk's n coordinates, and geometry.
+
+    `root_strain` (n_blades, n) spanwise strain at each blade's root. `torsion` (n,) the turn of O_d about Z, on a
+    spring `torsion_stiffness` and a damper `torsion_damping` that turn with the drive. `casing_radius` and
+    `casing_thickness` are those of the ring in m; `chord_slope` is the tangential way along a tip's chord for one of
+    axial way.
+    """
+
+    root_strain: FloatArray
+    torsion: FloatArray
+    torsion_stiffness: float
+    torsion_damping: float
+    casing_radius: float
+    casing_thickness: float
+    chord_slope: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class SpinningSystem:
     """M q'' + C q' + K q = force + contact, constant matrices of the turning frame at one spin speed.
 
@@ -34,6 +53,7 @@ class SpinningSystem:
     steps of polar angle from 0. `lateral_stiffness` and `lateral_damping` are the support's, per axis, in N/m, N s/m.
     `casing_rotations` (nodes, n_casing) is the rotation of the ring's section about Z of each mode at the nodes, and
     `half_thickness` (m) how far the inner surface lies inside the centre line; None and 0 where they are not known.
+    `recovery` is None where the system was not reduced from a machine.
     """
 
     speed: float
@@ -52,6 +72,7 @@ class SpinningSystem:
     lateral_damping: float
     casing_rotations: FloatArray | None = None
     half_thickness: float = 0.0
+    recovery: Recovery | None = None
 
     @property
     def centre(self) -> int:

@@ -15,7 +15,7 @@ from rubgen.reduction.blisk import ReducedBlisk
 from rubgen.reduction.cache import cached_blisk
 from rubgen.reduction.casing import ReducedCasing, reduce_casing
 from rubgen.reduction.damping import elastic_damping, support_damping
-from rubgen.reduction.model import SpinningSystem
+from rubgen.reduction.model import Recovery, SpinningSystem
 from rubgen.scenario import Reduction
 
 # e_z x on the translations and rotations of O_d.
@@ -90,6 +90,19 @@ class ReducedModel:
             half_thickness=machine.casing.thickness_m / 2,
             lateral_stiffness=float(self.springs[0]),
             lateral_damping=float(self.dampers[0]),
+            recovery=self._recovery(),
+        )
+
+    def _recovery(self) -> Recovery:
+        machine = self.machine
+        return Recovery(
+            root_strain=self.blisk.root_strain,
+            torsion=self.blisk.centre[5],
+            torsion_stiffness=float(self.springs[5]),
+            torsion_damping=float(self.dampers[5]),
+            casing_radius=machine.casing_mean_radius_m,
+            casing_thickness=machine.casing.thickness_m,
+            chord_slope=float(1 / np.tan(np.deg2rad(machine.blades.tip_angle_deg))),
         )
 
     def blisk_frequencies_hz(self, speed: float = 0.0) -> FloatArray:

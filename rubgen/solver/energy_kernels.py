@@ -69,8 +69,8 @@ def book_contact(
     state: State,
     work: ContactWork,
     book: Book,
-) -> tuple[float, float]:
-    """Works at contact m in one step; gives its normal loss and friction loss, J.
+) -> tuple[float, float, float]:
+    """Works at contact m in one step; gives its normal loss and friction loss, J, and its torque on the blisk, N m.
 
     Normal loss lam (g_n+1 - g_n-1) / 2 with the gaps that the scheme held at those steps (the linearised ones where
     the blade was near, else the geometric one). Friction loss lam mu tau.v_rel dt, tau the direction that the step used
@@ -99,4 +99,4 @@ def book_contact(
     book.works[FRICTION] += friction
     book.works[DRIVE_LIMIT] -= laws.speed * laws.dt * torque
     book.works[ABSOLUTE] += abs(lam * done)
-    return normal, friction
+    return normal, friction, torque

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.solver.response import ContactEvents
+from rubgen.solver.response import ContactEvents, TipArrivals
 from rubgen.solver.turn_kernels import BLADE, COSINE, FRICTION_LOSS, IMPULSE, NORMAL_LOSS, SINE, START, STEPS
 
 
@@ -23,3 +23,14 @@ def contact_events(touches: list[FloatArray]) -> ContactEvents:
         friction_loss=rows[:, FRICTION_LOSS].copy(),
         normal_loss=rows[:, NORMAL_LOSS].copy(),
     )
+
+
+def tip_arrivals(arrivals: list[FloatArray], names: list[str]) -> dict[str, TipArrivals]:
+    """Arrivals (each array (any, 4): number of the probe, blade, step, displacement) by probe, in order of time."""
+    rows = np.concatenate([np.zeros((0, 4)), *arrivals])
+    seen = {}
+    for number, name in enumerate(names):
+        own = rows[rows[:, 0] == number]
+        own = own[np.argsort(own[:, 2], kind="stable")]
+        seen[name] = TipArrivals(blade=own[:, 1].astype(np.int64), step=own[:, 2].copy(), displacement=own[:, 3].copy())
+    return seen

@@ -11,6 +11,7 @@ from threadpoolctl import threadpool_limits
 from rubgen.arrays import FloatArray
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
+from rubgen.scenario.taps import DEFAULT_TAPS, Tap
 from rubgen.solver.admissible import check_system
 from rubgen.solver.divergence import Growth
 from rubgen.solver.energy_kernels import (
@@ -23,13 +24,14 @@ from rubgen.solver.energy_kernels import (
     NORMAL,
     UNBALANCE,
 )
-from rubgen.solver.events import contact_events
+from rubgen.solver.events import contact_events, tip_arrivals
 from rubgen.solver.fractions import Fractions
 from rubgen.solver.refusal import no_response
 from rubgen.solver.response import EnergyBook, Response, Status
 from rubgen.solver.stability import settle_turns, slowest_decay, steps_per_turn
 from rubgen.solver.step_kernels import CONTACT_UNSOLVED, DIVERGED, ENERGY, OK
-from rubgen.solver.stepper import TAP_NAMES, Stepper, closing_ramp, start_opening
+from rubgen.solver.stepper import Stepper, closing_ramp, start_opening
+from rubgen.solver.taps import sampled_taps, timing_taps
 from rubgen.solver.track import TrackKeeper
 from rubgen.solver.turn_kernels import STEPS, close_touches
 from rubgen.solver.twin import Twin, check_turns, piece_ends
@@ -69,6 +71,7 @@ class Integration:
         self.closing = min(operation.closing_turns, settle)
         self.opening = start_opening(stepper.system)
         self.tail: deque[FloatArray] = deque(maxlen=min(tail_turns, settle + self.record))
+        self.arrivals: deque[FloatArray] = deque(maxlen=self.tail.maxlen)
         n = stepper.system.M.shape[0]
         self.section = np.zeros((self.record, 2, n))
         self.twin: Twin | None = None
@@ -112,6 +115,7 @@ class Integration:
             return
         self.tail.append(result.taps.copy())
         self.track.add(turn, stepper, ended)
+        self.arrivals.append(stepper.taps.timing.arrivals[: int(result.summary[3])].copy())
         row = turn - self.settle
         if row >= 0:
             self.section[row] = result.section
@@ -164,6 +168,7 @@ def integrate(
     tail_seconds: float = 0.0,
     sample_rate_hz: float = 0.0,
     twin: bool = False,
+    taps: tuple[Tap, ...] = DEFAULT_TAPS,
 ) -> Response:
     """The response of a spinning system with contact between blade tips and casing.
 
@@ -174,11 +179,8 @@ def integrate(
     `tail_seconds` is what the taps must cover (100 turns at least; they may reach back before the record, but not
     before the start); `sample_rate_hz` the sensors' rate that the steps must feed, 2.56 times. Taps stand at step n
     together: displacements q_n, velocities and accelerations from q_n-1, q_n, q_n+1, and the contact force lam_n that
-    acts at that time; the record's last step is the last value. Taps: `blisk_x`, `blisk_y` displacement of O_d (m),
-    `casing_acc_*` radial acceleration of the surface at that polar angle, outward (m/s2), `support_force_*` force of
-    the disk on its lateral support (N), all inertial; `contact_force` the sum of normal multipliers (N, peaks go as
-    1/dt); `tip_clearance_*` (m) on the ray at that angle from the tips, interpolated between the two blades around it,
-    to the deformed casing.
+    acts at that time; the record's last step is the last value. `taps` says which there are (`scenario.taps`): the
+    response holds each by its name, and what timing probes saw among its arrivals. They change nothing in the motion.
 
     With `twin` a second trajectory runs beside the record for the Lyapunov exponent (`solver.twin`), which takes half
     as long again and leaves the first as it is.
@@ -198,12 +200,12 @@ def integrate(
         if decay <= UNDYING_SHARE * system.speed:
             return _unstable(system, operation, steps, decay)
         settle = settle_turns(system, operation)
-        stepper = Stepper(system, contact, steps)
+        stepper = Stepper(system, contact, steps, taps=taps)
         signal_turns = tail_seconds / (steps * stepper.dt)
         tail = max(LEAST_TAIL_TURNS, math.ceil(signal_turns))
         integration = Integration(stepper, operation, settle, tail, math.floor(signal_turns), twin=twin)
         integration.run()
-        return _response(integration)
+        return _response(integration, taps)
 
 
 def _gross_energy(stepper: Stepper) -> float:
@@ -212,9 +214,9 @@ def _gross_energy(stepper: Stepper) -> float:
     return 0.5 * float(q @ np.abs(stepper.system.K) @ q)
 
 
-def _response(integration: Integration) -> Response:
-    stepper = integration.stepper
-    tail = np.concatenate(list(integration.tail), axis=1) if integration.tail else np.zeros((len(TAP_NAMES), 0))
+def _response(integration: Integration, taps: tuple[Tap, ...]) -> Response:
+    stepper, sampled = integration.stepper, sampled_taps(taps)
+    tail = np.concatenate([np.zeros((len(sampled), 0)), *integration.tail], axis=1)
     return Response(
         status=integration.status,
         reason=integration.reason,
@@ -223,7 +225,7 @@ def _response(integration: Integration) -> Response:
         steps_per_turn=stepper.steps,
         settle_turns=integration.settle,
         record_turns=integration.record,
-        taps={name: np.ascontiguousarray(tail[i]) for i, name in enumerate(TAP_NAMES)},
+        taps={tap.name: np.ascontiguousarray(tail[i]) for i, tap in enumerate(sampled)},
         section_q=np.ascontiguousarray(integration.section[:, 0]),
         section_v=np.ascontiguousarray(integration.section[:, 1]),
         impulse_per_turn=integration.impulse,
@@ -235,6 +237,7 @@ def _response(integration: Integration) -> Response:
         n_blades=stepper.system.n_blades,
         n_casing=stepper.system.n_casing,
         track=integration.track.track(stepper, integration.settle) if integration.track.kept else None,
+        arrivals=tip_arrivals(list(integration.arrivals), [probe.name for probe in timing_taps(taps)]),
     )
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from rubgen.scenario.taps import DEFAULT_TAPS
 from rubgen.solver.events import contact_events
 from rubgen.solver.response import EnergyBook, Response, Status
-from rubgen.solver.stepper import TAP_NAMES
 
 NO_ENERGY = EnergyBook(
     start=0.0, end=0.0, unbalance=0.0, damping=0.0, circulatory=0.0, contact=0.0, normal_loss=0.0,
@@ -36,7 +36,7 @@ def no_response(
         steps_per_turn=steps_per_turn,
         settle_turns=0,
         record_turns=record_turns,
-        taps={name: np.zeros(0) for name in TAP_NAMES},
+        taps={tap.name: np.zeros(0) for tap in DEFAULT_TAPS},
         section_q=nothing,
         section_v=nothing,
         impulse_per_turn=np.zeros(0),

@@ -46,6 +46,17 @@ class ContactEvents:
 
 
 @dataclass(frozen=True, kw_only=True)
+class TipArrivals:
+    """Passages of blades under one timing probe in the tail, in order of time; all arrays (n_arrivals,)."""
+
+    blade: IntArray
+    step: FloatArray
+    """Time in steps from the start of the record, with its fraction; negative in the settling."""
+    displacement: FloatArray
+    """How far the tip's chord stands along the rotation, in m, from its place on the undeformed machine at rest."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class EnergyBook:
     """Works over the whole integration, in J, as the scheme books them.
 
@@ -95,7 +106,7 @@ class Response:
     `section_v` (record_turns, n) are state and velocity once a turn at theta = 0 mod 2 pi (blisk coordinates in the
     turning frame, which coincides with the inertial one there). `impulse_per_turn` (record_turns,) in N s.
     `contact_steps_per_turn` (record_turns,) counts the steps of each turn in which any blade touched. `track` is None
-    where no signal was asked for.
+    where no signal was asked for. `arrivals` holds what each timing probe saw in the tail, by its name.
     `twin_growth` (record_turns,) is ln of what the distance to a trajectory beside the run grew by in each turn, empty
     where none was asked for. `fractions` (N, 2, n) are q and v after 1/N, 2/N, ... 1 of the last turn, N the lobes of
     the casing, the casing turned back by as much: all equal where the motion is symmetric, q(t + T/N) = q(t).
@@ -121,6 +132,7 @@ class Response:
     track: Track | None = None
     twin_growth: FloatArray = field(default_factory=lambda: np.zeros(0))
     fractions: FloatArray = field(default_factory=lambda: np.zeros((0, 2, 0)))
+    arrivals: dict[str, TipArrivals] = field(default_factory=dict)
 
     @property
     def turn_seconds(self) -> float:

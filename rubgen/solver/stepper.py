@@ -8,9 +8,9 @@ import scipy.linalg as la
 from rubgen.arrays import FloatArray
 from rubgen.contact.contact_kernels import ContactWork
 from rubgen.contact.geometry import blade_tips, casing_surface
-from rubgen.contact.geometry_kernels import casing_rows, undeformed_radius
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw
+from rubgen.scenario.taps import DEFAULT_TAPS, Tap
 from rubgen.solver.admissible import check_step
 from rubgen.solver.block_kernels import Motion, recover
 from rubgen.solver.blocks import aligned, system_harmonics
@@ -20,7 +20,8 @@ from rubgen.solver.lanes_kernels import LANES
 from rubgen.solver.mark_kernels import Marks
 from rubgen.solver.model_kernels import Angles, Laws, Model, Scratch, State
 from rubgen.solver.step_kernels import advance, shift_held
-from rubgen.solver.turn_kernels import Taps, Touches, TurnResult, run_turn
+from rubgen.solver.taps import build_taps, sampled_taps
+from rubgen.solver.turn_kernels import Touches, TurnResult, run_turn
 
 CANDIDATE_MARGIN_SHARE = 5e-5
 """Blades nearer than this share of the tip radius are solved together; a step widens it where forces reach farther."""
@@ -33,14 +34,8 @@ TIP_LIMIT_SHARE = 0.025
 which a linear beam does not have and which is more than the clearance."""
 START_CLEARANCE_SHARE = 2.5e-4
 """The start leaves at least this share of the tip radius between tips and casing."""
-ACCELEROMETER_ANGLES = (0.0, np.pi / 2, np.pi, 3 * np.pi / 2)
-RAY_ANGLES = (0.0, np.pi / 2)
 FRAMES = 32
 """Frames of a turn that the solver hands out: blade modes up to the 16th order of rotation move smoothly."""
-TAP_NAMES = (
-    "blisk_x", "blisk_y", "casing_acc_0", "casing_acc_90", "casing_acc_180", "casing_acc_270",
-    "support_force_x", "support_force_y", "contact_force", "tip_clearance_0", "tip_clearance_90",
-)  # fmt: skip
 
 
 def steady_state(system: SpinningSystem) -> FloatArray:
@@ -69,8 +64,8 @@ class Stepper:
     """A system, a contact law and a number of steps per turn, with the state between them.
 
     `start_angle` is theta at the beginning of each turn, rad. `screen` False evaluates every blade's gap in every
-    step, which never changes a result. The state begins at the rub-free motion. Raises UserError for a step above the
-    stability limit.
+    step, which never changes a result. `taps` are the rows of `result.taps`, timing probes apart. The state begins at
+    the rub-free motion. Raises UserError for a step above the stability limit.
     """
 
     def __init__(
@@ -81,6 +76,7 @@ class Stepper:
         *,
         start_angle: float = 0.0,
         screen: bool = True,
+        taps: tuple[Tap, ...] = DEFAULT_TAPS,
     ) -> None:
         check_step(system, steps)
         self.system, self.steps = system, steps
@@ -96,7 +92,7 @@ class Stepper:
         self.harmonics = system_harmonics(self.blocks, system.n_blades)
         self.compliances = compliances(system, self.dt)
         self.angles = _angles(system, steps, start_angle)
-        self.taps = _taps(self, start_angle)
+        self.taps = build_taps(self, taps, start_angle)
         self.book = energy_book(system, self.blocks)
         self.work = _contact_work(system)
         n, blades = system.M.shape[0], system.n_blades
@@ -104,7 +100,7 @@ class Stepper:
             np.zeros((blades, 8)), np.zeros(blades, dtype=np.int64), np.zeros((blades * (steps // 2 + 2), 8))
         )
         self.result = TurnResult(
-            np.zeros((len(TAP_NAMES), steps)), np.zeros((2, n)), np.zeros(3),
+            np.zeros((len(sampled_taps(taps)), steps)), np.zeros((2, n)), np.zeros(4),
             np.zeros((min(FRAMES, steps), self.blocks.rows * LANES)),
         )  # fmt: skip
         self.motions = self.new_motions()
@@ -208,53 +204,6 @@ def _angles(system: SpinningSystem, steps: int, start_angle: float) -> Angles:
     theta = start_angle + 2 * np.pi * (np.arange(steps + 1) % steps) / steps
     orders = np.multiply.outer(theta, system.surface.order) - system.surface.order * system.surface.phase
     return Angles(theta, np.cos(theta), np.sin(theta), np.cos(orders), np.sin(orders))
-
-
-def _taps(stepper: Stepper, start_angle: float) -> Taps:
-    """Rows of the casing taps, and the blades around each ray at every step."""
-    system = stepper.system
-    columns = [_polar_rows(stepper, angle)[0] for angle in ACCELEROMETER_ANGLES]
-    for angle in RAY_ANGLES:
-        columns += _polar_rows(stepper, angle)
-    blades, shares = _blades_around_rays(system, stepper.steps, start_angle)
-    undeformed = np.array([undeformed_radius(stepper.surface, angle) for angle in RAY_ANGLES])
-    padding = np.zeros((2 * LANES - len(columns), system.n_casing))
-    rows = np.array([*columns, *padding]).reshape(2, LANES, system.n_casing).transpose(0, 2, 1)
-    return Taps(
-        aligned(rows.reshape(-1, LANES)), undeformed[:, 0].copy(), undeformed[:, 1].copy(),
-        blades, shares, system.centre,
-        float(system.lateral_stiffness), float(system.lateral_damping), aligned(np.zeros((2, 2 * LANES))),
-        np.zeros(system.n_casing),
-        np.array([(1, row, row * system.n_casing, 0, system.n_casing) for row in range(2)]),
-    )  # fmt: skip
-
-
-def _polar_rows(stepper: Stepper, angle: float) -> list[FloatArray]:
-    """Radial, tangential displacement and d(radial)/d(angle) at a polar angle per unit of each casing mode."""
-    cosine, sine = np.cos(angle), np.sin(angle)
-    at, aside = np.zeros((2, stepper.system.n_casing)), np.zeros((2, 2, stepper.system.n_casing))
-    casing_rows(stepper.surface, angle, at)
-    width = 1e-3 * stepper.surface.node_step
-    for side, sign in enumerate((1, -1)):
-        casing_rows(stepper.surface, angle + sign * width, aside[side])
-    slope = (aside[0] - aside[1]) / (2 * width)
-    radial, tangential = cosine * at[0] + sine * at[1], cosine * at[1] - sine * at[0]
-    return [radial, tangential, cosine * slope[0] + sine * slope[1] + tangential]
-
-
-def _blades_around_rays(system: SpinningSystem, steps: int, start_angle: float) -> tuple[np.ndarray, FloatArray]:
-    """For each step and ray the blades (steps, 2, 2) on either side, and the way from one to the other in [0, 1]."""
-    turn = 2 * np.pi
-    order = np.argsort(np.mod(system.blade_angles, turn), kind="stable")
-    placed = np.mod(system.blade_angles, turn)[order]
-    theta = start_angle + turn * np.arange(steps) / steps
-    local = np.mod(np.subtract.outer(np.array(RAY_ANGLES), theta).T, turn)
-    after = np.searchsorted(placed, local, side="right")
-    first, second = (after - 1) % len(placed), after % len(placed)
-    pitch = np.mod(placed[second] - placed[first], turn)
-    pitch = np.where(pitch == 0, turn, pitch)
-    share = np.mod(local - placed[first], turn) / pitch
-    return np.stack([order[first], order[second]], axis=-1).astype(np.int64), np.ascontiguousarray(share)
 
 
 def _contact_work(system: SpinningSystem) -> ContactWork:

@@ -99,7 +99,7 @@ def test_works_of_a_contact_are_those_of_its_force(touch):
     work.lam[0], work.held[0, BLADE], work.held[2, BLADE] = lam, 5e-5, -3e-5
     step = 40
     angles = stepper.angles._replace(cosine=np.full(257, np.cos(THETA)), sine=np.full(257, np.sin(THETA)))
-    normal, friction = book_contact(
+    normal, friction, _torque = book_contact(
         0, stepper.surface, stepper.tips, stepper.laws, angles, step, np.zeros(258), state, work, stepper.book
     )
     inward = np.array([-touch.tangent[1], touch.tangent[0]])

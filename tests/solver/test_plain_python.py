@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from rubgen.scenario import ContactLaw
+from rubgen.scenario.taps import DEFAULT_TAPS, ContactTorque, TipTiming
 from rubgen.solver import Stepper
 
 SCRIPT = """
@@ -21,9 +22,12 @@ np.save({out!r}, short_run(build_small_system))
 def short_run(build):
     """State, works and impulse after a turn in contact, from a start with the casing close."""
     system = build(speed=500.0, clearance=-2e-4)
-    stepper = Stepper(system, ContactLaw(friction=0.2), 128)
+    taps = (*DEFAULT_TAPS, ContactTorque(name="torque"), TipTiming(name="probe", angle_deg=40, axial_m=1e-3))
+    stepper = Stepper(system, ContactLaw(friction=0.2), 128, taps=taps)
     stepper.run_turn(np.linspace(4e-4, 0, 130))
-    return np.concatenate([stepper.state.now, stepper.book.works, stepper.result.summary, stepper.result.taps.ravel()])
+    arrivals = stepper.taps.timing.arrivals
+    parts = stepper.state.now, stepper.book.works, stepper.result.summary, stepper.result.taps.ravel()
+    return np.concatenate([*parts, arrivals[:, :3].ravel(), 1e6 * arrivals[:, 3]])
 
 
 def test_compiled_and_plain_runs_agree(small_system, tmp_path):

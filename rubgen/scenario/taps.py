@@ -1,0 +1,101 @@
+"""Taps: the true signals that the solver gives at every step, before any sensor sees them. One class a kind."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+from pydantic.dataclasses import dataclass
+
+from rubgen.machine import STRICT, Finite
+
+Angle = Annotated[float, Field(ge=0, lt=360, allow_inf_nan=False)]
+"""Polar angle in the inertial frame, in degrees."""
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Tap:
+    """A named signal of the true response."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class CentreDisplacement(Tap):
+    """Displacement of O_d along a direction of the inertial frame, in m."""
+
+    angle_deg: Angle
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class CasingAcceleration(Tap):
+    """Radial acceleration of the casing at an angle, outward, in m/s2."""
+
+    angle_deg: Angle
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class RingStrain(Tap):
+    """Hoop strain at the outer face of the casing at an angle, positive in tension."""
+
+    angle_deg: Angle
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class SupportForce(Tap):
+    """Force of the disk on its lateral support along a direction of the inertial frame, in N."""
+
+    angle_deg: Angle
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class ContactForce(Tap):
+    """Sum of the normal contact forces, in N; peaks go as 1/dt."""
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class ContactTorque(Tap):
+    """Torque of the contact forces on the blisk about Z, in N m, negative where contact brakes; peaks go as 1/dt."""
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class DriveTorque(Tap):
+    """Torque of the drive on the blisk about Z, through the torsion spring and damper of O_d, in N m."""
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class TipClearance(Tap):
+    """Gap on the ray at an angle between the tips, interpolated between two blades, and the deformed casing, in m."""
+
+    angle_deg: Angle
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class RootStrain(Tap):
+    """Spanwise strain at the root of a blade, mid-chord on the face of the thickness normal, vibration alone."""
+
+    blade: Annotated[int, Field(ge=0)]
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class TipTiming(Tap):
+    """Passages of the blades under a probe in the casing: events, not samples.
+
+    The probe stands at an angle and at an axial place (m) from the middle of the tips' chords.
+    """
+
+    angle_deg: Angle
+    axial_m: Finite = 0.0
+
+
+DEFAULT_TAPS: tuple[Tap, ...] = (
+    CentreDisplacement(name="blisk_x", angle_deg=0),
+    CentreDisplacement(name="blisk_y", angle_deg=90),
+    *(CasingAcceleration(name=f"casing_acc_{angle}", angle_deg=angle) for angle in (0, 90, 180, 270)),
+    SupportForce(name="support_force_x", angle_deg=0),
+    SupportForce(name="support_force_y", angle_deg=90),
+    ContactForce(name="contact_force"),
+    TipClearance(name="tip_clearance_0", angle_deg=0),
+    TipClearance(name="tip_clearance_90", angle_deg=90),
+)
+"""What every run gives."""
