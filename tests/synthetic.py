@@ -8,7 +8,7 @@ from rubgen.pipeline import Run
 from rubgen.scenario import Operation, Scenario, Sensing
 from rubgen.sensors import measure
 from rubgen.sensors.probes import PROBES
-from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status
+from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status, Track
 
 TURNS, STEPS = 120, 512
 BLADES, STATES = 36, 125
@@ -39,6 +39,20 @@ def _events(generator: np.random.Generator, count: int) -> ContactEvents:
     )
 
 
+def _track(generator: np.random.Generator) -> Track:
+    """Eight turns of 32 frames in the middle of the signals."""
+    step = STEPS * (TURNS - 30) + np.arange(256) * STEPS // 32
+    theta, nodes = 2 * np.pi * step / STEPS, 2 * np.pi * np.arange(60) / 60
+    phase = generator.uniform(0, 2 * np.pi, STATES)
+    modes = [[np.cos(n * nodes) * np.cos(nodes), np.cos(n * nodes) * np.sin(nodes)] for n in range(2, 13)]
+    return Track(
+        step=step,
+        q=2e-4 * np.cos(np.multiply.outer(theta, np.ones(STATES)) + phase),
+        tip_growth=np.tile([1e-4, 0.0, 0.0], (BLADES, 1)),
+        casing_modes=np.transpose(modes, (2, 1, 0)),
+    )
+
+
 def _response(generator: np.random.Generator, scenario: Scenario, contact: bool) -> Response:
     speed = scenario.operation.speed_rad_per_s
     dt = 2 * np.pi / speed / STEPS
@@ -60,6 +74,7 @@ def _response(generator: np.random.Generator, scenario: Scenario, contact: bool)
         energy=EnergyBook(**works),
         n_blades=BLADES,
         n_casing=11,
+        track=_track(generator),
     )
 
 

@@ -15,7 +15,7 @@ PREVIEW_RATE_HZ = 1024.0
 
 @dataclass(frozen=True, kw_only=True)
 class Preview:
-    """Channels at about 1024 bins a second: `values` (bins, columns) in their unit, bin i from sample `first[i]` on.
+    """Channels in equal bins: `values` (bins, columns) in their unit, bin i from sample `first[i]` on.
 
     Each channel has two columns, `<channel>.min` and `<channel>.max`, as `names` says.
     """
@@ -25,9 +25,9 @@ class Preview:
     values: FloatArray
 
 
-def preview(channels: Sequence[Channel], sample_rate_hz: float) -> Preview:
-    """Minimum and maximum of channels (one at least) of the same length in bins of `sample_rate_hz` / 1024 samples."""
-    samples_per_bin = max(1, round(sample_rate_hz / PREVIEW_RATE_HZ))
+def preview(channels: Sequence[Channel], sample_rate_hz: float, rate_hz: float = PREVIEW_RATE_HZ) -> Preview:
+    """Minimum and maximum of channels (one at least) of the same length in about `rate_hz` bins a second."""
+    samples_per_bin = max(1, round(sample_rate_hz / rate_hz))
     ends = [end for channel in channels for end in min_max(channel.values, samples_per_bin)]
     return Preview(
         names=tuple(f"{channel.name}.{end}" for channel in channels for end in ("min", "max")),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from rubgen.labels.labels import Motion
 
 BLUE, GREEN, ORANGE, VERMILION, GREY = "#0072b2", "#009e73", "#e69f00", "#d55e00", "#8c8c8c"
@@ -12,6 +14,9 @@ MOTION_COLORS = {
     Motion.QUASI_PERIODIC: ORANGE,
     Motion.CHAOTIC: VERMILION,
 }
+
+IMPULSE_COLORS = np.array([0xFFE8A0FF, 0xFFD166FF, 0xF4A340FF, 0xE6752BFF, 0xD55E00FF, 0xA63A00FF], dtype=np.uint32)
+"""From a light touch to a hard one: lightness falls evenly, so that it can be read in grey."""
 
 
 def rgba(color: str) -> int:

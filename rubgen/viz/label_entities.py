@@ -8,51 +8,67 @@ from typing import Any
 import numpy as np
 import rerun as rr
 
-from rubgen.labels.harmonics import HIGHEST_ORDER
-from rubgen.labels.labels import Labels, Motion
-from rubgen.labels.plain import labels_dict
-from rubgen.scenario import Scenario
+from rubgen.labels.labels import Motion
 from rubgen.scenario.plain import scenario_dict
 from rubgen.viz.colors import MOTION_COLORS, rgba
-from rubgen.viz.signal_entities import TIMELINE, times_ns
+from rubgen.viz.replay import Replay
+from rubgen.viz.signal_entities import time_column
 
 BAR_WIDTH = 0.8
+PARTS = {"system": "motion", "blisk": "motion_blisk", "casing": "motion_casing"}
 
 
-def send_labels(stream: rr.RecordingStream, scenario: Scenario, labels: Labels) -> None:
-    """Properties `labels` and `scenario`, labels as text, lanes of motion, amplitudes of orders as bars."""
-    plain = labels_dict(labels)
+def send_labels(stream: rr.RecordingStream, replay: Replay) -> None:
+    """Properties `labels` and `scenario`, both as text, lanes of motion, amplitudes of orders as bars."""
+    plain, scenario = replay.labels, scenario_dict(replay.scenario)
     known: dict[str, Any] = {key: value for key, value in plain.items() if value not in (None, [])}
     stream.send_property("labels", rr.AnyValues(**known))
-    stream.send_property("scenario", rr.AnyValues(json=json.dumps(scenario_dict(scenario))))
-    stream.log("/labels/text", rr.TextDocument(_table(scenario, plain), media_type="text/markdown"), static=True)
-    _send_motions(stream, labels)
-    for tap, amplitudes in labels.orders.items():
-        left = np.arange(1, HIGHEST_ORDER + 1) - BAR_WIDTH / 2
-        bars = rr.BarChart(amplitudes, abscissa=left, widths=np.full(HIGHEST_ORDER, BAR_WIDTH))
+    stream.send_property("scenario", rr.AnyValues(json=json.dumps(scenario)))
+    shown = {key: value for key, value in plain.items() if not key.endswith("_orders")}
+    _send_table(stream, "/labels/text", "label", replay, shown)
+    _send_table(stream, "/labels/scenario", "parameter", replay, _flat(scenario))
+    for part, label in PARTS.items():
+        _send_motion(stream, part, str(plain[label]))
+    for tap, amplitudes in order_amplitudes(replay).items():
+        left = np.arange(1, len(amplitudes) + 1) - BAR_WIDTH / 2
+        bars = rr.BarChart(amplitudes, abscissa=left, widths=np.full(len(amplitudes), BAR_WIDTH))
         stream.log(f"/orders/{tap}", bars, static=True)
 
 
-def _send_motions(stream: rr.RecordingStream, labels: Labels) -> None:
-    """One lane each for system, blisk and casing, every class in its colour."""
-    index = [rr.TimeColumn(TIMELINE, duration=times_ns(np.zeros(1)))]
-    colors = [rgba(MOTION_COLORS[motion]) for motion in Motion]
-    motions = {"system": labels.motion, "blisk": labels.motion_blisk, "casing": labels.motion_casing}
-    for part, motion in motions.items():
-        named = rr.StateConfiguration(
-            values=[motion.value for motion in Motion],
-            labels=[f"{part}: {motion.value}" for motion in Motion],
-            colors=colors,
-        )
-        stream.log(f"/labels/motion/{part}", named, static=True)
-        stream.send_columns(f"/labels/motion/{part}", index, rr.StateChange.columns(state=[motion.value]))
+def order_amplitudes(replay: Replay) -> dict[str, list[float]]:
+    """Amplitudes at k f_r, k from 1, by tap."""
+    found = {key: value for key, value in replay.labels.items() if key.endswith("_orders") and isinstance(value, list)}
+    return {key.removesuffix("_orders"): value for key, value in found.items()}
 
 
-def _table(scenario: Scenario, plain: dict[str, object]) -> str:
-    """Labels but for the order amplitudes, which have their own view, as Markdown."""
-    rows = [f"| {key} | {_shown(value)} |" for key, value in plain.items() if not key.endswith("_orders")]
+def _send_motion(stream: rr.RecordingStream, part: str, motion: str) -> None:
+    """A lane, every class in its colour."""
+    named = rr.StateConfiguration(
+        values=[each.value for each in Motion],
+        labels=[f"{part}: {each.value}" for each in Motion],
+        colors=[rgba(MOTION_COLORS[each]) for each in Motion],
+    )
+    stream.log(f"/labels/motion/{part}", named, static=True)
+    stream.send_columns(f"/labels/motion/{part}", time_column(np.zeros(1)), rr.StateChange.columns(state=[motion]))
+
+
+def _send_table(
+    stream: rr.RecordingStream, entity: str, heading: str, replay: Replay, values: dict[str, object]
+) -> None:
+    """Names and values as Markdown."""
+    scenario = replay.scenario
     title = f"# {scenario.run_id}: {scenario.machine.name} at {scenario.operation.speed_rpm:g} rev/min"
-    return "\n".join([title, "", "| label | value |", "|---|---|", *rows])
+    rows = [f"| {key} | {_shown(value)} |" for key, value in values.items()]
+    text = "\n".join([title, "", f"| {heading} | value |", "|---|---|", *rows])
+    stream.log(entity, rr.TextDocument(text, media_type="text/markdown"), static=True)
+
+
+def _flat(values: dict[str, Any], prefix: str = "") -> dict[str, object]:
+    """Nested tables as one, keys joined by dots."""
+    flat: dict[str, object] = {}
+    for key, value in values.items():
+        flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
+    return flat
 
 
 def _shown(value: object) -> str:

@@ -17,23 +17,31 @@ if TYPE_CHECKING:
 
     from rubgen.pipeline import Run
     from rubgen.scenario import Scenario
+    from rubgen.viz.replay import Replay
 
 APPLICATION = "rubgen"
 ENTITIES = ("/preview/", "/detail/", "/labels/motion", "/labels/text", "/__properties/labels")
 
 
 def write_rrd(run: Run, path: Path) -> None:
-    """Write `run` to `path`, complete or not at all, with a default arrangement of views.
+    """`write_replay` of a run in memory; raises ValueError for one without a recording."""
+    from rubgen.viz.replay import replay_of
 
-    Every channel as minimum and maximum at about 1 kHz (`/preview/<quantity>`) and at full rate over 20 turns around
-    the hardest touch (`/detail/<quantity>`; the middle without contact); casing angle and impulse of every touch, the
-    orbit with its section points, order amplitudes, motion classes, labels as text and as the property `labels`.
-    Times are ns from the first sample. The bytes differ from writing to writing, the content does not.
-    Raises ValueError for a run without a recording, OSError when the file cannot be written.
+    write_replay(replay_of(run), path)
+
+
+def write_replay(replay: Replay, path: Path, *, full: bool = False) -> None:
+    """Write `replay` to `path`, complete or not at all, with a default arrangement of views.
+
+    The machine in 3D with its contact points; every channel as minimum and maximum (`/preview/<quantity>`) and at full
+    rate over 20 turns around the hardest touch (`/detail/<quantity>`; the middle without contact); touches, orbit,
+    order spectra, motion classes, labels and scenario as text and as properties. About a megabyte for whatever length;
+    `full` writes every sample and every touch. Times are ns from the first sample. The bytes differ from writing to
+    writing, the content does not. Raises OSError when the file cannot be written.
     """
     from rerun_bindings import flush_and_cleanup_orphaned_recordings
 
-    content = _recorded(run)
+    content = _recorded(replay, full=full)
     # A stream that nobody refers to keeps its threads and its data, some 5 MB a run, until it is asked to go.
     flush_and_cleanup_orphaned_recordings()
     part = path.with_name(f"{path.name}.part")
@@ -44,25 +52,29 @@ def write_rrd(run: Run, path: Path) -> None:
         part.unlink(missing_ok=True)
 
 
-def _recorded(run: Run) -> bytes:
+def _recorded(replay: Replay, *, full: bool) -> bytes:
     """The content of the .rrd file."""
     import rerun as rr  # here, for importing it takes 0.6 s
 
+    from rubgen.viz.contact_entities import send_touches
     from rubgen.viz.label_entities import send_labels
-    from rubgen.viz.signal_entities import send_contacts, send_orbit, send_signals
+    from rubgen.viz.machine_entities import send_machine
+    from rubgen.viz.orbit_entities import send_orbit
+    from rubgen.viz.order_entities import send_orders
+    from rubgen.viz.signal_entities import send_signals
     from rubgen.viz.views import arrangement
 
-    if run.recording is None or run.labels is None:
-        raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to show")
-    stream = rr.RecordingStream(APPLICATION, recording_id=recording_id(run.scenario), send_properties=False)
+    stream = rr.RecordingStream(APPLICATION, recording_id=recording_id(replay.scenario), send_properties=False)
     # Rerun's own file writer is a thread that only logs a full disk, and that its stream may then wait for without end.
     memory = stream.memory_recording()
-    _send_blueprint(stream, arrangement(run.recording, run.labels))
-    stream.send_recording_name(run.scenario.run_id)
-    send_signals(stream, run, run.recording)
-    send_contacts(stream, run, run.recording)
-    send_orbit(stream, run, run.recording)
-    send_labels(stream, run.scenario, run.labels)
+    _send_blueprint(stream, arrangement(replay))
+    stream.send_recording_name(replay.scenario.run_id)
+    send_signals(stream, replay, full=full)
+    send_touches(stream, replay, full=full)
+    send_machine(stream, replay)
+    send_orbit(stream, replay)
+    send_orders(stream, replay)
+    send_labels(stream, replay)
     content = memory.drain_as_bytes()
     stream.disconnect()
     return content

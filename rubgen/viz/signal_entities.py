@@ -1,35 +1,32 @@
-"""Signals, contacts and orbit of a run as Rerun entities."""
+"""Signals of a replay as Rerun entities: a preview of all, every sample about the hardest touch."""
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 import rerun as rr
 
 from rubgen.arrays import FloatArray
-from rubgen.sensors.channel import Recording
-from rubgen.sensors.contact_window import contact_intervals
-from rubgen.sensors.envelope import preview
-from rubgen.viz.colors import BLUE, VERMILION, rgba
-
-if TYPE_CHECKING:
-    from rubgen.pipeline import Run
+from rubgen.sensors.envelope import PREVIEW_RATE_HZ, preview
+from rubgen.viz.replay import Replay
 
 TIMELINE = "time"
 DETAIL_TURNS = 20
+DETAIL_VALUES = 40_000
+"""Most full-rate values of all channels together: 320 kB, whatever the speed and the number of channels."""
+PREVIEW_VALUES = 40_000
+"""Most preview values of all channels together: 320 kB, whatever the length."""
 Nanoseconds = npt.NDArray[np.timedelta64]
 
 
-def detail_window(run: Run, recording: Recording) -> slice:
-    """Samples of the 20 turns around the touch with the largest impulse, the middle of the recording without one."""
-    samples = recording.samples
-    length = min(samples, round(DETAIL_TURNS * run.response.turn_seconds * recording.sample_rate_hz))
-    touches = contact_intervals(run.response, recording)
+def detail_window(replay: Replay) -> slice:
+    """Samples of the 20 turns, fewer where turns are long, around the hardest touch; the middle without one."""
+    recording, samples = replay.recording, replay.recording.samples
+    length = round(DETAIL_TURNS * replay.turn_seconds * recording.sample_rate_hz)
+    length = min(samples, length, DETAIL_VALUES // len(recording.channels))
     centre = samples // 2
-    if touches.impulse.size:
-        centre = round(float(touches.start[np.argmax(touches.impulse)]) * recording.sample_rate_hz)
+    if replay.touches.impulse.size:
+        centre = round(float(replay.touches.start[np.argmax(replay.touches.impulse)]) * recording.sample_rate_hz)
     first = min(max(centre - length // 2, 0), samples - length)
     return slice(first, first + length)
 
@@ -39,62 +36,36 @@ def times_ns(seconds: FloatArray) -> Nanoseconds:
     return np.round(seconds * 1e9).astype("timedelta64[ns]")
 
 
+def time_column(seconds: FloatArray) -> list[rr.TimeColumn]:
+    """The index of rows at these times, s."""
+    return [rr.TimeColumn(TIMELINE, duration=times_ns(seconds))]
+
+
+def preview_rate(replay: Replay) -> float:
+    """Bins a second of the preview: as many as stay within its values, at most 1024."""
+    columns = 2 * len(replay.recording.channels)
+    return min(PREVIEW_RATE_HZ, PREVIEW_VALUES / (columns * replay.seconds))
+
+
+def send_signals(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
+    """Every channel as preview and at full rate over the detail window (all of it: `full`), one entity a quantity."""
+    recording, rate = replay.recording, replay.recording.sample_rate_hz
+    window = slice(0, recording.samples) if full else detail_window(replay)
+    times = np.arange(window.start, window.stop) / rate
+    for quantity, group in recording.by_quantity().items():
+        shown = preview(group, rate, preview_rate(replay))
+        names = [f"{name} [{group[0].unit}]" for name in shown.names]
+        _send_scalars(stream, f"/preview/{quantity}", shown.first / rate, shown.values, names)
+        values = np.column_stack([channel.values[window] for channel in group]).astype(np.float64)
+        names = [f"{channel.name} [{channel.unit}]" for channel in group]
+        _send_scalars(stream, f"/detail/{quantity}", times, values, names)
+
+
 def _send_scalars(
-    stream: rr.RecordingStream, entity: str, times: Nanoseconds, values: FloatArray, names: list[str]
+    stream: rr.RecordingStream, entity: str, times: FloatArray, values: FloatArray, names: list[str]
 ) -> None:
     """Lines of one entity: `values` (n, len(names)). Spikes survive zooming out."""
     lines = rr.SeriesLines(names=names, aggregation_policy=rr.components.AggregationPolicy.MinMax)
     stream.log(entity, lines, static=True)
     columns = rr.Scalars.columns(scalars=values.ravel()).partition([len(names)] * len(values))
-    stream.send_columns(entity, [rr.TimeColumn(TIMELINE, duration=times)], columns)
-
-
-def send_signals(stream: rr.RecordingStream, run: Run, recording: Recording) -> None:
-    """Every channel as preview and at full rate over the detail window, one entity a quantity."""
-    rate = recording.sample_rate_hz
-    window = detail_window(run, recording)
-    for quantity, group in recording.by_quantity().items():
-        shown = preview(group, rate)
-        names = [f"{name} [{group[0].unit}]" for name in shown.names]
-        _send_scalars(stream, f"/preview/{quantity}", times_ns(shown.first / rate), shown.values, names)
-        values = np.column_stack([channel.values[window] for channel in group]).astype(np.float64)
-        names = [f"{channel.name} [{channel.unit}]" for channel in group]
-        _send_scalars(
-            stream, f"/detail/{quantity}", times_ns(np.arange(window.start, window.stop) / rate), values, names
-        )
-
-
-def send_contacts(stream: rr.RecordingStream, run: Run, recording: Recording) -> None:
-    """Angle and impulse of every touch at its beginning, as points; nothing without contact."""
-    touches = contact_intervals(run.response, recording)
-    if not touches.blade.size:
-        return
-    order = np.argsort(touches.start, kind="stable")
-    index = [rr.TimeColumn(TIMELINE, duration=times_ns(np.maximum(touches.start[order], 0.0)))]
-    for name, unit, values in (
-        ("angle", "deg", np.degrees(touches.angle)),
-        ("impulse", "N s", touches.impulse),
-        ("blade", "number", touches.blade.astype(np.float64)),
-    ):
-        points = rr.SeriesPoints(names=f"{name} [{unit}]", markers="circle", marker_sizes=1.5, colors=rgba(BLUE))
-        stream.log(f"/contact/{name}", points, static=True)
-        stream.send_columns(f"/contact/{name}", index, rr.Scalars.columns(scalars=values[order]))
-
-
-def send_orbit(stream: rr.RecordingStream, run: Run, recording: Recording) -> None:
-    """Path of the disk centre over the detail window and its section once a turn, in um."""
-    x, y = (recording.channels.get(f"proximity_{axis}") for axis in "xy")
-    if x is not None and y is not None:
-        window = detail_window(run, recording)
-        path = 1e6 * np.column_stack([x.values[window], y.values[window]])
-        stream.log(
-            "/orbit/plane/path",
-            rr.LineStrips2D([path], colors=rgba(BLUE), radii=rr.Radius.ui_points(0.75)),
-            static=True,
-        )
-    centre = 3 * run.response.n_blades
-    section = 1e6 * run.response.section_q[:, centre : centre + 2]
-    upwards = rr.Transform3D(mat3x3=np.diag([1.0, -1.0, 1.0]))  # the viewer's 2D views have Y downwards
-    stream.log("/orbit/plane", upwards, static=True)
-    points = rr.Points2D(section, colors=rgba(VERMILION), radii=rr.Radius.ui_points(2.5))
-    stream.log("/orbit/plane/section", points, static=True)
+    stream.send_columns(entity, time_column(times), columns)

@@ -8,6 +8,7 @@ from rubgen.io.columns import SCALARS
 from rubgen.io.mcap import read_mcap, write_mcap
 from rubgen.io.parquet import read_table, write_parquet
 from rubgen.labels.plain import labels_dict
+from rubgen.viz.replay import replay_of
 from rubgen.viz.rerun import write_rrd
 from rubgen.viz.signal_entities import detail_window
 
@@ -31,7 +32,7 @@ def test_signals_agree_to_the_bit(rub_run, folder):
 
 
 def test_rerun_shows_the_same_samples(rub_run, folder):
-    window = detail_window(rub_run, rub_run.recording)
+    window = detail_window(replay_of(rub_run))
     mcap = read_mcap(folder / "run.mcap").signals
     for quantity, group in rub_run.recording.by_quantity().items():
         (chunk,) = [

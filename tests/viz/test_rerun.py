@@ -9,8 +9,9 @@ from rerun.chunk import RrdReader
 
 from rubgen.labels.plain import labels_dict
 from rubgen.sensors.contact_window import contact_intervals
-from rubgen.viz.rerun import check_rrd, recording_id, write_rrd
-from rubgen.viz.signal_entities import detail_window
+from rubgen.viz.replay import replay_of
+from rubgen.viz.rerun import check_rrd, recording_id, write_replay, write_rrd
+from rubgen.viz.signal_entities import PREVIEW_VALUES, detail_window, preview_rate
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +31,7 @@ def columns(path, entity):
 
 
 def test_full_rate_excerpt_reads_back_to_the_bit(rub_run, rrd_file):
-    window = detail_window(rub_run, rub_run.recording)
+    window = detail_window(replay_of(rub_run))
     read = columns(rrd_file, "/detail/acceleration")
     angles = (0, 90, 180, 270)
     sent = [rub_run.recording.channels[f"casing_acc_{angle}"].values[window] for angle in angles]
@@ -64,7 +65,7 @@ def test_contacts_read_back_in_order_of_time(rub_run, rrd_file):
 
 
 def test_the_detail_window_holds_the_hardest_touch(rub_run):
-    window = detail_window(rub_run, rub_run.recording)
+    window = detail_window(replay_of(rub_run))
     touches = contact_intervals(rub_run.response, rub_run.recording)
     hardest = touches.start[np.argmax(touches.impulse)] * rub_run.recording.sample_rate_hz
     assert window.start <= hardest <= window.stop
@@ -86,10 +87,12 @@ def test_motion_lanes_show_each_part(rrd_file):
     assert lanes == {"system": [["period-k"]], "blisk": [["period-1"]]}
 
 
-def test_section_points_are_the_disk_centre_once_a_turn(rub_run, rrd_file):
+def test_section_points_are_the_recorded_orbit_at_the_pulses(rub_run, rrd_file):
     points = columns(rrd_file, "/orbit/plane/section")["Points2D:positions"][0]
-    centre = rub_run.response.section_q[:, 3 * 36 : 3 * 36 + 2]
-    np.testing.assert_allclose(points, 1e6 * centre, rtol=1e-6)
+    recording = rub_run.recording
+    time = np.arange(recording.samples) / recording.sample_rate_hz
+    at = [np.interp(recording.once_per_rev, time, recording.channels[f"proximity_{axis}"].values) for axis in "xy"]
+    np.testing.assert_allclose(points, 1e6 * np.column_stack(at), rtol=1e-6)
 
 
 def test_verify_passes_with_a_default_arrangement(rrd_file):
@@ -111,9 +114,54 @@ def test_a_run_without_contact(free_run, tmp_path):
     assert columns(tmp_path / "free.rrd", "/contact/angle") == {}
 
 
-def test_one_second_stays_below_two_megabytes(make_synthetic_run, tmp_path):
+def test_the_machine_moves_frame_by_frame(rub_run, rrd_file):
+    frames = replay_of(rub_run).frames
+    assert 256 < frames.time.size <= 256 + 60
+    places = columns(rrd_file, "/machine/casing/ring")["InstancePoses3D:translations"]
+    assert (len(places), len(places[0])) == (frames.time.size, 72)
+    leanings = columns(rrd_file, "/machine/rotor/blades")["InstancePoses3D:mat3x3"]
+    assert (len(leanings), len(leanings[0])) == (frames.time.size, 36)
+    turned = columns(rrd_file, "/machine/rotor")["Transform3D:quaternion"]
+    assert np.array(turned)[:, 0, 2] == pytest.approx(np.sin(frames.angle / 2), abs=1e-6)
+
+
+def test_contact_points_flash_while_they_touch(rub_run, rrd_file):
+    replay = replay_of(rub_run)
+    touches, frames = replay.touches, replay.frames
+    shown = columns(rrd_file, "/machine/contact/flash")["Points3D:positions"]
+    end = np.append(frames.time[1:], replay.seconds)
+    for row in np.flatnonzero(frames.dense)[:-1]:
+        touching = (touches.start < end[row]) & (touches.start + touches.duration > frames.time[row])
+        assert len(shown[row]) == min(np.count_nonzero(touching), 24)
+    assert max(map(len, shown)) > 1
+
+
+def test_a_run_without_frames_has_signals_alone(rub_run, tmp_path):
+    bare = dataclasses.replace(rub_run, response=dataclasses.replace(rub_run.response, track=None))
+    write_rrd(bare, tmp_path / "bare.rrd")
+    assert check_rrd(tmp_path / "bare.rrd") == []
+    assert columns(tmp_path / "bare.rrd", "/machine/casing/ring") == {}
+
+
+def test_full_holds_every_sample_and_touch(rub_run, tmp_path):
+    write_replay(replay_of(rub_run), tmp_path / "full.rrd", full=True)
+    read = columns(tmp_path / "full.rrd", "/detail/contact_force")["Scalars:scalars"]
+    values = rub_run.recording.channels["contact_force"].values
+    assert np.array(read, dtype=np.float32)[:, 0].tobytes() == values.tobytes()
+
+
+def test_a_file_stays_below_two_megabytes(make_synthetic_run, tmp_path):
     write_rrd(make_synthetic_run(seconds=0.65), tmp_path / "long.rrd")
-    assert (tmp_path / "long.rrd").stat().st_size < 0.65 * 2e6
+    assert (tmp_path / "long.rrd").stat().st_size < 2e6
+
+
+def test_previews_do_not_grow_with_the_recording(rub_run):
+    replay = replay_of(rub_run)
+    bins = preview_rate(replay) * replay.seconds * 2 * len(replay.recording.channels)
+    assert bins <= PREVIEW_VALUES
+    long = dataclasses.replace(replay.recording, sample_rate_hz=replay.recording.sample_rate_hz / 40)
+    longer = dataclasses.replace(replay, recording=long)
+    assert preview_rate(longer) * longer.seconds * 2 * len(long.channels) == pytest.approx(PREVIEW_VALUES)
 
 
 @pytest.mark.parametrize("damage", [lambda data: data[: len(data) // 2], lambda _: b"no recording", lambda _: b""])

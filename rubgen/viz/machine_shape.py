@@ -1,0 +1,234 @@
+"""The machine as triangles and lines, its small deviations drawn larger than they are.
+
+One rule keeps contact true to the eye: the circle of the tip radius is drawn to scale, and all that departs from it
+(lobes, clearance, deflection of the casing, motion of tips and disk) is multiplied by one factor. Tips and casing that
+touch in the run touch in the picture.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rubgen.arrays import FloatArray, IntArray
+from rubgen.machine import BladeRow, Disk, Machine
+from rubgen.sensors.motion_frames import MotionFrames
+
+DRAWN_SHARE = 0.12
+"""The largest deviation is drawn at most as this share of the tip radius."""
+STATIONS = 72
+"""Plates around the casing; five degrees each, a wave of order nine still has eight."""
+PLATE_SHARE = 0.012
+"""Drawn thickness of the casing over the tip radius; the true one would not be seen."""
+ROUND = 72
+BLADE_SECTIONS = 24
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Triangles: `vertices` (n, 3) in m, `triangles` (m, 3) of their numbers, outward unit `normals` (n, 3)."""
+
+    vertices: FloatArray
+    triangles: IntArray
+    normals: FloatArray
+
+
+def drawing_factor(machine: Machine, frames: MotionFrames | None) -> float:
+    """1, 2 or 5 times a power of ten by which deviations from the tip circle are multiplied."""
+    largest = max(machine.casing.ovality_m / 2, machine.casing.clearance_m)
+    if frames is not None and frames.time.size:
+        largest = max(largest, float(np.abs(frames.tips).max()), float(np.abs(frames.centre).max()))
+    wanted = DRAWN_SHARE * machine.tip_radius_m / largest
+    power = 10.0 ** math.floor(math.log10(wanted))
+    return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted * (1 + 1e-9))
+
+
+def casing_angles(stations: int = STATIONS) -> FloatArray:
+    """Polar angles of the drawn points of the casing, rad."""
+    return 2 * np.pi * np.arange(stations) / stations
+
+
+def casing_radius(machine: Machine, angle: FloatArray) -> FloatArray:
+    """Inner radius of the undeformed casing at polar angles, m."""
+    casing = machine.casing
+    wave = np.cos(casing.lobes * (angle - np.radians(casing.lobe_angle_deg)))
+    return np.asarray(machine.casing_mean_radius_m - casing.ovality_m / 2 * wave)
+
+
+def casing_curve(machine: Machine, frames: MotionFrames, angle: FloatArray, factor: float) -> FloatArray:
+    """Drawn points (frames, stations, 2) of the casing's inner surface; nodes are joined linearly."""
+    nodes = frames.casing_modes.shape[0]
+    place = np.mod(angle, 2 * np.pi) * nodes / (2 * np.pi)
+    low, share = np.floor(place).astype(int) % nodes, place - np.floor(place)
+    modes = frames.casing_modes
+    shape = (1 - share)[:, None, None] * modes[low] + share[:, None, None] * modes[(low + 1) % nodes]
+    displacement = np.einsum("sdc,fc->fsd", shape, frames.casing)
+    return np.asarray(undeformed_curve(machine, angle, factor) + factor * displacement)
+
+
+def undeformed_curve(machine: Machine, angle: FloatArray, factor: float) -> FloatArray:
+    """Drawn points (stations, 2) of the casing at rest."""
+    radius = machine.tip_radius_m + factor * (casing_radius(machine, angle) - machine.tip_radius_m)
+    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+
+
+def plate_mesh() -> Mesh:
+    """A box of side 1 that stands on x = 0: x outward, y along the casing, z its width."""
+    faces = []
+    for axis in range(3):
+        for side in (-0.5, 0.5):
+            first, second = np.eye(3)[(axis + 1) % 3], np.eye(3)[(axis + 2) % 3]
+            middle = side * np.eye(3)[axis] + [0.5, 0.0, 0.0]
+            corners = [middle + a * first + b * second for a, b in ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))]
+            normals = np.tile(2 * side * np.eye(3)[axis], (4, 1))
+            faces.append(Mesh(np.array(corners), np.array([[0, 1, 2], [0, 2, 3]]), normals))
+    return joined(faces)
+
+
+def plate_shapes(machine: Machine, factor: float) -> FloatArray:
+    """Matrices (stations, 3, 3) that make of `plate_mesh` the plates of the casing at rest."""
+    curve = undeformed_curve(machine, casing_angles(), factor)
+    chord = (np.roll(curve, -1, axis=0) - np.roll(curve, 1, axis=0)) / 2
+    length = np.linalg.norm(chord, axis=1)
+    tangent = chord / length[:, None]
+    shapes = np.zeros((len(curve), 3, 3))
+    thickness = max(machine.casing.thickness_m, PLATE_SHARE * machine.tip_radius_m)
+    shapes[:, 0, 0], shapes[:, 1, 0] = thickness * tangent[:, 1], -thickness * tangent[:, 0]
+    shapes[:, :2, 1] = 1.02 * chord
+    shapes[:, 2, 2] = machine.casing.width_m
+    return shapes
+
+
+def ribbon_triangles(stations: int) -> IntArray:
+    """Triangles of a closed band between two rings of that many points."""
+    here, there = np.arange(stations), (np.arange(stations) + 1) % stations
+    lower = np.column_stack([here, there, here + stations])
+    upper = np.column_stack([there, there + stations, here + stations])
+    return np.concatenate([lower, upper]).astype(np.int64)
+
+
+def disk_mesh(disk: Disk) -> Mesh:
+    """The annular disk, its thickness linear in the radius."""
+    inner, outer = disk.bore_radius_m, disk.rim_radius_m
+    low, high = disk.bore_thickness_m / 2, disk.rim_thickness_m / 2
+    return revolved([(inner, -low), (outer, -high), (outer, high), (inner, low)])
+
+
+def shaft_mesh(disk: Disk, reach: float) -> Mesh:
+    """The shaft through the bore, from -reach to reach along Z."""
+    radius = disk.bore_radius_m
+    return revolved([(1e-4, -reach), (radius, -reach), (radius, reach), (1e-4, reach)])
+
+
+def revolved(profile: list[tuple[float, float]]) -> Mesh:
+    """A closed profile of points (radius, z), counter-clockwise, turned about Z; every side flat across its profile."""
+    angle = 2 * np.pi * np.arange(ROUND) / ROUND
+    parts = []
+    for (r1, z1), (r2, z2) in zip(profile, profile[1:] + profile[:1], strict=True):
+        length = math.hypot(r2 - r1, z2 - z1)
+        out, along = (z2 - z1) / length, -(r2 - r1) / length
+        ends = [
+            np.column_stack([r * np.cos(angle), r * np.sin(angle), np.full(ROUND, z)]) for r, z in ((r1, z1), (r2, z2))
+        ]
+        normal = np.column_stack([out * np.cos(angle), out * np.sin(angle), np.full(ROUND, along)])
+        parts.append(Mesh(np.concatenate(ends), ribbon_triangles(ROUND), np.concatenate([normal, normal])))
+    return joined(parts)
+
+
+def blade_mesh(blades: BladeRow) -> Mesh:
+    """One blade along x from its root at the origin: a rectangle that narrows, thins and turns from root to tip."""
+    span = np.linspace(0.0, 1.0, BLADE_SECTIONS)
+    corners = _blade_corners(blades, span)
+    parts = [_strip(corners[:, side], corners[:, (side + 1) % 4]) for side in range(4)]
+    cap = corners[-1]
+    facing = np.tile([1.0, 0.0, 0.0], (4, 1))
+    return joined([*parts, Mesh(cap, np.array([[0, 1, 2], [0, 2, 3]]), facing)])
+
+
+def _blade_corners(blades: BladeRow, span: FloatArray) -> FloatArray:
+    """Corners (sections, 4, 3) of the sections; the thickness normal stands at the stagger angle to Z."""
+    chord = blades.root_chord_m + span * (blades.tip_chord_m - blades.root_chord_m)
+    thickness = blades.root_thickness_m + span * (blades.tip_thickness_m - blades.root_thickness_m)
+    angle = np.radians(blades.root_angle_deg + span * (blades.tip_angle_deg - blades.root_angle_deg))
+    normal = np.column_stack([np.zeros_like(span), np.sin(angle), np.cos(angle)])
+    chordwise = np.column_stack([np.zeros_like(span), -np.cos(angle), np.sin(angle)])
+    axis = np.column_stack([blades.length_m * span, np.zeros_like(span), np.zeros_like(span)])
+    signs = ((1, 1), (-1, 1), (-1, -1), (1, -1))
+    across = [a * chord[:, None] / 2 * chordwise + b * thickness[:, None] / 2 * normal for a, b in signs]
+    return np.stack([axis + each for each in across], axis=1)
+
+
+def _strip(first: FloatArray, second: FloatArray) -> Mesh:
+    """A band between two lines of points (n, 3)."""
+    n = len(first)
+    here = np.arange(n - 1)
+    triangles = np.concatenate(
+        [np.column_stack([here, here + 1, here + n]), np.column_stack([here + 1, here + n + 1, here + n])]
+    )
+    normal = np.cross(second - first, np.gradient(first, axis=0))
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    outward = np.sign(np.sum(normal * ((first + second) / 2 * [0, 1, 1]), axis=1, keepdims=True))
+    normal = normal * np.where(outward == 0, 1, outward)
+    return Mesh(np.concatenate([first, second]), triangles, np.concatenate([normal, normal]))
+
+
+def joined(parts: list[Mesh]) -> Mesh:
+    """Several meshes as one."""
+    starts = np.cumsum([0, *(len(part.vertices) for part in parts[:-1])])
+    return Mesh(
+        np.concatenate([part.vertices for part in parts]),
+        np.concatenate([part.triangles + start for part, start in zip(parts, starts, strict=True)]),
+        np.concatenate([part.normals for part in parts]),
+    )
+
+
+def blade_angles(blades: BladeRow) -> FloatArray:
+    """Angles of the blades from the unbalance, rad."""
+    return 2 * np.pi * np.arange(blades.count) / blades.count
+
+
+def blade_placements(machine: Machine) -> FloatArray:
+    """Where each blade's root stands in the blisk's turning frame, (n_blades, 3)."""
+    angle = blade_angles(machine.blades)
+    rim = machine.disk.rim_radius_m
+    return np.column_stack([rim * np.cos(angle), rim * np.sin(angle), np.zeros_like(angle)])
+
+
+def blade_leanings(machine: Machine, frames: MotionFrames, factor: float) -> FloatArray:
+    """Matrices (frames, n_blades, 3, 3) that turn a blade into place and lean it so that its drawn tip is right.
+
+    R_k (I + s d e_x^T / L), d the tip's displacement against the disk centre: a straight lean from root to tip.
+    """
+    angle = blade_angles(machine.blades)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    lateral = frames.centre
+    root = np.stack([np.outer(lateral[:, 0], cosine) + np.outer(lateral[:, 1], sine),
+                     np.outer(lateral[:, 1], cosine) - np.outer(lateral[:, 0], sine)], axis=-1)  # fmt: skip
+    lean = np.broadcast_to(np.eye(3), (*frames.tips.shape, 3)).copy()
+    lean[..., :, 0] += factor * frames.tips / machine.blades.length_m
+    lean[..., :2, 0] -= factor * root / machine.blades.length_m
+    turned = np.zeros((len(angle), 3, 3))
+    turned[:, 0, 0], turned[:, 0, 1], turned[:, 1, 0], turned[:, 1, 1] = cosine, -sine, sine, cosine
+    turned[:, 2, 2] = 1.0
+    return np.asarray(np.einsum("kab,fkbc->fkac", turned, lean))
+
+
+def drawn_tips(machine: Machine, frames: MotionFrames, factor: float) -> FloatArray:
+    """Drawn places (frames, n_blades, 2) of the tips in the inertial frame."""
+    angle = frames.angle[:, None] + blade_angles(machine.blades)
+    radial = machine.tip_radius_m + factor * frames.tips[..., 0]
+    tangential = factor * frames.tips[..., 1]
+    x = radial * np.cos(angle) - tangential * np.sin(angle)
+    y = radial * np.sin(angle) + tangential * np.cos(angle)
+    return np.stack([x, y], axis=-1)
+
+
+def spring(start: FloatArray, end: FloatArray, coils: int = 5, width: float = 0.01) -> FloatArray:
+    """A zigzag (points, 3) between two points, in the plane across Z."""
+    share = np.concatenate([[0.0, 0.15], np.linspace(0.2, 0.8, 2 * coils), [0.85, 1.0]])
+    side = np.concatenate([[0.0, 0.0], width * (-1.0) ** np.arange(2 * coils), [0.0, 0.0]])
+    along = end - start
+    across = np.array([-along[1], along[0], 0.0]) / np.linalg.norm(along[:2])
+    return np.asarray(start + share[:, None] * along + side[:, None] * across)
