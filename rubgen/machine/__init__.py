@@ -15,6 +15,7 @@ from rubgen.machine.machine import (
     NonNegative,
     Positive,
     Ratio,
+    SqueezeFilm,
 )
 
 __all__ = [
@@ -31,6 +32,7 @@ __all__ = [
     "NonNegative",
     "Positive",
     "Ratio",
+    "SqueezeFilm",
     "load_machine",
     "preset_names",
 ]

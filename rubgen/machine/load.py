@@ -35,8 +35,11 @@ def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
 
 
 def machine_id(machine: Machine) -> str:
-    """Twelve hexadecimal digits that stand for every value of the machine: sha256 of its sorted JSON."""
-    values = TypeAdapter(Machine).dump_python(machine, mode="json")
+    """Twelve hexadecimal digits that stand for every value of the machine: sha256 of its sorted JSON.
+
+    Values that are the default are left out, so that a key which a later version adds changes no machine's digits.
+    """
+    values = TypeAdapter(Machine).dump_python(machine, mode="json", exclude_defaults=True)
     return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()[:12]
 
 

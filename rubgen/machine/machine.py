@@ -16,6 +16,7 @@ NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Ratio = Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)]
 Deviation = Annotated[float, Field(gt=-1, allow_inf_nan=False)]
+Anisotropy = Annotated[float, Field(gt=-1, lt=1, allow_inf_nan=False)]
 STRICT = ConfigDict(extra="forbid")
 
 
@@ -130,13 +131,45 @@ class Casing:
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
+class SqueezeFilm:
+    """Short squeeze film damper beside the lateral spring: a centred journal that does not turn, in a full film of oil.
+
+    The Reynolds equation of a short bearing (Ocvirk), integrated over the whole film, without cavitation, gives on the
+    journal F = -C v with v its velocity in the inertial frame and, along and across its eccentricity e = epsilon c,
+
+        C_rr = C_0 (1 + 2 epsilon^2) / (1 - epsilon^2)^(5/2),   C_tt = C_0 / (1 - epsilon^2)^(3/2),
+        C_0  = pi mu R (L / c)^3
+
+    (Barrett, Gunter 1975, NASA CR-2548, with the whole circle as the range of the integrals). A cavitated film has
+    about half of C_0 and a stiffness of its own; fluid inertia, supply grooves and end seals are left out.
+    """
+
+    radius_m: Positive
+    length_m: Positive
+    clearance_m: Positive
+    viscosity_pa_s: Positive
+
+    @property
+    def centred_damping_n_s_per_m(self) -> float:
+        """C_0 = pi mu R (L / c)^3, in N s/m."""
+        return float(np.pi * self.viscosity_pa_s * self.radius_m * (self.length_m / self.clearance_m) ** 3)
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
 class DiskSupport:
-    """Springs that hold the disk centre in the inertial frame, isotropic about the axis of rotation."""
+    """Springs that hold the disk centre in the inertial frame.
+
+    `lateral_stiffness_n_per_m` is the mean of X and Y; `lateral_stiffness_anisotropy` is (k_X - k_Y) / (k_X + k_Y), and
+    `lateral_damping_anisotropy` the same of the dampers beside them. Tilt springs and dampers are isotropic.
+    """
 
     lateral_stiffness_n_per_m: Positive
     axial_stiffness_n_per_m: Positive
     tilt_stiffness_nm_per_rad: Positive
     torsion_stiffness_nm_per_rad: Positive
+    lateral_stiffness_anisotropy: Anisotropy = 0.0
+    lateral_damping_anisotropy: Anisotropy = 0.0
+    squeeze_film: SqueezeFilm | None = None
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -159,7 +192,10 @@ class Damping:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Machine:
-    """A blisk on its supports, with its unbalance and damping, in its casing."""
+    """A blisk on its supports, with its unbalance and damping, in its casing.
+
+    Gravity acts along -Y on the blisk alone; the casing's own sag counts as part of its shape. 0 is a vertical axis.
+    """
 
     name: Annotated[str, Field(min_length=1)]
     disk: Disk
@@ -168,6 +204,7 @@ class Machine:
     disk_support: DiskSupport
     damping: Damping
     unbalance_kg_m: NonNegative
+    gravity_m_per_s2: NonNegative = 0.0
 
     @property
     def tip_radius_m(self) -> float:

@@ -56,7 +56,11 @@ def cached_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: 
 
 def _key(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> str:
     springs, modes = asdict(support), asdict(reduction)
-    del springs["lateral_stiffness_n_per_m"], modes["casing_modes"]
+    del modes["casing_modes"]
+    for lateral in (
+        "lateral_stiffness_n_per_m", "lateral_stiffness_anisotropy", "lateral_damping_anisotropy", "squeeze_film"
+    ):  # fmt: skip
+        del springs[lateral]
     what = [asdict(disk), asdict(blades), springs, modes, np.__version__, scipy.__version__]
     digest = hashlib.sha256(json.dumps(what, sort_keys=True).encode())
     for folder in ("fem", "reduction", "machine"):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rubgen.arrays import FloatArray
+from rubgen.machine import SqueezeFilm
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +38,22 @@ class Recovery:
 
 
 @dataclass(frozen=True, kw_only=True)
+class TurningForces:
+    """Forces on the blisk that turn against it or depend on its state, so that no constant matrix holds them.
+
+    On O_d, u its displacement and v_abs = v + Omega e_z x u its absolute velocity, in the turning frame:
+    -k_a Q u - c_a Q v_abs - C(u) v_abs, Q = [[cos 2 theta, -sin 2 theta], [-sin 2 theta, -cos 2 theta]], with
+    `stiffness` k_a = (k_X - k_Y) / 2 in N/m, `damping` c_a likewise in N s/m, C of the squeeze `film`. On all of the
+    blisk: -g M T (sin theta, cos theta), with `weight` (n, 2) = g M T in N, T the rigid motions along x and y.
+    """
+
+    stiffness: float = 0.0
+    damping: float = 0.0
+    film: SqueezeFilm | None = None
+    weight: FloatArray | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class SpinningSystem:
     """M q'' + C q' + K q = force + contact, constant matrices of the turning frame at one spin speed.
 
@@ -50,10 +67,12 @@ class SpinningSystem:
     the steady centrifugal displacement of the full model at this speed along the same axes as the tips; it is added to
     the tips wherever a position is needed, and is no part of q.
     `casing_modes` (nodes, 2, n_casing) holds the X and Y displacement of each mode at the nodes, which stand at equal
-    steps of polar angle from 0. `lateral_stiffness` and `lateral_damping` are the support's, per axis, in N/m, N s/m.
+    steps of polar angle from 0. `lateral_stiffness` and `lateral_damping` are the support's, per axis, in N/m, N s/m:
+    the mean of X and Y where they differ.
     `casing_rotations` (nodes, n_casing) is the rotation of the ring's section about Z of each mode at the nodes, and
     `half_thickness` (m) how far the inner surface lies inside the centre line; None and 0 where they are not known.
     `recovery` is None where the system was not reduced from a machine.
+    `turning` holds what `M`, `C`, `K`, `force` do not; None for most machines.
     """
 
     speed: float
@@ -73,6 +92,7 @@ class SpinningSystem:
     casing_rotations: FloatArray | None = None
     half_thickness: float = 0.0
     recovery: Recovery | None = None
+    turning: TurningForces | None = None
 
     @property
     def centre(self) -> int:

@@ -15,7 +15,7 @@ from rubgen.reduction.blisk import ReducedBlisk
 from rubgen.reduction.cache import cached_blisk
 from rubgen.reduction.casing import ReducedCasing, reduce_casing
 from rubgen.reduction.damping import elastic_damping, support_damping
-from rubgen.reduction.model import Recovery, SpinningSystem
+from rubgen.reduction.model import Recovery, SpinningSystem, TurningForces
 from rubgen.scenario import Reduction
 
 # e_z x on the translations and rotations of O_d.
@@ -91,6 +91,7 @@ class ReducedModel:
             lateral_stiffness=float(self.springs[0]),
             lateral_damping=float(self.dampers[0]),
             recovery=self._recovery(),
+            turning=self._turning_forces(),
         )
 
     def _recovery(self) -> Recovery:
@@ -103,6 +104,19 @@ class ReducedModel:
             casing_radius=machine.casing_mean_radius_m,
             casing_thickness=machine.casing.thickness_m,
             chord_slope=float(1 / np.tan(np.deg2rad(machine.blades.tip_angle_deg))),
+        )
+
+    def _turning_forces(self) -> TurningForces | None:
+        """What of supports and gravity turns against the blisk or is not linear; None without any."""
+        support, g = self.machine.disk_support, self.machine.gravity_m_per_s2
+        stiffness = float(self.springs[0]) * support.lateral_stiffness_anisotropy
+        damping = float(self.dampers[0]) * support.lateral_damping_anisotropy
+        if not (stiffness or damping or support.squeeze_film or g):
+            return None
+        weight = np.zeros((self.reduced_dof, 2))
+        weight[: len(self.blisk.M)] = g * self.blisk.M @ rigid_shifts(self.machine.blades.count, len(self.blisk.M))
+        return TurningForces(
+            stiffness=stiffness, damping=damping, film=support.squeeze_film, weight=weight if g else None
         )
 
     def blisk_frequencies_hz(self, speed: float = 0.0) -> FloatArray:
@@ -140,6 +154,20 @@ class ReducedModel:
         share = self.springs[0] * (modes[centre] ** 2 + modes[centre + 1] ** 2)
         lateral = np.argmax(np.where(inverse_squares > 0, share, 0.0))
         return float(30 / np.pi / np.sqrt(inverse_squares[lateral]))
+
+
+def rigid_shifts(blades: int, size: int) -> FloatArray:
+    """Coordinates (size, 2) of the reduced blisk moved as a whole by 1 m along x and along y.
+
+    Exact: the constraint modes hold every rigid motion that does not strain the springs of the basis, and lateral
+    shifts strain none, so the modes take no part.
+    """
+    angle = 2 * np.pi * np.arange(blades) / blades
+    shifts = np.zeros((size, 2))
+    shifts[: 3 * blades : 3] = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    shifts[1 : 3 * blades : 3] = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
+    shifts[3 * blades : 3 * blades + 2] = np.eye(2)
+    return shifts
 
 
 def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:

@@ -71,6 +71,15 @@ def _disk_support(scenario: Scenario, value: float) -> Scenario:
     return replace(scenario, machine=replace(scenario.machine, disk_support=support))
 
 
+def _support_anisotropy(scenario: Scenario, value: float) -> Scenario:
+    support = replace(scenario.machine.disk_support, lateral_stiffness_anisotropy=value)
+    return replace(scenario, machine=replace(scenario.machine, disk_support=support))
+
+
+def _gravity(scenario: Scenario, value: float) -> Scenario:
+    return replace(scenario, machine=replace(scenario.machine, gravity_m_per_s2=value))
+
+
 def _friction(scenario: Scenario, value: float) -> Scenario:
     return replace(scenario, contact=replace(scenario.contact, friction=value))
 
@@ -110,7 +119,7 @@ PARAMETERS = (
     Parameter(
         key="disk_support_stiffness_n_per_m",
         unit="N/m",
-        meaning="lateral stiffness of the disk support, the same along X and Y",
+        meaning="lateral stiffness of the disk support, mean of X and Y",
         read=lambda scenario: scenario.machine.disk_support.lateral_stiffness_n_per_m,
         apply=_disk_support,
     ),
@@ -162,6 +171,24 @@ PARAMETERS = (
         read=lambda scenario: scenario.machine.damping.lateral,
         apply=_lateral_damping,
         maximum=0.99,
+        above=False,
+    ),
+    Parameter(
+        key="support_anisotropy",
+        unit="1",
+        meaning="lateral stiffness of the disk support, (k_X - k_Y) / (k_X + k_Y)",
+        read=lambda scenario: scenario.machine.disk_support.lateral_stiffness_anisotropy,
+        apply=_support_anisotropy,
+        minimum=-0.9,
+        maximum=0.9,
+        above=False,
+    ),
+    Parameter(
+        key="gravity_m_per_s2",
+        unit="m/s2",
+        meaning="gravity along -Y on the blisk; 0 for a vertical axis",
+        read=lambda scenario: scenario.machine.gravity_m_per_s2,
+        apply=_gravity,
         above=False,
     ),
 )

@@ -89,6 +89,12 @@ class Blocks:
         lower[np.ix_(order, order)] = np.tril(ordered, -1) + np.diag(np.diag(ordered)) / 2
         return self._packed(lower, triangle=True)
 
+    def connected(self, coordinates: IntArray) -> IntArray:
+        """All coordinates of y in the blocks of these, sorted."""
+        blocks = [block for bundle in self.lanes for block in bundle] + self.single
+        found = [block[block >= 0] for block in blocks if np.isin(block, coordinates).any()]
+        return np.sort(np.concatenate(found))
+
     def vector(self, y: FloatArray) -> FloatArray:
         """Numbers y (n,) as z."""
         z = np.zeros(self.rows * LANES)

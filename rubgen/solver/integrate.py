@@ -28,9 +28,11 @@ from rubgen.solver.events import contact_events, tip_arrivals
 from rubgen.solver.fractions import Fractions
 from rubgen.solver.refusal import no_response
 from rubgen.solver.response import EnergyBook, Response, Status
+from rubgen.solver.rub_free import rub_free_motion
 from rubgen.solver.stability import settle_turns, slowest_decay, steps_per_turn
-from rubgen.solver.step_kernels import CONTACT_UNSOLVED, DIVERGED, ENERGY, OK
+from rubgen.solver.step_kernels import CONTACT_UNSOLVED, DIVERGED, ENERGY, FILM_CLOSED, OK
 from rubgen.solver.stepper import Stepper, closing_ramp, start_opening
+from rubgen.solver.support_kernels import ANISOTROPY, FILM, FILM_LOSS, GRAVITY
 from rubgen.solver.taps import sampled_taps, timing_taps
 from rubgen.solver.track import TrackKeeper
 from rubgen.solver.turn_kernels import STEPS, close_touches
@@ -42,11 +44,14 @@ ROUNDING_SHARE = 1e-6
 """Energies below this share of their summed absolute terms are rounding to eight digits."""
 UNDYING_SHARE = 1e-6
 """A slowest decay below this share of the spin speed is none: a transient would need 700,000 turns to die."""
+MOTION_TOLERANCE = 1e-8
+"""The share of force on O_d that may be unbalanced in the motion from which a run starts."""
 STATUS = {
     OK: Status.OK,
     CONTACT_UNSOLVED: Status.CONTACT_UNSOLVED,
     DIVERGED: Status.DIVERGED,
     ENERGY: Status.ENERGY,
+    FILM_CLOSED: Status.FILM_CLOSED,
 }
 
 
@@ -138,6 +143,7 @@ class Integration:
         works, energy = self.stepper.book.works, self.stepper.energy()
         self.largest_energy = max(self.largest_energy, abs(energy))
         done = works[UNBALANCE] + works[DAMPING] + works[CIRCULATORY] + works[CONTACT]
+        done += self.stepper.support.works[:FILM_LOSS].sum()
         scale = max(float(works[ABSOLUTE]), self.largest_energy, self.rounding_energy)
         return abs(energy - self.start_energy - float(done)) / scale if scale > 0 else 0.0
 
@@ -196,9 +202,9 @@ def integrate(
     with threadpool_limits(1, user_api="blas"):
         check_system(system)
         steps = steps_per_turn(system, operation.steps_per_turn, sample_rate_hz)
-        decay = slowest_decay(system)
-        if decay <= UNDYING_SHARE * system.speed:
-            return _unstable(system, operation, steps, decay)
+        refusal = _film_refusal(system, steps) or _decay_refusal(system)
+        if refusal:
+            return _not_integrated(system, operation, steps, *refusal)
         settle = settle_turns(system, operation)
         stepper = Stepper(system, contact, steps, taps=taps)
         signal_turns = tail_seconds / (steps * stepper.dt)
@@ -243,29 +249,55 @@ def _response(integration: Integration, taps: tuple[Tap, ...]) -> Response:
 
 def _energy(integration: Integration) -> EnergyBook:
     works = [float(work) for work in integration.stepper.book.works]
+    support = [float(work) for work in integration.stepper.support.works]
     return EnergyBook(
         start=integration.start_energy,
         end=integration.stepper.energy(),
         unbalance=works[UNBALANCE],
         damping=works[DAMPING],
         circulatory=works[CIRCULATORY],
+        anisotropy=support[ANISOTROPY],
+        film=support[FILM],
+        gravity=support[GRAVITY],
         contact=works[CONTACT],
         normal_loss=works[NORMAL],
         friction_loss=works[FRICTION],
         drive_contact_work=works[CONTACT] - works[NORMAL] - works[FRICTION],
         drive_contact_limit=works[DRIVE_LIMIT],
+        film_loss=support[FILM_LOSS],
         absolute_work=works[ABSOLUTE],
         residual=integration.energy_residual(),
     )
 
 
-def _unstable(system: SpinningSystem, operation: Operation, steps: int, decay: float) -> Response:
-    """The refusal of a system that grows by itself, or in which nothing ever dies."""
+def _film_refusal(system: SpinningSystem, steps: int) -> tuple[Status, str] | None:
+    """Why a squeeze film holds no rub-free motion, if it does not."""
+    if system.turning is None or system.turning.film is None:
+        return None
+    missing = rub_free_motion(system, steps).residual
+    if missing <= MOTION_TOLERANCE:
+        return None
+    return (
+        Status.FILM_CLOSED,
+        f"no rub-free motion inside it: {missing:.3g} of the force on the disk centre is not borne",
+    )
+
+
+def _decay_refusal(system: SpinningSystem) -> tuple[Status, str] | None:
+    """Why a system grows by itself, or nothing ever dies in it, if so."""
+    decay = slowest_decay(system)
+    if decay > UNDYING_SHARE * system.speed:
+        return None
     largest = f"largest real part of the eigenvalues {-decay:.4g} 1/s at {system.speed:.6g} rad/s"
     undying = "; some motion never dies, at a critical speed it grows without limit: add damping"
+    return Status.UNSTABLE, largest + (undying if abs(decay) <= UNDYING_SHARE * system.speed else "")
+
+
+def _not_integrated(system: SpinningSystem, operation: Operation, steps: int, status: Status, reason: str) -> Response:
+    """What is given for a system that makes no run."""
     return no_response(
-        Status.UNSTABLE,
-        largest + (undying if abs(decay) <= UNDYING_SHARE * system.speed else ""),
+        status,
+        reason,
         speed=float(system.speed),
         dt=2 * math.pi / system.speed / steps,
         steps_per_turn=steps,

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from rubgen.arrays import FloatArray
 from rubgen.contact.geometry_kernels import Surface, Tips
 from rubgen.solver.block_kernels import Harmonics, Motion, Scheme
+from rubgen.solver.support_kernels import Support
 
 
 class Laws(NamedTuple):
@@ -65,6 +66,7 @@ class Model(NamedTuple):
     harmonics: Harmonics
     tip_compliance: FloatArray
     casing_compliance: FloatArray
+    support: Support
 
 
 class Scratch(NamedTuple):

@@ -2,7 +2,7 @@
 
 Written apart from the kernels: dense matrices over all coordinates at once, all near blades in whole-array operations,
 piecewise cubics in power form, nodal slopes by a differentiation matrix, contact forces by an active set of exact
-solves. No restitution.
+solves, turning forces in matrices that are made and inverted anew in every step.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import scipy.linalg as la
 
 from rubgen.arrays import BoolArray, FloatArray, IntArray
 from rubgen.reduction.model import SpinningSystem
+from rubgen.solver.supports import force_derivatives, gravity_force, turning_force
 
 NEWTON_STEPS = 12
 NEWTON_TOLERANCE = 1e-10
@@ -25,17 +26,35 @@ def differentiation_matrix(nodes: int) -> FloatArray:
 
 
 class ReferenceStepper:
-    """State and step of one system with friction; `before`, `now` (n,) are q at steps n - 1 and n."""
+    """State and step of one system with friction; `before`, `now` (n,) are q at steps n - 1 and n.
 
-    def __init__(self, system: SpinningSystem, friction: float, steps: int, *, start_angle: float = 0.0) -> None:
+    `gaps` (2, n_blades) are those that steps n - 1 and n left, NaN where the geometry is to be asked: restitution
+    compares with them.
+    """
+
+    def __init__(
+        self,
+        system: SpinningSystem,
+        friction: float,
+        steps: int,
+        *,
+        restitution: float = 0.0,
+        start_angle: float = 0.0,
+    ) -> None:
         self.system, self.friction, self.steps, self.start_angle = system, friction, steps, start_angle
+        self.restitution = restitution
         self.dt = dt = 2 * np.pi / system.speed / steps
         self.inverse = la.inv(system.M / dt**2 + system.C / (2 * dt))
         self.from_now = self.inverse @ (2 * system.M / dt**2 - system.K)
         self.from_before = self.inverse @ (system.C / (2 * dt) - system.M / dt**2)
         self.constant = self.inverse @ system.force
         self.cubics = self._cubics()
-        self.before, self.now = np.zeros((2, system.M.shape[0]))
+        self.set_state(*np.zeros((2, system.M.shape[0])))
+
+    def set_state(self, before: FloatArray, now: FloatArray) -> None:
+        """Set q at steps n - 1 and n and forget the gaps there."""
+        self.before, self.now = before, now
+        self.gaps = np.full((2, self.system.n_blades), np.nan)
 
     def _cubics(self) -> FloatArray:
         """Coefficients (4, nodes, 2, n_casing) of u in powers of the angle from each node."""
@@ -50,35 +69,70 @@ class ReferenceStepper:
 
     def step(self, index: int, opening: float = 0.0) -> int:
         """One step from theta_index, the surface opened by `opening` after it; how many blades touched."""
-        free = self.from_now @ self.now + self.from_before @ self.before + self.constant
+        free, inverse = self._free(self.start_angle + 2 * np.pi * index / self.steps)
         theta = self.start_angle + 2 * np.pi * (index + 1) / self.steps
-        touching, response = self._contacts(free, theta, opening)
+        gaps = np.full(self.system.n_blades, np.nan)
+        touching, response = self._contacts(free, inverse, theta, opening, gaps)
         self.before, self.now = self.now, free if response is None else free + response
+        self.gaps = np.stack([self.gaps[1], gaps])
         return touching
 
-    def _contacts(self, free: FloatArray, theta: float, opening: float) -> tuple[int, FloatArray | None]:
-        """Number of touching blades and A^-1 B lam, None without contact."""
-        system = self.system
-        place = free[: 3 * system.n_blades].reshape(-1, 3) + system.tip_static
-        place[:, 0] += system.tip_radius
-        cubics = self.cubics @ free[system.casing_start :]
-        blades = self._near(place, cubics, theta, opening)
-        if len(blades) == 0:
+    def _free(self, theta: float) -> tuple[FloatArray, FloatArray]:
+        """The step without contact from `theta`, and the inverse of all that stands before q_n+1."""
+        free = self.from_now @ self.now + self.from_before @ self.before + self.constant
+        system, forces, dt = self.system, self.system.turning, self.dt
+        if forces is None:
+            return free, self.inverse
+        u = self.now[system.centre : system.centre + 2]
+        E = np.eye(len(free))[:, system.centre : system.centre + 2]
+        drag = -force_derivatives(forces, system.speed, np.array(theta), u, np.zeros(2))[1]
+        at_rest = turning_force(forces, system.speed, np.array(theta), u, np.zeros(2))
+        inverse = la.inv(system.M / dt**2 + system.C / (2 * dt) + E @ drag @ E.T / (2 * dt))
+        load = E @ (at_rest + drag @ E.T @ self.before / (2 * dt)) + gravity_force(forces, theta)
+        return inverse @ (la.solve(self.inverse, free) + load), inverse
+
+    def _contacts(
+        self, free: FloatArray, inverse: FloatArray, theta: float, opening: float, gaps_out: FloatArray
+    ) -> tuple[int, FloatArray | None]:
+        """Number of touching blades and A^-1 B lam, None without contact; and the gaps that the step leaves."""
+        blades, angle, place, psi, gap, t = self._pairs(free, theta, opening)
+        gaps_out[blades] = gap
+        law = gap + self.restitution * self._gaps_before(blades, theta, opening) if self.restitution else gap
+        if not np.any(law < 0):
             return 0, None
-        place, angle = place[blades], theta + system.blade_angles[blades]
         er = np.array([np.cos(angle), np.sin(angle)])
         et = np.array([-er[1], er[0]])
-        psi, gap, t = self._feet(cubics, place[:, 0] * er + place[:, 1] * et, opening)
-        if not np.any(gap < 0):
-            return 0, None
         n = np.array([-t[1], t[0]])
         shapes = self._shapes(psi)
         f = self._friction(free, blades, place, er, et, t, shapes)
         normal = self._columns(n, np.zeros(len(gap)), blades, er, et, shapes)
         full = self._columns(n + self.friction * f[0] * t, self.friction * f[1], blades, er, et, shapes)
-        response = self.inverse @ full
-        lam = active_set(normal.T @ response, gap)
+        response = inverse @ full
+        lam = active_set(normal.T @ response, law)
+        gaps_out[blades] += normal.T @ response @ lam
         return int(np.sum(lam > 0)), response @ lam
+
+    def _pairs(
+        self, q: FloatArray, theta: float, opening: float, blades: IntArray | None = None
+    ) -> tuple[IntArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+        """These blades, or those near the surface: number, polar angle, place along their axes, foot, gap, tangent."""
+        system = self.system
+        place = q[: 3 * system.n_blades].reshape(-1, 3) + system.tip_static
+        place[:, 0] += system.tip_radius
+        cubics = self.cubics @ q[system.casing_start :]
+        blades = self._near(place, cubics, theta, opening) if blades is None else blades
+        place, angle = place[blades], theta + system.blade_angles[blades]
+        if len(blades) == 0:
+            return blades, angle, place, np.zeros(0), np.zeros(0), np.zeros((2, 0))
+        er = np.array([np.cos(angle), np.sin(angle)])
+        et = np.array([-er[1], er[0]])
+        return blades, angle, place, *self._feet(cubics, place[:, 0] * er + place[:, 1] * et, opening)
+
+    def _gaps_before(self, blades: IntArray, theta: float, opening: float) -> FloatArray:
+        """Gaps that step n - 1 left, or its geometry has."""
+        *_, gap, _ = self._pairs(self.before, theta - 4 * np.pi / self.steps, opening, blades)
+        left = self.gaps[0, blades]
+        return np.asarray(np.where(np.isnan(left), gap, left))
 
     def _near(self, place: FloatArray, cubics: FloatArray, theta: float, opening: float) -> IntArray:
         """Blades within 1.2 times the casing's largest nodal displacement, and 0.3 mm, of the undeformed surface."""

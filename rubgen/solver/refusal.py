@@ -8,10 +8,7 @@ from rubgen.scenario.taps import DEFAULT_TAPS
 from rubgen.solver.events import contact_events
 from rubgen.solver.response import EnergyBook, Response, Status
 
-NO_ENERGY = EnergyBook(
-    start=0.0, end=0.0, unbalance=0.0, damping=0.0, circulatory=0.0, contact=0.0, normal_loss=0.0,
-    friction_loss=0.0, drive_contact_work=0.0, drive_contact_limit=0.0, absolute_work=0.0, residual=0.0,
-)  # fmt: skip
+NO_ENERGY = EnergyBook(**dict.fromkeys(EnergyBook.__dataclass_fields__, 0.0))
 
 
 def no_response(

@@ -19,6 +19,7 @@ class Status(StrEnum):
     CONTACT_UNSOLVED = "contact-unsolved: no unique contact force was found in a step"
     ENERGY = "energy: the energy identity of the scheme was not kept"
     REFUSED = "refused: these values make no run"
+    FILM_CLOSED = "film-closed: the disk centre reached the clearance of its squeeze film damper"
 
     @property
     def code(self) -> str:
@@ -64,7 +65,9 @@ class EnergyBook:
     where hardly any work is done (no rub) the largest |E| stands for the works. `contact` is lam^T B^T d;
     `normal_loss` and `friction_loss` are losses of the contact itself, <= 0; the drive that keeps the speed constant
     pays drive_contact_work = contact - normal_loss - friction_loss, which tends to drive_contact_limit = -Omega times
-    the time integral of the contact torque on the blisk, both positive where contact brakes.
+    the time integral of the contact torque on the blisk, both positive where contact brakes. `anisotropy` is the work
+    of uneven springs and dampers beyond their mean, `film` that of a squeeze film, `gravity` that of the weight, all
+    in the turning frame, where the drive's share counts too; `film_loss` is what the film turns into heat, <= 0.
     """
 
     start: float
@@ -72,11 +75,15 @@ class EnergyBook:
     unbalance: float
     damping: float
     circulatory: float
+    anisotropy: float
+    film: float
+    gravity: float
     contact: float
     normal_loss: float
     friction_loss: float
     drive_contact_work: float
     drive_contact_limit: float
+    film_loss: float
     absolute_work: float
     residual: float
 

@@ -12,24 +12,31 @@ from rubgen.errors import UserError
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Operation
 from rubgen.scenario.feasible import STEPS_PER_SAMPLE
+from rubgen.solver.floquet import floquet_exponents, linearised, quadratic_eigenvalues
 
 STEP_SAFETY = 0.95
 """The step stays below this share of the stability limit 2 / omega_max."""
 TRANSIENT_DECAY = 100.0
 """Transients have died when they have fallen by this factor."""
 MOST_STEPS_PER_TURN = 2**22
+FLOQUET_STEPS = 1024
+"""Steps a turn, at least, of the transition over one period of a system whose supports are uneven."""
 
 
 def eigenvalues(system: SpinningSystem) -> ComplexArray:
-    """All 2 n eigenvalues s in 1/s of M q'' + C q' + K q = 0, from the first-order form, blisk and casing apart."""
-    start = system.casing_start
-    parts = []
-    for part in (slice(0, start), slice(start, None)):
-        M, C, K = system.M[part, part], system.C[part, part], system.K[part, part]
-        m = M.shape[0]
-        first_order = np.block([[np.zeros((m, m)), np.eye(m)], [-la.solve(M, K), -la.solve(M, C)]])
-        parts.append(la.eigvals(first_order))
-    return np.concatenate(parts)
+    """All 2 n eigenvalues s in 1/s of M q'' + C q' + K q = 0, blisk and casing apart.
+
+    A squeeze film enters as its linearisation at the rub-free motion. Uneven supports turn against the blisk: then
+    these are Floquet exponents, with imaginary parts known but for a multiple of 2 Omega (Omega with a film).
+    """
+    forces = system.turning
+    if forces and (forces.stiffness or forces.damping or (forces.film and forces.weight is not None)):
+        return floquet_exponents(system, steps_per_turn(system, FLOQUET_STEPS))
+    constant = linearised(system) if forces and forces.film else system
+    parts = (slice(0, system.casing_start), slice(system.casing_start, None))
+    return np.concatenate(
+        [quadratic_eigenvalues(*(X[part, part] for X in (constant.M, constant.C, constant.K))) for part in parts]
+    )
 
 
 def slowest_decay(system: SpinningSystem) -> float:
@@ -38,10 +45,18 @@ def slowest_decay(system: SpinningSystem) -> float:
 
 
 def stable_step(system: SpinningSystem) -> float:
-    """The largest stable step 2 / omega_max in s, omega_max of (K, M) without gyroscopic terms."""
+    """The largest stable step 2 / omega_max in s, omega_max of (K, M) without gyroscopic terms.
+
+    Uneven supports count with their stiffer direction on both axes.
+    """
     start, largest = system.casing_start, 0.0
+    stiffness = system.K
+    if system.turning and system.turning.stiffness:
+        stiffness = system.K.copy()
+        for i in (system.centre, system.centre + 1):
+            stiffness[i, i] += abs(system.turning.stiffness)
     for part in (slice(0, start), slice(start, None)):
-        K, M = ((matrix[part, part] + matrix[part, part].T) / 2 for matrix in (system.K, system.M))
+        K, M = ((matrix[part, part] + matrix[part, part].T) / 2 for matrix in (stiffness, system.M))
         largest = max(largest, float(la.eigh(K, M, eigvals_only=True)[-1]))
     return 2 / math.sqrt(largest)
 

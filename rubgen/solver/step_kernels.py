@@ -38,8 +38,9 @@ from rubgen.solver.block_kernels import (
 )
 from rubgen.solver.lanes_kernels import LANES, dot_rows
 from rubgen.solver.model_kernels import Laws, Model, Scratch, State
+from rubgen.solver.support_kernels import push_supports, resist_contacts, yield_to_contacts
 
-OK, CONTACT_UNSOLVED, DIVERGED, ENERGY = 0, 1, 2, 3
+OK, CONTACT_UNSOLVED, DIVERGED, ENERGY, FILM_CLOSED = 0, 1, 2, 3, 4
 MARGIN_TRIES = 6
 
 
@@ -107,6 +108,8 @@ def solve_contacts(count: int, model: Model, step: int, opening: FloatArray, sta
             held = previous_gap(surface, tips, k, state, opening[step], angles.cosine[back], angles.sine[back], work)
             work.b[m] += laws.restitution * held
     build_compliance(count, model.tip_compliance, work)
+    if model.support.active:
+        yield_to_contacts(count, model.support, work)
     return solve_lcp(work.W, work.b, count, work.lam, work.square, work.tableau, work.basis)
 
 
@@ -122,6 +125,8 @@ def apply_contacts(count: int, model: Model, after: Motion, work: ContactWork, s
             spread_tip_force(harmonics, work.blade[m], work.full_tip[m], lam, force)
             for j in range(work.rows.shape[1]):
                 force[harmonics.rest[start + j]] += lam * work.full_casing[m, j]
+    if model.support.active:
+        resist_contacts(model.support, force)
     multiply(Product(model.scheme.lines, model.scheme.inverse), force, after.z)
     recover(harmonics, after, scratch.share)
 
@@ -227,8 +232,13 @@ def advance(
     work: ContactWork,
     scratch: Scratch,
 ) -> tuple[int, int]:
-    """One step: q_n+1 into `after`; OK, DIVERGED or CONTACT_UNSOLVED, and the number of contacts that were solved."""
+    """One step: q_n+1 into `after`; OK or why it failed, and the number of contacts that were solved."""
     free_step(model.scheme, before.z, now.z, after.z)
+    if model.support.active and not push_supports(
+        model.support, model.laws.speed, model.laws.dt,
+        model.angles.cosine[step], model.angles.sine[step], before.z, now.z, after.z,
+    ):  # fmt: skip
+        return FILM_CLOSED, 0
     recover(model.harmonics, after, scratch.share)
     reach = casing_reach(model.surface, after.q[after.q.shape[0] - work.rows.shape[1] :])
     if leaves_range(model, after, reach, scratch):

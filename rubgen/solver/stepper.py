@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.linalg as la
 
 from rubgen.arrays import FloatArray
 from rubgen.contact.contact_kernels import ContactWork
@@ -19,7 +18,9 @@ from rubgen.solver.energy_kernels import stored_energy
 from rubgen.solver.lanes_kernels import LANES
 from rubgen.solver.mark_kernels import Marks
 from rubgen.solver.model_kernels import Angles, Laws, Model, Scratch, State
+from rubgen.solver.rub_free import rub_free_motion
 from rubgen.solver.step_kernels import advance, shift_held
+from rubgen.solver.supports import support_of
 from rubgen.solver.taps import build_taps, sampled_taps
 from rubgen.solver.turn_kernels import Touches, TurnResult, run_turn
 
@@ -38,18 +39,11 @@ FRAMES = 32
 """Frames of a turn that the solver hands out: blade modes up to the 16th order of rotation move smoothly."""
 
 
-def steady_state(system: SpinningSystem) -> FloatArray:
-    """The exact rub-free motion q (n,): K q = force in the turning frame, the casing at rest."""
-    q = np.zeros(system.M.shape[0])
-    start = system.casing_start
-    q[:start] = la.solve(system.K[:start, :start], system.force[:start])
-    return q
-
-
 def start_opening(system: SpinningSystem) -> float:
-    """How far the surface must be opened, m, so that no tip of the steady state is nearer than the start clearance."""
-    tips = steady_state(system)[: 3 * system.n_blades].reshape(-1, 3) + system.tip_static
-    farthest = float(np.hypot(system.tip_radius + tips[:, 0], tips[:, 1]).max())
+    """How far the surface must be opened, m, to keep every tip of the rub-free motion the start clearance away."""
+    motion = rub_free_motion(system)
+    tips = motion.over_turn()[:, : 3 * system.n_blades].reshape(-1, system.n_blades, 3) + system.tip_static
+    farthest = float(np.hypot(system.tip_radius + tips[..., 0], tips[..., 1]).max())
     narrowest = system.surface.mean_radius - float(np.abs(system.surface.amplitude).sum())
     return max(0.0, START_CLEARANCE_SHARE * system.tip_radius - (narrowest - farthest))
 
@@ -91,6 +85,7 @@ class Stepper:
         self.scheme = scheme(system.M, system.C, system.K, system.force, self.dt, self.blocks)
         self.harmonics = system_harmonics(self.blocks, system.n_blades)
         self.compliances = compliances(system, self.dt)
+        self.support = support_of(system, self.blocks, self.dt)
         self.angles = _angles(system, steps, start_angle)
         self.taps = build_taps(self, taps, start_angle)
         self.book = energy_book(system, self.blocks)
@@ -106,14 +101,15 @@ class Stepper:
         self.motions = self.new_motions()
         self.scratch = self._scratch()
         self.marks = self.marks_at([steps])
-        rest = steady_state(system)
-        self.set_state(rest, rest)
+        self.rub_free = rub_free_motion(system, steps)
+        self.set_state(*(self.rub_free.at(start_angle + 2 * np.pi * s / steps) for s in (-1, 0)))
 
     @property
     def model(self) -> Model:
         """What the kernels take of all that does not change."""
         return Model(
-            self.surface, self.tips, self.laws, self.angles, self.scheme, self.harmonics, *self.compliances
+            self.surface, self.tips, self.laws, self.angles, self.scheme, self.harmonics, *self.compliances,
+            self.support,
         )  # fmt: skip
 
     @property

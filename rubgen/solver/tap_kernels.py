@@ -112,6 +112,8 @@ def read_shaft(model: Model, taps: Taps, state: State, step: int) -> None:
     vy = (state.after[taps.centre + 1] - state.before[taps.centre + 1]) / (2 * dt) + speed * x
     fx = taps.lateral_stiffness * x + taps.lateral_damping * vx
     fy = taps.lateral_stiffness * y + taps.lateral_damping * vy
+    if model.support.active:
+        fx, fy = fx - model.support.force[1, 0], fy - model.support.force[1, 1]
     taps.signals[X] = cosine * x - sine * y
     taps.signals[Y] = sine * x + cosine * y
     taps.signals[FORCE_X] = cosine * fx - sine * fy

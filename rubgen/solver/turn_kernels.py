@@ -10,10 +10,11 @@ from rubgen.contact.clearance_kernels import casing_reach
 from rubgen.contact.contact_kernels import ContactWork
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.solver.block_kernels import Motion, recover_all
-from rubgen.solver.energy_kernels import Book, book_contact, book_linear
+from rubgen.solver.energy_kernels import ABSOLUTE, Book, book_contact, book_linear
 from rubgen.solver.mark_kernels import Marks, keep_mark
 from rubgen.solver.model_kernels import Model, Scratch, State
 from rubgen.solver.step_kernels import OK, advance, recover_contacts, shift_held
+from rubgen.solver.support_kernels import book_supports
 from rubgen.solver.tap_kernels import Taps, record_arrivals, record_taps
 
 BLADE, START, STEPS, COSINE, SINE, IMPULSE, FRICTION_LOSS, NORMAL_LOSS = range(8)
@@ -132,6 +133,11 @@ def run_turn(
         for i in range(scratch.z_change.shape[0]):
             scratch.z_change[i] = 0.5 * (after.z[i] - before.z[i])
         book_linear(book, now.z, scratch.z_change, laws.dt)
+        if model.support.active:
+            cosine, sine = model.angles.cosine[s], model.angles.sine[s]
+            book.works[ABSOLUTE] += book_supports(
+                model.support, laws.speed, laws.dt, cosine, sine, now.z, scratch.z_change
+            )
         force, torque = 0.0, 0.0
         if count > 0:
             recover_contacts(count, model, before, after, 0.5, work, scratch.change)

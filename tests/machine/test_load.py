@@ -24,6 +24,26 @@ BAD = {
     "zero density": (r"density_kg_per_m3 = 7850.0", "density_kg_per_m3 = 0.0", "density_kg_per_m3 = 0.0: Input should"),
     "half a blade": ("count = 36", "count = 35.5", "blades.count = 35.5: "),
     "not TOML": ("count = 36", "count = ", "not TOML"),
+    "a support without stiffness along Y": (
+        r"\[disk_support\]",
+        "[disk_support]\nlateral_stiffness_anisotropy = 1.0",
+        "disk_support.lateral_stiffness_anisotropy = 1.0: Input should be less than 1",
+    ),
+    "a damper that pushes along X": (
+        r"\[disk_support\]",
+        "[disk_support]\nlateral_damping_anisotropy = -1.2",
+        "disk_support.lateral_damping_anisotropy = -1.2: Input should be greater than -1",
+    ),
+    "a film without clearance": (
+        r"\[disk_support\]",
+        "[disk_support]\nsqueeze_film = { radius_m = 0.1, length_m = 0.02, clearance_m = 0.0, viscosity_pa_s = 0.02 }",
+        "disk_support.squeeze_film.clearance_m = 0.0: Input should be greater than 0",
+    ),
+    "gravity upward": (
+        "unbalance_kg_m",
+        "gravity_m_per_s2 = -9.81\nunbalance_kg_m",
+        "gravity_m_per_s2 = -9.81: Input should be greater than or equal to 0",
+    ),
 }
 
 
@@ -56,6 +76,13 @@ def test_machine_id_depends_on_every_value_and_on_nothing_else():
     assert machine_id(machine) == machine_id(again)
     assert machine_id(machine) != machine_id(replace(machine, unbalance_kg_m=1.45e-2))
     assert machine_id(machine) != machine_id(replace(machine, casing=replace(machine.casing, nodes=360)))
+    assert machine_id(machine) != machine_id(replace(machine, gravity_m_per_s2=9.81))
+
+
+def test_a_key_that_is_left_at_its_default_does_not_enter_the_machine_id(tmp_path):
+    path = tmp_path / "machine.toml"
+    path.write_text(TEXT.replace("unbalance_kg_m", "gravity_m_per_s2 = 0.0\nunbalance_kg_m"))
+    assert machine_id(load_machine(str(path))) == machine_id(load_machine("zeng2019"))
 
 
 def test_missing_machine_file_and_preset():

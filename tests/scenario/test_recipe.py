@@ -28,8 +28,9 @@ ISSUE_KEYS = [
 ]
 
 
-def test_keys_of_vary_are_those_users_were_promised():
-    assert list(KEYS) == ISSUE_KEYS
+def test_keys_of_vary_begin_with_those_users_were_promised():
+    """Each owns its dimension of the Sobol sequence for ever."""
+    assert list(KEYS)[: len(ISSUE_KEYS)] == ISSUE_KEYS
 
 
 def test_default_recipe_is_the_published_one():

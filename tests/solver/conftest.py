@@ -1,11 +1,14 @@
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from rubgen.arrays import FloatArray
 from rubgen.contact.geometry import periodic_derivative
-from rubgen.reduction.model import CasingSurface, SpinningSystem
+from rubgen.machine import SqueezeFilm
+from rubgen.reduction.model import CasingSurface, SpinningSystem, TurningForces
+from rubgen.reduction.reduced import rigid_shifts
 from rubgen.scenario import Operation
 
 Build = Callable[..., SpinningSystem]
@@ -42,8 +45,12 @@ def build_small_system(
     casing_damping: float = 0.1,
     lateral_damping: float = 0.1,
     blades: int = 6,
+    uneven_blade: float = 0.0,
 ) -> SpinningSystem:
-    """Point masses on springs at a disk on springs, in a ring of the orders 1 to 3, all exact by hand."""
+    """Point masses on springs at a disk on springs, in a ring of the orders 1 to 3, all exact by hand.
+
+    Blade 0 is stiffer by the share `uneven_blade`.
+    """
     radius, tip_mass, disk_mass = 0.2, 0.05, 8.0
     springs = np.array([4e6, 1.5e6, 1.5e6])
     lateral = 6e6
@@ -59,7 +66,7 @@ def build_small_system(
         M[tip, tip] += tip_mass * np.eye(3)
         C[3 * k : 3 * k + 2, 3 * k : 3 * k + 2] += 2 * speed * tip_mass * np.array([[0, -1], [1, 0]])
         K[tip, tip] -= speed**2 * tip_mass * np.diag([1, 1, 0])
-        K += stretch.T @ np.diag(springs) @ stretch
+        K += stretch.T @ np.diag(springs * (1 + uneven_blade * (k == 0))) @ stretch
         C += stretch.T @ np.diag(2 * 0.01 * np.sqrt(springs * tip_mass)) @ stretch
     centre, whirl = slice(m - 2, m), np.array([[0, -1], [1, 0]])
     M[centre, centre] += disk_mass * np.eye(2)
@@ -107,6 +114,37 @@ def build_small_system(
 @pytest.fixture(scope="session")
 def small_system() -> Build:
     return build_small_system
+
+
+FILM = SqueezeFilm(radius_m=0.05, length_m=0.03, clearance_m=5e-4, viscosity_pa_s=0.05)  # C_0 = 1,700 N s/m
+TURNING = {
+    "gravity": {"gravity": 9.81},
+    "springs": {"stiffness": 6e5},
+    "dampers": {"stiffness": -4e5, "damping": 150.0},
+    "film": {"film": FILM},
+    "all": {"stiffness": 6e5, "damping": 150.0, "film": FILM, "gravity": 9.81},
+}
+
+
+def build_turning(
+    system: SpinningSystem,
+    stiffness: float = 0.0,
+    damping: float = 0.0,
+    film: SqueezeFilm | None = None,
+    gravity: float = 0.0,
+) -> SpinningSystem:
+    """The small system with uneven supports, a film, its weight."""
+    weight = np.zeros((len(system.M), 2))
+    start = system.casing_start
+    weight[:start] = gravity * system.M[:start, :start] @ rigid_shifts(system.n_blades, start)
+    forces = TurningForces(stiffness=stiffness, damping=damping, film=film, weight=weight if gravity else None)
+    return replace(system, turning=forces)
+
+
+@pytest.fixture(scope="session")
+def turning() -> Build:
+    """Turning forces for a system: one of `TURNING` by its name, and changes to it."""
+    return lambda system, case, **changes: build_turning(system, **(TURNING[case] | changes))
 
 
 def build_operation(

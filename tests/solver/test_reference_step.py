@@ -9,15 +9,16 @@ from rubgen.solver import Stepper
 from rubgen.solver.reference import ReferenceStepper, differentiation_matrix
 
 
-def compare_turns(system, friction, steps, turns, opening, settle=6):
+def compare_turns(system, friction, steps, turns, opening, settle=6, restitution=0.0):
     """Largest relative differences over one turn each, restarted from the reference, and touching steps."""
-    stepper = Stepper(system, ContactLaw(friction=friction), steps)
-    reference = ReferenceStepper(system, friction, steps)
+    stepper = Stepper(system, ContactLaw(friction=friction, restitution=restitution), steps)
+    reference = ReferenceStepper(system, friction, steps, restitution=restitution)
     for turn in range(settle):
         stepper.run_turn(np.full(steps + 2, opening * (1 - turn / settle)))
     reference.before, reference.now = stepper.state.before.copy(), stepper.state.now.copy()
     start, worst, touched = system.casing_start, 0.0, 0
     for _ in range(turns):
+        reference.set_state(reference.before, reference.now)
         stepper.set_state(reference.before, reference.now)
         assert stepper.run_turn()[0] == 0
         blades = np.array([reference.step(s) for s in range(steps)])
@@ -53,6 +54,22 @@ def test_the_preset_agrees_with_plain_numpy(rpm, support, friction):
     with threadpool_limits(1):
         worst, touched = compare_turns(system, friction, 1024, 5, 2e-4)
     assert touched > 50
+    assert worst < 1e-6
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.9])
+def test_restitution_agrees_with_plain_numpy(small_system, restitution):
+    worst, touched = compare_turns(small_system(speed=500.0), 0.1, 256, 10, 5e-4, restitution=restitution)
+    assert touched > 200
+    assert worst < 1e-6
+
+
+@pytest.mark.parametrize("case", ["gravity", "springs", "dampers", "film", "all"])
+def test_turning_forces_agree_with_plain_numpy(small_system, turning, case):
+    """Matrices made anew and inverted in every step, against two equations beside those of a constant A."""
+    system = turning(small_system(speed=500.0, uneven_blade=0.05 if case == "all" else 0.0), case)
+    worst, touched = compare_turns(system, 0.1, 256, 5, 5e-4)
+    assert touched > 200
     assert worst < 1e-6
 
 

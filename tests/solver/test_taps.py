@@ -21,7 +21,7 @@ from rubgen.scenario.taps import (
 )
 from rubgen.solver import Stepper, integrate
 from rubgen.solver.energy_kernels import DRIVE_LIMIT
-from rubgen.solver.stepper import steady_state
+from rubgen.solver.rub_free import steady_state
 
 OPENING = np.linspace(4e-4, 0, 258)
 
