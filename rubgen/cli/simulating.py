@@ -28,6 +28,7 @@ LABEL_NAMES = (
     "motion_blisk",
     "motion_casing",
     "motion",
+    "motion_confidence",
     "period",
     "has_2fr",
     "lyapunov_per_turn",

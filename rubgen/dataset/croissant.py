@@ -16,6 +16,7 @@ TYPES = {
     "flag": "sc:Boolean",
     "integer": "sc:Integer",
     "number": "sc:Float",
+    "integers": "sc:Integer",
     "numbers": "sc:Float",
     "signal": "sc:Float",
 }
@@ -110,7 +111,7 @@ def _field(record_set: str, column: Column, source: dict[str, Any]) -> dict[str,
         "dataType": TYPES[column.kind],
         "source": {**source, "extract": {"column": column.name}},
     }
-    return field | ({"repeated": True} if column.kind in ("numbers", "signal") else {})
+    return field | ({"repeated": True} if column.kind in ("integers", "numbers", "signal") else {})
 
 
 def _semantic(version: str) -> str:

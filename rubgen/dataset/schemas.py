@@ -22,6 +22,7 @@ JSON_TYPES: dict[str, dict[str, Any]] = {
     "flag": {"type": "boolean"},
     "integer": {"type": "integer"},
     "number": {"type": "number"},
+    "integers": {"type": "array", "items": {"type": "integer"}},
     "numbers": {"type": "array", "items": {"type": "number"}},
 }
 
@@ -58,7 +59,7 @@ def _run_schema() -> dict[str, Any]:
 
 def _property(column: Column) -> dict[str, Any]:
     kind = dict(JSON_TYPES[column.kind])
-    if column.name.startswith("motion"):
+    if column.kind == "text" and column.name.startswith("motion"):
         kind["enum"] = [motion.value for motion in Motion]
     nullable = {"anyOf": [kind, {"type": "null"}]} if column.nullable else kind
     return {"description": f"{column.meaning}{f', in {column.unit}' if column.unit else ''}", **nullable}

@@ -16,7 +16,8 @@ CHANNELS = (*(probe.name for probe in PROBES), PULSE_CHANNEL)
 
 @dataclass(frozen=True)
 class Column:
-    """One column: `kind` is text, flag, integer, number, numbers (list of float64) or signal (list of float32).
+    """One column: `kind` is text, flag, integer, integers (list), number, numbers (list of float64) or signal (list of
+    float32).
 
     What a failed run does not have is `nullable`.
     """
@@ -67,12 +68,21 @@ def _labels() -> list[Column]:
         _label("contact_zone_centres_rad", "numbers", "rad", "polar angle of each zone"),
         _label("contact_zone_widths_rad", "numbers", "rad", "angular width of each zone"),
         _label("contact_zones_symmetric", "flag", "", "zones equal and evenly spread; null without contact"),
-        _label("motion_blisk", "text", "", "static, period-1, period-k, quasi-periodic or chaotic"),
+        _label("motion_blisk", "text", "", "static, period-1, period-k, quasi-periodic, undecided or chaotic"),
         _label("motion_casing", "text", "", "the same of the casing"),
         _label("motion", "text", "", "the less regular of the two"),
         _label("period_blisk", "integer", "turns", "turns after which the blisk repeats; null where it does not"),
         _label("period_casing", "integer", "turns", "the same of the casing"),
         _label("period", "integer", "turns", "least common multiple of the two; null where there is none"),
+        _label("motion_confidence", "number", "1", "how sure the class is, 0 to 1; 0 where undecided"),
+        _label("motion_symmetric", "flag", "", "q(t + T/N) = q(t) for N lobes; null unless period-1 in contact"),
+        _label("motion_intermittent", "flag", "", "the motion switches between regular and irregular"),
+        _label("motion_segment_starts_s", "numbers", "s", "starts of its stretches, from the record's start"),
+        _label("motion_segment_periods", "integers", "turns", "period of each stretch, 0 where irregular"),
+        _label("tip_chatter", "flag", "", "tips do not repeat, disk centre and casing do"),
+        _label("stray_blisk", "number", "1", "how far the blisk's section strays from repeating, over its motion"),
+        _label("stray_casing", "number", "1", "the same of the casing; null where it rests"),
+        _label("zero_one_k", "number", "1", "K of the 0-1 test: near 1 for chaos, near 0 for regular motion"),
         _label("has_2fr", "flag", "", "order 2 stands out of the casing acceleration at 0 degrees"),
         _label("lyapunov_per_turn", "number", "1/turn", "largest Lyapunov exponent; null where switched off"),
         _label("lyapunov_per_second", "number", "1/s", "the same by the second"),

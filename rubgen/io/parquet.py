@@ -28,6 +28,7 @@ TYPES = {
     "flag": pa.bool_(),
     "integer": pa.int64(),
     "number": pa.float64(),
+    "integers": pa.list_(pa.int64()),
     "numbers": pa.list_(pa.float64()),
     "signal": pa.list_(pa.float32()),
 }

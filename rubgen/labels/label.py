@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rubgen.labels.contact_zones import contact_zones
 from rubgen.labels.harmonics import harmonics
+from rubgen.labels.kept import as_kept
 from rubgen.labels.labels import Labels
 from rubgen.labels.lyapunov import lyapunov_of
 from rubgen.labels.motion import motion
@@ -17,12 +18,14 @@ def label(response: Response) -> Labels:
     tail of the taps is. Labels are those of the true response, before any sensor. A motion is safely told from 500
     recorded turns on (recipes ask for them); fewer are taken too, down to 32, where UserError is raised.
     """
+    response = as_kept(response)
     contact_steps = int(response.contact_steps_per_turn.sum())
     rub = contact_steps > 0
     zones = contact_zones(response.events, steps_per_turn=response.steps_per_turn)
-    parts = motion(response)
-    orders = harmonics(response)
     exponent = lyapunov_of(response)
+    parts = motion(response, exponent)
+    orders = harmonics(response)
+    turn = response.turn_seconds
     return Labels(
         rub=rub,
         contact_duty=contact_steps / (response.record_turns * response.steps_per_turn),
@@ -44,5 +47,13 @@ def label(response: Response) -> Labels:
         odd_share=orders.odd_share,
         dominant_order=orders.dominant_order,
         lyapunov=exponent,
-        lyapunov_per_second=exponent.per_turn / response.turn_seconds if exponent else None,
+        lyapunov_per_second=exponent.per_turn / turn if exponent else None,
+        motion_confidence=parts.system.confidence,
+        motion_symmetric=parts.symmetric,
+        tip_chatter=parts.tip_chatter,
+        zero_one_k=parts.indicators[0].growth if parts.indicators else None,
+        stray_blisk=parts.indicators[0].stray if parts.indicators else None,
+        stray_casing=parts.indicators[1].stray if len(parts.indicators) > 1 else None,
+        segment_starts=tuple(segment.start * turn for segment in parts.segments),
+        segment_periods=tuple(segment.period for segment in parts.segments),
     )

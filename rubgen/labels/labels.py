@@ -10,12 +10,13 @@ from rubgen.labels.lyapunov import Exponent
 
 
 class Motion(StrEnum):
-    """Class of a steady motion, from the most regular to the least."""
+    """Class of a steady motion, from the most regular to the least; undecided where its indicators contradict."""
 
     STATIC = "static"
     PERIOD_1 = "period-1"
     PERIOD_K = "period-k"
     QUASI_PERIODIC = "quasi-periodic"
+    UNDECIDED = "undecided"
     CHAOTIC = "chaotic"
 
 
@@ -26,7 +27,10 @@ class Labels:
     Angles in rad, impulse in N s. `period*` is None unless the motion repeats after that many turns. The dictionaries
     are keyed by tap name: `orders` holds peak amplitudes at k f_r, k = 1..10, in the tap's unit; `even_share` and
     `odd_share` the shares of sum of squared amplitudes on even and odd k; `dominant_order` the k of the largest.
-    `lyapunov` is the largest exponent of the whole system in 1/turn, None where it was switched off.
+    `lyapunov` is the largest exponent of the whole system in 1/turn, None where it was switched off. `motion_symmetric` is None unless the
+    motion is period-1 in contact. `zero_one_k` is K of the 0-1 test, `stray_*` how far the points of the section lie from
+    where they should come back to, over the motion. Segments are empty unless the motion switches: starts in s from the
+    record's, periods in turns, 0 where it is irregular.
     """
 
     rub: bool
@@ -49,4 +53,12 @@ class Labels:
     odd_share: dict[str, float]
     dominant_order: dict[str, int]
     lyapunov: Exponent | None = None
+    motion_confidence: float = 1.0
+    motion_symmetric: bool | None = None
+    tip_chatter: bool = False
+    zero_one_k: float | None = None
+    stray_blisk: float | None = None
+    stray_casing: float | None = None
+    segment_starts: tuple[float, ...] = ()
+    segment_periods: tuple[int, ...] = ()
     lyapunov_per_second: float | None = None

@@ -28,13 +28,13 @@ class Exponent:
 
     @property
     def is_positive(self) -> bool:
-        """More than three standard errors above zero, and more than can be told from it."""
-        return self.per_turn > max(3 * self.error, LEAST)
+        """More than two standard errors above zero, and more than can be told from it."""
+        return self.per_turn > max(2 * self.error, LEAST)
 
     @property
     def is_negative(self) -> bool:
         """The same below zero."""
-        return self.per_turn < -max(3 * self.error, LEAST)
+        return self.per_turn < -max(2 * self.error, LEAST)
 
 
 LEAST = 1e-3

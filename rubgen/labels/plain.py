@@ -30,6 +30,7 @@ def labels_dict(labels: Labels) -> dict[str, object]:
         "period_blisk": labels.period_blisk,
         "period_casing": labels.period_casing,
         "period": labels.period,
+        **_motion_labels(labels),
         "has_2fr": bool(labels.has_2fr),
         **_lyapunov_labels(labels),
     }
@@ -38,11 +39,29 @@ def labels_dict(labels: Labels) -> dict[str, object]:
     return plain
 
 
+def _motion_labels(labels: Labels) -> dict[str, object]:
+    return {
+        "motion_confidence": _number(labels.motion_confidence),
+        "motion_symmetric": labels.motion_symmetric,
+        "motion_intermittent": bool(labels.segment_starts),
+        "motion_segment_starts_s": [_number(start) for start in labels.segment_starts],
+        "motion_segment_periods": [int(period) for period in labels.segment_periods],
+        "tip_chatter": bool(labels.tip_chatter),
+        "stray_blisk": _optional(labels.stray_blisk),
+        "stray_casing": _optional(labels.stray_casing),
+        "zero_one_k": _optional(labels.zero_one_k),
+    }
+
+
+def _optional(value: float | None) -> float | None:
+    return None if value is None else _number(value)
+
+
 def _lyapunov_labels(labels: Labels) -> dict[str, object]:
     exponent, per_second = labels.lyapunov, labels.lyapunov_per_second
     return {
         "lyapunov_per_turn": _number(exponent.per_turn) if exponent else None,
-        "lyapunov_per_second": None if per_second is None else _number(per_second),
+        "lyapunov_per_second": _optional(per_second),
         "lyapunov_error": _number(exponent.error) if exponent else None,
         "lyapunov_convergence": [_number(value) for value in exponent.convergence] if exponent else [],
     }

@@ -9,6 +9,8 @@ from rubgen.arrays import FloatArray
 
 FREQUENCIES = np.pi * (0.2 + 0.6 * (np.arange(100) + 0.5) / 100 + 0.002 * np.sin(1.0 + np.arange(100) ** 2))
 """100 fixed c in (pi/5, 4 pi/5): evenly spread, then shifted a little so that no c is a simple fraction of pi."""
+DAMPING = 2.5
+"""Gottwald and Melbourne's alpha."""
 
 
 def growth_correlation(observable: FloatArray) -> float:
@@ -16,14 +18,18 @@ def growth_correlation(observable: FloatArray) -> float:
 
     With the translation p_c(n) = sum_{j <= n} phi_j exp(i c j), the mean square displacement
     M_c(n) = mean_j |p_c(j + n) - p_c(j)|^2 over n = 1 .. N/10 loses its oscillation,
-    D_c(n) = M_c(n) - mean(phi)^2 (1 - cos n c)/(1 - cos c); K_c = corr(n, D_c(n)), K = median of K_c over all c.
+    D_c(n) = M_c(n) - mean(phi)^2 (1 - cos n c)/(1 - cos c), and gains that of the damped variant,
+    D*_c(n) = D_c(n) + DAMPING var(phi) sin(sqrt(2) n), beside which the slow growth that a little noise adds to regular
+    motion is nothing; K_c = corr(n, D*_c(n)), K = median of K_c over all c. (The authors scale it by mean(phi)^2, which
+    depends on the zero of the observable; here it has none.)
     Meaningless for a constant with rounding noise: cluster first.
     """
     displacement = _mean_square_displacement(observable)
     steps = np.arange(1, displacement.shape[1] + 1)
     c = FREQUENCIES[:, None]
     oscillation = observable.mean() ** 2 * (1 - np.cos(steps * c)) / (1 - np.cos(c))
-    return float(np.median(_correlation(steps.astype(np.float64), displacement - oscillation)))
+    damping = DAMPING * observable.var() * np.sin(np.sqrt(2) * steps)
+    return float(np.median(_correlation(steps.astype(np.float64), displacement - oscillation + damping)))
 
 
 def _mean_square_displacement(observable: FloatArray) -> FloatArray:

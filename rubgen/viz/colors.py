@@ -7,11 +7,13 @@ import numpy as np
 from rubgen.labels.labels import Motion
 
 BLUE, GREEN, ORANGE, VERMILION, GREY = "#0072b2", "#009e73", "#e69f00", "#d55e00", "#8c8c8c"
+SKY = "#56b4e9"
 MOTION_COLORS = {
     Motion.STATIC: GREY,
     Motion.PERIOD_1: BLUE,
     Motion.PERIOD_K: GREEN,
     Motion.QUASI_PERIODIC: ORANGE,
+    Motion.UNDECIDED: SKY,
     Motion.CHAOTIC: VERMILION,
 }
 

@@ -33,6 +33,7 @@ MOTION_MARKERS = {
     Motion.PERIOD_1: "o",
     Motion.PERIOD_K: "s",
     Motion.QUASI_PERIODIC: "D",
+    Motion.UNDECIDED: "P",
     Motion.CHAOTIC: "^",
 }
 AXES = {

@@ -5,15 +5,10 @@ import pytest
 
 from rubgen.errors import UserError
 from rubgen.labels import Motion
-from rubgen.labels.motion import (
-    MotionClass,
-    chaos_indicator,
-    cluster_distances,
-    cluster_period,
-    combined,
-    motion,
-    motion_class,
-)
+from rubgen.labels.chaos import chaos_indicator
+from rubgen.labels.clusters import cluster_distances, cluster_period, stray
+from rubgen.labels.decision import Indicators, MotionClass, combined, decide
+from rubgen.labels.motion import motion
 from rubgen.solver.response import Response
 
 Respond = Callable[..., Response]
@@ -34,7 +29,9 @@ def section(*columns: np.ndarray) -> np.ndarray:
 
 
 def classify(points: np.ndarray) -> MotionClass:
-    return motion_class(cluster_period(points), chaos_indicator(points))
+    period = cluster_period(points)
+    seen = Indicators(period=period, stray=stray(points, period), growth=chaos_indicator(points), exponent=None)
+    return decide(seen)
 
 
 def logistic(r: float, count: int = 500) -> np.ndarray:
@@ -194,7 +191,8 @@ def test_period_of_the_system_is_the_least_common_multiple(respond: Respond) -> 
 
 
 def test_motion_is_the_less_regular_of_the_two() -> None:
-    order = [STATIC, period(1), period(3), QUASI, CHAOTIC]
+    undecided = MotionClass(motion=Motion.UNDECIDED, period=None)
+    order = [STATIC, period(1), period(3), QUASI, undecided, CHAOTIC]
     for i, first in enumerate(order[1:], start=1):
         for j, second in enumerate(order):
             assert combined(first, second).motion is order[max(i, j)].motion

@@ -1,0 +1,83 @@
+"""Whether the points of a section come back after some turns."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+
+LONGEST_PERIOD = 16
+CLUSTER_RADIUS = 0.01
+"""Points stray from the mean of their cluster by 1 % of the part's motion at most, rms over turns: by -40 dB."""
+EXCURSION = 0.03
+"""No single point strays by more than this."""
+
+
+def cluster_period(points: FloatArray) -> int | None:
+    """Smallest k <= 16 after which the points (turns, groups, values) come back, or None.
+
+    Looks at the second half of the record, where transients have died. A point's distance to the mean of its cluster is
+    that of its farthest group (so that one chattering tip counts); rms over turns it must be CLUSTER_RADIUS at most,
+    for no turn above EXCURSION, and it must not grow.
+    """
+    late = _late(points)
+    for period in range(1, _longest(late) + 1):
+        distance = cluster_distances(late, period)
+        if rms(distance) <= CLUSTER_RADIUS and distance.max() <= EXCURSION and not _grows(distance):
+            return period
+    return None
+
+
+def stray(points: FloatArray, period: int | None) -> float:
+    """Rms distance of the second half's points from their clusters, over the motion: of the least k <= 16 without one.
+
+    Means of k clusters of n points lie nearer to the points than the true ones; n - k in the mean square allows for it.
+    """
+    late = _late(points)
+    periods = range(1, _longest(late) + 1) if period is None else (period,)
+    return min(rms(cluster_distances(late, k)) / np.sqrt(1 - k / len(late)) for k in periods)
+
+
+def cluster_distances(points: FloatArray, period: int) -> FloatArray:
+    """Distance of each point (turns, groups, values) to its cluster's mean, the largest of its groups."""
+    return np.asarray(np.linalg.norm(off_cluster(points, period), axis=2).max(axis=1), dtype=np.float64)
+
+
+def without_periodic_part(points: FloatArray) -> FloatArray:
+    """The points less the means of their k clusters, k <= 16 being the one that leaves the least variance.
+
+    A motion that wanders within bands which it visits in turn would otherwise look regular: the bands outweigh it. The
+    variance is divided by turns - k, so that more clusters alone are no gain.
+    """
+    turns = points.shape[0]
+    left = [off_cluster(points, k) for k in range(1, min(LONGEST_PERIOD, turns // 8) + 1)]
+    variance = [np.sum(rest**2) / (turns - k) for k, rest in enumerate(left, start=1)]
+    return left[int(np.argmin(variance))]
+
+
+def off_cluster(points: FloatArray, period: int) -> FloatArray:
+    """Points less the mean of every period-th point."""
+    residual = points.copy()
+    for phase in range(period):
+        residual[phase::period] -= points[phase::period].mean(axis=0)
+    return residual
+
+
+def rms(values: FloatArray) -> float:
+    """Root of the mean square."""
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _late(points: FloatArray) -> FloatArray:
+    return points[points.shape[0] // 2 :]
+
+
+def _longest(late: FloatArray) -> int:
+    return min(LONGEST_PERIOD, late.shape[0] // 4)
+
+
+def _grows(distance: FloatArray) -> bool:
+    """Whether the later half is more than twice as far as the earlier one and no longer tiny: an orbit being left."""
+    half = distance.size // 2
+    earlier, later = rms(distance[:half]), rms(distance[half:])
+    return later > 2 * earlier and later > CLUSTER_RADIUS / 10

@@ -1,0 +1,112 @@
+"""What is kept of a response so that its labels can be made again: section, touches, growths of the twin.
+
+Every label but those of orders is computed from these numbers as they are kept, in single precision, so that whoever
+reads them back finds the same values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from rubgen.arrays import FloatArray
+from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status
+
+Kept = Mapping[str, npt.NDArray[Any]]
+
+TOUCHES = {
+    "blade": np.int16,
+    "start_step": np.int32,
+    "steps": np.int32,
+    "angle": np.float32,
+    "impulse": np.float32,
+    "friction_loss": np.float32,
+    "normal_loss": np.float32,
+}
+"""One number of each for every touch."""
+SCALARS = ("speed", "dt", "steps_per_turn", "settle_turns", "record_turns", "n_blades", "n_casing")
+
+
+def keep(response: Response) -> dict[str, npt.NDArray[Any]]:
+    """The arrays to keep of a response: about 0.27 MB for 500 turns and 36 blades, and 26 bytes for each touch.
+
+    `section` (turns, 3 blades + 4 + 2 casing modes): displacements of the tips, x, y, v_x, v_y of the disk centre,
+    casing displacements and velocities; `fractions` the same after each Nth of the last turn; `growth`, `turn_impulse`,
+    `contact_steps` once a turn; what `TOUCHES` names once a touch; `scalars` (7,).
+    """
+    fractions = response.fractions
+    kept: dict[str, npt.NDArray[Any]] = {
+        "scalars": np.array([getattr(response, name) for name in SCALARS], dtype=np.float64),
+        "section": _narrow(response.section_q, response.section_v, response),
+        "fractions": _narrow(fractions[:, 0], fractions[:, 1], response) if fractions.size else np.zeros((0, 0), "f4"),
+        "growth": response.twin_growth.astype(np.float32),
+        "turn_impulse": response.impulse_per_turn.astype(np.float32),
+        "contact_steps": response.contact_steps_per_turn.astype(np.int32),
+    }
+    return kept | {name: getattr(response.events, name).astype(kind) for name, kind in TOUCHES.items()}
+
+
+def response_of(kept: Kept) -> Response:
+    """The response of these arrays: blisk modes, taps, energy and all but the disk centre's and casing's speed are gone."""
+    scalars = dict(zip(SCALARS, kept["scalars"].tolist(), strict=True))
+    blades, casing = int(scalars["n_blades"]), int(scalars["n_casing"])
+    q, v = _wide(kept["section"], blades, casing)
+    fractions = np.stack(_wide(kept["fractions"], blades, casing), axis=1)
+    return Response(
+        status=Status.OK,
+        reason="",
+        speed=scalars["speed"],
+        dt=scalars["dt"],
+        steps_per_turn=int(scalars["steps_per_turn"]),
+        settle_turns=int(scalars["settle_turns"]),
+        record_turns=int(scalars["record_turns"]),
+        taps={},
+        section_q=q,
+        section_v=v,
+        impulse_per_turn=kept["turn_impulse"].astype(np.float64),
+        contact_steps_per_turn=kept["contact_steps"].astype(np.int64),
+        events=_touches(kept),
+        energy=EnergyBook(**dict.fromkeys(EnergyBook.__dataclass_fields__, float("nan"))),
+        n_blades=blades,
+        n_casing=casing,
+        twin_growth=kept["growth"].astype(np.float64),
+        fractions=fractions,
+    )
+
+
+def as_kept(response: Response) -> Response:
+    """The response with the precision that is kept, and its taps."""
+    return replace(response_of(keep(response)), taps=response.taps)
+
+
+def _touches(kept: Kept) -> ContactEvents:
+    return ContactEvents(
+        blade=kept["blade"].astype(np.int64),
+        start_step=kept["start_step"].astype(np.int64),
+        steps=kept["steps"].astype(np.int64),
+        angle=kept["angle"].astype(np.float64),
+        impulse=kept["impulse"].astype(np.float64),
+        friction_loss=kept["friction_loss"].astype(np.float64),
+        normal_loss=kept["normal_loss"].astype(np.float64),
+    )
+
+
+def _narrow(q: FloatArray, v: FloatArray, response: Response) -> npt.NDArray[np.float32]:
+    centre, casing = 3 * response.n_blades, q.shape[1] - response.n_casing
+    parts = [q[:, : centre + 2], v[:, centre : centre + 2], q[:, casing:], v[:, casing:]]
+    return np.concatenate(parts, axis=1).astype(np.float32)
+
+
+def _wide(rows: npt.NDArray[Any], blades: int, casing: int) -> tuple[FloatArray, FloatArray]:
+    """Q and v (any, 3 blades + 2 + casing) of kept rows."""
+    centre = 3 * blades
+    rows = rows.astype(np.float64) if rows.size else np.zeros((0, centre + 4 + 2 * casing))
+    q = np.concatenate([rows[:, : centre + 2], rows[:, centre + 4 : centre + 4 + casing]], axis=1)
+    v = np.zeros_like(q)
+    v[:, centre : centre + 2] = rows[:, centre + 2 : centre + 4]
+    v[:, centre + 2 :] = rows[:, centre + 4 + casing :]
+    return q, v
