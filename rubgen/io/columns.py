@@ -16,10 +16,9 @@ CHANNELS = (*(probe.name for probe in PROBES), PULSE_CHANNEL)
 
 @dataclass(frozen=True)
 class Column:
-    """One column: `kind` is text, flag, integer, integers (list), number, numbers (list of float64) or signal (list of
-    float32).
+    """One column; what a failed run does not have is `nullable`.
 
-    What a failed run does not have is `nullable`.
+    `kind` is text, flag, integer, integers (list), number, numbers (list of float64) or signal (list of float32).
     """
 
     name: str

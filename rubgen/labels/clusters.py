@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from rubgen.arrays import FloatArray
@@ -35,7 +37,7 @@ def stray(points: FloatArray, period: int | None) -> float:
     """
     late = _late(points)
     periods = range(1, _longest(late) + 1) if period is None else (period,)
-    return min(rms(cluster_distances(late, k)) / np.sqrt(1 - k / len(late)) for k in periods)
+    return min(rms(cluster_distances(late, k)) / math.sqrt(1 - k / len(late)) for k in periods)
 
 
 def cluster_distances(points: FloatArray, period: int) -> FloatArray:
@@ -73,7 +75,7 @@ def _late(points: FloatArray) -> FloatArray:
 
 
 def _longest(late: FloatArray) -> int:
-    return min(LONGEST_PERIOD, late.shape[0] // 4)
+    return min(LONGEST_PERIOD, len(late) // 4)
 
 
 def _grows(distance: FloatArray) -> bool:

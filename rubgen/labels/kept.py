@@ -1,6 +1,6 @@
 """What is kept of a response so that its labels can be made again: section, touches, growths of the twin.
 
-Every label but those of orders is computed from these numbers as they are kept, in single precision, so that whoever
+Every label but those of orders is computed from these numbers as they are kept, most in single precision, so that whoever
 reads them back finds the same values.
 """
 
@@ -44,14 +44,14 @@ def keep(response: Response) -> dict[str, npt.NDArray[Any]]:
         "section": _narrow(response.section_q, response.section_v, response),
         "fractions": _narrow(fractions[:, 0], fractions[:, 1], response) if fractions.size else np.zeros((0, 0), "f4"),
         "growth": response.twin_growth.astype(np.float32),
-        "turn_impulse": response.impulse_per_turn.astype(np.float32),
+        "turn_impulse": response.impulse_per_turn.astype(np.float64),
         "contact_steps": response.contact_steps_per_turn.astype(np.int32),
     }
     return kept | {name: getattr(response.events, name).astype(kind) for name, kind in TOUCHES.items()}
 
 
 def response_of(kept: Kept) -> Response:
-    """The response of these arrays: blisk modes, taps, energy and all but the disk centre's and casing's speed are gone."""
+    """The response of these arrays, without blisk modes, taps, energy, and speeds of tips."""
     scalars = dict(zip(SCALARS, kept["scalars"].tolist(), strict=True))
     blades, casing = int(scalars["n_blades"]), int(scalars["n_casing"])
     q, v = _wide(kept["section"], blades, casing)

@@ -27,10 +27,10 @@ class Labels:
     Angles in rad, impulse in N s. `period*` is None unless the motion repeats after that many turns. The dictionaries
     are keyed by tap name: `orders` holds peak amplitudes at k f_r, k = 1..10, in the tap's unit; `even_share` and
     `odd_share` the shares of sum of squared amplitudes on even and odd k; `dominant_order` the k of the largest.
-    `lyapunov` is the largest exponent of the whole system in 1/turn, None where it was switched off. `motion_symmetric` is None unless the
-    motion is period-1 in contact. `zero_one_k` is K of the 0-1 test, `stray_*` how far the points of the section lie from
-    where they should come back to, over the motion. Segments are empty unless the motion switches: starts in s from the
-    record's, periods in turns, 0 where it is irregular.
+    `lyapunov` is the largest exponent of the whole system in 1/turn, None where it was switched off.
+    `motion_symmetric` is None unless the motion is period-1 in contact. `zero_one_k` is K of the 0-1 test, `stray_*`
+    how far the points of the section lie from where they should come back to, over the motion. Segments are empty
+    unless the motion switches: starts in s from the record's, periods in turns, 0 where it is irregular.
     """
 
     rub: bool

@@ -11,6 +11,8 @@ FREQUENCIES = np.pi * (0.2 + 0.6 * (np.arange(100) + 0.5) / 100 + 0.002 * np.sin
 """100 fixed c in (pi/5, 4 pi/5): evenly spread, then shifted a little so that no c is a simple fraction of pi."""
 DAMPING = 2.5
 """Gottwald and Melbourne's alpha."""
+DAMPED_FROM = 200
+"""Points from which the variant is taken: of fewer, n is too short for the added oscillation to average out."""
 
 
 def growth_correlation(observable: FloatArray) -> float:
@@ -28,7 +30,8 @@ def growth_correlation(observable: FloatArray) -> float:
     steps = np.arange(1, displacement.shape[1] + 1)
     c = FREQUENCIES[:, None]
     oscillation = observable.mean() ** 2 * (1 - np.cos(steps * c)) / (1 - np.cos(c))
-    damping = DAMPING * observable.var() * np.sin(np.sqrt(2) * steps)
+    alpha = DAMPING if observable.size >= DAMPED_FROM else 0.0
+    damping = alpha * observable.var() * np.sin(np.sqrt(2) * steps)
     return float(np.median(_correlation(steps.astype(np.float64), displacement - oscillation + damping)))
 
 

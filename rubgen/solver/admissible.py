@@ -71,7 +71,8 @@ def _mass_problem(system: SpinningSystem) -> str | None:
 
 def _rest_problem(system: SpinningSystem) -> str | None:
     narrowest = system.surface.mean_radius - float(np.abs(system.surface.amplitude).sum())
-    if system.tip_radius < narrowest:
+    shrunk = float((system.tip_radius + system.tip_static[:, 0]).max())
+    if min(system.tip_radius, shrunk) < narrowest:
         return None
     return (
         f"clearance = {narrowest - system.tip_radius:.4g} m: blade tips of radius {system.tip_radius:g} m pass the "

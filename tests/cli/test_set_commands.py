@@ -60,7 +60,14 @@ def test_info_counts(generate, run, tmp_path):
     values = json.loads(output)
     assert code == 0
     assert (values["runs"], values["status"], values["rub"]) == (3, {"diverged": 1, "ok": 2}, {"true": 0, "false": 2})
-    assert values["motion"] == {"static": 0, "period-1": 2, "period-k": 0, "quasi-periodic": 0, "chaotic": 0}
+    assert values["motion"] == {
+        "static": 0,
+        "period-1": 2,
+        "period-k": 0,
+        "quasi-periodic": 0,
+        "undecided": 0,
+        "chaotic": 0,
+    }
     code, output, _ = run("info", str(tmp_path / "set"))
     assert "run-000002  diverged: in turn 7" in output
 

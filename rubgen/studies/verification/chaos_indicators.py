@@ -1,7 +1,8 @@
 """The 0-1 test for chaos on maps whose nature is known.
 
-K tends to 1 for chaos and to 0 for regular motion. With 500 points a section, as labels have, it is within 0.01 of 1
-for strongly chaotic maps and within 0.05 of 0 for periodic and quasi-periodic motion (Gottwald and Melbourne 2009).
+K tends to 1 for chaos and to 0 for regular motion. With 500 points a section, as labels have, the damped variant
+(Gottwald and Melbourne 2009) is within 0.025 of 1 for strongly chaotic maps, its own limit for a map without memory being
+0.992, and within 0.05 of 0 for periodic and quasi-periodic motion.
 With the 49 points of the published diagrams it is not: most rotations of a circle then look chaotic, which is why
 labels take 500.
 """
@@ -47,8 +48,8 @@ def circle_map(rotation: float, points: int = POINTS) -> FloatArray:
 def rows() -> Iterator[Row]:
     """Chaotic, periodic and quasi-periodic maps."""
     source = "chaotic: K = 1"
-    yield within("0-1 test: K of the logistic map, r = 4", source, 1.0, growth_correlation(logistic(4.0)), 0.01)
-    yield within("0-1 test: K of Henon's map", source, 1.0, growth_correlation(henon()), 0.01)
+    yield within("0-1 test: K of the logistic map, r = 4", source, 1.0, growth_correlation(logistic(4.0)), 0.025)
+    yield within("0-1 test: K of Henon's map", source, 1.0, growth_correlation(henon()), 0.025)
     source = "regular: K = 0"
     found = growth_correlation(logistic(3.5))
     yield within("0-1 test: K of the logistic map of period 4, r = 3.5", source, 0.0, found, 0.05)
