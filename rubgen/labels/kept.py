@@ -1,7 +1,7 @@
 """What is kept of a response so that its labels can be made again: section, touches, growths of the twin.
 
-Every label but those of orders is computed from these numbers as they are kept, most in single precision, so that whoever
-reads them back finds the same values.
+Every label but those of orders is computed from these numbers as they are kept, most in single precision, so that
+whoever reads them back finds the same values.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The 0-1 test for chaos on maps whose nature is known.
 
 K tends to 1 for chaos and to 0 for regular motion. With 500 points a section, as labels have, the damped variant
-(Gottwald and Melbourne 2009) is within 0.025 of 1 for strongly chaotic maps, its own limit for a map without memory being
-0.992, and within 0.05 of 0 for periodic and quasi-periodic motion.
+(Gottwald and Melbourne 2009) is within 0.025 of 1 for strongly chaotic maps, its own limit for a map without memory
+being 0.992, and within 0.05 of 0 for periodic and quasi-periodic motion.
 With the 49 points of the published diagrams it is not: most rotations of a circle then look chaotic, which is why
 labels take 500.
 """
