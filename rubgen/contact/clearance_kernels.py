@@ -53,12 +53,15 @@ def clearance_bounds(
 ) -> None:
     """A lower bound of r(angle of P) + opening - |P| for every tip P, into `bounds_out` (n_blades,).
 
+    Chords lie inside the smooth curve by at most `surface.inset`. Wear is left out: a worn surface encloses the unworn
+    one, so no point is nearer to it.
+
     With a and t the radial and tangential place of the tip and x = t / a, its polar angle differs from the blade's by
     x but for |x|^3 / 3, r there from r + r' x by at most |r''| x^2 / 2, and |P| <= a + t x / 2. `displacement` (2 or
     more, any) holds the radial and the tangential displacement of each blade's tip; `cos_orders`, `sin_orders`
     (n_harmonics,) are those of order_j (theta - phase_j).
     """
-    base = surface.mean_radius + opening - tips.radius
+    base = surface.mean_radius + opening - tips.radius - surface.inset
     nearest = 1.0 / tips.radius
     for k in range(bounds_out.shape[0]):
         a = tips.static[0, k] + displacement[0, k]
@@ -87,7 +90,7 @@ def deformation_bounds(surface: Surface, q_casing: FloatArray) -> tuple[float, f
     between the nodes; second, the slope of r + opening + u_r by the angle. A surface point at psi stands at a polar
     angle that differs by at most |u_t| / |X|, so the radius is less by at most that times the slope.
     """
-    reach, slope, bend = 0.0, surface.steepness, 0.0
+    reach, slope, bend = 0.0, surface.slope, 0.0
     for j in range(q_casing.shape[0]):
         size = abs(q_casing[j])
         reach += size * surface.reach[j]

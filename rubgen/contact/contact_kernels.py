@@ -22,7 +22,8 @@ class ContactWork(NamedTuple):
     Per blade: `bounds`, `psi`, `gap` (the free gap at q*; NaN when the blade is provably farther than the
     margin), `tangent` (n_blades, 2), `held` (3, n_blades): the scheme's gaps at steps n - 1, n, n + 1.
     Per contact: `lam`, `b`, `W`, `normal_tip` and `full_tip` (n_blades, 3), `normal_casing` and `full_casing`
-    (n_blades, n_casing), `slip` (n_blades, 2) the friction direction, `casing_response` (n_blades, n_casing) A^-1 B.
+    (n_blades, n_casing), `slip` (n_blades, 2) the friction direction, `sliding` (n_blades,) the speed |v_rel| where
+    friction or wear asks for it, `casing_response` (n_blades, n_casing) A^-1 B.
     """
 
     bounds: FloatArray
@@ -39,6 +40,7 @@ class ContactWork(NamedTuple):
     normal_casing: FloatArray
     full_casing: FloatArray
     slip: FloatArray
+    sliding: FloatArray
     casing_response: FloatArray
     ends: FloatArray
     rows: FloatArray
@@ -145,9 +147,10 @@ def build_rows(
     casing_rows(surface, work.psi[k], work.rows)
     tx, ty = work.tangent[k, 0], work.tangent[k, 1]
     along, axial = 0.0, 0.0
-    if friction > 0.0:
+    if friction > 0.0 or surface.liner.depth.shape[0] > 0:
         slip = contact_slip(tips, m, velocity, q, speed, cosine, sine, work)
         along, axial = friction_direction(slip[0], slip[1])
+        work.sliding[m] = math.sqrt(slip[0] * slip[0] + slip[1] * slip[1])
     work.slip[m, 0], work.slip[m, 1] = along, axial
     fx, fy = -ty + friction * along * tx, tx + friction * along * ty
     work.normal_tip[m, 0] = -ty * cosine + tx * sine

@@ -6,9 +6,11 @@ import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.contact.geometry_kernels import Surface, Tips, foot_of
+from rubgen.contact.liner_kernels import Liner
 from rubgen.errors import UserError
-from rubgen.reduction.model import SpinningSystem
+from rubgen.reduction.model import CasingSurface, SpinningSystem
 from rubgen.scenario import ContactLaw
+from rubgen.scenario import Liner as LinerSpec
 
 CENTRE_LINE = ContactLaw()
 """Contact without options: on the smooth surface, which moves as the ring's centre line does."""
@@ -56,7 +58,9 @@ def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) ->
 
     Nodal slopes come from the Fourier series of the nodal displacements, so u is exact to fourth order in the node
     distance, and continuous in slope. A value between nodes is at most the largest nodal value plus a quarter of the
-    node distance times the largest slope: that bounds each mode's reach.
+    node distance times the largest slope: that bounds each mode's reach. `contact` may ask for the inner surface's
+    displacement, for chords between the nodes instead of the smooth curve, and for a liner, which begins unworn: the
+    surface of a run is its own.
     """
     modes = surface_modes(system, contact)
     nodes = modes.shape[0]
@@ -65,9 +69,12 @@ def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) ->
     size, slope_size = (np.sqrt((field**2).sum(axis=1)).max(axis=0) for field in (modes, slopes))
     curve = system.surface
     steepness = float(np.abs(curve.amplitude * curve.order).sum())
+    bend = float(np.abs(curve.amplitude * curve.order**2).sum())
     bends = hermite_bends(modes, slopes, step)
     between = slope_size + 0.5 * step * bends
     angle = step * np.arange(nodes)[:, None]
+    corners = node_radii(curve, nodes) if contact.surface == "chords" else np.zeros(0)
+    inset, slope = chord_bounds(corners, bend) if len(corners) else (0.0, steepness)
     return Surface(
         mean_radius=float(curve.mean_radius),
         amplitude=np.asarray(curve.amplitude, dtype=float),
@@ -80,7 +87,11 @@ def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) ->
         mode_bend=np.ascontiguousarray(bends + 2 * between + size + 0.25 * step * slope_size),
         radial=np.ascontiguousarray(modes[:, 0] * np.cos(angle) + modes[:, 1] * np.sin(angle)),
         steepness=steepness,
-        bend=float(np.abs(curve.amplitude * curve.order**2).sum()),
+        bend=bend,
+        corners=corners,
+        inset=inset,
+        slope=slope,
+        liner=unworn(contact.liner, float(curve.mean_radius)),
     )
 
 
@@ -96,6 +107,36 @@ def blade_tips(system: SpinningSystem) -> Tips:
         sin_angle=np.sin(angle),
         cos_order=np.cos(orders),
         sin_order=np.sin(orders),
+    )
+
+
+def node_radii(curve: CasingSurface, nodes: int) -> FloatArray:
+    """Radius (nodes,) of the smooth curve at equal steps of polar angle from 0."""
+    angle = 2 * np.pi * np.arange(nodes) / nodes
+    return np.asarray(curve.mean_radius + np.cos(np.subtract.outer(angle, curve.phase) * curve.order) @ curve.amplitude)
+
+
+def chord_bounds(corners: FloatArray, bend: float) -> tuple[float, float]:
+    """How far chords between nodes of these radii lie inside the smooth curve at most, and their largest |dr/dpsi|.
+
+    Both meet at the nodes, so they differ by at most h^2 / 8 times the largest second derivative of the difference:
+    `bend` of the curve plus r + 2 r'^2 / r of a straight line, whose |r'| is largest at its ends.
+    """
+    step, following = 2 * np.pi / len(corners), np.roll(corners, -1)
+    at_start = corners / np.tan(step) - corners**2 / (following * np.sin(step))
+    at_end = following**2 / (corners * np.sin(step)) - following / np.tan(step)
+    slope = float(np.abs([at_start, at_end]).max())
+    nearest = float(corners.min()) * np.cos(step / 2)
+    return step**2 / 8 * (bend + float(corners.max()) + 2 * slope**2 / nearest), slope
+
+
+def unworn(spec: LinerSpec | None, radius: float) -> Liner:
+    """The liner of that specification before anything has touched it; `radius` (m) turns angles into lengths."""
+    if spec is None:
+        return Liner(np.zeros(0), np.zeros((2, 0)), 0.0, 0.0, 1.0, np.zeros(2))
+    area = spec.width_m * radius * 2 * np.pi / spec.bins
+    return Liner(
+        np.zeros(spec.bins), np.zeros((2, spec.bins)), spec.thickness_m, spec.wear_m2_per_n, float(area), np.zeros(2)
     )
 
 

@@ -1,7 +1,8 @@
 """Where a blade tip stands against the deformed casing surface.
 
-The surface is X(psi) = (r(psi) + opening) e_r(psi) + u(psi): the undeformed smooth curve plus the casing's elastic
-displacement, interpolated between the nodes by periodic cubic Hermite polynomials (continuous in slope).
+The surface is X(psi) = (r(psi) + opening) e_r(psi) + u(psi): the undeformed curve plus the casing's elastic
+displacement, interpolated between the nodes by periodic cubic Hermite polynomials (continuous in slope). The undeformed
+curve is smooth; as an option it is the polygon through the nodes, and worn where there is a liner.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import math
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray
+from rubgen.contact.liner_kernels import Liner, worn_depth
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 
 FOOT_TOLERANCE = 1e-10
@@ -22,7 +24,9 @@ class Surface(NamedTuple):
     `table` (nodes, n_casing, 4) holds X, Y and their derivatives by the polar angle for each node and mode; `reach`
     (n_casing,) bounds the displacement anywhere on the ring per unit of each mode, `mode_slope` and `mode_bend` the
     first and second derivative of its radial part; `radial` (nodes, n_casing) is that part at the nodes. `steepness`
-    bounds |dr/dpsi|, `bend` |d2r/dpsi2|.
+    bounds |dr/dpsi|, `bend` |d2r/dpsi2| of the smooth curve. `corners` (nodes,) are the radii at the nodes where chords
+    join them, else (0,); `inset` bounds how far the unworn surface lies inside of the smooth curve, `slope` its
+    |dr/dpsi|.
     """
 
     mean_radius: float
@@ -37,6 +41,10 @@ class Surface(NamedTuple):
     radial: FloatArray
     steepness: float
     bend: float
+    corners: FloatArray
+    inset: float
+    slope: float
+    liner: Liner
 
 
 class Tips(NamedTuple):
@@ -56,8 +64,33 @@ class Tips(NamedTuple):
 
 
 @allocation_free_kernel
+def chord_radius(start: float, end: float, angle: float, step: float) -> tuple[float, float, float]:
+    """R and its derivatives on the straight line between two nodes, `angle` after the first: 1 / r is a sinusoid."""
+    sine = math.sin(step)
+    inverse = (math.sin(step - angle) / start + math.sin(angle) / end) / sine
+    change = (math.cos(angle) / end - math.cos(step - angle) / start) / sine
+    radius = 1 / inverse
+    slope = -change * radius * radius
+    return radius, slope, 2 * slope * slope / radius + radius
+
+
+@inlined_kernel
 def undeformed_radius(surface: Surface, psi: float) -> tuple[float, float, float]:
-    """r, dr/dpsi and d2r/dpsi2 of the undeformed surface."""
+    """r, dr/dpsi and d2r/dpsi2 of the undeformed surface, as far as it is worn."""
+    radius, slope, bend = smooth_radius(surface, psi)
+    if surface.corners.shape[0] > 0:
+        first, second, s = interval(psi, surface.node_step, surface.corners.shape[0])
+        angle = s * surface.node_step
+        radius, slope, bend = chord_radius(surface.corners[first], surface.corners[second], angle, surface.node_step)
+    if surface.liner.depth.shape[0] > 0:
+        depth, depth_slope, depth_bend = worn_depth(surface.liner.depth, psi)
+        radius, slope, bend = radius + depth, slope + depth_slope, bend + depth_bend
+    return radius, slope, bend
+
+
+@inlined_kernel
+def smooth_radius(surface: Surface, psi: float) -> tuple[float, float, float]:
+    """r, dr/dpsi and d2r/dpsi2 of the smooth curve."""
     radius, slope, bend = surface.mean_radius, 0.0, 0.0
     for j in range(surface.amplitude.shape[0]):
         order = surface.order[j]
@@ -124,7 +157,8 @@ def foot_of(
     """Foot of (x, y) on the deformed surface: polar parameter psi, gap, and the tangent's X and Y.
 
     Newton's method on (P - X(psi)).X'(psi) = 0, from the polar angle of P. The gap is n.(P - X) with the inward
-    normal n = e_z x t, positive inside the casing. `ends_work` (8,) is scratch.
+    normal n = e_z x t, positive inside the casing. `ends_work` (8,) is scratch. With chords the foot is on the one at
+    the polar angle of P.
     """
     h, nodes = surface.node_step, surface.table.shape[0]
     rho = math.sqrt(x * x + y * y)
@@ -153,6 +187,8 @@ def foot_of(
         gap = ty * -to_x + tx * to_y
         if abs(step) < FOOT_TOLERANCE:
             break
+        if surface.corners.shape[0] > 0 and math.floor((psi + step) / h) != math.floor(psi / h):
+            break  # the point keeps to the chord at its own angle: beyond a corner the next one would send it back
         psi += step
         cosine, sine = math.cos(psi), math.sin(psi)
     return psi, gap, tx, ty

@@ -1,12 +1,13 @@
 """What is varied: scenarios of single runs, and the recipes that draw them."""
 
 from rubgen.scenario.recipe import Recipe, load_recipe, parse_recipe
-from rubgen.scenario.scenario import ContactLaw, Labelling, Operation, Reduction, Scenario, Sensing
+from rubgen.scenario.scenario import ContactLaw, Labelling, Liner, Operation, Reduction, Scenario, Sensing
 from rubgen.scenario.vary import make_scenario
 
 __all__ = [
     "ContactLaw",
     "Labelling",
+    "Liner",
     "Operation",
     "Recipe",
     "Reduction",

@@ -51,16 +51,34 @@ class Operation:
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
+class Liner:
+    """An abradable lining of the casing that wears at the contact (Archard 1953): volume = wear force sliding.
+
+    `wear_m2_per_n` is the volume worn for each newton and metre of sliding, `width_m` the axial width of the track,
+    over which the depth is even; `bins` the number of equal steps of polar angle in which the depth is kept. Below
+    `thickness_m` the casing does not wear.
+    """
+
+    thickness_m: Positive
+    wear_m2_per_n: Positive
+    width_m: Positive
+    bins: Annotated[int, Field(ge=36, le=3600)] = 360
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
 class ContactLaw:
     """Unilateral contact with sliding Coulomb friction; restitution 0 is a plastic impact.
 
     With `half_thickness` contact acts on the casing's inner surface, half the ring's thickness inside its centre line:
-    friction then turns the ring's section as well, and the surface moves with that rotation.
+    friction then turns the ring's section as well, and the surface moves with that rotation. `surface` "chords" joins
+    the casing's nodes by straight lines instead of the smooth curve through them. A `liner` wears where blades touch.
     """
 
     friction: Annotated[float, Field(ge=0, le=0.3, allow_inf_nan=False)] = 0.0
     restitution: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] = 0.0
     half_thickness: bool = False
+    surface: Literal["smooth", "chords"] = "smooth"
+    liner: Liner | None = None
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)

@@ -9,6 +9,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rubgen.arrays import FloatArray
+from rubgen.contact.liner_kernels import REMOVED, WORK
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.scenario.taps import DEFAULT_TAPS, Tap
@@ -37,6 +38,7 @@ from rubgen.solver.taps import sampled_taps, timing_taps
 from rubgen.solver.track import TrackKeeper
 from rubgen.solver.turn_kernels import STEPS, close_touches
 from rubgen.solver.twin import Twin, check_turns, piece_ends
+from rubgen.solver.worn_liner import worn_liner
 
 LEAST_TAIL_TURNS = 100
 ENERGY_TOLERANCE = 1e-8
@@ -74,7 +76,7 @@ class Integration:
     ) -> None:
         self.stepper, self.settle, self.record = stepper, settle, operation.record_turns
         self.closing = min(operation.closing_turns, settle)
-        self.opening = start_opening(stepper.system)
+        self.opening = start_opening(stepper.system, stepper.surface.inset)
         self.tail: deque[FloatArray] = deque(maxlen=min(tail_turns, settle + self.record))
         self.arrivals: deque[FloatArray] = deque(maxlen=self.tail.maxlen)
         n = stepper.system.M.shape[0]
@@ -109,7 +111,8 @@ class Integration:
 
     def _run_turn(self, turn: int) -> None:
         stepper, result = self.stepper, self.stepper.result
-        opening = self._opening_of(turn)
+        opening, liner = self._opening_of(turn), stepper.surface.liner
+        removed = liner.book[REMOVED]
         code, step, ended = stepper.run_turn(opening, (turn - self.settle) * stepper.steps)
         self.growth.add(float(result.summary[2]), result.section[0])
         if code == OK and not self.energy_residual() <= ENERGY_TOLERANCE:
@@ -127,7 +130,9 @@ class Integration:
             self.impulse[row], self.contact_steps[row] = result.summary[0], int(result.summary[1])
             self.touches.append(stepper.touches.ended[:ended].copy())
             if self.twin is not None:
-                self.twin_growth[row] = self.twin.run_turn(opening).sum()
+                # Beside a surface that has worn within the turn no trajectory is near the run's own.
+                same_surface = liner.book[REMOVED] == removed
+                self.twin_growth[row] = self.twin.run_turn(opening).sum() if same_surface else np.nan
 
     def _opening_of(self, turn: int) -> FloatArray:
         """Opening of the surface at steps -1 ... steps of a turn."""
@@ -242,6 +247,7 @@ def _response(integration: Integration, taps: tuple[Tap, ...]) -> Response:
         energy=_energy(integration),
         n_blades=stepper.system.n_blades,
         n_casing=stepper.system.n_casing,
+        worn=worn_liner(stepper.surface),
         track=integration.track.track(stepper, integration.settle) if integration.track.kept else None,
         arrivals=tip_arrivals(list(integration.arrivals), [probe.name for probe in timing_taps(taps)]),
     )
@@ -250,6 +256,7 @@ def _response(integration: Integration, taps: tuple[Tap, ...]) -> Response:
 def _energy(integration: Integration) -> EnergyBook:
     works = [float(work) for work in integration.stepper.book.works]
     support = [float(work) for work in integration.stepper.support.works]
+    wear = 0.0 - float(integration.stepper.surface.liner.book[WORK])
     return EnergyBook(
         start=integration.start_energy,
         end=integration.stepper.energy(),
@@ -262,7 +269,8 @@ def _energy(integration: Integration) -> EnergyBook:
         contact=works[CONTACT],
         normal_loss=works[NORMAL],
         friction_loss=works[FRICTION],
-        drive_contact_work=works[CONTACT] - works[NORMAL] - works[FRICTION],
+        wear_loss=wear,
+        drive_contact_work=works[CONTACT] - works[NORMAL] - works[FRICTION] - wear,
         drive_contact_limit=works[DRIVE_LIMIT],
         film_loss=support[FILM_LOSS],
         absolute_work=works[ABSOLUTE],

@@ -63,11 +63,13 @@ class EnergyBook:
 
     residual = |E_end - E_start - sum of works| / (sum of absolute works); the identity is exact but for rounding, and
     where hardly any work is done (no rub) the largest |E| stands for the works. `contact` is lam^T B^T d;
-    `normal_loss` and `friction_loss` are losses of the contact itself, <= 0; the drive that keeps the speed constant
-    pays drive_contact_work = contact - normal_loss - friction_loss, which tends to drive_contact_limit = -Omega times
-    the time integral of the contact torque on the blisk, both positive where contact brakes. `anisotropy` is the work
-    of uneven springs and dampers beyond their mean, `film` that of a squeeze film, `gravity` that of the weight, all
-    in the turning frame, where the drive's share counts too; `film_loss` is what the film turns into heat, <= 0.
+    `normal_loss` and `friction_loss` are losses of the contact itself, <= 0, and so is `wear_loss`, the work of the
+    contact force on a liner's surface as it recedes (0 without one); the drive that keeps the speed constant pays
+    drive_contact_work = contact - normal_loss - friction_loss - wear_loss, which tends to drive_contact_limit = -Omega
+    times the time integral of the contact torque on the blisk, both positive where contact brakes.
+    `anisotropy` is the work of uneven springs and dampers beyond their mean, `film` that of a squeeze film, `gravity`
+    that of the weight, all in the turning frame, where the drive's share counts too; `film_loss` is what the film turns
+    into heat, <= 0.
     """
 
     start: float
@@ -86,6 +88,7 @@ class EnergyBook:
     film_loss: float
     absolute_work: float
     residual: float
+    wear_loss: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,6 +107,20 @@ class Track:
 
 
 @dataclass(frozen=True, kw_only=True)
+class WornLiner:
+    """What is left of a liner at the end of a run.
+
+    `angle` (bins,) polar angles in rad, `depth` (bins,) worn there in m; `volume` removed in m3, the mean depth times
+    the track's area, and `removed`, the same as the sum of what each contact took.
+    """
+
+    angle: FloatArray
+    depth: FloatArray
+    volume: float
+    removed: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Response:
     """The true response of one run: never a history of the state.
 
@@ -117,6 +134,7 @@ class Response:
     `twin_growth` (record_turns,) is ln of what the distance to a trajectory beside the run grew by in each turn, empty
     where none was asked for. `fractions` (N, 2, n) are q and v after 1/N, 2/N, ... 1 of the last turn, N the lobes of
     the casing, the casing turned back by as much: all equal where the motion is symmetric, q(t + T/N) = q(t).
+    `worn` is what is left of the liner, None without one.
     When `status` is not OK, `reason` says where and by how much, and no array may be used as data.
     """
 
@@ -137,6 +155,7 @@ class Response:
     n_blades: int
     n_casing: int
     track: Track | None = None
+    worn: WornLiner | None = None
     twin_growth: FloatArray = field(default_factory=lambda: np.zeros(0))
     fractions: FloatArray = field(default_factory=lambda: np.zeros((0, 2, 0)))
     arrivals: dict[str, TipArrivals] = field(default_factory=dict)

@@ -7,6 +7,7 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.contact.contact_kernels import ContactWork
 from rubgen.contact.geometry import blade_tips, casing_surface
+from rubgen.contact.wear_kernels import wear
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw
 from rubgen.scenario.taps import DEFAULT_TAPS, Tap
@@ -39,12 +40,15 @@ FRAMES = 32
 """Frames of a turn that the solver hands out: blade modes up to the 16th order of rotation move smoothly."""
 
 
-def start_opening(system: SpinningSystem) -> float:
-    """How far the surface must be opened, m, to keep every tip of the rub-free motion the start clearance away."""
+def start_opening(system: SpinningSystem, inset: float = 0.0) -> float:
+    """How far the surface must be opened, m, to keep every tip of the rub-free motion the start clearance away.
+
+    `inset` (m) is how far the surface may lie inside the smooth curve.
+    """
     motion = rub_free_motion(system)
     tips = motion.over_turn()[:, : 3 * system.n_blades].reshape(-1, system.n_blades, 3) + system.tip_static
     farthest = float(np.hypot(system.tip_radius + tips[..., 0], tips[..., 1]).max())
-    narrowest = system.surface.mean_radius - float(np.abs(system.surface.amplitude).sum())
+    narrowest = system.surface.mean_radius - float(np.abs(system.surface.amplitude).sum()) - inset
     return max(0.0, START_CLEARANCE_SHARE * system.tip_radius - (narrowest - farthest))
 
 
@@ -167,6 +171,7 @@ class Stepper:
         """
         width = np.zeros(self.steps + 2) if opening is None else opening
         code, count = advance(self.model, index, width, *self.motions, self.work, self.scratch)
+        wear(count, self.surface.liner, self.dt, self.work)
         shift_held(self.work)
         self._turn_motions(1)
         return code, count
@@ -209,7 +214,7 @@ def _contact_work(system: SpinningSystem) -> ContactWork:
         bounds=np.zeros(m), psi=np.zeros(m), gap=np.zeros(m),
         tangent=np.zeros((m, 2)), held=np.full((3, m), np.nan), blade=np.zeros(m, dtype=np.int64), lam=np.zeros(m),
         b=np.zeros(m), W=np.zeros((m, m)), normal_tip=np.zeros((m, 3)), full_tip=np.zeros((m, 3)),
-        normal_casing=np.zeros((m, c)), full_casing=np.zeros((m, c)), slip=np.zeros((m, 2)),
+        normal_casing=np.zeros((m, c)), full_casing=np.zeros((m, c)), slip=np.zeros((m, 2)), sliding=np.zeros(m),
         casing_response=np.zeros((m, c)), ends=np.zeros(8),
         rows=np.zeros((2, c)), square=np.zeros((m, m)), tableau=np.zeros((m, 2 * m + 2)),
         basis=np.zeros(m, dtype=np.int64),

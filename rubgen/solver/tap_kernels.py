@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.geometry_kernels import Tips
+from rubgen.contact.liner_kernels import worn_depth
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.solver.block_kernels import Motion, Product, recover_blade
 from rubgen.solver.lanes_kernels import add_lines
@@ -21,13 +22,14 @@ X, Y, FORCE_X, FORCE_Y, CONTACT_FORCE, CONTACT_TORQUE = range(6)
 class Rays(NamedTuple):
     """Clearances on rays: `output` (rays,) their rows, `sum` (rays,) the first of three places in `Taps.sums`.
 
-    There stand the radial and tangential displacement and the derivative of the radial one. `radius`, `slope` (rays,)
-    of the undeformed surface; `blade` (steps, rays, 2) the blades before and after the ray and `share` (steps, rays)
-    the way between them.
+    There stand the radial and tangential displacement and the derivative of the radial one. `angle` (rays,) is theirs,
+    `radius`, `slope` (rays,) those of the undeformed surface; `blade` (steps, rays, 2) the blades before and after the
+    ray and `share` (steps, rays) the way between them.
     """
 
     output: IntArray
     sum: IntArray
+    angle: FloatArray
     radius: FloatArray
     slope: FloatArray
     blade: IntArray
@@ -159,7 +161,10 @@ def record_taps(
     rays = taps.rays
     for ray in range(rays.output.shape[0]):
         tip = tip_radius_on_ray(model.tips, rays, now.tips, step, ray)
-        out[rays.output[ray], step] = casing_radius_on_ray(rays, taps.sums, opening, ray) - tip
+        wide = opening
+        if model.surface.liner.depth.shape[0] > 0:
+            wide += worn_depth(model.surface.liner.depth, rays.angle[ray])[0]
+        out[rays.output[ray], step] = casing_radius_on_ray(rays, taps.sums, wide, ray) - tip
 
 
 @inlined_kernel

@@ -232,7 +232,7 @@ def _rays(layout: Layout, start_angle: float) -> Rays:
     blades, shares = _blades_around_rays(layout.system, angle, layout.stepper.steps, start_angle)
     undeformed = np.array([undeformed_radius(layout.stepper.surface, each) for each in angle]).reshape(-1, 3)
     return Rays(
-        output.astype(np.int64), place.astype(np.int64), undeformed[:, 0].copy(), undeformed[:, 1].copy(),
+        output.astype(np.int64), place.astype(np.int64), angle.copy(), undeformed[:, 0].copy(), undeformed[:, 1].copy(),
         blades, shares,
     )  # fmt: skip
 

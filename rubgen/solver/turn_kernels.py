@@ -8,6 +8,7 @@ from typing import NamedTuple
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.clearance_kernels import casing_reach
 from rubgen.contact.contact_kernels import ContactWork
+from rubgen.contact.wear_kernels import wear
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.solver.block_kernels import Motion, recover_all
 from rubgen.solver.energy_kernels import ABSOLUTE, Book, book_contact, book_linear
@@ -163,6 +164,7 @@ def run_turn(
         reach = casing_reach(model.surface, after.q[after.q.shape[0] - taps.bend.shape[0] :])
         result.summary[2] = max(result.summary[2], reach)
         before, now, after = now, after, before
+        wear(count, model.surface.liner, laws.dt, work)
         shift_held(work)
     keep_mark(marks, mark, before, now, work)
     ended = close_touches(touches, clock + steps - 1, ended)

@@ -1,0 +1,70 @@
+"""The worn depth of an abradable liner over the polar angle: a periodic cubic spline whose coefficients only grow."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from rubgen.arrays import FloatArray
+from rubgen.jit import allocation_free_kernel, inlined_kernel
+
+REMOVED, WORK = range(2)
+
+
+class Liner(NamedTuple):
+    """A liner as kernels take it; without bins there is none.
+
+    `depth` (bins,) are the coefficients of the worn depth in m, 0 to `thickness`; `earlier` (2, bins) what they were
+    one and two steps before, the older first. `rate` is the volume worn for each unit of force times sliding, m2/N;
+    `area` the volume of a coefficient of one metre, m2. `book` (2,) holds the volume removed, m3, and the work of the
+    contact force on the receding surface, J.
+    """
+
+    depth: FloatArray
+    earlier: FloatArray
+    thickness: float
+    rate: float
+    area: float
+    book: FloatArray
+
+
+@inlined_kernel
+def spline_weights(s: float) -> tuple[float, float, float, float]:
+    """Uniform cubic B-splines on one interval at share s: coefficients before, first, second, after."""
+    r = 1 - s
+    return r * r * r / 6, (4 - 6 * s * s + 3 * s * s * s) / 6, (4 - 6 * r * r + 3 * r * r * r) / 6, s * s * s / 6
+
+
+@allocation_free_kernel
+def worn_depth(coefficients: FloatArray, psi: float) -> tuple[float, float, float]:
+    """The depth at a polar angle in m, and its first and second derivative by the angle."""
+    bins = coefficients.shape[0]
+    per_angle = bins / (2 * math.pi)
+    position = psi * per_angle
+    first = math.floor(position)
+    s = position - first
+    a, b = coefficients[int((first - 1) % bins)], coefficients[int(first % bins)]
+    c, d = coefficients[int((first + 1) % bins)], coefficients[int((first + 2) % bins)]
+    w = spline_weights(s)
+    r = 1 - s
+    slope = 0.5 * (s * s * (d - c) + r * r * (b - a)) + (0.5 + s * r) * (c - b)
+    bend = r * (a - 2 * b + c) + s * (b - 2 * c + d)
+    return w[0] * a + w[1] * b + w[2] * c + w[3] * d, per_angle * slope, per_angle * per_angle * bend
+
+
+@allocation_free_kernel
+def remove(liner: Liner, psi: float, volume: float) -> None:
+    """Take `volume` (m3) from the liner around a polar angle, as far as it is there.
+
+    The splines sum to one, so the coefficients grow by volume / area in all: nothing is lost but what lies below the
+    liner.
+    """
+    bins = liner.depth.shape[0]
+    position = psi * (bins / (2 * math.pi))
+    first = math.floor(position)
+    weights = spline_weights(position - first)
+    for i in range(4):
+        bin_ = int((first - 1 + i) % bins)
+        grown = min(weights[i] * volume / liner.area, liner.thickness - liner.depth[bin_])
+        liner.depth[bin_] += grown
+        liner.book[REMOVED] += grown * liner.area
