@@ -4,51 +4,81 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from dataclasses import dataclass
 
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.reduction.model import SpinningSystem
+from rubgen.solver.stepper import Stepper
 
 GROWTH_TURNS = 10
 """Rates of growth are those of this many last turns."""
+STEADY_GROWTH = math.log(2)
+"""A motion that has not even doubled over those turns has not grown: it is irregular, and this was an excursion."""
 
 
 class Growth:
-    """Amplitudes of casing and blade tips over the last turns.
+    """Amplitudes of casing and blade tips, turn by turn, over the last turns of a stepper.
 
-    Of the casing the largest bound of its displacement within the turn, of the blades the largest tip coordinate at its
-    first step, both in m.
+    Of the casing the largest bound of its displacement within the turn; of the blades the largest tip coordinate in the
+    frames of the turn, which are kept as they are and looked at in the end alone.
     """
 
-    def __init__(self, system: SpinningSystem) -> None:
-        self.tips = 3 * system.n_blades
-        self.trail: deque[tuple[float, float]] = deque(maxlen=GROWTH_TURNS + 1)
+    def __init__(self, stepper: Stepper) -> None:
+        self.stepper = stepper
+        self.turns: deque[tuple[float, FloatArray]] = deque(maxlen=GROWTH_TURNS + 1)
 
-    def add(self, casing: float, q: FloatArray) -> None:
-        """One turn more: the casing's largest bound, and q (n,) at the turn's first step."""
-        self.trail.append((casing, float(np.abs(q[: self.tips]).max())))
+    def add(self, steps: int) -> None:
+        """Keep the turn that was just run, as far as it went: `steps` of its steps."""
+        result = self.stepper.result
+        count = math.ceil(steps * len(result.frames) / self.stepper.steps)
+        self.turns.append((float(result.summary[2]), result.frames[:count].copy()))
 
-    def rates(self, turn_seconds: float) -> str:
+    def told(self) -> str:
         """Growth of both over the last turns in words, with the rates a turn and a second."""
-        amplitudes = np.array(self.trail).reshape(-1, 2)
-        rates = {name: growth_rate(amplitudes[:, column]) for name, column in (("blades", 1), ("casing", 0))}
-        told = [
-            f"{name} {rate:+.3g} a turn ({rate / turn_seconds:+.3g} 1/s)"
-            for name, rate in rates.items()
-            if math.isfinite(rate)
-        ]
-        if not told:
+        amplitudes = {"blades": self._blades(), "casing": [casing for casing, _ in self.turns]}
+        trends = {name: found for name, sizes in amplitudes.items() if (found := trend(np.array(sizes)))}
+        if not trends:
             return "too soon to tell a rate of growth"
-        return f"rate of growth over the last {len(amplitudes) - 1} turns: {', '.join(told)}"
+        rates = ", ".join(f"{name} {found.text(self._turn_seconds)}" for name, found in trends.items())
+        grows = any(found.rate * found.turns > STEADY_GROWTH for found in trends.values())
+        kind = "growing" if grows else "no steady growth, an excursion of an irregular motion"
+        return f"{kind}: rate over the last {len(self.turns) - 1} turns {rates}"
+
+    @property
+    def _turn_seconds(self) -> float:
+        return float(self.stepper.dt * self.stepper.steps)
+
+    def _blades(self) -> list[float]:
+        """The largest tip coordinate of each turn, m; 0 where a turn has no frame."""
+        tips = 3 * self.stepper.system.n_blades
+        return [
+            max((float(np.abs(self.stepper.blocks.to_q(z)[:tips]).max()) for z in frames), default=0.0)
+            for _, frames in self.turns
+        ]
 
 
-def growth_rate(amplitudes: FloatArray) -> float:
-    """Rate s of the growth exp(s k) of amplitudes (n,), by least squares on their logarithms; NaN where none grows.
+@dataclass(frozen=True, kw_only=True)
+class Trend:
+    """Growth exp(rate k) of an amplitude over turns k, and its geometric mean `size` in m."""
+
+    rate: float
+    size: float
+    turns: int
+
+    def text(self, turn_seconds: float) -> str:
+        """The rate a turn and a second, and the size."""
+        return f"{self.rate:+.3g} a turn ({self.rate / turn_seconds:+.3g} 1/s) about {1e3 * self.size:.3g} mm"
+
+
+def trend(amplitudes: FloatArray) -> Trend | None:
+    """The growth of amplitudes (turns,) by least squares on their logarithms; None of fewer than two.
 
     Amplitudes that are zero or no number are left out.
     """
     known = np.isfinite(amplitudes) & (amplitudes > 0)
     if known.sum() < 2:
-        return math.nan
-    return float(np.polyfit(np.flatnonzero(known), np.log(amplitudes[known]), 1)[0])
+        return None
+    turns, logarithms = np.flatnonzero(known), np.log(amplitudes[known])
+    rate = float(np.polyfit(turns, logarithms, 1)[0])
+    return Trend(rate=rate, size=float(np.exp(logarithms.mean())), turns=int(turns[-1] - turns[0]))

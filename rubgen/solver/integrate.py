@@ -89,7 +89,7 @@ class Integration:
         self.contact_steps = np.zeros(self.record, dtype=np.int64)
         self.touches: list[FloatArray] = []
         self.track = TrackKeeper(settle + self.record - signal_turns)
-        self.growth = Growth(stepper.system)
+        self.growth = Growth(stepper)
         self.start_energy = stepper.energy()
         self.largest_energy = abs(self.start_energy)
         self.rounding_energy = ROUNDING_SHARE * _gross_energy(stepper)
@@ -114,7 +114,7 @@ class Integration:
         opening, liner = self._opening_of(turn), stepper.surface.liner
         removed = liner.book[REMOVED]
         code, step, ended = stepper.run_turn(opening, (turn - self.settle) * stepper.steps)
-        self.growth.add(float(result.summary[2]), result.section[0])
+        self.growth.add(step)
         if code == OK and not self.energy_residual() <= ENERGY_TOLERANCE:
             code = ENERGY
         if code != OK:
@@ -156,7 +156,7 @@ class Integration:
         where = f"turn {turn} of {self.settle + self.record}, step {step} of {self.stepper.steps}"
         match self.status:
             case Status.DIVERGED:
-                return f"{self._what_diverged()} in {where}; {self.growth.rates(self.stepper.dt * self.stepper.steps)}"
+                return f"{self._what_diverged()} in {where}; {self.growth.told()}"
             case Status.ENERGY:
                 return f"residual {self.energy_residual():.3g} above {ENERGY_TOLERANCE:g} after {where}"
             case _:

@@ -9,7 +9,6 @@ from scipy.optimize import brentq
 from rubgen.errors import UserError
 from rubgen.scenario import ContactLaw
 from rubgen.solver import Status, Stepper, integrate, stable_step
-from rubgen.solver.divergence import Growth, growth_rate
 
 
 def changed(system, name, number, value):
@@ -93,23 +92,3 @@ def test_an_undamped_casing_never_forgets(small_system, operation):
     response = integrate(system, operation(system), ContactLaw())
     assert response.status is Status.UNSTABLE
     assert "add damping" in response.reason
-
-
-def test_growth_rates_are_those_of_exponentials(small_system):
-    growth, system = Growth(small_system()), small_system()
-    for turn in range(25):
-        q = np.zeros(len(system.M))
-        q[4] = -1e-6 * np.exp(0.3 * turn)
-        growth.add(2e-5 * np.exp(0.1 * turn), q)
-    assert growth.rates(0.01) == (
-        "rate of growth over the last 10 turns: blades +0.3 a turn (+30 1/s), casing +0.1 a turn (+10 1/s)"
-    )
-    assert growth_rate(np.array([0.0, 1.0, np.nan, np.exp(-1.0)])) == pytest.approx(-0.5)
-
-
-def test_the_rate_of_a_run_that_diverges_at_once_is_not_made_up(small_system):
-    system = small_system()
-    growth = Growth(system)
-    assert "too soon" in growth.rates(0.01)
-    growth.add(1e-3, np.ones(len(system.M)))
-    assert "too soon" in growth.rates(0.01)
