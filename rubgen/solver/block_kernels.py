@@ -33,10 +33,11 @@ class Scheme(NamedTuple):
 class Harmonics(NamedTuple):
     """Where the coordinates stand in z, and the harmonics over the blades.
 
-    `basis` (blades, width) holds the harmonics, orthonormal, one row for each blade, padded to a multiple of eight;
-    `columns` (any, 8) the same for rows of eight blades, harmonic by harmonic, and `lines` (any, 5) their sums for the
-    three tip coordinates one after the other. `places` (3, width) are the numbers of z of the harmonics of the radial,
-    tangential and axial tip coordinate, `rest` (n - 3 blades,) those of the other coordinates.
+    `basis` (blades, width) holds the harmonics, orthonormal, one row for each blade, padded to a multiple of eight.
+    Of an even number of blades, the first half of the harmonics keep their sign by half a turn and the others change
+    it; so the sums of both halves over half of the blades tell all. `columns` (any, 8) and `lines` (any, 5) are those
+    sums, for the three tip coordinates one after the other. `places` (3, width) are the numbers of z of the harmonics
+    of the radial, tangential and axial tip coordinate, `rest` (n - 3 blades,) those of the other coordinates.
     """
 
     basis: FloatArray
@@ -80,13 +81,29 @@ def free_step(scheme: Scheme, before: FloatArray, now: FloatArray, after: FloatA
 
 @inlined_kernel
 def recover_tips(harmonics: Harmonics, z: FloatArray, share_work: FloatArray, tips_out: FloatArray) -> None:
-    """The first `tips_out.shape[0]` of radial, tangential, axial coordinate of all tips; `share_work` is scratch."""
-    tips_out[:, :] = 0.0
-    for a in range(tips_out.shape[0]):
-        for j in range(harmonics.basis.shape[0]):
+    """The first `tips_out.shape[0]` of radial, tangential, axial coordinate of all tips.
+
+    `share_work` (6, any) is scratch: the harmonics of each coordinate, then their sums.
+    """
+    blades, many = harmonics.basis.shape[0], tips_out.shape[0]
+    half = blades // 2 if blades % 2 == 0 else blades
+    sums = share_work[3:]
+    for a in range(many):
+        for j in range(blades):
             share_work[a, j] = z[harmonics.places[a, j]]
-    rows = tips_out.size // LANES
-    add_lines(harmonics.lines[:rows], harmonics.columns, share_work, tips_out)
+        for k in range(sums.shape[1]):
+            sums[a, k] = 0.0
+    lines = harmonics.lines.shape[0] // 3 * many
+    add_lines(harmonics.lines[:lines], harmonics.columns, share_work, sums)
+    other = (half + LANES - 1) // LANES * LANES
+    for a in range(many):
+        if half == blades:
+            for k in range(half):
+                tips_out[a, k] = sums[a, k]
+        else:
+            for k in range(half):
+                tips_out[a, k] = sums[a, k] + sums[a, other + k]
+                tips_out[a, half + k] = sums[a, k] - sums[a, other + k]
 
 
 @inlined_kernel

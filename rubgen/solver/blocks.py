@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 
 from rubgen.arrays import BoolArray, FloatArray, IntArray
 from rubgen.solver.block_kernels import Harmonics, Product
-from rubgen.solver.lanes_kernels import LANES
+from rubgen.solver.lanes_kernels import LANES, MOST_ROWS, line_kind
 
 COUPLING_TOLERANCE = 1e-9
 """An entry couples when it exceeds this share of the geometric mean of its row's and its column's largest entry.
@@ -75,8 +75,9 @@ class Blocks:
     def without_zeros(self, matrix: FloatArray) -> Product:
         """The same without lines of zeros."""
         product = self.product(matrix)
-        _, _, first, _, count = product.lines.T
-        kept = [bool(product.entries[f : f + c].any()) for f, c in zip(first, count, strict=True)]
+        kind, _, first, _, count = product.lines.T
+        used = count * (kind // 2 + 1)
+        kept = [bool(product.entries[f : f + u].any()) for f, u in zip(first, used, strict=True)]
         return Product(np.ascontiguousarray(product.lines[kept]), product.entries)
 
     def damping(self, matrix: FloatArray) -> Product:
@@ -110,35 +111,48 @@ class Blocks:
         return np.asarray(self.transform @ z[self.place])
 
     def _packed(self, Y: FloatArray, *, triangle: bool) -> Product:
-        """Lines and entries of a matrix in y."""
+        """Lines and entries of a matrix in y; of a triangle, no more columns than its rows of results have."""
         lines: list[tuple[int, int, int, int, int]] = []
         entries: list[FloatArray] = []
         row = 0
         for bundle in self.lanes:
             size = bundle.shape[1]
-            for i in range(size):
-                count = i + 1 if triangle else size
-                block = np.where(bundle[:, :1] >= 0, Y[bundle[:, i : i + 1], bundle[:, :count]], 0.0).T
-                _append(lines, entries, (0, row + i, row), block)
+            for part in parts_of(size):
+                count = part.stop if triangle else size
+                left, right = bundle[:, None, part], bundle[:, :count, None]
+                block = np.where(left >= 0, Y[left, right], 0.0)
+                _append(lines, entries, (0, row + part.start, row), block.transpose(1, 2, 0))
             row += size
         for block_of in self.single:
             size = len(block_of)
-            Z = np.zeros((padded(size), size))
+            rows = padded(size) // LANES
+            Z = np.zeros((rows * LANES, size))
             Z[:size] = Y[np.ix_(block_of, block_of)]
-            for i in range(0, size, LANES):
-                count = min(i + LANES, size) if triangle else size
-                _append(lines, entries, (1, row + i // LANES, row * LANES), Z[i : i + LANES, :count].T)
-            row += padded(size) // LANES
+            for part in parts_of(rows):
+                count = min(part.stop * LANES, size) if triangle else size
+                block = Z[part.start * LANES : part.stop * LANES, :count]
+                _append(lines, entries, (1, row + part.start, row * LANES), block.T.reshape(count, -1, LANES))
+            row += rows
         table = np.array(lines, dtype=np.int64).reshape(-1, 5)
         return Product(table, aligned(np.concatenate([np.zeros((0, LANES)), *entries])))
 
 
+def parts_of(rows: int) -> list[slice]:
+    """Rows of results in parts of nearly one size, none more than a line may give."""
+    parts = np.array_split(np.arange(rows), -(-rows // MOST_ROWS))
+    return [slice(int(part[0]), int(part[-1]) + 1) for part in parts]
+
+
 def _append(
-    lines: list[tuple[int, int, int, int, int]], entries: list[FloatArray], line: tuple[int, int, int], part: FloatArray
+    lines: list[tuple[int, int, int, int, int]],
+    entries: list[FloatArray],
+    place: tuple[int, int, int],
+    part: FloatArray,
 ) -> None:
-    scaled, row, start = line
-    lines.append((scaled, row, sum(map(len, entries)), start, len(part)))
-    entries.append(part)
+    """Add a line with entries (count, rows, 8); `place` tells whether it is scaled, its ROW and its START."""
+    (scaled, row, start), (count, rows, _) = place, part.shape
+    lines.append((line_kind(rows, scaled=bool(scaled)), row, sum(map(len, entries)), start, count))
+    entries.append(part.reshape(-1, LANES))
 
 
 def find_blocks(matrices: list[FloatArray], blades: int) -> Blocks:
@@ -181,20 +195,46 @@ def _arranged(parts: list[IntArray]) -> tuple[list[IntArray], list[IntArray]]:
     return lanes, single
 
 
+def half_turn(blades: int) -> int:
+    """How many blades stand for all: half of an even number, as harmonics keep or change their sign by half a turn."""
+    return blades // 2 if blades % 2 == 0 else blades
+
+
+def share_width(blades: int) -> int:
+    """Numbers that the recovery of tips needs for each of three coordinates: the harmonics, or their sums by halves."""
+    half = half_turn(blades)
+    return max(padded(blades), blades // half * padded(half))
+
+
 def system_harmonics(blocks: Blocks, blades: int) -> Harmonics:
     """The harmonics of a system's blades, and where they stand in z."""
-    width, n = padded(blades), len(blocks.place)
-    basis = np.zeros((width, width))
-    basis[:blades, :blades] = blade_harmonics(blades)
-    columns = basis.reshape(width // LANES, LANES, width)[:, :, :blades].transpose(0, 2, 1).reshape(-1, LANES)
+    width, n, half = padded(blades), len(blocks.place), half_turn(blades)
+    order = np.arange(blades)
+    if half < blades:  # those of even nodal diameters first
+        order = np.argsort((order + 1) // 2 % 2, kind="stable")
+    basis = np.zeros((blades, width))
+    basis[:, :blades] = blade_harmonics(blades)[:, order]
     places = np.zeros((3, width), dtype=np.int64)
-    places[:, :blades] = blocks.place[: 3 * blades].reshape(blades, 3).T
-    rows = width // LANES
-    lines = [(1, a * rows + row, row * blades, a * width, blades) for a in range(3) for row in range(rows)]
+    places[:, :blades] = blocks.place[: 3 * blades].reshape(blades, 3)[order].T
+    rows = padded(half) // LANES
+    stride = share_width(blades)
+    lines: list[tuple[int, int, int, int, int]] = []
+    entries: list[FloatArray] = []
+    for part in parts_of(rows):
+        for first in range(0, blades, half):
+            block = np.zeros((rows * LANES, half))
+            block[:half] = basis[:half, first : first + half]
+            block = block[part.start * LANES : part.stop * LANES]
+            _append(lines, entries, (1, first // half * rows + part.start, first), block.T.reshape(half, -1, LANES))
+    every = [
+        (kind, a * stride // LANES + row, place, a * stride + start, count)
+        for a in range(3)
+        for kind, row, place, start, count in lines
+    ]
     return Harmonics(
-        aligned(basis[:blades]),
-        aligned(columns),
-        np.array(lines, dtype=np.int64),
+        aligned(basis),
+        aligned(np.concatenate(entries)),
+        np.array(every, dtype=np.int64),
         places,
         blocks.place[3 * blades : n].copy(),
     )

@@ -22,26 +22,40 @@ from numba.extending import lower_builtin
 from rubgen.arrays import FloatArray, IntArray
 
 LANES = 8
+MOST_ROWS = 6
+"""Rows of results that one line may give: they share each load of x."""
 CHAINS = 4
-"""Independent partial sums: a fused product takes about four cycles, and two may start in each."""
-SCALED, ROW, FIRST, START, COUNT = range(5)
-"""A line: whether single numbers of x are meant, not rows; the row of results; the first of its rows of entries; the
-first row or number of x; how many."""
+"""Least number of independent partial sums: a fused product takes about four cycles, and two may start in each."""
+KIND, ROW, FIRST, START, COUNT = range(5)
+"""A line: its kind; the first row of results; the first of its rows of entries; the first row or number of x; how
+many. See `line_kind`."""
+
+
+def line_kind(rows: int, *, scaled: bool) -> int:
+    """What stands at KIND: how many rows of results, 1 to `MOST_ROWS`, and whether single numbers of x are meant."""
+    return 2 * (rows - 1) + int(scaled)
 
 
 def line_sum(line: IntArray, a: FloatArray, x: FloatArray) -> FloatArray:
-    """The row (8,) of one line: sum over j < COUNT of a[FIRST + j] times row or number START + j of x."""
-    rows = a.reshape(-1, LANES)[line[FIRST] : line[FIRST] + line[COUNT]]
+    """The rows of results (rows, 8) of one line.
+
+    Row r is the sum over j < COUNT of a[FIRST + j rows + r] times row or number START + j of x.
+    """
+    rows, scaled = line[KIND] // 2 + 1, line[KIND] % 2
+    entries = a.reshape(-1, LANES)[line[FIRST] : line[FIRST] + rows * line[COUNT]].reshape(-1, rows, LANES)
     part = slice(line[START], line[START] + line[COUNT])
-    if line[SCALED]:
-        return np.asarray(x.reshape(-1)[part] @ rows)
-    return np.asarray((rows * x.reshape(-1, LANES)[part]).sum(axis=0))
+    factors = x.reshape(-1)[part, None] if scaled else x.reshape(-1, LANES)[part]
+    return np.asarray((entries * factors[:, None]).sum(axis=0))
+
+
+def _results(line: IntArray) -> slice:
+    return slice(line[ROW], line[ROW] + line[KIND] // 2 + 1)
 
 
 def add_lines(lines: IntArray, a: FloatArray, x: FloatArray, out: FloatArray) -> None:
-    """Add each line's sum to its row of `out`. `lines` (any, 5), `a` (any, 8) entries."""
+    """Add each line's sums to its rows of `out`. `lines` (any, 5), `a` (any, 8) entries."""
     for line in lines:
-        out.reshape(-1, LANES)[line[ROW]] += line_sum(line, a, x)
+        out.reshape(-1, LANES)[_results(line)] += line_sum(line, a, x)
 
 
 def add_two_lines(lines: IntArray, a: FloatArray, b: FloatArray, x: FloatArray, y: FloatArray, out: FloatArray) -> None:
@@ -51,8 +65,8 @@ def add_two_lines(lines: IntArray, a: FloatArray, b: FloatArray, x: FloatArray, 
 
 
 def dot_lines(lines: IntArray, a: FloatArray, x: FloatArray, left: FloatArray) -> float:
-    """The products of each line's sum with its row of `left`, summed."""
-    return sum(float(line_sum(line, a, x) @ left.reshape(-1, LANES)[line[ROW]]) for line in lines)
+    """The products of each line's sums with its rows of `left`, summed."""
+    return sum(float((line_sum(line, a, x) * left.reshape(-1, LANES)[_results(line)]).sum()) for line in lines)
 
 
 def dot_rows(a: FloatArray, b: FloatArray, count: int) -> float:
@@ -60,7 +74,8 @@ def dot_rows(a: FloatArray, b: FloatArray, count: int) -> float:
     return float(a.reshape(-1)[: LANES * count] @ b.reshape(-1)[: LANES * count])
 
 
-Pair = tuple[Any, Any, Any, Any, bool]
+Source = tuple[Any, Any]
+"""Entries a and x."""
 
 
 class _Emitter:
@@ -105,32 +120,53 @@ class _Emitter:
             lanes = [self.builder.fadd(lanes[i], lanes[half + i]) for i in range(half)]
         return lanes[0]
 
-    def sum_products(self, pairs: list[Pair], count: Any) -> Any:
-        """The sum over j < count and over pairs (a, first, x, start, spread) in `CHAINS` partial sums."""
+    def sum_products(
+        self, sources: list[Source], first: Any, start: Any, count: Any, *, rows: int, spread: bool
+    ) -> list[Any]:
+        """For each row the sum over sources and j < count of a[first + j rows + row] x[start + j].
+
+        Each row has as many partial sums as fill `CHAINS`, the sources' apart.
+        """
         builder = self.builder
-        sums = [cgutils.alloca_once_value(builder, self.zero) for _ in range(CHAINS)]  # type: ignore[no-untyped-call]
-        for each in sums:
-            builder.store(self.zero, each)
-        together = CHAINS // len(pairs)
-        whole = builder.mul(builder.udiv(count, self.index(together)), self.index(together))
-        with cgutils.for_range_slice(builder, self.index(0), whole, self.index(together)) as (j, _):
+        together = max(1, CHAINS // (rows * len(sources)))
+        sums = [
+            [cgutils.alloca_once_value(builder, self.zero) for _ in range(together * len(sources))]  # type: ignore[no-untyped-call]
+            for _ in range(rows)
+        ]
+        for total in [total for row in sums for total in row]:
+            builder.store(self.zero, total)
+        step = self.index(together)
+        whole = builder.mul(builder.udiv(count, step), step)
+        with cgutils.for_range_slice(builder, self.index(0), whole, step) as (j, _):
             for u in range(together):
-                self._add(pairs, builder.add(j, self.index(u)), sums[u * len(pairs) :])
-        with cgutils.for_range_slice(builder, whole, count, self.index(1)) as (j, _):
-            self._add(pairs, j, sums)
-        parts = [builder.load(each) for each in sums]
-        return builder.fadd(builder.fadd(parts[0], parts[1]), builder.fadd(parts[2], parts[3]))
+                place = builder.add(j, self.index(u))
+                self._add(sources, first, start, place, [row[u * len(sources) :] for row in sums], spread=spread)
+        if together > 1:
+            with cgutils.for_range_slice(builder, whole, count, self.index(1)) as (j, _):
+                self._add(sources, first, start, j, sums, spread=spread)
+        return [self._halves([builder.load(each) for each in row]) for row in sums]
 
-    def _add(self, pairs: list[Pair], j: Any, sums: list[Any]) -> None:
-        builder = self.builder
-        for (a, first, x, start, spread), total in zip(pairs, sums, strict=False):
-            left, place = self.load(a, builder.add(first, j)), builder.add(start, j)
+    def _add(
+        self, sources: list[Source], first: Any, start: Any, j: Any, sums: list[list[Any]], *, spread: bool
+    ) -> None:
+        builder, rows = self.builder, len(sums)
+        base, place = builder.add(first, builder.mul(j, self.index(rows))), builder.add(start, j)
+        for i, (a, x) in enumerate(sources):
             right = self.spread(x, place) if spread else self.load(x, place)
-            builder.store(builder.call(self.fma, [left, right, builder.load(total)]), total)
+            for row in range(rows):
+                left = self.load(a, builder.add(base, self.index(row)))
+                total = sums[row][i]
+                builder.store(builder.call(self.fma, [left, right, builder.load(total)]), total)
+
+    def _halves(self, parts: list[Any]) -> Any:
+        """The sum of one, two or four parts."""
+        while len(parts) > 1:
+            parts = [self.builder.fadd(*parts[i : i + 2]) for i in range(0, len(parts), 2)]
+        return parts[0]
 
 
-def _each_line(emit: _Emitter, array: Any, sources: list[tuple[Any, Any]], use: Callable[[Any, Any], None]) -> None:
-    """Loop over lines; `use` takes the row and the sum over the sources (a, x) of each."""
+def _each_line(emit: _Emitter, array: Any, sources: list[Source], use: Callable[[Any, Any], None]) -> None:
+    """Loop over lines; `use` takes a row and the sum over the sources of each."""
     builder, index = emit.builder, emit.index
     lines, count = array.data, builder.extract_value(builder.load(array._get_ptr_by_name("shape")), 0)
     with cgutils.for_range(builder, count) as loop:
@@ -138,15 +174,18 @@ def _each_line(emit: _Emitter, array: Any, sources: list[tuple[Any, Any]], use: 
             builder.load(builder.gep(lines, [builder.add(builder.mul(loop.index, index(5)), index(i))]))
             for i in range(5)
         ]
-
-        def total(spread: bool) -> Any:
-            return emit.sum_products([(a, line[FIRST], x, line[START], spread) for a, x in sources], line[COUNT])
-
-        with builder.if_else(builder.icmp_signed("!=", line[SCALED], index(0))) as (scaled, rows):
-            with scaled:
-                use(line[ROW], total(spread=True))
-            with rows:
-                use(line[ROW], total(spread=False))
+        done = builder.append_basic_block("line.done")
+        switch = builder.switch(line[KIND], done)
+        for rows in range(1, MOST_ROWS + 1):
+            for spread in (False, True):
+                case = builder.append_basic_block("line.kind")
+                switch.add_case(index(line_kind(rows, scaled=spread)), case)
+                builder.position_at_end(case)
+                totals = emit.sum_products(sources, line[FIRST], line[START], line[COUNT], rows=rows, spread=spread)
+                for row, total in enumerate(totals):
+                    use(builder.add(line[ROW], index(row)), total)
+                builder.branch(done)
+        builder.position_at_end(done)
 
 
 def _adding(pairs: int) -> Callable[..., Any]:
@@ -186,7 +225,8 @@ def _dot_rows(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     emit = _Emitter(context, builder)
     a, b = (emit.array(kind, array).data for kind, array in zip(signature.args[:2], args[:2], strict=True))
     none = emit.index(0)
-    return emit.lane_sum(emit.sum_products([(a, none, b, none, False)], args[2]))
+    (total,) = emit.sum_products([(a, b)], none, none, args[2], rows=1, spread=False)
+    return emit.lane_sum(total)
 
 
 def _compile_as(plain: Callable[..., Any], result: Any, vector_code: Callable[..., Any]) -> None:

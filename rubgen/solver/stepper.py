@@ -13,7 +13,7 @@ from rubgen.scenario import ContactLaw
 from rubgen.scenario.taps import DEFAULT_TAPS, Tap
 from rubgen.solver.admissible import check_step
 from rubgen.solver.block_kernels import Motion, recover
-from rubgen.solver.blocks import aligned, system_harmonics
+from rubgen.solver.blocks import aligned, share_width, system_harmonics
 from rubgen.solver.central_difference import compliances, energy_book, scheme, system_blocks
 from rubgen.solver.energy_kernels import stored_energy
 from rubgen.solver.lanes_kernels import LANES
@@ -193,9 +193,10 @@ class Stepper:
         return Motion(aligned(np.zeros(rows * LANES)), aligned(np.zeros((2, width))), aligned(np.zeros(n)))
 
     def _scratch(self) -> Scratch:
-        numbers, width = self.blocks.rows * LANES, self.harmonics.basis.shape[1]
+        numbers, (blades, width) = self.blocks.rows * LANES, self.harmonics.basis.shape
+        shares = share_width(blades)
         return Scratch(
-            self._motion(), aligned(np.zeros(numbers)), aligned(np.zeros(numbers)), aligned(np.zeros((3, width))),
+            self._motion(), aligned(np.zeros(numbers)), aligned(np.zeros(numbers)), aligned(np.zeros((6, shares))),
             aligned(np.zeros(self.system.M.shape[0])), aligned(np.zeros((3, width))),
         )  # fmt: skip
 

@@ -129,12 +129,22 @@ def test_a_free_step_of_several_lanes_is_that_of_the_matrices():
     np.testing.assert_allclose(balance, 0, atol=1e-10 * np.abs(M).max() / dt**2)
 
 
-def test_tips_are_recovered_as_by_the_whole_transform(preset):
-    stepper = Stepper(preset, ContactLaw(), 1024)
-    q = np.random.default_rng(1).normal(size=len(preset.M))
+def check_recovery(system):
+    stepper = Stepper(system, ContactLaw(), 1024)
+    q = np.random.default_rng(1).normal(size=len(system.M))
     found, scratch = np.zeros(len(q)), stepper.scratch
     recover_all(stepper.harmonics, stepper.blocks.to_z(q), scratch.share, scratch.tips, found)
     np.testing.assert_allclose(found, q, atol=1e-14 * 36)
+
+
+def test_tips_are_recovered_as_by_the_whole_transform(preset):
+    check_recovery(preset)
+
+
+@pytest.mark.parametrize("blades", [1, 2, 5, 6, 17, 18, 97])
+def test_tips_of_any_number_of_blades_are_recovered(small_system, blades):
+    """Odd numbers, which no half turn maps onto themselves, and more rows of eight than one line gives."""
+    check_recovery(small_system(blades=blades))
 
 
 def test_lines_of_zeros_are_left_out(small_system):
