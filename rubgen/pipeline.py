@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 from rubgen.labels import Labels, label
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario
-from rubgen.sensors import Recording, margin_seconds, measure
+from rubgen.sensors import Recording, margin_seconds, measure, taps_of
 from rubgen.solver import Response, Status, integrate, no_response
 
 
@@ -38,8 +38,9 @@ def simulate(scenario: Scenario) -> Run:
             model.at_speed(operation.speed_rad_per_s),
             operation,
             scenario.contact,
-            tail_seconds=scenario.signal_seconds + margin_seconds(sensing),
-            sample_rate_hz=sensing.sample_rate_hz,
+            tail_seconds=scenario.signal_seconds + margin_seconds(sensing, scenario.signal_seconds),
+            sample_rate_hz=sensing.fastest_hz,
+            taps=taps_of(sensing.set),
             twin=scenario.labelling.lyapunov,
         )
         if response.status is not Status.OK:

@@ -6,23 +6,27 @@ from rubgen.labels.labels import Labels, Motion
 from rubgen.machine import load_machine
 from rubgen.pipeline import Run
 from rubgen.scenario import Operation, Scenario, Sensing
+from rubgen.scenario.sensors import SensorSet
 from rubgen.sensors import measure
-from rubgen.sensors.probes import PROBES
+from rubgen.sensors.registry import describe, tap_of
 from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status, Track
 
 TURNS, STEPS = 120, 512
 BLADES, STATES = 36, 125
 
 
-def _taps(generator: np.random.Generator, speed: float, dt: float, contact: bool) -> dict[str, np.ndarray]:
+def _taps(
+    generator: np.random.Generator, sensors: SensorSet, speed: float, dt: float, contact: bool
+) -> dict[str, np.ndarray]:
     time = dt * np.arange(1 - TURNS * STEPS, 1)
     force = 4000.0 * np.maximum(0.0, np.cos(2 * speed * time)) ** 8 if contact else np.zeros_like(time)
     scales = {"displacement": 1e-4, "acceleration": 300.0, "force": 2e4, "contact force": 1e3, "gap": 1e-3}
     taps = {}
-    for probe in PROBES:
+    for sensor in sensors.sampled:
+        quantity, tap = describe(sensor).quantity, tap_of(sensor).name
         first, second = generator.uniform(0, 2 * np.pi, 2)
         wave = np.cos(speed * time + first) + 0.3 * np.cos(3 * speed * time + second)
-        taps[probe.tap] = scales[probe.quantity] * (wave + (2.0 if probe.quantity == "gap" else 0.0))
+        taps[tap] = scales[quantity] * (wave + (2.0 if quantity == "gap" else 0.0))
     return taps | {"contact_force": force}
 
 
@@ -65,7 +69,7 @@ def _response(generator: np.random.Generator, scenario: Scenario, contact: bool)
         steps_per_turn=STEPS,
         settle_turns=100,
         record_turns=TURNS,
-        taps=_taps(generator, speed, dt, contact),
+        taps=_taps(generator, scenario.sensing.set, speed, dt, contact),
         section_q=1e-4 + 1e-6 * generator.standard_normal((TURNS, STATES)),
         section_v=1e-2 * generator.standard_normal((TURNS, STATES)),
         impulse_per_turn=np.full(TURNS, 1.5 if contact else 0.0),

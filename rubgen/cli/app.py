@@ -89,6 +89,7 @@ def simulate(
     record_turns: Annotated[int, _option("Turns from which the labels come, at least 500.")] = 500,
     steps_per_turn: Annotated[int, _option("Least number of integration steps in a turn.")] = 1024,
     sample_rate_hz: Annotated[float, _option("Samples a second of the recorded channels.")] = 25600.0,
+    sensors: Annotated[str, _option("Sensor set: default, rig, or the path of a TOML.")] = "default",
     signal_seconds: Annotated[float, _option("Length of the recorded signals: the end of the record.")] = 1.0,
     seed: Annotated[int, _option("Seed of the sensor noise.")] = 0,
     lyapunov: Annotated[bool, _option("Whether to compute the Lyapunov exponent, half as long again.")] = True,

@@ -15,6 +15,7 @@ from rubgen.labels.plain import labels_dict
 from rubgen.pipeline import Run, simulate
 from rubgen.scenario import Labelling, Operation, Scenario, Sensing, make_scenario
 from rubgen.scenario.feasible import check_feasible
+from rubgen.scenario.sensor_set import load_sensor_set
 from rubgen.scenario.vary import KEYS, varied_values
 from rubgen.solver import Status
 
@@ -70,7 +71,7 @@ def _scenario(options: dict[str, Any]) -> Scenario:
         scenario = replace(
             scenario,
             operation=_operation(scenario.operation, options),
-            sensing=Sensing(sample_rate_hz=options["sample_rate_hz"]),
+            sensing=Sensing(sample_rate_hz=options["sample_rate_hz"], set=load_sensor_set(options["sensors"])),
             labelling=Labelling(lyapunov=options["lyapunov"]),
             signal_seconds=options["signal_seconds"],
             seed=options["seed"],

@@ -22,16 +22,16 @@ ROWS_PER_TABLE_GROUP = 4096
 def assemble(recipe: Recipe, layout: Layout) -> Counter[str]:
     """Write `runs.parquet` and the data files from the staged runs; gives how many runs ended with which status."""
     staged = [layout.staged(f"run-{index:06d}") for index in range(recipe.runs)]
-    status = _write_runs(staged, layout)
+    sensors = recipe.sensing.set
+    status = _write_runs(staged, layout, schema(signals=False, sensors=sensors))
     if "parquet" in recipe.output.formats:
-        _write_shards(_valid(staged), layout, clean=recipe.sensors.keep_clean)
+        _write_shards(_valid(staged), layout, schema(signals=True, clean=recipe.sensors.keep_clean, sensors=sensors))
         sync_directory(layout.data)
     sync_directory(layout.root)
     return status
 
 
-def _write_runs(staged: Sequence[Path], layout: Layout) -> Counter[str]:
-    types = schema(signals=False)
+def _write_runs(staged: Sequence[Path], layout: Layout, types: pa.Schema) -> Counter[str]:
     status: Counter[str] = Counter()
 
     def tables() -> Iterator[pa.Table]:
@@ -48,8 +48,7 @@ def _valid(staged: Sequence[Path]) -> list[Path]:
     return [path for path in staged if read_table(path, ["status"])["status"][0].as_py() == "ok"]
 
 
-def _write_shards(staged: Sequence[Path], layout: Layout, *, clean: bool) -> None:
-    types = schema(signals=True, clean=clean)
+def _write_shards(staged: Sequence[Path], layout: Layout, types: pa.Schema) -> None:
     shards = list(_batches(staged, RUNS_PER_SHARD)) or [[]]
     names = [layout.shard(number, len(shards)) for number in range(len(shards))]
     for path in set(layout.shards()) - set(names):

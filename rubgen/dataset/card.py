@@ -7,7 +7,7 @@ import json
 from rubgen.dataset.files import write_text
 from rubgen.dataset.layout import SPLIT, Layout
 from rubgen.dataset.manifest import Identity
-from rubgen.io.columns import CLEAN_SIGNALS, SCALARS, SIGNALS, Column
+from rubgen.io.columns import Column, scalar_columns, signal_columns
 
 LOADING = {
     "parquet": """\
@@ -38,8 +38,9 @@ def card(identity: Identity, status: dict[str, int]) -> str:
     """The text of the card; its YAML head names the files of each configuration and the licence."""
     recipe = identity.recipe
     formats = recipe["output"]["formats"]
-    signals = CLEAN_SIGNALS if recipe["sensors"]["keep_clean"] else SIGNALS
-    columns = SCALARS + (signals if "parquet" in formats else ())
+    sensors = identity.sensor_set
+    signals = signal_columns(sensors, clean=recipe["sensors"]["keep_clean"])
+    columns = scalar_columns(sensors) + (signals if "parquet" in formats else ())
     loading = "\n\n".join(LOADING[kind] for kind in LOADING if kind in formats)
     ended = ", ".join(f"{count} {name}" for name, count in status.items())
     turns, seconds = recipe["simulation"]["record_turns"], recipe["output"]["signal_seconds"]

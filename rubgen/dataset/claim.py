@@ -77,16 +77,23 @@ def _check_same(layout: Layout, there: Identity, asked: Identity, *, versions: b
 
 
 def _first_difference(there: Identity, asked: Identity) -> tuple[str, object, object]:
-    for part in ("recipe", "machine"):
+    for part in ("recipe", "machine", "sensors"):
         old, new = _flat(getattr(there, part)), _flat(getattr(asked, part))
         for key in [*new, *old]:
             if old.get(key) != new.get(key):
-                return key if part == "recipe" else f"machine.{key}", old.get(key), new.get(key)
+                return key if part == "recipe" else f"{part}.{key}", old.get(key), new.get(key)
     return "recipe", None, None
 
 
 def _flat(values: dict[str, object], prefix: str = "") -> dict[str, object]:
     flat: dict[str, object] = {}
-    for key, value in values.items():
+    for key, each in values.items():
+        value = _by_name(each) if isinstance(each, list) else each
         flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
     return flat
+
+
+def _by_name(listed: list[object]) -> object:
+    """A list of tables by their names or numbers; any other list as it is."""
+    tables = [each for each in listed if isinstance(each, dict)]
+    return {str(each.get("name", i)): each for i, each in enumerate(tables)} if len(tables) == len(listed) else listed

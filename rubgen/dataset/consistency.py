@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterator
 from typing import Any
@@ -10,8 +11,10 @@ import numpy as np
 
 from rubgen.labels.harmonics import HIGHEST_ORDER, SPECTRUM_TURNS
 from rubgen.labels.labels import Motion
+from rubgen.scenario import Sensing
+from rubgen.scenario.sensors import OncePerRev, Proximity, SampledSensor
 from rubgen.sensors.channel import Float32Array
-from rubgen.sensors.probes import PROBES, Probe
+from rubgen.sensors.registry import tap_of, usual_range
 
 Row = dict[str, Any]
 REGULARITY = [motion.value for motion in Motion]
@@ -44,37 +47,50 @@ def label_problems(row: Row) -> Iterator[str]:
     }
     rules |= {f"{which} and its period": _period_fits(row, which) for which in ("", "_blisk", "_casing")}
     rules["period is not the least common multiple"] = _common_period(row)
-    for probe in PROBES:
-        rules[f"shares or dominant order of {probe.tap}"] = _shares_fit(row, probe.tap)
+    for tap in (name.removesuffix("_orders") for name in row if name.endswith("_orders")):
+        rules[f"shares or dominant order of {tap}"] = _shares_fit(row, tap)
     yield from (name for name, holds in rules.items() if not holds)
 
 
-def signal_problems(row: Row, signals: dict[str, Float32Array], noise: float, adc_bits: int) -> Iterator[str]:
-    """What contradicts itself between the labels of a valid run and its channels.
+def signal_problems(row: Row, signals: dict[str, Float32Array], sensing: Sensing) -> Iterator[str]:
+    """What contradicts itself between the labels of a valid run and its channels, recorded as `sensing` says.
 
-    `noise` and `adc_bits` are the recipe's. Channels that reached their range are left out of the comparison.
+    Compared with the labels are channels that did not reach their range, of sensors without faults but noise.
     """
     lengths = {values.size for values in signals.values()}
-    if len(lengths) != 1:
+    if len(lengths) > 1:
         yield f"channels of different lengths {sorted(lengths)}"
-    for probe in PROBES:
-        values = signals[probe.name]
-        if not np.isfinite(values).all():
-            yield f"{probe.name} is not finite"
-        elif _within_range(values, probe):
-            yield from _probe_problems(row, probe, values, noise, adc_bits)
-    yield from _pulse_problems(row, signals["once_per_rev"])
+    for sensor in sensing.set.sensors:
+        if isinstance(sensor, OncePerRev):
+            yield from _pulse_problems(row, sensor, signals[sensor.name])
+        if isinstance(sensor, SampledSensor):
+            values = signals[sensor.name]
+            if not np.isfinite(values).all():
+                yield f"{sensor.name} is not finite"
+            elif is_faultless(sensor, sensing) and _within_range(values, *usual_range(sensor)):
+                yield from _sensor_problems(row, sensor, values, sensing)
 
 
-def _probe_problems(row: Row, probe: Probe, values: Float32Array, noise: float, adc_bits: int) -> Iterator[str]:
-    step = (probe.range_max - probe.range_min) / 2**adc_bits
-    if probe.name == "contact_force" and not row["rub"]:
-        limit = NOISE_PEAK * noise * probe.noise_rms + step
+def is_faultless(sensor: SampledSensor, sensing: Sensing) -> bool:
+    """Whether a sensor, in SI units, gives the truth but for noise, range and ADC."""
+    usual = dataclasses.asdict(dataclasses.replace(sensor, range=None, noise_rms=0.0, adc_bits=None))
+    plain = {field.name: field.default for field in dataclasses.fields(SampledSensor) if field.name in usual}
+    differs = [key for key, value in plain.items() if key not in ("name", "unit") and usual[key] != value]
+    disturbed = isinstance(sensor, Proximity) and bool(sensing.set.shaft_runout)
+    return not differs and not disturbed and sensor.UNITS[sensor.unit] == 1.0
+
+
+def _sensor_problems(row: Row, sensor: SampledSensor, values: Float32Array, sensing: Sensing) -> Iterator[str]:
+    low, high = usual_range(sensor)
+    step = (high - low) / 2 ** (sensor.adc_bits or sensing.adc_bits)
+    noise_rms, tap = sensing.noise * sensor.noise_rms, tap_of(sensor).name
+    if tap == "contact_force" and not row["rub"]:
+        limit = NOISE_PEAK * noise_rms + step
         if np.abs(values).max() > limit:
-            yield f"rub is false, but contact_force reaches {np.abs(values).max():.4g} N (noise allows {limit:.4g})"
-    if probe.name == "contact_force" and row["motion"] == Motion.PERIOD_1.value and row["rub"]:
+            yield f"rub is false, but {sensor.name} reaches {np.abs(values).max():.4g} N (noise allows {limit:.4g})"
+    if tap == "contact_force" and row["motion"] == Motion.PERIOD_1.value and row["rub"]:
         yield from _force_problems(row, values)
-    yield from _order_problems(row, probe, values, noise * probe.noise_rms, step)
+    yield from _order_problems(row, tap, values, noise_rms, step)
 
 
 def _force_problems(row: Row, force: Float32Array) -> Iterator[str]:
@@ -84,18 +100,18 @@ def _force_problems(row: Row, force: Float32Array) -> Iterator[str]:
         yield f"contact_impulse_per_turn_n_s is {label:.4g}, the channel gives {impulse:.4g}"
 
 
-def _order_problems(row: Row, probe: Probe, values: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
+def _order_problems(row: Row, tap: str, values: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
     samples = round(min(SPECTRUM_TURNS, row["record_turns"]) * row["sample_rate_hz"] * 60 / row["speed_rpm"])
     if values.size < samples:
         return
     amplitudes = order_amplitudes(values[-samples:], row["speed_rpm"] / 60 / row["sample_rate_hz"])
-    labels = np.asarray(row[f"{probe.tap}_orders"])
+    labels = np.asarray(row[f"{tap}_orders"])
     error = np.abs(amplitudes - labels)
     if error.max() > ORDER_TOLERANCE[row["period"] is not None] * labels.max() + _spectral_floor(
         noise_rms, step, samples
     ):
         k = int(error.argmax())
-        yield f"{probe.tap}_orders: order {k + 1} is {labels[k]:.4g}, the channel gives {amplitudes[k]:.4g}"
+        yield f"{tap}_orders: order {k + 1} is {labels[k]:.4g}, the channel gives {amplitudes[k]:.4g}"
 
 
 def _spectral_floor(noise_rms: float, step: float, samples: int) -> float:
@@ -113,20 +129,21 @@ def order_amplitudes(values: Float32Array, turns_per_sample: float) -> np.ndarra
     return np.asarray(2 / values.size * np.abs(sums))
 
 
-def _pulse_problems(row: Row, pulses: Float32Array) -> Iterator[str]:
+def _pulse_problems(row: Row, sensor: OncePerRev, pulses: Float32Array) -> Iterator[str]:
     times = np.asarray(row["once_per_rev_s"])
     turn = 60 / row["speed_rpm"]
-    if not np.allclose(np.diff(times), turn, rtol=0, atol=PULSE_TOLERANCE * max(1.0, turn)):
+    exact = sensor.jitter_s == 0 and sensor.clock_hz == 0
+    if exact and not np.allclose(np.diff(times), turn, rtol=0, atol=PULSE_TOLERANCE * max(1.0, turn)):
         yield "once_per_rev_s is not spaced by one turn"
     rises = int(np.count_nonzero((pulses[1:] > 0) & (pulses[:-1] == 0)))
     if abs(rises - times.size) > 1:
-        yield f"once_per_rev has {rises} pulses, once_per_rev_s has {times.size}"
+        yield f"{sensor.name} has {rises} pulses, once_per_rev_s has {times.size}"
 
 
-def _within_range(values: Float32Array, probe: Probe) -> bool:
-    margin = (probe.range_max - probe.range_min) * 1e-3
-    low = probe.range_min + margin if probe.range_min < 0 else -math.inf
-    return bool(values.min() > low and values.max() < probe.range_max - margin)
+def _within_range(values: Float32Array, low: float, high: float) -> bool:
+    margin = (high - low) * 1e-3
+    least = low + margin if low < 0 else -math.inf
+    return bool(values.min() > least and values.max() < high - margin)
 
 
 def _rank(motion: str) -> int:

@@ -8,7 +8,7 @@ from typing import Any
 from rubgen.dataset.files import sha256_of, write_json
 from rubgen.dataset.layout import SPLIT, Layout
 from rubgen.dataset.manifest import Identity
-from rubgen.io.columns import CLEAN_SIGNALS, SCALARS, SIGNALS, Column
+from rubgen.io.columns import Column, scalar_columns, signal_columns
 
 PARQUET = "application/x-parquet"
 TYPES = {
@@ -77,12 +77,13 @@ def croissant(layout: Layout, identity: Identity) -> dict[str, Any]:
         "sha256": sha256_of(layout.runs),
     }
     distribution = [runs_file]
-    records = [_record_set("runs", SCALARS, {"fileObject": {"@id": "runs.parquet"}})]
+    scalars = scalar_columns(identity.sensor_set)
+    records = [_record_set("runs", scalars, {"fileObject": {"@id": "runs.parquet"}})]
     if "parquet" in recipe["output"]["formats"]:
         includes = f"data/{SPLIT}-*.parquet"
         distribution.append({"@type": "cr:FileSet", "@id": "data", "includes": includes, "encodingFormat": PARQUET})
-        signals = CLEAN_SIGNALS if recipe["sensors"]["keep_clean"] else SIGNALS
-        records.append(_record_set("signals", SCALARS + signals, {"fileSet": {"@id": "data"}}))
+        signals = signal_columns(identity.sensor_set, clean=recipe["sensors"]["keep_clean"])
+        records.append(_record_set("signals", scalars + signals, {"fileSet": {"@id": "data"}}))
     return {
         "@context": CONTEXT,
         "@type": "sc:Dataset",

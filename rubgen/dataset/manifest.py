@@ -15,6 +15,7 @@ from rubgen.dataset.layout import FOLDERS, Layout
 from rubgen.errors import UserError
 from rubgen.machine import Machine
 from rubgen.scenario import Recipe
+from rubgen.scenario.sensors import SensorSet
 
 PACKAGES = ("rubgen", "numpy", "scipy", "numba", "llvmlite", "pyarrow", "mcap", "protobuf", "zstandard", "rerun-sdk")
 _STRICT = ConfigDict(extra="forbid", frozen=True)
@@ -30,16 +31,22 @@ class FileEntry(BaseModel):
 
 
 class Identity(BaseModel):
-    """All that decides the bytes of a data set on one machine: recipe, the machine it names, versions."""
+    """All that decides the bytes of a data set on one machine: recipe, the machine and sensors it names, versions."""
 
     model_config = _STRICT
     recipe: dict[str, Any]
     machine: dict[str, Any]
+    sensors: dict[str, Any]
     packages: dict[str, str]
 
     def same_recipe(self, other: Identity) -> bool:
         """Whether both describe the same data set, whatever the versions."""
-        return (self.recipe, self.machine) == (other.recipe, other.machine)
+        return (self.recipe, self.machine, self.sensors) == (other.recipe, other.machine, other.sensors)
+
+    @property
+    def sensor_set(self) -> SensorSet:
+        """The sensors of every run."""
+        return TypeAdapter(SensorSet).validate_python(self.sensors)
 
 
 class Manifest(BaseModel):
@@ -63,6 +70,7 @@ def identity_of(recipe: Recipe) -> Identity:
     return Identity(
         recipe=recipe.model_dump(mode="json", exclude_none=True),
         machine=TypeAdapter(Machine).dump_python(recipe.base.machine, mode="json"),
+        sensors=TypeAdapter(SensorSet).dump_python(recipe.sensing.set, mode="json"),
         packages=packages,
     )
 

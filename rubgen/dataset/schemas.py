@@ -10,11 +10,12 @@ from pydantic import TypeAdapter
 
 from rubgen.dataset.files import write_json, write_text
 from rubgen.dataset.manifest import Manifest
-from rubgen.io.columns import SCALARS, Column
+from rubgen.io.columns import ORDER_SUFFIXES, SCALARS, Column
 from rubgen.io.mcap_messages import proto_text
 from rubgen.labels.labels import Motion
 from rubgen.machine import Machine
 from rubgen.scenario import Recipe
+from rubgen.scenario.sensors import KINDS, SensorSet
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 JSON_TYPES: dict[str, dict[str, Any]] = {
@@ -28,12 +29,13 @@ JSON_TYPES: dict[str, dict[str, Any]] = {
 
 
 def schemas() -> dict[str, dict[str, Any]]:
-    """File name to schema: recipe, machine, manifest, and one row of `runs.parquet`."""
+    """File name to schema: recipe, machine, sensor set, manifest, and one row of `runs.parquet`."""
     documents = {
         "recipe.schema.json": Recipe.model_json_schema(),
         "machine.schema.json": TypeAdapter(Machine).json_schema(),
         "manifest.schema.json": Manifest.model_json_schema(),
         "run.schema.json": _run_schema(),
+        "sensor-set.schema.json": _sensor_set_schema(),
     }
     return {name: {"$schema": DIALECT, **document} for name, document in documents.items()}
 
@@ -53,8 +55,19 @@ def _run_schema() -> dict[str, Any]:
         "type": "object",
         "properties": {column.name: _property(column) for column in SCALARS},
         "required": [column.name for column in SCALARS],
+        "patternProperties": {
+            f"^[A-Za-z]\\w*({'|'.join(ORDER_SUFFIXES)})$": {"description": "of a further true signal"}
+        },
         "additionalProperties": False,
     }
+
+
+def _sensor_set_schema() -> dict[str, Any]:
+    """A file's `[kinds.<kind>]` tables are merged into its sensors before anything is validated."""
+    schema: dict[str, Any] = TypeAdapter(SensorSet).json_schema()
+    tables = {"type": "object", "additionalProperties": {"type": "object"}, "propertyNames": {"enum": list(KINDS)}}
+    schema["properties"]["kinds"] = {"description": "values of every sensor of a kind", **tables}
+    return schema
 
 
 def _property(column: Column) -> dict[str, Any]:

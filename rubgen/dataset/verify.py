@@ -13,6 +13,7 @@ from rubgen.dataset.manifest import Manifest, derived_files, hashed_files, read_
 from rubgen.dataset.open import is_signal, row_signals
 from rubgen.errors import UserError
 from rubgen.io.parquet import row_groups, schema
+from rubgen.scenario import Sensing
 
 
 def verify(directory: Path) -> list[str]:
@@ -49,10 +50,10 @@ def _file_problems(layout: Layout, manifest: Manifest) -> Iterator[str]:
 
 
 def _table_problems(layout: Layout, manifest: Manifest) -> Iterator[str]:
-    recipe = manifest.identity.recipe
+    recipe, sensors = manifest.identity.recipe, manifest.identity.sensor_set
     rows: dict[str, Row] = {}
     for table in row_groups(layout.runs):
-        if not table.schema.equals(schema(signals=False)):
+        if not table.schema.equals(schema(signals=False, sensors=sensors)):
             yield f"{layout.runs.name}: its columns are not those of this rubgen"
             return
         rows |= {row["run_id"]: row for row in table.to_pylist()}
@@ -65,7 +66,7 @@ def _table_problems(layout: Layout, manifest: Manifest) -> Iterator[str]:
         yield from (f"{name}: {problem}" for problem in label_problems(row))
     yield from _expected_exports(layout, recipe["output"]["formats"], set(valid))
     if "parquet" in recipe["output"]["formats"]:
-        yield from _data_problems(layout, recipe, valid)
+        yield from _data_problems(layout, Sensing(**{**recipe["sensors"], "set": sensors}), valid)
 
 
 def _expected_exports(layout: Layout, formats: list[str], valid: set[str]) -> Iterator[str]:
@@ -75,9 +76,8 @@ def _expected_exports(layout: Layout, formats: list[str], valid: set[str]) -> It
             yield f"{kind}/{name}.{kind}: {'run is not ok or unknown' if name in there else 'missing'}"
 
 
-def _data_problems(layout: Layout, recipe: Row, valid: dict[str, Row]) -> Iterator[str]:
-    sensors = recipe["sensors"]
-    types = schema(signals=True, clean=bool(sensors["keep_clean"]))
+def _data_problems(layout: Layout, sensing: Sensing, valid: dict[str, Row]) -> Iterator[str]:
+    types = schema(signals=True, clean=sensing.keep_clean, sensors=sensing.set)
     seen: set[str] = set()
     for path in layout.shards():
         for table in row_groups(path):
@@ -90,7 +90,7 @@ def _data_problems(layout: Layout, recipe: Row, valid: dict[str, Row]) -> Iterat
                 if {key: row[key] for key in valid.get(row["run_id"], {})} != valid.get(row["run_id"]):
                     yield f"{row['run_id']}: data/{path.name} and runs.parquet differ"
                 signals = row_signals(table, number)
-                found = signal_problems(row, signals, noise=float(sensors["noise"]), adc_bits=int(sensors["adc_bits"]))
+                found = signal_problems(row, signals, sensing)
                 yield from (f"{row['run_id']}: {problem}" for problem in found)
     for name in sorted(seen ^ set(valid)):
         yield f"{name}: {'has signals, but is not ok' if name in seen else 'is ok, but has no signals'}"

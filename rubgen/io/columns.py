@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rubgen.errors import UserError
+from rubgen.scenario.sensor_set import default_sensor_set
+from rubgen.scenario.sensors import OncePerRev, SampledSensor, SensorSet, TimingProbe
+from rubgen.scenario.taps import Tap, TipTiming
 from rubgen.scenario.vary import PARAMETERS
-from rubgen.sensors.probes import PROBES
-
-PULSE_CHANNEL = "once_per_rev"
-TAPS = tuple(dict.fromkeys(probe.tap for probe in PROBES))
-"""True signals whose order amplitudes are labels."""
-CHANNELS = (*(probe.name for probe in PROBES), PULSE_CHANNEL)
-"""Recorded signals, one list column each."""
+from rubgen.sensors import taps_of
+from rubgen.sensors.registry import describe
 
 
 @dataclass(frozen=True)
@@ -90,13 +89,13 @@ def _labels() -> list[Column]:
     ]
 
 
-def _orders(tap: str) -> list[Column]:
-    units = {probe.tap: probe.unit for probe in PROBES}
+def _orders(tap: Tap) -> list[Column]:
+    name, unit = tap.name, tap.UNIT
     return [
-        _label(f"{tap}_orders", "numbers", units[tap], f"peak amplitudes of {tap} at k f_r, k = 1..10"),
-        _label(f"{tap}_even_share", "number", "1", "share of the squares on even k"),
-        _label(f"{tap}_odd_share", "number", "1", "share of the squares on odd k"),
-        _label(f"{tap}_dominant_order", "integer", "", "k of the largest amplitude"),
+        _label(f"{name}_orders", "numbers", unit, f"peak amplitudes of {name} at k f_r, k = 1..10"),
+        _label(f"{name}_even_share", "number", "1", "share of the squares on even k"),
+        _label(f"{name}_odd_share", "number", "1", "share of the squares on odd k"),
+        _label(f"{name}_dominant_order", "integer", "", "k of the largest amplitude"),
     ]
 
 
@@ -108,29 +107,62 @@ def _energy() -> list[Column]:
     ]
 
 
-def _signals(clean: bool) -> list[Column]:
-    facts = {probe.name: (probe.unit, f"{probe.quantity} {probe.axis}, {probe.location}") for probe in PROBES}
-    facts[PULSE_CHANNEL] = ("1", "one pulse a turn, from theta = 0")
+def _channel(sensor: SampledSensor | OncePerRev) -> tuple[str, str]:
+    """Unit and meaning of a channel."""
+    if isinstance(sensor, OncePerRev):
+        return "1", "one pulse a turn, from theta = 0"
+    about = describe(sensor)
+    return sensor.unit, f"{about.quantity} {about.axis}, {about.location}"
+
+
+def _arrivals(probe: TimingProbe) -> list[Column]:
+    name, place = probe.name, f"{probe.angle_deg:g} deg"
+    return [
+        Column(f"{name}_s", "numbers", "s", f"arrival times of blades at {place} on the casing"),
+        Column(f"{name}_blade", "integers", "", "number of the blade of each arrival"),
+        Column(f"{name}_true_m", "numbers", "m", "true displacement of that blade's tip along the rotation"),
+    ]
+
+
+def scalar_columns(sensors: SensorSet) -> tuple[Column, ...]:
+    """Columns of `runs.parquet` for runs with these sensors: each true signal that one sees has its orders."""
+    taps = [tap for tap in taps_of(sensors) if not isinstance(tap, TipTiming)]
+    orders = [column for tap in taps for column in _orders(tap)]
+    return (*_identity(), *_parameters(), *_operation(), *_labels(), *orders, *_energy())
+
+
+def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
+    """Columns that the data files have beside those of `runs.parquet`; `clean` where those channels are kept too.
+
+    Raises UserError where a sensor has the name of another column.
+    """
+    facts = {each.name: _channel(each) for each in sensors.sensors if isinstance(each, SampledSensor | OncePerRev)}
     columns = [
         Column("rotation_angle_rad", "number", "rad", "angle of the blisk at the first sample"),
         Column("once_per_rev_s", "numbers", "s", "arrival times of the once_per_rev pulses"),
     ]
-    columns += [Column(name, "signal", *facts[name]) for name in CHANNELS]
+    columns += [Column(name, "signal", *fact) for name, fact in facts.items()]
     if clean:
         columns += [Column(f"{name}_clean", "signal", unit, f"{text}, clean") for name, (unit, text) in facts.items()]
-    return columns
+    columns += [column for probe in sensors.sensors if isinstance(probe, TimingProbe) for column in _arrivals(probe)]
+    _check_names(sensors, columns)
+    return tuple(columns)
 
 
-SCALARS = (
-    *_identity(),
-    *_parameters(),
-    *_operation(),
-    *_labels(),
-    *(column for tap in TAPS for column in _orders(tap)),
-    *_energy(),
-)
-"""Columns of `runs.parquet`."""
-SIGNALS = tuple(_signals(clean=False))
-"""Columns that the data files have beside those of `runs.parquet`."""
-CLEAN_SIGNALS = tuple(_signals(clean=True))
+def _check_names(sensors: SensorSet, columns: list[Column]) -> None:
+    taken = [column.name for column in (*scalar_columns(sensors), *columns)]
+    for name in taken:
+        if taken.count(name) > 1:
+            raise UserError(f"sensor set {sensors.name}: two columns would be called {name}; rename that sensor")
+
+
+ORDER_SUFFIXES = tuple(column.name.removeprefix("tap") for column in _orders(Tap(name="tap")))
+"""Ends of the names of the columns that each true signal has."""
+SCALARS = scalar_columns(default_sensor_set())
+"""Columns of `runs.parquet` for the sensors of a recipe that names none."""
+SIGNALS = signal_columns(default_sensor_set(), clean=False)
+"""Columns that the data files then have beside those."""
+CLEAN_SIGNALS = signal_columns(default_sensor_set(), clean=True)
 """The same where the recipe keeps the clean channels."""
+CHANNELS = tuple(column.name for column in SIGNALS if column.kind == "signal")
+"""Their recorded signals."""

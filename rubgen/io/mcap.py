@@ -13,10 +13,11 @@ from mcap.writer import Writer
 from rubgen.io.durable import write_durably
 from rubgen.io.mcap_check import check_mcap
 from rubgen.io.mcap_messages import MESSAGES, PACKAGE, file_descriptor_set, message_class, sample_block, timestamp
-from rubgen.io.mcap_read import McapRun, read_mcap
+from rubgen.io.mcap_read import TIMING, McapRun, read_mcap
 from rubgen.io.multi_array import SCHEMA, SCHEMA_NAME, multi_arrays
 from rubgen.labels.plain import labels_dict
 from rubgen.scenario.plain import scenario_dict
+from rubgen.sensors.blade_tip_timing import TipTimes
 from rubgen.sensors.channel import Channel, Float32Array, Recording
 from rubgen.sensors.contact_window import contact_intervals
 from rubgen.sensors.envelope import Preview, preview
@@ -37,7 +38,8 @@ def write_mcap(run: Run, path: Path) -> None:
     """Write `run` to `path`, complete or not at all; the same run gives the same bytes.
 
     Topics: `/raw/<channel>` (`/clean/<channel>` where kept) blocks of 1024 float32 samples, `/preview/<quantity>`
-    minimum and maximum at about 1 kHz, `/contact`, `/once_per_rev`, `/labels/motion`. Times are integer ns from the
+    minimum and maximum at about 1 kHz, `/contact`, `/once_per_rev`,
+    `/blade_tip_timing/<probe>`, `/labels/motion`. Times are integer ns from the
     first sample. Scenario and labels stand in metadata records (`rubgen.scenario`, `rubgen.labels`; each value JSON)
     and as attachments. Raises ValueError for a run without a recording, OSError when the file cannot be written.
     """
@@ -92,6 +94,8 @@ def _write_messages(writer: Writer, run: Run, recording: Recording, labels: Labe
         add(f"/preview/{quantity}", multi_array, _arrays(shown, recording.sample_rate_hz), metadata)
     add("/contact", schemas["Contact"], _contacts(run, recording))
     add("/once_per_rev", schemas["OncePerRev"], _pulses(recording))
+    for name, seen in recording.tip_timing.items():
+        add(f"{TIMING}{name}", schemas["BladePassage"], _passages(seen), _describe_probe(run, name))
     add("/labels/motion", schemas["MotionLabel"], iter([_motion(labels)]))
     for time, channel_id, sequence, data in sorted(merged, key=itemgetter(0, 1, 2)):
         writer.add_message(channel_id, time, data, publish_time=time, sequence=sequence)
@@ -147,6 +151,23 @@ def _pulses(recording: Recording) -> Iterator[Stamped]:
         time = nanoseconds(time_s)
         pulse = message(timestamp=timestamp(time), time_s=time_s, turn=turn)
         yield time, pulse.SerializeToString(deterministic=True)
+
+
+def _describe_probe(run: Run, name: str) -> dict[str, str]:
+    """Where a timing probe stands."""
+    (probe,) = [each for each in run.scenario.sensing.set.sensors if each.name == name]
+    values = {key: value for key, value in vars(probe).items() if key.endswith(("_deg", "_m", "_s", "_hz"))}
+    return {"unit": "s", "quantity": "arrival time", **{key: repr(float(value)) for key, value in values.items()}}
+
+
+def _passages(seen: TipTimes) -> Iterator[Stamped]:
+    message = message_class("BladePassage")
+    for time_s, blade, true in zip(
+        seen.time.tolist(), seen.blade.tolist(), seen.true_displacement.tolist(), strict=True
+    ):
+        time = max(0, nanoseconds(time_s))
+        passage = message(timestamp=timestamp(time), time_s=time_s, blade=blade, true_displacement_m=true)
+        yield time, passage.SerializeToString(deterministic=True)
 
 
 def _motion(labels: Labels) -> Stamped:

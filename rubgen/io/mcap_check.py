@@ -50,8 +50,8 @@ def _topic_problems(content: McapContent) -> Iterator[str]:
         if missing:
             yield f"{topic}: metadata lacks {', '.join(missing)}"
         elif topic.startswith("/raw/"):
-            preview = f"/preview/{quantity_key(channel.metadata['quantity'])}"
-            if not content.messages.get(preview):
+            preview = f"/preview/{quantity_key(channel.metadata['quantity'])}"  # or this and a unit
+            if not any(messages for name, messages in content.messages.items() if name.startswith(preview)):
                 yield f"{topic}: {preview} is missing"
     for topic, messages in content.messages.items():
         times = [message.log_time for message in messages]

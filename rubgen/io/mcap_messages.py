@@ -68,6 +68,15 @@ MESSAGES: dict[str, tuple[str, list[_Field]]] = {
             _Field("uint32", "period", "turns after which the motion repeats; 0 where it does not"),
         ],
     ),
+    "BladePassage": (
+        "A blade passes a timing probe.",
+        [
+            _TIME,
+            _Field("double", "time_s", "time after the first sample as the probe gives it, s"),
+            _Field("uint32", "blade", "number of the blade, from 0"),
+            _Field("double", "true_displacement_m", "of the blade's tip along the rotation at that time, known, m"),
+        ],
+    ),
     "OncePerRev": (
         "The blisk passes angle 0.",
         [_TIME, _Field("double", "time_s", "time after the first sample, s"), _Field("uint64", "turn", "from 0")],

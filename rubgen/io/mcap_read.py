@@ -25,6 +25,8 @@ from rubgen.sensors.channel import Float32Array
 
 UNREADABLE = (McapError, ZstdError, ValueError, EOFError, struct.error, KeyError, MemoryError)
 """What the mcap package raises for a file that is damaged or no MCAP (its CRC error is a ValueError)."""
+TIMING = "/blade_tip_timing/"
+"""Topics of timing probes begin so."""
 _MAGIC_BYTES = 8
 _FOOTER = struct.Struct("<BQQQI")  # opcode, length, summary start, summary offset start, CRC
 
@@ -35,7 +37,7 @@ class McapRun:
 
     `signals` and `clean` map a channel's name to its samples (n,), float32, in the unit that `channels[name]` names
     beside quantity, axis, location and range. `contacts` maps a field of rubgen.v1.Contact to its values (n_events,);
-    `once_per_rev` (n_pulses,) in s.
+    `once_per_rev` (n_pulses,) in s. `tip_timing` maps a timing probe's name to fields of rubgen.v1.BladePassage.
     """
 
     scenario: dict[str, Any]
@@ -46,6 +48,7 @@ class McapRun:
     channels: dict[str, dict[str, str]]
     contacts: dict[str, FloatArray]
     once_per_rev: FloatArray
+    tip_timing: dict[str, dict[str, FloatArray]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,6 +126,11 @@ def _run(content: McapContent) -> McapRun:
         },
         contacts=_columns(content, "/contact", "Contact"),
         once_per_rev=_columns(content, "/once_per_rev", "OncePerRev")["time_s"],
+        tip_timing={
+            topic.removeprefix(TIMING): _columns(content, topic, "BladePassage")
+            for topic in content.channels
+            if topic.startswith(TIMING)
+        },
     )
 
 

@@ -14,9 +14,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from rubgen.errors import UserError
-from rubgen.io.columns import CLEAN_SIGNALS, SCALARS, SIGNALS, Column
+from rubgen.io.columns import Column, scalar_columns, signal_columns
 from rubgen.io.durable import write_durably
 from rubgen.labels.plain import labels_dict
+from rubgen.scenario.sensor_set import default_sensor_set
+from rubgen.scenario.sensors import SensorSet
 from rubgen.scenario.vary import varied_values
 from rubgen.sensors.channel import Recording
 
@@ -35,9 +37,13 @@ TYPES = {
 COMPRESSION_LEVEL = 3
 
 
-def schema(*, signals: bool, clean: bool = False) -> pa.Schema:
-    """The Arrow schema of `runs.parquet`, or with `signals` of the data files; unit and meaning stand at each field."""
-    columns = SCALARS + ((CLEAN_SIGNALS if clean else SIGNALS) if signals else ())
+def schema(*, signals: bool, clean: bool = False, sensors: SensorSet | None = None) -> pa.Schema:
+    """The Arrow schema of `runs.parquet`, or with `signals` of the data files; unit and meaning stand at each field.
+
+    `sensors` are those of the runs, the default set where none is given.
+    """
+    used = sensors or default_sensor_set()
+    columns = scalar_columns(used) + (signal_columns(used, clean=clean) if signals else ())
     return pa.schema([_field(column) for column in columns])
 
 
@@ -54,7 +60,8 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
         row |= {"friction_loss_j": energy.friction_loss}
     if signals and run.recording is not None:
         row |= _signals(run.recording)
-    types = schema(signals=signals, clean=run.scenario.sensing.keep_clean)
+    sensing = run.scenario.sensing
+    types = schema(signals=signals, clean=sensing.keep_clean, sensors=sensing.set)
     unknown = sorted(set(row) - set(types.names))
     if unknown:
         raise ValueError(f"no column for {', '.join(unknown)}")
@@ -165,4 +172,6 @@ def _signals(recording: Recording) -> dict[str, object]:
         values[name] = channel.values
         if channel.clean is not None:
             values[f"{name}_clean"] = channel.clean
+    for name, seen in recording.tip_timing.items():
+        values |= {f"{name}_s": seen.time, f"{name}_blade": seen.blade, f"{name}_true_m": seen.true_displacement}
     return values

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 from rubgen.errors import UserError
 from rubgen.scenario.scenario import Scenario
+from rubgen.scenario.sensors import BladeStrain, TimingProbe
 
 MIN_RECORD_TURNS = 500
 """Fewer strobed turns call quasi-periodic motion chaotic (49 do), so labels ask for these."""
@@ -16,7 +19,7 @@ QUARTERS = 4
 
 def check_feasible(scenario: Scenario, source: str = "") -> None:
     """Raise UserError where the scenario cannot be run; keys are named as in a recipe, after `source` (its file)."""
-    for problem in (_record_problem, _tail_problem, _rate_problem, _steps_problem, _lobe_problem, _node_problem):
+    for problem in (*PROBLEMS, *SENSOR_PROBLEMS):
         text = problem(scenario)
         if text:
             raise UserError(source + text)
@@ -40,9 +43,14 @@ def _tail_problem(scenario: Scenario) -> str | None:
     )
 
 
+def _highest_hz(scenario: Scenario) -> float:
+    """The highest sample rate that the most steps can feed."""
+    return MAX_STEPS_PER_TURN * scenario.operation.rotation_frequency_hz / STEPS_PER_SAMPLE
+
+
 def _rate_problem(scenario: Scenario) -> str | None:
     rate, operation = scenario.sensing.sample_rate_hz, scenario.operation
-    highest = MAX_STEPS_PER_TURN * operation.rotation_frequency_hz / STEPS_PER_SAMPLE
+    highest = _highest_hz(scenario)
     if rate <= highest:
         return None
     return (
@@ -76,3 +84,43 @@ def _node_problem(scenario: Scenario) -> str | None:
         if casing.nodes % divisor:
             return f"casing.nodes = {casing.nodes}: must be divisible by {what}; change casing.nodes or the lobes"
     return None
+
+
+def _front_end_problem(scenario: Scenario) -> str | None:
+    highest = _highest_hz(scenario)
+    for sensor in scenario.sensing.set.sampled:
+        for key in ("bandwidth_hz", "resonance_hz"):
+            frequency = getattr(sensor, key)
+            if frequency is not None and frequency > highest:
+                return (
+                    f"sensors.set: {key} = {frequency:g} of {sensor.name}: at {scenario.operation.speed_rpm:g} rev/min "
+                    f"the step feeds at most {highest:.6g} Hz; lower it, leave it out or raise the lowest speed"
+                )
+    return None
+
+
+def _blade_problem(scenario: Scenario) -> str | None:
+    blades = scenario.machine.blades
+    for sensor in scenario.sensing.set.sensors:
+        if isinstance(sensor, BladeStrain) and sensor.blade >= blades.count:
+            return (
+                f"sensors.set: blade = {sensor.blade} of {sensor.name}: the machine has {blades.count} blades; "
+                f"give 0 to {blades.count - 1}"
+            )
+    return None
+
+
+def _axial_problem(scenario: Scenario) -> str | None:
+    blades = scenario.machine.blades
+    half = abs(math.sin(math.radians(blades.tip_angle_deg))) * blades.tip_chord_m / 2
+    for sensor in scenario.sensing.set.sensors:
+        if isinstance(sensor, TimingProbe) and abs(sensor.axial_m) > half:
+            return (
+                f"sensors.set: axial_m = {sensor.axial_m:g} of {sensor.name}: the tips reach {half:.4g} m to either "
+                "side; give a place between"
+            )
+    return None
+
+
+PROBLEMS = (_record_problem, _tail_problem, _rate_problem, _steps_problem, _lobe_problem, _node_problem)
+SENSOR_PROBLEMS = (_front_end_problem, _blade_problem, _axial_problem)

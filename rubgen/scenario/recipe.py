@@ -11,13 +11,14 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, TypeAdapter, ValidationError, create_model
 
 from rubgen.errors import UserError
-from rubgen.machine import Positive, load_machine
+from rubgen.machine import NonNegative, Positive, load_machine
 from rubgen.machine.load import machine_id, read_toml
 from rubgen.machine.problems import first_problem
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.sampling import sobol_point
 from rubgen.scenario.scenario import ContactLaw, Labelling, Operation, Reduction, Scenario, Sensing, TurnCount
+from rubgen.scenario.sensor_set import DEFAULT_SET, load_sensor_set
 from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, vary
 
 DEFAULT_RECIPE = Path(__file__).parent / "zeng2019-mini.toml"
@@ -43,6 +44,17 @@ class Output(BaseModel):
     signal_seconds: Positive = 1.0
 
 
+class Sensors(BaseModel):
+    """`[sensors]`: the set, one that comes with rubgen or the path of a TOML file, and what `Sensing` takes beside."""
+
+    model_config = _STRICT
+    set: Annotated[str, Field(min_length=1)] = DEFAULT_SET
+    sample_rate_hz: Positive = 25600.0
+    noise: NonNegative = 1.0
+    adc_bits: Annotated[int, Field(ge=8, le=32)] = 16
+    keep_clean: bool = False
+
+
 def _vary_fields() -> dict[str, Any]:
     return {
         entry.key: (Distribution | None, Field(default=None, description=f"{entry.meaning}, {entry.unit}"))
@@ -66,7 +78,7 @@ class Recipe(BaseModel):
     license: Annotated[str, Field(min_length=1)] = "CC-BY-4.0"
     vary: Vary = Vary()
     simulation: Simulation = Simulation()
-    sensors: Sensing = Sensing()
+    sensors: Sensors = Sensors()
     labels: Labelling = Labelling()
     output: Output = Output()
     reduction: Reduction = Reduction()
@@ -82,12 +94,18 @@ class Recipe(BaseModel):
             operation=Operation(speed_rpm=DEFAULT_SPEED_RPM, **self.simulation.model_dump()),
             contact=self.contact,
             reduction=self.reduction,
-            sensing=self.sensors,
+            sensing=self.sensing,
             labelling=self.labels,
             signal_seconds=self.output.signal_seconds,
             seed=self.seed,
             machine_id=machine_id(machine),
         )
+
+    @cached_property
+    def sensing(self) -> Sensing:
+        """`[sensors]` with the set that it names."""
+        rest = self.sensors.model_dump(exclude={"set"})
+        return Sensing(set=load_sensor_set(self.sensors.set, self._folder), **rest)
 
     def distributions(self) -> Iterator[tuple[Parameter, Distribution]]:
         """The keys that the recipe names, with their distributions, in the order of the registry."""
@@ -150,7 +168,7 @@ def check_recipe(recipe: Recipe, source: str = "recipe") -> None:
         recipe.base  # noqa: B018  (reads the machine file)
     except UserError as error:
         text = str(error)
-        raise UserError(f"{source}: {text}" if text.startswith("machine = ") else text) from None
+        raise UserError(f"{source}: {text}" if text.startswith(("machine = ", "sensors.set = ")) else text) from None
     for scenario in recipe.corners(f"{source}: "):
         check_feasible(scenario, f"{source}: ")
 

@@ -11,6 +11,8 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from rubgen.machine import STRICT, Machine, NonNegative, Positive
+from rubgen.scenario.sensor_set import default_sensor_set
+from rubgen.scenario.sensors import SensorSet
 
 TurnCount = Annotated[int, Field(ge=1)]
 
@@ -85,14 +87,20 @@ class ContactLaw:
 class Sensing:
     """How the true response becomes recorded channels.
 
-    `noise` scales every sensor's own noise level (0 switches it off); `keep_clean` keeps the channels before noise,
-    range and ADC as well.
+    `set` are the sensors. `noise` scales every sensor's own noise level (0 switches it off); `keep_clean` keeps beside
+    each channel what an ideal sensor would give.
     """
 
     sample_rate_hz: Positive = 25600.0
     noise: NonNegative = 1.0
     adc_bits: Annotated[int, Field(ge=8, le=32)] = 16
     keep_clean: bool = False
+    set: SensorSet = Field(default_factory=default_sensor_set)
+
+    @property
+    def fastest_hz(self) -> float:
+        """The highest frequency that steps must feed: the sample rate, or that of a sensor's own dynamics."""
+        return max(self.sample_rate_hz, self.set.front_end_hz)
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)

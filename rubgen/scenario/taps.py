@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 from pydantic.dataclasses import dataclass
@@ -15,7 +15,9 @@ Angle = Annotated[float, Field(ge=0, lt=360, allow_inf_nan=False)]
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Tap:
-    """A named signal of the true response."""
+    """A named signal of the true response, in `UNIT`."""
+
+    UNIT: ClassVar[str] = ""
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
 
@@ -24,6 +26,7 @@ class Tap:
 class CentreDisplacement(Tap):
     """Displacement of O_d along a direction of the inertial frame, in m."""
 
+    UNIT: ClassVar[str] = "m"
     angle_deg: Angle
 
 
@@ -31,6 +34,7 @@ class CentreDisplacement(Tap):
 class CasingAcceleration(Tap):
     """Radial acceleration of the casing at an angle, outward, in m/s2."""
 
+    UNIT: ClassVar[str] = "m/s2"
     angle_deg: Angle
 
 
@@ -38,6 +42,7 @@ class CasingAcceleration(Tap):
 class RingStrain(Tap):
     """Hoop strain at the outer face of the casing at an angle, positive in tension."""
 
+    UNIT: ClassVar[str] = "1"
     angle_deg: Angle
 
 
@@ -45,6 +50,7 @@ class RingStrain(Tap):
 class SupportForce(Tap):
     """Force of the disk on its lateral support along a direction of the inertial frame, in N."""
 
+    UNIT: ClassVar[str] = "N"
     angle_deg: Angle
 
 
@@ -52,21 +58,28 @@ class SupportForce(Tap):
 class ContactForce(Tap):
     """Sum of the normal contact forces, in N; peaks go as 1/dt."""
 
+    UNIT: ClassVar[str] = "N"
+
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class ContactTorque(Tap):
     """Torque of the contact forces on the blisk about Z, in N m, negative where contact brakes; peaks go as 1/dt."""
+
+    UNIT: ClassVar[str] = "N m"
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class DriveTorque(Tap):
     """Torque of the drive on the blisk about Z, through the torsion spring and damper of O_d, in N m."""
 
+    UNIT: ClassVar[str] = "N m"
+
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class TipClearance(Tap):
     """Gap on the ray at an angle between the tips, interpolated between two blades, and the deformed casing, in m."""
 
+    UNIT: ClassVar[str] = "m"
     angle_deg: Angle
 
 
@@ -74,6 +87,7 @@ class TipClearance(Tap):
 class RootStrain(Tap):
     """Spanwise strain at the root of a blade, mid-chord on the face of the thickness normal, vibration alone."""
 
+    UNIT: ClassVar[str] = "1"
     blade: Annotated[int, Field(ge=0)]
 
 
@@ -84,6 +98,7 @@ class TipTiming(Tap):
     The probe stands at an angle and at an axial place (m) from the middle of the tips' chords.
     """
 
+    UNIT: ClassVar[str] = "s"
     angle_deg: Angle
     axial_m: Finite = 0.0
 

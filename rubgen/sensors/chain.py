@@ -10,6 +10,7 @@ from scipy.signal import kaiser_beta
 from rubgen.arrays import FloatArray
 from rubgen.scenario import Sensing
 from rubgen.sensors._kernels import interpolate_rows
+from rubgen.sensors.front_end import memory_seconds
 
 PASS_BAND_SHARE = 2 / 2.56
 """End of the pass band as a share of the Nyquist frequency: sample rate / 2.56, as in dynamic signal analysers."""
@@ -29,12 +30,21 @@ def half_width_seconds(sample_rate_hz: float) -> float:
     return float((ATTENUATION_DB - 7.95) / (2.285 * 2 * np.pi * transition_hz) / 2)
 
 
-def margin_seconds(sensing: Sensing) -> float:
-    """Signal that the filter needs beyond the recorded one, in s: half its length on either side.
+def late_seconds(sensing: Sensing, seconds: float, *, sign: int = 1) -> float:
+    """How late, in s, the latest clock of the set takes a sample within `seconds`; how early for sign = -1."""
+    clocks = [(each.clock_offset_s, 1e-6 * each.clock_ppm * seconds) for each in sensing.set.sampled]
+    return max([0.0, *(sign * (offset + share * slow) for offset, slow in clocks for share in (0, 1))])
 
-    Two sample periods are added, so that rounding to whole steps and samples never falls short.
+
+def margin_seconds(sensing: Sensing, seconds: float = 0.0) -> float:
+    """Signal that a recording of `seconds` needs beyond itself, in s: half the filter's length on either side.
+
+    Clocks that run early or late need more, and sensors with dynamics what their filters remember. Two sample periods
+    are added, so that rounding to whole steps and samples never falls short.
     """
-    return 2 * half_width_seconds(sensing.sample_rate_hz) + 2 / sensing.sample_rate_hz
+    margin = 2 * half_width_seconds(sensing.sample_rate_hz) + 2 / sensing.sample_rate_hz
+    margin += max((memory_seconds(each) for each in sensing.set.sampled), default=0.0)
+    return margin + late_seconds(sensing, seconds) + late_seconds(sensing, seconds, sign=-1)
 
 
 def impulse_response(time: FloatArray, sample_rate_hz: float) -> FloatArray:

@@ -8,7 +8,6 @@ import numpy as np
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.sensors.channel import Recording
-from rubgen.sensors.measure import first_sample_seconds
 from rubgen.solver.response import Response
 
 
@@ -30,12 +29,9 @@ class ContactIntervals:
 
 
 def contact_intervals(response: Response, recording: Recording) -> ContactIntervals:
-    """The contact events of `response` that overlap `recording`, in the time of its samples.
-
-    See `first_sample_seconds` for where the recording lies in the record.
-    """
+    """The contact events of `response` that overlap `recording`, in the time of its samples."""
     events, rate = response.events, recording.sample_rate_hz
-    start = np.asarray(events.start_step * response.dt - first_sample_seconds(response, recording), dtype=np.float64)
+    start = np.asarray(events.start_step * response.dt - recording.start_seconds, dtype=np.float64)
     duration = np.asarray(events.steps * response.dt, dtype=np.float64)
     inside = (start + duration > 0) & (start < recording.samples / rate)
     return ContactIntervals(

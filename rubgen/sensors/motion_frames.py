@@ -8,7 +8,6 @@ import numpy as np
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.sensors.channel import Recording
-from rubgen.sensors.measure import first_sample_seconds
 from rubgen.solver.response import Response
 
 COARSE_FRAMES = 60
@@ -62,7 +61,7 @@ def motion_frames(response: Response, recording: Recording) -> MotionFrames | No
 
 
 def _seconds(step: IntArray, response: Response, recording: Recording) -> FloatArray:
-    return np.asarray(step * response.dt - first_sample_seconds(response, recording), dtype=np.float64)
+    return np.asarray(step * response.dt - recording.start_seconds, dtype=np.float64)
 
 
 def _inside(step: IntArray, response: Response, recording: Recording) -> IntArray:

@@ -11,10 +11,11 @@ NOTCH_ANGLE = np.pi / 6
 """Angle of the notch in rad: every pulse holds at least one sample while the sample rate is 12 f_r or more."""
 
 
-def pulse_channel(angle: FloatArray) -> Channel:
+def pulse_channel(angle: FloatArray, name: str = "once_per_rev", *, keep_clean: bool = False) -> Channel:
     """The pulse at blisk angles `angle` (samples,) in rad: 1 from theta = 0 to NOTCH_ANGLE, else 0; logic, no noise."""
+    values = (np.mod(angle, 2 * np.pi) < NOTCH_ANGLE).astype(np.float32)
     return Channel(
-        name="once_per_rev",
+        name=name,
         unit="1",
         quantity="pulse",
         axis="rotation",
@@ -23,7 +24,8 @@ def pulse_channel(angle: FloatArray) -> Channel:
         range_max=1.0,
         resolution=1.0,
         noise_rms=0.0,
-        values=(np.mod(angle, 2 * np.pi) < NOTCH_ANGLE).astype(np.float32),
+        values=values,
+        clean=values if keep_clean else None,
     )
 
 

@@ -62,6 +62,7 @@ def _recorded(replay: Replay, *, full: bool) -> bytes:
     from rubgen.viz.orbit_entities import send_orbit
     from rubgen.viz.order_entities import send_orders
     from rubgen.viz.signal_entities import send_signals
+    from rubgen.viz.timing_entities import send_tip_timing
     from rubgen.viz.views import arrangement
 
     stream = rr.RecordingStream(APPLICATION, recording_id=recording_id(replay.scenario), send_properties=False)
@@ -73,6 +74,7 @@ def _recorded(replay: Replay, *, full: bool) -> bytes:
     send_touches(stream, replay, full=full)
     send_machine(stream, replay)
     send_orbit(stream, replay)
+    send_tip_timing(stream, replay)
     send_orders(stream, replay)
     send_labels(stream, replay)
     content = memory.drain_as_bytes()

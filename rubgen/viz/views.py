@@ -90,10 +90,10 @@ def _signals(replay: Replay) -> list[rrb.Tabs]:
             rrb.TimeSeriesView(origin=f"/{rate}/{quantity}", name=name, axis_x=axis) for quantity, name in names.items()
         ]
         tabs.append(rrb.Tabs(*views, name=title, active_tab=names.get(first, 0)))
-    return [*tabs, _contacts()]
+    return [*tabs, _contacts(replay)]
 
 
-def _contacts() -> rrb.Tabs:
+def _contacts(replay: Replay) -> rrb.Tabs:
     return rrb.Tabs(
         rrb.TimeSeriesView(origin="/contact/angle", name="casing angle of contact, deg"),
         rrb.TimeSeriesView(origin="/contact/impulse", name="impulse, N s"),
@@ -104,14 +104,22 @@ def _contacts() -> rrb.Tabs:
             scalar_mapping=rrb.TensorScalarMapping(colormap="inferno"),
             view_fit="fill",
         ),
+        *_timing(replay),
         name="contact",
     )
 
 
+def _timing(replay: Replay) -> list[rrb.TimeSeriesView]:
+    """A view of the deflections from blade tip timing, where there are any."""
+    if not replay.recording.tip_timing:
+        return []
+    return [rrb.TimeSeriesView(origin="/blade_tip_timing", name="tip deflection from timing, um")]
+
+
 def _orbit(replay: Replay) -> rrb.Spatial2DView:
     start, end = _near(replay, ORBIT_TURNS)
-    channels = replay.recording.channels
-    x, y = (1e6 * channels[name].values for name in ("proximity_x", "proximity_y"))
+    found = [replay.recording.channels.get(name) for name in ("proximity_x", "proximity_y")]
+    x, y = (np.zeros(1) if channel is None else 1e6 * channel.values for channel in found)
     half = 0.6 * max(float(np.ptp(x)), float(np.ptp(y)), 1.0)
     middle_x, middle_y = (float(v.max() + v.min()) / 2 for v in (x, -y))  # Y points downwards in the viewer
     return rrb.Spatial2DView(

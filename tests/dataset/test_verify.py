@@ -14,8 +14,11 @@ from rubgen.dataset.files import sha256_of
 from rubgen.dataset.open import row_signals
 from rubgen.errors import UserError
 from rubgen.io.parquet import write_table
+from rubgen.scenario import Sensing
 
 DATA = "data/train-00000-of-00001.parquet"
+
+SENSING = Sensing()
 
 
 @pytest.fixture(scope="module")
@@ -138,10 +141,10 @@ def test_second_order_needs_contact(rows):
 def test_a_force_without_rub_is_found(rows):
     row, signals = rows[False]
     _, touched = rows[True]
-    assert list(signal_problems(row, signals, 1.0, 16)) == []
+    assert list(signal_problems(row, signals, SENSING)) == []
     force = signals["contact_force"].copy()
     force[700] += 60
-    problems = list(signal_problems(row, {**signals, "contact_force": force}, 1.0, 16))
+    problems = list(signal_problems(row, {**signals, "contact_force": force}, SENSING))
     assert problems[0].startswith("rub is false, but contact_force reaches ")
     assert touched["contact_force"].max() > 60
 
@@ -151,23 +154,23 @@ def test_a_force_without_rub_is_found(rows):
 )
 def test_a_channel_of_wrong_scale_is_found(name, rows):
     row, signals = rows[True]
-    assert list(signal_problems(row, signals, 1.0, 16)) == []
+    assert list(signal_problems(row, signals, SENSING)) == []
     wrong = {**signals, name: (signals[name] * np.float32(0.8)).astype(np.float32)}
-    assert any("_orders: order" in problem for problem in signal_problems(row, wrong, 1.0, 16))
+    assert any("_orders: order" in problem for problem in signal_problems(row, wrong, SENSING))
 
 
 def test_pulses_of_another_speed_are_found(rows):
     row, signals = rows[True]
-    problems = list(signal_problems({**row, "speed_rpm": row["speed_rpm"] * 1.001}, signals, 1.0, 16))
+    problems = list(signal_problems({**row, "speed_rpm": row["speed_rpm"] * 1.001}, signals, SENSING))
     assert "once_per_rev_s is not spaced by one turn" in problems
 
 
 def test_a_channel_that_is_short_or_not_finite_is_found(rows):
     row, signals = rows[True]
     short = {**signals, "proximity_y": signals["proximity_y"][:-1]}
-    assert any("channels of different lengths" in problem for problem in signal_problems(row, short, 1.0, 16))
+    assert any("channels of different lengths" in problem for problem in signal_problems(row, short, SENSING))
     broken = {**signals, "proximity_y": np.full_like(signals["proximity_y"], np.nan)}
-    assert "proximity_y is not finite" in list(signal_problems(row, broken, 1.0, 16))
+    assert "proximity_y is not finite" in list(signal_problems(row, broken, SENSING))
 
 
 def test_amplitudes_of_known_orders():

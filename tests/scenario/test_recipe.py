@@ -131,7 +131,9 @@ def test_simulation_sensors_and_output_reach_the_scenario():
         "steps_per_turn": 2048,
         "closing_turns": 30,
     }
-    assert asdict(scenario.sensing) == {"sample_rate_hz": 12800, "noise": 0, "adc_bits": 12, "keep_clean": True}
+    sensing = scenario.sensing
+    assert (sensing.sample_rate_hz, sensing.noise, sensing.adc_bits, sensing.keep_clean) == (12800, 0, 12, True)
+    assert sensing.set.name == "default"
     assert (scenario.signal_seconds, scenario.reduction.casing_modes) == (0.25, 13)
     assert (scenario.seed, scenario.index, scenario.run_id) == (0, 2, "run-000002")
 

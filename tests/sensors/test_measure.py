@@ -7,9 +7,8 @@ import pytest
 from rubgen.errors import UserError
 from rubgen.scenario import Sensing
 from rubgen.sensors import Recording, margin_seconds, measure
-from rubgen.sensors.measure import first_sample_seconds
 from rubgen.sensors.once_per_rev import NOTCH_ANGLE
-from rubgen.sensors.probes import PROBES
+from rubgen.sensors.registry import tap_of
 from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status
 
 SPEED = 2 * np.pi * 150.0  # 9,000 rev/min
@@ -31,7 +30,8 @@ NO_ENERGY = EnergyBook(**dict.fromkeys(EnergyBook.__annotations__, 0.0))
 def response_of(seconds: float, **signals: np.ndarray) -> Response:
     """A response whose taps are 0 but for the given signals; theta = 0 one step after the last."""
     count = int(np.ceil((seconds + margin_seconds(SENSING)) / DT))
-    taps = {probe.tap: signals.get(probe.tap, np.zeros(count)) for probe in PROBES}
+    names = [tap_of(sensor).name for sensor in SENSING.set.sampled]
+    taps = {name: signals.get(name, np.zeros(count)) for name in names}
     return Response(
         status=Status.OK,
         reason="",
@@ -72,7 +72,7 @@ def test_every_sample_stands_where_rotation_angle_and_first_sample_say() -> None
     assert clean.size == 2560
     time_of_sample = np.arange(2560) / 25600
     assert clean == pytest.approx(1e-3 * np.cos(recording.rotation_angle + SPEED * time_of_sample), abs=1e-7)
-    start = first_sample_seconds(response, recording)
+    start = recording.start_seconds
     assert clean[0] == pytest.approx(1e-3 * np.cos(SPEED * start), abs=1e-7)  # record starts at theta = 0 too
     last_sample = start + 2559 / 25600
     end = 500 * response.turn_seconds
@@ -106,10 +106,10 @@ def test_once_per_rev_arrivals_are_exact_and_pulses_match_them() -> None:
 def test_noise_has_the_stated_level_is_white_and_differs_between_channels() -> None:
     seconds = 0.5
     recording = record(response_of(seconds), seconds, replace(SENSING, adc_bits=24, noise=2.0))
-    channels = [recording.channels[probe.name] for probe in PROBES if probe.range_min < 0]
+    channels = [recording.channels[sensor.name] for sensor in SENSING.set.sampled]
     noise = np.stack([channel.values for channel in channels]).astype(float)
     assert noise.std(axis=1) == pytest.approx([channel.noise_rms for channel in channels], rel=0.03)
-    assert channels[0].noise_rms == 2 * PROBES[0].noise_rms
+    assert channels[0].noise_rms == 2 * SENSING.set.sampled[0].noise_rms
     scaled = noise / noise.std(axis=1, keepdims=True)
     assert np.abs(np.corrcoef(noise) - np.eye(len(channels))).max() < 0.05
     assert np.abs((scaled[:, 1:] * scaled[:, :-1]).mean(axis=1)).max() < 0.05

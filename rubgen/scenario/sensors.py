@@ -1,0 +1,229 @@
+"""Sensors as users describe them: one class a kind. What a kind measures, and how, is in `rubgen.sensors`."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Annotated, ClassVar, Literal, Self
+
+from pydantic import Field, model_validator
+from pydantic.dataclasses import dataclass
+
+from rubgen.machine import STRICT, Finite, NonNegative, Positive
+from rubgen.machine.problems import nearest
+from rubgen.scenario.taps import Angle
+
+Interval = tuple[Finite, Finite]
+GRAVITY = 9.80665
+"""Standard gravity in m/s2 (ISO 80000-3)."""
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Sensor:
+    """A sensor; its name is that of its channel or topic. Its place in the set decides which random numbers it gets."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class SampledSensor(Sensor):
+    """A sensor with a measuring chain. Every value stands in the sensor's `unit`; the defaults are without fault.
+
+    In the order of the chain (docs/sensors.md): `bandwidth_hz` of a second-order Butterworth low-pass, `resonance_hz`
+    with `resonance_damping`, `saturation` before the anti-alias filter; `gain_error` as a share, `offset`,
+    `drift_per_s` from the first sample on; `noise_rms` white in the recorded band, `noise_density` per sqrt(Hz), whose
+    power rises as 1/f below `noise_corner_hz`; `range` and `adc_bits` of the converter (None takes the kind's and the
+    recipe's); `dropouts_per_s` gaps of `dropout_s` each, in which the last value is held. The sensor's own clock runs
+    late by `clock_offset_s` and slow by `clock_ppm`.
+    """
+
+    UNITS: ClassVar[dict[str, float]] = {}
+
+    unit: str = ""
+    bandwidth_hz: Positive | None = None
+    resonance_hz: Positive | None = None
+    resonance_damping: Annotated[float, Field(gt=0, lt=1, allow_inf_nan=False)] = 0.02
+    saturation: Interval | None = None
+    gain_error: Annotated[float, Field(gt=-1, allow_inf_nan=False)] = 0.0
+    offset: Finite = 0.0
+    drift_per_s: Finite = 0.0
+    noise_rms: NonNegative = 0.0
+    noise_density: NonNegative = 0.0
+    noise_corner_hz: NonNegative = 0.0
+    range: Interval | None = None
+    adc_bits: Annotated[int, Field(ge=8, le=32)] | None = None
+    dropouts_per_s: NonNegative = 0.0
+    dropout_s: Positive = 1e-3
+    clock_offset_s: Annotated[float, Field(ge=-1, le=1, allow_inf_nan=False)] = 0.0
+    clock_ppm: Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False)] = 0.0
+
+    @model_validator(mode="after")
+    def _has_a_unit(self) -> Self:
+        if not self.unit:
+            object.__setattr__(self, "unit", next(iter(self.UNITS)))
+        if self.unit not in self.UNITS:
+            raise ValueError(f"unit = {self.unit!r} of {self.name}: unknown unit; {nearest(self.unit, [*self.UNITS])}")
+        for key in ("range", "saturation"):
+            limits = getattr(self, key)
+            if limits is not None and limits[0] >= limits[1]:
+                raise ValueError(f"{key} = {list(limits)} of {self.name}: must ascend; give the lower limit first")
+        return self
+
+    @property
+    def front_end_hz(self) -> float:
+        """The highest frequency that the sensor's own dynamics name, 0 without any."""
+        return max(self.bandwidth_hz or 0.0, self.resonance_hz or 0.0)
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Proximity(SampledSensor):
+    """Displacement of the disk centre along a direction; in V the gap voltage, `bias_v` at rest, rising with it."""
+
+    UNITS: ClassVar[dict[str, float]] = {"m": 1.0, "mm": 1e3, "um": 1e6, "V": 0.0}
+    kind: Literal["proximity"] = "proximity"
+    angle_deg: Angle
+    sensitivity_v_per_m: Positive = 7874.0
+    bias_v: Finite = -10.0
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Accelerometer(SampledSensor):
+    """Radial acceleration of the casing, positive outward."""
+
+    UNITS: ClassVar[dict[str, float]] = {"m/s2": 1.0, "g": 1 / GRAVITY}
+    kind: Literal["accelerometer"] = "accelerometer"
+    angle_deg: Angle
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class BladeStrain(SampledSensor):
+    """Spanwise strain at a blade's root."""
+
+    UNITS: ClassVar[dict[str, float]] = {"1": 1.0, "um/m": 1e6}
+    kind: Literal["blade_strain"] = "blade_strain"
+    blade: Annotated[int, Field(ge=0)]
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class CasingStrain(SampledSensor):
+    """Hoop strain at the outer face of the casing."""
+
+    UNITS: ClassVar[dict[str, float]] = {"1": 1.0, "um/m": 1e6}
+    kind: Literal["casing_strain"] = "casing_strain"
+    angle_deg: Angle
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class SupportForceSensor(SampledSensor):
+    """Dynamic force of the disk on its support along a direction."""
+
+    UNITS: ClassVar[dict[str, float]] = {"N": 1.0, "kN": 1e-3}
+    kind: Literal["support_force"] = "support_force"
+    angle_deg: Angle
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class ContactForceSensor(SampledSensor):
+    """The sum of the normal contact forces: no probe measures it."""
+
+    UNITS: ClassVar[dict[str, float]] = {"N": 1.0, "kN": 1e-3}
+    kind: Literal["contact_force"] = "contact_force"
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Torque(SampledSensor):
+    """Torque on the blisk about the axis: of the drive, or (what no sensor measures) of the contact."""
+
+    UNITS: ClassVar[dict[str, float]] = {"N m": 1.0, "kN m": 1e-3}
+    kind: Literal["torque"] = "torque"
+    of: Literal["drive", "contact"] = "drive"
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class ClearanceProbe(SampledSensor):
+    """Gap between the blade tips and the casing."""
+
+    UNITS: ClassVar[dict[str, float]] = {"m": 1.0, "mm": 1e3, "um": 1e6}
+    kind: Literal["tip_clearance"] = "tip_clearance"
+    angle_deg: Angle
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class TimingProbe(Sensor):
+    """Arrival times of the blades at a place on the casing, `axial_m` from the middle of the tips' chords.
+
+    `jitter_s` rms and a counter of `clock_hz` (0 is exact) blur each time, `clock_offset_s` shifts all, `missed` is the
+    share of passages that the probe does not see.
+    """
+
+    kind: Literal["blade_tip_timing"] = "blade_tip_timing"
+    angle_deg: Angle
+    axial_m: Finite = 0.0
+    jitter_s: NonNegative = 0.0
+    clock_hz: NonNegative = 0.0
+    clock_offset_s: Finite = 0.0
+    missed: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)] = 0.0
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class OncePerRev(Sensor):
+    """The pulse of a notch on the shaft that passes at theta = 0, and its arrival times, blurred as those of blades."""
+
+    kind: Literal["once_per_rev"] = "once_per_rev"
+    jitter_s: NonNegative = 0.0
+    clock_hz: NonNegative = 0.0
+
+
+AnySensor = Annotated[
+    Proximity
+    | Accelerometer
+    | BladeStrain
+    | CasingStrain
+    | SupportForceSensor
+    | ContactForceSensor
+    | Torque
+    | ClearanceProbe
+    | TimingProbe
+    | OncePerRev,
+    Field(discriminator="kind"),
+]
+KINDS = (
+    "proximity", "accelerometer", "blade_strain", "casing_strain", "support_force", "contact_force", "torque",
+    "tip_clearance", "blade_tip_timing", "once_per_rev",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class RunoutOrder:
+    """One order of the shaft's profile under the proximity probes: `amplitude_m` cos(order (angle - phase))."""
+
+    order: Annotated[int, Field(ge=1)]
+    amplitude_m: NonNegative
+    phase_deg: Finite = 0.0
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class SensorSet:
+    """All sensors of a machine, and the profile of its shaft."""
+
+    name: Annotated[str, Field(min_length=1)]
+    sensors: Annotated[tuple[AnySensor, ...], Field(min_length=1)]
+    shaft_runout: tuple[RunoutOrder, ...] = ()
+
+    @model_validator(mode="after")
+    def _names_differ(self) -> Self:
+        name, count = Counter(sensor.name for sensor in self.sensors).most_common(1)[0]
+        if count > 1:
+            raise ValueError(f"name = {name!r} of {count} sensors: must differ; rename all but one")
+        if sum(isinstance(sensor, OncePerRev) for sensor in self.sensors) > 1:
+            raise ValueError("two sensors of kind once_per_rev: there is one pulse a turn; keep one of them")
+        return self
+
+    @property
+    def sampled(self) -> tuple[SampledSensor, ...]:
+        """Those with a measuring chain."""
+        return tuple(sensor for sensor in self.sensors if isinstance(sensor, SampledSensor))
+
+    @property
+    def front_end_hz(self) -> float:
+        """The highest frequency that any sensor's own dynamics name, 0 without any."""
+        return max((sensor.front_end_hz for sensor in self.sampled), default=0.0)
