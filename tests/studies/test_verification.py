@@ -12,7 +12,7 @@ from rubgen.studies.verification.report import Group, page, shown
 from rubgen.studies.verification.row import relative, within
 
 # The others take seconds each; `make verification` runs them all.
-SLOW = {"plates", "impact_oscillator"}
+SLOW = {"plates", "impact_oscillator", "turning_frame"}
 
 
 @pytest.fixture(scope="module")

@@ -22,7 +22,6 @@ was widened to pass. Found values are rounded to a hundredth of the tolerance.
 """
 LEFT_OUT = """## Left out
 
-- Anisotropic supports and gravity in the turning frame: not in the model yet.
 - Largest Lyapunov exponents (logistic, Henon, Lorenz, ln r of the impact oscillator): not computed yet. The 0-1 test is
   here.
 """
