@@ -81,7 +81,7 @@ def _rest_problem(system: SpinningSystem) -> str | None:
 
 
 def _growth_problem(system: SpinningSystem) -> str | None:
-    grown = float(np.hypot(system.tip_radius + system.tip_static[:, 0], system.tip_static[:, 1]).max())
+    grown = _grown_radius(system)
     widest = system.surface.mean_radius + float(np.abs(system.surface.amplitude).sum())
     if grown < widest:
         return None
@@ -90,3 +90,8 @@ def _growth_problem(system: SpinningSystem) -> str | None:
         f"the casing everywhere, its widest gap at rest is {widest - system.tip_radius:.3g} m; lower the speed or "
         f"raise the clearance"
     )
+
+
+def _grown_radius(system: SpinningSystem) -> float:
+    """The largest radius of a tip at speed, in m."""
+    return float(np.hypot(system.tip_radius + system.tip_static[:, 0], system.tip_static[:, 1]).max())
