@@ -18,6 +18,7 @@ from rubgen.studies.zeng2019.sections import SECTIONS
 from rubgen.studies.zeng2019.statement import Statement, by_deviation, by_share
 from rubgen.studies.zeng2019.store import Store
 
+FIELDS = {"figure", "statement", "verdict", "found", "why", "used_for_fitting", "experiment", "command"}
 VERDICTS = ("agrees", "agrees within ", "differs", "unknowable")
 
 
@@ -115,7 +116,16 @@ def test_a_figure_makes_its_page(tmp_path):
     statements = json.loads((folder / "statements.json").read_text())
     assert sum(made.verdicts.values()) == len(statements) == 2
     for one in statements:
-        assert set(one) == {"figure", "statement", "verdict", "found", "why", "used_for_fitting", "command"}
+        assert set(one) == {
+            "figure",
+            "statement",
+            "verdict",
+            "found",
+            "why",
+            "used_for_fitting",
+            "experiment",
+            "command",
+        }
         assert one["verdict"].startswith(VERDICTS)
         assert one["statement"] in text
         assert one["command"] == "rubgen reproduce zeng2019 --figure 9"

@@ -68,7 +68,8 @@ def _introduction(size: Size) -> list[str]:
 
 
 def _cells(one: Statement) -> tuple[str, str, str]:
-    verdict = one.verdict + (" (fitted)" if one.used_for_fitting else "")
+    kind = " (fitted)" if one.used_for_fitting else " (experiment)" if one.experiment else ""
+    verdict = one.verdict + kind
     return one.statement, verdict, f"{one.found}. {one.why}".removesuffix(". ") if one.why else one.found
 
 
@@ -77,8 +78,9 @@ def _count_table(judged: Sequence[Judged]) -> str:
     kinds = ("agrees", "agrees within", "differs", "unknowable")
     rows = []
     for name, chosen in (
-        ("not used for fitting", [one for one in every if not one.used_for_fitting]),
+        ("predictions", [one for one in every if not (one.used_for_fitting or one.experiment)]),
         ("used for fitting", [one for one in every if one.used_for_fitting]),
+        ("hypotheses about causes, by experiment", [one for one in every if one.experiment]),
     ):
         rows.append([name, *(str(sum(_kind(one) == kind for one in chosen)) for kind in kinds), str(len(chosen))])
     return _table(("statements", "agrees", "agrees within X", "differs", "unknowable", "all"), rows)

@@ -87,7 +87,7 @@ def write(judged: Sequence[Judged], size: Size, folder: Path) -> Path:
 
 
 def statements_json(judged: Sequence[Judged], size: Size) -> str:
-    """A JSON list of `figure`, `statement`, `verdict`, `found`, `why`, `used_for_fitting`, `command`."""
+    """A JSON list of `figure`, `statement`, `verdict`, `found`, `why`, `used_for_fitting`, `experiment`, `command`."""
     rows = [
         {
             "figure": each.section.name,
@@ -96,6 +96,7 @@ def statements_json(judged: Sequence[Judged], size: Size) -> str:
             "found": one.found,
             "why": one.why,
             "used_for_fitting": one.used_for_fitting,
+            "experiment": one.experiment,
             "command": each.section.command + (" --quick" if size is QUICK else ""),
         }
         for each in judged

@@ -16,7 +16,7 @@ class Statement:
     """A published statement (in our words) and its verdict: `agrees`, `agrees within X`, `differs` or `unknowable`.
 
     `found` is what rubgen found, `why` what explains it. `used_for_fitting` marks what the preset was fitted to: its
-    agreement is no evidence.
+    agreement is no evidence. `experiment` marks a hypothesis of ours about a cause, no statement of the paper.
     """
 
     statement: str
@@ -24,6 +24,7 @@ class Statement:
     found: str
     why: str = ""
     used_for_fitting: bool = False
+    experiment: bool = False
 
     def __post_init__(self) -> None:
         kinds = (AGREES, DIFFERS, UNKNOWABLE)

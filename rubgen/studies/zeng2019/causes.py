@@ -1,0 +1,155 @@
+"""Where physics and paper part: suspected causes switched on and off."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rubgen.studies.zeng2019.cases import SUPPORT_RPM, case, on_disk_support
+from rubgen.studies.zeng2019.drawing import new_figure, style
+from rubgen.studies.zeng2019.figure19 import CROSSINGS, SWEPT, crossings
+from rubgen.studies.zeng2019.measures import harmonics
+from rubgen.studies.zeng2019.mixed_frames import crossings_by_frame
+from rubgen.studies.zeng2019.other_casings import even_shapes_only, odd_nodes
+from rubgen.studies.zeng2019.outcome import Outcome, outcome_of
+from rubgen.studies.zeng2019.piece import Found, Piece
+from rubgen.studies.zeng2019.section import Section
+from rubgen.studies.zeng2019.size import Size
+from rubgen.studies.zeng2019.statement import AGREES, DIFFERS, UNKNOWABLE, Statement, by_deviation
+from rubgen.viz.colors import BLUE, GREEN, ORANGE, VERMILION
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+STIFFNESS = 2e8
+"""On this support the rub at 10,000 rev/min is period-1 with symmetric zones: orders can be told apart."""
+PURE, MORE = 0.01, 1.1
+"""Orders below this share are absent; a cause must change a share by this factor."""
+FRAMES = Piece(crossings_by_frame, (SWEPT, SUPPORT_RPM))
+
+
+def _scenario(size: Size) -> object:
+    return case(size, speed_rpm=SUPPORT_RPM, disk_support_stiffness_n_per_m=STIFFNESS)
+
+
+def _runs(size: Size) -> dict[str, Piece]:
+    return {
+        "as it is": on_disk_support(size, STIFFNESS),
+        "even shapes only": Piece(even_shapes_only, (_scenario(size),)),
+        "181 nodes": Piece(odd_nodes, (_scenario(size),)),
+    }
+
+
+def pieces(size: Size) -> Sequence[Piece]:
+    """Three runs, one set of frequencies."""
+    return [FRAMES, *_runs(size).values()]
+
+
+def odd_share(amplitudes: np.ndarray) -> float:
+    """Largest odd order over the largest even one."""
+    even = float(amplitudes[1::2].max())
+    return float(amplitudes[0::2].max()) / even if even > 0 else float("inf")
+
+
+def statements(size: Size, found: Found) -> Sequence[Statement]:
+    """Odd orders at a point, the second crossing."""
+    runs = {name: outcome_of(found(piece)) for name, piece in _runs(size).items()}
+    return [*_odd_orders(runs), *_second_crossing(found)]
+
+
+def _odd_orders(runs: dict[str, Outcome]) -> Sequence[Statement]:
+    asked = {name: odd_share(harmonics(run.spectrum_casing)) for name, run in runs.items() if run.ok}
+    if len(asked) < len(runs):
+        failed = ", ".join(f"{name}: {run.label}" for name, run in runs.items())
+        return [Statement(statement="A point of the casing shows even orders.", verdict=UNKNOWABLE, found=failed)]
+    plain, nodes = runs["as it is"], runs["181 nodes"]
+    halves = odd_share(plain.even_field), 1 / max(odd_share(plain.odd_field), 1e-300)
+    return [
+        Statement(
+            statement="A single point of the casing shows even orders only (period-1 rub at 2e8 N/m).",
+            verdict=AGREES if asked["as it is"] < PURE else DIFFERS,
+            found=f"largest odd over largest even order at the point {asked['as it is']:.3g}; of the half sum of "
+            f"opposite points {halves[0]:.1g}; largest even over largest odd of their half difference {halves[1]:.1g}",
+            why="The odd orders belong to the odd shapes (translation, three and five waves), the even to the even.",
+        ),
+        Statement(
+            statement="Without the casing's odd shapes the point shows even orders only.",
+            verdict=AGREES if asked["even shapes only"] < PURE else DIFFERS,
+            found=f"largest odd over largest even order {asked['even shapes only']:.1g}, the motion being "
+            + runs["even shapes only"].label,
+            experiment=True,
+            why="So the odd shapes are the cause: a paper that shows none has a casing, or a channel, without them.",
+        ),
+        Statement(
+            statement="An odd number of casing nodes (181) is what puts the odd orders there.",
+            verdict=AGREES if asked["181 nodes"] > MORE * asked["as it is"] else DIFFERS,
+            found=f"largest odd over largest even order at the point {asked['181 nodes']:.3g} with 181 nodes "
+            f"({nodes.label}), {asked['as it is']:.3g} with 180",
+            experiment=True,
+            why="The undeformed surface is smooth with any number: only the deformed shape feels the odd mesh.",
+        ),
+    ]
+
+
+def _second_crossing(found: Found) -> Sequence[Statement]:
+    lines = found(FRAMES)
+    met = {name: crossings(lines["k"], lines[name], SUPPORT_RPM / 60) for name in ("consistent", "mixed", "halved")}
+    told = {name: ", ".join(f"{k:.3g}" for k in values) or "none" for name, values in met.items()}
+    made = [
+        Statement(
+            statement="A consistent model of the full blisk has one crossing with f_r.",
+            verdict=AGREES if len(met["consistent"]) == 1 else DIFFERS,
+            found=f"at {told['consistent']} N/m",
+            experiment=True,
+        )
+    ]
+    for name, words in (
+        ("mixed", "Blades in turning axes joined to a disk in standing ones"),
+        ("halved", "The same with half the blades' Coriolis matrix"),
+    ):
+        off = max((abs(k / c - 1) for k, c in zip(met[name], CROSSINGS, strict=False)), default=1.0)
+        made.append(
+            Statement(
+                statement=f"{words} gives two crossings, near 1.3e8 and 1.5e8 N/m.",
+                verdict=by_deviation(off, 0.1) if len(met[name]) == len(CROSSINGS) else DIFFERS,
+                found=f"at {told[name]} N/m",
+                why="The blades' Coriolis forces split the lateral frequency in two where nothing else turns; the "
+                "paper writes disk matrices in the inertial and blade matrices in turning axes.",
+                experiment=True,
+            )
+        )
+    return made
+
+
+def figures(size: Size, found: Found) -> dict[str, Figure]:
+    """Frequencies by frame, and orders at the point with and without odd shapes."""
+    lines, runs = found(FRAMES), {name: outcome_of(found(piece)) for name, piece in _runs(size).items()}
+    figure = new_figure(9.5, 3.0)
+    left, right = figure.subplots(1, 2)
+    for name, color in (("consistent", BLUE), ("mixed", ORANGE), ("halved", GREEN)):
+        left.plot(lines["k"] / 1e8, lines[name], ".", color=color, markersize=2)
+    left.axhline(SUPPORT_RPM / 60, color=VERMILION, linewidth=0.8)
+    left.set_ylim(120, 220)
+    style(left, "Disk support, 1e8 N/m", "Frequency, Hz", "consistent blue, mixed orange, halved green, $f_r$ red")
+    for i, ((name, run), color) in enumerate(zip(runs.items(), (BLUE, ORANGE, GREEN), strict=True)):
+        if run.ok:
+            order = np.arange(1, 11) + 0.2 * (i - 1)
+            top = np.maximum(harmonics(run.spectrum_casing), 1e-3)
+            right.vlines(order, 1e-3, top, color=color, label=name, linewidth=3)
+    right.set_yscale("log")
+    right.legend(frameon=False, fontsize=7)
+    style(right, "Order at the casing's minor axis", "Acceleration, m/s²")
+    return {"Left: frequencies of one nodal diameter by model; right: orders at a point with other casings": figure}
+
+
+SECTION = Section(
+    name="causes",
+    title="Where physics and paper part: causes by experiment",
+    text="Suspected differences switched on and off, at 10,000 rev/min. How many casing modes are kept is varied under "
+    "conclusion (1).",
+    pieces=pieces,
+    statements=statements,
+    figures=figures,
+)

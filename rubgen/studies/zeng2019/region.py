@@ -1,0 +1,58 @@
+"""How the motion in a range of a sweep is compared with the paper's words."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from rubgen.studies.zeng2019.measures import class_counts, height, is_regular, looks_regular, motion_of
+from rubgen.studies.zeng2019.outcome import Outcome
+from rubgen.studies.zeng2019.statement import AGREES, DIFFERS, UNKNOWABLE, Statement, by_share
+
+SEEN = 0.05
+"""A class belongs to those among which a motion switches when at least this share of the runs has it."""
+PERIODIC, MULTIPLE, CHAOTIC = "period-1", "multi-period", "chaotic"
+MEMBERS = {
+    PERIODIC: ("period-1", "static"),
+    MULTIPLE: ("period-k", "quasi-periodic"),
+    CHAOTIC: ("chaotic", "quasi-periodic"),
+}
+"""The paper's three words, and our classes that they may mean: its 49 points cannot tell quasi-periodic motion."""
+
+
+def one_class(
+    where: str, word: str, part: str, runs: dict[float, Outcome], every: Collection[Outcome], why: str = ""
+) -> Statement:
+    """That a part moves in one way throughout: how many runs do."""
+    good = [run for run in runs.values() if run.ok]
+    true = sum(motion_of(run, part) in MEMBERS[word] for run in good)
+    return Statement(
+        statement=f"{where}: the {part} moves in {word} motion.",
+        verdict=by_share(true, len(good)),
+        found=_found(runs, part, every),
+        why=why,
+    )
+
+
+def switching(
+    where: str, words: tuple[str, ...], part: str, runs: dict[float, Outcome], every: Collection[Outcome], why: str = ""
+) -> Statement:
+    """That a part switches among some ways to move: whether each of them occurs."""
+    good = [run for run in runs.values() if run.ok]
+    shares = {word: sum(motion_of(run, part) in MEMBERS[word] for run in good) for word in words}
+    missing = [word for word, count in shares.items() if count < SEEN * len(good)]
+    named = f"{', '.join(words[:-1])} and {words[-1]}"
+    return Statement(
+        statement=f"{where}: the {part} switches among {named} motion.",
+        verdict=UNKNOWABLE if not good else DIFFERS if missing else AGREES,
+        found=_found(runs, part, every) + (f"; {' and '.join(missing)} too rare" if missing else ""),
+        why=why,
+    )
+
+
+def _found(runs: dict[float, Outcome], part: str, every: Collection[Outcome]) -> str:
+    full = height(every, part)
+    good = [run for run in runs.values() if run.ok]
+    seen = sum(looks_regular(run, part, full) for run in good)
+    regular = sum(is_regular(motion_of(run, part)) for run in good)
+    eye = f"; to the eye, {seen} of {len(good)} show one point" if seen != regular else ""
+    return class_counts(runs.values(), part) + eye
