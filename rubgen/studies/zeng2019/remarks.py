@@ -16,7 +16,8 @@ RULES = f"""Verdicts follow rules that were set before the runs. A number agrees
 within what it is off by up to {100 * TOLERANCE:g} %, and differs beyond; accuracies of a reduction are taken at 2 %. \
 A statement about many runs agrees where {100 * MOST:g} % of them bear it out, agrees within the rest down to \
 {100 * HALF:g} %, and differs below. What needs a parameter or a drawing that is lost is unknowable. Motion classes \
-are those of `docs/labels.md`, over 500 turns; the paper judges 49 points by eye, and where that makes a difference \
+are those of `docs/labels.md`, over 500 turns after 150, without the Lyapunov exponent (it would double the \
+time); the paper judges 49 points by eye, and where that makes a difference \
 both are given."""
 QUICK_REMARK = (
     "This is the quick version: few values, short runs. It shows that all works; its verdicts are worth little."

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 from rubgen.scenario import Scenario
 
@@ -18,7 +17,7 @@ class Size:
     """
 
     name: str
-    settle_turns: int | Literal["auto"]
+    settle_turns: int
     record_turns: int
     thin: int
     campbell_step: int
@@ -38,7 +37,7 @@ class Size:
 
 FULL = Size(
     name="full",
-    settle_turns="auto",
+    settle_turns=150,
     record_turns=500,
     thin=1,
     campbell_step=250,
