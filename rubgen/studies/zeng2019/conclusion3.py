@@ -94,7 +94,9 @@ def indices(values: FloatArray) -> Indices:
     }
     result = sobol_indices(func=f, n=len(values))
     interval = result.bootstrap(confidence_level=0.95, n_resamples=RESAMPLES).total_order.confidence_interval
-    return Indices(total=result.total_order, low=np.asarray(interval.low), high=np.asarray(interval.high))
+    shape = values.shape[2], values.shape[1] - 2
+    total, low, high = (np.reshape(part, shape) for part in (result.total_order, interval.low, interval.high))
+    return Indices(total=total, low=low, high=high)
 
 
 def _values(size: Size, found: Found) -> FloatArray:
