@@ -42,6 +42,7 @@ def simulate(scenario: Scenario) -> Run:
             sample_rate_hz=sensing.fastest_hz,
             taps=taps_of(sensing.set),
             twin=scenario.labelling.lyapunov,
+            system_at=model.at_speed,
         )
         if response.status is not Status.OK:
             return Run(scenario=scenario, response=response, recording=None, labels=None)

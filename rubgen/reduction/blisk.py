@@ -24,8 +24,9 @@ from rubgen.scenario import Reduction
 class ReducedBlisk:
     """Blisk with n DoFs: tips' translations along the blades' axes, O_d x and y, modes. No supports in it.
 
-    M, K elastic, G Coriolis (skew), A = K_sigma - S at 1 rad/s: (n, n). `centre` T (6, n) recovers all six DoFs of
-    O_d. `root_strain` (blades, n) is the spanwise strain at each blade's root (`root_strain_row`). `growth` is the
+    M, K elastic, G Coriolis (skew), A = K_sigma - S at 1 rad/s: (n, n). `euler` f_t (n,) is M times the rotation by
+    1 rad, the load of an angular acceleration of -1 rad/s2. `centre` T (6, n) recovers all six DoFs of O_d.
+    `root_strain` (blades, n) is the spanwise strain at each blade's root (`root_strain_row`). `growth` is the
     tips' steady centrifugal displacement. `rigid_inertia` (6,) is m, m, m, I_d, I_d, I_p of the
     whole in kg, kg m2; `blade_frequency` the first one of a blade without mistuning clamped at its root, in rad/s;
     `full_size` the number of DoFs of the full model.
@@ -35,6 +36,7 @@ class ReducedBlisk:
     K: FloatArray
     G: FloatArray
     A: FloatArray
+    euler: FloatArray
     centre: FloatArray
     root_strain: FloatArray
     growth: CentrifugalGrowth
@@ -45,7 +47,10 @@ class ReducedBlisk:
 
 @dataclass(frozen=True, kw_only=True)
 class _Joined:
-    """Blisk after the first step: matrices (n, n), O_d first, DoFs of the tips (blades, 6), root strain (blades, n)."""
+    """Blisk after the first step: matrices (n, n), O_d first.
+
+    `tips` (blades, 6) their DoFs, `euler` f_t (n,), `root_strain` (blades, n).
+    """
 
     M: FloatArray
     K: FloatArray
@@ -53,6 +58,7 @@ class _Joined:
     A: FloatArray
     tips: IntArray
     root_strain: FloatArray
+    euler: FloatArray
 
 
 def reduce_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> ReducedBlisk:
@@ -76,6 +82,7 @@ def reduce_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: 
         K=_symmetric(V.T @ joined.K @ V),
         G=_skew(V.T @ joined.G @ V),
         A=_symmetric(V.T @ joined.A @ V),
+        euler=V.T @ joined.euler,
         centre=np.ascontiguousarray(V[:6]),
         root_strain=np.ascontiguousarray(joined.root_strain @ V),
         growth=centrifugal_growth(model),
@@ -109,6 +116,8 @@ def _join_components(model: BliskModel, reduction: Reduction, strain: FloatArray
     rim = 6 + 6 * np.arange(count)[:, None] + six
     roots = V_plate.shape[1] + V_blade.shape[1] * np.arange(count)[:, None] + six
     joint = rim_joint(model.angles, rim, roots, len(K))
+    load = model.M @ rigid_motions(model)[:, 5]
+    on_blades = load[model.disk_size :].reshape(count, n_blade) @ V_blade
     return _Joined(
         M=of_equal_blades(model.M),
         K=K + model.penalty * (joint.T @ joint).toarray(),
@@ -118,6 +127,7 @@ def _join_components(model: BliskModel, reduction: Reduction, strain: FloatArray
         root_strain=np.asarray(
             block_diag(np.zeros((0, V_plate.shape[1])), np.kron(np.eye(count), strain @ V_blade[: len(strain)]))
         ),
+        euler=np.concatenate([V_plate.T @ load[plate], on_blades.ravel()]),
     )
 
 

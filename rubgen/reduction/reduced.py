@@ -52,18 +52,20 @@ class ReducedModel:
         K: FloatArray = self.blisk.K + T.T @ (self.springs[:, None] * T) + speed**2 * self.blisk.A
         return K
 
-    def at_speed(self, speed: float) -> SpinningSystem:
-        """The system at `speed` (rad/s, positive): constant matrices of the turning frame.
+    def at_speed(self, speed: float, acceleration: float = 0.0) -> SpinningSystem:
+        """The system at `speed` (rad/s, positive) and `acceleration` (rad/s2): matrices of the turning frame.
 
         Blisk: C = 2 Omega G + C_s + beta K_e, K = K_e + K_s + Omega^2 (K_sigma - S) + Omega H_s, with
         C_s = T^T C T and H_s = T^T C S6 T of the dampers C = diag(c) in the inertial frame, which act on the absolute
         velocity (S6 is e_z x). The term Omega H_s makes K unsymmetric. Casing modes: 1, 2 zeta omega, omega^2.
         The unbalance Omega^2 U acts on O_d x, that of uneven growth (mistuned blades) on O_d x and y.
+        A changing speed adds Omega' G to K and -Omega' (f_t + e_z x U) to the forces (Euler term); what acceleration
+        and change of the tips' steady growth bring is left out, a share Omega' / Omega^2 of it at most.
         """
         with threadpool_limits(1, user_api="blas"):
-            return self._assemble(speed)
+            return self._assemble(speed, acceleration)
 
-    def _assemble(self, speed: float) -> SpinningSystem:
+    def _assemble(self, speed: float, acceleration: float) -> SpinningSystem:
         blisk, machine, T = self.blisk, self.machine, self.blisk.centre
         damped = self.dampers[:, None] * T
         C = 2 * speed * blisk.G + T.T @ damped + self.beta * blisk.K
@@ -73,6 +75,9 @@ class ReducedModel:
         force = np.zeros(self.reduced_dof)
         force[3 * count : 3 * count + 2] = speed**2 * blisk.growth.unbalance(speed)
         force[3 * count] += speed**2 * machine.unbalance_kg_m
+        if acceleration:
+            K += acceleration * blisk.G
+            force -= acceleration * self._euler_load(force / speed**2)
         return SpinningSystem(
             speed=speed,
             M=block_diag(blisk.M, np.eye(len(omega))),
@@ -118,6 +123,16 @@ class ReducedModel:
         return TurningForces(
             stiffness=stiffness, damping=damping, film=support.squeeze_film, weight=weight if g else None
         )
+
+    def _euler_load(self, unbalance: FloatArray) -> FloatArray:
+        """f_t + e_z x U (n,): what Omega' loads, with U (n,) in kg m as the forces on tips and O_d at 1 rad/s."""
+        load = np.zeros(self.reduced_dof)
+        load[: len(self.blisk.M)] = self.blisk.euler
+        centre = 3 * self.machine.blades.count
+        for first in (*range(0, centre, 3), centre):
+            load[first] -= unbalance[first + 1]
+            load[first + 1] += unbalance[first]
+        return load
 
     def blisk_frequencies_hz(self, speed: float = 0.0) -> FloatArray:
         """Undamped natural frequencies (blisk DoFs,) in Hz of the turning frame at `speed` (rad/s), ascending.

@@ -5,16 +5,22 @@ Frozen and validated on creation, like the machine.
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from rubgen.machine import STRICT, Machine, NonNegative, Positive
+from rubgen.scenario.rotation import Rotation
 from rubgen.scenario.sensor_set import default_sensor_set
 from rubgen.scenario.sensors import SensorSet
 
 TurnCount = Annotated[int, Field(ge=1)]
+RPM = 0.10471975511965977
+"""One rev/min in rad/s, 2 pi / 60."""
+ProfileName = Literal["steady", "run-up", "coast-down", "fluctuating"]
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -29,10 +35,15 @@ class Reduction:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Operation:
-    """Steady rotation: the clearance closes over `closing_turns`, transients die, then `record_turns` are recorded.
+    """Rotation: the clearance closes over `closing_turns`, transients die, then the record begins.
 
     `settle_turns` counts from the start and includes the closing; "auto" follows from the slowest decay of the model.
     `steps_per_turn` is the least number; it is doubled until the step is stable and feeds the sensors.
+
+    `profile` "steady": `record_turns` are recorded. "run-up" and "coast-down": the settling at `speed_rpm`, then the
+    record: linear to `end_speed_rpm` within `duration_s`, and to the end of that turn. "fluctuating": speed_rpm +
+    fluctuation_rpm sin(2 pi t / fluctuation_period_s) from the start of the settling on, t = 0 at that of the record,
+    which lasts `duration_s` and to the end of that turn. `profile_problem` says what does not fit together.
     """
 
     speed_rpm: Positive
@@ -40,11 +51,35 @@ class Operation:
     record_turns: TurnCount = 500
     steps_per_turn: TurnCount = 1024
     closing_turns: TurnCount = 40
+    profile: ProfileName = "steady"
+    end_speed_rpm: Positive | None = None
+    duration_s: Positive | None = None
+    fluctuation_rpm: NonNegative = 0.0
+    fluctuation_period_s: Positive = 1.0
+
+    @property
+    def rotation(self) -> Rotation:
+        """Speed and angle over time, t = 0 at the start of the record."""
+        return Rotation(
+            start=self.speed_rpm * RPM,
+            end=(self.end_speed_rpm or self.speed_rpm) * RPM,
+            seconds=self.duration_s or 1.0,
+            swing=self.fluctuation_rpm * RPM,
+            period=self.fluctuation_period_s,
+        )
+
+    @property
+    def recorded_turns(self) -> int:
+        """Turns of the record: `record_turns`, or those that `duration_s` begins."""
+        if self.duration_s is None:
+            return self.record_turns
+        turns = float(self.rotation.angle(self.duration_s)) / (2 * np.pi)
+        return max(1, math.ceil(turns - 1e-9))
 
     @property
     def speed_rad_per_s(self) -> float:
         """Spin speed Omega in rad/s."""
-        return self.speed_rpm * 0.10471975511965977  # 2 pi / 60
+        return self.speed_rpm * RPM
 
     @property
     def rotation_frequency_hz(self) -> float:

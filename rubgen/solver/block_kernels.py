@@ -71,6 +71,12 @@ def quadratic(product: Product, left: FloatArray, right: FloatArray) -> float:
     return total
 
 
+@allocation_free_kernel
+def bilinear(product: Product, left: FloatArray, right: FloatArray) -> float:
+    """`quadratic`, for callers outside of kernels."""
+    return quadratic(product, left, right)
+
+
 @inlined_kernel
 def free_step(scheme: Scheme, before: FloatArray, now: FloatArray, after: FloatArray) -> None:
     """q* in z."""

@@ -9,17 +9,17 @@ from rubgen.arrays import FloatArray
 from rubgen.reduction.model import SpinningSystem
 from rubgen.solver.block_kernels import Scheme
 from rubgen.solver.blocks import Blocks, aligned, find_blocks
-from rubgen.solver.energy_kernels import Book
+from rubgen.solver.energy_kernels import WORKS, Book
 
 
-def system_blocks(system: SpinningSystem) -> Blocks:
-    """Blocks of a system. Raises ValueError when anything but contact couples blisk and casing."""
-    start = system.casing_start
-    matrices = [system.M, system.C, system.K]
+def system_blocks(*systems: SpinningSystem) -> Blocks:
+    """Blocks that all systems share. Raises ValueError when anything but contact couples blisk and casing."""
+    start = systems[0].casing_start
+    matrices = [matrix for system in systems for matrix in (system.M, system.C, system.K)]
     for matrix in matrices:
         if np.any(matrix[:start, start:]) or np.any(matrix[start:, :start]):
             raise ValueError("M, C and K must not couple blisk and casing: contact alone does")
-    return find_blocks(matrices, system.n_blades)
+    return find_blocks(matrices, systems[0].n_blades)
 
 
 def scheme(M: FloatArray, C: FloatArray, K: FloatArray, force: FloatArray, dt: float, blocks: Blocks) -> Scheme:
@@ -50,16 +50,17 @@ def compliances(system: SpinningSystem, dt: float) -> tuple[FloatArray, FloatArr
     return aligned(inverse[:tips, :tips].T), aligned(inverse[start:, start:].T)
 
 
-def energy_book(system: SpinningSystem, blocks: Blocks) -> Book:
-    """Matrices of the energy terms in blocks, and works of zero."""
+def energy_book(system: SpinningSystem, blocks: Blocks, *, zeros: bool = False) -> Book:
+    """Matrices of the energy terms in blocks, and works of zero; with `zeros` what is zero is kept in its place."""
     force = blocks.to_z(system.force)
-    places = np.flatnonzero(force)
+    places = np.arange(force.size) if zeros else np.flatnonzero(force)
+    circulatory = (system.K - system.K.T) / 2
     return Book(
         damping=blocks.damping(system.C),
-        circulatory=blocks.without_zeros((system.K - system.K.T) / 2),
+        circulatory=blocks.product(circulatory) if zeros else blocks.without_zeros(circulatory),
         M=blocks.product((system.M + system.M.T) / 2),
         K=blocks.product((system.K + system.K.T) / 2),
         force=force[places],
         force_places=places,
-        works=np.zeros(8),
+        works=np.zeros(WORKS),
     )

@@ -47,7 +47,7 @@ class Growth:
 
     @property
     def _turn_seconds(self) -> float:
-        return float(self.stepper.dt * self.stepper.steps)
+        return float(self.stepper.dt * self.stepper.turn_steps)
 
     def _blades(self) -> list[float]:
         """The largest tip coordinate of each turn, m; 0 where a turn has no frame."""

@@ -16,7 +16,8 @@ from rubgen.solver.block_kernels import Product, quadratic
 from rubgen.solver.model_kernels import Angles, Laws, State
 from rubgen.solver.step_kernels import previous_gap
 
-UNBALANCE, DAMPING, CIRCULATORY, CONTACT, NORMAL, FRICTION, DRIVE_LIMIT, ABSOLUTE = range(8)
+UNBALANCE, DAMPING, CIRCULATORY, CONTACT, NORMAL, FRICTION, DRIVE_LIMIT, ABSOLUTE, SPEED_CHANGE = range(9)
+WORKS = 9
 
 
 class Book(NamedTuple):
@@ -24,7 +25,7 @@ class Book(NamedTuple):
 
     `damping` is the lower triangle of C_sym with half its diagonal, so that d^T C d = 2 d^T (triangle d); `circulatory`
     K_skew; `M`, `K` the symmetric parts. `force` are the numbers of the unbalance force that are not zero, at
-    `force_places` of z. `works` (8,) the sums so far.
+    `force_places` of z. `works` (9,) the sums so far.
     """
 
     damping: Product
@@ -78,8 +79,8 @@ def book_contact(
     contact itself. The drive's limit is -Omega dt e_z.(P x F).
     """
     k, lam = work.blade[m], work.lam[m]
-    start, last = state.now.shape[0] - work.rows.shape[1], angles.cosine.shape[0] - 1
-    back = step - 1 if step > 0 else last - 1
+    start = state.now.shape[0] - work.rows.shape[1]
+    back = step - 1 if step > 0 else angles.cosine.shape[0] - 1
     done = 0.0
     for a in range(3):
         done += work.full_tip[m, a] * state.change[3 * k + a]

@@ -10,10 +10,13 @@ from threadpoolctl import threadpool_limits
 
 from rubgen.arrays import FloatArray
 from rubgen.contact.liner_kernels import REMOVED, WORK
+from rubgen.errors import UserError
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
+from rubgen.scenario.profiles import profile_problem
 from rubgen.scenario.taps import DEFAULT_TAPS, Tap
 from rubgen.solver.admissible import check_system
+from rubgen.solver.changing import ChangingSystem
 from rubgen.solver.divergence import Growth
 from rubgen.solver.energy_kernels import (
     ABSOLUTE,
@@ -23,13 +26,16 @@ from rubgen.solver.energy_kernels import (
     DRIVE_LIMIT,
     FRICTION,
     NORMAL,
+    SPEED_CHANGE,
     UNBALANCE,
 )
 from rubgen.solver.events import contact_events, tip_arrivals
+from rubgen.solver.following import SystemAt
 from rubgen.solver.fractions import Fractions
 from rubgen.solver.refusal import no_response
-from rubgen.solver.response import EnergyBook, Response, Status
+from rubgen.solver.response import Course, EnergyBook, Response, Status
 from rubgen.solver.rub_free import rub_free_motion
+from rubgen.solver.spin import Spin, SteadySpin
 from rubgen.solver.stability import settle_turns, slowest_decay, steps_per_turn
 from rubgen.solver.step_kernels import CONTACT_UNSOLVED, DIVERGED, ENERGY, FILM_CLOSED, OK
 from rubgen.solver.stepper import Stepper, closing_ramp, start_opening
@@ -66,25 +72,29 @@ class Integration:
 
     def __init__(
         self,
-        stepper: Stepper,
+        spin: Spin,
+        start: SpinningSystem,
         operation: Operation,
-        settle: int,
         tail_turns: int,
         signal_turns: int = 0,
         *,
         twin: bool = False,
     ) -> None:
-        self.stepper, self.settle, self.record = stepper, settle, operation.record_turns
+        stepper, settle = spin.stepper, spin.settle
+        self.spin, self.stepper, self.settle = spin, stepper, settle
+        self.record, self.rotation = operation.recorded_turns, spin.rotation
         self.closing = min(operation.closing_turns, settle)
-        self.opening = start_opening(stepper.system, stepper.surface.inset)
+        self.opening = start_opening(start, stepper.surface.inset)
         self.tail: deque[FloatArray] = deque(maxlen=min(tail_turns, settle + self.record))
         self.arrivals: deque[FloatArray] = deque(maxlen=self.tail.maxlen)
         n = stepper.system.M.shape[0]
         self.section = np.zeros((self.record, 2, n))
         self.twin: Twin | None = None
         self.twin_growth = np.zeros(self.record if twin else 0)
-        self.fractions = Fractions(stepper.system, stepper.steps)
-        stepper.marks = stepper.marks_at(sorted({*self.fractions.steps, *(piece_ends(stepper.steps) if twin else ())}))
+        self.fractions = Fractions(stepper.system, stepper.steps) if self.rotation.is_steady else None
+        if self.fractions:
+            pieces = piece_ends(stepper.steps) if twin else ()
+            stepper.marks = stepper.marks_at(sorted({*self.fractions.steps, *pieces}))
         self.impulse = np.zeros(self.record)
         self.contact_steps = np.zeros(self.record, dtype=np.int64)
         self.touches: list[FloatArray] = []
@@ -105,15 +115,16 @@ class Integration:
             if self.status is not Status.OK:
                 return
         touches = self.stepper.touches
-        self.track.finish(self.settle + self.record - 1)
-        still_open = close_touches(touches, self.record * self.stepper.steps, 0)
+        if self.rotation.is_steady:
+            self.track.finish(self.settle + self.record - 1)
+        still_open = close_touches(touches, self.spin.first_step(self.settle + self.record), 0)
         self.touches.append(touches.ended[:still_open].copy())
 
     def _run_turn(self, turn: int) -> None:
-        stepper, result = self.stepper, self.stepper.result
-        opening, liner = self._opening_of(turn), stepper.surface.liner
+        liner = self.stepper.surface.liner
         removed = liner.book[REMOVED]
-        code, step, ended = stepper.run_turn(opening, (turn - self.settle) * stepper.steps)
+        code, step = self.spin.run_turn(turn, self._opening_after)
+        result = self.spin.result
         self.growth.add(step)
         if code == OK and not self.energy_residual() <= ENERGY_TOLERANCE:
             code = ENERGY
@@ -122,23 +133,27 @@ class Integration:
             self.reason = self._reason(turn, step)
             return
         self.tail.append(result.taps.copy())
-        self.track.add(turn, stepper, ended)
-        self.arrivals.append(stepper.taps.timing.arrivals[: int(result.summary[3])].copy())
+        if self.rotation.is_steady:
+            self.track.add(turn, self.stepper, len(self.spin.touches[0]))
+        self.arrivals.append(self.spin.arrivals)
         row = turn - self.settle
         if row >= 0:
             self.section[row] = result.section
             self.impulse[row], self.contact_steps[row] = result.summary[0], int(result.summary[1])
-            self.touches.append(stepper.touches.ended[:ended].copy())
+            self.touches += self.spin.touches
             if self.twin is not None:
                 # Beside a surface that has worn within the turn no trajectory is near the run's own.
                 same_surface = liner.book[REMOVED] == removed
-                self.twin_growth[row] = self.twin.run_turn(opening).sum() if same_surface else np.nan
+                self.twin_growth[row] = self.twin.run_turn(self.spin.opening).sum() if same_surface else np.nan
 
-    def _opening_of(self, turn: int) -> FloatArray:
-        """Opening of the surface at steps -1 ... steps of a turn."""
-        steps = self.stepper.steps
-        elapsed = turn + np.arange(-1, steps + 1) / steps
-        return self.opening * closing_ramp(elapsed / self.closing)
+    def _opening_after(self, turns: FloatArray) -> FloatArray:
+        """Opening of the surface so many turns after the start."""
+        return self.opening * closing_ramp(turns / self.closing)
+
+    def course(self) -> Course:
+        """How the speed went over the record."""
+        turns = range(self.settle, self.settle + self.record + 1)
+        return Course(rotation=self.rotation, turn_steps=np.array([self.spin.first_step(turn) for turn in turns]))
 
     def energy_residual(self) -> float:
         """|E - E_start - works| over the summed absolute works, or over the largest |E| where no work is done.
@@ -147,13 +162,13 @@ class Integration:
         """
         works, energy = self.stepper.book.works, self.stepper.energy()
         self.largest_energy = max(self.largest_energy, abs(energy))
-        done = works[UNBALANCE] + works[DAMPING] + works[CIRCULATORY] + works[CONTACT]
+        done = works[UNBALANCE] + works[DAMPING] + works[CIRCULATORY] + works[CONTACT] + works[SPEED_CHANGE]
         done += self.stepper.support.works[:FILM_LOSS].sum()
         scale = max(float(works[ABSOLUTE]), self.largest_energy, self.rounding_energy)
         return abs(energy - self.start_energy - float(done)) / scale if scale > 0 else 0.0
 
     def _reason(self, turn: int, step: int) -> str:
-        where = f"turn {turn} of {self.settle + self.record}, step {step} of {self.stepper.steps}"
+        where = f"turn {turn} of {self.settle + self.record}, step {step} of {self.stepper.turn_steps}"
         match self.status:
             case Status.DIVERGED:
                 return f"{self._what_diverged()} in {where}; {self.growth.told()}"
@@ -180,6 +195,7 @@ def integrate(
     sample_rate_hz: float = 0.0,
     twin: bool = False,
     taps: tuple[Tap, ...] = DEFAULT_TAPS,
+    system_at: SystemAt | None = None,
 ) -> Response:
     """The response of a spinning system with contact between blade tips and casing.
 
@@ -196,27 +212,61 @@ def integrate(
     With `twin` a second trajectory runs beside the record for the Lyapunov exponent (`solver.twin`), which takes half
     as long again and leaves the first as it is.
 
+    A changing speed (`operation.profile`) needs `system_at`, the system at a speed and acceleration; time steps are
+    equal then, and sections lie between steps (`turn_kernels.record_section`). See `spin.ChangingSpin`. It has no twin,
+    no track and no fractions.
+
     A run that fails has the status and the reason; nothing else in it is data. Raises UserError for a system that
-    `check_system` refuses, for a record too short for an exponent that is asked for, and for a speed so low that a turn
-    would need more than 4,194,304 steps; ValueError where anything but contact couples blisk and casing. Holds for
-    constant speed and small casing displacements.
+    `check_system` refuses, for a record too short for an exponent that is asked for, for a profile that lacks a key,
+    and for a speed so low that a turn would need more than 4,194,304 steps; ValueError where anything but contact couples
+    blisk and casing. Holds for small casing displacements.
     """
     if twin:
         check_turns(operation.record_turns)
     # More BLAS threads split sums otherwise and change the last bits of A^-1, which irregular motion makes large.
     with threadpool_limits(1, user_api="blas"):
         check_system(system)
+        if operation.profile != "steady":
+            changing = _changing(system_at, operation)
+            steps = changing.steps(sample_rate_hz)
+            refusal = _film_refusal(changing.start, steps) or _decay_refusal(changing.least_stable())
+            if refusal:
+                return _not_integrated(changing.systems[-1], operation, steps, *refusal)
+            return _run(changing.spin(contact, steps, taps), changing.start, operation, tail_seconds, taps)
         steps = steps_per_turn(system, operation.steps_per_turn, sample_rate_hz)
         refusal = _film_refusal(system, steps) or _decay_refusal(system)
         if refusal:
             return _not_integrated(system, operation, steps, *refusal)
         settle = settle_turns(system, operation)
-        stepper = Stepper(system, contact, steps, taps=taps)
-        signal_turns = tail_seconds / (steps * stepper.dt)
-        tail = max(LEAST_TAIL_TURNS, math.ceil(signal_turns))
-        integration = Integration(stepper, operation, settle, tail, math.floor(signal_turns), twin=twin)
-        integration.run()
-        return _response(integration, taps)
+        spin = SteadySpin(Stepper(system, contact, steps, taps=taps), settle)
+        return _run(spin, system, operation, tail_seconds, taps, twin=twin)
+
+
+def _changing(system_at: SystemAt | None, operation: Operation) -> ChangingSystem:
+    """The system over all speeds of an operation."""
+    problem = profile_problem(operation)
+    if problem:
+        raise UserError(f"operation.{problem}")
+    if system_at is None:
+        raise ValueError("a changing speed needs system_at")
+    return ChangingSystem(system_at, operation)
+
+
+def _run(
+    spin: Spin,
+    start: SpinningSystem,
+    operation: Operation,
+    tail_seconds: float,
+    taps: tuple[Tap, ...],
+    *,
+    twin: bool = False,
+) -> Response:
+    """Integrate to the end; `start` is the system at the first instant."""
+    signal_turns = tail_seconds * spin.rotation.fastest / (2 * math.pi)
+    tail = max(LEAST_TAIL_TURNS, math.ceil(signal_turns))
+    integration = Integration(spin, start, operation, tail, math.floor(signal_turns), twin=twin)
+    integration.run()
+    return _response(integration, taps)
 
 
 def _gross_energy(stepper: Stepper) -> float:
@@ -231,9 +281,9 @@ def _response(integration: Integration, taps: tuple[Tap, ...]) -> Response:
     return Response(
         status=integration.status,
         reason=integration.reason,
-        speed=float(stepper.system.speed),
+        speed=integration.rotation.mean_speed(2 * math.pi * integration.record),
         dt=float(stepper.dt),
-        steps_per_turn=stepper.steps,
+        steps_per_turn=stepper.turn_steps,
         settle_turns=integration.settle,
         record_turns=integration.record,
         taps={tap.name: np.ascontiguousarray(tail[i]) for i, tap in enumerate(sampled)},
@@ -243,13 +293,14 @@ def _response(integration: Integration, taps: tuple[Tap, ...]) -> Response:
         contact_steps_per_turn=integration.contact_steps,
         events=contact_events(integration.touches),
         twin_growth=integration.twin_growth,
-        fractions=integration.fractions.of(stepper),
+        fractions=integration.fractions.of(stepper) if integration.fractions else np.zeros((0, 2, 0)),
         energy=_energy(integration),
         n_blades=stepper.system.n_blades,
         n_casing=stepper.system.n_casing,
         worn=worn_liner(stepper.surface),
         track=integration.track.track(stepper, integration.settle) if integration.track.kept else None,
         arrivals=tip_arrivals(list(integration.arrivals), [probe.name for probe in timing_taps(taps)]),
+        course=None if integration.rotation.is_steady else integration.course(),
     )
 
 
@@ -273,6 +324,7 @@ def _energy(integration: Integration) -> EnergyBook:
         drive_contact_work=works[CONTACT] - works[NORMAL] - works[FRICTION] - wear,
         drive_contact_limit=works[DRIVE_LIMIT],
         film_loss=support[FILM_LOSS],
+        speed_change=works[SPEED_CHANGE],
         absolute_work=works[ABSOLUTE],
         residual=integration.energy_residual(),
     )
@@ -309,7 +361,7 @@ def _not_integrated(system: SpinningSystem, operation: Operation, steps: int, st
         speed=float(system.speed),
         dt=2 * math.pi / system.speed / steps,
         steps_per_turn=steps,
-        record_turns=operation.record_turns,
+        record_turns=operation.recorded_turns,
         n_blades=system.n_blades,
         n_casing=system.n_casing,
         size=len(system.M),

@@ -28,9 +28,10 @@ class Laws(NamedTuple):
 
 
 class Angles(NamedTuple):
-    """Tables over the steps of one turn, each with one row more than steps (the last is the first of the next turn).
+    """Tables over the steps of a turn or of a part of one: rows for steps 0, ..., steps, and at the end for step -1.
 
-    `theta` and its `cosine`, `sine`; `cos_orders`, `sin_orders` (steps + 1, n_harmonics) of order_j (theta - phase_j).
+    `theta` and its `cosine`, `sine`; `cos_orders`, `sin_orders` (steps + 2, n_harmonics) of order_j (theta - phase_j).
+    `section` is the time from step 0 to the section, where theta = 0 mod 2 pi, in steps: within half a step of 0.
     """
 
     theta: FloatArray
@@ -38,6 +39,7 @@ class Angles(NamedTuple):
     sine: FloatArray
     cos_orders: FloatArray
     sin_orders: FloatArray
+    section: float
 
 
 class State(NamedTuple):

@@ -8,6 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from rubgen.arrays import FloatArray, IntArray
+from rubgen.scenario.rotation import Rotation
 
 
 class Status(StrEnum):
@@ -69,7 +70,7 @@ class EnergyBook:
     times the time integral of the contact torque on the blisk, both positive where contact brakes.
     `anisotropy` is the work of uneven springs and dampers beyond their mean, `film` that of a squeeze film, `gravity`
     that of the weight, all in the turning frame, where the drive's share counts too; `film_loss` is what the film turns
-    into heat, <= 0.
+    into heat, <= 0. `speed_change` is what the stiffness, which follows a changing speed, adds to the stored energy.
     """
 
     start: float
@@ -86,6 +87,7 @@ class EnergyBook:
     drive_contact_work: float
     drive_contact_limit: float
     film_loss: float
+    speed_change: float
     absolute_work: float
     residual: float
     wear_loss: float = 0.0
@@ -121,6 +123,18 @@ class WornLiner:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Course:
+    """A changing speed: `rotation` holds speed (rad/s) and angle over time, t = 0 at the first step of the record.
+
+    Turn k of the record begins at step `turn_steps[k]` (record_turns + 1,), counted from that one: the step nearest to
+    theta = 2 pi k.
+    """
+
+    rotation: Rotation
+    turn_steps: IntArray
+
+
+@dataclass(frozen=True, kw_only=True)
 class Response:
     """The true response of one run: never a history of the state.
 
@@ -130,11 +144,13 @@ class Response:
     `section_v` (record_turns, n) are state and velocity once a turn at theta = 0 mod 2 pi (blisk coordinates in the
     turning frame, which coincides with the inertial one there). `impulse_per_turn` (record_turns,) in N s.
     `contact_steps_per_turn` (record_turns,) counts the steps of each turn in which any blade touched. `track` is None
-    where no signal was asked for. `arrivals` holds what each timing probe saw in the tail, by its name.
-    `twin_growth` (record_turns,) is ln of what the distance to a trajectory beside the run grew by in each turn, empty
-    where none was asked for. `fractions` (N, 2, n) are q and v after 1/N, 2/N, ... 1 of the last turn, N the lobes of
-    the casing, the casing turned back by as much: all equal where the motion is symmetric, q(t + T/N) = q(t).
-    `worn` is what is left of the liner, None without one.
+    where no signal was asked for, and for a changing speed. `arrivals` holds what each timing probe saw in the tail, by
+    its name. `twin_growth` (record_turns,) is ln of what the distance to a trajectory beside the run grew by in each
+    turn, empty where none was asked for. `fractions` (N, 2, n) are q and v after 1/N, 2/N, ... 1 of the last turn, N
+    the lobes of the casing, the casing turned back by as much: all equal where the motion is symmetric,
+    q(t + T/N) = q(t); none for a changing speed. `worn` is what is left of the liner, None without one.
+    Of a changing speed, `course` says how it went; `speed` is then the record's mean, and `steps_per_turn` the number
+    of steps in a turn at the highest speed.
     When `status` is not OK, `reason` says where and by how much, and no array may be used as data.
     """
 
@@ -159,8 +175,9 @@ class Response:
     twin_growth: FloatArray = field(default_factory=lambda: np.zeros(0))
     fractions: FloatArray = field(default_factory=lambda: np.zeros((0, 2, 0)))
     arrivals: dict[str, TipArrivals] = field(default_factory=dict)
+    course: Course | None = None
 
     @property
     def turn_seconds(self) -> float:
-        """Duration of one turn in s."""
+        """Duration of one turn at the highest speed in s."""
         return self.dt * self.steps_per_turn

@@ -54,7 +54,7 @@ def steady_state(system: SpinningSystem) -> FloatArray:
     return q
 
 
-def rub_free_motion(system: SpinningSystem, steps: int = 0) -> RubFreeMotion:
+def rub_free_motion(system: SpinningSystem, steps: float = 0) -> RubFreeMotion:
     """The periodic motion without rub, by harmonic balance; with `steps` a turn that of the scheme itself.
 
     M q'' + C q' + K q = force + weight(theta) + E f(theta, u, v): each harmonic of f on O_d moves the blisk by the
@@ -79,7 +79,7 @@ def rub_free_motion(system: SpinningSystem, steps: int = 0) -> RubFreeMotion:
 class _Balance:
     """The equations of u at `samples` places of a turn (an odd number, so that no harmonic is half there)."""
 
-    def __init__(self, system: SpinningSystem, forces: TurningForces, samples: int, steps: int) -> None:
+    def __init__(self, system: SpinningSystem, forces: TurningForces, samples: int, steps: float) -> None:
         self.system, self.forces, self.samples = system, forces, samples
         self.theta = 2 * np.pi * np.arange(samples) / samples
         orders = np.arange(samples // 2 + 1)

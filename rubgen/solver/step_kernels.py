@@ -94,8 +94,7 @@ def recover_contacts(
 def solve_contacts(count: int, model: Model, step: int, opening: FloatArray, state: State, work: ContactWork) -> int:
     """The multipliers of the near blades at q* (in `state.after`), solved together; SOLVED or UNSOLVED."""
     surface, tips, laws, angles = model.surface, model.tips, model.laws, model.angles
-    last = angles.cosine.shape[0] - 1
-    back = step - 1 if step > 0 else last - 1
+    back = step - 1 if step > 0 else angles.cosine.shape[0] - 1
     for m in range(count):
         k = work.blade[m]
         build_rows(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from rubgen.arrays import FloatArray
@@ -12,17 +14,18 @@ from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw
 from rubgen.scenario.taps import DEFAULT_TAPS, Tap
 from rubgen.solver.admissible import check_step
-from rubgen.solver.block_kernels import Motion, recover
+from rubgen.solver.block_kernels import Motion, bilinear, recover
 from rubgen.solver.blocks import aligned, share_width, system_harmonics
 from rubgen.solver.central_difference import compliances, energy_book, scheme, system_blocks
-from rubgen.solver.energy_kernels import stored_energy
+from rubgen.solver.energy_kernels import ABSOLUTE, SPEED_CHANGE, stored_energy
+from rubgen.solver.following import SpeedPart
 from rubgen.solver.lanes_kernels import LANES
 from rubgen.solver.mark_kernels import Marks
 from rubgen.solver.model_kernels import Angles, Laws, Model, Scratch, State
 from rubgen.solver.rub_free import rub_free_motion
 from rubgen.solver.step_kernels import advance, shift_held
 from rubgen.solver.supports import support_of
-from rubgen.solver.taps import build_taps, sampled_taps
+from rubgen.solver.taps import build_taps, sampled_taps, turned_taps
 from rubgen.solver.turn_kernels import Touches, TurnResult, run_turn
 
 CANDIDATE_MARGIN_SHARE = 5e-5
@@ -63,7 +66,9 @@ class Stepper:
 
     `start_angle` is theta at the beginning of each turn, rad. `screen` False evaluates every blade's gap in every
     step, which never changes a result. `taps` are the rows of `result.taps`, timing probes apart. The state begins at
-    the rub-free motion. Raises UserError for a step above the stability limit.
+    the rub-free motion. `alike` are the same system at other speeds, whose matrices must fall into the same blocks; see
+    `follow`: `steps` are then those of the present part, `turn_steps` those of a turn of `system`. Raises UserError for
+    a step above the stability limit.
     """
 
     def __init__(
@@ -75,9 +80,10 @@ class Stepper:
         start_angle: float = 0.0,
         screen: bool = True,
         taps: tuple[Tap, ...] = DEFAULT_TAPS,
+        alike: Sequence[SpinningSystem] = (),
     ) -> None:
         check_step(system, steps)
-        self.system, self.steps = system, steps
+        self.system, self.steps, self.turn_steps = system, steps, steps
         self.dt = 2 * np.pi / system.speed / steps
         self.surface, self.tips = casing_surface(system, contact), blade_tips(system)
         margin = CANDIDATE_MARGIN_SHARE * system.tip_radius
@@ -85,13 +91,14 @@ class Stepper:
         self.laws = Laws(
             float(system.speed), float(self.dt), contact.friction, contact.restitution, margin, *limits, screen
         )
-        self.blocks = system_blocks(system)
+        self.blocks = system_blocks(system, *alike)
         self.scheme = scheme(system.M, system.C, system.K, system.force, self.dt, self.blocks)
         self.harmonics = system_harmonics(self.blocks, system.n_blades)
         self.compliances = compliances(system, self.dt)
         self.support = support_of(system, self.blocks, self.dt)
-        self.angles = _angles(system, steps, start_angle)
-        self.taps = build_taps(self, taps, start_angle)
+        theta = start_angle + 2 * np.pi * (np.arange(steps + 1) % steps) / steps  # the last step is the first exactly
+        self.angles = _angles(system, np.append(theta, theta[-2]))
+        self.taps = build_taps(self, taps, theta[:-1])
         self.book = energy_book(system, self.blocks)
         self.work = _contact_work(system)
         n, blades = system.M.shape[0], system.n_blades
@@ -126,6 +133,36 @@ class Stepper:
         for q in (before, now, after):
             q.flags.writeable = False
         return State(before, now, after, (now - before) / 2)
+
+    def part_of(self, system: SpinningSystem) -> SpeedPart:
+        """What follows the speed, of the same system at another speed."""
+        return SpeedPart(
+            blade_tips(system),
+            scheme(system.M, system.C, system.K, system.force, self.dt, self.blocks),
+            compliances(system, self.dt),
+            energy_book(system, self.blocks, zeros=True),
+            support_of(system, self.blocks, self.dt),
+        )
+
+    def follow(self, part: SpeedPart, speed: float, theta: FloatArray, section: float) -> None:
+        """Go on at another speed (rad/s) for as many steps as `theta` (steps + 2,) has, less two: 0, ..., steps and -1.
+
+        `section` is the time from step 0 to the section in steps, where that is one. The state carries over: M and dt
+        are the same. The stored energy's change with K is booked as a work.
+        """
+        old = self.book.K
+        self.tips, self.scheme, self.compliances = part.tips, part.scheme, part.compliances
+        self.book = part.book._replace(works=self.book.works)
+        self.support = part.support._replace(works=self.support.works)
+        self.laws = self.laws._replace(speed=speed)
+        self.steps = len(theta) - 2
+        self.angles = _angles(self.system, theta, section)
+        self.taps = turned_taps(self.taps, self.system, theta[: self.steps])
+        self.result = self.result._replace(taps=np.zeros((len(self.result.taps), self.steps)))
+        before, now = self.motions[0].z, self.motions[1].z
+        change = 0.5 * (bilinear(self.book.K, now, before) - bilinear(old, now, before))
+        self.book.works[SPEED_CHANGE] += change
+        self.book.works[ABSOLUTE] += abs(change)
 
     def set_state(self, before: FloatArray, now: FloatArray) -> None:
         """Set q at the step before the turn's first and at its first, each (n,)."""
@@ -201,11 +238,10 @@ class Stepper:
         )  # fmt: skip
 
 
-def _angles(system: SpinningSystem, steps: int, start_angle: float) -> Angles:
-    """Tables over the steps of a turn; the last row repeats the first exactly."""
-    theta = start_angle + 2 * np.pi * (np.arange(steps + 1) % steps) / steps
+def _angles(system: SpinningSystem, theta: FloatArray, section: float = 0.0) -> Angles:
+    """Tables at the angles of steps 0, ..., steps and -1."""
     orders = np.multiply.outer(theta, system.surface.order) - system.surface.order * system.surface.phase
-    return Angles(theta, np.cos(theta), np.sin(theta), np.cos(orders), np.sin(orders))
+    return Angles(theta, np.cos(theta), np.sin(theta), np.cos(orders), np.sin(orders), section)
 
 
 def _contact_work(system: SpinningSystem) -> ContactWork:

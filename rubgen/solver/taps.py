@@ -204,8 +204,8 @@ def timing_taps(taps: tuple[Tap, ...]) -> list[TipTiming]:
     return [tap for tap in taps if isinstance(tap, TipTiming)]
 
 
-def build_taps(stepper: Stepper, taps: tuple[Tap, ...], start_angle: float) -> Taps:
-    """What the kernels need for these taps.
+def build_taps(stepper: Stepper, taps: tuple[Tap, ...], theta: FloatArray) -> Taps:
+    """What the kernels need for these taps, at the angles `theta` (steps,) of a turn's steps.
 
     Raises ValueError for a blade that is not there, and for strain or drive of a system without recovery.
     """
@@ -216,8 +216,8 @@ def build_taps(stepper: Stepper, taps: tuple[Tap, ...], start_angle: float) -> T
     return Taps(
         **{source: layout.product(source) for source in SOURCES},
         linear=np.array(layout.linear, dtype=np.int64).reshape(-1, 2),
-        rays=_rays(layout, start_angle),
-        timing=_timing(stepper, timing_taps(taps), start_angle),
+        rays=_rays(layout, theta),
+        timing=_timing(stepper, timing_taps(taps), theta),
         centre=system.centre,
         lateral_stiffness=float(system.lateral_stiffness),
         lateral_damping=float(system.lateral_damping),
@@ -227,9 +227,9 @@ def build_taps(stepper: Stepper, taps: tuple[Tap, ...], start_angle: float) -> T
     )
 
 
-def _rays(layout: Layout, start_angle: float) -> Rays:
+def _rays(layout: Layout, theta: FloatArray) -> Rays:
     output, place, angle = np.array(layout.rays, dtype=float).reshape(-1, 3).T
-    blades, shares = _blades_around_rays(layout.system, angle, layout.stepper.steps, start_angle)
+    blades, shares = _blades_around_rays(layout.system, angle, theta)
     undeformed = np.array([undeformed_radius(layout.stepper.surface, each) for each in angle]).reshape(-1, 3)
     return Rays(
         output.astype(np.int64), place.astype(np.int64), angle.copy(), undeformed[:, 0].copy(), undeformed[:, 1].copy(),
@@ -237,7 +237,7 @@ def _rays(layout: Layout, start_angle: float) -> Rays:
     )  # fmt: skip
 
 
-def _timing(stepper: Stepper, probes: list[TipTiming], start_angle: float) -> Timing:
+def _timing(stepper: Stepper, probes: list[TipTiming], theta: FloatArray) -> Timing:
     system, recovery = stepper.system, stepper.system.recovery
     angle = np.deg2rad(np.array([probe.angle_deg for probe in probes], dtype=float))
     slope = 0.0 if recovery is None else recovery.chord_slope
@@ -247,19 +247,23 @@ def _timing(stepper: Stepper, probes: list[TipTiming], start_angle: float) -> Ti
         chord_slope=slope,
         # Three steps, what the axial displacement of the tip may do, and the curvature of the tip's way.
         reach=6 * np.pi / stepper.steps + 2 * abs(slope) * stepper.laws.tip_limit / system.tip_radius + 2e-3,
-        blade=_blades_around_rays(system, angle, stepper.steps, start_angle)[0],
+        blade=_blades_around_rays(system, angle, theta)[0],
         arrivals=np.zeros((2 * (system.n_blades + 1) * len(probes), 4)),
     )
 
 
-def _blades_around_rays(
-    system: SpinningSystem, rays: FloatArray, steps: int, start_angle: float
-) -> tuple[IntArray, FloatArray]:
-    """For each step and ray the blades (steps, rays, 2) on either side, and the way from one to the other in [0, 1]."""
+def turned_taps(taps: Taps, system: SpinningSystem, theta: FloatArray) -> Taps:
+    """The same taps at other angles of the steps."""
+    blade, share = _blades_around_rays(system, taps.rays.angle, theta)
+    passing, _ = _blades_around_rays(system, taps.timing.angle, theta)
+    return taps._replace(rays=taps.rays._replace(blade=blade, share=share), timing=taps.timing._replace(blade=passing))
+
+
+def _blades_around_rays(system: SpinningSystem, rays: FloatArray, theta: FloatArray) -> tuple[IntArray, FloatArray]:
+    """For each step, at angle `theta`, and ray the blades (steps, rays, 2) on either side, and the way between them."""
     turn = 2 * np.pi
     order = np.argsort(np.mod(system.blade_angles, turn), kind="stable")
     placed = np.mod(system.blade_angles, turn)[order]
-    theta = start_angle + turn * np.arange(steps) / steps
     local = np.mod(np.subtract.outer(rays, theta).T, turn)
     after = np.searchsorted(placed, local, side="right")
     first, second = (after - 1) % len(placed), after % len(placed)

@@ -130,6 +130,11 @@ def test_simulation_sensors_and_output_reach_the_scenario():
         "record_turns": 700,
         "steps_per_turn": 2048,
         "closing_turns": 30,
+        "profile": "steady",
+        "end_speed_rpm": None,
+        "duration_s": None,
+        "fluctuation_rpm": 0.0,
+        "fluctuation_period_s": 1.0,
     }
     sensing = scenario.sensing
     assert (sensing.sample_rate_hz, sensing.noise, sensing.adc_bits, sensing.keep_clean) == (12800, 0, 12, True)

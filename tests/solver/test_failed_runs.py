@@ -6,6 +6,7 @@ import pytest
 from rubgen.scenario import ContactLaw
 from rubgen.solver import Status, Stepper, integrate
 from rubgen.solver.integrate import Integration
+from rubgen.solver.spin import SteadySpin
 from rubgen.solver.step_kernels import has_diverged
 from rubgen.solver.stepper import closing_ramp
 
@@ -13,7 +14,8 @@ from rubgen.solver.stepper import closing_ramp
 @pytest.fixture
 def integration(small_system, operation):
     system = small_system(speed=500.0)
-    return Integration(Stepper(system, ContactLaw(friction=0.1), 256), operation(system, record_turns=5), 40, 100)
+    spin = SteadySpin(Stepper(system, ContactLaw(friction=0.1), 256), 40)
+    return Integration(spin, system, operation(system, record_turns=5), 100)
 
 
 def test_a_wrong_mass_in_the_book_breaks_the_energy_identity(integration):

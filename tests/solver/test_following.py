@@ -1,0 +1,42 @@
+import numpy as np
+import pytest
+
+from rubgen.machine import load_machine
+from rubgen.reduction import reduce
+from rubgen.scenario import ContactLaw, Reduction
+from rubgen.solver import Stepper
+from rubgen.solver.following import Following, chebyshev_speeds, lagrange_weights
+
+RPM = np.pi / 30
+
+
+def test_lagrange_weights_give_back_a_polynomial():
+    nodes = chebyshev_speeds(300.0, 900.0)
+    assert nodes[0] == 300
+    assert nodes[-1] == 900
+    curve = np.polynomial.Polynomial(np.random.default_rng(1).normal(size=nodes.size), domain=[300, 900])
+    at = np.linspace(300, 900, 37)
+    np.testing.assert_allclose(lagrange_weights(nodes, at) @ curve(nodes), curve(at), atol=1e-12)
+
+
+@pytest.mark.parametrize("acceleration", [0.0, -210.0])
+def test_interpolated_matrices_are_those_made_at_that_speed(acceleration):
+    model = reduce(load_machine("zeng2019"), Reduction())
+    speeds = chebyshev_speeds(3000 * RPM, 12000 * RPM)
+    alike = [model.at_speed(speed, push) for speed in (speeds[0], speeds[-1]) for push in (0.0, 300.0)]
+    stepper = Stepper(alike[2], ContactLaw(), 1024, alike=alike)
+    following = Following(lambda *at: stepper.part_of(model.at_speed(*at)), speeds, 300.0)
+    wanted = np.array([3333.0, 7654.3, 11900.0]) * RPM
+    for speed, part in zip(wanted, following.at(wanted, np.full(3, acceleration)), strict=True):
+        exact = stepper.part_of(model.at_speed(speed, acceleration))
+        for name in ("now", "before", "inverse", "constant"):
+            found, true = getattr(part.scheme, name), getattr(exact.scheme, name)
+            np.testing.assert_allclose(found, true, atol=1e-13 * np.abs(true).max(), err_msg=name)
+        for found, true in zip(part.compliances, exact.compliances, strict=True):
+            np.testing.assert_allclose(found, true, atol=1e-13 * np.abs(true).max())
+        for name in ("damping", "circulatory", "M", "K"):
+            found, true = getattr(part.book, name).entries, getattr(exact.book, name).entries
+            np.testing.assert_allclose(found, true, atol=1e-13 * np.abs(true).max(), err_msg=name)
+        np.testing.assert_allclose(part.book.force, exact.book.force, rtol=1e-11, atol=1e-9)
+        np.testing.assert_allclose(part.tips.static, exact.tips.static, rtol=1e-9, atol=1e-15)
+        assert following.mean_growth(np.array(speed)) == pytest.approx(exact.tips.static[0].mean(), rel=1e-9)
