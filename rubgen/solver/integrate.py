@@ -218,8 +218,8 @@ def integrate(
 
     A run that fails has the status and the reason; nothing else in it is data. Raises UserError for a system that
     `check_system` refuses, for a record too short for an exponent that is asked for, for a profile that lacks a key,
-    and for a speed so low that a turn would need more than 4,194,304 steps; ValueError where anything but contact couples
-    blisk and casing. Holds for small casing displacements.
+    and for a speed so low that a turn would need more than 4,194,304 steps; ValueError where anything but contact
+    couples blisk and casing. Holds for small casing displacements.
     """
     if twin:
         check_turns(operation.record_turns)

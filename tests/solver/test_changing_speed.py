@@ -105,7 +105,7 @@ def test_without_damping_the_peak_lags_by_what_the_fresnel_integral_says():
     operation = Operation(
         profile="run-up", speed_rpm=800 / RPM, end_speed_rpm=1200 / RPM, duration_s=1.0, settle_turns=3
     )
-    response = run_jeffcott(operation, 1e-6)
+    response = run_jeffcott(operation, 1e-5)
     rotation, orbit = response.course.rotation, record_taps(response)
     w = np.linspace(1.0, 1.5, 5001)
     cornu = np.abs((0.5 + 0.5j) + np.array([c + 1j * s for s, c in zip(*fresnel(w), strict=True)]))
