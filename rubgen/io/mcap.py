@@ -12,6 +12,7 @@ from mcap.writer import Writer
 
 from rubgen.io.durable import write_durably
 from rubgen.io.mcap_check import check_mcap
+from rubgen.io.foxglove import TRANSFORM, transform, transform_descriptor_set
 from rubgen.io.mcap_messages import MESSAGES, PACKAGE, file_descriptor_set, message_class, sample_block, timestamp
 from rubgen.io.mcap_read import TIMING, McapRun, read_mcap
 from rubgen.io.multi_array import SCHEMA, SCHEMA_NAME, multi_arrays
@@ -21,6 +22,7 @@ from rubgen.sensors.blade_tip_timing import TipTimes
 from rubgen.sensors.channel import Channel, Float32Array, Recording
 from rubgen.sensors.contact_window import contact_intervals
 from rubgen.sensors.envelope import Preview, preview
+from rubgen.sensors.motion_frames import MotionFrames, motion_frames
 
 if TYPE_CHECKING:  # Run carries the solver's imports; who reads or checks a file needs none of them
     from rubgen.labels.labels import Labels
@@ -38,8 +40,8 @@ def write_mcap(run: Run, path: Path) -> None:
     """Write `run` to `path`, complete or not at all; the same run gives the same bytes.
 
     Topics: `/raw/<channel>` (`/clean/<channel>` where kept) blocks of 1024 float32 samples, `/preview/<quantity>`
-    minimum and maximum at about 1 kHz, `/contact`, `/once_per_rev`,
-    `/blade_tip_timing/<probe>`, `/labels/motion`. Times are integer ns from the
+    minimum and maximum at about 1 kHz, `/contact`, `/once_per_rev`, `/blade_tip_timing/<probe>`, `/labels/motion`, and
+    where the run kept its motion `/motion/frames`, `/motion/casing_modes` and `/tf`. Times are integer ns from the
     first sample. Scenario and labels stand in metadata records (`rubgen.scenario`, `rubgen.labels`; each value JSON)
     and as attachments. Raises ValueError for a run without a recording, OSError when the file cannot be written.
     """
@@ -97,6 +99,11 @@ def _write_messages(writer: Writer, run: Run, recording: Recording, labels: Labe
     for name, seen in recording.tip_timing.items():
         add(f"{TIMING}{name}", schemas["BladePassage"], _passages(seen), _describe_probe(run, name))
     add("/labels/motion", schemas["MotionLabel"], iter([_motion(labels)]))
+    frames = motion_frames(run.response, recording)
+    if frames is not None:
+        add("/motion/frames", schemas["MotionFrame"], _frames(frames))
+        add("/motion/casing_modes", schemas["CasingModes"], iter([_casing_modes(frames)]))
+        add("/tf", writer.register_schema(TRANSFORM, "protobuf", transform_descriptor_set()), _transforms(frames))
     for time, channel_id, sequence, data in sorted(merged, key=itemgetter(0, 1, 2)):
         writer.add_message(channel_id, time, data, publish_time=time, sequence=sequence)
 
@@ -179,3 +186,33 @@ def _motion(labels: Labels) -> Stamped:
         period=labels.period or 0,
     )
     return 0, motion.SerializeToString(deterministic=True)
+
+
+def _frames(frames: MotionFrames) -> Iterator[Stamped]:
+    message = message_class("MotionFrame")
+    for row, time_s in enumerate(frames.time.tolist()):
+        time = nanoseconds(time_s)
+        frame = message(
+            timestamp=timestamp(time),
+            time_s=time_s,
+            angle_rad=frames.angle[row],
+            centre_m=frames.centre[row].tolist(),
+            tips_m=frames.tips[row].ravel().tolist(),
+            casing=frames.casing[row].tolist(),
+            dense=int(frames.dense[row]),
+        )
+        yield time, frame.SerializeToString(deterministic=True)
+
+
+def _casing_modes(frames: MotionFrames) -> Stamped:
+    nodes, _, modes = frames.casing_modes.shape
+    values = frames.casing_modes.ravel().tolist()
+    shapes = message_class("CasingModes")(timestamp=timestamp(0), nodes=nodes, modes=modes, values=values)
+    return 0, shapes.SerializeToString(deterministic=True)
+
+
+def _transforms(frames: MotionFrames) -> Iterator[Stamped]:
+    """The turning blisk in the ground's frame, for every frame."""
+    for row, time_s in enumerate(frames.time.tolist()):
+        time = nanoseconds(time_s)
+        yield time, transform(time, float(frames.angle[row]), frames.centre[row].tolist())

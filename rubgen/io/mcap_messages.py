@@ -77,6 +77,27 @@ MESSAGES: dict[str, tuple[str, list[_Field]]] = {
             _Field("double", "true_displacement_m", "of the blade's tip along the rotation at that time, known, m"),
         ],
     ),
+    "MotionFrame": (
+        "The machine at one moment; the blisk in its turning frame.",
+        [
+            _TIME,
+            _Field("double", "time_s", "time after the first sample, s"),
+            _Field("double", "angle_rad", "of the blisk, in [0, 2 pi)"),
+            _Field("float", "centre_m", "displacement of the disk centre, x and y", repeated=True),
+            _Field("float", "tips_m", "radial, tangential, axial displacement of each blade's tip in turn", repeated=True),
+            _Field("float", "casing", "amplitudes of the casing's modes", repeated=True),
+            _Field("uint32", "dense", "1 about the hardest touch, 0 where a turn or more lies between frames"),
+        ],
+    ),
+    "CasingModes": (
+        "Shapes of the casing's modes at nodes at equal steps of polar angle from 0.",
+        [
+            _TIME,
+            _Field("uint32", "nodes", ""),
+            _Field("uint32", "modes", ""),
+            _Field("float", "values", "node by node, X and Y of every mode", repeated=True),
+        ],
+    ),
     "OncePerRev": (
         "The blisk passes angle 0.",
         [_TIME, _Field("double", "time_s", "time after the first sample, s"), _Field("uint64", "turn", "from 0")],

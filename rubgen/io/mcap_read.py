@@ -22,6 +22,7 @@ from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
 from rubgen.io.mcap_messages import message_class, read_sample_block
 from rubgen.sensors.channel import Float32Array
+from rubgen.sensors.motion_frames import MotionFrames
 
 UNREADABLE = (McapError, ZstdError, ValueError, EOFError, struct.error, KeyError, MemoryError)
 """What the mcap package raises for a file that is damaged or no MCAP (its CRC error is a ValueError)."""
@@ -38,6 +39,7 @@ class McapRun:
     `signals` and `clean` map a channel's name to its samples (n,), float32, in the unit that `channels[name]` names
     beside quantity, axis, location and range. `contacts` maps a field of rubgen.v1.Contact to its values (n_events,);
     `once_per_rev` (n_pulses,) in s. `tip_timing` maps a timing probe's name to fields of rubgen.v1.BladePassage.
+    `frames` is the motion, None where the file has none.
     """
 
     scenario: dict[str, Any]
@@ -49,6 +51,7 @@ class McapRun:
     contacts: dict[str, FloatArray]
     once_per_rev: FloatArray
     tip_timing: dict[str, dict[str, FloatArray]]
+    frames: MotionFrames | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,6 +134,7 @@ def _run(content: McapContent) -> McapRun:
             for topic in content.channels
             if topic.startswith(TIMING)
         },
+        frames=_frames(content),
     )
 
 
@@ -152,3 +156,20 @@ def _columns(content: McapContent, topic: str, message_name: str) -> dict[str, F
     rows = [message.FromString(record.data) for record in content.messages.get(topic, [])]
     names = [field.name for field in message.DESCRIPTOR.fields if field.name != "timestamp"]
     return {name: np.array([getattr(row, name) for row in rows], dtype=np.float64) for name in names}
+
+
+def _frames(content: McapContent) -> MotionFrames | None:
+    found, shapes = content.messages.get("/motion/frames"), content.messages.get("/motion/casing_modes")
+    if not found or not shapes:
+        return None
+    rows = [message_class("MotionFrame").FromString(record.data) for record in found]
+    modes = message_class("CasingModes").FromString(shapes[0].data)
+    return MotionFrames(
+        time=np.array([row.time_s for row in rows]),
+        angle=np.array([row.angle_rad for row in rows]),
+        centre=np.array([row.centre_m for row in rows], dtype=np.float64),
+        tips=np.array([row.tips_m for row in rows], dtype=np.float64).reshape(len(rows), -1, 3),
+        casing=np.array([row.casing for row in rows], dtype=np.float64),
+        dense=np.array([row.dense for row in rows], dtype=np.int64),
+        casing_modes=np.array(modes.values, dtype=np.float64).reshape(modes.nodes, 2, modes.modes),
+    )
