@@ -94,13 +94,39 @@ def simulate(
     seed: Annotated[int, _option("Seed of the sensor noise.")] = 0,
     lyapunov: Annotated[bool, _option("Whether to compute the Lyapunov exponent, half as long again.")] = True,
     out: Annotated[Path | None, _option("File to write: .mcap, .parquet or .rrd.")] = None,
+    replay: Annotated[bool, Parameter(negative=(), help="Then show the run in the viewer.")] = False,
     json: Json = False,
 ) -> int:
     """Simulate one run and print its labels; with --out also write its signals."""
     options = dict(locals())
     from rubgen.cli.simulating import simulate_command
 
-    return simulate_command(options, out, as_json=json)
+    return simulate_command(options, out, replay=replay, as_json=json)
+
+
+@app.command
+def replay(
+    source: Annotated[Path, _option("Directory of a data set, or an MCAP file of rubgen.")],
+    run: Annotated[str | None, _option("Name of a run of the data set.")] = None,
+    /,
+    *,
+    where: Annotated[
+        str | None, _option("The first run that meets this condition on the columns of runs.parquet.")
+    ] = None,
+    save: Annotated[Path | None, _option("Write an .rrd file instead of opening the viewer.")] = None,
+    gif: Annotated[Path | None, _option("Write an animation of the turns about the hardest touch.")] = None,
+    png: Annotated[Path | None, _option("Write a picture of one moment.")] = None,
+    time: Annotated[float | None, _option("Moment of the picture, s; the hardest touch when not given.")] = None,
+    web: Annotated[bool, Parameter(negative=(), help="Open it in the browser, on this machine alone.")] = False,
+    full: Annotated[
+        bool, Parameter(negative=(), help="Every sample and touch, not only those about the hardest.")
+    ] = False,
+) -> int:
+    """Show a run in Rerun: the machine in 3D, orbit, signals, orders, contact and labels on one time line."""
+    from rubgen.cli.replaying import Showing, replay_command
+
+    showing = Showing(save=save, gif=gif, png=png, time=time, web=web, full=full)
+    return replay_command(source, run, where, showing)
 
 
 @app.command

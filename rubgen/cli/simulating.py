@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from rubgen.cli.printing import print_json, print_pairs
+from rubgen.cli.replaying import Showing, show
 from rubgen.errors import UserError
 from rubgen.labels.plain import labels_dict
 from rubgen.pipeline import Run, simulate
@@ -18,6 +19,7 @@ from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.sensor_set import load_sensor_set
 from rubgen.scenario.vary import KEYS, varied_values
 from rubgen.solver import Status
+from rubgen.viz.replay import replay_of
 
 LABEL_NAMES = (
     "rub",
@@ -40,8 +42,10 @@ LABEL_NAMES = (
 """What people are shown; programs get all labels."""
 
 
-def simulate_command(options: dict[str, Any], out: Path | None, *, as_json: bool) -> int:
-    """Simulate and print; 1 where the run failed."""
+def simulate_command(options: dict[str, Any], out: Path | None, *, replay: bool = False, as_json: bool) -> int:
+    """Simulate, print, write and show; 1 where the run failed."""
+    if replay:
+        Showing().check()
     write = _writer(out)
     run = simulate(_scenario(options))
     labels = labels_dict(run.labels) if run.labels else {}
@@ -61,6 +65,8 @@ def simulate_command(options: dict[str, Any], out: Path | None, *, as_json: bool
         return 1
     if out and write:
         _write(run, out, write)
+    if replay:
+        show(replay_of(run), Showing())
     return 0
 
 

@@ -24,13 +24,13 @@ class DataSet:
 
     def __init__(self, directory: Path) -> None:
         """Raise UserError where `directory` holds no finished data set; read the manifest alone."""
-        self._layout = Layout(directory)
-        self.manifest: Manifest = read_manifest(self._layout)
+        self.layout = Layout(directory)
+        self.manifest: Manifest = read_manifest(self.layout)
 
     @cached_property
     def runs(self) -> pd.DataFrame:
         """One row a run, failed ones too: parameters and labels, by `run_id`."""
-        frame: pd.DataFrame = read_table(self._layout.runs).to_pandas()
+        frame: pd.DataFrame = read_table(self.layout.runs).to_pandas()
         return frame.set_index("run_id", drop=False)
 
     def signals(self, run_id: str) -> dict[str, Float32Array]:
@@ -40,19 +40,24 @@ class DataSet:
         """
         if run_id in self._places:
             return self._signals_from_parquet(run_id)
-        path = self._layout.export("mcap", run_id)
+        path = self.layout.export("mcap", run_id)
         if path.exists():
             from rubgen.io.mcap import read_mcap
 
             run = read_mcap(path)
             return run.signals | {f"{name}_clean": values for name, values in run.clean.items()}
-        raise UserError(f"{self._layout.root}: {self._why_no_signals(run_id)}")
+        raise UserError(f"{self.layout.root}: {self._why_no_signals(run_id)}")
+
+    def check_has_signals(self, run_id: str) -> None:
+        """Raise UserError where there is no such run, or it failed."""
+        if run_id not in self.runs.index or self.runs.loc[run_id, "status"] != "ok":
+            raise UserError(f"{self.layout.root}: {self._why_no_signals(run_id)}")
 
     @cached_property
     def _places(self) -> dict[str, tuple[Path, int, int]]:
         """File, row group and row of every run with signals."""
         places: dict[str, tuple[Path, int, int]] = {}
-        for path in self._layout.shards():
+        for path in self.layout.shards():
             with open_parquet(path) as file:
                 for group in range(file.num_row_groups):
                     names = file.read_row_group(group, columns=["run_id"])["run_id"].to_pylist()

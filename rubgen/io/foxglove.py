@@ -70,7 +70,7 @@ def _file(path: str, name: str, fields: tuple[tuple[str, int, str], ...]) -> des
     file = descriptor_pb2.FileDescriptorProto(name=path, package=PACKAGE, syntax="proto3")
     message = file.message_type.add(name=name)
     for number, (field, kind, of) in enumerate(fields, start=1):
-        added = message.field.add(name=field, number=number, type=kind)  # type: ignore[arg-type]
+        added = message.field.add(name=field, number=number, type=kind)
         added.label = descriptor_pb2.FieldDescriptorProto.LABEL_OPTIONAL
         if of:
             added.type_name = of

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from mcap.writer import Writer
 
 from rubgen.io.durable import write_durably
-from rubgen.io.mcap_check import check_mcap
 from rubgen.io.foxglove import TRANSFORM, transform, transform_descriptor_set
+from rubgen.io.mcap_check import check_mcap
 from rubgen.io.mcap_messages import MESSAGES, PACKAGE, file_descriptor_set, message_class, sample_block, timestamp
 from rubgen.io.mcap_read import TIMING, McapRun, read_mcap
 from rubgen.io.multi_array import SCHEMA, SCHEMA_NAME, multi_arrays

@@ -84,7 +84,9 @@ MESSAGES: dict[str, tuple[str, list[_Field]]] = {
             _Field("double", "time_s", "time after the first sample, s"),
             _Field("double", "angle_rad", "of the blisk, in [0, 2 pi)"),
             _Field("float", "centre_m", "displacement of the disk centre, x and y", repeated=True),
-            _Field("float", "tips_m", "radial, tangential, axial displacement of each blade's tip in turn", repeated=True),
+            _Field(
+                "float", "tips_m", "radial, tangential, axial displacement of each blade's tip in turn", repeated=True
+            ),
             _Field("float", "casing", "amplitudes of the casing's modes", repeated=True),
             _Field("uint32", "dense", "1 about the hardest touch, 0 where a turn or more lies between frames"),
         ],

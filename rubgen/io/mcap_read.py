@@ -70,7 +70,7 @@ def read_mcap(path: Path) -> McapRun:
     Raises UserError, one line, when there is no such file, it is damaged, or no run of rubgen is in it.
     """
     try:
-        return _run(read_content(path))
+        return run_of(read_content(path))
     except OSError as error:
         raise UserError(f"{path}: cannot be read ({error.strerror}); give an existing .mcap file") from None
     except UNREADABLE as error:
@@ -113,15 +113,21 @@ def _validate_summary(data: bytes) -> None:
         raise ValueError("crc validation failed in the summary")
 
 
-def _run(content: McapContent) -> McapRun:
+def run_of(content: McapContent, *, gaps: bool = False) -> McapRun:
+    """The run in these records; with `gaps` samples may be missing and are NaN, else they would follow one another.
+
+    Raises one of `UNREADABLE` where the content is not that of a run.
+    """
     rates = {rate for topic in content.messages if topic.startswith("/raw/") for rate in _rates(content, topic)}
     (sample_rate,) = rates or {float("nan")}
+    scenario = json.loads(content.attachments["scenario.json"])
+    length = round(scenario["signal_seconds"] * sample_rate) if gaps else 0
     return McapRun(
-        scenario=json.loads(content.attachments["scenario.json"]),
+        scenario=scenario,
         labels=json.loads(content.attachments["labels.json"]),
         sample_rate_hz=sample_rate,
-        signals=_signals(content, "/raw/"),
-        clean=_signals(content, "/clean/"),
+        signals=_signals(content, "/raw/", length),
+        clean=_signals(content, "/clean/", length),
         channels={
             topic.removeprefix("/raw/"): channel.metadata
             for topic, channel in content.channels.items()
@@ -142,12 +148,17 @@ def _rates(content: McapContent, topic: str) -> set[float]:
     return {read_sample_block(message.data)[1] for message in content.messages[topic]}
 
 
-def _signals(content: McapContent, prefix: str) -> dict[str, Float32Array]:
-    """Samples of every channel under `prefix`, joined in the order of the blocks."""
+def _signals(content: McapContent, prefix: str, length: int) -> dict[str, Float32Array]:
+    """Samples of every channel under `prefix`, joined in the order of the blocks, or put into a length with gaps."""
     signals = {}
     for topic in (topic for topic in content.channels if topic.startswith(prefix)):
-        blocks = [read_sample_block(message.data)[3] for message in content.messages.get(topic, [])]
-        signals[topic.removeprefix(prefix)] = np.concatenate([np.empty(0, np.float32), *blocks])
+        blocks = [read_sample_block(message.data) for message in content.messages.get(topic, [])]
+        joined = np.full(length, np.nan, np.float32)
+        for _, _, first, values in blocks:
+            joined[first : first + values.size] = values[: max(length - first, 0)]
+        if not length:
+            joined = np.concatenate([np.empty(0, np.float32), *(values for _, _, _, values in blocks)])
+        signals[topic.removeprefix(prefix)] = joined
     return signals
 
 

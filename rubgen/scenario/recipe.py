@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, TypeAdapter, ValidationError, create_model
 
 from rubgen.errors import UserError
-from rubgen.machine import NonNegative, Positive, load_machine
+from rubgen.machine import Machine, NonNegative, Positive, load_machine
 from rubgen.machine.load import machine_id, read_toml
 from rubgen.machine.problems import first_problem
 from rubgen.scenario.distributions import Choice, Constant, Distribution
@@ -84,11 +84,12 @@ class Recipe(BaseModel):
     reduction: Reduction = Reduction()
     contact: ContactLaw = ContactLaw()
     _folder: Path = PrivateAttr(default_factory=Path)
+    _machine: Machine | None = PrivateAttr(default=None)
 
     @cached_property
     def base(self) -> Scenario:
         """The scenario before `[vary]`: the machine as its file says, at the default speed."""
-        machine = load_machine(self.machine, self._folder)
+        machine = self._machine or load_machine(self.machine, self._folder)
         return Scenario(
             machine=machine,
             operation=Operation(speed_rpm=DEFAULT_SPEED_RPM, **self.simulation.model_dump()),
@@ -156,6 +157,19 @@ def parse_recipe(
         raise first_problem(source, error, data, TypeAdapter(Recipe)) from None
     recipe._folder = folder or Path()
     check_recipe(recipe, source)
+    return recipe
+
+
+def recorded_recipe(data: dict[str, Any], machine: dict[str, Any]) -> Recipe:
+    """The recipe of a data set from its manifest, with the machine as it was, whatever its file says by now.
+
+    Raises UserError where this rubgen cannot read them.
+    """
+    try:
+        recipe = Recipe.model_validate(data)
+        recipe._machine = TypeAdapter(Machine).validate_python(machine)
+    except ValidationError as error:
+        raise first_problem("manifest", error, data, TypeAdapter(Recipe)) from None
     return recipe
 
 

@@ -8,6 +8,7 @@ from rubgen.labels.labels import Motion
 
 BLUE, GREEN, ORANGE, VERMILION, GREY = "#0072b2", "#009e73", "#e69f00", "#d55e00", "#8c8c8c"
 SKY = "#56b4e9"
+PAPER_GREY = "#dddddd"
 MOTION_COLORS = {
     Motion.STATIC: GREY,
     Motion.PERIOD_1: BLUE,

@@ -30,8 +30,8 @@ def order_map(
 
     `pulses` (any,) are the times in s at which turns begin. The samples are read by linear interpolation at 256 equal
     angles of each turn, so that orders stay sharp while the speed changes; |2 X / n| under no window, for each block
-    holds whole turns. Valid up to order 12 while the sample rate is some 50 times the rotation frequency. No block
-    without two pulses.
+    holds whole turns. Blocks with lost samples are left out, and without two pulses there is none. Valid up to order
+    12 while the sample rate is some 50 times the rotation frequency.
     """
     length = min(turns, pulses.size - 1)
     if length < 1:
@@ -40,8 +40,10 @@ def order_map(
     at = (pulses[:-1, None] + share * np.diff(pulses)[:, None]).ravel()
     angular = np.interp(at, np.arange(values.size) / sample_rate_hz, values)
     count = (pulses.size - 1) // length
-    chosen = np.arange(count)[:: max(1, -(-count // most_blocks))]
-    blocks = angular[: count * length * SAMPLES_PER_TURN].reshape(count, -1)[chosen]
+    blocks = angular[: count * length * SAMPLES_PER_TURN].reshape(count, -1)
+    chosen = np.flatnonzero(np.isfinite(blocks).all(axis=1))
+    chosen = chosen[:: max(1, -(-chosen.size // most_blocks))]
+    blocks = blocks[chosen]
     stop = HIGHEST_ORDER * length + 1
     return OrderMap(
         time=pulses[chosen * length],

@@ -120,8 +120,8 @@ def _orbit(replay: Replay) -> rrb.Spatial2DView:
     start, end = _near(replay, ORBIT_TURNS)
     found = [replay.recording.channels.get(name) for name in ("proximity_x", "proximity_y")]
     x, y = (np.zeros(1) if channel is None else 1e6 * channel.values for channel in found)
-    half = 0.6 * max(float(np.ptp(x)), float(np.ptp(y)), 1.0)
-    middle_x, middle_y = (float(v.max() + v.min()) / 2 for v in (x, -y))  # Y points downwards in the viewer
+    half = 0.6 * max(*(float(np.nanmax(v) - np.nanmin(v)) for v in (x, y)), 1.0)
+    middle_x, middle_y = (float(np.nanmax(v) + np.nanmin(v)) / 2 for v in (x, -y))  # Y points downwards in the viewer
     return rrb.Spatial2DView(
         origin="/orbit",
         name="orbit of the disk centre, um: last 10 turns; points once a turn",

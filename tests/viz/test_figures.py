@@ -29,6 +29,7 @@ def runs():
             "casing_support_stiffness_n_per_m": np.exp(generator.uniform(np.log(5e4), np.log(6e5), count)),
             "motion": generator.choice(["period-1", "period-k", "quasi-periodic", "chaotic"], count),
             "rub": generator.uniform(size=count) > 0.3,
+            "contact_impulse_per_turn_n_s": generator.uniform(0, 3, count),
         }
     )
 
@@ -98,7 +99,10 @@ def test_every_good_run_is_one_point_in_the_colour_of_its_motion(runs):
     figure = dataset_overview(runs)
     good = runs[runs["status"] == "ok"]
     for axes, column, scale in zip(
-        figure.axes, ["clearance_m", "casing_support_stiffness_n_per_m"], [1e3, 1.0], strict=True
+        figure.axes,
+        ["clearance_m", "casing_support_stiffness_n_per_m", "contact_impulse_per_turn_n_s"],
+        [1e3, 1.0, 1.0],
+        strict=True,
     ):
         drawn = sorted(
             (float(x), float(y), to_hex(line.get_color()), line.get_markerfacecolor() != "none")

@@ -53,7 +53,8 @@ def study_figure(study: Study, results: Results) -> Figure:
 
 
 def _changes(axes: Axes, study: Study, results: Results, read: Callable[[Outcome], float]) -> None:
-    from rubgen.viz.figures import MOTION_MARKERS, PAPER_GREY
+    from rubgen.viz.colors import PAPER_GREY
+    from rubgen.viz.figures.style import MOTION_MARKERS
 
     values = sorted({result.value for result in results}, key=_place)
     yardstick = study.yardstick if study.yardstick in values else values[-1]
@@ -103,7 +104,8 @@ def halving_figure(pairs: Sequence[Pair]) -> Figure:
 
 
 def _impulses(axes: Axes, pairs: Sequence[Pair]) -> None:
-    from rubgen.viz.figures import MOTION_MARKERS, PAPER_GREY
+    from rubgen.viz.colors import PAPER_GREY
+    from rubgen.viz.figures.style import MOTION_MARKERS
 
     for pair in pairs:
         if not pair.equal:
@@ -120,7 +122,8 @@ def _impulses(axes: Axes, pairs: Sequence[Pair]) -> None:
 
 
 def _impulse_changes(axes: Axes, pairs: Sequence[Pair]) -> None:
-    from rubgen.viz.figures import MOTION_MARKERS, PAPER_GREY
+    from rubgen.viz.colors import PAPER_GREY
+    from rubgen.viz.figures.style import MOTION_MARKERS
 
     shown = [(pair.speed_rpm, pair.impulse_change) for pair in pairs if pair.impulse_change is not None]
     bound = 100 * IMPULSE_TOLERANCE
@@ -141,7 +144,7 @@ def _case_legend() -> list[Line2D]:
 def _motion_legend(outcomes: Sequence[Outcome], *, colored: bool = False) -> list[Line2D]:
     from matplotlib.lines import Line2D
 
-    from rubgen.viz.figures import MOTION_MARKERS
+    from rubgen.viz.figures.style import MOTION_MARKERS
 
     found = {outcome.motion for outcome in outcomes}
     marks = [
@@ -159,7 +162,7 @@ def _motion_legend(outcomes: Sequence[Outcome], *, colored: bool = False) -> lis
 def _step_legend() -> list[Line2D]:
     from matplotlib.lines import Line2D
 
-    from rubgen.viz.figures import PAPER_GREY
+    from rubgen.viz.colors import PAPER_GREY
 
     return [
         Line2D([], [], linestyle="none", marker="o", color=_ink(), markerfacecolor="none", label="1,024 steps a turn"),
@@ -177,7 +180,7 @@ def _style(axes: Axes, x: str, y: str) -> None:
 
 
 def _ink() -> str:
-    from rubgen.viz.figures import INK
+    from rubgen.viz.figures.style import INK
 
     return INK
 

@@ -1,49 +1,27 @@
-"""Pictures of one run and of a data set, as matplotlib figures that no global state touches."""
+"""One run in four panels, from its true response."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
 from rubgen.arrays import FloatArray
 from rubgen.labels.harmonics import order_spectrum, spectrum_turns
-from rubgen.labels.labels import Motion
-from rubgen.viz.colors import BLUE, GREY, MOTION_COLORS, VERMILION
+from rubgen.viz.colors import BLUE, GREY, PAPER_GREY, VERMILION
+from rubgen.viz.figures.style import INK, label_axes, new_figure, note
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from rubgen.pipeline import Run
 
-INK, PAPER_GREY = "#222222", "#dddddd"
 ORBIT_TURNS = 30
 WAVE_TURNS = 5
 HIGHEST_ORDER = 12
 SECTORS = 90
-MOTION_MARKERS = {
-    Motion.STATIC: "v",
-    Motion.PERIOD_1: "o",
-    Motion.PERIOD_K: "s",
-    Motion.QUASI_PERIODIC: "D",
-    Motion.UNDECIDED: "P",
-    Motion.CHAOTIC: "^",
-}
-AXES = {
-    "speed_rpm": "Speed, rev/min",
-    "clearance_m": "Clearance at rest, mm",
-    "ovality_m": "Ovality of the casing, mm",
-    "disk_support_stiffness_n_per_m": "Disk support stiffness, N/m",
-    "casing_support_stiffness_n_per_m": "Casing support stiffness, N/m",
-    "friction": "Coefficient of friction",
-}
 
 
 def overview(run: Run) -> Figure:
@@ -54,33 +32,13 @@ def overview(run: Run) -> Figure:
     """
     if run.recording is None:
         raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to show")
-    figure = _figure(10.0, 7.2)
+    figure = new_figure(10.0, 7.2)
     grid = figure.add_gridspec(2, 2, width_ratios=[1, 1.25])
     orbit(figure.add_subplot(grid[0, 0]), run)
     waveform(figure.add_subplot(grid[0, 1]), run, "casing_acc_0")
     contact_map(cast("PolarAxes", figure.add_subplot(grid[1, 0], projection="polar")), run)
     force_spectrum(figure.add_subplot(grid[1, 1]), run)
     return figure
-
-
-def dataset_overview(runs: pd.DataFrame) -> Figure:
-    """Runs in two parameter planes, speed against clearance and against casing stiffness, by class of motion.
-
-    `runs` is the table `runs.parquet`; failed runs are left out. Runs without contact are hollow.
-    """
-    shown = runs[runs["status"] == "ok"]
-    figure = _figure(10.0, 4.4)
-    axes = figure.subplots(1, 2)
-    parameter_plane(axes[0], shown, "speed_rpm", "clearance_m", 1e3)
-    parameter_plane(axes[1], shown, "speed_rpm", "casing_support_stiffness_n_per_m", 1.0)
-    axes[1].set_yscale("log")
-    figure.legend(handles=_motion_legend(shown), loc="outside lower center", ncols=6, frameon=False, fontsize=9)
-    return figure
-
-
-def save_png(figure: Figure, path: Path, *, dpi: int = 110) -> None:
-    """Write `figure` as PNG without a date or version in it: the same figure gives the same bytes."""
-    figure.savefig(path, dpi=dpi, metadata={"Software": None})
 
 
 def orbit(axes: Axes, run: Run) -> None:
@@ -93,7 +51,7 @@ def orbit(axes: Axes, run: Run) -> None:
     axes.set_aspect("equal")
     axes.margins(0.12)
     axes.locator_params(nbins=6)
-    _label(axes, "Disk centre $x$, µm", "Disk centre $y$, µm")
+    label_axes(axes, "Disk centre $x$, µm", "Disk centre $y$, µm")
     _section(axes.inset_axes((0.37, 0.39, 0.3, 0.3)), x - x.mean(), y - y.mean())
 
 
@@ -102,7 +60,7 @@ def _section(axes: Axes, x: FloatArray, y: FloatArray) -> None:
     axes.plot(x, y, ".", color=VERMILION, markersize=3.5, markeredgewidth=0)
     half = 1.25 * max(float(np.abs(x).max()), float(np.abs(y).max()), 0.1)
     axes.set(xlim=(-half, half), ylim=(-half, half), aspect="equal")
-    _label(axes, "once a turn, µm", "")
+    label_axes(axes, "once a turn, µm", "")
     axes.xaxis.label.set(fontsize=8, color=VERMILION)
     axes.tick_params(labelsize=7)
     axes.locator_params(nbins=3)
@@ -120,7 +78,7 @@ def waveform(axes: Axes, run: Run, name: str) -> None:
     axes.plot(1e3 * np.arange(count) / rate, channel.values[-count:], color=BLUE, linewidth=0.9)
     axes.margins(x=0)
     unit = channel.unit.replace("m/s2", "m/s²")
-    _label(axes, "Time, ms (a line at every turn)", f"Casing acceleration at 0°, {unit}")
+    label_axes(axes, "Time, ms (a line at every turn)", f"Casing acceleration at 0°, {unit}")
 
 
 def force_spectrum(axes: Axes, run: Run) -> None:
@@ -129,16 +87,16 @@ def force_spectrum(axes: Axes, run: Run) -> None:
     turns = spectrum_turns(run.response)
     stop = HIGHEST_ORDER * turns + turns // 2
     orders, amplitudes = np.arange(1, stop) / turns, spectrum[1:stop]
-    _label(axes, "Order $f / f_r$", "Total contact force, N")
+    label_axes(axes, "Order $f / f_r$", "Total contact force, N")
     axes.set_xlim(0, HIGHEST_ORDER + 0.5)
     axes.set_xticks(range(HIGHEST_ORDER + 1))
     if not amplitudes.any():
         axes.set_yticks([0])
-        _note(axes, "no contact")
+        note(axes, "no contact")
         return
     floor = max(float(np.percentile(amplitudes, 1)) / 2, amplitudes.max() * 1e-5)
     axes.semilogy(orders, np.maximum(amplitudes, floor), color=BLUE, linewidth=0.9)
-    _label(axes, "Order $f / f_r$", "Total contact force, N")
+    label_axes(axes, "Order $f / f_r$", "Total contact force, N")
     whole = np.arange(1, HIGHEST_ORDER + 1)
     for parity, color, name in ((0, VERMILION, "even"), (1, GREY, "odd")):
         marked = whole[whole % 2 == parity]
@@ -169,49 +127,4 @@ def contact_map(axes: PolarAxes, run: Run) -> None:
         axes.set_rorigin(-0.6 * per_turn.max())  # a ring: near a point no sector could be told from its neighbour
     else:
         axes.set_yticks([])
-        _note(axes, "no contact")
-
-
-def parameter_plane(axes: Axes, runs: pd.DataFrame, x: str, y: str, scale: float) -> None:
-    """Runs over two parameters, `y` times `scale`, coloured and shaped by class of motion, hollow without contact."""
-    for motion, color in MOTION_COLORS.items():
-        for rub, fill in ((True, color), (False, "none")):
-            chosen = runs[(runs["motion"] == motion.value) & (runs["rub"] == rub)]
-            axes.plot(
-                chosen[x],
-                scale * chosen[y],
-                MOTION_MARKERS[motion],
-                markersize=6.5,
-                color=color,
-                markerfacecolor=fill,
-            )
-    _label(axes, AXES[x], AXES[y])
-
-
-def _motion_legend(runs: pd.DataFrame) -> list[Line2D]:
-    present = [motion for motion in Motion if (runs["motion"] == motion.value).any()]
-    marks = [(motion.value, MOTION_COLORS[motion], MOTION_MARKERS[motion], MOTION_COLORS[motion]) for motion in present]
-    if not runs["rub"].all():
-        marks.append(("hollow: no contact", INK, "o", "none"))
-    return [
-        Line2D([], [], linestyle="none", label=name, color=color, marker=marker, markerfacecolor=fill)
-        for name, color, marker, fill in marks
-    ]
-
-
-def _figure(width: float, height: float) -> Figure:
-    figure = Figure(figsize=(width, height), layout="constrained", facecolor="white")
-    FigureCanvasAgg(figure)
-    return figure
-
-
-def _label(axes: Axes, x: str, y: str) -> None:
-    axes.set_xlabel(x, fontsize=10, color=INK)
-    axes.set_ylabel(y, fontsize=10, color=INK)
-    axes.tick_params(labelsize=9, colors=INK)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.spines[["left", "bottom"]].set_color(GREY)
-
-
-def _note(axes: Axes, text: str) -> None:
-    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=11, color=GREY)
+        note(axes, "no contact")

@@ -1,0 +1,62 @@
+"""Sweeps of one parameter: where the motion is once a turn, and how fast neighbours part."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from rubgen.arrays import FloatArray
+from rubgen.labels.labels import Motion
+from rubgen.viz.colors import GREY, MOTION_COLORS
+from rubgen.viz.figures.style import MOTION_MARKERS, label_axes, new_figure
+
+
+def bifurcation(
+    values: FloatArray, sections: Sequence[FloatArray], motions: Sequence[str], *, x: str, y: str
+) -> Figure:
+    """The section of each run over its parameter: `sections[i]` (any,) at `values[i]`, `motions[i]` its class.
+
+    `x`, `y` label the axes, with units. One point for a motion that repeats every turn, k for period k.
+    """
+    figure = new_figure(9.0, 4.8)
+    axes = figure.subplots()
+    for value, section, motion in zip(values, sections, motions, strict=True):
+        color = MOTION_COLORS[Motion(motion)]
+        axes.plot(np.full(section.size, value), section, ".", color=color, markersize=2.2, markeredgewidth=0)
+    label_axes(axes, x, y)
+    axes.margins(x=0.01)
+    figure.legend(handles=_classes(motions), loc="outside lower center", ncols=5, frameon=False, fontsize=9)
+    return figure
+
+
+def exponent_sweep(
+    values: FloatArray, exponents: FloatArray, errors: FloatArray, motions: Sequence[str], *, x: str
+) -> Figure:
+    """The largest Lyapunov exponent of each run over its parameter, 1/turn, with its standard error.
+
+    Above zero neighbours part, which is chaos; a forced system has no exponent that must be zero.
+    """
+    figure = new_figure(9.0, 4.2)
+    axes = figure.subplots()
+    axes.axhline(0, color=GREY, linewidth=0.8)
+    for value, exponent, error, motion in zip(values, exponents, errors, motions, strict=True):
+        kind = Motion(motion)
+        axes.errorbar(
+            value, exponent, yerr=error, fmt=MOTION_MARKERS[kind], color=MOTION_COLORS[kind], markersize=4.5,
+            elinewidth=0.8, capsize=1.5,
+        )  # fmt: skip
+    label_axes(axes, x, "Largest Lyapunov exponent, 1/turn")
+    axes.margins(x=0.01)
+    figure.legend(handles=_classes(motions), loc="outside lower center", ncols=5, frameon=False, fontsize=9)
+    return figure
+
+
+def _classes(motions: Sequence[str]) -> list[Line2D]:
+    present = [motion for motion in Motion if motion.value in motions]
+    return [
+        Line2D([], [], linestyle="none", marker=MOTION_MARKERS[each], color=MOTION_COLORS[each], label=each.value)
+        for each in present
+    ]

@@ -1,0 +1,76 @@
+"""Natural frequencies over the speed, with the orders that meet them."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rubgen.arrays import FloatArray
+from rubgen.reduction import ReducedModel
+from rubgen.viz.colors import BLUE, GREY, VERMILION
+from rubgen.viz.figures.style import INK, label_axes, new_figure
+
+SPEEDS = 41
+BLISK_MODES, CASING_MODES = 12, 11
+HIGHEST_ORDER = 8
+
+
+def campbell(model: ReducedModel, *, highest_rpm: float = 15_000.0) -> Figure:
+    """Campbell diagrams of the blisk, in its turning frame, and of the casing, in the ground's.
+
+    In the turning frame the unbalance stands still: the critical speed is where a frequency reaches zero. What stands
+    on the ground turns past with -f_r, so a casing of N lobes excites the blisk at orders kN; the blisk passes the
+    casing likewise. Lines without damping and without contact.
+    """
+    speeds = np.linspace(1.0, highest_rpm, SPEEDS)
+    figure = new_figure(10.0, 5.0)
+    blisk, casing = figure.subplots(1, 2)
+    _blisk(blisk, model, speeds)
+    _casing(casing, model, speeds)
+    return figure
+
+
+def _blisk(axes: Axes, model: ReducedModel, speeds: FloatArray) -> None:
+    hertz = np.array([model.blisk_frequencies_hz(np.pi / 30 * speed)[:BLISK_MODES] for speed in speeds])
+    top = 1.05 * float(hertz.max())
+    _orders(axes, speeds, top, range(1, HIGHEST_ORDER + 1))
+    axes.plot(speeds, hertz, color=BLUE, linewidth=1.1, zorder=3)
+    critical = model.critical_speed_rpm
+    if critical <= speeds[-1]:
+        axes.axvline(critical, color=VERMILION, linewidth=1, linestyle="--")
+        text = f"critical {critical:,.0f}"
+        axes.annotate(text, (critical, top), xytext=(3, -3), textcoords="offset points", color=VERMILION,
+                      rotation=90, va="top", ha="left", fontsize=8)  # fmt: skip
+    _finish(axes, speeds, top, "Blisk: frequency in the turning frame, Hz")
+
+
+def _casing(axes: Axes, model: ReducedModel, speeds: FloatArray) -> None:
+    """Frequencies are constant; points where an order of the lobes meets one of its modes."""
+    hertz = model.casing_frequencies_hz[:CASING_MODES]
+    lobes = model.machine.casing.lobes
+    top = 1.08 * float(hertz.max())
+    orders = [lobes * k for k in range(1, max(HIGHEST_ORDER // lobes, 1) + 1)]
+    _orders(axes, speeds, top, orders)
+    axes.hlines(hertz, speeds[0], speeds[-1], color=BLUE, linewidth=1.1, zorder=3)
+    met = np.array([(60 * f / order, f) for order in orders for f in hertz])
+    met = met[met[:, 0] <= speeds[-1]]
+    axes.plot(*met.T, "o", color=VERMILION, markersize=3.5, zorder=4)
+    _finish(axes, speeds, top, "Casing: frequency, Hz")
+
+
+def _orders(axes: Axes, speeds: FloatArray, top: float, orders: range | list[int]) -> None:
+    """Lines k f_r, numbered where they leave the panel."""
+    for order in orders:
+        end = min(speeds[-1], 60 * top / order)
+        axes.plot([0, end], [0, order * end / 60], color=GREY, linewidth=0.6, zorder=1)
+        inside = end < speeds[-1]
+        axes.annotate(
+            f"{order}", (end, order * end / 60), xytext=(0, 2) if inside else (3, 0), textcoords="offset points",
+            ha="center" if inside else "left", va="bottom" if inside else "center", fontsize=8, color=INK,
+        )  # fmt: skip
+
+
+def _finish(axes: Axes, speeds: FloatArray, top: float, text: str) -> None:
+    axes.set(xlim=(0, speeds[-1]), ylim=(0, top))
+    label_axes(axes, "Speed, rev/min (grey: orders of rotation)", text)

@@ -1,0 +1,78 @@
+"""A data set at a glance: what was drawn against what came out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rubgen.scenario.vary import PARAMETERS
+from rubgen.viz.colors import MOTION_COLORS
+from rubgen.viz.figures.style import MOTION_MARKERS, label_axes, motion_legend, new_figure
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FIRST = ("speed_rpm", "clearance_m", "casing_support_stiffness_n_per_m")
+"""The parameters that are looked at first, where they vary."""
+LOGARITHMIC_SPAN = 5.0
+
+
+def dataset_overview(runs: pd.DataFrame) -> Figure:
+    """Runs in up to two planes of the parameters that vary, and their contact impulse, by class of motion.
+
+    `runs` is the table `runs.parquet`; failed runs are left out. Runs without contact are hollow.
+    """
+    shown = runs[runs["status"] == "ok"]
+    varied = varied_keys(shown) or ["speed_rpm"]
+    x, others = varied[0], varied[1:3]
+    figure = new_figure(5.0 * (1 + len(others)), 4.4)
+    axes = figure.subplots(1, 1 + len(others), squeeze=False)[0]
+    for panel, y in zip(axes, others, strict=False):
+        parameter_plane(panel, shown, x, y)
+    parameter_plane(axes[-1], shown, x, "contact_impulse_per_turn_n_s")
+    figure.legend(handles=motion_legend(shown), loc="outside lower center", ncols=6, frameon=False, fontsize=9)
+    return figure
+
+
+def varied_keys(runs: pd.DataFrame) -> list[str]:
+    """The keys of `[vary]` that take more than one value, those of `FIRST` first."""
+    keys = [entry.key for entry in PARAMETERS if entry.key in runs and runs[entry.key].nunique() > 1]
+    return sorted(keys, key=lambda key: FIRST.index(key) if key in FIRST else len(FIRST))
+
+
+def parameter_plane(axes: Axes, runs: pd.DataFrame, x: str, y: str) -> None:
+    """Runs over two columns, coloured and shaped by class of motion, hollow without contact."""
+    for motion, color in MOTION_COLORS.items():
+        for rub, fill in ((True, color), (False, "none")):
+            chosen = runs[(runs["motion"] == motion.value) & (runs["rub"] == rub)]
+            axes.plot(
+                chosen[x] * scale_of(x),
+                chosen[y] * scale_of(y),
+                MOTION_MARKERS[motion],
+                markersize=6.5 if len(runs) < 300 else 3.5,
+                color=color,
+                markerfacecolor=fill,
+            )
+    label_axes(axes, axis_text(x), axis_text(y))
+    for key, scale in ((x, axes.set_xscale), (y, axes.set_yscale)):
+        values = runs[key].to_numpy(dtype=float)
+        if values.size and values.min() > 0 and values.max() > LOGARITHMIC_SPAN * values.min():
+            scale("log")
+
+
+def scale_of(key: str) -> float:
+    """By what a column is multiplied to be shown: small lengths stand in mm."""
+    return 1e3 if key.endswith("_m") and not key.endswith(("per_m", "kg_m")) else 1.0
+
+
+def axis_text(key: str) -> str:
+    """What a column means, with the unit in which it is shown."""
+    if key == "contact_impulse_per_turn_n_s":
+        return "Contact impulse a turn, N s"
+    entry = next(entry for entry in PARAMETERS if entry.key == key)
+    unit = "mm" if scale_of(key) != 1 else entry.unit
+    meaning = entry.meaning.split(";")[0].split(",")[0]
+    meaning = meaning[0].upper() + meaning[1:]
+    return meaning if unit in ("", "1") else f"{meaning}, {unit}"

@@ -1,0 +1,101 @@
+"""Figures of one run from what was recorded: they need no solver and work for files."""
+
+from __future__ import annotations
+
+from typing import cast
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.projections.polar import PolarAxes
+from matplotlib.ticker import MaxNLocator
+
+from rubgen.viz.colors import BLUE, GREY, PAPER_GREY, VERMILION
+from rubgen.viz.figures.style import INK, label_axes, new_figure, note
+from rubgen.viz.orders import HIGHEST_ORDER, order_map
+from rubgen.viz.replay import Replay
+
+SECTORS = 90
+WAVE_TURNS = 6
+
+
+def orbit_section(replay: Replay) -> Figure:
+    """The recorded orbit of the disk centre over the last 30 turns, and its points once a turn, enlarged."""
+    x, y = (1e6 * replay.recording.channels[f"proximity_{axis}"].values.astype(float) for axis in "xy")
+    time = np.arange(replay.recording.samples) / replay.recording.sample_rate_hz
+    once = [np.interp(replay.pulse_times, time, values) for values in (x, y)]
+    figure = new_figure(9.0, 4.4)
+    path, section = figure.subplots(1, 2)
+    last = time > time[-1] - 30 * replay.turn_seconds
+    path.plot(x[last], y[last], color=BLUE, linewidth=0.6)
+    path.plot(*once, ".", color=VERMILION, markersize=4)
+    section.plot(*once, ".", color=VERMILION, markersize=4)
+    for axes, text in ((path, "orbit"), (section, "once a turn")):
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.margins(0.1)
+        label_axes(axes, "Disk centre $x$, µm", f"Disk centre $y$, µm ({text})")
+    return figure
+
+
+def contact_distribution(replay: Replay) -> Figure:
+    """Normal impulse around the casing, in sectors of 4 degrees, and by blade, a turn on average."""
+    touches, turns = replay.touches, max(replay.seconds / replay.turn_seconds, 1.0)
+    figure = new_figure(10.0, 4.6)
+    grid = figure.add_gridspec(1, 2, width_ratios=[1, 1.4])
+    polar = cast("PolarAxes", figure.add_subplot(grid[0, 0], projection="polar"))
+    bars = figure.add_subplot(grid[0, 1])
+    width = 2 * np.pi / SECTORS
+    sector = np.floor(np.mod(touches.angle + width / 2, 2 * np.pi) / width).astype(np.int64) % SECTORS
+    around = 1e3 * np.bincount(sector, weights=touches.impulse, minlength=SECTORS) / turns
+    polar.bar(width * np.arange(SECTORS), around, width=width, color=BLUE, linewidth=0, zorder=3)
+    polar.set_xticks(np.radians(np.arange(0, 360, 45)))
+    polar.tick_params(labelsize=9, colors=INK)
+    polar.grid(color=PAPER_GREY, linewidth=0.7)
+    polar.yaxis.set_major_locator(MaxNLocator(3))
+    polar.set_rlabel_position(112.5)
+    polar.set_xlabel("Impulse a turn and 4°, mN s, over the casing's angle", fontsize=10, color=INK, labelpad=8)
+    blades = replay.scenario.machine.blades.count
+    by_blade = 1e3 * np.bincount(touches.blade.astype(np.int64), weights=touches.impulse, minlength=blades) / turns
+    bars.bar(np.arange(blades), by_blade, color=BLUE, width=0.8)
+    label_axes(bars, "Blade, counted from the unbalance", "Impulse a turn, mN s")
+    if around.any():
+        polar.set_rorigin(-0.6 * around.max())
+    else:
+        polar.set_yticks([])
+        note(polar, "no contact")
+        note(bars, "no contact")
+    return figure
+
+
+def waveform_orders(replay: Replay, name: str = "casing_acc_0") -> Figure:
+    """A channel over its last six turns, and its order spectrum over the whole recording.
+
+    Raises ValueError for a channel that was not recorded.
+    """
+    channels = replay.recording.channels
+    if name not in channels:
+        raise ValueError(f"no channel {name!r}; give one of {', '.join(channels)}")
+    channel, rate = channels[name], replay.recording.sample_rate_hz
+    figure = new_figure(10.0, 4.0)
+    wave, orders = figure.subplots(1, 2)
+    count = min(channel.values.size, round(WAVE_TURNS * replay.turn_seconds * rate))
+    begin = (channel.values.size - count) / rate
+    pulses = replay.pulse_times[replay.pulse_times >= begin] - begin
+    wave.vlines(1e3 * pulses, 0, 1, color=PAPER_GREY, linewidth=1, transform=wave.get_xaxis_transform())
+    wave.plot(1e3 * np.arange(count) / rate, channel.values[-count:], color=BLUE, linewidth=0.9)
+    wave.margins(x=0)
+    unit = channel.unit.replace("m/s2", "m/s²")
+    what = f"{channel.quantity[0].upper()}{channel.quantity[1:]}, {channel.location}, {unit}"
+    label_axes(wave, "Time, ms (a line at every turn)", what)
+    found = order_map(channel.values, rate, replay.pulse_times, turns=replay.pulse_times.size)
+    label_axes(orders, "Order $f / f_r$", f"Amplitude, {unit}")
+    orders.set_xticks(range(HIGHEST_ORDER + 1))
+    if found.amplitude.size and found.amplitude.any():
+        amplitude = found.amplitude[0]
+        floor = max(float(np.percentile(amplitude, 1)) / 2, float(amplitude.max()) * 1e-5)
+        orders.vlines(range(1, HIGHEST_ORDER + 1), floor, amplitude.max() * 2, color=PAPER_GREY, linewidth=0.8)
+        orders.semilogy(found.order, np.maximum(amplitude, floor), color=BLUE, linewidth=0.9)
+        orders.set_ylim(floor, 2 * amplitude.max())
+    else:
+        note(orders, "no whole turn")
+    orders.spines["left"].set_color(GREY)
+    return figure

@@ -1,0 +1,74 @@
+"""The look that all figures share: plain axes with units, one colour and one marker for each class of motion."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from rubgen.labels.labels import Motion
+from rubgen.viz.colors import GREY, MOTION_COLORS
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+INK = "#222222"
+MOTION_MARKERS = {
+    Motion.STATIC: "v",
+    Motion.PERIOD_1: "o",
+    Motion.PERIOD_K: "s",
+    Motion.QUASI_PERIODIC: "D",
+    Motion.UNDECIDED: "P",
+    Motion.CHAOTIC: "^",
+}
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure, sizes in inches, that no global state touches."""
+    figure = Figure(figsize=(width, height), layout="constrained", facecolor="white")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def label_axes(axes: Axes, x: str, y: str) -> None:
+    """Labels, which name their units, and a light frame."""
+    axes.set_xlabel(x, fontsize=10, color=INK)
+    axes.set_ylabel(y, fontsize=10, color=INK)
+    axes.tick_params(labelsize=9, colors=INK)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.spines[["left", "bottom"]].set_color(GREY)
+
+
+def note(axes: Axes, text: str) -> None:
+    """A grey word in the middle of an empty panel."""
+    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=11, color=GREY)
+
+
+def motion_legend(runs: pd.DataFrame) -> list[Line2D]:
+    """Marks of the classes that occur, and a hollow one where some runs have no contact."""
+    present = [motion for motion in Motion if (runs["motion"] == motion.value).any()]
+    marks = [(motion.value, MOTION_COLORS[motion], MOTION_MARKERS[motion], MOTION_COLORS[motion]) for motion in present]
+    if not runs["rub"].all():
+        marks.append(("hollow: no contact", INK, "o", "none"))
+    return [
+        Line2D([], [], linestyle="none", label=name, color=color, marker=marker, markerfacecolor=fill)
+        for name, color, marker, fill in marks
+    ]
+
+
+def save_png(figure: Figure, path: Path, *, dpi: int = 110) -> None:
+    """Write `figure` as PNG without a date or version in it: the same figure gives the same bytes."""
+    figure.savefig(path, dpi=dpi, metadata={"Software": None})
+
+
+def save_figure(figure: Figure, path: Path) -> None:
+    """Write `figure` in the format that the name ends in: .png, .svg or .pdf, without dates."""
+    if path.suffix == ".png":
+        save_png(figure, path, dpi=150)
+    else:
+        unset = {".svg": {"Creator": None, "Date": None}, ".pdf": {"CreationDate": None}}
+        figure.savefig(path, metadata=unset[path.suffix])

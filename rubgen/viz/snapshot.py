@@ -1,0 +1,215 @@
+"""A moment of a replay as a picture, and the dense turns as an animation, without a screen or a viewer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+
+from rubgen.arrays import FloatArray
+from rubgen.sensors.motion_frames import MotionFrames
+from rubgen.viz.colors import BLUE, GREY, IMPULSE_COLORS, MOTION_COLORS, PAPER_GREY, VERMILION
+from rubgen.viz.figures.style import label_axes, new_figure
+from rubgen.viz.machine_shape import (
+    blade_angles,
+    casing_angles,
+    casing_curve,
+    drawing_factor,
+    drawn_tips,
+    undeformed_curve,
+)
+from rubgen.viz.replay import Replay
+
+NEAR_TURNS = 3.0
+TRACE_TURNS = 1.0
+GIF_FRAMES, GIF_MILLISECONDS, GIF_DPI = 64, 80, 80
+ARC = 360
+
+
+@dataclass(frozen=True)
+class _Scene:
+    """What does not change from moment to moment."""
+
+    replay: Replay
+    frames: MotionFrames
+    factor: float
+
+
+def picture(replay: Replay, time: float | None = None) -> Figure:
+    """The machine along its axis, the orbit and the contact force about `time` (s), by default the hardest touch.
+
+    The machine stands as in the frame nearest to `time`, whose time is written in the picture. Raises ValueError for
+    a replay without frames, or a time outside the recording.
+    """
+    scene = _scene(replay)
+    return _drawn(scene, _nearest(scene, _hardest(replay) if time is None else time))
+
+
+def write_gif(replay: Replay, path: Path) -> None:
+    """Two of the dense turns as an endless animation of 64 frames; raises ValueError for a replay without frames."""
+    from PIL import Image
+
+    scene = _scene(replay)
+    dense = np.flatnonzero(scene.frames.dense)
+    chosen = dense[:GIF_FRAMES] if dense.size else np.arange(min(scene.frames.time.size, GIF_FRAMES))
+    images = [Image.fromarray(pixels).convert("P", palette=Image.Palette.ADAPTIVE, colors=64)
+              for pixels in _pixels(scene, chosen)]  # fmt: skip
+    images[0].save(
+        path, format="GIF", save_all=True, append_images=images[1:], duration=GIF_MILLISECONDS, loop=0, optimize=True
+    )
+
+
+def _pixels(scene: _Scene, chosen: np.ndarray) -> Iterator[np.ndarray]:
+    for row in chosen:
+        figure = _drawn(scene, int(row))
+        figure.set_dpi(GIF_DPI)
+        figure.canvas.draw()
+        yield np.asarray(figure.canvas.buffer_rgba())[..., :3]  # type: ignore[attr-defined]
+
+
+def _scene(replay: Replay) -> _Scene:
+    frames = replay.frames
+    if frames is None or not frames.time.size:
+        raise ValueError(f"{replay.scenario.run_id} holds no motion, only signals; simulate it again")
+    return _Scene(replay, frames, drawing_factor(replay.scenario.machine, frames))
+
+
+def _hardest(replay: Replay) -> float:
+    """Time of the hardest touch, of the middle without one."""
+    touches = replay.touches
+    if not touches.impulse.size:
+        return replay.seconds / 2
+    return max(0.0, float(touches.start[np.argmax(touches.impulse)]))
+
+
+def _nearest(scene: _Scene, time: float) -> int:
+    seconds = scene.replay.seconds
+    if not 0 <= time <= seconds:
+        raise ValueError(f"time {time:g} s lies outside the recording; give 0 to {seconds:g}")
+    return int(np.argmin(np.abs(scene.frames.time - time)))
+
+
+def _drawn(scene: _Scene, row: int) -> Figure:
+    figure = new_figure(10.0, 5.6)
+    grid = figure.add_gridspec(2, 2, width_ratios=[1.25, 1])
+    machine_along_axis(figure.add_subplot(grid[:, 0]), scene.replay, row, scene.factor)
+    _orbit(figure.add_subplot(grid[0, 1]), scene, row)
+    _force(figure.add_subplot(grid[1, 1]), scene, row)
+    return figure
+
+
+def machine_along_axis(axes: Axes, replay: Replay, row: int, factor: float) -> None:
+    """Frame number `row` seen along the axis of rotation; deviations from the tip circle times `factor`."""
+    machine, frames = replay.scenario.machine, replay.frames
+    assert frames is not None  # noqa: S101 - the caller has looked
+    time, angle = float(frames.time[row]), float(frames.angle[row])
+    one = _only(frames, row)
+    around = np.append(casing_angles(ARC), 0.0)
+    rest, curve = undeformed_curve(machine, around, factor), casing_curve(machine, one, around, factor)[0]
+    axes.plot(*rest.T, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1)
+    axes.plot(*curve.T, color="#4a5a68", linewidth=4.5, solid_capstyle="round", zorder=3)
+    centre = factor * np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) @ one.centre[0]
+    _blisk(axes, replay, centre, angle, drawn_tips(machine, one, factor)[0])
+    _contacts(axes, replay, frames, row, curve)
+    run, speed = replay.scenario.run_id, replay.scenario.operation.speed_rpm
+    motion = str(replay.labels["motion"])
+    axes.set_title(f"{run}, {machine.name} at {speed:,.0f} rev/min", fontsize=11, loc="left")
+    axes.text(1.0, 1.01, motion, transform=axes.transAxes, ha="right", va="bottom", fontsize=11,
+              color=MOTION_COLORS[next(each for each in MOTION_COLORS if each.value == motion)])  # fmt: skip
+    note = f"deviations from the tip circle × {factor:g}      t = {1e3 * time:.2f} ms"
+    axes.text(0.5, -0.01, note, transform=axes.transAxes, ha="center", va="top", fontsize=9)
+    reach = 1.04 * float(np.abs(rest).max())
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
+    axes.axis("off")
+
+
+def _only(frames: MotionFrames, row: int) -> MotionFrames:
+    part = slice(row, row + 1)
+    return MotionFrames(
+        time=frames.time[part], angle=frames.angle[part], centre=frames.centre[part], tips=frames.tips[part],
+        casing=frames.casing[part], dense=frames.dense[part], casing_modes=frames.casing_modes,
+    )  # fmt: skip
+
+
+def _blisk(axes: Axes, replay: Replay, centre: FloatArray, angle: float, tips: FloatArray) -> None:
+    """Disk, blades as wide as their chord is seen along the axis, and the unbalance."""
+    machine = replay.scenario.machine
+    blades, rim = machine.blades, machine.disk.rim_radius_m
+    turned = angle + blade_angles(blades)
+    outward = np.column_stack([np.cos(turned), np.sin(turned)])
+    across = np.column_stack([-np.sin(turned), np.cos(turned)])
+    root, tip = (chord * abs(np.cos(np.radians(a))) / 2 + t / 2 for chord, a, t in (
+        (blades.root_chord_m, blades.root_angle_deg, blades.root_thickness_m),
+        (blades.tip_chord_m, blades.tip_angle_deg, blades.tip_thickness_m)))  # fmt: skip
+    foot = centre + rim * outward
+    corners = np.stack([foot - root * across, foot + root * across, tips + tip * across, tips - tip * across], axis=1)
+    axes.add_collection(PolyCollection(list(corners), facecolor="#aebac5", edgecolor="white", linewidth=0.6, zorder=2))
+    round_ = np.linspace(0, 2 * np.pi, ARC)
+    circle = np.column_stack([np.cos(round_), np.sin(round_)])
+    axes.fill(*(centre + rim * circle).T, color="#7d8a96", zorder=2)
+    axes.fill(*(centre + machine.disk.bore_radius_m * circle).T, color="#d5dbe1", zorder=2)
+    mark = centre + 0.88 * rim * np.array([np.cos(angle), np.sin(angle)])
+    axes.plot(*mark, "o", color=VERMILION, markersize=9, zorder=4)
+    inside = centre + 0.62 * (mark - centre)
+    axes.text(
+        float(inside[0]), float(inside[1]), "unbalance", ha="center", va="center", fontsize=8, color="white", zorder=4
+    )
+
+
+def _contacts(axes: Axes, replay: Replay, frames: MotionFrames, row: int, curve: FloatArray) -> None:
+    """Touches of the last turn, those of this frame large; both by impulse."""
+    touches = replay.touches
+    if not touches.impulse.size:
+        return
+    start = float(frames.time[row])
+    end = float(frames.time[row + 1]) if row + 1 < frames.time.size else start + replay.turn_seconds / 32
+    share = np.sqrt(touches.impulse / touches.impulse.max())
+    last = touches.start + touches.duration
+    place = np.mod(np.round(touches.angle * ARC / (2 * np.pi)).astype(int), ARC)
+    for chosen, size, z in (
+        ((touches.start < end) & (last > start - TRACE_TURNS * replay.turn_seconds), 25.0, 5),
+        ((touches.start < end) & (last > start), 260.0, 6),
+    ):
+        color = IMPULSE_COLORS[np.minimum((share[chosen] * len(IMPULSE_COLORS)).astype(int), len(IMPULSE_COLORS) - 1)]
+        x, y = curve[place[chosen]].T
+        named = [f"#{value >> 8:06x}" for value in color.tolist()]
+        axes.scatter(x, y, s=size * (0.15 + share[chosen]), c=named, zorder=z, linewidth=0.5, edgecolor="white")
+
+
+def _orbit(axes: Axes, scene: _Scene, row: int) -> None:
+    """The recorded path of the last turns, points once a turn, and where the disk centre is."""
+    replay, time = scene.replay, float(scene.frames.time[row])
+    x, y = (1e6 * replay.recording.channels[f"proximity_{axis}"].values for axis in "xy")
+    samples = np.arange(replay.recording.samples) / replay.recording.sample_rate_hz
+    near = (samples > time - 10 * replay.turn_seconds) & (samples <= time)
+    axes.plot(x[near], y[near], color=BLUE, linewidth=0.7, alpha=0.8)
+    once = replay.pulse_times
+    axes.plot(np.interp(once, samples, x), np.interp(once, samples, y), ".", color=VERMILION, markersize=3)
+    axes.plot(np.interp(time, samples, x), np.interp(time, samples, y), "o", color="black", markersize=5)
+    half = 0.6 * max(float(np.nanmax(x) - np.nanmin(x)), float(np.nanmax(y) - np.nanmin(y)), 1.0)
+    middle = [float(np.nanmax(v) + np.nanmin(v)) / 2 for v in (x, y)]
+    axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half), aspect="equal")
+    axes.locator_params(nbins=5)
+    label_axes(axes, "Disk centre $x$, µm", "Disk centre $y$, µm")
+
+
+def _force(axes: Axes, scene: _Scene, row: int) -> None:
+    """The recorded contact force three turns before and after."""
+    replay, time = scene.replay, float(scene.frames.time[row])
+    channel = replay.recording.channels["contact_force"]
+    rate = replay.recording.sample_rate_hz
+    first, last = (round((time + sign * NEAR_TURNS * replay.turn_seconds) * rate) for sign in (-1, 1))
+    part = slice(max(first, 0), min(last, channel.values.size))
+    pulses = replay.pulse_times
+    axes.vlines(1e3 * pulses, 0, 1, color=PAPER_GREY, linewidth=1, transform=axes.get_xaxis_transform())
+    axes.plot(1e3 * np.arange(part.start, part.stop) / rate, 1e-3 * channel.values[part], color=BLUE, linewidth=0.9)
+    axes.axvline(1e3 * time, color="black", linewidth=1)
+    axes.set_xlim(1e3 * first / rate, 1e3 * last / rate)
+    top = 1e-3 * float(np.nanmax(channel.values))
+    axes.set_ylim(min(-0.05 * top, -0.1), max(1.05 * top, 1.0))
+    label_axes(axes, "Time, ms (a line at every turn)", "Contact force, kN")

@@ -1,0 +1,120 @@
+"""`rubgen replay`: what it shows, what it writes, and what it refuses in one line."""
+
+import dataclasses
+import subprocess
+
+import numpy as np
+import pytest
+from PIL import Image
+from rerun.chunk import RrdReader
+
+from rubgen.cli import replaying
+from rubgen.io.mcap import write_mcap
+
+
+@pytest.fixture(scope="module")
+def mcap_file(rub_run, tmp_path_factory):
+    path = tmp_path_factory.mktemp("replay") / "run.mcap"
+    write_mcap(rub_run, path)
+    return path
+
+
+def entities(path):
+    return {chunk.entity_path for chunk in RrdReader(path).stream().to_chunks()}
+
+
+def test_an_mcap_file_is_saved_as_a_replay(run, mcap_file, tmp_path):
+    code, out, _ = run("replay", str(mcap_file), "--save", str(tmp_path / "run.rrd"))
+    assert (code, out) == (0, f"{tmp_path}/run.rrd: open it with: rerun {tmp_path}/run.rrd\n")
+    expected = {
+        "/machine/casing/ring",
+        "/machine/rotor/blades",
+        "/orbit/plane/path",
+        "/contact/map",
+        "/labels/scenario",
+    }
+    assert expected <= entities(tmp_path / "run.rrd")
+
+
+def test_pictures_need_no_screen(run, mcap_file, tmp_path, monkeypatch):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setattr("rubgen.viz.snapshot.GIF_FRAMES", 3)
+    files = tmp_path / "run.png", tmp_path / "run.gif"
+    code, _, _ = run("replay", str(mcap_file), "--png", str(files[0]), "--time", "0.1", "--gif", str(files[1]))
+    assert code == 0
+    with Image.open(files[0]) as png, Image.open(files[1]) as gif:
+        assert np.unique(np.asarray(png.convert("L"))).size > 20
+        assert gif.n_frames == 3
+    assert files[0].stat().st_size < 300_000
+
+
+def test_a_damaged_file_is_shown_and_its_loss_told(run, mcap_file, tmp_path):
+    data = bytearray(mcap_file.read_bytes())
+    data[len(data) // 3] ^= 1
+    damaged = tmp_path / "damaged.mcap"
+    damaged.write_bytes(data)
+    code, _, err = run("replay", str(damaged), "--save", str(tmp_path / "run.rrd"))
+    assert code == 0
+    assert "is damaged; lost: everything between" in err
+    assert (tmp_path / "run.rrd").exists()
+
+
+@pytest.mark.parametrize("web", [(), ("--web",)])
+def test_the_viewer_gets_the_recording(run, mcap_file, monkeypatch, web):
+    started = []
+
+    def start(command, *, check):
+        started.append((command[1:], entities(command[3])))
+        return subprocess.CompletedProcess(command, 0)
+
+    monkeypatch.setenv("DISPLAY", ":0")
+    monkeypatch.setattr(replaying.subprocess, "run", start)
+    assert run("replay", str(mcap_file), *web)[0] == 0
+    ((command, shown),) = started
+    assert command[:2] == ["-m", "rerun"]
+    assert "/machine/rotor" in shown
+    assert ("127.0.0.1" in command) == bool(web)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("none",), "none: cannot be read"),
+        (("{mcap}", "run-000001", "--save", "{tmp}/a.rrd"), "is one run, not a data set"),
+        (("{mcap}", "--save", "{tmp}/there.rrd"), "exists already; delete it or choose another name"),
+        (("{mcap}", "--save", "{tmp}/a.mcap"), "end the name in .rrd"),
+        (("{mcap}", "--save", "{tmp}/no/a.rrd"), "there is no directory"),
+        (("{mcap}", "--png", "{tmp}/a.png", "--time", "9"), "lies outside the recording; give 0 to 0.3"),
+        (("{mcap}", "--time", "0.1"), "goes with --png FILE"),
+        (("{mcap}",), "give --save FILE.rrd, --web, --png or --gif"),
+        (("{tmp}/there.rrd", "--save", "{tmp}/a.rrd"), "is a finished replay; open it with: rerun"),
+        (("{tmp}", "--save", "{tmp}/a.rrd"), "no finished data set of rubgen"),
+    ],
+)
+def test_mistakes_are_named_in_one_line(run, mcap_file, tmp_path, monkeypatch, arguments, message):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    (tmp_path / "there.rrd").write_bytes(b"")
+    filled = [each.format(mcap=mcap_file, tmp=tmp_path) for each in arguments]
+    if filled == ["none"]:
+        filled += ["--save", str(tmp_path / "a.rrd")]
+    code, out, err = run("replay", *filled)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert message in err
+    assert [path.name for path in tmp_path.iterdir()] == ["there.rrd"]
+
+
+def test_a_file_without_motion_has_no_picture(run, rub_run, tmp_path):
+    bare = dataclasses.replace(rub_run, response=dataclasses.replace(rub_run.response, track=None))
+    write_mcap(bare, tmp_path / "bare.mcap")
+    code, _, err = run("replay", str(tmp_path / "bare.mcap"), "--png", str(tmp_path / "a.png"))
+    assert code == 2
+    assert "holds no motion, only signals" in err
+
+
+def test_a_viewer_that_fails_is_told(run, mcap_file, monkeypatch):
+    monkeypatch.setenv("DISPLAY", ":0")
+    monkeypatch.setattr(replaying.subprocess, "run", lambda command, **_: subprocess.CompletedProcess(command, 1))
+    code, _, err = run("replay", str(mcap_file))
+    assert code == 2
+    assert "the viewer ended with 1; give --save FILE.rrd" in err
