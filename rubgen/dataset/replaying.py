@@ -16,6 +16,7 @@ from rubgen.errors import UserError
 from rubgen.io.mcap_read import McapRun
 from rubgen.scenario import Scenario
 from rubgen.scenario.recipe import recorded_recipe
+from rubgen.sensors.blade_tip_timing import TipTimes
 from rubgen.sensors.channel import Channel, Recording
 from rubgen.sensors.contact_window import ContactIntervals
 from rubgen.viz.replay import Replay, sorted_touches
@@ -66,6 +67,7 @@ def replay_of_recorded(run: McapRun, *, source: str = "the file") -> Replay:
         rotation_angle=float(np.mod(-run.once_per_rev[:1].sum() * scenario.operation.speed_rad_per_s, 2 * np.pi)),
         channels=channels,
         once_per_rev=run.once_per_rev,
+        tip_timing={name: _timing(columns) for name, columns in run.tip_timing.items()},
     )
     return Replay(
         scenario=scenario, labels=run.labels, recording=recording, touches=_touches(run.contacts), frames=run.frames
@@ -138,6 +140,14 @@ def _channel(name: str, values: Any, run: McapRun) -> Channel:
         noise_rms=float(facts.get("noise_rms", "0")),
         values=values,
         clean=run.clean.get(name),
+    )
+
+
+def _timing(columns: dict[str, FloatArray]) -> TipTimes:
+    return TipTimes(
+        time=columns["time_s"],
+        blade=columns["blade"].astype(np.int64),
+        true_displacement=columns["true_displacement_m"],
     )
 
 

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from rubgen.arrays import FloatArray
 from rubgen.sensors.motion_frames import MotionFrames
 from rubgen.viz.colors import BLUE, GREY, IMPULSE_COLORS, MOTION_COLORS, PAPER_GREY, VERMILION
-from rubgen.viz.figures.style import label_axes, new_figure
+from rubgen.viz.figures.style import label_axes, new_figure, note
 from rubgen.viz.machine_shape import (
     blade_angles,
     casing_angles,
@@ -184,7 +184,12 @@ def _contacts(axes: Axes, replay: Replay, frames: MotionFrames, row: int, curve:
 def _orbit(axes: Axes, scene: _Scene, row: int) -> None:
     """The recorded path of the last turns, points once a turn, and where the disk centre is."""
     replay, time = scene.replay, float(scene.frames.time[row])
-    x, y = (1e6 * replay.recording.channels[f"proximity_{axis}"].values for axis in "xy")
+    channels = [replay.recording.channels.get(f"proximity_{axis}") for axis in "xy"]
+    label_axes(axes, "Disk centre $x$, µm", "Disk centre $y$, µm")
+    if None in channels:
+        note(axes, "no proximity probes")
+        return
+    x, y = (1e6 * channel.values for channel in channels if channel)
     samples = np.arange(replay.recording.samples) / replay.recording.sample_rate_hz
     near = (samples > time - 10 * replay.turn_seconds) & (samples <= time)
     axes.plot(x[near], y[near], color=BLUE, linewidth=0.7, alpha=0.8)
@@ -195,13 +200,16 @@ def _orbit(axes: Axes, scene: _Scene, row: int) -> None:
     middle = [float(np.nanmax(v) + np.nanmin(v)) / 2 for v in (x, y)]
     axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half), aspect="equal")
     axes.locator_params(nbins=5)
-    label_axes(axes, "Disk centre $x$, µm", "Disk centre $y$, µm")
 
 
 def _force(axes: Axes, scene: _Scene, row: int) -> None:
     """The recorded contact force three turns before and after."""
     replay, time = scene.replay, float(scene.frames.time[row])
-    channel = replay.recording.channels["contact_force"]
+    label_axes(axes, "Time, ms (a line at every turn)", "Contact force, kN")
+    channel = replay.recording.channels.get("contact_force")
+    if channel is None:
+        note(axes, "no contact force recorded")
+        return
     rate = replay.recording.sample_rate_hz
     first, last = (round((time + sign * NEAR_TURNS * replay.turn_seconds) * rate) for sign in (-1, 1))
     part = slice(max(first, 0), min(last, channel.values.size))
@@ -212,4 +220,3 @@ def _force(axes: Axes, scene: _Scene, row: int) -> None:
     axes.set_xlim(1e3 * first / rate, 1e3 * last / rate)
     top = 1e-3 * float(np.nanmax(channel.values))
     axes.set_ylim(min(-0.05 * top, -0.1), max(1.05 * top, 1.0))
-    label_axes(axes, "Time, ms (a line at every turn)", "Contact force, kN")

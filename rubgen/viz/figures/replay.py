@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
+from rubgen.sensors.channel import Channel
 from rubgen.viz.colors import BLUE, GREY, PAPER_GREY, VERMILION
 from rubgen.viz.figures.style import INK, label_axes, new_figure, note
 from rubgen.viz.orders import HIGHEST_ORDER, order_map
@@ -19,8 +20,11 @@ WAVE_TURNS = 6
 
 
 def orbit_section(replay: Replay) -> Figure:
-    """The recorded orbit of the disk centre over the last 30 turns, and its points once a turn, enlarged."""
-    x, y = (1e6 * replay.recording.channels[f"proximity_{axis}"].values.astype(float) for axis in "xy")
+    """The recorded orbit of the disk centre over the last 30 turns, and its points once a turn, enlarged.
+
+    Raises ValueError where the probes were not recorded.
+    """
+    x, y = (1e6 * channel_of(replay, f"proximity_{axis}").values.astype(float) for axis in "xy")
     time = np.arange(replay.recording.samples) / replay.recording.sample_rate_hz
     once = [np.interp(replay.pulse_times, time, values) for values in (x, y)]
     figure = new_figure(9.0, 4.4)
@@ -71,10 +75,7 @@ def waveform_orders(replay: Replay, name: str = "casing_acc_0") -> Figure:
 
     Raises ValueError for a channel that was not recorded.
     """
-    channels = replay.recording.channels
-    if name not in channels:
-        raise ValueError(f"no channel {name!r}; give one of {', '.join(channels)}")
-    channel, rate = channels[name], replay.recording.sample_rate_hz
+    channel, rate = channel_of(replay, name), replay.recording.sample_rate_hz
     figure = new_figure(10.0, 4.0)
     wave, orders = figure.subplots(1, 2)
     count = min(channel.values.size, round(WAVE_TURNS * replay.turn_seconds * rate))
@@ -99,3 +100,11 @@ def waveform_orders(replay: Replay, name: str = "casing_acc_0") -> Figure:
         note(orders, "no whole turn")
     orders.spines["left"].set_color(GREY)
     return figure
+
+
+def channel_of(replay: Replay, name: str) -> Channel:
+    """The recorded channel of that name; ValueError, with the names there are, where there is none."""
+    channels = replay.recording.channels
+    if name not in channels:
+        raise ValueError(f"no channel {name!r}; give one of {', '.join(channels)}")
+    return channels[name]
