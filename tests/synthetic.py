@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from rubgen.labels.harmonics import FRACTIONS, HIGHEST_ORDER, TapOrders
 from rubgen.labels.labels import Labels, Motion
 from rubgen.machine import load_machine
 from rubgen.pipeline import Run
@@ -82,8 +83,19 @@ def _response(generator: np.random.Generator, scenario: Scenario, contact: bool)
     )
 
 
+def _orders(generator: np.random.Generator) -> TapOrders:
+    return TapOrders(
+        amplitudes=1.0 + generator.gamma(1.0, 1.0, HIGHEST_ORDER),
+        phases=generator.uniform(-np.pi, np.pi, HIGHEST_ORDER),
+        floors=np.full(HIGHEST_ORDER, 1e-3),
+        fractional=generator.gamma(1.0, 1e-3, len(FRACTIONS)),
+        blade_passing=generator.gamma(1.0, 1e-2, 5),
+    )
+
+
 def _labels(generator: np.random.Generator, contact: bool) -> Labels:
     names = ["blisk_x", "casing_acc_0", "contact_force"]
+    details = {name: _orders(generator) for name in names}
     return Labels(
         rub=contact,
         contact_duty=0.125 if contact else 0.0,
@@ -100,7 +112,9 @@ def _labels(generator: np.random.Generator, contact: bool) -> Labels:
         period_casing=3 if contact else None,
         period=3 if contact else 1,
         has_2fr=contact,
-        orders={name: generator.gamma(1.0, 1.0, 10) for name in names},
+        orders={name: tap.amplitudes for name, tap in details.items()},
+        order_details=details,
+        orders_present=details["casing_acc_0"].present if contact else (),
         even_share={name: 0.75 if contact else float("nan") for name in names},
         odd_share={name: 0.25 if contact else float("nan") for name in names},
         dominant_order=dict.fromkeys(names, 2),

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rubgen.labels.harmonics import HIGHEST_ORDER, SPECTRUM_TURNS
+from rubgen.labels.harmonics import FLOOR, MARKED_TAP, RATIO, SPECTRUM_TURNS
 from rubgen.labels.labels import Motion
 from rubgen.scenario import Sensing
 from rubgen.scenario.sensors import OncePerRev, Proximity, SampledSensor
@@ -18,6 +18,8 @@ from rubgen.sensors.registry import tap_of, usual_range
 
 Row = dict[str, Any]
 REGULARITY = [motion.value for motion in Motion]
+COMPARED_ORDERS = 10
+"""Orders that channels are held to: all lie within the anti-alias filter's pass band at any rate in use."""
 NOISE_PEAK = 6.5
 """Gaussian noise of 1e6 samples stays below 6.5 times its rms."""
 ORDER_TOLERANCE = {True: 0.01, False: 0.1}
@@ -43,10 +45,12 @@ def label_problems(row: Row) -> Iterator[str]:
         "has_2fr without rub": row["rub"] or not row["has_2fr"],
         "motion is not the less regular of the two": _rank(row["motion"])
         == max(_rank(row["motion_blisk"]), _rank(row["motion_casing"])),
+        "has_2fr and orders_present": row["has_2fr"] == (2 in row["orders_present"]),
         "energy_residual": row["energy_residual"] <= ENERGY_TOLERANCE,
     }
     rules |= {f"{which} and its period": _period_fits(row, which) for which in ("", "_blisk", "_casing")}
     rules["period is not the least common multiple"] = _common_period(row)
+    rules["orders_present and the orders of casing_acc_0"] = _present_fit(row)
     for tap in (name.removesuffix("_orders") for name in row if name.endswith("_orders")):
         rules[f"shares or dominant order of {tap}"] = _shares_fit(row, tap)
     yield from (name for name, holds in rules.items() if not holds)
@@ -105,7 +109,7 @@ def _order_problems(row: Row, tap: str, values: Float32Array, noise_rms: float, 
     if values.size < samples:
         return
     amplitudes = order_amplitudes(values[-samples:], row["speed_rpm"] / 60 / row["sample_rate_hz"])
-    labels = np.asarray(row[f"{tap}_orders"])
+    labels = np.asarray(row[f"{tap}_orders"][:COMPARED_ORDERS])
     error = np.abs(amplitudes - labels)
     if error.max() > ORDER_TOLERANCE[row["period"] is not None] * labels.max() + _spectral_floor(
         noise_rms, step, samples
@@ -125,7 +129,7 @@ def order_amplitudes(values: Float32Array, turns_per_sample: float) -> np.ndarra
     """Peak amplitudes at k = 1..10 times the rotation frequency: 2/n |sum x exp(-2 pi i k turns)|, mean removed."""
     turns = np.arange(values.size) * turns_per_sample
     centred = values.astype(np.float64) - values.mean(dtype=np.float64)
-    sums = [np.exp(-2j * np.pi * k * turns) @ centred for k in range(1, HIGHEST_ORDER + 1)]
+    sums = [np.exp(-2j * np.pi * k * turns) @ centred for k in range(1, COMPARED_ORDERS + 1)]
     return np.asarray(2 / values.size * np.abs(sums))
 
 
@@ -163,6 +167,12 @@ def _common_period(row: Row) -> bool:
     if row["motion"] not in (Motion.PERIOD_1.value, Motion.PERIOD_K.value):
         return row["period"] is None
     return bool(row["period"] == math.lcm(row["period_blisk"] or 1, row["period_casing"] or 1))
+
+
+def _present_fit(row: Row) -> bool:
+    orders, floors = (np.asarray(row[f"{MARKED_TAP}_{kind}"]) for kind in ("orders", "order_floors"))
+    stands = np.flatnonzero((orders > FLOOR) & (orders >= RATIO * floors)) + 1
+    return bool(row["orders_present"] == (stands.tolist() if row["rub"] else []))
 
 
 def _shares_fit(row: Row, tap: str) -> bool:

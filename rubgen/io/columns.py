@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rubgen.errors import UserError
+from rubgen.labels.harmonics import FRACTIONS
 from rubgen.scenario.sensor_set import default_sensor_set
 from rubgen.scenario.sensors import OncePerRev, SampledSensor, SensorSet, TimingProbe
-from rubgen.scenario.taps import Tap, TipTiming
+from rubgen.scenario.taps import CasingAcceleration, Tap, TipTiming
 from rubgen.scenario.vary import PARAMETERS
 from rubgen.sensors import taps_of
 from rubgen.sensors.registry import describe
@@ -82,6 +83,7 @@ def _labels() -> list[Column]:
         _label("stray_casing", "number", "1", "the same of the casing; null where it rests"),
         _label("zero_one_k", "number", "1", "K of the 0-1 test: near 1 for chaos, near 0 for regular motion"),
         _label("has_2fr", "flag", "", "order 2 stands out of the casing acceleration at 0 degrees"),
+        _label("orders_present", "integers", "", "the k up to 20 that stand out of that acceleration, as for has_2fr"),
         _label("lyapunov_per_turn", "number", "1/turn", "largest Lyapunov exponent; null where switched off"),
         _label("lyapunov_per_second", "number", "1/s", "the same by the second"),
         _label("lyapunov_error", "number", "1/turn", "its standard error"),
@@ -89,13 +91,22 @@ def _labels() -> list[Column]:
     ]
 
 
+_FRACTIONS = ", ".join(str(fraction) for fraction in FRACTIONS)
+FIELDS = tuple(CasingAcceleration(name=f"casing_{part}", angle_deg=0) for part in ("even", "odd"))
+"""Parts of the casing's acceleration of even and odd circumferential order: no taps, but with orders like them."""
+
+
 def _orders(tap: Tap) -> list[Column]:
     name, unit = tap.name, tap.UNIT
     return [
-        _label(f"{name}_orders", "numbers", unit, f"peak amplitudes of {name} at k f_r, k = 1..10"),
+        _label(f"{name}_orders", "numbers", unit, f"peak amplitudes of {name} at k f_r, k = 1..20"),
         _label(f"{name}_even_share", "number", "1", "share of the squares on even k"),
         _label(f"{name}_odd_share", "number", "1", "share of the squares on odd k"),
         _label(f"{name}_dominant_order", "integer", "", "k of the largest amplitude"),
+        _label(f"{name}_order_phases_rad", "numbers", "rad", "phases: A cos(k theta + phase), k = 1..20"),
+        _label(f"{name}_order_floors", "numbers", unit, "median amplitude around each k"),
+        _label(f"{name}_fractional_amplitudes", "numbers", unit, f"the same at f_r times {_FRACTIONS}"),
+        _label(f"{name}_blade_passing", "numbers", unit, "at blade passing and two orders on either side, b-2..b+2"),
     ]
 
 
@@ -127,7 +138,7 @@ def _arrivals(probe: TimingProbe) -> list[Column]:
 def scalar_columns(sensors: SensorSet) -> tuple[Column, ...]:
     """Columns of `runs.parquet` for runs with these sensors: each true signal that one sees has its orders."""
     taps = [tap for tap in taps_of(sensors) if not isinstance(tap, TipTiming)]
-    orders = [column for tap in taps for column in _orders(tap)]
+    orders = [column for tap in (*taps, *FIELDS) for column in _orders(tap)]
     return (*_identity(), *_parameters(), *_operation(), *_labels(), *orders, *_energy())
 
 

@@ -1,46 +1,94 @@
-"""Amplitudes of the taps at multiples of the rotation frequency."""
+"""Amplitudes and phases of the taps at multiples of the rotation frequency, and what stands out of the noise."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 from scipy.fft import rfft
 
-from rubgen.arrays import FloatArray
+from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.solver.response import Response
 
-HIGHEST_ORDER = 10
+HIGHEST_ORDER = 20
 SPECTRUM_TURNS = 100
-SECOND_ORDER_TAP = "casing_acc_0"
-SECOND_ORDER_RATIO = 10.0
+FRACTIONS = tuple(Fraction(text) for text in ("1/4", "1/3", "1/2", "2/3", "3/4", "4/3", "3/2", "5/3", "5/2"))
+"""Orders of motions that repeat after 2, 3 or 4 turns."""
+FOLDED_TURNS = 12
+"""A common multiple of their denominators."""
+SIDEBANDS = 2
+"""Whole orders on either side of the blade passing frequency."""
+MARKED_TAP, OPPOSITE_TAP = "casing_acc_0", "casing_acc_180"
+MARKED_ORDERS = (1, 2, 3, 4, 5, 6)
+"""Orders of which `has_<k>fr` speaks."""
+RATIO = 10.0
 """20 dB above the median of the neighbourhood."""
-SECOND_ORDER_FLOOR = 0.1
-"""Least amplitude of order 2, in m/s2: 20 dB above what the sensor's noise of 1 m/s2 puts into a line over 1 s."""
+FLOOR = 0.1
+"""Least amplitude, in m/s2: 20 dB above what the sensor's noise of 1 m/s2 puts into a line over 1 s."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Harmonics:
-    """Peak amplitudes at k f_r, k = 1 .. 10, of each tap, what follows from them, and whether order 2 stands out."""
+class TapOrders:
+    """One tap's peak amplitudes in its unit, and phases in rad.
 
-    amplitudes: dict[str, FloatArray]
-    even_share: dict[str, float]
-    odd_share: dict[str, float]
-    dominant_order: dict[str, int]
-    has_2fr: bool
+    `amplitudes`, `phases`, `floors` (20,) at k f_r: A cos(k theta + phase), and the median of the lines around order k.
+    `fractional` (9,) at FRACTIONS of f_r; `blade_passing` (5,) at n_blades - 2 .. n_blades + 2, NaN beyond the rate.
+    """
+
+    amplitudes: FloatArray
+    phases: FloatArray
+    floors: FloatArray
+    fractional: FloatArray
+    blade_passing: FloatArray
+
+    @property
+    def even_share(self) -> float:
+        """Share of the sum of squares on even orders; NaN, undefined, where there is no amplitude at all."""
+        return _share(self.amplitudes, self.amplitudes[1::2])
+
+    @property
+    def odd_share(self) -> float:
+        """The same on odd orders."""
+        return _share(self.amplitudes, self.amplitudes[0::2])
+
+    @property
+    def dominant(self) -> int:
+        """The k of the largest amplitude, 0 when there is none."""
+        return int(np.argmax(self.amplitudes)) + 1 if self.amplitudes.any() else 0
+
+    @property
+    def present(self) -> tuple[int, ...]:
+        """The k whose amplitude is above the least and 20 dB above the floor."""
+        stands = (self.amplitudes > FLOOR) & (self.amplitudes >= RATIO * self.floors)
+        return tuple((np.flatnonzero(stands) + 1).tolist())
 
 
-def harmonics(response: Response) -> Harmonics:
-    """Orders of every tap over exactly the last 100 turns (all turns of a shorter record), at the step rate."""
-    spectra = {name: order_spectrum(tap, response) for name, tap in response.taps.items()}
-    turns = spectrum_turns(response)
-    amplitudes = {name: s[turns : HIGHEST_ORDER * turns + 1 : turns].copy() for name, s in spectra.items()}
-    return Harmonics(
-        amplitudes=amplitudes,
-        even_share={name: _share(a, a[1::2]) for name, a in amplitudes.items()},
-        odd_share={name: _share(a, a[0::2]) for name, a in amplitudes.items()},
-        dominant_order={name: int(np.argmax(a)) + 1 if a.any() else 0 for name, a in amplitudes.items()},
-        has_2fr=has_second_order(spectra[SECOND_ORDER_TAP], turns),
+def harmonics(response: Response) -> dict[str, TapOrders]:
+    """Orders of every tap over exactly the last 100 turns (all turns of a shorter record), at the step rate.
+
+    Beside the taps there are `casing_even` and `casing_odd`, the parts of the casing's radial acceleration at 0 degrees
+    of even and of odd circumferential order, (a(0) +- a(pi)) / 2, where both were recorded.
+    """
+    taps = dict(response.taps)
+    if OPPOSITE_TAP in taps:
+        first, second = taps[MARKED_TAP], taps[OPPOSITE_TAP]
+        taps |= {"casing_even": (first + second) / 2, "casing_odd": (first - second) / 2}
+    return {name: tap_orders(tap, response) for name, tap in taps.items()}
+
+
+def tap_orders(tap: FloatArray, response: Response) -> TapOrders:
+    """The orders of one tap."""
+    turns, lines = spectrum_turns(response), order_lines(tap, response)
+    size = np.abs(lines)
+    at = turns * np.arange(1, HIGHEST_ORDER + 1)
+    blades = np.arange(response.n_blades - SIDEBANDS, response.n_blades + SIDEBANDS + 1)
+    return TapOrders(
+        amplitudes=size[at],
+        phases=np.where(size[at] > 0, np.angle(lines[at]), 0.0),
+        floors=np.array([order_floor(size, turns, k) for k in range(1, HIGHEST_ORDER + 1)]),
+        fractional=fractional_amplitudes(tap, response),
+        blade_passing=np.array([size[turns * b] if 0 <= turns * b < size.size else np.nan for b in blades.tolist()]),
     )
 
 
@@ -49,24 +97,47 @@ def spectrum_turns(response: Response) -> int:
     return min(SPECTRUM_TURNS, response.record_turns)
 
 
-def order_spectrum(tap: FloatArray, response: Response) -> FloatArray:
-    """Peak amplitudes of a tap over orders 0, 1/turns, 2/turns, ...: 2 |X| / n of the last n = turns * steps values."""
+def order_lines(tap: FloatArray, response: Response) -> ComplexArray:
+    """Peak amplitudes and phases (complex) at orders 0, 1/turns, ...: 2 X / n of the last n = turns * steps values.
+
+    The record ends with a turn, so the first value stands at theta = 0.
+    """
     count = spectrum_turns(response) * response.steps_per_turn
     if tap.size < count:
         raise ValueError(f"a tap of {tap.size} steps is shorter than the {count} steps that the orders need")
-    return np.asarray(2 / count * np.abs(rfft(tap[-count:])), dtype=np.float64)
+    return np.asarray(2 / count * rfft(tap[-count:]))
 
 
-def has_second_order(spectrum: FloatArray, turns: int) -> bool:
-    """Whether order 2 exceeds the floor and, by 20 dB, the median between orders 1.5 and 2.5 without 2 +- 0.05."""
-    order = np.arange(spectrum.size) / turns
-    distance = np.abs(order - 2)
-    around = spectrum[(distance <= 0.5) & (distance > 0.05 + 1e-9)]
-    amplitude = spectrum[2 * turns]
-    return bool(amplitude > SECOND_ORDER_FLOOR and amplitude >= SECOND_ORDER_RATIO * np.median(around))
+def order_spectrum(tap: FloatArray, response: Response) -> FloatArray:
+    """The sizes of `order_lines`."""
+    return np.asarray(np.abs(order_lines(tap, response)), dtype=np.float64)
+
+
+def order_floor(spectrum: FloatArray, turns: int, order: int) -> float:
+    """Median amplitude of the lines within half an order of `order` but beyond 0.05 of it; 0 without any."""
+    near, half = turns // 20, turns // 2
+    below = spectrum[max((order * turns) - half, 0) : order * turns - near]
+    above = spectrum[order * turns + near + 1 : order * turns + half + 1]
+    around = np.concatenate([below, above])
+    return float(np.median(around)) if around.size else 0.0
+
+
+def fractional_amplitudes(tap: FloatArray, response: Response) -> FloatArray:
+    """Peak amplitudes at FRACTIONS of f_r over the last 96 turns (the most multiples of 12 that a shorter record has).
+
+    Twelve turns are a whole number of periods of each, so the tap is folded to the mean of all its stretches of twelve
+    turns first: other orders fall out, and so does noise. NaN in a record of fewer turns.
+    """
+    folds = spectrum_turns(response) // FOLDED_TURNS
+    length = FOLDED_TURNS * response.steps_per_turn
+    if folds == 0:
+        return np.full(len(FRACTIONS), np.nan)
+    folded = tap[-folds * length :].reshape(folds, length).mean(axis=0)
+    size = 2 / length * np.abs(rfft(folded))
+    places = [int(FOLDED_TURNS * fraction) for fraction in FRACTIONS]
+    return np.asarray(size[places], dtype=np.float64)
 
 
 def _share(amplitudes: FloatArray, part: FloatArray) -> float:
-    """Share of the sum of squares; NaN, undefined, where there is no amplitude at all."""
     total = float(np.sum(amplitudes**2))
     return float(np.sum(part**2)) / total if total > 0 else float("nan")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rubgen.labels.contact_zones import contact_zones
-from rubgen.labels.harmonics import harmonics
+from rubgen.labels.harmonics import MARKED_TAP, harmonics
 from rubgen.labels.kept import as_kept
 from rubgen.labels.labels import Labels
 from rubgen.labels.lyapunov import lyapunov_of
@@ -25,6 +25,7 @@ def label(response: Response) -> Labels:
     exponent = lyapunov_of(response)
     parts = motion(response, exponent)
     orders = harmonics(response)
+    present = orders[MARKED_TAP].present if rub else ()
     turn = response.turn_seconds
     return Labels(
         rub=rub,
@@ -41,11 +42,13 @@ def label(response: Response) -> Labels:
         period_blisk=parts.blisk.period,
         period_casing=parts.casing.period,
         period=parts.system.period,
-        has_2fr=rub and orders.has_2fr,
-        orders=orders.amplitudes,
-        even_share=orders.even_share,
-        odd_share=orders.odd_share,
-        dominant_order=orders.dominant_order,
+        has_2fr=2 in present,
+        orders={name: tap.amplitudes for name, tap in orders.items()},
+        even_share={name: tap.even_share for name, tap in orders.items()},
+        odd_share={name: tap.odd_share for name, tap in orders.items()},
+        dominant_order={name: tap.dominant for name, tap in orders.items()},
+        order_details=orders,
+        orders_present=present,
         lyapunov=exponent,
         lyapunov_per_second=exponent.per_turn / turn if exponent else None,
         motion_confidence=parts.system.confidence,

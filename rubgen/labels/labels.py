@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from rubgen.arrays import FloatArray
+from rubgen.labels.harmonics import TapOrders
 from rubgen.labels.lyapunov import Exponent
 
 
@@ -25,8 +26,10 @@ class Labels:
     """What the dynamics really did, from the true response over the whole record.
 
     Angles in rad, impulse in N s. `period*` is None unless the motion repeats after that many turns. The dictionaries
-    are keyed by tap name: `orders` holds peak amplitudes at k f_r, k = 1..10, in the tap's unit; `even_share` and
-    `odd_share` the shares of sum of squared amplitudes on even and odd k; `dominant_order` the k of the largest.
+    are keyed by tap name: `orders` holds peak amplitudes at k f_r, k = 1..20, in the tap's unit; `even_share` and
+    `odd_share` the shares of sum of squared amplitudes on even and odd k; `dominant_order` the k of the largest;
+    `order_details` what else `labels.harmonics` finds.
+    `orders_present` are the k that stand out of the casing acceleration at 0 degrees.
     `lyapunov` is the largest exponent of the whole system in 1/turn, None where it was switched off.
     `motion_symmetric` is None unless the motion is period-1 in contact. `zero_one_k` is K of the 0-1 test, `stray_*`
     how far the points of the section lie from where they should come back to, over the motion. Segments are empty
@@ -52,6 +55,8 @@ class Labels:
     even_share: dict[str, float]
     odd_share: dict[str, float]
     dominant_order: dict[str, int]
+    order_details: dict[str, TapOrders] = field(default_factory=dict)
+    orders_present: tuple[int, ...] = ()
     lyapunov: Exponent | None = None
     motion_confidence: float = 1.0
     motion_symmetric: bool | None = None

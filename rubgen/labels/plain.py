@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from rubgen.arrays import FloatArray
 from rubgen.labels.labels import Labels
 
 
@@ -11,7 +12,7 @@ def labels_dict(labels: Labels) -> dict[str, object]:
     """The labels of one run by their public names, as JSON-ready Python values.
 
     Unit suffixes are part of the names: `contact_impulse_per_turn_n_s` in N s, `contact_zone_centres_rad` and
-    `contact_zone_widths_rad` in rad; `lyapunov_*` in 1/turn but for `lyapunov_per_second`; `<tap>_orders` holds the ten
+    `contact_zone_widths_rad` in rad; `lyapunov_*` in 1/turn but for `lyapunov_per_second`; `<tap>_orders` holds the
     amplitudes at k f_r in the unit of the tap. What is undefined (no period, a share of nothing) is None. The order of
     the keys is fixed.
     """
@@ -32,6 +33,7 @@ def labels_dict(labels: Labels) -> dict[str, object]:
         "period": labels.period,
         **_motion_labels(labels),
         "has_2fr": bool(labels.has_2fr),
+        "orders_present": [int(order) for order in labels.orders_present],
         **_lyapunov_labels(labels),
     }
     for tap in labels.orders:
@@ -68,12 +70,25 @@ def _lyapunov_labels(labels: Labels) -> dict[str, object]:
 
 
 def _order_labels(labels: Labels, tap: str) -> dict[str, object]:
-    return {
-        f"{tap}_orders": [_number(amplitude) for amplitude in labels.orders[tap]],
+    plain: dict[str, object] = {
+        f"{tap}_orders": _numbers(labels.orders[tap]),
         f"{tap}_even_share": _number(labels.even_share[tap]),
         f"{tap}_odd_share": _number(labels.odd_share[tap]),
         f"{tap}_dominant_order": int(labels.dominant_order[tap]),
     }
+    details = labels.order_details.get(tap)
+    if details is not None:
+        plain |= {
+            f"{tap}_order_phases_rad": _numbers(details.phases),
+            f"{tap}_order_floors": _numbers(details.floors),
+            f"{tap}_fractional_amplitudes": _numbers(details.fractional),
+            f"{tap}_blade_passing": _numbers(details.blade_passing),
+        }
+    return plain
+
+
+def _numbers(values: FloatArray) -> list[float | None]:
+    return [_number(value) for value in values]
 
 
 def _number(value: float) -> float | None:

@@ -44,5 +44,5 @@ def test_three_lobes_give_orders_three_and_six():
     zones = np.sort(labels.contact_zone_centres)
     assert np.allclose(np.diff(zones), 2 * np.pi / 3, atol=np.radians(2))
     force = labels.orders["contact_force"]
-    others = np.delete(force, [2, 5, 8])
+    others = np.delete(force, np.arange(2, 20, 3))
     assert min(force[2], force[5]) > 10 * others.max()

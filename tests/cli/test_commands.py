@@ -95,9 +95,9 @@ def test_simulate_without_contact(run, short):
     assert (code, errors, values["status"]) == (0, "", "ok")
     promised = ["rub", "contact_duty", "contact_zones", "motion_blisk", "motion_casing", "motion", "period", "has_2fr"]
     assert [values[name] for name in promised] == [False, 0, 0, "period-1", "static", "period-1", 1, False]
-    assert values["contact_force_orders"] == [0] * 10
+    assert values["contact_force_orders"] == [0] * 20
     blisk = np.array(values["blisk_x_orders"])
-    assert blisk.size == 10
+    assert blisk.size == 20
     assert blisk[0] > 1e-5
     assert blisk[1:].max() < 1e-9 * blisk[0]
     assert values["lyapunov_per_turn"] < 0

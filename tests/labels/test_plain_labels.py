@@ -27,6 +27,7 @@ NAMES = [
     "stray_casing",
     "zero_one_k",
     "has_2fr",
+    "orders_present",
     "lyapunov_per_turn",
     "lyapunov_per_second",
     "lyapunov_error",
@@ -36,7 +37,8 @@ NAMES = [
 
 def test_labels_have_their_public_names(rub_run):
     taps = ["blisk_x", "casing_acc_0", "contact_force"]
-    endings = ["orders", "even_share", "odd_share", "dominant_order"]
+    endings = ["orders", "even_share", "odd_share", "dominant_order", "order_phases_rad", "order_floors"]
+    endings += ["fractional_amplitudes", "blade_passing"]
     assert list(labels_dict(rub_run.labels)) == NAMES + [f"{tap}_{ending}" for tap in taps for ending in endings]
 
 

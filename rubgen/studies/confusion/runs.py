@@ -15,8 +15,8 @@ from rubgen.solver import Status, integrate
 SERIES: dict[str, dict[str, float]] = {
     "preset": {},
     "friction 0.05": {"friction": 0.05},
-    "stiffer support": {"disk_support_stiffness_n_per_m": 1.2e8},
-    "three lobes": {"lobes": 3},
+    "more unbalance": {"unbalance_kg_m": 2e-2},
+    "closer casing": {"clearance_m": 2.2e-4, "friction": 0.01},
 }
 """Keys of `make_scenario` beside the speed."""
 SPEEDS_RPM = tuple(float(speed) for speed in range(6540, 14941, 120))

@@ -26,7 +26,7 @@ class Outcome:
     """What is kept of one run; `motion` is empty and the numbers below it are NaN or empty where the run failed.
 
     `impulse` is the mean normal impulse a turn, `impulse_error` its standard error from ten parts of the record, in
-    N s. `force_orders` (N) and `blisk_orders` (m) are peak amplitudes at k f_r, k = 1 .. 10, of the contact force and
+    N s. `force_orders` (N) and `blisk_orders` (m) are peak amplitudes at k f_r, k = 1 .. 20, of the contact force and
     of blisk_x. `indicator_*` is K of the 0-1 test, `stray_*` the rms distance of the section's points (second half of
     the record) from their mean, over the size of the motion: period-1 up to 0.01. `growth` is the largest outward
     displacement of a tip at speed without contact, in m. Frequencies at rest, in Hz.
