@@ -11,7 +11,7 @@ import pytest
 
 import rubgen
 from rubgen.cli.app import app
-from rubgen.io.columns import CHANNELS, SCALARS
+from rubgen.io.columns import CHANNELS, ORDER_SUFFIXES, SCALARS
 from rubgen.labels.plain import labels_dict
 from rubgen.scenario import load_recipe, parse_recipe
 from rubgen.solver import Status
@@ -123,7 +123,7 @@ def test_recipes_that_come_with_the_sources_can_be_run(path):
 
 
 def test_labels_and_statuses_are_described(rub_run):
-    orders = ("_orders", "_share", "_dominant_order")
+    orders = ORDER_SUFFIXES
     labels = [name for name in labels_dict(rub_run.labels) if not name.endswith(orders)]
     assert [name for name in labels if f"`{name}`" not in DOCUMENTS["docs/labels.md"]] == []
     assert [status.code for status in Status if f"`{status.code}`" not in DOCUMENTS["docs/model.md"]] == []
