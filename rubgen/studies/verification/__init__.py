@@ -26,6 +26,7 @@ GROUPS = (
     "impact_oscillator",
     "annular_rub",
     "misaligned_rub",
+    "surface_options",
     "chaos_indicators",
     "lyapunov_exponents",
     "preset",

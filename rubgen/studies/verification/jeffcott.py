@@ -61,7 +61,7 @@ class AnnularRub:
     stator: complex
 
 
-def annular_rub() -> AnnularRub:
+def annular_rub(clearance: float = CLEARANCE) -> AnnularRub:
     """The closed form of synchronous full annular rub.
 
     D_r z_r = U Omega^2 - N (1 + i mu) e^(i phi), D_s z_s = N (1 + i mu) e^(i phi), z_r - z_s = c e^(i phi) with the
@@ -71,9 +71,9 @@ def annular_rub() -> AnnularRub:
     rotor = complex(ROTOR_STIFFNESS - ROTOR_MASS * SPEED**2, ROTOR_DAMPING * SPEED)
     stator = complex(STATOR_STIFFNESS - STATOR_MASS * SPEED**2, STATOR_DAMPING * SPEED)
     push = UNBALANCE * SPEED**2
-    a, b = rotor * CLEARANCE, complex(1, FRICTION) * (1 + rotor / stator)
+    a, b = rotor * clearance, complex(1, FRICTION) * (1 + rotor / stator)
     roots = np.roots([abs(b) ** 2, 2 * (a * b.conjugate()).real, abs(a) ** 2 - push**2])
     force = float(roots.real.max())
     direction = push / (a + force * b)
     z_s = force * complex(1, FRICTION) * direction / stator
-    return AnnularRub(force, z_s + CLEARANCE * direction, z_s)
+    return AnnularRub(force, z_s + clearance * direction, z_s)

@@ -1,0 +1,1 @@
+"""What the options of contact do to runs, and where the model of contact ends."""
