@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check bench verification sensitivity contact pictures schemas clean
+.PHONY: setup demo test check bench verification sensitivity contact zeng2019 pictures schemas clean
 
 setup: $(VENV)/.installed-dev
 
@@ -31,6 +31,10 @@ sensitivity: $(VENV)/.installed-dev
 
 contact: $(VENV)/.installed-dev
 	$(BIN)/python -m rubgen.studies.contact_options
+
+zeng2019: $(VENV)/.installed-dev
+	$(BIN)/rubgen reproduce zeng2019 --out out/zeng2019
+	cp out/zeng2019/zeng2019.md out/zeng2019/zeng2019-*.png docs/
 
 pictures: $(VENV)/.installed-dev
 	$(BIN)/python docs/pictures.py

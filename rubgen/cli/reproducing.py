@@ -7,26 +7,34 @@ from pathlib import Path
 from rich.console import Console
 
 from rubgen.cli.generating import shown_progress, terminable
-from rubgen.cli.printing import print_json, say
+from rubgen.cli.printing import print_json, print_pairs
 from rubgen.errors import UserError
-from rubgen.studies.zeng2019 import reproduce
+from rubgen.studies.zeng2019 import fit, reproduce
+from rubgen.studies.zeng2019.computing import Progress
 
 PAPERS = ("zeng2019",)
 
 
 def reproduce_command(
-    paper: str, figure: str | None, out: Path | None, workers: int | None, *, quick: bool, as_json: bool
+    paper: str,
+    figure: str | None,
+    out: Path | None,
+    workers: int | None,
+    *,
+    quick: bool,
+    fitting: bool,
+    as_json: bool,
 ) -> int:
-    """Compute, judge, write; a Ctrl-C says how to go on."""
-    if paper not in PAPERS:
-        raise UserError(f"{paper}: unknown paper; choose from {', '.join(PAPERS)}")
-    if workers is not None and workers < 1:
-        raise UserError(f"--workers {workers}: must be at least 1; give a number of processes")
+    """Compute, judge, write, or search; a Ctrl-C says how to go on."""
+    _check(paper, figure, workers, fitting=fitting)
     folder = out or Path("out") / (f"{paper}-quick" if quick else paper)
     console = Console(stderr=True, quiet=as_json)
     try:
         with terminable(), shown_progress(console, "pieces") as progress:
-            made = reproduce(folder, figure=figure, quick=quick, workers=workers, progress=progress)
+            if fitting:
+                result = _fit(folder, quick, workers, progress)
+            else:
+                result = _reproduce(folder, figure, quick, workers, progress)
     except KeyboardInterrupt:
         Console(stderr=True, soft_wrap=True).print(
             f"rubgen: interrupted; finished pieces are kept in {folder}: the same command makes the rest",
@@ -34,8 +42,30 @@ def reproduce_command(
         )
         return 130
     if as_json:
-        print_json({"page": str(made.page), "made": made.made, "verdicts": made.verdicts})
+        print_json(result)
     else:
-        say(f"{made.page}: {', '.join(f'{count} {verdict}' for verdict, count in made.verdicts.items())}")
-        say(f"  {made.page.with_suffix('.html')}: the same in one file; statements.json beside it")
+        print_pairs(result)
     return 0
+
+
+def _check(paper: str, figure: str | None, workers: int | None, *, fitting: bool) -> None:
+    if paper not in PAPERS:
+        raise UserError(f"{paper}: unknown paper; choose from {', '.join(PAPERS)}")
+    if workers is not None and workers < 1:
+        raise UserError(f"--workers {workers}: must be at least 1; give a number of processes")
+    if fitting and figure is not None:
+        raise UserError(f"--fit --figure {figure}: the search is one whole; leave --figure out")
+
+
+def _reproduce(
+    folder: Path, figure: str | None, quick: bool, workers: int | None, progress: Progress
+) -> dict[str, object]:
+    made = reproduce(folder, figure=figure, quick=quick, workers=workers, progress=progress)
+    html = made.page.with_suffix(".html")
+    return {"page": str(made.page), "html": str(html), "made": made.made, "verdicts": made.verdicts}
+
+
+def _fit(folder: Path, quick: bool, workers: int | None, progress: Progress) -> dict[str, object]:
+    made = fit(folder, quick=quick, workers=workers, progress=progress)
+    shares = {"fitted": made.best.fitted, "predicted": made.best.predicted}
+    return {"page": str(made.page), "machine": str(made.machine), "made": made.made, "borne_out": shares}
