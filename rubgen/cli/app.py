@@ -145,6 +145,7 @@ def reproduce(
     figure: Annotated[str | None, _option("One figure, 6 to 21, or a group of statements, by its name.")] = None,
     out: Annotated[Path | None, _option("Directory for the page; out/zeng2019 when not given.")] = None,
     quick: Annotated[bool, Parameter(negative=(), help="Few values and short runs, in two minutes.")] = False,
+    every: Annotated[int, _option("Every how many-th speed: 1 by 30 rev/min, 4 by 120.")] = 1,
     fit: Annotated[bool, Parameter(negative=(), help="Search what is not published, instead of the page.")] = False,
     workers: Annotated[int | None, _option("Number of processes; the number of cores when not given.")] = None,
     json: Json = False,
@@ -152,7 +153,7 @@ def reproduce(
     """Reproduce a paper's figures and statements, or go on where it was interrupted."""
     from rubgen.cli.reproducing import reproduce_command
 
-    return reproduce_command(paper, figure, out, workers, quick=quick, fitting=fit, as_json=json)
+    return reproduce_command(paper, figure, out, workers, every, quick=quick, fitting=fit, as_json=json)
 
 
 @app.command

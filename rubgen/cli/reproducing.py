@@ -20,13 +20,14 @@ def reproduce_command(
     figure: str | None,
     out: Path | None,
     workers: int | None,
+    every: int,
     *,
     quick: bool,
     fitting: bool,
     as_json: bool,
 ) -> int:
     """Compute, judge, write, or search; a Ctrl-C says how to go on."""
-    _check(paper, figure, workers, fitting=fitting)
+    _check(paper, figure, workers, every, fitting=fitting)
     folder = out or Path("out") / (f"{paper}-quick" if quick else paper)
     console = Console(stderr=True, quiet=as_json)
     try:
@@ -34,7 +35,7 @@ def reproduce_command(
             if fitting:
                 result = _fit(folder, quick, workers, progress)
             else:
-                result = _reproduce(folder, figure, quick, workers, progress)
+                result = _reproduce(folder, figure, workers, progress, quick=quick, every=every)
     except KeyboardInterrupt:
         Console(stderr=True, soft_wrap=True).print(
             f"rubgen: interrupted; finished pieces are kept in {folder}: the same command makes the rest",
@@ -48,19 +49,21 @@ def reproduce_command(
     return 0
 
 
-def _check(paper: str, figure: str | None, workers: int | None, *, fitting: bool) -> None:
+def _check(paper: str, figure: str | None, workers: int | None, every: int, *, fitting: bool) -> None:
     if paper not in PAPERS:
         raise UserError(f"{paper}: unknown paper; choose from {', '.join(PAPERS)}")
     if workers is not None and workers < 1:
         raise UserError(f"--workers {workers}: must be at least 1; give a number of processes")
+    if every < 1:
+        raise UserError(f"--every {every}: must be at least 1; 4 gives steps of 120 rev/min")
     if fitting and figure is not None:
         raise UserError(f"--fit --figure {figure}: the search is one whole; leave --figure out")
 
 
 def _reproduce(
-    folder: Path, figure: str | None, quick: bool, workers: int | None, progress: Progress
+    folder: Path, figure: str | None, workers: int | None, progress: Progress, *, quick: bool, every: int
 ) -> dict[str, object]:
-    made = reproduce(folder, figure=figure, quick=quick, workers=workers, progress=progress)
+    made = reproduce(folder, figure=figure, quick=quick, every=every, workers=workers, progress=progress)
     html = made.page.with_suffix(".html")
     return {"page": str(made.page), "html": str(html), "made": made.made, "verdicts": made.verdicts}
 

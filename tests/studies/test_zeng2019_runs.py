@@ -10,7 +10,7 @@ from rubgen.scenario import make_scenario
 from rubgen.solver import integrate
 from rubgen.solver.response import ContactEvents
 from rubgen.studies.zeng2019 import reproduce
-from rubgen.studies.zeng2019.cases import CASING_SUPPORTS, DISK_SUPPORTS, REGIONS, SPEEDS, within
+from rubgen.studies.zeng2019.cases import CASING_SUPPORTS, DISK_SUPPORTS, REGIONS, SPEEDS, swept_speeds, within
 from rubgen.studies.zeng2019.conclusion3 import indices
 from rubgen.studies.zeng2019.contact_pattern import contact_pattern
 from rubgen.studies.zeng2019.figure10 import _onset
@@ -20,9 +20,9 @@ from rubgen.studies.zeng2019.figure19 import crossings
 from rubgen.studies.zeng2019.measures import fractional, harmonics, looks_regular, segments, strongest
 from rubgen.studies.zeng2019.outcome import POINTS, Outcome, outcome, outcome_of, run, run_piece
 from rubgen.studies.zeng2019.region import one_class, switching
-from rubgen.studies.zeng2019.size import QUICK
+from rubgen.studies.zeng2019.size import FULL, QUICK
 
-TINY = replace(QUICK, settle_turns=50, record_turns=100, thin=30)
+TINY = replace(QUICK, settle_turns=50, record_turns=100, thin=30, speed_thin=100)
 NONE = np.zeros(0)
 
 
@@ -52,6 +52,10 @@ def test_sweeps_are_those_of_the_paper():
     assert ends <= {round(k) for k in CASING_SUPPORTS}
     assert list(CASING_SUPPORTS) == sorted(CASING_SUPPORTS)
     assert QUICK.of((1.0, 2.0, 3.0)) == (1.0, 3.0)
+    by_120 = swept_speeds(replace(FULL, speed_thin=4))
+    assert set(np.diff(by_120)) == {120.0}
+    assert (by_120[0], by_120[-1], FULL.option, replace(FULL, speed_thin=4).option) == (2460, 14940, "", " --every 4")
+    assert {6660.0, 6780.0} <= set(swept_speeds(QUICK))
 
 
 def test_an_outcome_holds_what_the_response_says(rub):

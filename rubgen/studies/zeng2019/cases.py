@@ -77,7 +77,13 @@ def on_casing_support(size: Size, printed: float, reading: str) -> Piece:
 
 def speed_sweep(size: Size) -> dict[float, Piece]:
     """All runs of the speed sweep by rev/min."""
-    return {rpm: at_speed(size, rpm) for rpm in size.of(SPEEDS)}
+    return {rpm: at_speed(size, rpm) for rpm in swept_speeds(size)}
+
+
+def swept_speeds(size: Size) -> tuple[float, ...]:
+    """The speeds of the sweep at this size, with both ends of region I: rub begins between its last and the next."""
+    free = [rpm for rpm in SPEEDS if rpm <= REGIONS["I"][1]]
+    return (*size.of(free), *size.speeds_of(SPEEDS[len(free) :]))
 
 
 def disk_sweep(size: Size) -> dict[float, Piece]:

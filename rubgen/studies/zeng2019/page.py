@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-from rubgen.studies.zeng2019.remarks import INTRODUCTION, QUICK_REMARK, RULES, TITLE
+from rubgen.studies.zeng2019.remarks import EVERY_REMARK, INTRODUCTION, QUICK_REMARK, RULES, TITLE
 from rubgen.studies.zeng2019.section import Section
-from rubgen.studies.zeng2019.size import FULL, Size
+from rubgen.studies.zeng2019.size import QUICK, Size
 from rubgen.studies.zeng2019.statement import Statement
 
 STYLE = (
@@ -43,7 +43,7 @@ def markdown(judged: Sequence[Judged], size: Size) -> str:
     """The page as Markdown; pictures are named as they stand beside it."""
     parts = [f"# {TITLE}", *_introduction(size), _count_table(judged)]
     for each in judged:
-        parts += [f"## {each.section.title}", each.section.text, f"    {each.section.command}"]
+        parts += [f"## {each.section.title}", each.section.text, f"    {each.section.command}{size.option}"]
         parts += [f"![{picture.caption}]({picture.name})\n\n*{picture.caption}.*" for picture in each.drawn]
         rows = [[_plain(cell) for cell in _cells(one)] for one in each.statements]
         parts.append(_table(HEADER, rows))
@@ -55,7 +55,7 @@ def html(judged: Sequence[Judged], size: Size) -> str:
     parts = [f"<h1>{escape(TITLE)}</h1>", *(f"<p>{_inline(text)}</p>" for text in _introduction(size))]
     for each in judged:
         parts += [f"<h2>{escape(each.section.title)}</h2>", f"<p>{_inline(each.section.text)}</p>"]
-        parts.append(f"<p><code>{escape(each.section.command)}</code></p>")
+        parts.append(f"<p><code>{escape(each.section.command + size.option)}</code></p>")
         parts += [_figure(picture) for picture in each.drawn]
         parts.append(_html_table(each.statements))
     body = "\n".join(parts)
@@ -64,7 +64,8 @@ def html(judged: Sequence[Judged], size: Size) -> str:
 
 
 def _introduction(size: Size) -> list[str]:
-    return [INTRODUCTION, *([] if size is FULL else [QUICK_REMARK]), RULES]
+    remark = [QUICK_REMARK] if size.name == QUICK.name else [EVERY_REMARK] if size.option else []
+    return [INTRODUCTION, *remark, RULES]
 
 
 def _cells(one: Statement) -> tuple[str, str, str]:

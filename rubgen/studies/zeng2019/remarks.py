@@ -22,3 +22,7 @@ both are given."""
 QUICK_REMARK = (
     "This is the quick version: few values, short runs. It shows that all works; its verdicts are worth little."
 )
+EVERY_REMARK = (
+    "The speed is swept by more than the 30 rev/min of the paper's close-ups here, as the option `--every` of each "
+    "command says: `--every 4` steps by 120 rev/min, the step of its whole sweep."
+)

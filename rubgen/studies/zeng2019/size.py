@@ -12,14 +12,16 @@ from rubgen.scenario import Scenario
 class Size:
     """Turns of each run, and every how many values of a full sweep are taken.
 
-    `thin` thins sweeps, keeping their ends; `campbell_step` is that of the reduced models, `full_speeds` are the
-    speeds of the full one, in rev/min; `samples` is the number of Sobol base points, a power of two.
+    `thin` thins sweeps, keeping their ends, `speed_thin` that of the speed; `campbell_step` is that of the reduced
+    models, `full_speeds` are the speeds of the full one, in rev/min; `samples` is the number of Sobol base points, a
+    power of two.
     """
 
     name: str
     settle_turns: int
     record_turns: int
     thin: int
+    speed_thin: int
     campbell_step: int
     full_speeds: tuple[float, ...]
     samples: int
@@ -29,8 +31,17 @@ class Size:
         turns = replace(scenario.operation, settle_turns=self.settle_turns, record_turns=self.record_turns)
         return replace(scenario, operation=turns)
 
+    @property
+    def option(self) -> str:
+        """What to add to a command so that it computes this size."""
+        return " --quick" if self.name == "quick" else f" --every {self.speed_thin}" if self.speed_thin > 1 else ""
+
+    def speeds_of(self, values: Sequence[float]) -> tuple[float, ...]:
+        """The values of a sweep of the speed at this size, with its first and its last."""
+        return replace(self, thin=self.speed_thin).of(values)
+
     def of(self, values: Sequence[float]) -> tuple[float, ...]:
-        """The values of a sweep at this size, with its first and its last."""
+        """The values of another sweep at this size, with its first and its last."""
         kept = list(values[:: self.thin])
         return tuple(kept if kept[-1] == values[-1] else [*kept, values[-1]])
 
@@ -40,6 +51,7 @@ FULL = Size(
     settle_turns=150,
     record_turns=500,
     thin=1,
+    speed_thin=1,
     campbell_step=250,
     full_speeds=(0.0, 5000.0, 10000.0, 15000.0),
     samples=32,
@@ -49,6 +61,7 @@ QUICK = Size(
     settle_turns=60,
     record_turns=128,
     thin=12,
+    speed_thin=12,
     campbell_step=2500,
     full_speeds=(0.0, 15000.0),
     samples=4,
