@@ -130,6 +130,42 @@ def replay(
 
 
 @app.command
+def figure(
+    name: Annotated[
+        str,
+        _option("campbell, modes; orbit, contact, waveform; bifurcation, cascade, exponent, overview."),
+    ],
+    source: Annotated[Path | None, _option("A machine, a data set's directory, or for one run an MCAP file.")] = None,
+    run: Annotated[str | None, _option("Name of a run of the data set.")] = None,
+    /,
+    *,
+    out: Annotated[Path, _option("File to write: .png, .svg or .pdf.")],
+    where: Annotated[str | None, _option("The first run that meets this condition.")] = None,
+    over: Annotated[str | None, _option("Parameter of a sweep; the first that varies when not given.")] = None,
+    channel: Annotated[str | None, _option("Recorded channel to draw.")] = None,
+) -> int:
+    """Draw a figure of a machine, a run or a data set."""
+    from rubgen.cli.drawing import figure_command
+    from rubgen.studies.figures import Choice
+
+    choice = Choice(run_id=run, where=where, parameter=over, channel=channel)
+    return figure_command(name, source, out, choice)
+
+
+@app.command
+def report(
+    directory: Directory,
+    /,
+    *,
+    out: Annotated[Path | None, _option("File to write; DIR/report.html when not given.")] = None,
+) -> int:
+    """Write one page that shows a data set: classes, coverage, failures, examples, channels, how to load it."""
+    from rubgen.cli.drawing import report_command
+
+    return report_command(directory, out)
+
+
+@app.command
 def modes(machine: MachineName = "zeng2019", /, *, json: Json = False) -> int:
     """Print degrees of freedom and natural frequencies of a machine, beside the published ones for zeng2019."""
     from rubgen.cli.modes import modes_command

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
+from rubgen.arrays import FloatArray
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, read_manifest
 from rubgen.errors import UserError
@@ -33,6 +35,10 @@ class DataSet:
         frame: pd.DataFrame = read_table(self.layout.runs).to_pandas()
         return frame.set_index("run_id", drop=False)
 
+    def row(self, run_id: str) -> dict[str, Any]:
+        """One run's parameters and labels by column."""
+        return {str(key): value for key, value in self.runs.loc[run_id].to_dict().items()}
+
     def signals(self, run_id: str) -> dict[str, Float32Array]:
         """The recorded channels of a run, each (n_samples,) in its column's unit, sample i at i / sample_rate_hz.
 
@@ -47,6 +53,36 @@ class DataSet:
             run = read_mcap(path)
             return run.signals | {f"{name}_clean": values for name, values in run.clean.items()}
         raise UserError(f"{self.layout.root}: {self._why_no_signals(run_id)}")
+
+    def each_channel(self, name: str) -> Iterator[tuple[str, Float32Array, FloatArray]]:
+        """Name of the run, samples of one channel and arrival times (s) of the pulses, run by run.
+
+        Only what is asked for is read. Raises UserError where that channel was not recorded.
+        """
+        if not self._places:
+            yield from self._each_from_mcap(name)
+        for path in self.layout.shards():
+            with open_parquet(path) as file:
+                names = [field.name for field in file.schema_arrow if is_signal(field)]
+                if name not in names:
+                    raise UserError(f"{self.layout.root}: no channel {name!r}; give one of {', '.join(names)}")
+                for group in range(file.num_row_groups):
+                    table = file.read_row_group(group, columns=["run_id", name, "once_per_rev_s"])
+                    for row, run_id in enumerate(table["run_id"].to_pylist()):
+                        pulses = np.asarray(table["once_per_rev_s"][row].values, dtype=np.float64)
+                        yield run_id, np.asarray(table[name][row].values, dtype=np.float32), pulses
+
+    def _each_from_mcap(self, name: str) -> Iterator[tuple[str, Float32Array, FloatArray]]:
+        from rubgen.io.mcap import read_mcap
+
+        good = self.runs.index[self.runs["status"] == "ok"]
+        if not self.layout.export("mcap", str(good[0])).exists():
+            raise UserError(f"{self.layout.root}: {self._why_no_signals(str(good[0]))}")
+        for run_id in good:
+            run = read_mcap(self.layout.export("mcap", run_id))
+            if name not in run.signals:
+                raise UserError(f"{self.layout.root}: no channel {name!r}; give one of {', '.join(run.signals)}")
+            yield run_id, run.signals[name], run.once_per_rev
 
     def check_has_signals(self, run_id: str) -> None:
         """Raise UserError where there is no such run, or it failed."""

@@ -1,0 +1,157 @@
+"""Figures by name: of a machine, of a run, or of a whole data set."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from rubgen.dataset.open import DataSet
+from rubgen.dataset.replaying import find_replay
+from rubgen.errors import UserError
+from rubgen.machine import load_machine
+from rubgen.machine.problems import nearest
+from rubgen.reduction import ReducedModel, reduce
+from rubgen.scenario import Reduction
+from rubgen.viz import figures
+from rubgen.viz.figures.data_set import axis_text, scale_of, varied_keys
+from rubgen.viz.orders import order_map
+from rubgen.viz.replay import Replay
+
+DEFAULT_MACHINE = "zeng2019"
+CHANNEL = "proximity_x"
+SHOWN_UNIT = {"m": (1e6, "µm"), "m/s2": (1.0, "m/s²")}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Choice:
+    """What is drawn: a run of a data set, the parameter of a sweep, a channel; each has a default."""
+
+    run_id: str | None = None
+    where: str | None = None
+    parameter: str | None = None
+    channel: str | None = None
+
+
+Make = Callable[[Path | None, Choice], Figure]
+
+
+def make_figure(name: str, source: Path | None, choice: Choice) -> Figure:
+    """The figure of that name; UserError for an unknown one, a source that does not fit, a missing column."""
+    if name not in FIGURES:
+        raise UserError(f"figure {name!r}: {nearest(name, list(FIGURES))}")
+    try:
+        return FIGURES[name](source, choice)
+    except ValueError as error:
+        raise UserError(f"figure {name}: {error}") from None
+
+
+def _of_machine(draw: Callable[[ReducedModel], Figure]) -> Make:
+    def make(source: Path | None, _choice: Choice) -> Figure:
+        return draw(reduce(load_machine(str(source or DEFAULT_MACHINE)), Reduction()))
+
+    return make
+
+
+def _of_run(draw: Callable[[Replay, Choice], Figure]) -> Make:
+    def make(source: Path | None, choice: Choice) -> Figure:
+        return draw(find_replay(_needed(source), choice.run_id, choice.where).replay, choice)
+
+    return make
+
+
+def _of_set(draw: Callable[[DataSet, Choice], Figure]) -> Make:
+    def make(source: Path | None, choice: Choice) -> Figure:
+        return draw(DataSet(_needed(source)), choice)
+
+    return make
+
+
+def _needed(source: Path | None) -> Path:
+    if source is None:
+        raise UserError("this figure needs a source; give the directory of a data set, or for one run an MCAP file")
+    return source
+
+
+def _waveform(replay: Replay, choice: Choice) -> Figure:
+    return figures.waveform_orders(replay, choice.channel or "casing_acc_0")
+
+
+def _bifurcation(data: DataSet, choice: Choice) -> Figure:
+    """The channel at each pulse, run by run."""
+    key, name = _parameter(data, choice), choice.channel or CHANNEL
+    scale, unit = SHOWN_UNIT.get(_unit(name), (1.0, _unit(name)))
+    values, sections, motions = [], [], []
+    for run_id, samples, pulses in data.each_channel(name):
+        row = data.row(run_id)
+        values.append(row[key] * scale_of(key))
+        sections.append(scale * np.interp(pulses, np.arange(samples.size) / row["sample_rate_hz"], samples))
+        motions.append(row["motion"])
+    y = f"{name} once a turn, {unit}"
+    return figures.bifurcation(np.array(values), sections, motions, x=axis_text(key), y=y)
+
+
+def _cascade(data: DataSet, choice: Choice) -> Figure:
+    """Order spectra of the channel over the parameter."""
+    key, name = _parameter(data, choice), choice.channel or "casing_acc_0"
+    values, spectra, orders = [], [], np.zeros(0)
+    for run_id, samples, pulses in data.each_channel(name):
+        row = data.row(run_id)
+        found = order_map(samples, row["sample_rate_hz"], pulses)
+        if found.amplitude.size:
+            values.append(row[key] * scale_of(key))
+            spectra.append(found.amplitude.mean(axis=0))
+            orders = found.order
+    if len({spectrum.size for spectrum in spectra}) != 1:
+        raise ValueError("signals of 17 turns or more are needed; raise signal_seconds")
+    unit = _unit(name).replace("m/s2", "m/s²")
+    return figures.spectrum_cascade(np.array(values), orders, np.array(spectra), y=axis_text(key), unit=unit)
+
+
+def _exponent(data: DataSet, choice: Choice) -> Figure:
+    """The column `lyapunov_per_turn` with its error."""
+    key, runs = _parameter(data, choice), data.runs
+    known = runs[(runs["status"] == "ok") & runs["lyapunov_per_turn"].notna()]
+    if known.empty:
+        raise ValueError("no run has an exponent; generate with lyapunov = true under [labels]")
+    return figures.exponent_sweep(
+        known[key].to_numpy(dtype=float) * scale_of(key),
+        known["lyapunov_per_turn"].to_numpy(dtype=float),
+        known["lyapunov_error"].fillna(0.0).to_numpy(dtype=float),
+        known["motion"].astype(str).tolist(),
+        x=axis_text(key),
+    )
+
+
+def _parameter(data: DataSet, choice: Choice) -> str:
+    varied = varied_keys(data.runs)
+    if choice.parameter is None:
+        return varied[0] if varied else "speed_rpm"
+    if choice.parameter not in varied:
+        raise UserError(
+            f"--over {choice.parameter}: does not vary in this set; give one of {', '.join(varied) or 'none'}"
+        )
+    return choice.parameter
+
+
+def _unit(channel: str) -> str:
+    from rubgen.io.columns import SIGNALS
+
+    return next((column.unit for column in SIGNALS if column.name == channel), "")
+
+
+FIGURES: dict[str, Make] = {
+    "campbell": _of_machine(figures.campbell),
+    "modes": _of_machine(figures.mode_shapes),
+    "orbit": _of_run(lambda replay, _choice: figures.orbit_section(replay)),
+    "contact": _of_run(lambda replay, _choice: figures.contact_distribution(replay)),
+    "waveform": _of_run(_waveform),
+    "bifurcation": _of_set(_bifurcation),
+    "cascade": _of_set(_cascade),
+    "exponent": _of_set(_exponent),
+    "overview": _of_set(lambda data, _choice: figures.dataset_overview(data.runs)),
+}
+"""Every figure that the command line can draw: a new one is one entry."""
