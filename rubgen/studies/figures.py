@@ -81,16 +81,17 @@ def _waveform(replay: Replay, choice: Choice) -> Figure:
 
 
 def _bifurcation(data: DataSet, choice: Choice) -> Figure:
-    """The channel at each pulse, run by run."""
+    """The channel at each pulse about the mean of each run: k points for period k, whatever the orbit's size."""
     key, name = _parameter(data, choice), choice.channel or CHANNEL
     scale, unit = SHOWN_UNIT.get(_unit(name), (1.0, _unit(name)))
     values, sections, motions = [], [], []
     for run_id, samples, pulses in data.each_channel(name):
         row = data.row(run_id)
         values.append(row[key] * scale_of(key))
-        sections.append(scale * np.interp(pulses, np.arange(samples.size) / row["sample_rate_hz"], samples))
+        section = scale * np.interp(pulses, np.arange(samples.size) / row["sample_rate_hz"], samples)
+        sections.append(section - section.mean())
         motions.append(row["motion"])
-    y = f"{name} once a turn, {unit}"
+    y = f"{name} once a turn about its mean, {unit}"
     return figures.bifurcation(np.array(values), sections, motions, x=axis_text(key), y=y)
 
 

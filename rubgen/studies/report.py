@@ -114,7 +114,7 @@ def render_report(directory: Path) -> str:
 
 def example_runs(good: pd.DataFrame) -> list[str]:
     """Up to six runs: the hardest rub of each class, then a run without contact, then the hardest of the rest."""
-    by_impulse = good.sort_values(["contact_impulse_per_turn_n_s", "run_id"], ascending=[False, True])
+    by_impulse = good.sort_index().sort_values("contact_impulse_per_turn_n_s", ascending=False, kind="stable")
     hardest = [by_impulse.index[by_impulse["motion"] == motion.value][:1] for motion in Motion]
     free = by_impulse.index[~by_impulse["rub"].astype(bool)][:1]
     candidates = [str(run_id) for group in (*hardest, free, by_impulse.index) for run_id in group]

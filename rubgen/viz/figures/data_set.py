@@ -32,7 +32,9 @@ def dataset_overview(runs: pd.DataFrame) -> Figure:
     for panel, y in zip(axes, others, strict=False):
         parameter_plane(panel, shown, x, y)
     parameter_plane(axes[-1], shown, x, "contact_impulse_per_turn_n_s")
-    figure.legend(handles=motion_legend(shown), loc="outside lower center", ncols=6, frameon=False, fontsize=9)
+    figure.legend(
+        handles=motion_legend(shown), loc="outside lower center", ncols=6 if others else 3, frameon=False, fontsize=9
+    )
     return figure
 
 

@@ -1,0 +1,137 @@
+"""`rubgen figure`: every name draws, and mistakes are named."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from PIL import Image
+
+from rubgen.errors import UserError
+from rubgen.io.mcap import write_mcap
+from rubgen.studies.figures import FIGURES, Choice, make_figure
+from rubgen.viz.colors import MOTION_COLORS
+
+
+class MadeSet:
+    """A sweep of three runs with made signals: 30 turns of 1/100 s."""
+
+    runs = pd.DataFrame(
+        {
+            "run_id": ["run-000000", "run-000001", "run-000002"],
+            "status": "ok",
+            "speed_rpm": [6000.0, 6100.0, 6200.0],
+            "sample_rate_hz": 10000.0,
+            "motion": ["period-1", "chaotic", "period-1"],
+            "rub": [True, True, False],
+            "contact_impulse_per_turn_n_s": [1.0, 2.0, 0.0],
+            "lyapunov_per_turn": [-0.1, 0.3, None],
+            "lyapunov_error": [0.01, 0.02, None],
+        }
+    ).set_index("run_id", drop=False)
+
+    def __init__(self, _directory=None):
+        pass
+
+    def row(self, run_id):
+        return self.runs.loc[run_id].to_dict()
+
+    def each_channel(self, _name):
+        time, pulses = np.arange(3000) / 1e4, np.arange(30) / 100
+        for number, run_id in enumerate(self.runs.index):
+            wave = np.cos(2 * np.pi * (100 if number != 1 else 137.5) * time)
+            yield run_id, (1e-4 * wave).astype(np.float32), pulses
+
+
+@pytest.fixture
+def made_set(monkeypatch):
+    monkeypatch.setattr("rubgen.studies.figures.DataSet", MadeSet)
+
+
+@pytest.fixture(scope="module")
+def mcap_file(rub_run, tmp_path_factory):
+    path = tmp_path_factory.mktemp("figure") / "run.mcap"
+    write_mcap(rub_run, path)
+    return path
+
+
+def no_text_overlaps_or_leaves(figure):
+    """Titles, labels and ticks stay inside, and no label stands on another axes' panel."""
+    figure.canvas.draw()
+    for axes in figure.axes:
+        box = axes.get_tightbbox()
+        assert figure.bbox.x0 - 1 <= box.x0
+        assert box.x1 <= figure.bbox.x1 + 1
+        assert figure.bbox.y0 - 1 <= box.y0
+        assert box.y1 <= figure.bbox.y1 + 1
+    boxes = [text.get_window_extent() for axes in figure.axes for text in [axes.title] if text.get_text()]
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+
+
+@pytest.mark.parametrize("name", ["campbell", "modes"])
+def test_figures_of_a_machine(name):
+    no_text_overlaps_or_leaves(make_figure(name, None, Choice()))
+
+
+@pytest.mark.parametrize("name", ["orbit", "contact", "waveform"])
+def test_figures_of_a_run(name, mcap_file):
+    no_text_overlaps_or_leaves(make_figure(name, mcap_file, Choice()))
+
+
+@pytest.mark.parametrize("name", ["bifurcation", "cascade", "exponent", "overview"])
+def test_figures_of_a_set(name, made_set, tmp_path):
+    no_text_overlaps_or_leaves(make_figure(name, tmp_path, Choice()))
+
+
+def test_the_bifurcation_shows_the_section_in_the_colour_of_its_class(made_set, tmp_path):
+    lines = make_figure("bifurcation", tmp_path, Choice()).axes[0].lines
+    assert [line.get_color() for line in lines] == [MOTION_COLORS[motion] for motion in MadeSet.runs["motion"]]
+    assert np.ptp(lines[0].get_ydata()) < 1e-3  # um: it repeats every turn
+    assert np.ptp(lines[1].get_ydata()) > 100
+    assert set(lines[1].get_xdata()) == {6100.0}
+
+
+def test_the_exponent_leaves_out_runs_without_one(made_set, tmp_path):
+    axes = make_figure("exponent", tmp_path, Choice()).axes[0]
+    drawn = [(float(c[0].get_xdata()[0]), float(c[0].get_ydata()[0])) for c in axes.containers]
+    assert drawn == [(6000.0, -0.1), (6100.0, 0.3)]
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+def test_the_command_writes_vectors_and_pixels(run, mcap_file, tmp_path, ending):
+    path = tmp_path / f"orbit.{ending}"
+    assert run("figure", "orbit", str(mcap_file), "--out", str(path))[:2] == (0, f"{path}\n")
+    start = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[ending]
+    assert path.read_bytes().startswith(start)
+    if ending == "png":
+        with Image.open(path) as image:
+            assert image.width > 1000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("orbits", "{mcap}", "--out", "{tmp}/a.png"), "did you mean orbit? allowed: campbell, modes"),
+        (("orbit", "--out", "{tmp}/a.png"), "this figure needs a source"),
+        (("orbit", "{mcap}", "--out", "{tmp}/a.jpg"), "end the name in .png or .svg or .pdf"),
+        (("orbit", "{mcap}", "--out", "{tmp}/there.png"), "exists already"),
+        (("waveform", "{mcap}", "--channel", "speech", "--out", "{tmp}/a.png"), "no channel 'speech'; give one of"),
+        (("campbell", "nowhere", "--out", "{tmp}/a.png"), "nowhere"),
+        (("overview", "{tmp}", "--out", "{tmp}/a.png"), "no finished data set of rubgen"),
+    ],
+)
+def test_mistakes_are_named_in_one_line(run, mcap_file, tmp_path, arguments, message):
+    (tmp_path / "there.png").write_bytes(b"")
+    code, out, err = run("figure", *(each.format(mcap=mcap_file, tmp=tmp_path) for each in arguments))
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert message in err
+    assert [path.name for path in tmp_path.iterdir()] == ["there.png"]
+
+
+def test_a_parameter_that_does_not_vary_is_refused(made_set, tmp_path):
+    with pytest.raises(UserError, match="--over friction: does not vary in this set; give one of speed_rpm"):
+        make_figure("bifurcation", tmp_path, Choice(parameter="friction"))
+
+
+def test_every_figure_has_a_test():
+    assert set(FIGURES) == {
+        "campbell", "modes", "orbit", "contact", "waveform", "bifurcation", "cascade", "exponent", "overview",
+    }  # fmt: skip

@@ -1,0 +1,109 @@
+"""The page of a data set: what it says, that it stands alone, and how it looks in a browser."""
+
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+from eyes import CHROMIUM, narrow_page, need, page_picture, printed_page
+from PIL import Image
+
+import rubgen
+from rubgen.errors import UserError
+from rubgen.studies.report import example_runs, loading, write_report
+from rubgen.viz.colors import MOTION_COLORS
+
+
+@pytest.fixture(scope="module")
+def page(small_set, tmp_path_factory):
+    path = tmp_path_factory.mktemp("report") / "report.html"
+    write_report(small_set.directory, path)
+    return path
+
+
+def test_the_page_counts_the_runs_by_class(page, small_set):
+    text = page.read_text(encoding="utf-8")
+    runs = rubgen.open(small_set.directory).runs
+    for motion, count in runs["motion"].value_counts().items():
+        assert re.search(
+            rf"background:{MOTION_COLORS[motion]}\"></span>{motion}</td><td class=\"number\">{count}</td>", text
+        )
+    assert "Passed: digest of the manifest" in text
+    assert f"{len(runs)} simulated runs" in text
+    assert text.count('<div class="card">') == 4
+    for channel in rubgen.open(small_set.directory).signals("run-000000"):
+        assert f"<td>{channel}</td>" in text
+
+
+def test_the_page_stands_alone_and_is_small(page):
+    text = page.read_text(encoding="utf-8")
+    assert not re.search(r"(?:src|href)=\"(?!data:)", text)
+    assert "<script" not in text
+    assert "url(" not in text
+    assert page.stat().st_size < 5e6
+
+
+def test_the_ways_to_load_work(small_set):
+    from rubgen.dataset.replaying import find_replay
+
+    data = rubgen.open(small_set.directory)
+    ways = loading(data, find_replay(small_set.directory, "run-000000").replay)
+    assert set(ways) == {"rubgen", "pandas", "polars", "datasets", "torch", "MCAP"}
+    expected = data.signals("run-000000")["proximity_x"]
+    for name in ("rubgen", "pandas", "polars", "MCAP"):
+        namespace = {}
+        exec(ways[name].replace("DIR", str(small_set.directory)), namespace)  # noqa: S102 - our own lines
+        np.testing.assert_array_equal(np.asarray(namespace["signal"]), expected)
+
+
+def test_examples_show_each_class_and_a_run_without_contact():
+    motions = ["period-1", "chaotic", "chaotic", "period-1", "quasi-periodic", "period-1", "period-1", "period-1"]
+    impulses = [0.0, 3.0, 5.0, 2.0, 1.0, 0.0, 1.5, 0.5]
+    runs = pd.DataFrame(
+        {
+            "motion": motions,
+            "contact_impulse_per_turn_n_s": impulses,
+            "rub": [impulse > 0 for impulse in impulses],
+        },
+        index=pd.Index([f"run-{index:06d}" for index in range(8)], name="run"),
+    )
+    runs["run_id"] = runs.index
+    assert example_runs(runs) == [f"run-{index:06d}" for index in (3, 4, 2, 0, 1, 6)]
+
+
+def test_a_failed_run_is_listed_with_its_reason(small_set, tmp_path, monkeypatch):
+    runs = rubgen.open(small_set.directory).runs.copy()
+    runs.loc["run-000003", ["status", "reason"]] = "diverged", "blade 3 <bent> in turn 7"
+    monkeypatch.setattr("rubgen.dataset.open.DataSet.runs", runs)
+    monkeypatch.setattr("rubgen.studies.report.verify", lambda _directory: ["data: broken"])
+    write_report(small_set.directory, tmp_path / "report.html")
+    text = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "<td>run-000003</td><td>diverged</td><td>blade 3 &lt;bent&gt; in turn 7</td>" in text
+    assert "1 problems" in text
+
+
+def test_a_directory_without_a_set_is_refused(tmp_path):
+    with pytest.raises(UserError, match="no finished data set of rubgen"):
+        write_report(tmp_path, tmp_path / "report.html")
+
+
+@pytest.mark.parametrize("width", [360, 1200])
+def test_nothing_overflows_and_the_console_is_silent(page, tmp_path, width):
+    need(CHROMIUM, "chromium")
+    content, frame, console = narrow_page(page, tmp_path, width)
+    assert content <= frame <= width
+    assert console == ""
+
+
+def test_light_dark_and_print_can_be_looked_at(page, tmp_path):
+    need(CHROMIUM, "chromium")
+    means = []
+    for options in ((), ("--blink-settings=preferredColorScheme=0",)):
+        with Image.open(page_picture(page, tmp_path, *options)) as image:
+            picture = np.asarray(image.convert("L"))
+        assert np.unique(picture).size > 100
+        means.append(float(np.median(picture)))
+    light, dark = means
+    assert light > 200
+    assert dark < 60
+    assert printed_page(page, tmp_path).startswith(b"%PDF")

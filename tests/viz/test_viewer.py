@@ -1,0 +1,76 @@
+"""Recordings in the viewer itself, without a screen: no view complains, and something is to be seen."""
+
+import io
+import socket
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from eyes import SOFTWARE_VULKAN, need
+from PIL import Image
+
+from rubgen.io.mcap import write_mcap
+from rubgen.viz.replay import replay_of
+from rubgen.viz.rerun import write_rrd
+
+
+@pytest.fixture(scope="module")
+def viewer():
+    need(SOFTWARE_VULKAN, "mesa-vulkan-drivers")
+    from rerun.experimental import ViewerClient
+
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    program = Path(sys.executable).with_name("rerun")
+    client = ViewerClient.spawn(headless=True, port=port, executable_path=str(program))
+    yield client
+    client.quit()
+
+
+def opened(viewer, path):
+    """Open a file alone; its views once all is loaded."""
+    viewer.open(str(path))
+    for _ in range(100):
+        state = viewer.get_state()
+        if state.views and not state.loading:
+            return state.views
+        time.sleep(0.1)
+    raise AssertionError("no view within ten seconds")
+
+
+def pixels(viewer, view):
+    with Image.open(io.BytesIO(viewer.take_screenshot(view.view_id))) as image:
+        return np.asarray(image.convert("RGB")).reshape(-1, 3)
+
+
+def test_no_view_of_a_replay_complains_and_the_machine_is_seen(viewer, rub_run, tmp_path):
+    write_rrd(rub_run, tmp_path / "run.rrd")
+    views = opened(viewer, tmp_path / "run.rrd")
+    assert {view.view_class for view in views} >= {
+        "3D", "2D", "TimeSeries", "BarChart", "Tensor", "StateTimeline", "TextDocument",
+    }  # fmt: skip
+    viewer.set_time("time", duration=float(replay_of(rub_run).frames.time[100]), play_state="paused")
+    machine = next(view for view in views if view.name.startswith("machine; deviations from the tip circle x 10"))
+    shown = pixels(viewer, machine)
+    assert len(np.unique(shown, axis=0)) > 500
+    steel = (shown.min(axis=1) > 90) & (np.ptp(shown, axis=1) < 60)
+    assert steel.mean() > 0.05
+    states = viewer.get_state().views
+    assert [(view.name, view.reports) for view in states if view.reports] == []
+
+
+def test_a_run_without_contact_has_no_complaint_either(viewer, free_run, tmp_path):
+    write_rrd(free_run, tmp_path / "free.rrd")
+    assert [view.reports for view in opened(viewer, tmp_path / "free.rrd") if view.reports] == []
+
+
+def test_an_mcap_file_alone_shows_its_previews(viewer, rub_run, tmp_path):
+    write_mcap(rub_run, tmp_path / "run.mcap")
+    views = opened(viewer, tmp_path / "run.mcap")
+    assert {"/preview/acceleration", "/preview/contact_force"} <= {view.origin for view in views}
+    assert [view.reports for view in views if view.reports] == []
+    shown = pixels(viewer, next(view for view in views if view.origin == "/preview/acceleration"))
+    assert len(np.unique(shown, axis=0)) > 50
