@@ -15,5 +15,11 @@ def rub_run(make_synthetic_run):
 
 
 @pytest.fixture(scope="session")
+def rig_run(make_synthetic_run):
+    """The same with the sensors of a rig: other kinds, units, clocks, and events of timing probes."""
+    return make_synthetic_run(sensors="rig", keep_clean=True)
+
+
+@pytest.fixture(scope="session")
 def free_run(make_synthetic_run):
     return make_synthetic_run(contact=False)

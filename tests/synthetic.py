@@ -7,13 +7,31 @@ from rubgen.labels.labels import Labels, Motion
 from rubgen.machine import load_machine
 from rubgen.pipeline import Run
 from rubgen.scenario import Operation, Scenario, Sensing
-from rubgen.scenario.sensors import SensorSet
-from rubgen.sensors import measure
-from rubgen.sensors.registry import describe, tap_of
-from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status, Track
+from rubgen.scenario.sensor_set import load_sensor_set
+from rubgen.scenario.sensors import SensorSet, TimingProbe
+from rubgen.scenario.taps import (
+    CasingAcceleration,
+    CentreDisplacement,
+    ContactForce,
+    ContactTorque,
+    DriveTorque,
+    RingStrain,
+    RootStrain,
+    SupportForce,
+    TipClearance,
+    TipTiming,
+)
+from rubgen.sensors import measure, taps_of
+from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status, TipArrivals, Track
 
 TURNS, STEPS = 120, 512
 BLADES, STATES = 36, 125
+
+SCALES = {
+    CentreDisplacement: 1e-4, CasingAcceleration: 300.0, SupportForce: 2e4, ContactForce: 1e3, TipClearance: 1e-3,
+    RootStrain: 1e-4, RingStrain: 2e-4, DriveTorque: 100.0, ContactTorque: 100.0,
+}  # fmt: skip
+"""Sizes of the made signals in the unit of each kind of tap."""
 
 
 def _taps(
@@ -21,14 +39,27 @@ def _taps(
 ) -> dict[str, np.ndarray]:
     time = dt * np.arange(1 - TURNS * STEPS, 1)
     force = 4000.0 * np.maximum(0.0, np.cos(2 * speed * time)) ** 8 if contact else np.zeros_like(time)
-    scales = {"displacement": 1e-4, "acceleration": 300.0, "force": 2e4, "contact force": 1e3, "gap": 1e-3}
     taps = {}
-    for sensor in sensors.sampled:
-        quantity, tap = describe(sensor).quantity, tap_of(sensor).name
-        first, second = generator.uniform(0, 2 * np.pi, 2)
-        wave = np.cos(speed * time + first) + 0.3 * np.cos(3 * speed * time + second)
-        taps[tap] = scales[quantity] * (wave + (2.0 if quantity == "gap" else 0.0))
+    for tap in taps_of(sensors):
+        if not isinstance(tap, TipTiming):
+            first, second = generator.uniform(0, 2 * np.pi, 2)
+            wave = np.cos(speed * time + first) + 0.3 * np.cos(3 * speed * time + second)
+            taps[tap.name] = SCALES[type(tap)] * (wave + (2.0 if isinstance(tap, TipClearance) else 0.0))
     return taps | {"contact_force": force}
+
+
+def _arrivals(generator: np.random.Generator, sensors: SensorSet, speed: float, dt: float) -> dict[str, TipArrivals]:
+    """Every blade of every turn, early by a made deflection."""
+    seen = {}
+    for probe in sensors.sensors:
+        if isinstance(probe, TimingProbe):
+            turn, blade = np.divmod(np.arange(TURNS * BLADES), BLADES)
+            deflection = 1e-4 * generator.standard_normal(turn.size)
+            place = np.deg2rad(probe.angle_deg) / (2 * np.pi) + (blade + 0.5) / BLADES - deflection / (2 * np.pi * 0.4)
+            order = np.argsort(turn + place)
+            step = (turn + place)[order] * STEPS
+            seen[probe.name] = TipArrivals(blade=BLADES - 1 - blade[order], step=step, displacement=deflection[order])
+    return seen
 
 
 def _events(generator: np.random.Generator, count: int) -> ContactEvents:
@@ -79,6 +110,7 @@ def _response(generator: np.random.Generator, scenario: Scenario, contact: bool)
         energy=EnergyBook(**works),
         n_blades=BLADES,
         n_casing=11,
+        arrivals=_arrivals(np.random.default_rng(5), scenario.sensing.set, speed, dt),
         track=_track(generator),
     )
 
@@ -121,13 +153,15 @@ def _labels(generator: np.random.Generator, contact: bool) -> Labels:
     )
 
 
-def make_run(*, contact: bool = True, seconds: float = 0.3, keep_clean: bool = False, seed: int = 1) -> Run:
+def make_run(
+    *, contact: bool = True, seconds: float = 0.3, keep_clean: bool = False, seed: int = 1, sensors: str = "default"
+) -> Run:
     """A run with made-up signals: same arguments, same run."""
     generator = np.random.default_rng(seed)
     scenario = Scenario(
         machine=load_machine("zeng2019"),
         operation=Operation(speed_rpm=10000.0, record_turns=TURNS, steps_per_turn=STEPS),
-        sensing=Sensing(keep_clean=keep_clean),
+        sensing=Sensing(keep_clean=keep_clean, set=load_sensor_set(sensors)),
         signal_seconds=seconds,
         seed=seed,
     )

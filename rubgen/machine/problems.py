@@ -62,7 +62,9 @@ def _keys_at(adapter: TypeAdapter[Any], location: list[int | str]) -> set[str]:
     root = adapter.json_schema()
     nodes = list(_alternatives(root, root))
     for part in location:
-        found = [node["properties"][part] for node in nodes if part in node.get("properties", {})]
+        found: list[Any] = [node["properties"][part] for node in nodes if part in node.get("properties", {})]
+        if isinstance(part, int):
+            found = [node["items"] for node in nodes if "items" in node]
         nodes = [each for node in found for each in _alternatives(node, root)]
     return {key for node in nodes for key in node.get("properties", {})}
 

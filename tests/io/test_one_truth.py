@@ -5,7 +5,7 @@ import pytest
 from rerun.chunk import RrdReader
 
 from rubgen.io.columns import SCALARS
-from rubgen.io.mcap import read_mcap, write_mcap
+from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
 from rubgen.io.parquet import read_table, write_parquet
 from rubgen.labels.plain import labels_dict
 from rubgen.viz.replay import replay_of
@@ -13,28 +13,34 @@ from rubgen.viz.rerun import write_rrd
 from rubgen.viz.signal_entities import detail_window
 
 
+@pytest.fixture(scope="module", params=["rub_run", "rig_run"])
+def run(request):
+    """With the sensors that every recipe has, and with those of a rig."""
+    return request.getfixturevalue(request.param)
+
+
 @pytest.fixture(scope="module")
-def folder(rub_run, tmp_path_factory):
+def folder(run, tmp_path_factory):
     folder = tmp_path_factory.mktemp("truth")
-    write_mcap(rub_run, folder / "run.mcap")
-    write_parquet(rub_run, folder / "run.parquet")
-    write_rrd(rub_run, folder / "run.rrd")
+    write_mcap(run, folder / "run.mcap")
+    write_parquet(run, folder / "run.parquet")
+    write_rrd(run, folder / "run.rrd")
     return folder
 
 
-def test_signals_agree_to_the_bit(rub_run, folder):
+def test_signals_agree_to_the_bit(run, folder):
     mcap, row = read_mcap(folder / "run.mcap").signals, read_table(folder / "run.parquet").to_pylist()[0]
-    for name, channel in rub_run.recording.channels.items():
+    for name, channel in run.recording.channels.items():
         memory = channel.values
         assert memory.dtype == np.float32
         assert mcap[name].tobytes() == memory.tobytes()
         assert np.array(row[name], dtype=np.float32).tobytes() == memory.tobytes()
 
 
-def test_rerun_shows_the_same_samples(rub_run, folder):
-    window = detail_window(replay_of(rub_run))
+def test_rerun_shows_the_same_samples(run, folder):
+    window = detail_window(replay_of(run))
     mcap = read_mcap(folder / "run.mcap").signals
-    for quantity, group in rub_run.recording.by_quantity().items():
+    for quantity, group in run.recording.by_quantity().items():
         (chunk,) = [
             chunk
             for chunk in RrdReader(folder / "run.rrd").stream().filter(content=f"/detail/{quantity}").to_chunks()
@@ -45,8 +51,8 @@ def test_rerun_shows_the_same_samples(rub_run, folder):
             assert shown[:, column].tobytes() == mcap[channel.name][window].tobytes()
 
 
-def test_labels_agree(rub_run, folder):
-    memory = labels_dict(rub_run.labels)
+def test_labels_agree(run, folder):
+    memory = labels_dict(run.labels)
     row = read_table(folder / "run.parquet").to_pylist()[0]
     assert read_mcap(folder / "run.mcap").labels == memory
     columns = [column.name for column in SCALARS if column.name in memory]
@@ -54,8 +60,24 @@ def test_labels_agree(rub_run, folder):
     assert {name: row[name] for name in columns} == {name: memory[name] for name in columns}
 
 
-def test_pulses_agree(rub_run, folder):
-    pulses = rub_run.recording.once_per_rev
+def test_pulses_agree(run, folder):
+    pulses = run.recording.once_per_rev
     row = read_table(folder / "run.parquet").to_pylist()[0]
     assert read_mcap(folder / "run.mcap").once_per_rev.tobytes() == pulses.tobytes()
     assert np.array(row["once_per_rev_s"]).tobytes() == pulses.tobytes()
+
+
+def test_arrivals_of_blades_agree(run, folder):
+    mcap, row = read_mcap(folder / "run.mcap"), read_table(folder / "run.parquet").to_pylist()[0]
+    assert set(mcap.tip_timing) == set(run.recording.tip_timing)
+    for name, seen in run.recording.tip_timing.items():
+        assert seen.time.size > 1000
+        read = mcap.tip_timing[name]
+        assert read["time_s"].tobytes() == np.array(row[f"{name}_s"]).tobytes() == seen.time.tobytes()
+        assert read["blade"].tolist() == row[f"{name}_blade"] == seen.blade.tolist()
+        known = seen.true_displacement.tobytes()
+        assert read["true_displacement_m"].tobytes() == np.array(row[f"{name}_true_m"]).tobytes() == known
+
+
+def test_no_problem_is_found_in_the_file(folder):
+    assert check_mcap(folder / "run.mcap") == []
