@@ -23,3 +23,22 @@ def root_strain_row(blades: BladeRow, root_radius: float, beam: BeamMatrices) ->
     angle = np.deg2rad(blades.root_angle_deg)
     half = blades.root_thickness_m / 2
     return np.asarray(strains[0] + half * (np.cos(angle) * strains[4] + np.sin(angle) * strains[5]))
+
+
+def held_root_strain(
+    blades: BladeRow, root_radius: float, beam: BeamMatrices, *, speed: float, stiffness: float = 1.0
+) -> tuple[FloatArray, FloatArray]:
+    """Strain of `root_strain_row` per displacement of the tip (3,) and of the root (6,), inertia apart, at `speed`.
+
+    Between them the blade takes the shape of least energy under K + Omega^2 (K_sigma - S), K times `stiffness`: at rest
+    the cubic of a tip load, at speed flatter with more curvature near the root.
+    """
+    n = len(beam.f_c)
+    K = stiffness * beam.K + speed**2 * (beam.K_sigma - beam.S)
+    given = np.concatenate([np.arange(n - 6, n - 3), np.arange(6)])
+    free = np.setdiff1d(np.arange(n), given)
+    shape = np.zeros((n, given.size))
+    shape[given, np.arange(given.size)] = 1.0
+    shape[free] = -np.linalg.solve(K[np.ix_(free, free)], K[np.ix_(free, given)])
+    strain: FloatArray = root_strain_row(blades, root_radius, beam) @ shape[:12]
+    return strain[:3], strain[3:]

@@ -12,7 +12,6 @@ from rubgen.arrays import FloatArray, IntArray
 from rubgen.fem.beam import BeamMatrices
 from rubgen.fem.blisk import BliskModel, assemble_blisk, rigid_motions
 from rubgen.fem.constraints import rim_joint
-from rubgen.fem.root_strain import root_strain_row
 from rubgen.fem.statics import on_springs, support_stiffness
 from rubgen.machine import BladeRow, Disk, DiskSupport
 from rubgen.reduction.craig_bampton import craig_bampton
@@ -25,10 +24,10 @@ class ReducedBlisk:
     """Blisk with n DoFs: tips' translations along the blades' axes, O_d x and y, modes. No supports in it.
 
     M, K elastic, G Coriolis (skew), A = K_sigma - S at 1 rad/s: (n, n). `euler` f_t (n,) is M times the rotation by
-    1 rad, the load of an angular acceleration of -1 rad/s2. `centre` T (6, n) recovers all six DoFs of O_d.
-    `root_strain` (blades, n) is the spanwise strain at each blade's root (`root_strain_row`). `growth` is the
-    tips' steady centrifugal displacement. `rigid_inertia` (6,) is m, m, m, I_d, I_d, I_p of the
-    whole in kg, kg m2; `blade_frequency` the first one of a blade without mistuning clamped at its root, in rad/s;
+    1 rad, the load of an angular acceleration of -1 rad/s2. `centre` T (6, n) recovers all six DoFs of O_d, `roots`
+    (blades, 6, n) those of each blade's root along its axes. `growth` is the tips' steady centrifugal displacement.
+    `rigid_inertia` (6,) is m, m, m, I_d, I_d, I_p of the whole in kg, kg m2; `blade_frequency` the first one of a blade
+    without mistuning clamped at its root, in rad/s;
     `full_size` the number of DoFs of the full model.
     """
 
@@ -38,7 +37,7 @@ class ReducedBlisk:
     A: FloatArray
     euler: FloatArray
     centre: FloatArray
-    root_strain: FloatArray
+    roots: FloatArray
     growth: CentrifugalGrowth
     rigid_inertia: FloatArray
     blade_frequency: float
@@ -49,7 +48,7 @@ class ReducedBlisk:
 class _Joined:
     """Blisk after the first step: matrices (n, n), O_d first.
 
-    `tips` (blades, 6) their DoFs, `euler` f_t (n,), `root_strain` (blades, n).
+    `tips` and `roots` (blades, 6) are DoFs, `euler` f_t (n,).
     """
 
     M: FloatArray
@@ -57,7 +56,7 @@ class _Joined:
     G: FloatArray
     A: FloatArray
     tips: IntArray
-    root_strain: FloatArray
+    roots: IntArray
     euler: FloatArray
 
 
@@ -71,8 +70,7 @@ def reduce_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: 
     cuts a pair in two, as 4 does in the preset, splits frequency pairs by up to 1e-5.
     """
     model = assemble_blisk(disk, blades, support)
-    strain = root_strain_row(blades, disk.rim_radius_m, model.beam)
-    joined = _join_components(model, reduction, strain)
+    joined = _join_components(model, reduction)
     masters = np.concatenate([joined.tips[:, :3].ravel(), [0, 1]])
     held = on_springs(sp.csr_array(joined.K), support_stiffness(support))
     V = craig_bampton(sp.csr_array(joined.M), held, masters, reduction.blisk_modes)
@@ -84,7 +82,7 @@ def reduce_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: 
         A=_symmetric(V.T @ joined.A @ V),
         euler=V.T @ joined.euler,
         centre=np.ascontiguousarray(V[:6]),
-        root_strain=np.ascontiguousarray(joined.root_strain @ V),
+        roots=np.ascontiguousarray(V[joined.roots]),
         growth=centrifugal_growth(model),
         rigid_inertia=np.einsum("ij,ij->j", R, model.M @ R),
         blade_frequency=_clamped_frequency(model.beam),
@@ -92,7 +90,7 @@ def reduce_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: 
     )
 
 
-def _join_components(model: BliskModel, reduction: Reduction, strain: FloatArray) -> _Joined:
+def _join_components(model: BliskModel, reduction: Reduction) -> _Joined:
     """First step: disk [O_d, rim nodes, modes], then blades [root, tip, modes], joined at the rim."""
     count, n_blade = len(model.angles), len(model.beam.f_c)
     plate, blade = slice(0, model.disk_size), slice(model.disk_size, model.disk_size + n_blade)
@@ -124,9 +122,7 @@ def _join_components(model: BliskModel, reduction: Reduction, strain: FloatArray
         G=of_equal_blades(model.G),
         A=of_equal_blades(sp.csr_array(model.K_sigma - model.S)),
         tips=roots + 6,
-        root_strain=np.asarray(
-            block_diag(np.zeros((0, V_plate.shape[1])), np.kron(np.eye(count), strain @ V_blade[: len(strain)]))
-        ),
+        roots=roots,
         euler=np.concatenate([V_plate.T @ load[plate], on_blades.ravel()]),
     )
 

@@ -22,7 +22,7 @@ from rubgen.reduction.growth import CentrifugalGrowth
 from rubgen.scenario import Reduction
 
 _PACKAGE = Path(__file__).parents[1]
-_ARRAYS = ("M", "K", "G", "A", "euler", "centre", "root_strain", "rigid_inertia")
+_ARRAYS = ("M", "K", "G", "A", "euler", "centre", "roots", "rigid_inertia")
 _NUMBERS = ("blade_frequency", "full_size")
 _GROWTH = ("K", "A", "f", "tips", "moment")
 
@@ -97,7 +97,7 @@ def _restore(file: Mapping[str, FloatArray]) -> ReducedBlisk:
         A=file["A"],
         euler=file["euler"],
         centre=file["centre"],
-        root_strain=file["root_strain"],
+        roots=file["roots"],
         rigid_inertia=file["rigid_inertia"],
         blade_frequency=float(file["blade_frequency"]),
         full_size=int(file["full_size"]),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from rubgen.arrays import FloatArray
@@ -22,13 +23,13 @@ class CasingSurface:
 class Recovery:
     """What sensors see beside the coordinates: linear functionals of the blisk's n coordinates, and geometry.
 
-    `root_strain` (n_blades, n) spanwise strain at each blade's root. `torsion` (n,) the turn of O_d about Z, on a
-    spring `torsion_stiffness` and a damper `torsion_damping` that turn with the drive. `casing_radius` and
+    `root_strain` gives the row (n,) of the spanwise strain at a blade's root. `torsion` (n,) is the turn of O_d about
+    Z, on a spring `torsion_stiffness` and a damper `torsion_damping` that turn with the drive. `casing_radius` and
     `casing_thickness` are those of the ring in m; `chord_slope` is the tangential way along a tip's chord for one of
     axial way.
     """
 
-    root_strain: FloatArray
+    root_strain: Callable[[int], FloatArray]
     torsion: FloatArray
     torsion_stiffness: float
     torsion_damping: float

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.linalg import block_diag, eig, eigh
 from threadpoolctl import threadpool_limits
 
 from rubgen.arrays import FloatArray
+from rubgen.fem.beam import blade_matrices
+from rubgen.fem.root_strain import held_root_strain
 from rubgen.fem.statics import support_stiffness
 from rubgen.machine import Machine
 from rubgen.reduction.blisk import ReducedBlisk
@@ -95,14 +98,28 @@ class ReducedModel:
             half_thickness=machine.casing.thickness_m / 2,
             lateral_stiffness=float(self.springs[0]),
             lateral_damping=float(self.dampers[0]),
-            recovery=self._recovery(),
+            recovery=self._recovery(speed),
             turning=self._turning_forces(),
         )
 
-    def _recovery(self) -> Recovery:
+    def root_strain(self, blade: int, speed: float) -> FloatArray:
+        """Spanwise strain at a blade's root per unit of each of the blisk's DoFs, (blisk DoFs,), at `speed` (rad/s).
+
+        Tip and root come from the reduced basis; the blade between them stands as statics at that speed want it
+        (`held_root_strain`), for the basis of rest alone underrates it by 37 % at 8,500 rev/min in the preset. What
+        inertia bends between tip and root is not in it.
+        """
+        blades, rim = self.machine.blades, self.machine.disk.rim_radius_m
+        stiffness = 1 + blades.stiffness_deviations[blade]
+        tip, root = held_root_strain(blades, rim, blade_matrices(blades, rim), speed=speed, stiffness=stiffness)
+        row: FloatArray = root @ self.blisk.roots[blade]
+        row[3 * blade : 3 * blade + 3] += tip
+        return row
+
+    def _recovery(self, speed: float) -> Recovery:
         machine = self.machine
         return Recovery(
-            root_strain=self.blisk.root_strain,
+            root_strain=partial(self.root_strain, speed=speed),
             torsion=self.blisk.centre[5],
             torsion_stiffness=float(self.springs[5]),
             torsion_damping=float(self.dampers[5]),

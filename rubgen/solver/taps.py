@@ -160,10 +160,10 @@ def ring_strain_row(system: SpinningSystem, recovery: Recovery, angle: float) ->
 
 
 def _root_strain(layout: Layout, output: int, tap: RootStrain) -> None:
-    rows = layout.recovery.root_strain
-    if tap.blade >= len(rows):
-        raise ValueError(f"tap {tap.name}: blade {tap.blade} of {len(rows)}")
-    layout.add(output, position=layout.stepper.blocks.to_z(_on_blisk(layout.system, rows[tap.blade])))
+    if tap.blade >= layout.system.n_blades:
+        raise ValueError(f"tap {tap.name}: blade {tap.blade} of {layout.system.n_blades}")
+    row = layout.recovery.root_strain(tap.blade)
+    layout.add(output, position=layout.stepper.blocks.to_z(_on_blisk(layout.system, row)))
 
 
 def _drive_torque(layout: Layout, output: int, _tap: DriveTorque) -> None:

@@ -1,4 +1,4 @@
-"""What the sensors do, measured: `python -m rubgen.studies.sensor_figures [DIRECTORY]` prints it and draws two figures."""
+"""What sensors do, measured: `python -m rubgen.studies.sensor_figures [DIRECTORY]` prints it and draws two figures."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import scipy.sparse as sp
 from matplotlib.figure import Figure
 from scipy.sparse.linalg import splu
 
-from rubgen.arrays import FloatArray
+from rubgen.arrays import FloatArray, IntArray
 from rubgen.fem.blisk import assemble_blisk
 from rubgen.fem.root_strain import root_strain_row
 from rubgen.fem.statics import on_springs, support_stiffness
@@ -40,7 +40,7 @@ class Recovery:
     """Deflections (n,) of one probe in m, without each blade's mean: from arrival times, and true."""
 
     probe: str
-    blade: FloatArray
+    blade: IntArray
     time: FloatArray
     recovered: FloatArray
     true: FloatArray
@@ -54,7 +54,7 @@ class Recovery:
 def filter_response(frequencies: FloatArray) -> FloatArray:
     """Gain of the anti-alias filter for tones at these frequencies in Hz, the largest over 400 samples of each."""
     margin = int(np.ceil(half_width_seconds(RATE) * STEP_RATE)) + 1
-    positions = margin + 0.37 + np.arange(400) * STEP_RATE / RATE
+    positions: FloatArray = margin + 0.37 + np.arange(400, dtype=np.float64) * STEP_RATE / RATE
     phase = 2 * np.pi * frequencies / STEP_RATE * np.arange(int(positions[-1]) + margin + 2)[:, None]
     parts = np.concatenate([np.cos(phase), np.sin(phase)], axis=1)
     out = band_limit(parts, positions, dt=1 / STEP_RATE, sample_rate_hz=RATE)
@@ -113,7 +113,7 @@ def held_load(model: ReducedModel, speed: float) -> dict[str, tuple[float, float
     first = full.roots[blade, 0]
     return {
         "root strain, um/m": (
-            1e6 * float(model.blisk.root_strain[blade] @ q),
+            1e6 * float(model.root_strain(blade, speed) @ q),
             1e6 * float(row @ displaced[first : first + 12]),
         ),
         "drive torque, N m": (-float(model.springs[5] * model.blisk.centre[5] @ q), -HELD_N * machine.tip_radius_m),
