@@ -41,7 +41,7 @@ def simulate(scenario: Scenario) -> Run:
             tail_seconds=scenario.signal_seconds + margin_seconds(sensing, scenario.signal_seconds),
             sample_rate_hz=sensing.fastest_hz,
             taps=taps_of(sensing.set),
-            twin=scenario.labelling.lyapunov,
+            twin=scenario.labelling.lyapunov and operation.profile == "steady",
             system_at=model.at_speed,
         )
         if response.status is not Status.OK:

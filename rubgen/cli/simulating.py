@@ -94,6 +94,7 @@ def _operation(operation: Operation, options: dict[str, Any]) -> Operation:
         operation,
         settle_turns="auto" if options["settle_turns"] is None else options["settle_turns"],
         record_turns=options["record_turns"],
+        profile=options["profile"],
         steps_per_turn=options["steps_per_turn"],
     )
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from rubgen.errors import UserError
 from rubgen.labels.harmonics import FRACTIONS
+from rubgen.labels.labels import Motion
 from rubgen.scenario.sensor_set import default_sensor_set
 from rubgen.scenario.sensors import OncePerRev, SampledSensor, SensorSet, TimingProbe
 from rubgen.scenario.taps import CasingAcceleration, Tap, TipTiming
@@ -88,6 +89,23 @@ def _labels() -> list[Column]:
         _label("lyapunov_per_second", "number", "1/s", "the same by the second"),
         _label("lyapunov_error", "number", "1/turn", "its standard error"),
         _label("lyapunov_convergence", "numbers", "1/turn", "it from 1/10, 2/10, ... of the turns that count"),
+        *_course(),
+    ]
+
+
+def _course() -> list[Column]:
+    classes = ", ".join(f"{number} {motion.value}" for number, motion in enumerate(Motion))
+    return [
+        _label("onset_speed_rpm", "number", "rev/min", "speed at the first touch; null without or at a steady speed"),
+        _label("end_of_rub_speed_rpm", "number", "rev/min", "speed at the end of the last touch"),
+        _label("change_times_s", "numbers", "s", "times from the record's start at which labels change; first 0"),
+        _label("change_speeds_rpm", "numbers", "rev/min", "speed at each"),
+        _label("change_rub", "integers", "", "1 where a rub goes on from there, else 0"),
+        _label("change_impulse_per_turn_n_s", "numbers", "N s", "mean normal impulse a turn until the next"),
+        _label("change_motion_classes", "integers", "", f"class of motion from there on: {classes}"),
+        _label("window_starts_s", "numbers", "s", "starts of windows of 16 turns"),
+        _label("window_speeds_rpm", "numbers", "rev/min", "mean speed of each"),
+        _label("window_impulse_per_turn_n_s", "numbers", "N s", "mean normal impulse a turn of each"),
     ]
 
 
@@ -100,6 +118,7 @@ def _orders(tap: Tap) -> list[Column]:
     name, unit = tap.name, tap.UNIT
     return [
         _label(f"{name}_orders", "numbers", unit, f"peak amplitudes of {name} at k f_r, k = 1..20"),
+        _label(f"{name}_window_amplitudes", "numbers", unit, "the same window by window, twenty after twenty"),
         _label(f"{name}_even_share", "number", "1", "share of the squares on even k"),
         _label(f"{name}_odd_share", "number", "1", "share of the squares on odd k"),
         _label(f"{name}_dominant_order", "integer", "", "k of the largest amplitude"),

@@ -8,6 +8,7 @@ from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 from mcap.writer import Writer
 
 from rubgen.io.durable import write_durably
@@ -98,7 +99,7 @@ def _write_messages(writer: Writer, run: Run, recording: Recording, labels: Labe
     add("/once_per_rev", schemas["OncePerRev"], _pulses(recording))
     for name, seen in recording.tip_timing.items():
         add(f"{TIMING}{name}", schemas["BladePassage"], _passages(seen), _describe_probe(run, name))
-    add("/labels/motion", schemas["MotionLabel"], iter([_motion(labels)]))
+    add("/labels/motion", schemas["MotionLabel"], _motions(labels, recording))
     frames = motion_frames(run.response, recording)
     if frames is not None:
         add("/motion/frames", schemas["MotionFrame"], _frames(frames))
@@ -177,15 +178,28 @@ def _passages(seen: TipTimes) -> Iterator[Stamped]:
         yield time, passage.SerializeToString(deterministic=True)
 
 
-def _motion(labels: Labels) -> Stamped:
-    motion = message_class("MotionLabel")(
-        timestamp=timestamp(0),
-        motion=labels.motion.value,
-        motion_blisk=labels.motion_blisk.value,
-        motion_casing=labels.motion_casing.value,
-        period=labels.period or 0,
-    )
-    return 0, motion.SerializeToString(deterministic=True)
+def _motions(labels: Labels, recording: Recording) -> Iterator[Stamped]:
+    """The class from the first sample on, and where the speed changes each later one within the recording."""
+    message = message_class("MotionLabel")
+    if labels.course is None:
+        stretches = [(0, labels.motion, labels.motion_blisk, labels.motion_casing, labels.period or 0)]
+    else:
+        last = recording.samples / recording.sample_rate_hz
+        times = [change.time - recording.start_seconds for change in labels.course.changes]
+        stretches = [
+            (max(0, nanoseconds(time)), change.motion, change.blisk, change.casing, 0)
+            for time, after, change in zip(times, [*times[1:], np.inf], labels.course.changes, strict=True)
+            if after > 0 and time < last
+        ]
+    for time, system, blisk, casing, period in stretches:
+        label = message(
+            timestamp=timestamp(time),
+            motion=system.value,
+            motion_blisk=blisk.value,
+            motion_casing=casing.value,
+            period=period,
+        )
+        yield time, label.SerializeToString(deterministic=True)
 
 
 def _frames(frames: MotionFrames) -> Iterator[Stamped]:

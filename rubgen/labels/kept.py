@@ -80,7 +80,7 @@ def response_of(kept: Kept) -> Response:
 
 def as_kept(response: Response) -> Response:
     """The response with the precision that is kept, and its taps."""
-    return replace(response_of(keep(response)), taps=response.taps)
+    return replace(response_of(keep(response)), taps=response.taps, course=response.course)
 
 
 def _touches(kept: Kept) -> ContactEvents:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rubgen.labels.contact_zones import contact_zones
+from rubgen.labels.course import by_angle, course_labels, course_motion, course_orders
 from rubgen.labels.harmonics import MARKED_TAP, harmonics
 from rubgen.labels.kept import as_kept
 from rubgen.labels.labels import Labels
@@ -16,20 +17,22 @@ def label(response: Response) -> Labels:
 
     Contact and motion come from the whole record, orders from its last 100 turns: nothing depends on how long the
     tail of the taps is. Labels are those of the true response, before any sensor. A motion is safely told from 500
-    recorded turns on (recipes ask for them); fewer are taken too, down to 32, where UserError is raised.
+    recorded turns on (recipes ask for them); fewer are taken too, down to 32, where UserError is raised. Where the
+    speed changes, see `course`.
     """
     response = as_kept(response)
     contact_steps = int(response.contact_steps_per_turn.sum())
     rub = contact_steps > 0
-    zones = contact_zones(response.events, steps_per_turn=response.steps_per_turn)
+    zones = contact_zones(by_angle(response), steps_per_turn=response.steps_per_turn)
     exponent = lyapunov_of(response)
-    parts = motion(response, exponent)
-    orders = harmonics(response)
+    course = course_labels(response) if response.course else None
+    parts = course_motion(rub) if course else motion(response, exponent)
+    orders = course_orders(course.windows) if course else harmonics(response)
     present = orders[MARKED_TAP].present if rub else ()
     turn = response.turn_seconds
     return Labels(
         rub=rub,
-        contact_duty=contact_steps / (response.record_turns * response.steps_per_turn),
+        contact_duty=contact_steps / _record_steps(response),
         impulse_per_turn=float(response.impulse_per_turn.mean()),
         blades_touched=len(set(response.events.blade.tolist())),
         contact_zones=len(zones.centres),
@@ -59,4 +62,11 @@ def label(response: Response) -> Labels:
         stray_casing=parts.indicators[1].stray if len(parts.indicators) > 1 else None,
         segment_starts=tuple(segment.start * turn for segment in parts.segments),
         segment_periods=tuple(segment.period for segment in parts.segments),
+        course=course,
     )
+
+
+def _record_steps(response: Response) -> int:
+    if response.course is not None:
+        return int(response.course.turn_steps[-1])
+    return response.record_turns * response.steps_per_turn

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 from rubgen.arrays import FloatArray
 from rubgen.labels.harmonics import TapOrders
 from rubgen.labels.lyapunov import Exponent
+
+if TYPE_CHECKING:
+    from rubgen.labels.course import CourseLabels
 
 
 class Motion(StrEnum):
@@ -33,7 +37,9 @@ class Labels:
     `lyapunov` is the largest exponent of the whole system in 1/turn, None where it was switched off.
     `motion_symmetric` is None unless the motion is period-1 in contact. `zero_one_k` is K of the 0-1 test, `stray_*`
     how far the points of the section lie from where they should come back to, over the motion. Segments are empty
-    unless the motion switches: starts in s from the record's, periods in turns, 0 where it is irregular.
+    unless the motion switches: starts in s from the record's, periods in turns, 0 where it is irregular. Where the
+    speed changes, `course` tells how the labels go with time; the motion of the whole is undecided in contact, and
+    `orders` are the root mean squares of those of windows.
     """
 
     rub: bool
@@ -67,3 +73,4 @@ class Labels:
     segment_starts: tuple[float, ...] = ()
     segment_periods: tuple[int, ...] = ()
     lyapunov_per_second: float | None = None
+    course: CourseLabels | None = None

@@ -5,7 +5,11 @@ from __future__ import annotations
 import math
 
 from rubgen.arrays import FloatArray
-from rubgen.labels.labels import Labels
+from rubgen.labels.course import CourseLabels
+from rubgen.labels.labels import Labels, Motion
+
+CLASSES = list(Motion)
+"""Classes of motion by their number in `change_motion_classes`."""
 
 
 def labels_dict(labels: Labels) -> dict[str, object]:
@@ -35,6 +39,7 @@ def labels_dict(labels: Labels) -> dict[str, object]:
         "has_2fr": bool(labels.has_2fr),
         "orders_present": [int(order) for order in labels.orders_present],
         **_lyapunov_labels(labels),
+        **_course_labels(labels.course),
     }
     for tap in labels.orders:
         plain |= _order_labels(labels, tap)
@@ -69,9 +74,31 @@ def _lyapunov_labels(labels: Labels) -> dict[str, object]:
     }
 
 
+def _course_labels(course: CourseLabels | None) -> dict[str, object]:
+    changes, windows = course.changes if course else (), course.windows if course else None
+    return {
+        "onset_speed_rpm": _rpm(course.onset_speed) if course else None,
+        "end_of_rub_speed_rpm": _rpm(course.end_of_rub_speed) if course else None,
+        "change_times_s": [_number(change.time) for change in changes],
+        "change_speeds_rpm": [_rpm(change.speed) for change in changes],
+        "change_rub": [int(change.rub) for change in changes],
+        "change_impulse_per_turn_n_s": [_number(change.impulse) for change in changes],
+        "change_motion_classes": [CLASSES.index(change.motion) for change in changes],
+        "window_starts_s": windows.start.tolist() if windows else [],
+        "window_speeds_rpm": [_rpm(speed) for speed in windows.speed.tolist()] if windows else [],
+        "window_impulse_per_turn_n_s": windows.impulse.tolist() if windows else [],
+    }
+
+
+def _rpm(speed: float | None) -> float | None:
+    return None if speed is None else _number(speed * 30 / math.pi)
+
+
 def _order_labels(labels: Labels, tap: str) -> dict[str, object]:
+    windows = labels.course.windows.orders[tap].ravel().tolist() if labels.course else []
     plain: dict[str, object] = {
         f"{tap}_orders": _numbers(labels.orders[tap]),
+        f"{tap}_window_amplitudes": windows,
         f"{tap}_even_share": _number(labels.even_share[tap]),
         f"{tap}_odd_share": _number(labels.odd_share[tap]),
         f"{tap}_dominant_order": int(labels.dominant_order[tap]),

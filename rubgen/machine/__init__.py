@@ -16,6 +16,7 @@ from rubgen.machine.machine import (
     Positive,
     Ratio,
     SqueezeFilm,
+    Unbalance,
 )
 
 __all__ = [
@@ -33,6 +34,7 @@ __all__ = [
     "Positive",
     "Ratio",
     "SqueezeFilm",
+    "Unbalance",
     "load_machine",
     "preset_names",
 ]

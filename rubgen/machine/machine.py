@@ -191,9 +191,30 @@ class Damping:
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
+class Unbalance:
+    """One more unbalance, mass times radius: on the disk at an angle, or at the tip of a blade.
+
+    The angle is from blade 0, in the sense of rotation. At a tip it also pulls the blade out and, where the speed
+    changes, bends it: on the disk it moves O_d alone.
+    """
+
+    kg_m: NonNegative
+    angle_deg: Finite | None = None
+    blade: Annotated[int, Field(ge=0)] | None = None
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Self:
+        if (self.angle_deg is None) == (self.blade is None):
+            raise ValueError("must have angle_deg or blade; give one of the two")
+        return self
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
 class Machine:
     """A blisk on its supports, with its unbalance and damping, in its casing.
 
+    `unbalance_kg_m` stands on the disk at `unbalance_angle_deg` from blade 0, in the sense of rotation; there may
+    be more, the `unbalances`.
     Gravity acts along -Y on the blisk alone; the casing's own sag counts as part of its shape. 0 is a vertical axis.
     """
 
@@ -204,7 +225,17 @@ class Machine:
     disk_support: DiskSupport
     damping: Damping
     unbalance_kg_m: NonNegative
+    unbalance_angle_deg: Finite = 0.0
+    unbalances: tuple[Unbalance, ...] = ()
     gravity_m_per_s2: NonNegative = 0.0
+
+    @model_validator(mode="after")
+    def _unbalances_have_their_blades(self) -> Self:
+        for each in self.unbalances:
+            if each.blade is not None and each.blade >= self.blades.count:
+                last = self.blades.count - 1
+                raise ValueError(f"unbalances: there is no blade {each.blade}; give 0 to {last}")
+        return self
 
     @property
     def tip_radius_m(self) -> float:

@@ -13,7 +13,7 @@ from rubgen.arrays import FloatArray
 from rubgen.fem.beam import blade_matrices
 from rubgen.fem.root_strain import held_root_strain
 from rubgen.fem.statics import support_stiffness
-from rubgen.machine import Machine
+from rubgen.machine import Machine, Unbalance
 from rubgen.reduction.blisk import ReducedBlisk
 from rubgen.reduction.cache import cached_blisk
 from rubgen.reduction.casing import ReducedCasing, reduce_casing
@@ -61,7 +61,7 @@ class ReducedModel:
         Blisk: C = 2 Omega G + C_s + beta K_e, K = K_e + K_s + Omega^2 (K_sigma - S) + Omega H_s, with
         C_s = T^T C T and H_s = T^T C S6 T of the dampers C = diag(c) in the inertial frame, which act on the absolute
         velocity (S6 is e_z x). The term Omega H_s makes K unsymmetric. Casing modes: 1, 2 zeta omega, omega^2.
-        The unbalance Omega^2 U acts on O_d x, that of uneven growth (mistuned blades) on O_d x and y.
+        Each unbalance acts with Omega^2 U outward, on O_d or on a tip, that of uneven growth (mistuned blades) on O_d.
         A changing speed adds Omega' G to K and -Omega' (f_t + e_z x U) to the forces (Euler term); what acceleration
         and change of the tips' steady growth bring is left out, a share Omega' / Omega^2 of it at most.
         """
@@ -77,7 +77,7 @@ class ReducedModel:
         count = machine.blades.count
         force = np.zeros(self.reduced_dof)
         force[3 * count : 3 * count + 2] = speed**2 * blisk.growth.unbalance(speed)
-        force[3 * count] += speed**2 * machine.unbalance_kg_m
+        self._add_unbalances(force, speed**2)
         if acceleration:
             K += acceleration * blisk.G
             force -= acceleration * self._euler_load(force / speed**2)
@@ -140,6 +140,18 @@ class ReducedModel:
         return TurningForces(
             stiffness=stiffness, damping=damping, film=support.squeeze_film, weight=weight if g else None
         )
+
+    def _add_unbalances(self, force: FloatArray, scale: float) -> None:
+        """Add each unbalance times `scale` along its own direction, on O_d or on a tip."""
+        machine, centre = self.machine, 3 * self.machine.blades.count
+        main = Unbalance(kg_m=machine.unbalance_kg_m, angle_deg=machine.unbalance_angle_deg)
+        for each in (main, *machine.unbalances):
+            if each.blade is not None:
+                force[3 * each.blade] += scale * each.kg_m
+            else:
+                angle = np.deg2rad(each.angle_deg or 0.0)
+                force[centre] += scale * each.kg_m * np.cos(angle)
+                force[centre + 1] += scale * each.kg_m * np.sin(angle)
 
     def _euler_load(self, unbalance: FloatArray) -> FloatArray:
         """f_t + e_z x U (n,): what Omega' loads, with U (n,) in kg m as the forces on tips and O_d at 1 rad/s."""

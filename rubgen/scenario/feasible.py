@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from rubgen.errors import UserError
+from rubgen.scenario.profiles import profile_problem
 from rubgen.scenario.scenario import Scenario
 from rubgen.scenario.sensors import BladeStrain, TimingProbe
 
@@ -25,18 +26,28 @@ def check_feasible(scenario: Scenario, source: str = "") -> None:
             raise UserError(source + text)
 
 
+def _profile_problem(scenario: Scenario) -> str | None:
+    problem = profile_problem(scenario.operation)
+    return problem and f"operation.{problem}"
+
+
 def _record_problem(scenario: Scenario) -> str | None:
     turns = scenario.operation.record_turns
-    if turns >= MIN_RECORD_TURNS:
+    if turns >= MIN_RECORD_TURNS or scenario.operation.profile != "steady":
         return None
     return f"simulation.record_turns = {turns}: labels need at least {MIN_RECORD_TURNS} turns; raise it"
 
 
 def _tail_problem(scenario: Scenario) -> str | None:
     operation = scenario.operation
-    longest = operation.record_turns / operation.rotation_frequency_hz
+    longest = operation.duration_s or operation.record_turns / operation.rotation_frequency_hz
     if scenario.signal_seconds <= longest:
         return None
+    if operation.duration_s:
+        return (
+            f"output.signal_seconds = {scenario.signal_seconds:g}: the record lasts {longest:.4g} s, "
+            "operation.duration_s; lower it or raise that"
+        )
     return (
         f"output.signal_seconds = {scenario.signal_seconds:g}: the record lasts {longest:.4g} s "
         f"({operation.record_turns} turns at {operation.speed_rpm:g} rev/min); lower it or raise record_turns"
@@ -45,7 +56,13 @@ def _tail_problem(scenario: Scenario) -> str | None:
 
 def _highest_hz(scenario: Scenario) -> float:
     """The highest sample rate that the most steps can feed."""
-    return MAX_STEPS_PER_TURN * scenario.operation.rotation_frequency_hz / STEPS_PER_SAMPLE
+    return MAX_STEPS_PER_TURN * _highest_speed_rpm(scenario) / 60 / STEPS_PER_SAMPLE
+
+
+def _highest_speed_rpm(scenario: Scenario) -> float:
+    """The speed that sets the step."""
+    operation = scenario.operation
+    return max(operation.speed_rpm, operation.end_speed_rpm or 0.0) + operation.fluctuation_rpm
 
 
 def _rate_problem(scenario: Scenario) -> str | None:
@@ -122,5 +139,13 @@ def _axial_problem(scenario: Scenario) -> str | None:
     return None
 
 
-PROBLEMS = (_record_problem, _tail_problem, _rate_problem, _steps_problem, _lobe_problem, _node_problem)
+PROBLEMS = (
+    _profile_problem,
+    _record_problem,
+    _tail_problem,
+    _rate_problem,
+    _steps_problem,
+    _lobe_problem,
+    _node_problem,
+)
 SENSOR_PROBLEMS = (_front_end_problem, _blade_problem, _axial_problem)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rubgen.scenario.scenario import Operation
+from rubgen.scenario.scenario import RPM, Operation
 
 PROFILE_KEYS: dict[str, tuple[str, ...]] = {
     "steady": (),
@@ -15,7 +15,7 @@ PROFILE_KEYS: dict[str, tuple[str, ...]] = {
 
 def profile_problem(operation: Operation) -> str | None:
     """What is wrong with an operation's profile, as key, value, what is allowed and how to mend it; None if nothing."""
-    return _key_problem(operation) or _value_problem(operation)
+    return _key_problem(operation) or _value_problem(operation) or _band_problem(operation)
 
 
 def _key_problem(operation: Operation) -> str | None:
@@ -42,4 +42,16 @@ def _value_problem(operation: Operation) -> str | None:
         return f"end_speed_rpm = {end:g}: a coast-down ends below its start, speed_rpm = {start:g}; lower it"
     if operation.fluctuation_rpm >= start:
         return f"fluctuation_rpm = {operation.fluctuation_rpm:g}: must be below speed_rpm = {start:g}; lower it"
+    return None
+
+
+def _band_problem(operation: Operation) -> str | None:
+    rotation = operation.rotation
+    slowest, fastest = rotation.slowest / RPM, rotation.fastest / RPM
+    for low, high in operation.forbidden_speed_rpm:
+        if low > high:
+            return f"forbidden_speed_rpm = [{low:g}, {high:g}]: the lower end comes first; swap the two"
+        if slowest <= high * (1 + 1e-12) and fastest >= low * (1 - 1e-12):
+            way = f"goes from {slowest:g} to {fastest:g}" if fastest > slowest else f"is {slowest:g}"
+            return f"forbidden_speed_rpm = [{low:g}, {high:g}]: the speed {way} rev/min; stay out of the band"
     return None

@@ -17,7 +17,16 @@ from rubgen.machine.problems import first_problem
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.sampling import sobol_point
-from rubgen.scenario.scenario import ContactLaw, Labelling, Operation, Reduction, Scenario, Sensing, TurnCount
+from rubgen.scenario.scenario import (
+    ContactLaw,
+    Labelling,
+    Operation,
+    ProfileName,
+    Reduction,
+    Scenario,
+    Sensing,
+    TurnCount,
+)
 from rubgen.scenario.sensor_set import DEFAULT_SET, load_sensor_set
 from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, vary
 
@@ -34,6 +43,18 @@ class Simulation(BaseModel):
     record_turns: TurnCount = 500
     steps_per_turn: TurnCount = 1024
     closing_turns: TurnCount = 40
+
+
+class Profile(BaseModel):
+    """`[operation]`: how the speed goes, as in `Operation`; it starts at `speed_rpm` of `[vary]`."""
+
+    model_config = _STRICT
+    profile: ProfileName = "steady"
+    end_speed_rpm: Positive | None = None
+    duration_s: Positive | None = None
+    fluctuation_rpm: NonNegative = 0.0
+    fluctuation_period_s: Positive = 1.0
+    forbidden_speed_rpm: tuple[tuple[Positive, Positive], ...] = ()
 
 
 class Output(BaseModel):
@@ -77,6 +98,7 @@ class Recipe(BaseModel):
     machine: Annotated[str, Field(min_length=1)]
     license: Annotated[str, Field(min_length=1)] = "CC-BY-4.0"
     vary: Vary = Vary()
+    operation: Profile = Profile()
     simulation: Simulation = Simulation()
     sensors: Sensors = Sensors()
     labels: Labelling = Labelling()
@@ -92,7 +114,9 @@ class Recipe(BaseModel):
         machine = self._machine or load_machine(self.machine, self._folder)
         return Scenario(
             machine=machine,
-            operation=Operation(speed_rpm=DEFAULT_SPEED_RPM, **self.simulation.model_dump()),
+            operation=Operation(
+                speed_rpm=DEFAULT_SPEED_RPM, **self.simulation.model_dump(), **self.operation.model_dump()
+            ),
             contact=self.contact,
             reduction=self.reduction,
             sensing=self.sensing,

@@ -44,6 +44,7 @@ class Operation:
     record: linear to `end_speed_rpm` within `duration_s`, and to the end of that turn. "fluctuating": speed_rpm +
     fluctuation_rpm sin(2 pi t / fluctuation_period_s) from the start of the settling on, t = 0 at that of the record,
     which lasts `duration_s` and to the end of that turn. `profile_problem` says what does not fit together.
+    The speed must stay out of the bands `forbidden_speed_rpm`, each a lower and an upper end.
     """
 
     speed_rpm: Positive
@@ -56,6 +57,7 @@ class Operation:
     duration_s: Positive | None = None
     fluctuation_rpm: NonNegative = 0.0
     fluctuation_period_s: Positive = 1.0
+    forbidden_speed_rpm: tuple[tuple[Positive, Positive], ...] = ()
 
     @property
     def rotation(self) -> Rotation:

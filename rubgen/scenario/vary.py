@@ -48,8 +48,17 @@ class Parameter:
         return low if math.isinf(self.maximum) else f"{low} and at most {self.maximum:g}"
 
 
-def _operation(scenario: Scenario, value: float) -> Scenario:
-    return replace(scenario, operation=replace(scenario.operation, speed_rpm=value))
+def _operation(name: str) -> Callable[[Scenario, float], Scenario]:
+    def apply(scenario: Scenario, value: float) -> Scenario:
+        changes: dict[str, Any] = {name: value}
+        return replace(scenario, operation=replace(scenario.operation, **changes))
+
+    return apply
+
+
+def _record_seconds(scenario: Scenario) -> float:
+    operation = scenario.operation
+    return operation.duration_s or operation.record_turns / operation.rotation_frequency_hz
 
 
 def _casing(*names: str) -> Callable[[Scenario, float], Scenario]:
@@ -88,6 +97,10 @@ def _unbalance(scenario: Scenario, value: float) -> Scenario:
     return replace(scenario, machine=replace(scenario.machine, unbalance_kg_m=value))
 
 
+def _unbalance_angle(scenario: Scenario, value: float) -> Scenario:
+    return replace(scenario, machine=replace(scenario.machine, unbalance_angle_deg=value))
+
+
 def _lateral_damping(scenario: Scenario, value: float) -> Scenario:
     damping = replace(scenario.machine.damping, lateral=value)
     return replace(scenario, machine=replace(scenario.machine, damping=damping))
@@ -97,9 +110,9 @@ PARAMETERS = (
     Parameter(
         key="speed_rpm",
         unit="rev/min",
-        meaning="spin speed",
+        meaning="spin speed, of a run-up or coast-down at its start",
         read=lambda scenario: scenario.operation.speed_rpm,
-        apply=_operation,
+        apply=_operation("speed_rpm"),
     ),
     Parameter(
         key="clearance_m",
@@ -189,6 +202,45 @@ PARAMETERS = (
         meaning="gravity along -Y on the blisk; 0 for a vertical axis",
         read=lambda scenario: scenario.machine.gravity_m_per_s2,
         apply=_gravity,
+        above=False,
+    ),
+    Parameter(
+        key="end_speed_rpm",
+        unit="rev/min",
+        meaning="spin speed at the end of a run-up or coast-down",
+        read=lambda scenario: scenario.operation.end_speed_rpm or scenario.operation.speed_rpm,
+        apply=_operation("end_speed_rpm"),
+    ),
+    Parameter(
+        key="duration_s",
+        unit="s",
+        meaning="duration of the record, and of a run-up or coast-down",
+        read=_record_seconds,
+        apply=_operation("duration_s"),
+    ),
+    Parameter(
+        key="fluctuation_rpm",
+        unit="rev/min",
+        meaning="amplitude of a fluctuation of the speed",
+        read=lambda scenario: scenario.operation.fluctuation_rpm,
+        apply=_operation("fluctuation_rpm"),
+        above=False,
+    ),
+    Parameter(
+        key="fluctuation_period_s",
+        unit="s",
+        meaning="period of a fluctuation of the speed",
+        read=lambda scenario: scenario.operation.fluctuation_period_s,
+        apply=_operation("fluctuation_period_s"),
+    ),
+    Parameter(
+        key="unbalance_angle_deg",
+        unit="deg",
+        meaning="angle of the unbalance from blade 0, in the sense of rotation",
+        read=lambda scenario: scenario.machine.unbalance_angle_deg,
+        apply=_unbalance_angle,
+        minimum=-360.0,
+        maximum=360.0,
         above=False,
     ),
 )

@@ -12,9 +12,9 @@ from rubgen.scenario.sensors import OncePerRev, SampledSensor, TimingProbe
 from rubgen.sensors.blade_tip_timing import TipTimes, blurred, tip_times
 from rubgen.sensors.chain import half_width_seconds, late_seconds
 from rubgen.sensors.channel import Channel, Recording
-from rubgen.sensors.kind import in_turn
-from rubgen.sensors.once_per_rev import arrival_times, pulse_channel
+from rubgen.sensors.once_per_rev import pulse_channel
 from rubgen.sensors.sampled import feed_of, filtered, recorded
+from rubgen.sensors.shaft import pulse_times, record_steps, shaft_angle, tail_steps
 from rubgen.solver.response import Response
 
 
@@ -30,11 +30,11 @@ def measure(response: Response, sensing: Sensing, *, seconds: float, rng: np.ran
     """
     rate, sensors = sensing.sample_rate_hz, sensing.set.sensors
     positions = sample_positions(response, sensing, seconds)
-    angle = _blisk_angle(response, positions)
+    angle = shaft_angle(response, positions)
     covered = positions.size / rate
-    start = (response.record_turns * response.steps_per_turn - 1) * response.dt - half_width_seconds(rate)
+    start = (record_steps(response) - 1) * response.dt - half_width_seconds(rate)
     start -= late_seconds(sensing, seconds) + (positions.size - 1) / rate
-    pulses = arrival_times(float(angle[0]), 2 * np.pi / response.turn_seconds, covered)
+    pulses = pulse_times(response, float(angle[0]), start, covered)
     streams = dict(zip((sensor.name for sensor in sensors), rng.spawn(len(sensors)), strict=True))
     channels = _channels(response, sensing, positions, angle, streams)
     timing: dict[str, TipTimes] = {}
@@ -65,7 +65,7 @@ def sample_positions(response: Response, sensing: Sensing, seconds: float) -> Fl
             f"sample_rate_hz = {rate:g}: at most {highest:.6g} Hz with {1 / dt:.6g} steps a second; "
             "lower sample_rate_hz or raise steps_per_turn"
         )
-    tail = _tail_steps(response)
+    tail = tail_steps(response)
     half_width, late = half_width_seconds(rate) / dt, late_seconds(sensing, seconds) / dt
     count = round(seconds * rate)
     positions = (tail - 1 - half_width - late) - np.arange(count - 1, -1, -1) / (rate * dt)
@@ -87,7 +87,7 @@ def _channels(
     streams: dict[str, np.random.Generator],
 ) -> dict[str, Channel]:
     """The sampled channels and the pulse, in the order of the set."""
-    shaft = in_turn((np.arange(_tail_steps(response)) - _tail_steps(response)) * (2 * np.pi / response.steps_per_turn))
+    shaft = shaft_angle(response, np.arange(tail_steps(response)))
     feeds = [feed_of(sensor, response, shaft, sensing.set) for sensor in sensing.set.sampled]
     samples = filtered(feeds, positions, dt=response.dt, sensing=sensing)
     channels: dict[str, Channel] = {}
@@ -97,11 +97,3 @@ def _channels(
         if isinstance(sensor, OncePerRev):
             channels[sensor.name] = pulse_channel(angle, sensor.name, keep_clean=sensing.keep_clean)
     return channels
-
-
-def _tail_steps(response: Response) -> int:
-    return next(iter(response.taps.values())).size
-
-
-def _blisk_angle(response: Response, positions: FloatArray) -> FloatArray:
-    return in_turn((positions - _tail_steps(response)) * (2 * np.pi / response.steps_per_turn))

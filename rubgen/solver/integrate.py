@@ -8,7 +8,7 @@ from collections import deque
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rubgen.arrays import FloatArray
+from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.contact.liner_kernels import REMOVED, WORK
 from rubgen.errors import UserError
 from rubgen.reduction.model import SpinningSystem
@@ -43,6 +43,7 @@ from rubgen.solver.support_kernels import ANISOTROPY, FILM, FILM_LOSS, GRAVITY
 from rubgen.solver.taps import sampled_taps, timing_taps
 from rubgen.solver.track import TrackKeeper
 from rubgen.solver.turn_kernels import STEPS, close_touches
+from rubgen.solver.turn_orders import turn_orders
 from rubgen.solver.twin import Twin, check_turns, piece_ends
 from rubgen.solver.worn_liner import worn_liner
 
@@ -98,6 +99,7 @@ class Integration:
         self.impulse = np.zeros(self.record)
         self.contact_steps = np.zeros(self.record, dtype=np.int64)
         self.touches: list[FloatArray] = []
+        self.orders: list[ComplexArray] = []
         self.track = TrackKeeper(settle + self.record - signal_turns)
         self.growth = Growth(stepper)
         self.start_energy = stepper.energy()
@@ -141,6 +143,9 @@ class Integration:
             self.section[row] = result.section
             self.impulse[row], self.contact_steps[row] = result.summary[0], int(result.summary[1])
             self.touches += self.spin.touches
+            if not self.rotation.is_steady:
+                steps = np.arange(self.spin.first_step(turn), self.spin.first_step(turn + 1) + 1)
+                self.orders.append(turn_orders(result.taps, self.rotation.angle(steps * self.stepper.dt)))
             if self.twin is not None:
                 # Beside a surface that has worn within the turn no trajectory is near the run's own.
                 same_surface = liner.book[REMOVED] == removed
@@ -153,7 +158,11 @@ class Integration:
     def course(self) -> Course:
         """How the speed went over the record."""
         turns = range(self.settle, self.settle + self.record + 1)
-        return Course(rotation=self.rotation, turn_steps=np.array([self.spin.first_step(turn) for turn in turns]))
+        return Course(
+            rotation=self.rotation,
+            turn_steps=np.array([self.spin.first_step(turn) for turn in turns]),
+            orders=np.array(self.orders),
+        )
 
     def energy_residual(self) -> float:
         """|E - E_start - works| over the summed absolute works, or over the largest |E| where no work is done.

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from rubgen.arrays import FloatArray, IntArray
+from rubgen.arrays import ComplexArray, FloatArray, IntArray
 from rubgen.scenario.rotation import Rotation
 
 
@@ -127,11 +127,13 @@ class Course:
     """A changing speed: `rotation` holds speed (rad/s) and angle over time, t = 0 at the first step of the record.
 
     Turn k of the record begins at step `turn_steps[k]` (record_turns + 1,), counted from that one: the step nearest to
-    theta = 2 pi k.
+    theta = 2 pi k. `orders` (record_turns, taps, 20) are complex amplitudes of each tap in each turn, in the order of
+    `Response.taps`: 2 / turn times the integral of x exp(-i k theta) over the angle, k = 1 .. 20.
     """
 
     rotation: Rotation
     turn_steps: IntArray
+    orders: ComplexArray
 
 
 @dataclass(frozen=True, kw_only=True)
