@@ -32,12 +32,30 @@ NAMES = [
     "lyapunov_per_second",
     "lyapunov_error",
     "lyapunov_convergence",
+    "onset_speed_rpm",
+    "end_of_rub_speed_rpm",
+    "change_times_s",
+    "change_speeds_rpm",
+    "change_rub",
+    "change_impulse_per_turn_n_s",
+    "change_motion_classes",
+    "window_starts_s",
+    "window_speeds_rpm",
+    "window_impulse_per_turn_n_s",
 ]
 
 
 def test_labels_have_their_public_names(rub_run):
     taps = ["blisk_x", "casing_acc_0", "contact_force"]
-    endings = ["orders", "even_share", "odd_share", "dominant_order", "order_phases_rad", "order_floors"]
+    endings = [
+        "orders",
+        "window_amplitudes",
+        "even_share",
+        "odd_share",
+        "dominant_order",
+        "order_phases_rad",
+        "order_floors",
+    ]
     endings += ["fractional_amplitudes", "blade_passing"]
     assert list(labels_dict(rub_run.labels)) == NAMES + [f"{tap}_{ending}" for tap in taps for ending in endings]
 

@@ -7,7 +7,37 @@ from rubgen.scenario import load_recipe, make_scenario, parse_recipe
 
 GOOD = 'name = "a"\nruns = 2\nmachine = "zeng2019"\n'
 VARY = GOOD + "[vary]\n"
+RUN_UP = GOOD + '[operation]\nprofile = "run-up"\n'
 CASES = {
+    "run-up without an end": (
+        RUN_UP + "duration_s = 2",
+        'operation.end_speed_rpm: the profile "run-up" needs it; add it',
+    ),
+    "run-up downward": (
+        RUN_UP + "duration_s = 2\nend_speed_rpm = 12000\n[vary]\nend_speed_rpm = { uniform = [9000, 11000] }",
+        "operation.end_speed_rpm = 9000: a run-up ends above its start, speed_rpm = 10000; raise it",
+    ),
+    "unknown profile": (GOOD + '[operation]\nprofile = "runup"', "operation.profile = 'runup': "),
+    "key of another profile": (
+        VARY + "fluctuation_rpm = 3",
+        'operation.fluctuation_rpm = 3: the profile "steady" has none; remove it or choose another profile',
+    ),
+    "run-up through a forbidden band": (
+        RUN_UP + "duration_s = 2\nend_speed_rpm = 12000\nforbidden_speed_rpm = [[10500, 10600]]",
+        "operation.forbidden_speed_rpm = [10500, 10600]: the speed goes from 10000 to 12000 rev/min; stay out of the",
+    ),
+    "steady in a forbidden band": (
+        GOOD + "[operation]\nforbidden_speed_rpm = [[1, 2], [9000, 10000]]",
+        "operation.forbidden_speed_rpm = [9000, 10000]: the speed is 10000 rev/min; stay out of the band",
+    ),
+    "band upside down": (
+        GOOD + "[operation]\nforbidden_speed_rpm = [[3000, 2000]]",
+        "operation.forbidden_speed_rpm = [3000, 2000]: the lower end comes first; swap the two",
+    ),
+    "signal beyond the run-up": (
+        RUN_UP + "duration_s = 0.9\nend_speed_rpm = 12000",
+        "output.signal_seconds = 1: the record lasts 0.9 s, operation.duration_s; lower it or raise that",
+    ),
     "unknown key": (GOOD + "sede = 3", "sede: unknown key; did you mean seed?"),
     "unknown key of a table": (
         GOOD + "[output]\nformat = ['mcap']",
