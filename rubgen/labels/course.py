@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from rubgen.arrays import ComplexArray, FloatArray, IntArray
+from rubgen.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from rubgen.labels.decision import AT_REST, FORCED, MotionClass
 from rubgen.labels.harmonics import FRACTIONS, HIGHEST_ORDER, MARKED_TAP, OPPOSITE_TAP, SIDEBANDS, TapOrders
 from rubgen.labels.labels import Motion
@@ -25,9 +25,10 @@ UNDECIDED = MotionClass(motion=Motion.UNDECIDED, period=None, confidence=0.0)
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """From `time` (s from the start of the record) on: rub or not, mean impulse a turn (N s), motion; speed in rad/s.
+    """From `time` (s from the record's start) on: rub, mean impulse a turn (N s), motion; `speed` (rad/s) there.
 
-    A rub begins with its first touch and ends with the end of its last one; other changes come with a window.
+    A rub begins with its first touch and ends with the end of its last one, when none follows within WINDOW_TURNS
+    turns; other changes come with a window.
     """
 
     time: float
@@ -152,9 +153,10 @@ def _standard_error(amplitudes: ComplexArray) -> FloatArray:
 
 
 def _changes(response: Response, course: Course, edges: IntArray) -> tuple[Change, ...]:
-    """One change where rub or motion differs from the window before, and the first window."""
-    times = _turn_times(response, course)
-    states = [_state(response, a, b) for a, b in pairwise(edges.tolist())]
+    """One change where rub or motion differs from what was before, and the first turn."""
+    times, rubs = _turn_times(response, course), _rubbing(response)
+    edges = np.union1d(edges, np.flatnonzero(np.diff(rubs)) + 1)
+    states = [_state(response, a, b, rub=bool(rubs[a])) for a, b in pairwise(edges.tolist())]
     begins = [0, *(i for i in range(1, len(states)) if states[i] != states[i - 1])]
     changes = []
     for first, last in pairwise([*begins, len(states)]):
@@ -187,9 +189,19 @@ def _start_of(response: Response, times: FloatArray, turn: int, rub: bool, rubbe
     return start
 
 
-def _state(response: Response, first: int, last: int) -> tuple[bool, Motion, Motion, Motion]:
+def _rubbing(response: Response) -> BoolArray:
+    """Whether there is rub (turns,): touches that are fewer than WINDOW_TURNS turns apart belong to one."""
+    touched = np.flatnonzero(response.contact_steps_per_turn)
+    rubs = np.zeros(response.record_turns, dtype=bool)
+    rubs[touched] = True
+    for before, after in pairwise(touched.tolist()):
+        if after - before < WINDOW_TURNS:
+            rubs[before:after] = True
+    return rubs
+
+
+def _state(response: Response, first: int, last: int, *, rub: bool) -> tuple[bool, Motion, Motion, Motion]:
     """Rub, and motion of blisk, casing and both, of the turns first .. last - 1."""
-    rub = bool(response.contact_steps_per_turn[first:last].any())
     if not rub:
         window = _cut(response, first, last)
         casing = AT_REST if casing_rests(window) else UNDECIDED

@@ -53,6 +53,16 @@ def test_rub_begins_with_its_first_touch_and_ends_after_its_last(ramp):
     assert found.changes[0].motion is Motion.PERIOD_1
 
 
+def test_a_rub_within_the_first_window_does_not_begin_before_its_first_touch(ramp):
+    shifted = replace(
+        ramp.events, start_step=ramp.events.start_step - ramp.course.turn_steps[30] + ramp.course.turn_steps[5]
+    )
+    contact = np.roll(ramp.contact_steps_per_turn, -25)
+    found = course_labels(replace(ramp, events=shifted, contact_steps_per_turn=contact)).changes
+    assert [change.rub for change in found] == [False, True, False]
+    assert found[1].time == pytest.approx(shifted.start_step[0] * ramp.dt)
+
+
 def test_windows_tell_speed_impulse_and_orders(ramp):
     windows = course_labels(ramp).windows
     assert len(windows.start) == 5
