@@ -78,7 +78,7 @@ def test_open_gives_runs_as_a_frame(data, small_set):
     runs = data.runs
     assert runs.index.tolist() == [f"run-{i:06d}" for i in range(4)]
     assert runs["speed_rpm"].isin([6000.0, 10000.0]).all()
-    assert data.manifest == read_manifest(data._layout)
+    assert data.manifest == read_manifest(data.layout)
 
 
 def test_open_reads_mcap_where_there_is_no_parquet(copied_set, memory):
