@@ -14,6 +14,7 @@ from rubgen.reduction import reduce
 from rubgen.reduction.reduced import ReducedModel
 from rubgen.scenario import Scenario
 from rubgen.solver import Response, Status, integrate
+from rubgen.solver.twin import LEAST_TURNS
 
 BLOCKS = 10
 """Parts of the record whose mean impulses give the error of the mean: longer than what a chaotic rub remembers."""
@@ -28,7 +29,8 @@ class Outcome:
     `impulse` is the mean normal impulse a turn, `impulse_error` its standard error from ten parts of the record, in
     N s. `force_orders` (N) and `blisk_orders` (m) are peak amplitudes at k f_r, k = 1 .. 20, of the contact force and
     of blisk_x. `indicator_*` is K of the 0-1 test, `stray_*` the rms distance of the section's points (second half of
-    the record) from their mean, over the size of the motion: period-1 up to 0.01. `growth` is the largest outward
+    the record) from their mean, over the size of the motion: period-1 up to 0.01. `exponent` is the Lyapunov exponent
+    with its standard error, in 1/turn, NaN without contact, where no label needs it. `growth` is the largest outward
     displacement of a tip at speed without contact, in m. Frequencies at rest, in Hz.
     """
 
@@ -53,6 +55,8 @@ class Outcome:
     indicator_casing: float
     stray_blisk: float
     stray_casing: float
+    exponent: float
+    exponent_error: float
     growth: float
     critical_speed_rpm: float
     blisk_frequencies_hz: list[float]
@@ -71,14 +75,17 @@ class Outcome:
 
 
 def run(scenario: Scenario) -> Outcome:
-    """The outcome of `scenario` without sensors, so that nothing but stability raises its steps a turn.
+    """The outcome of `scenario`, labelled as data are, with the exponent where the record is long enough for one.
+
+    There are no sensors, so that nothing but stability raises its steps a turn.
 
     Raises UserError for mode numbers or meshes that do not fit.
     """
     operation = scenario.operation
     with threadpool_limits(1, user_api="blas"):
         model = reduce(scenario.machine, scenario.reduction)
-        response = integrate(model.at_speed(operation.speed_rad_per_s), operation, scenario.contact)
+        system, twin = model.at_speed(operation.speed_rad_per_s), operation.record_turns >= LEAST_TURNS
+        response = integrate(system, operation, scenario.contact, twin=twin)
         return outcome(model, response)
 
 
@@ -114,20 +121,25 @@ def _dynamics(labels: Labels | None, response: Response) -> dict[str, object]:
         "contact_duty": labels.contact_duty if labels else float("nan"),
         "force_orders": labels.orders["contact_force"].tolist() if labels else [],
         "blisk_orders": labels.orders["blisk_x"].tolist() if labels else [],
-    } | (
-        _indicators(response) if labels and labels.rub else dict.fromkeys(_INDICATORS, 0.0 if labels else float("nan"))
-    )
+    } | (_indicators(response, labels) if labels and labels.rub else _no_indicators(0.0 if labels else float("nan")))
 
 
-_INDICATORS = ("indicator_blisk", "indicator_casing", "stray_blisk", "stray_casing")
+def _no_indicators(value: float) -> dict[str, float]:
+    """Those of a run without contact, all but the exponent `value`."""
+    names = ("indicator_blisk", "indicator_casing", "stray_blisk", "stray_casing")
+    return dict.fromkeys(names, value) | dict.fromkeys(("exponent", "exponent_error"), float("nan"))
 
 
-def _indicators(response: Response) -> dict[str, float]:
+def _indicators(response: Response, labels: Labels) -> dict[str, float]:
     parts = {"blisk": blisk_points(response), "casing": casing_points(response)}
     late = {name: points[points.shape[0] // 2 :] for name, points in parts.items()}
     stray = {name: cluster_distances(points, 1) for name, points in late.items()}
-    return {f"indicator_{name}": chaos_indicator(points) for name, points in parts.items()} | {
-        f"stray_{name}": float(np.sqrt(np.mean(distance**2))) for name, distance in stray.items()
+    exponent = labels.lyapunov
+    return {
+        **{f"indicator_{name}": chaos_indicator(points) for name, points in parts.items()},
+        **{f"stray_{name}": float(np.sqrt(np.mean(distance**2))) for name, distance in stray.items()},
+        "exponent": exponent.per_turn if exponent else float("nan"),
+        "exponent_error": exponent.error if exponent else float("nan"),
     }
 
 

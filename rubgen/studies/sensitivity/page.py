@@ -163,6 +163,7 @@ def _others(pairs: Sequence[Pair]) -> str:
         "K casing",
         "stray blisk",
         "stray casing",
+        "exponent a turn",
         "zones",
         "impulse, N s",
     ]
@@ -177,6 +178,7 @@ def _others(pairs: Sequence[Pair]) -> str:
             " / ".join(f"{run.indicator_casing:.2f}" for run in both),
             " / ".join(f"{run.stray_blisk:.1e}" for run in both),
             " / ".join(f"{run.stray_casing:.1e}" for run in both),
+            " / ".join(f"{run.exponent:+.3f} +- {run.exponent_error:.3f}" for run in both),
             " / ".join(_zones(run) for run in both),
             " / ".join(f"{run.impulse:.4f}" for run in both),
         ])  # fmt: skip

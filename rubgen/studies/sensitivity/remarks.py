@@ -52,7 +52,7 @@ REMARKS = {
     "halving": """
 The paper's sweep, 2,460 to 14,940 rev/min by 120, at 1,024 and at 2,048 steps a turn. `K` is the indicator of the 0-1
 test (chaotic from 0.7), `stray` the rms distance of the section's points from their mean over the size of the motion
-(period-1 up to 0.01), both as `docs/labels.md` defines them.
+(period-1 up to 0.01), the exponent Lyapunov's largest with its standard error, all as `docs/labels.md` defines them.
 """,
     "steps": """
 Yardstick: 8,192. Gap and normal are taken at n+1, the force acts from n: in contact the scheme is of first order in the
