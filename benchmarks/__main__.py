@@ -1,24 +1,47 @@
-"""Run every benchmark, print one table, write out/bench.json. `python -m benchmarks [NAME ...]` runs some alone."""
+"""Run every benchmark, print one table, write out/bench.json. `python -m benchmarks [NAME ...]` runs some alone.
+
+A row without a value has a note that says why. What runs alone takes the place of its rows in out/bench.json.
+"""
 
 from __future__ import annotations
 
 import importlib
 import json
 import sys
+import time
 from pathlib import Path
 
-NAMES = ("solver", "reduction", "start", "memory")
+NAMES = (
+    "solver", "rk45", "ross", "sweep", "recipe", "labels", "reduction", "start", "memory", "replay",
+)  # fmt: skip
 
 
 def main(names: tuple[str, ...]) -> None:
-    rows = []
+    out = Path("out/bench.json")
+    out.parent.mkdir(exist_ok=True)
+    kept = [row for row in _before(out) if row.get("benchmark") in set(NAMES) - set(names)]
     for name in names:
-        for row in importlib.import_module(f"benchmarks.bench_{name}").measure():
-            rows.append(row)
-            print(f"{row['name']:<58}{row['value']:>12.4g} {row['unit']:<10}{row['target']}", flush=True)
-    out = Path("out")
-    out.mkdir(exist_ok=True)
-    (out / "bench.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+        start = time.perf_counter()
+        rows = [{"benchmark": name, **row} for row in importlib.import_module(f"benchmarks.bench_{name}").measure()]
+        kept += rows
+        for row in rows:
+            print(text(row), flush=True)
+        print(f"    ({name}: {time.perf_counter() - start:.0f} s)", flush=True)
+    out.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+
+
+def text(row: dict) -> str:
+    """One line of the table."""
+    if row["value"] is None:
+        return f"{row['name']:<62}{'-':>12} {row['unit']:<8}{row['target']}: {row['note']}"
+    return f"{row['name']:<62}{row['value']:>12.4g} {row['unit']:<8}{row['target']}"
+
+
+def _before(out: Path) -> list[dict]:
+    try:
+        return json.loads(out.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return []
 
 
 if __name__ == "__main__":

@@ -1,0 +1,100 @@
+"""A data set of runs of 600 turns as users make it: `rubgen generate`, two workers, Parquet alone, default labels.
+
+settle_turns is fixed at 100, 500 turns are recorded with the exponent beside them, speed and support stiffness are
+drawn. By default 40 runs are made and the time of 1,000 follows by proportion, start-up and all;
+RUBGEN_BENCH_RUNS=1000 makes them all. Where other work shares the cores the CPU time of all processes over two says
+what two idle cores would take.
+
+The share of the kernels is taken in this process, one worker: CPU time within the calls of the compiled loops, the
+run's and its twin's, over the CPU time of all of `generate`, from warm-up to manifest.
+"""
+
+from __future__ import annotations
+
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import rubgen
+from rubgen.solver import stepper, twin
+
+RUBGEN = str(Path(sys.executable).with_name("rubgen"))
+RECIPE = """
+name = "thousand"
+seed = 1
+runs = {runs}
+machine = "zeng2019"
+license = "CC-BY-4.0"
+[vary]
+speed_rpm = {{ uniform = [6000, 13000] }}
+disk_support_stiffness_n_per_m = {{ log_uniform = [5e7, 4e8] }}
+[simulation]
+settle_turns = 100
+record_turns = 500
+[output]
+formats = ["parquet"]
+"""
+ALL_RUNS, RUNS, COUNTED_RUNS = 1000, 40, 10
+
+
+def measure() -> list[dict[str, object]]:
+    runs = int(os.environ.get("RUBGEN_BENCH_RUNS", RUNS))
+    with tempfile.TemporaryDirectory() as folder:
+        _generate(Path(folder) / "warm", 2)  # compiles, and fills the cache of machines
+        seconds, spent = _generate(Path(folder) / "set", runs)
+        share, each = _kernel_share(Path(folder))
+    factor = ALL_RUNS / runs
+    how = "made" if runs == ALL_RUNS else f"from {runs}"
+    rows = (
+        (f"1,000 runs of 600 turns, two workers ({how})", factor * seconds / 60, "min", "<= 10, goal 5"),
+        ("1,000 runs: CPU time of all processes / 2", factor * spent / 2 / 60, "min", "recorded"),
+        ("a run of 600 turns with all that follows, CPU", each, "s", "recorded"),
+        ("share of CPU time in the kernels", share, "1", ">= 0.8"),
+    )
+    return [{"name": name, "value": value, "unit": unit, "target": target} for name, value, unit, target in rows]
+
+
+def _generate(out: Path, runs: int) -> tuple[float, float]:
+    """Wall time and CPU time of all processes, in s."""
+    recipe = out.with_suffix(".toml")
+    recipe.write_text(RECIPE.format(runs=runs), encoding="utf-8")
+    before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    command = [RUBGEN, "generate", str(recipe), "--out", str(out), "--workers", "2"]
+    subprocess.run(command, check=True, capture_output=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.perf_counter() - begun, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def _kernel_share(folder: Path) -> tuple[float, float]:
+    """CPU time in the kernels over all, and all a run in s."""
+    recipe = folder / "counted.toml"
+    recipe.write_text(RECIPE.format(runs=COUNTED_RUNS), encoding="utf-8")
+    rubgen.generate(recipe, folder / "first", runs=1, workers=1)  # loads the kernels
+    within = [0.0]
+
+    def timed(kernel: Callable[..., Any]) -> Callable[..., Any]:
+        def call(*arguments: Any) -> Any:
+            begun = time.process_time()
+            result = kernel(*arguments)
+            within[0] += time.process_time() - begun
+            return result
+
+        return call
+
+    with (
+        patch.object(stepper, "run_turn", timed(stepper.run_turn)),
+        patch.object(twin, "run_twin", timed(twin.run_twin)),
+    ):
+        begun = time.process_time()
+        rubgen.generate(recipe, folder / "counted", workers=1)
+        spent = time.process_time() - begun
+    if not within[0]:
+        raise RuntimeError("no kernel was counted")
+    return within[0] / spent, spent / COUNTED_RUNS
