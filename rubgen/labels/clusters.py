@@ -59,9 +59,17 @@ def without_periodic_part(points: FloatArray) -> FloatArray:
 
 def off_cluster(points: FloatArray, period: int) -> FloatArray:
     """Points less the mean of every period-th point."""
-    residual = points.copy()
-    for phase in range(period):
-        residual[phase::period] -= points[phase::period].mean(axis=0)
+    turns = len(points)
+    whole = turns - turns % period
+    # Summed turn after turn, as a mean of every period-th point would be: the same bits.
+    total = points[:whole].reshape(-1, period, *points.shape[1:]).sum(axis=0)
+    total[: turns - whole] += points[whole:]
+    count = np.full(period, turns // period)
+    count[: turns - whole] += 1
+    mean = total / count.reshape(period, *(1,) * (points.ndim - 1))
+    residual = np.empty_like(points)
+    np.subtract(points[:whole].reshape(-1, *mean.shape), mean, out=residual[:whole].reshape(-1, *mean.shape))
+    np.subtract(points[whole:], mean[: turns - whole], out=residual[whole:])
     return residual
 
 

@@ -86,7 +86,7 @@ def tap_orders(tap: FloatArray, response: Response) -> TapOrders:
     return TapOrders(
         amplitudes=size[at],
         phases=np.where(size[at] > 0, np.angle(lines[at]), 0.0),
-        floors=np.array([order_floor(size, turns, k) for k in range(1, HIGHEST_ORDER + 1)]),
+        floors=order_floors(size, turns),
         fractional=fractional_amplitudes(tap, response),
         blade_passing=np.array([size[turns * b] if 0 <= turns * b < size.size else np.nan for b in blades.tolist()]),
     )
@@ -113,13 +113,17 @@ def order_spectrum(tap: FloatArray, response: Response) -> FloatArray:
     return np.asarray(np.abs(order_lines(tap, response)), dtype=np.float64)
 
 
-def order_floor(spectrum: FloatArray, turns: int, order: int) -> float:
-    """Median amplitude of the lines within half an order of `order` but beyond 0.05 of it; 0 without any."""
+def order_floors(spectrum: FloatArray, turns: int) -> FloatArray:
+    """Median amplitude of the lines within half an order of each k = 1 .. 20 but beyond 0.05 of it; 0 without any."""
     near, half = turns // 20, turns // 2
-    below = spectrum[max((order * turns) - half, 0) : order * turns - near]
-    above = spectrum[order * turns + near + 1 : order * turns + half + 1]
-    around = np.concatenate([below, above])
-    return float(np.median(around)) if around.size else 0.0
+    beside = np.concatenate([np.arange(-half, -near), np.arange(near + 1, half + 1)])
+    if beside.size == 0:
+        return np.zeros(HIGHEST_ORDER)
+    lines = turns * np.arange(1, HIGHEST_ORDER + 1)[:, None] + beside
+    if lines.max() < spectrum.size:
+        return np.asarray(np.median(spectrum[lines], axis=1), dtype=np.float64)
+    around = (spectrum[row[row < spectrum.size]] for row in lines)  # few steps a turn: some lie beyond the spectrum
+    return np.array([float(np.median(row)) if row.size else 0.0 for row in around])
 
 
 def fractional_amplitudes(tap: FloatArray, response: Response) -> FloatArray:

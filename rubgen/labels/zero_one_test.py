@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from scipy.fft import fft, ifft, next_fast_len
 
-from rubgen.arrays import FloatArray
+from rubgen.arrays import ComplexArray, FloatArray
 
 FREQUENCIES = np.pi * (0.2 + 0.6 * (np.arange(100) + 0.5) / 100 + 0.002 * np.sin(1.0 + np.arange(100) ** 2))
 """100 fixed c in (pi/5, 4 pi/5): evenly spread, then shifted a little so that no c is a simple fraction of pi."""
@@ -43,11 +45,19 @@ def _mean_square_displacement(observable: FloatArray) -> FloatArray:
     size = observable.size
     cut = max(size // 10, 3)
     starts, length = size - cut, next_fast_len(size)
-    walk = np.cumsum(observable * np.exp(1j * FREQUENCIES[:, None] * np.arange(1, size + 1)), axis=1)
+    walk = np.cumsum(observable * _turns(size), axis=1)
     cross = ifft(np.conj(fft(walk[:, :starts], length)) * fft(walk, length))[:, : cut + 1].real
     squares = np.cumsum(np.pad(walk.real**2 + walk.imag**2, ((0, 0), (1, 0))), axis=1)
     energy = squares[:, starts:] - squares[:, : cut + 1]
     return np.asarray((energy + energy[:, :1] - 2 * cross)[:, 1:] / starts, dtype=np.float64)
+
+
+@lru_cache(maxsize=4)
+def _turns(size: int) -> ComplexArray:
+    """Exp(i c j) (frequencies, size): a run's observables all have one size, and their exponentials cost most."""
+    turns = np.exp(1j * FREQUENCIES[:, None] * np.arange(1, size + 1))
+    turns.setflags(write=False)
+    return np.asarray(turns)
 
 
 def _correlation(steps: FloatArray, curves: FloatArray) -> FloatArray:

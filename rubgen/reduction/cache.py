@@ -7,6 +7,7 @@ import json
 import os
 from collections.abc import Mapping
 from dataclasses import asdict
+from functools import cache
 from pathlib import Path
 from zipfile import BadZipFile
 
@@ -62,11 +63,17 @@ def _key(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reductio
     ):  # fmt: skip
         del springs[lateral]
     what = [asdict(disk), asdict(blades), springs, modes, np.__version__, scipy.__version__]
-    digest = hashlib.sha256(json.dumps(what, sort_keys=True).encode())
+    return hashlib.sha256(json.dumps(what, sort_keys=True).encode() + _digest_of_code()).hexdigest()[:32]
+
+
+@cache
+def _digest_of_code() -> bytes:
+    """Of all sources that a reduced blisk comes from, read once in a process."""
+    digest = hashlib.sha256()
     for folder in ("fem", "reduction", "machine"):
         for source in sorted((_PACKAGE / folder).glob("*.py")):
             digest.update(source.read_bytes())
-    return digest.hexdigest()[:32]
+    return digest.digest()
 
 
 def _save(path: Path, blisk: ReducedBlisk) -> None:
