@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from rubgen.arrays import FloatArray
-from rubgen.contact.geometry_kernels import Surface, Tips
+from rubgen.contact.geometry_kernels import Surface, Tips, tip_position, undeformed_radius
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 
 
@@ -31,6 +31,23 @@ def largest_nodal_displacement(surface: Surface, q_casing: FloatArray) -> float:
         if not size <= largest:
             largest = size
     return math.sqrt(largest)
+
+
+@allocation_free_kernel
+def least_clearance(surface: Surface, tips: Tips, states: FloatArray, theta: FloatArray) -> float:
+    """The smallest r(angle of P) - |P| over all tips P and states (places, n) at angles `theta` (places,), m.
+
+    r is the undeformed surface, as far as it is worn.
+    """
+    least = math.inf
+    for place in range(theta.shape[0]):
+        cosine, sine = math.cos(theta[place]), math.sin(theta[place])
+        for k in range(tips.angle.shape[0]):
+            x, y, _, _ = tip_position(tips, k, states[place], cosine, sine)
+            angle = math.atan2(y, x)
+            radius, _, _ = undeformed_radius(surface, angle + 2 * math.pi if angle < 0.0 else angle)
+            least = min(least, radius - math.hypot(x, y))
+    return least
 
 
 @inlined_kernel

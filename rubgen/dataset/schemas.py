@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +13,15 @@ from rubgen.dataset.files import write_json, write_text
 from rubgen.dataset.manifest import Manifest
 from rubgen.io.columns import ORDER_SUFFIXES, SCALARS, Column
 from rubgen.io.mcap_messages import proto_text
+from rubgen.labels.contact_amounts import RubExtent
 from rubgen.labels.labels import Motion
+from rubgen.labels.whirl import WhirlDirection
 from rubgen.machine import Machine
 from rubgen.scenario import Recipe
 from rubgen.scenario.sensors import KINDS, SensorSet
 
+TEXTS: dict[str, type[StrEnum]] = {"motion": Motion, "rub": RubExtent, "whirl": WhirlDirection}
+"""Values of text columns by the first word of their names."""
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 JSON_TYPES: dict[str, dict[str, Any]] = {
     "text": {"type": "string"},
@@ -72,8 +77,9 @@ def _sensor_set_schema() -> dict[str, Any]:
 
 def _property(column: Column) -> dict[str, Any]:
     kind = dict(JSON_TYPES[column.kind])
-    if column.kind == "text" and column.name.startswith("motion"):
-        kind["enum"] = [motion.value for motion in Motion]
+    enum = TEXTS.get(column.name.split("_")[0]) if column.kind == "text" else None
+    if enum:
+        kind["enum"] = [member.value for member in enum]
     nullable = {"anyOf": [kind, {"type": "null"}]} if column.nullable else kind
     return {"description": f"{column.meaning}{f', in {column.unit}' if column.unit else ''}", **nullable}
 

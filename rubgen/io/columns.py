@@ -68,6 +68,7 @@ def _labels() -> list[Column]:
         _label("contact_zone_centres_rad", "numbers", "rad", "polar angle of each zone"),
         _label("contact_zone_widths_rad", "numbers", "rad", "angular width of each zone"),
         _label("contact_zones_symmetric", "flag", "", "zones equal and evenly spread; null without contact"),
+        *_amounts(),
         _label("motion_blisk", "text", "", "static, period-1, period-k, quasi-periodic, undecided or chaotic"),
         _label("motion_casing", "text", "", "the same of the casing"),
         _label("motion", "text", "", "the less regular of the two"),
@@ -93,6 +94,20 @@ def _labels() -> list[Column]:
     ]
 
 
+def _amounts() -> list[Column]:
+    return [
+        _label("contact_touches", "integer", "", "uninterrupted touches of single blades within the record"),
+        _label("contact_friction_work_per_turn_j", "number", "J", "mean work of friction a turn, all blades, <= 0"),
+        _label("contact_severity", "number", "1", "mean normal force over the blisk's weight"),
+        _label("free_penetration_m", "number", "m", "how deep tips would be without contact; null at changing speeds"),
+        _label("rub_extent", "text", "", "none, partial or full-annular"),
+        _label("blade_touches", "integers", "", "touches of each blade within the record"),
+        _label("blade_impulses_per_turn_n_s", "numbers", "N s", "mean normal impulse a turn of each blade"),
+        _label("whirl", "text", "", "direction of the disk centre's orbit: forward, backward or mixed"),
+        _label("whirl_index", "number", "1", "1 a circle forward, 0 a line, -1 a circle backward"),
+    ]
+
+
 def _course() -> list[Column]:
     classes = ", ".join(f"{number} {motion.value}" for number, motion in enumerate(Motion))
     return [
@@ -105,6 +120,8 @@ def _course() -> list[Column]:
         _label("change_motion_classes", "integers", "", f"class of motion from there on: {classes}"),
         _label("window_starts_s", "numbers", "s", "starts of windows of 16 turns"),
         _label("window_speeds_rpm", "numbers", "rev/min", "mean speed of each"),
+        _label("window_rub", "integers", "", "1 where a blade touches within the window, else 0"),
+        _label("window_contact_duty", "numbers", "1", "share of the time in which any blade touches, of each"),
         _label("window_impulse_per_turn_n_s", "numbers", "N s", "mean normal impulse a turn of each"),
     ]
 
@@ -118,7 +135,6 @@ def _orders(tap: Tap) -> list[Column]:
     name, unit = tap.name, tap.UNIT
     return [
         _label(f"{name}_orders", "numbers", unit, f"peak amplitudes of {name} at k f_r, k = 1..20"),
-        _label(f"{name}_window_amplitudes", "numbers", unit, "the same window by window, twenty after twenty"),
         _label(f"{name}_even_share", "number", "1", "share of the squares on even k"),
         _label(f"{name}_odd_share", "number", "1", "share of the squares on odd k"),
         _label(f"{name}_dominant_order", "integer", "", "k of the largest amplitude"),
@@ -154,10 +170,25 @@ def _arrivals(probe: TimingProbe) -> list[Column]:
     ]
 
 
+def _touches() -> list[Column]:
+    return [
+        Column("touch_start_s", "numbers", "s", "beginning of each touch of a blade, from the first sample; in order"),
+        Column("touch_end_s", "numbers", "s", "its end"),
+        Column("touch_blade", "integers", "", "number of the blade"),
+        Column("touch_angle_rad", "numbers", "rad", "polar angle on the casing, mean by impulse"),
+        Column("touch_impulse_n_s", "numbers", "N s", "normal impulse"),
+        Column("touch_friction_work_j", "numbers", "J", "work of friction, <= 0"),
+    ]
+
+
+def _ordered_taps(sensors: SensorSet) -> tuple[Tap, ...]:
+    """The true signals that have orders."""
+    return (*(tap for tap in taps_of(sensors) if not isinstance(tap, TipTiming)), *FIELDS)
+
+
 def scalar_columns(sensors: SensorSet) -> tuple[Column, ...]:
     """Columns of `runs.parquet` for runs with these sensors: each true signal that one sees has its orders."""
-    taps = [tap for tap in taps_of(sensors) if not isinstance(tap, TipTiming)]
-    orders = [column for tap in (*taps, *FIELDS) for column in _orders(tap)]
+    orders = [column for tap in _ordered_taps(sensors) for column in _orders(tap)]
     return (*_identity(), *_parameters(), *_operation(), *_labels(), *orders, *_energy())
 
 
@@ -168,10 +199,16 @@ def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
     """
     facts = {each.name: _channel(each) for each in sensors.sensors if isinstance(each, SampledSensor | OncePerRev)}
     columns = [
+        Column("signal_start_s", "number", "s", "time of the first sample from the record's start"),
         Column("rotation_angle_rad", "number", "rad", "angle of the blisk at the first sample"),
         Column("once_per_rev_s", "numbers", "s", "arrival times of the once_per_rev pulses"),
     ]
     columns += [Column(name, "signal", *fact) for name, fact in facts.items()]
+    columns += _touches()
+    columns += [
+        Column(f"{tap.name}_window_amplitudes", "numbers", tap.UNIT, "amplitudes at k f_r by window, twenty each")
+        for tap in _ordered_taps(sensors)
+    ]
     if clean:
         columns += [Column(f"{name}_clean", "signal", unit, f"{text}, clean") for name, (unit, text) in facts.items()]
     columns += [column for probe in sensors.sensors if isinstance(probe, TimingProbe) for column in _arrivals(probe)]

@@ -10,17 +10,20 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
 from rubgen.io.columns import Column, scalar_columns, signal_columns
 from rubgen.io.durable import write_durably
-from rubgen.labels.plain import labels_dict
+from rubgen.labels.plain import labels_dict, window_amplitudes
 from rubgen.scenario.sensor_set import default_sensor_set
 from rubgen.scenario.sensors import SensorSet
 from rubgen.scenario.vary import varied_values
 from rubgen.sensors.channel import Recording
+from rubgen.sensors.contact_window import contact_intervals
 
 if TYPE_CHECKING:  # Run carries the solver's imports; who reads a file needs none of them
     from rubgen.pipeline import Run
@@ -58,8 +61,8 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
         energy = run.response.energy
         row |= {"energy_residual": energy.residual, "normal_loss_j": energy.normal_loss}
         row |= {"friction_loss_j": energy.friction_loss}
-    if signals and run.recording is not None:
-        row |= _signals(run.recording)
+    if signals and run.recording is not None and run.labels is not None:
+        row |= _signals(run.recording) | _touches(run, run.recording) | window_amplitudes(run.labels)
     sensing = run.scenario.sensing
     types = schema(signals=signals, clean=sensing.keep_clean, sensors=sensing.set)
     unknown = sorted(set(row) - set(types.names))
@@ -165,6 +168,7 @@ def _operation(run: Run) -> dict[str, object]:
 
 def _signals(recording: Recording) -> dict[str, object]:
     values: dict[str, object] = {
+        "signal_start_s": recording.start_seconds,
         "rotation_angle_rad": recording.rotation_angle,
         "once_per_rev_s": recording.once_per_rev,
     }
@@ -175,3 +179,22 @@ def _signals(recording: Recording) -> dict[str, object]:
     for name, seen in recording.tip_timing.items():
         values |= {f"{name}_s": seen.time, f"{name}_blade": seen.blade, f"{name}_true_m": seen.true_displacement}
     return values
+
+
+def _touches(run: Run, recording: Recording) -> dict[str, object]:
+    """The touches that overlap the recording, by their beginning."""
+    touches = contact_intervals(run.response, recording)
+    order = np.argsort(touches.start, kind="stable")
+    return {
+        "touch_start_s": touches.start[order],
+        "touch_end_s": (touches.start + touches.duration)[order],
+        "touch_blade": touches.blade[order],
+        "touch_angle_rad": _single(touches.angle[order]),
+        "touch_impulse_n_s": _single(touches.impulse[order]),
+        "touch_friction_work_j": _single(touches.friction_loss[order]),
+    }
+
+
+def _single(values: FloatArray) -> FloatArray:
+    """Rounded to single precision, in which they compress."""
+    return np.asarray(values.astype(np.float32), dtype=np.float64)

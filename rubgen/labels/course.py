@@ -7,15 +7,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from rubgen.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from rubgen.arrays import BoolArray, FloatArray, IntArray
 from rubgen.labels.decision import AT_REST, FORCED, MotionClass
-from rubgen.labels.harmonics import FRACTIONS, HIGHEST_ORDER, MARKED_TAP, OPPOSITE_TAP, SIDEBANDS, TapOrders
+from rubgen.labels.harmonics import FRACTIONS, HIGHEST_ORDER, SIDEBANDS, TapOrders
 from rubgen.labels.labels import Motion
 from rubgen.labels.motion import LEAST_TURNS, Motions, motion
 from rubgen.labels.section import casing_rests
+from rubgen.labels.windows import Windows, turn_times, window_edges
 from rubgen.solver.response import ContactEvents, Course, Response
+from rubgen.solver.turn_orders import WINDOW_TURNS
 
-WINDOW_TURNS = 16
 MOTION_TURNS = 64
 """A window is long enough for a motion class where the speed of so many turns about it hardly changes."""
 HARDLY = 0.002
@@ -41,26 +42,10 @@ class Change:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Windows:
-    """Windows of WINDOW_TURNS turns, the last one shorter: start in s, mean speed in rad/s, impulse in N s a turn.
-
-    `orders` by tap (windows, k) are |mean over turns of the complex amplitude at k f_r|, k = 1 .. 20, in the tap's
-    unit; `scatter` the standard error of that mean.
-    """
-
-    start: FloatArray
-    speed: FloatArray
-    impulse: FloatArray
-    orders: dict[str, FloatArray]
-    scatter: dict[str, FloatArray]
-
-
-@dataclass(frozen=True, kw_only=True)
 class CourseLabels:
-    """How a run went: `changes` with time, `windows`; speeds in rad/s at the first and after the last touch or None."""
+    """How a run went: `changes` with time; speeds in rad/s at the first and after the last touch or None."""
 
     changes: tuple[Change, ...]
-    windows: Windows
     onset_speed: float | None
     end_of_rub_speed: float | None
 
@@ -70,12 +55,10 @@ def course_labels(response: Response) -> CourseLabels:
     course = response.course
     if course is None:
         raise ValueError("a steady speed has no course")
-    edges = np.append(np.arange(0, response.record_turns, WINDOW_TURNS), response.record_turns)
     touched = response.events.start_step.size > 0
     ends = response.events.start_step + response.events.steps
     return CourseLabels(
-        changes=_changes(response, course, edges),
-        windows=_windows(response, course, edges),
+        changes=_changes(response, course, window_edges(response)),
         onset_speed=_speed_at(course, response.events.start_step.min() * response.dt) if touched else None,
         end_of_rub_speed=_speed_at(course, ends.max() * response.dt) if touched else None,
     )
@@ -126,35 +109,9 @@ def _speed_at(course: Course, time: float) -> float:
     return float(course.rotation.speed(time))
 
 
-def _turn_times(response: Response, course: Course) -> FloatArray:
-    return np.array([course.rotation.time_of(2 * np.pi * turn) for turn in range(response.record_turns + 1)])
-
-
-def _windows(response: Response, course: Course, edges: IntArray) -> Windows:
-    times, parts = _turn_times(response, course), [slice(first, last) for first, last in pairwise(edges.tolist())]
-    taps = {tap: course.orders[:, i] for i, tap in enumerate(response.taps)}
-    if OPPOSITE_TAP in taps:
-        first, second = taps[MARKED_TAP], taps[OPPOSITE_TAP]
-        taps |= {"casing_even": (first + second) / 2, "casing_odd": (first - second) / 2}
-    return Windows(
-        start=times[edges[:-1]],
-        speed=2 * np.pi * np.diff(edges) / np.diff(times[edges]),
-        impulse=np.array([response.impulse_per_turn[part].mean() for part in parts]),
-        orders={tap: np.abs([x[part].mean(axis=0) for part in parts]) for tap, x in taps.items()},
-        scatter={tap: np.array([_standard_error(x[part]) for part in parts]) for tap, x in taps.items()},
-    )
-
-
-def _standard_error(amplitudes: ComplexArray) -> FloatArray:
-    """Of the mean over turns (turns, ...), from what successive turns differ by, where a slow drift is small."""
-    if len(amplitudes) < 2:
-        return np.asarray(np.abs(amplitudes[0]), dtype=np.float64)
-    return np.asarray(np.sqrt(np.mean(np.abs(np.diff(amplitudes, axis=0)) ** 2, axis=0) / 2 / len(amplitudes)))
-
-
 def _changes(response: Response, course: Course, edges: IntArray) -> tuple[Change, ...]:
     """One change where rub or motion differs from what was before, and the first turn."""
-    times, rubs = _turn_times(response, course), _rubbing(response)
+    times, rubs = turn_times(response, course), _rubbing(response)
     edges = np.union1d(edges, np.flatnonzero(np.diff(rubs)) + 1)
     states = [_state(response, a, b, rub=bool(rubs[a])) for a, b in pairwise(edges.tolist())]
     begins = [0, *(i for i in range(1, len(states)) if states[i] != states[i - 1])]

@@ -14,7 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from rubgen.arrays import FloatArray
-from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status
+from rubgen.scenario.rotation import Rotation
+from rubgen.solver.response import ContactEvents, Course, EnergyBook, Response, Status
+from rubgen.solver.turn_orders import ORDERS
 
 Kept = Mapping[str, npt.NDArray[Any]]
 
@@ -28,7 +30,11 @@ TOUCHES = {
     "normal_loss": np.float32,
 }
 """One number of each for every touch."""
-SCALARS = ("speed", "dt", "steps_per_turn", "settle_turns", "record_turns", "n_blades", "n_casing")
+SCALARS = (
+    "speed", "dt", "steps_per_turn", "settle_turns", "record_turns", "n_blades", "n_casing", "blisk_mass",
+    "free_penetration",
+)  # fmt: skip
+ROTATION = ("start", "end", "seconds", "swing", "period")
 
 
 def keep(response: Response) -> dict[str, npt.NDArray[Any]]:
@@ -36,8 +42,10 @@ def keep(response: Response) -> dict[str, npt.NDArray[Any]]:
 
     `section` (turns, 3 blades + 4 + 2 casing modes): displacements of the tips, x, y, v_x, v_y of the disk centre,
     casing displacements and velocities; `fractions` the same after each Nth of the last turn; `growth`, `turn_impulse`,
-    `contact_steps` once a turn; what `TOUCHES` names once a touch; `scalars` (7,).
+    `contact_steps`, `orbit` once a turn; what `TOUCHES` names once a touch; `scalars` (9,); `rotation` (5,) and
+    `turn_steps` of a changing speed, empty otherwise.
     """
+    course = response.course
     fractions = response.fractions
     kept: dict[str, npt.NDArray[Any]] = {
         "scalars": np.array([getattr(response, name) for name in SCALARS], dtype=np.float64),
@@ -46,12 +54,15 @@ def keep(response: Response) -> dict[str, npt.NDArray[Any]]:
         "growth": response.twin_growth.astype(np.float32),
         "turn_impulse": response.impulse_per_turn.astype(np.float64),
         "contact_steps": response.contact_steps_per_turn.astype(np.int32),
+        "orbit": response.orbit.astype(np.float32),
+        "rotation": np.array([getattr(course.rotation, name) for name in ROTATION] if course else [], dtype=np.float64),
+        "turn_steps": (course.turn_steps if course else np.zeros(0)).astype(np.int32),
     }
     return kept | {name: getattr(response.events, name).astype(kind) for name, kind in TOUCHES.items()}
 
 
 def response_of(kept: Kept) -> Response:
-    """The response of these arrays, without blisk modes, taps, energy, and speeds of tips."""
+    """The response of these arrays, without blisk modes, taps and their orders, energy, and speeds of tips."""
     scalars = dict(zip(SCALARS, kept["scalars"].tolist(), strict=True))
     blades, casing = int(scalars["n_blades"]), int(scalars["n_casing"])
     q, v = _wide(kept["section"], blades, casing)
@@ -75,12 +86,26 @@ def response_of(kept: Kept) -> Response:
         n_casing=casing,
         twin_growth=kept["growth"].astype(np.float64),
         fractions=fractions,
+        course=_course(kept, int(scalars["record_turns"])),
+        orbit=kept["orbit"].astype(np.float64),
+        blisk_mass=scalars["blisk_mass"],
+        free_penetration=scalars["free_penetration"],
     )
 
 
 def as_kept(response: Response) -> Response:
     """The response with the precision that is kept, and its taps."""
-    return replace(response_of(keep(response)), taps=response.taps, course=response.course)
+    return replace(
+        response_of(keep(response)), taps=response.taps, course=response.course, window_orders=response.window_orders
+    )
+
+
+def _course(kept: Kept, turns: int) -> Course | None:
+    if not kept["rotation"].size:
+        return None
+    rotation = Rotation(**dict(zip(ROTATION, kept["rotation"].tolist(), strict=True)))
+    orders = np.zeros((turns, 0, ORDERS), dtype=np.complex128)
+    return Course(rotation=rotation, turn_steps=kept["turn_steps"].astype(np.int64), orders=orders)
 
 
 def _touches(kept: Kept) -> ContactEvents:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rubgen.labels.contact_amounts import contact_amounts
 from rubgen.labels.contact_zones import contact_zones
 from rubgen.labels.course import by_angle, course_labels, course_motion, course_orders
 from rubgen.labels.harmonics import MARKED_TAP, harmonics
@@ -9,6 +10,8 @@ from rubgen.labels.kept import as_kept
 from rubgen.labels.labels import Labels
 from rubgen.labels.lyapunov import lyapunov_of
 from rubgen.labels.motion import motion
+from rubgen.labels.whirl import whirl
+from rubgen.labels.windows import windows
 from rubgen.solver.response import Response
 
 
@@ -18,7 +21,7 @@ def label(response: Response) -> Labels:
     Contact and motion come from the whole record, orders from its last 100 turns: nothing depends on how long the
     tail of the taps is. Labels are those of the true response, before any sensor. A motion is safely told from 500
     recorded turns on (recipes ask for them); fewer are taken too, down to 32, where UserError is raised. Where the
-    speed changes, see `course`.
+    speed changes, see `course`. A response without taps, as it is kept, has no orders: everything else is the same.
     """
     response = as_kept(response)
     contact_steps = int(response.contact_steps_per_turn.sum())
@@ -27,8 +30,9 @@ def label(response: Response) -> Labels:
     exponent = lyapunov_of(response)
     course = course_labels(response) if response.course else None
     parts = course_motion(rub) if course else motion(response, exponent)
-    orders = course_orders(course.windows) if course else harmonics(response)
-    present = orders[MARKED_TAP].present if rub else ()
+    cut = windows(response)
+    orders = course_orders(cut) if course else harmonics(response)
+    present = orders[MARKED_TAP].present if rub and orders else ()
     turn = response.turn_seconds
     return Labels(
         rub=rub,
@@ -63,6 +67,9 @@ def label(response: Response) -> Labels:
         segment_starts=tuple(segment.start * turn for segment in parts.segments),
         segment_periods=tuple(segment.period for segment in parts.segments),
         course=course,
+        windows=cut,
+        amounts=contact_amounts(response, zones, record_steps=_record_steps(response)),
+        whirl=whirl(response.orbit),
     )
 
 

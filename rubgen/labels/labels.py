@@ -11,7 +11,10 @@ from rubgen.labels.harmonics import TapOrders
 from rubgen.labels.lyapunov import Exponent
 
 if TYPE_CHECKING:
+    from rubgen.labels.contact_amounts import ContactAmounts
     from rubgen.labels.course import CourseLabels
+    from rubgen.labels.whirl import Whirl
+    from rubgen.labels.windows import Windows
 
 
 class Motion(StrEnum):
@@ -39,7 +42,8 @@ class Labels:
     how far the points of the section lie from where they should come back to, over the motion. Segments are empty
     unless the motion switches: starts in s from the record's, periods in turns, 0 where it is irregular. Where the
     speed changes, `course` tells how the labels go with time; the motion of the whole is undecided in contact, and
-    `orders` are the root mean squares of those of windows.
+    `orders` are the root mean squares of those of windows. `windows` hold labels of every 16 turns, `amounts` how much
+    blades touch, `whirl` which way the disk centre goes round; None where a response does not tell.
     """
 
     rub: bool
@@ -74,3 +78,6 @@ class Labels:
     segment_periods: tuple[int, ...] = ()
     lyapunov_per_second: float | None = None
     course: CourseLabels | None = None
+    windows: Windows | None = None
+    amounts: ContactAmounts | None = None
+    whirl: Whirl | None = None

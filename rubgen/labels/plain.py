@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from rubgen.arrays import FloatArray
+from rubgen.labels.contact_amounts import ContactAmounts
 from rubgen.labels.course import CourseLabels
+from rubgen.labels.kept import Kept, response_of
+from rubgen.labels.label import label
 from rubgen.labels.labels import Labels, Motion
+from rubgen.labels.windows import Windows
 
 CLASSES = list(Motion)
 """Classes of motion by their number in `change_motion_classes`."""
+ORDER_LABELS = ("has_2fr", "orders_present")
+"""Labels of orders that do not bear a tap's name: they need the taps."""
 
 
 def labels_dict(labels: Labels) -> dict[str, object]:
@@ -29,6 +37,9 @@ def labels_dict(labels: Labels) -> dict[str, object]:
         "contact_zone_centres_rad": [_number(centre) for centre in labels.contact_zone_centres],
         "contact_zone_widths_rad": [_number(width) for width in labels.contact_zone_widths],
         "contact_zones_symmetric": labels.contact_zones_symmetric,
+        **_amount_labels(labels.amounts),
+        "whirl": labels.whirl.direction.value if labels.whirl else None,
+        "whirl_index": _number(labels.whirl.index) if labels.whirl else None,
         "motion_blisk": labels.motion_blisk.value,
         "motion_casing": labels.motion_casing.value,
         "motion": labels.motion.value,
@@ -40,10 +51,38 @@ def labels_dict(labels: Labels) -> dict[str, object]:
         "orders_present": [int(order) for order in labels.orders_present],
         **_lyapunov_labels(labels),
         **_course_labels(labels.course),
+        **_window_labels(labels.windows),
     }
     for tap in labels.orders:
         plain |= _order_labels(labels, tap)
     return plain
+
+
+def remade_labels(kept: Kept) -> dict[str, object]:
+    """The labels that what is kept of a run gives again, by the same names: all but those of orders."""
+    plain = labels_dict(label(response_of(kept)))
+    return {name: value for name, value in plain.items() if name not in ORDER_LABELS}
+
+
+def window_amplitudes(labels: Labels) -> dict[str, list[float]]:
+    """`<tap>_window_amplitudes`: twenty amplitudes of each window after those of the one before.
+
+    They are rounded to single precision, which a Parquet file then compresses.
+    """
+    orders = labels.windows.orders if labels.windows else {}
+    return {f"{tap}_window_amplitudes": values.astype(np.float32).ravel().tolist() for tap, values in orders.items()}
+
+
+def _amount_labels(amounts: ContactAmounts | None) -> dict[str, object]:
+    return {
+        "contact_touches": amounts.touches if amounts else None,
+        "contact_friction_work_per_turn_j": _number(amounts.friction_work) if amounts else None,
+        "contact_severity": _optional(amounts.severity) if amounts else None,
+        "free_penetration_m": _optional(amounts.free_penetration) if amounts else None,
+        "rub_extent": amounts.extent.value if amounts else None,
+        "blade_touches": amounts.blade_touches.tolist() if amounts else [],
+        "blade_impulses_per_turn_n_s": amounts.blade_impulses.tolist() if amounts else [],
+    }
 
 
 def _motion_labels(labels: Labels) -> dict[str, object]:
@@ -75,7 +114,7 @@ def _lyapunov_labels(labels: Labels) -> dict[str, object]:
 
 
 def _course_labels(course: CourseLabels | None) -> dict[str, object]:
-    changes, windows = course.changes if course else (), course.windows if course else None
+    changes = course.changes if course else ()
     return {
         "onset_speed_rpm": _rpm(course.onset_speed) if course else None,
         "end_of_rub_speed_rpm": _rpm(course.end_of_rub_speed) if course else None,
@@ -84,8 +123,15 @@ def _course_labels(course: CourseLabels | None) -> dict[str, object]:
         "change_rub": [int(change.rub) for change in changes],
         "change_impulse_per_turn_n_s": [_number(change.impulse) for change in changes],
         "change_motion_classes": [CLASSES.index(change.motion) for change in changes],
+    }
+
+
+def _window_labels(windows: Windows | None) -> dict[str, object]:
+    return {
         "window_starts_s": windows.start.tolist() if windows else [],
         "window_speeds_rpm": [_rpm(speed) for speed in windows.speed.tolist()] if windows else [],
+        "window_rub": [int(duty > 0) for duty in windows.duty.tolist()] if windows else [],
+        "window_contact_duty": windows.duty.tolist() if windows else [],
         "window_impulse_per_turn_n_s": windows.impulse.tolist() if windows else [],
     }
 
@@ -95,10 +141,8 @@ def _rpm(speed: float | None) -> float | None:
 
 
 def _order_labels(labels: Labels, tap: str) -> dict[str, object]:
-    windows = labels.course.windows.orders[tap].ravel().tolist() if labels.course else []
     plain: dict[str, object] = {
         f"{tap}_orders": _numbers(labels.orders[tap]),
-        f"{tap}_window_amplitudes": windows,
         f"{tap}_even_share": _number(labels.even_share[tap]),
         f"{tap}_odd_share": _number(labels.odd_share[tap]),
         f"{tap}_dominant_order": int(labels.dominant_order[tap]),

@@ -26,7 +26,7 @@ class Recovery:
     `root_strain` gives the row (n,) of the spanwise strain at a blade's root. `torsion` (n,) is the turn of O_d about
     Z, on a spring `torsion_stiffness` and a damper `torsion_damping` that turn with the drive. `casing_radius` and
     `casing_thickness` are those of the ring in m; `chord_slope` is the tangential way along a tip's chord for one of
-    axial way.
+    axial way. `blisk_mass` is that of disk and blades, kg.
     """
 
     root_strain: Callable[[int], FloatArray]
@@ -36,6 +36,7 @@ class Recovery:
     casing_radius: float
     casing_thickness: float
     chord_slope: float
+    blisk_mass: float
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -126,7 +126,14 @@ class ReducedModel:
             casing_radius=machine.casing_mean_radius_m,
             casing_thickness=machine.casing.thickness_m,
             chord_slope=float(1 / np.tan(np.deg2rad(machine.blades.tip_angle_deg))),
+            blisk_mass=self.blisk_mass,
         )
+
+    @property
+    def blisk_mass(self) -> float:
+        """Mass of disk and blades in kg, t^T M t of the rigid motion t along x."""
+        shift = rigid_shifts(self.machine.blades.count, len(self.blisk.M))[:, 0]
+        return float(shift @ self.blisk.M @ shift)
 
     def _turning_forces(self) -> TurningForces | None:
         """What of supports and gravity turns against the blisk or is not linear; None without any."""

@@ -34,7 +34,7 @@ from rubgen.solver.following import SystemAt
 from rubgen.solver.fractions import Fractions
 from rubgen.solver.refusal import no_response
 from rubgen.solver.response import Course, EnergyBook, Response, Status
-from rubgen.solver.rub_free import rub_free_motion
+from rubgen.solver.rub_free import free_penetration, rub_free_motion
 from rubgen.solver.spin import Spin, SteadySpin
 from rubgen.solver.stability import settle_turns, slowest_decay, steps_per_turn
 from rubgen.solver.step_kernels import CONTACT_UNSOLVED, DIVERGED, ENERGY, FILM_CLOSED, OK
@@ -43,7 +43,7 @@ from rubgen.solver.support_kernels import ANISOTROPY, FILM, FILM_LOSS, GRAVITY
 from rubgen.solver.taps import sampled_taps, timing_taps
 from rubgen.solver.track import TrackKeeper
 from rubgen.solver.turn_kernels import STEPS, close_touches
-from rubgen.solver.turn_orders import turn_orders
+from rubgen.solver.turn_orders import WindowOrders, turn_orders
 from rubgen.solver.twin import Twin, check_turns, piece_ends
 from rubgen.solver.worn_liner import worn_liner
 
@@ -98,6 +98,11 @@ class Integration:
             stepper.marks = stepper.marks_at(sorted({*self.fractions.steps, *pieces}))
         self.impulse = np.zeros(self.record)
         self.contact_steps = np.zeros(self.record, dtype=np.int64)
+        self.orbit = np.zeros((self.record, 5))
+        self.free_penetration = float("nan")
+        if self.rotation.is_steady:
+            self.free_penetration = free_penetration(stepper.rub_free, stepper.surface, stepper.tips)
+        self.window_orders = WindowOrders(*stepper.result.taps.shape)
         self.touches: list[FloatArray] = []
         self.orders: list[ComplexArray] = []
         self.track = TrackKeeper(settle + self.record - signal_turns)
@@ -142,8 +147,11 @@ class Integration:
         if row >= 0:
             self.section[row] = result.section
             self.impulse[row], self.contact_steps[row] = result.summary[0], int(result.summary[1])
+            self.orbit[row] = result.orbit / result.taps.shape[1]
             self.touches += self.spin.touches
-            if not self.rotation.is_steady:
+            if self.rotation.is_steady:
+                self.window_orders.add(result.taps)
+            else:
                 steps = np.arange(self.spin.first_step(turn), self.spin.first_step(turn + 1) + 1)
                 self.orders.append(turn_orders(result.taps, self.rotation.angle(steps * self.stepper.dt)))
             if self.twin is not None:
@@ -310,6 +318,10 @@ def _response(integration: Integration, taps: tuple[Tap, ...]) -> Response:
         track=integration.track.track(stepper, integration.settle) if integration.track.kept else None,
         arrivals=tip_arrivals(list(integration.arrivals), [probe.name for probe in timing_taps(taps)]),
         course=None if integration.rotation.is_steady else integration.course(),
+        orbit=integration.orbit,
+        blisk_mass=stepper.system.recovery.blisk_mass if stepper.system.recovery else float("nan"),
+        free_penetration=integration.free_penetration,
+        window_orders=integration.window_orders.all(),
     )
 
 

@@ -154,7 +154,7 @@ class ChangingSpin:
 
 def _copied(result: TurnResult) -> TurnResult:
     """A part's result, safe from the next one; its taps are its own already."""
-    return result._replace(section=result.section.copy(), summary=result.summary.copy())
+    return result._replace(section=result.section.copy(), summary=result.summary.copy(), orbit=result.orbit.copy())
 
 
 def _arrivals(stepper: Stepper) -> FloatArray:
@@ -167,4 +167,5 @@ def _joined(parts: list[TurnResult]) -> TurnResult:
     taps = np.concatenate([part.taps for part in parts], axis=1)
     summary = np.sum([part.summary for part in parts], axis=0)
     summary[2] = max(part.summary[2] for part in parts)
-    return parts[0]._replace(taps=taps, summary=summary)
+    orbit = np.sum([part.orbit for part in parts], axis=0)
+    return parts[0]._replace(taps=taps, summary=summary, orbit=orbit)

@@ -106,7 +106,7 @@ class Stepper:
             np.zeros((blades, 8)), np.zeros(blades, dtype=np.int64), np.zeros((blades * (steps // 2 + 2), 8))
         )
         self.result = TurnResult(
-            np.zeros((len(sampled_taps(taps)), steps)), np.zeros((2, n)), np.zeros(4),
+            np.zeros((len(sampled_taps(taps)), steps)), np.zeros((2, n)), np.zeros(4), np.zeros(5),
             np.zeros((min(FRAMES, steps), self.blocks.rows * LANES)),
         )  # fmt: skip
         self.motions = self.new_motions()

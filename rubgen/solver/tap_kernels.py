@@ -16,7 +16,7 @@ from rubgen.solver.block_kernels import Motion, Product, recover_blade
 from rubgen.solver.lanes_kernels import add_lines
 from rubgen.solver.model_kernels import Model, State
 
-X, Y, FORCE_X, FORCE_Y, CONTACT_FORCE, CONTACT_TORQUE = range(6)
+X, Y, FORCE_X, FORCE_Y, CONTACT_FORCE, CONTACT_TORQUE, SPEED_X, SPEED_Y = range(8)
 
 
 class Rays(NamedTuple):
@@ -56,9 +56,9 @@ class Taps(NamedTuple):
     """What the taps need.
 
     `shaft` acts on `signals` (8,): displacement of O_d and force on its support along X and Y, force and torque of
-    contact; `acceleration` and `displacement` on the casing's modes, `position` and `change` on z and d in z of the
-    blisk. `linear` (any, 2) are the output row and the place in `sums` of each linear tap. `centre` is the index of O_d
-    x. `signals`, `sums`, `bend` (n_casing,) are scratch.
+    contact, velocity of O_d; `acceleration` and `displacement` on the casing's modes, `position` and `change` on z and
+    d in z of the blisk. `linear` (any, 2) are the output row and the place in `sums` of each linear tap. `centre` is
+    the index of O_d x. `signals`, `sums`, `bend` (n_casing,) are scratch.
     """
 
     shaft: Product
@@ -106,7 +106,7 @@ def casing_radius_on_ray(rays: Rays, sums: FloatArray, opening: float, ray: int)
 
 @inlined_kernel
 def read_shaft(model: Model, taps: Taps, state: State, step: int) -> None:
-    """Into `taps.signals`: displacement of O_d and force on its support in the inertial frame."""
+    """Into `taps.signals`: displacement and velocity of O_d and force on its support in the inertial frame."""
     speed, dt = model.laws.speed, model.laws.dt
     cosine, sine = model.angles.cosine[step], model.angles.sine[step]
     x, y = state.now[taps.centre], state.now[taps.centre + 1]
@@ -118,6 +118,8 @@ def read_shaft(model: Model, taps: Taps, state: State, step: int) -> None:
         fx, fy = fx - model.support.force[1, 0], fy - model.support.force[1, 1]
     taps.signals[X] = cosine * x - sine * y
     taps.signals[Y] = sine * x + cosine * y
+    taps.signals[SPEED_X] = cosine * vx - sine * vy
+    taps.signals[SPEED_Y] = sine * vx + cosine * vy
     taps.signals[FORCE_X] = cosine * fx - sine * fy
     taps.signals[FORCE_Y] = sine * fx + cosine * fy
 

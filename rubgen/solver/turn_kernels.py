@@ -16,7 +16,7 @@ from rubgen.solver.mark_kernels import Marks, keep_mark
 from rubgen.solver.model_kernels import Model, Scratch, State
 from rubgen.solver.step_kernels import OK, advance, recover_contacts, shift_held
 from rubgen.solver.support_kernels import book_supports
-from rubgen.solver.tap_kernels import Taps, record_arrivals, record_taps
+from rubgen.solver.tap_kernels import SPEED_X, SPEED_Y, Taps, X, Y, record_arrivals, record_taps
 
 BLADE, START, STEPS, COSINE, SINE, IMPULSE, FRICTION_LOSS, NORMAL_LOSS = range(8)
 
@@ -30,16 +30,17 @@ class Touches(NamedTuple):
 
 
 class TurnResult(NamedTuple):
-    """Outputs of a turn or a part: `taps` (taps, steps), `section` (2, n), `summary` (4,), `frames`.
+    """Outputs of a turn or a part: `taps` (taps, steps), `section` (2, n), `summary` (4,), `orbit` (5,), `frames`.
 
     `section`: q and v at the section beside the start. `summary`: impulse in N s, steps with contact, largest bound of
-    the casing's displacement in m, number of arrivals. `frames` (any, any) hold z at equal steps from the first on; at
-    most one a step.
+    the casing's displacement in m, number of arrivals. `orbit` are sums over steps, see `add_orbit`. `frames` (any,
+    any) hold z at equal steps from the first on; at most one a step.
     """
 
     taps: FloatArray
     section: FloatArray
     summary: FloatArray
+    orbit: FloatArray
     frames: FloatArray
 
 
@@ -105,6 +106,17 @@ def record_section(model: Model, before: Motion, now: Motion, after: Motion, scr
 
 
 @inlined_kernel
+def add_orbit(signals: FloatArray, out: FloatArray) -> None:
+    """Add X, Y, X^2 + Y^2, V_X^2 + V_Y^2 and X V_Y - Y V_X of the disk centre, inertial, to `out` (5,)."""
+    x, y, vx, vy = signals[X], signals[Y], signals[SPEED_X], signals[SPEED_Y]
+    out[0] += x
+    out[1] += y
+    out[2] += x * x + y * y
+    out[3] += vx * vx + vy * vy
+    out[4] += x * vy - y * vx
+
+
+@inlined_kernel
 def record_frame(frames: FloatArray, frame: int, step: int, steps: int, z: FloatArray) -> int:
     """Copy z where the next frame is due; the number of frames so far."""
     if step * frames.shape[0] < frame * steps:
@@ -138,6 +150,7 @@ def run_turn(
     before, now, after = motions
     ended = arrivals = frame = mark = 0
     result.summary[:] = 0.0
+    result.orbit[:] = 0.0
     for s in range(steps):
         if marks.steps[mark] == s:
             mark = keep_mark(marks, mark, before, now, work)
@@ -170,6 +183,7 @@ def run_turn(
             result.summary[0] += force * laws.dt
             result.summary[1] += 1
         record_taps(model, taps, state, now, scratch.z_change, s, opening[s + 1], force, torque, result.taps)
+        add_orbit(taps.signals, result.orbit)
         if taps.timing.angle.shape[0] > 0:
             arrivals = record_arrivals(model, taps.timing, (before, now, after), s, clock, arrivals)
         frame = record_frame(result.frames, frame, s, steps, now.z)

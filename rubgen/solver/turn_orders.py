@@ -7,6 +7,39 @@ import numpy as np
 from rubgen.arrays import ComplexArray, FloatArray
 
 ORDERS = 20
+WINDOW_TURNS = 16
+"""Turns of a window, in which labels over time hold."""
+
+
+class WindowOrders:
+    """Complex amplitudes of a steady run's taps window by window: of the mean of its turns, which is their mean.
+
+    `add` each turn's taps (taps, steps), the first step at theta = 0; the last window may be shorter.
+    """
+
+    def __init__(self, taps: int, steps: int) -> None:
+        self.sum, self.turns = np.zeros((taps, steps)), 0
+        angle = 2 * np.pi / steps * np.multiply.outer(np.arange(steps), np.arange(1, ORDERS + 1))
+        self.wave = 2 / steps * np.concatenate([np.cos(angle), -np.sin(angle)], axis=1)
+        self.windows: list[ComplexArray] = []
+
+    def add(self, taps: FloatArray) -> None:
+        """Take one more turn."""
+        self.sum += taps
+        self.turns += 1
+        if self.turns == WINDOW_TURNS:
+            self._close()
+
+    def all(self) -> ComplexArray:
+        """Amplitudes (windows, taps, 20) of all turns so far."""
+        if self.turns:
+            self._close()
+        return np.array(self.windows, dtype=np.complex128).reshape(len(self.windows), len(self.sum), ORDERS)
+
+    def _close(self) -> None:
+        parts = self.sum @ self.wave / self.turns
+        self.windows.append(parts[:, :ORDERS] + 1j * parts[:, ORDERS:])
+        self.sum[:], self.turns = 0.0, 0
 
 
 def turn_orders(taps: FloatArray, theta: FloatArray) -> ComplexArray:

@@ -67,6 +67,20 @@ def test_pulses_agree(run, folder):
     assert np.array(row["once_per_rev_s"]).tobytes() == pulses.tobytes()
 
 
+def test_touches_agree_and_fit_in_the_recording(run, folder):
+    mcap, row = read_mcap(folder / "run.mcap").contacts, read_table(folder / "run.parquet").to_pylist()[0]
+    assert len(row["touch_blade"]) > 100
+    order = np.argsort(mcap["start_s"], kind="stable")
+    assert row["touch_start_s"] == mcap["start_s"][order].tolist()
+    assert row["touch_blade"] == mcap["blade"][order].astype(int).tolist()
+    assert row["touch_end_s"] == (mcap["start_s"] + mcap["duration_s"])[order].tolist()
+    for name, column in (("touch_angle_rad", "angle_rad"), ("touch_impulse_n_s", "impulse_n_s")):
+        np.testing.assert_allclose(row[name], mcap[column][order], rtol=1e-6)
+    np.testing.assert_allclose(row["touch_friction_work_j"], mcap["friction_loss_j"][order], rtol=1e-6)
+    assert max(row["touch_start_s"]) < 0.3
+    assert row["signal_start_s"] == run.recording.start_seconds
+
+
 def test_arrivals_of_blades_agree(run, folder):
     mcap, row = read_mcap(folder / "run.mcap"), read_table(folder / "run.parquet").to_pylist()[0]
     assert set(mcap.tip_timing) == set(run.recording.tip_timing)

@@ -8,8 +8,9 @@ import pytest
 
 from rubgen.labels import label
 from rubgen.labels.course import by_angle, course_labels
+from rubgen.labels.kept import keep
 from rubgen.labels.labels import Motion
-from rubgen.labels.plain import labels_dict
+from rubgen.labels.plain import labels_dict, remade_labels, window_amplitudes
 from rubgen.scenario.rotation import Rotation
 from rubgen.solver.response import Course
 from rubgen.solver.turn_orders import turn_orders
@@ -64,12 +65,14 @@ def test_a_rub_within_the_first_window_does_not_begin_before_its_first_touch(ram
 
 
 def test_windows_tell_speed_impulse_and_orders(ramp):
-    windows = course_labels(ramp).windows
+    windows = label(ramp).windows
     assert len(windows.start) == 5
     assert windows.start[1] == pytest.approx(ROTATION.time_of(2 * np.pi * 16))
     assert np.all(np.diff(windows.speed) > 0)
     # Turns 30 and 31 of the second window rub, all of the third, 48 and 49 of the fourth.
     np.testing.assert_allclose(windows.impulse, [0, 2 * 0.5 / 16, 0.5, 2 * 0.5 / 16, 0])
+    counts = np.diff(ramp.course.turn_steps[[0, 16, 32, 48, 64, 80]])
+    np.testing.assert_allclose(windows.duty, [0, 6, 48, 6, 0] / counts)
     np.testing.assert_allclose(windows.orders["casing_acc_0"][:, 1], 5.0, rtol=0.02)
     assert windows.orders["casing_acc_0"][:, [0, 2, 3]].max() < 0.1
 
@@ -87,7 +90,16 @@ def test_the_labels_of_the_record_hold_its_course(ramp):
     plain = labels_dict(labels)
     assert plain["change_rub"] == [0, 1, 0]
     assert plain["onset_speed_rpm"] == pytest.approx(labels.course.onset_speed * 30 / np.pi)
-    assert len(plain["casing_acc_0_window_amplitudes"]) == 5 * 20
+    assert plain["window_rub"] == [0, 1, 1, 1, 0]
+    amplitudes = np.reshape(window_amplitudes(labels)["casing_acc_0_window_amplitudes"], (5, 20))
+    np.testing.assert_allclose(amplitudes, labels.windows.orders["casing_acc_0"], rtol=1e-7)
+
+
+def test_labels_over_time_are_made_again_from_what_is_kept(ramp):
+    plain, again = labels_dict(label(ramp)), remade_labels(keep(ramp))
+    assert again["change_rub"] == [0, 1, 0]
+    assert len(again["window_starts_s"]) == 5
+    assert {name: plain[name] for name in again} == again
 
 
 def test_a_slow_fluctuation_in_contact_is_told_its_motion_where_the_speed_hardly_changes(respond):

@@ -11,6 +11,15 @@ NAMES = [
     "contact_zone_centres_rad",
     "contact_zone_widths_rad",
     "contact_zones_symmetric",
+    "contact_touches",
+    "contact_friction_work_per_turn_j",
+    "contact_severity",
+    "free_penetration_m",
+    "rub_extent",
+    "blade_touches",
+    "blade_impulses_per_turn_n_s",
+    "whirl",
+    "whirl_index",
     "motion_blisk",
     "motion_casing",
     "motion",
@@ -41,6 +50,8 @@ NAMES = [
     "change_motion_classes",
     "window_starts_s",
     "window_speeds_rpm",
+    "window_rub",
+    "window_contact_duty",
     "window_impulse_per_turn_n_s",
 ]
 
@@ -49,7 +60,6 @@ def test_labels_have_their_public_names(rub_run):
     taps = ["blisk_x", "casing_acc_0", "contact_force"]
     endings = [
         "orders",
-        "window_amplitudes",
         "even_share",
         "odd_share",
         "dominant_order",

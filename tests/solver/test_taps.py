@@ -37,6 +37,7 @@ def rubbing(system, **options):
 def recovery(system, **values):
     zero = np.zeros(system.casing_start)
     defaults = {"torsion_stiffness": 1.0, "torsion_damping": 0.0, "casing_radius": 0.21, "casing_thickness": 2e-3}
+    defaults |= {"blisk_mass": 1.0}
     rows = {"root_strain": lambda _blade: zero, "torsion": zero, "chord_slope": 0.0}
     return Recovery(**(defaults | rows | values))
 

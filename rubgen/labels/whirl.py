@@ -1,0 +1,49 @@
+"""Which way the disk centre goes round: forward, with the rotation, or backward."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+
+LEAST = 0.1
+"""Below this index the orbit is as much backward as forward."""
+
+
+class WhirlDirection(StrEnum):
+    """Direction of the orbit of the disk centre in the inertial frame."""
+
+    FORWARD = "forward"
+    BACKWARD = "backward"
+    MIXED = "mixed"
+
+
+@dataclass(frozen=True)
+class Whirl:
+    """Direction and its `index` in [-1, 1]."""
+
+    direction: WhirlDirection
+    index: float
+
+
+def whirl(orbit: FloatArray) -> Whirl | None:
+    """The whirl of an orbit given by its means over turns (turns, 5), as in `Response.orbit`; None where it rests.
+
+    index = mean(r x v) / (rms(r) rms(v)), r = (X, Y) less its mean: the areal velocity of the orbit, over the largest
+    that its size and speed allow (Cauchy-Schwarz). A circle forward has 1, backward -1, a line 0. The orbit
+    r = p e^(i w t) + n e^(-i w t) has (|p|^2 - |n|^2) / (|p|^2 + |n|^2): the sign is that of the shape and directivity
+    index (|p| - |n|) / (|p| + |n|) of Lee and Han (1998, J. Sound Vib. 211, 4).
+    """
+    if not len(orbit):
+        return None
+    x, y, size, speed, areal = orbit.mean(axis=0)
+    size -= x**2 + y**2
+    if size <= 0 or speed <= 0:
+        return None
+    index = float(np.clip(areal / np.sqrt(size * speed), -1.0, 1.0))
+    if abs(index) < LEAST:
+        return Whirl(WhirlDirection.MIXED, index)
+    return Whirl(WhirlDirection.FORWARD if index > 0 else WhirlDirection.BACKWARD, index)

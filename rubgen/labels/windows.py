@@ -1,0 +1,82 @@
+"""Labels of short windows of a record, for whoever cuts its signals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from rubgen.arrays import ComplexArray, FloatArray, IntArray
+from rubgen.labels.harmonics import MARKED_TAP, OPPOSITE_TAP
+from rubgen.solver.response import Course, Response
+from rubgen.solver.turn_orders import WINDOW_TURNS
+
+
+@dataclass(frozen=True, kw_only=True)
+class Windows:
+    """Windows of WINDOW_TURNS turns, the last one shorter: start in s, mean speed in rad/s, impulse in N s a turn.
+
+    `duty` is the share of steps with contact. `orders` by tap (windows, k) are |mean over turns of the complex
+    amplitude at k f_r|, k = 1 .. 20, in the tap's unit, without taps none; `scatter`, of a changing speed, the standard
+    error of that mean.
+    """
+
+    start: FloatArray
+    speed: FloatArray
+    impulse: FloatArray
+    duty: FloatArray
+    orders: dict[str, FloatArray]
+    scatter: dict[str, FloatArray]
+
+
+def window_edges(response: Response) -> IntArray:
+    """First turn of each window, and the number of turns."""
+    return np.append(np.arange(0, response.record_turns, WINDOW_TURNS), response.record_turns)
+
+
+def windows(response: Response) -> Windows:
+    """The windows of a record at a steady or a changing speed."""
+    edges, course = window_edges(response), response.course
+    times = turn_times(response, course)[edges]
+    if course is None:
+        steps = response.steps_per_turn * np.diff(edges)
+        orders = dict(zip(response.taps, response.window_orders.transpose(1, 0, 2), strict=False))
+        means, scatter = {tap: np.abs(each) for tap, each in _with_fields(orders).items()}, {}
+    else:
+        steps = np.diff(course.turn_steps[edges])
+        parts = [slice(first, last) for first, last in pairwise(edges.tolist())]
+        turns = _with_fields({tap: course.orders[:, i] for i, tap in enumerate(response.taps)})
+        means = {tap: np.abs([x[part].mean(axis=0) for part in parts]) for tap, x in turns.items()}
+        scatter = {tap: np.array([_standard_error(x[part]) for part in parts]) for tap, x in turns.items()}
+    return Windows(
+        start=times[:-1],
+        speed=2 * np.pi * np.diff(edges) / np.diff(times),
+        impulse=np.add.reduceat(response.impulse_per_turn, edges[:-1]) / np.diff(edges),
+        duty=np.add.reduceat(response.contact_steps_per_turn, edges[:-1]) / steps,
+        orders=means,
+        scatter=scatter,
+    )
+
+
+def turn_times(response: Response, course: Course | None) -> FloatArray:
+    """When each turn begins, and the record ends (record_turns + 1,), s."""
+    turns = range(response.record_turns + 1)
+    if course is None:
+        return np.asarray(response.turn_seconds * np.array(turns))
+    return np.array([course.rotation.time_of(2 * np.pi * turn) for turn in turns])
+
+
+def _with_fields(taps: dict[str, ComplexArray]) -> dict[str, ComplexArray]:
+    """With the even and the odd part of the casing's acceleration, as in `harmonics`."""
+    if OPPOSITE_TAP not in taps:
+        return taps
+    first, second = taps[MARKED_TAP], taps[OPPOSITE_TAP]
+    return taps | {"casing_even": (first + second) / 2, "casing_odd": (first - second) / 2}
+
+
+def _standard_error(amplitudes: ComplexArray) -> FloatArray:
+    """Of the mean over turns (turns, ...), from what successive turns differ by, where a slow drift is small."""
+    if len(amplitudes) < 2:
+        return np.asarray(np.abs(amplitudes[0]), dtype=np.float64)
+    return np.asarray(np.sqrt(np.mean(np.abs(np.diff(amplitudes, axis=0)) ** 2, axis=0) / 2 / len(amplitudes)))
