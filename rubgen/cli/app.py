@@ -209,6 +209,17 @@ def info(directory: Directory, /, *, json: Json = False) -> int:
 
 
 @app.command
+def label(directory: Directory, /, *, json: Json = False) -> int:
+    """Make the labels again from what is kept of each run, and compare; exit 1 where one differs.
+
+    The data set is not changed. Labels of orders are left out: they need the signals at every step of the integration.
+    """
+    from rubgen.cli.inspecting import label_command
+
+    return label_command(directory, as_json=json)
+
+
+@app.command
 def verify(directory: Directory, /, *, json: Json = False) -> int:
     """Check hashes, checksums, schemas, and labels against signals; exit 1 where something is wrong."""
     from rubgen.cli.inspecting import verify_command

@@ -1,13 +1,15 @@
-"""`rubgen info` and `rubgen verify`: what a data set holds, and whether it is whole."""
+"""`rubgen info`, `rubgen label`, `rubgen verify`: what a data set holds, whether it is true, whether it is whole."""
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import rubgen
 from rubgen.cli.printing import print_json, print_pairs, say
+from rubgen.dataset.relabel import relabel
 from rubgen.labels import Motion
 
 if TYPE_CHECKING:
@@ -43,6 +45,20 @@ def verify_command(directory: Path, *, as_json: bool) -> int:
     else:
         say(f"{directory}: nothing wrong")
     return 1 if problems else 0
+
+
+def label_command(directory: Path, *, as_json: bool) -> int:
+    """Make labels again, say where they differ; 1 where they do."""
+    done = relabel(directory)
+    if as_json:
+        differences = [dataclasses.asdict(each) for each in done.differences]
+        print_json({"runs": done.runs, "labels": done.labels, "differences": differences})
+    else:
+        for each in done.differences:
+            say(f"{each.run_id}  {each.label}: {each.stands} in runs.parquet, now {each.again}")
+        same = "all as in runs.parquet" if not done.differences else f"{len(done.differences)} differ"
+        say(f"{directory}: {done.labels} labels of {done.runs} runs made again, {same}; labels of orders left out")
+    return 1 if done.differences else 0
 
 
 def _counts(values: pd.Series[Any], expected: Iterable[str] = ()) -> dict[str, int]:

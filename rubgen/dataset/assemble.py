@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import pyarrow as pa
@@ -11,6 +11,7 @@ import pyarrow as pa
 from rubgen.dataset.layout import RUNS_PER_SHARD, Layout
 from rubgen.io.durable import sync_directory
 from rubgen.io.parquet import read_table, schema, write_table
+from rubgen.io.sections import SCHEMA
 from rubgen.scenario import Recipe
 
 RUNS_PER_ROW_GROUP = 8
@@ -20,13 +21,19 @@ ROWS_PER_TABLE_GROUP = 4096
 
 
 def assemble(recipe: Recipe, layout: Layout) -> Counter[str]:
-    """Write `runs.parquet` and the data files from the staged runs; gives how many runs ended with which status."""
+    """Write `runs.parquet`, data files and sections from the staged runs; gives how many ended with which status."""
     staged = [layout.staged(f"run-{index:06d}") for index in range(recipe.runs)]
     sensors = recipe.sensing.set
     status = _write_runs(staged, layout, schema(signals=False, sensors=sensors))
+    valid = _valid(staged)
     if "parquet" in recipe.output.formats:
-        _write_shards(_valid(staged), layout, schema(signals=True, clean=recipe.sensors.keep_clean, sensors=sensors))
+        types = schema(signals=True, clean=recipe.sensors.keep_clean, sensors=sensors)
+        _write_shards(valid, layout.shards(), layout.shard, types)
         sync_directory(layout.data)
+    _write_shards(
+        [layout.staged_section(path.stem) for path in valid], layout.section_shards(), layout.section_shard, SCHEMA
+    )
+    sync_directory(layout.sections)
     sync_directory(layout.root)
     return status
 
@@ -48,10 +55,12 @@ def _valid(staged: Sequence[Path]) -> list[Path]:
     return [path for path in staged if read_table(path, ["status"])["status"][0].as_py() == "ok"]
 
 
-def _write_shards(staged: Sequence[Path], layout: Layout, types: pa.Schema) -> None:
+def _write_shards(
+    staged: Sequence[Path], there: Sequence[Path], name_of: Callable[[int, int], Path], types: pa.Schema
+) -> None:
     shards = list(_batches(staged, RUNS_PER_SHARD)) or [[]]
-    names = [layout.shard(number, len(shards)) for number in range(len(shards))]
-    for path in set(layout.shards()) - set(names):
+    names = [name_of(number, len(shards)) for number in range(len(shards))]
+    for path in set(there) - set(names):
         path.unlink()
     for name, paths in zip(names, shards, strict=True):
         groups = (_joined(group, types) for group in _batches(paths, RUNS_PER_ROW_GROUP))

@@ -60,6 +60,9 @@ Splits go by machine: runs of one machine never stand in two splits. This set ha
 
 {loading}
 
+`sections/{SPLIT}-*.parquet` holds what labels come from, one row a run: the state once a turn, every touch of the
+record, the growths behind the Lyapunov exponent. `rubgen label DIR` makes all labels but those of orders from it again.
+
 `manifest.json` holds the recipe, the machine, the versions and the sha256 of every file; `rubgen verify DIR` checks
 all of them, and labels against signals.
 
@@ -88,6 +91,7 @@ def _head(recipe: dict[str, object]) -> str:
     configs = [("runs", "runs.parquet")]
     if isinstance(output, dict) and "parquet" in output["formats"]:
         configs.insert(0, ("signals", f"data/{SPLIT}-*.parquet"))
+    configs.append(("sections", f"sections/{SPLIT}-*.parquet"))
     lines = [
         "---",
         f"license: {json.dumps(str(recipe['license']).lower())}",

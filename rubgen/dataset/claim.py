@@ -35,7 +35,7 @@ def finished(layout: Layout, identity: Identity) -> bool:
 @contextmanager
 def claimed(layout: Layout, identity: Identity) -> Iterator[None]:
     """Hold the directory for this process, with its folders made and what was left half-written removed."""
-    for folder in (layout.root, layout.staging, layout.staging / "runs"):
+    for folder in (layout.root, layout.sections, layout.staging / "runs", layout.staging / "sections"):
         folder.mkdir(parents=True, exist_ok=True)
     lock = FileLock(layout.staging / "lock", timeout=0)
     try:

@@ -84,6 +84,8 @@ def croissant(layout: Layout, identity: Identity) -> dict[str, Any]:
         distribution.append({"@type": "cr:FileSet", "@id": "data", "includes": includes, "encodingFormat": PARQUET})
         signals = signal_columns(identity.sensor_set, clean=recipe["sensors"]["keep_clean"])
         records.append(_record_set("signals", scalars + signals, {"fileSet": {"@id": "data"}}))
+    sections = f"sections/{SPLIT}-*.parquet"
+    distribution.append({"@type": "cr:FileSet", "@id": "sections", "includes": sections, "encodingFormat": PARQUET})
     return {
         "@context": CONTEXT,
         "@type": "sc:Dataset",

@@ -62,6 +62,23 @@ class Layout:
         """The finished run: its existence proves that all its files are complete."""
         return self.staging / "runs" / f"{run_id}.parquet"
 
+    def staged_section(self, run_id: str) -> Path:
+        """What is kept of a finished run."""
+        return self.staging / "sections" / f"{run_id}.parquet"
+
+    @property
+    def sections(self) -> Path:
+        """Folder of what is kept of each run, from which labels can be made again."""
+        return self.root / "sections"
+
+    def section_shard(self, number: int, count: int) -> Path:
+        """A file of the sections of as many runs as a data file has."""
+        return self.sections / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
+
+    def section_shards(self) -> list[Path]:
+        """The files of sections that are there, in order."""
+        return sorted(self.sections.glob("*.parquet"))
+
     def export(self, kind: str, run_id: str) -> Path:
         """The MCAP or .rrd file of a run."""
         return self.root / FOLDERS[kind] / f"{run_id}.{kind}"

@@ -114,7 +114,7 @@ def read_manifest(layout: Layout) -> Manifest:
 
 def hashed_files(layout: Layout) -> list[Path]:
     """The files whose sha256 the manifest holds, in its order."""
-    folders = [*layout.shards(), *sorted((layout.root / FOLDERS["mcap"]).glob("*.mcap"))]
+    folders = [*layout.shards(), *layout.section_shards(), *sorted((layout.root / FOLDERS["mcap"]).glob("*.mcap"))]
     return [path for path in (layout.card, layout.croissant, layout.runs, *folders) if path.exists()]
 
 

@@ -24,6 +24,7 @@ def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
     A run that cannot be made of the values that were drawn is recorded as refused, with the reason.
     """
     from rubgen.io.parquet import run_table, write_table
+    from rubgen.io.sections import write_section
     from rubgen.pipeline import refused, simulate
 
     layout = Layout(root)
@@ -33,6 +34,7 @@ def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
         run = refused(scenario, str(error))
     if run.labels is not None:
         _write_exports(run, layout, formats)
+        write_section(scenario.run_id, run.response, layout.staged_section(scenario.run_id))
     table = run_table(run, signals="parquet" in formats)
     write_table([table], table.schema, layout.staged(scenario.run_id))
     return run.response.status.code

@@ -13,6 +13,7 @@ from rubgen.dataset.manifest import Manifest, derived_files, hashed_files, read_
 from rubgen.dataset.open import is_signal, row_signals
 from rubgen.errors import UserError
 from rubgen.io.parquet import row_groups, schema
+from rubgen.io.sections import SCHEMA
 from rubgen.scenario import Sensing
 
 
@@ -65,6 +66,7 @@ def _table_problems(layout: Layout, manifest: Manifest) -> Iterator[str]:
     for name, row in valid.items():
         yield from (f"{name}: {problem}" for problem in label_problems(row))
     yield from _expected_exports(layout, recipe["output"]["formats"], set(valid))
+    yield from _section_problems(layout, set(valid))
     if "parquet" in recipe["output"]["formats"]:
         yield from _data_problems(layout, Sensing(**{**recipe["sensors"], "set": sensors}), valid)
 
@@ -74,6 +76,18 @@ def _expected_exports(layout: Layout, formats: list[str], valid: set[str]) -> It
         there = {path.stem for path in (layout.root / kind).glob(f"*.{kind}")}
         for name in sorted(there ^ valid):
             yield f"{kind}/{name}.{kind}: {'run is not ok or unknown' if name in there else 'missing'}"
+
+
+def _section_problems(layout: Layout, valid: set[str]) -> Iterator[str]:
+    seen: set[str] = set()
+    for path in layout.section_shards():
+        for table in row_groups(path):
+            if not table.schema.equals(SCHEMA):
+                yield f"sections/{path.name}: its columns are not those of this rubgen"
+                return
+            seen |= set(table["run_id"].to_pylist())
+    for name in sorted(seen ^ valid):
+        yield f"{name}: {'has a section, but is not ok' if name in seen else 'is ok, but has no section'}"
 
 
 def _data_problems(layout: Layout, sensing: Sensing, valid: dict[str, Row]) -> Iterator[str]:

@@ -51,6 +51,7 @@ def test_the_set_has_every_file_and_nothing_else(small_set):
         "manifest.json",
         "manifest.json.sha256",
         "runs.parquet",
+        "sections/train-00000-of-00001.parquet",
     }
     assert small_set.made.made == small_set.made.runs == 4
     assert small_set.made.status == {"ok": 4}

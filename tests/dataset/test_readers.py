@@ -68,7 +68,7 @@ def test_the_card_describes_every_column_and_its_head_is_yaml(small_set):
     _, head, body = text.split("---\n", 2)
     values = yaml.safe_load(head)
     assert values["license"] == "cc-by-4.0"
-    assert [config["config_name"] for config in values["configs"]] == ["signals", "runs"]
+    assert [config["config_name"] for config in values["configs"]] == ["signals", "runs", "sections"]
     for column in SCALARS + SIGNALS:
         assert f"| `{column.name}` | {column.kind} | {column.unit} |" in body
     assert "4 runs" in body

@@ -1,0 +1,82 @@
+"""Labels of a data set made again from what is kept with each run, and how they differ from those that it holds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.manifest import read_manifest
+from rubgen.errors import UserError
+from rubgen.io.parquet import read_table, row_groups
+from rubgen.io.sections import SCHEMA, kept_of
+from rubgen.labels.plain import remade_labels
+
+RELATIVE, ABSOLUTE = 1e-9, 1e-12
+"""Numbers within this of each other are equal: another machine's BLAS rounds differently."""
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A label of a run: as it stands in `runs.parquet`, and made again."""
+
+    run_id: str
+    label: str
+    stands: object
+    again: object
+
+
+@dataclass(frozen=True, kw_only=True)
+class Relabelled:
+    """How many runs and labels were made again, and where they differ."""
+
+    runs: int
+    labels: int
+    differences: tuple[Difference, ...]
+
+
+def relabel(directory: Path) -> Relabelled:
+    """Make the labels of every good run again, all but those of orders, which need the signals at every step.
+
+    The data set is only read. Raises UserError where `directory` holds no finished data set, or one without sections.
+    """
+    layout = Layout(directory)
+    read_manifest(layout)
+    rows = {row["run_id"]: row for row in read_table(layout.runs).to_pylist()}
+    runs = labels = 0
+    found: list[Difference] = []
+    for run_id, again in _remade(layout):
+        row = rows.get(run_id)
+        if row is None:
+            raise UserError(f"{layout.root}: sections/ holds {run_id}, runs.parquet does not; check it: rubgen verify")
+        runs, labels = runs + 1, labels + len(again)
+        found += [
+            Difference(run_id, name, row.get(name), value)
+            for name, value in again.items()
+            if name not in row or not equal(row[name], value)
+        ]
+    return Relabelled(runs=runs, labels=labels, differences=tuple(found))
+
+
+def _remade(layout: Layout) -> Iterator[tuple[str, dict[str, object]]]:
+    """Name and labels of each run with a section."""
+    paths = layout.section_shards()
+    if not paths:
+        raise UserError(f"{layout.root}: no sections/ to make labels from; generate the set again with this rubgen")
+    for path in paths:
+        for table in row_groups(path):
+            if not table.schema.equals(SCHEMA):
+                raise UserError(f"{path}: its columns are not those of this rubgen; generate the set again")
+            for row, run_id in enumerate(table["run_id"].to_pylist()):
+                yield run_id, remade_labels(kept_of(table, row))
+
+
+def equal(one: object, other: object) -> bool:
+    """Whether two labels are the same, numbers but for rounding."""
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(equal, one, other))
+    if isinstance(one, float) and isinstance(other, float):
+        return math.isclose(one, other, rel_tol=RELATIVE, abs_tol=ABSOLUTE)
+    return one == other
