@@ -43,8 +43,9 @@ FOLLOWS = """
   and the same period-1 impulses within 0.02 %: contact damps more than the linear system, on whose slowest decay
   `auto` rests. It stays the default, because a run that hardly rubs has that decay alone.
 - **Period-1 means within 1 % of the motion**, the radius inside which `docs/labels.md` takes points as one. The
-  casing of the light rub strays by half of that, and the 0-1 test alone would call it chaotic. Close to the bound any
-  small change turns a label: with friction 0.01 and 8,192 steps that run is period-3 by name.
+  casing of the light rub strays by half of that, the bound from which 0-1 test and exponent may contradict, and they
+  do: with other steps or nodes it strays a little more and is `undecided`, and with friction 0.01 and
+  8,192 steps it is period-3 by name. Impulses and orders hardly move.
 - Mean impulses of the chaotic runs scatter by up to some 8 % whatever is varied, without a trend (casing modes and
   256 steps apart): 500 turns tell no more.
 """
