@@ -72,7 +72,7 @@ def annular_mesh(disk: Disk) -> ShellMesh:
         radius = np.hypot(points[..., 0], points[..., 1])
         return disk.bore_thickness_m + slope * (radius - disk.bore_radius_m)
 
-    return ShellMesh(np.concatenate(rings), np.stack(corners + midsides, axis=1), thickness)
+    return ShellMesh(np.concatenate(rings), np.stack(corners + midsides, axis=1), thickness, around=n_c)
 
 
 def _ring(radius: float, count: int) -> FloatArray:

@@ -1,6 +1,7 @@
 """Eight-node Mindlin-Reissner shell element, flat in the plane z = 0, six DoFs a node (u, v, w, th_x, th_y, th_z).
 
-A point at height z moves by (u + z th_y, v - z th_x, w). Everything is integrated for all elements at once. Against
+A point at height z moves by (u + z th_y, v - z th_x, w). Everything is integrated for all elements at once that are no
+turned copies of others (`ShellMesh.around`). Against
 shear locking th_x and th_y have a bubble besides the eight nodes (the heterosis idea of Hughes and Cohen 1978), which
 follows the nodes as in statics: q_54 = T q_48 in every matrix.
 """
@@ -47,8 +48,8 @@ def shell_stiffness(mesh: ShellMesh, material: Material) -> SparseMatrix:
     blade too soft. Square elements do not lock however thin; narrow sectors of a disk keep 1 % down to a thickness of
     a hundredth of the element. Tests: tests/fem/test_shell.py, test_disk.py.
     """
-    K = _element_stiffness(mesh, material)
-    return _assemble(mesh, _following(K), K)
+    K = _element_stiffness(mesh.firsts, material)
+    return _assemble(mesh, mesh.turned(_on_nodes(_following(K), K)))
 
 
 def shell_inertia(mesh: ShellMesh, material: Material) -> ShellInertia:
@@ -56,16 +57,16 @@ def shell_inertia(mesh: ShellMesh, material: Material) -> ShellInertia:
 
     M = int rho N^T N; S = int rho N^T (1 - e_z e_z^T) N leaves w out; G = int rho N^T (e_z x N) = (e_z x) S.
     """
-    points, T = quadrature(mesh, 3), _following(_element_stiffness(mesh, material))
+    points, T = quadrature(mesh.firsts, 3), _following(_element_stiffness(mesh.firsts, material))
     rho_area = material.density_kg_per_m3 * points.area
     N = points.N * (np.arange(9) < 8)
     t = np.einsum("qa,qb,eq->eab", N, N, rho_area * points.thickness)
     r = np.einsum("qa,qb,eq->eab", points.N, points.N, rho_area * points.thickness**3 / 12)
     S = _by_direction(t, t, np.zeros_like(t), r, r)
     G = (np.kron(np.eye(9), SPIN) @ S).reshape(S.shape)
-    return ShellInertia(
-        M=_assemble(mesh, T, _by_direction(t, t, t, r, r)), G=_assemble(mesh, T, G), S=_assemble(mesh, T, S)
-    )
+    M = _by_direction(t, t, t, r, r)
+    M, G, S = (_assemble(mesh, mesh.turned(_on_nodes(T, X))) for X in (M, G, S))
+    return ShellInertia(M=M, G=G, S=S)
 
 
 def shell_stress_stiffness(mesh: ShellMesh, material: Material, displacement: FloatArray) -> SparseMatrix:
@@ -74,7 +75,7 @@ def shell_stress_stiffness(mesh: ShellMesh, material: Material, displacement: Fl
     Energy h grad(d)^T sigma grad(d) / 2 for d = u, v, w, and the same of th_x, th_y with h^3/12, per area; sigma at
     the 3 x 3 points of the membrane stiffness, so that it balances the loads of those points exactly.
     """
-    points, T = quadrature(mesh, 3), _following(_element_stiffness(mesh, material))
+    points, T = quadrature(mesh, 3), mesh.turned(_following(_element_stiffness(mesh.firsts, material)))
     nodal = displacement.reshape(-1, 6)[mesh.elements].reshape(len(mesh.elements), 48)
     strain = np.einsum("eqia,ea->eqi", in_plane_strain(points)[..., :48], nodal)
     stress = strain @ _plane_stress(material)
@@ -83,7 +84,7 @@ def shell_stress_stiffness(mesh: ShellMesh, material: Material, displacement: Fl
     h, area = points.thickness, points.area
     t = np.einsum("eqai,eqij,eqbj,eq->eab", gradient, tensor, gradient, h * area, optimize=True)
     r = np.einsum("eqai,eqij,eqbj,eq->eab", points.gradient, tensor, points.gradient, h**3 / 12 * area, optimize=True)
-    return _assemble(mesh, T, _by_direction(t, t, t, r, r))
+    return _assemble(mesh, _on_nodes(T, _by_direction(t, t, t, r, r)))
 
 
 def _element_stiffness(mesh: ShellMesh, material: Material) -> FloatArray:
@@ -127,8 +128,13 @@ def _by_direction(*blocks: FloatArray) -> FloatArray:
     return full.reshape(-1, ELEMENT_DOFS, ELEMENT_DOFS)
 
 
-def _assemble(mesh: ShellMesh, T: FloatArray, matrices: FloatArray) -> SparseMatrix:
-    nodal = T.swapaxes(1, 2) @ matrices @ T
+def _on_nodes(T: FloatArray, matrices: FloatArray) -> FloatArray:
+    """T^T X T (e, 48, 48): on the nodes alone."""
+    nodal: FloatArray = T.swapaxes(1, 2) @ matrices @ T
+    return nodal
+
+
+def _assemble(mesh: ShellMesh, nodal: FloatArray) -> SparseMatrix:
     dof = (6 * mesh.elements[:, :, None] + np.arange(6)).reshape(-1, 48)
     rows, columns = np.repeat(dof, 48, axis=1), np.tile(dof, (1, 48))
     size = 6 * len(mesh.nodes)

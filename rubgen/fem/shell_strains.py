@@ -19,11 +19,34 @@ BUBBLE_DOFS = np.array([51, 52])
 
 @dataclass(frozen=True)
 class ShellMesh:
-    """Nodes (n, 2) in m, elements (e, 8) as in the order of serendipity nodes, thickness in m at points (..., 2)."""
+    """Nodes (n, 2) in m, elements (e, 8) as in the order of serendipity nodes, thickness in m at points (..., 2).
+
+    Of every `around` elements the others are the first one turned about the origin by 2 pi / around, 4 pi / around, ...
+    """
 
     nodes: FloatArray
     elements: IntArray
     thickness: Callable[[FloatArray], FloatArray]
+    around: int = 1
+
+    @property
+    def firsts(self) -> ShellMesh:
+        """The elements that are no turned ones."""
+        return ShellMesh(self.nodes, self.elements[:: self.around], self.thickness)
+
+    def turned(self, firsts: FloatArray) -> FloatArray:
+        """Matrices (e, 6 a, 6 b) of all elements from those of `firsts`: Z_j X Z_j^T, Z_j turning each node's DoFs."""
+        if self.around == 1:
+            return firsts
+        angle = (2 * np.pi * np.arange(self.around) / self.around)[:, None, None]
+        c, s, X = np.cos(angle), np.sin(angle), firsts[:, None]
+        out = np.empty((len(firsts), self.around, *firsts.shape[1:]))
+        out[..., 0::3, :] = c * X[..., 0::3, :] - s * X[..., 1::3, :]
+        out[..., 1::3, :] = s * X[..., 0::3, :] + c * X[..., 1::3, :]
+        out[..., 2::3, :] = X[..., 2::3, :]
+        x, y = out[..., 0::3].copy(), out[..., 1::3].copy()
+        out[..., 0::3], out[..., 1::3] = c * x - s * y, s * x + c * y
+        return out.reshape(-1, *firsts.shape[1:])
 
 
 @dataclass(frozen=True)

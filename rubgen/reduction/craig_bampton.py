@@ -9,6 +9,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from rubgen.arrays import FloatArray, IntArray, SparseMatrix
 from rubgen.errors import UserError
 from rubgen.fem.statics import factorize
+from rubgen.reduction.cyclic import FIRST, Turning
 
 # Up to this many slave DoFs the dense eigen-solver is used; it alone can give all modes.
 DENSE_LIMIT = 1000
@@ -16,23 +17,29 @@ DENSE_LIMIT = 1000
 MASSLESS = 1e-13
 
 
-def craig_bampton(M: SparseMatrix, K: SparseMatrix, masters: IntArray, modes: int) -> FloatArray:
+def craig_bampton(
+    M: SparseMatrix, K: SparseMatrix, masters: IntArray, modes: int, turning: Turning | None = None
+) -> FloatArray:
     """Basis (n, masters + modes) of constraint modes and mass-normalised fixed-interface modes.
 
     q = V p with V = [[I, 0], [-K_ss^-1 K_sm, Phi]], Phi the lowest modes of K_ss Phi = M_ss Phi omega^2
     (Craig and Bampton 1968). p holds the masters' own displacements first. K_ss must be positive definite, M_ss may be
     singular: massless directions follow statically. Signs are fixed by the largest entry of each mode. Raises
-    UserError when more modes are asked for than carry mass. Tests: tests/reduction/test_craig_bampton.py.
+    UserError when more modes are asked for than carry mass. With `turning` the first twelve masters are solved for, and
+    the others' shapes are turned copies (`cyclic`). Tests: tests/reduction/test_craig_bampton.py.
     """
     slaves = np.setdiff1d(np.arange(K.shape[0]), masters)
     K_ss, M_ss = K[slaves][:, slaves], M[slaves][:, slaves]
-    K_sm = K[slaves][:, masters].toarray()
+    solved = masters if turning is None else masters[:FIRST]
+    K_sm = K[slaves][:, solved].toarray()
     solve = _dense if len(slaves) <= DENSE_LIMIT else _sparse
     constraint, fixed = solve(M_ss, K_ss, K_sm, modes)
     basis = np.zeros((K.shape[0], len(masters) + modes))
     basis[masters, np.arange(len(masters))] = 1.0
-    basis[slaves, : len(masters)] = constraint
+    basis[slaves, : len(solved)] = constraint
     basis[slaves, len(masters) :] = _fix_signs(fixed)
+    if turning is not None:
+        turning.copy_columns(basis)
     return basis
 
 
