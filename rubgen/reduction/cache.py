@@ -63,15 +63,15 @@ def _key(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reductio
     ):  # fmt: skip
         del springs[lateral]
     what = [asdict(disk), asdict(blades), springs, modes, np.__version__, scipy.__version__]
-    return hashlib.sha256(json.dumps(what, sort_keys=True).encode() + _digest_of_code()).hexdigest()[:32]
+    return hashlib.sha256(json.dumps(what, sort_keys=True).encode() + _digest_of_code(_PACKAGE)).hexdigest()[:32]
 
 
 @cache
-def _digest_of_code() -> bytes:
+def _digest_of_code(package: Path) -> bytes:
     """Of all sources that a reduced blisk comes from, read once in a process."""
     digest = hashlib.sha256()
     for folder in ("fem", "reduction", "machine"):
-        for source in sorted((_PACKAGE / folder).glob("*.py")):
+        for source in sorted((package / folder).glob("*.py")):
             digest.update(source.read_bytes())
     return digest.digest()
 

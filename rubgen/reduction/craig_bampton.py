@@ -49,12 +49,14 @@ def _dense(M: SparseMatrix, K: SparseMatrix, K_sm: FloatArray, modes: int) -> tu
     if modes == 0:
         return constraint, np.zeros((len(stiffness), 0))
     # M x = mu K x with mu = 1 / omega^2 stays regular for massless directions.
-    compliance, vectors = eigh(M.toarray(), stiffness)
+    mass, n = M.toarray(), len(stiffness)
+    compliance, vectors = eigh(mass, stiffness, subset_by_index=(max(n - modes, 0), n - 1))
     compliance, vectors = compliance[::-1], vectors[:, ::-1]
-    available = int(np.count_nonzero(compliance > MASSLESS * compliance[0]))
-    if modes > available:
+    if modes > n or compliance[-1] <= MASSLESS * compliance[0]:
+        every: FloatArray = eigh(mass, stiffness, eigvals_only=True)
+        available = int(np.count_nonzero(every > MASSLESS * every[-1]))
         raise UserError(f"reduction: {modes} modes of a component that has {available}; give at most {available}")
-    return constraint, vectors[:, :modes] / np.sqrt(compliance[:modes])
+    return constraint, vectors / np.sqrt(compliance)
 
 
 def _sparse(M: SparseMatrix, K: SparseMatrix, K_sm: FloatArray, modes: int) -> tuple[FloatArray, FloatArray]:
