@@ -11,6 +11,7 @@ from pydantic import TypeAdapter, ValidationError
 from rubgen.errors import UserError
 
 UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
+BOUNDS = ("less_than", "greater_than_equal")
 
 
 def first_problem(
@@ -27,8 +28,13 @@ def first_problem(
         known = sorted(_keys_at(adapter, location[:-1])) if adapter else []
         return UserError(f"{source}: {key}: unknown key; {nearest(str(location[-1]), known)}")
     message = problem["msg"].removeprefix("Value error, ")
+    if location[-1:] == ["angle_deg"] and problem["type"] in BOUNDS:
+        message = "an angle round the casing is at least 0 and below 360 degrees"
     remedy = "" if ";" in message else "; correct this value"
-    return UserError(f"{source}: {key}{_shown(problem.get('input'))}: {message}{remedy}")
+    value = problem.get("input")
+    # Of a whole table, a message that shows the key and its value says enough.
+    shown = "" if isinstance(value, Mapping) and " = " in message else _shown(value)
+    return UserError(f"{source}: {key}{shown}: {message}{remedy}")
 
 
 def nearest(name: str, known: list[str]) -> str:

@@ -35,7 +35,7 @@ def _record_problem(scenario: Scenario) -> str | None:
     turns = scenario.operation.record_turns
     if turns >= MIN_RECORD_TURNS or scenario.operation.profile != "steady":
         return None
-    return f"simulation.record_turns = {turns}: labels need at least {MIN_RECORD_TURNS} turns; raise it"
+    return f"simulation.record_turns = {turns}: labels need at least {MIN_RECORD_TURNS} turns, the Lyapunov exponent too; raise it"
 
 
 def _tail_problem(scenario: Scenario) -> str | None:

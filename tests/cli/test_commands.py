@@ -153,7 +153,10 @@ BAD = {
     "inf": (["simulate", "--speed-rpm", "inf"], "speed_rpm = inf: must be above 0"),
     "negative clearance": (["simulate", "--clearance-m", "-1e-4"], "clearance_m = -0.0001: must be above 0"),
     "lobes": (["simulate", "--lobes", "6"], "lobes = 6: 11 casing modes carry at most 5 lobes"),
-    "few turns": (["simulate", "--record-turns", "60"], "record_turns = 60: labels need at least 500 turns"),
+    "few turns": (
+        ["simulate", "--record-turns", "60"],
+        "record_turns = 60: labels need at least 500 turns, the Lyapunov exponent too; raise it",
+    ),
     "no turns": (["simulate", "--settle-turns", "-1"], "settle_turns = -1: "),
     "zero turns": (["simulate", "--settle-turns", "0"], "settle_turns = 0: "),
     "rate": (["simulate", "--sample-rate-hz", "-5"], "sample_rate_hz = -5.0: Input should be greater than 0"),
@@ -167,6 +170,7 @@ BAD = {
     "runs": (["generate", "--out", "x", "--runs", "0"], "--runs 0: must be at least 1"),
     "workers": (["generate", "--out", "x", "--workers", "-2"], "--workers -2: must be at least 1"),
     "info": (["info", "none"], "none: no finished data set of rubgen"),
+    "label": (["label", "none"], "none: no finished data set of rubgen"),
     "verify": (["verify", "none"], "none: no finished data set of rubgen"),
 }
 

@@ -1,0 +1,204 @@
+"""What each indicator says of a rubbing run, and why they contradict each other where they do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.labels.chaos import CHAOTIC_FROM, ROUNDING
+from rubgen.labels.clusters import CLUSTER_RADIUS, EXCURSION, LONGEST_PERIOD, cluster_distances, off_cluster, rms
+from rubgen.labels.kept import Kept, response_of
+from rubgen.labels.labels import Motion
+from rubgen.labels.lyapunov import Exponent, lyapunov_of
+from rubgen.labels.motion import Motions, blisk_points, casing_points, motion
+from rubgen.solver.response import Response
+
+LONG_PERIODS = range(LONGEST_PERIOD + 1, 65)
+SETTLING = 2.0
+"""What strays in the third quarter of the record over the last quarter, from which a motion is still settling."""
+GROUPS = ("disk centre", "tips", "casing")
+
+
+class Clusters(StrEnum):
+    """Whether every part of the section comes back within 16 turns."""
+
+    REPEATS = "repeats"
+    STRAYS = "does not"
+
+
+class ZeroOne(StrEnum):
+    """The 0-1 test."""
+
+    REGULAR = "regular"
+    CHAOS = "chaos"
+
+
+class Sign(StrEnum):
+    """Sign of the Lyapunov exponent, zero within its error."""
+
+    NEGATIVE = "negative"
+    ZERO = "zero"
+    POSITIVE = "positive"
+
+
+Verdict = tuple[Clusters, ZeroOne, Sign]
+AGREE: dict[Verdict, str] = {
+    (Clusters.REPEATS, ZeroOne.REGULAR, Sign.NEGATIVE): "periodic",
+    (Clusters.STRAYS, ZeroOne.REGULAR, Sign.ZERO): "quasi-periodic",
+    (Clusters.STRAYS, ZeroOne.CHAOS, Sign.POSITIVE): "chaotic",
+}
+"""What the three say together where they agree. All other verdicts are disagreements."""
+
+
+class Cause(StrEnum):
+    """Why indicators disagree; each value is its explanation."""
+
+    SMALL_CHAOS = (
+        "chaos below the scale of the motion: all parts repeat within 1 %, and what is left within that is chaotic by "
+        "both other indicators"
+    )
+    NEAR_BOUND = (
+        "the same, near the bound: what is left is more than half of 1 %, so that the run is labelled undecided"
+    )
+    HIDDEN_CHAOS = (
+        "chaos that the section does not show: a positive exponent, and what strays in the section is regular or less "
+        "than single precision holds"
+    )
+    SMALL_TORUS = (
+        "a second frequency below the scale of the motion: all parts repeat within 1 %, and what is left within that "
+        "is quasi-periodic by both other indicators"
+    )
+    NEUTRAL = (
+        "a periodic motion that hardly attracts, or is not there yet: the exponent is zero within its error or within "
+        "0.001 a turn, as next to a bifurcation"
+    )
+    SMALL_NOISE = "what is left of a periodic motion is irregular, but does not grow: K of what 40 dB hide"
+    SETTLING = "not settled: what strays falls by more than half within the second half of the record"
+    SWITCHING = "intermittent: the record holds regular and irregular stretches"
+    LONG_PERIOD = "a period of 17 to 64 turns, longer than those that clusters look for"
+    SLOW_PHASE = (
+        "positive exponent and K below its bound: what dominates the variance keeps its phase, as lightly damped "
+        "blades do"
+    )
+    UNEXPLAINED = "none of these"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """One run as the indicators see it; strays are those of the system, the largest of its parts, over the motion.
+
+    `group` is what strays most: disk centre, tips or casing. `settling` is the ratio of what strays in the third and
+    the last quarter.
+    """
+
+    name: str
+    verdict: Verdict
+    motion: Motion
+    confidence: float
+    stray: float
+    group: str
+    growth: float
+    exponent: Exponent
+    settling: float
+    intermittent: bool
+    long_period: int | None
+
+    @property
+    def agree(self) -> bool:
+        """Whether all three indicators say the same."""
+        return self.verdict in AGREE
+
+    @property
+    def cause(self) -> Cause | None:
+        """Why they do not."""
+        return None if self.agree else _cause(self)
+
+
+def judge(name: str, kept: Kept) -> Case | None:
+    """The verdicts on a run that is kept; None where the casing rests or the twin could not follow."""
+    response = response_of(kept)
+    exponent = lyapunov_of(response)
+    if exponent is None:
+        return None
+    found = motion(response, exponent)
+    if not found.indicators:
+        return None
+    groups = _groups(response)
+    strays = [_least_stray(points) for points in groups.values()]
+    return Case(
+        name=name,
+        verdict=_verdict(found, exponent),
+        motion=found.system.motion,
+        confidence=found.system.confidence,
+        stray=max(part.stray for part in found.indicators),
+        group=list(groups)[int(np.argmax(strays))],
+        growth=found.indicators[0].growth,
+        exponent=exponent,
+        settling=_settling(groups),
+        intermittent=found.intermittent,
+        long_period=_long_period(groups),
+    )
+
+
+def _verdict(found: Motions, exponent: Exponent) -> Verdict:
+    repeats = all(part.period is not None for part in found.indicators)
+    sign = Sign.POSITIVE if exponent.is_positive else Sign.NEGATIVE if exponent.is_negative else Sign.ZERO
+    return (
+        Clusters.REPEATS if repeats else Clusters.STRAYS,
+        ZeroOne.CHAOS if found.indicators[0].growth >= CHAOTIC_FROM else ZeroOne.REGULAR,
+        sign,
+    )
+
+
+def _cause(case: Case) -> Cause:
+    clusters, test, sign = case.verdict
+    if clusters is Clusters.REPEATS:
+        if test is ZeroOne.CHAOS and sign is Sign.POSITIVE:
+            return Cause.NEAR_BOUND if case.motion is Motion.UNDECIDED else Cause.SMALL_CHAOS
+        if sign is Sign.POSITIVE:
+            return Cause.HIDDEN_CHAOS
+        if test is ZeroOne.CHAOS:
+            return Cause.SMALL_NOISE
+        return Cause.SMALL_TORUS if case.stray > ROUNDING and case.settling < SETTLING else Cause.NEUTRAL
+    if case.long_period is not None:
+        return Cause.LONG_PERIOD
+    if case.settling > SETTLING:
+        return Cause.SETTLING
+    if case.intermittent:
+        return Cause.SWITCHING
+    return Cause.SLOW_PHASE if sign is Sign.POSITIVE else Cause.UNEXPLAINED
+
+
+def _groups(response: Response) -> dict[str, FloatArray]:
+    """The second half of the section by groups (turns, any, values)."""
+    half = response.record_turns // 2
+    blisk, casing = blisk_points(response)[half:], casing_points(response)[half:]
+    return dict(zip(GROUPS, (blisk[:, :1], blisk[:, 1:], casing), strict=True))
+
+
+def _least_stray(points: FloatArray) -> float:
+    """Rms distance from the k <= 16 clusters that leave least."""
+    return min(rms(cluster_distances(points, k)) for k in range(1, LONGEST_PERIOD + 1))
+
+
+def _settling(groups: dict[str, FloatArray]) -> float:
+    """The largest ratio of what strays from one point in the first and the last half; 1 where it is only rounding."""
+    ratios = [1.0]
+    for points in groups.values():
+        half = len(points) // 2
+        first, last = (rms(np.linalg.norm(off_cluster(part, 1), axis=2)) for part in (points[:half], points[half:]))
+        if first > ROUNDING:
+            ratios.append(first / max(last, ROUNDING))
+    return max(ratios)
+
+
+def _long_period(groups: dict[str, FloatArray]) -> int | None:
+    """The least period of 17 to 64 turns after which every point of every group comes back."""
+    for k in LONG_PERIODS:
+        back = [np.linalg.norm(points[k:] - points[:-k], axis=2).max(axis=1) for points in groups.values()]
+        if all(rms(each) <= 2**0.5 * CLUSTER_RADIUS and each.max() <= EXCURSION for each in back):
+            return k
+    return None
