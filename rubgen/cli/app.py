@@ -190,6 +190,7 @@ def reproduce(
     out: Annotated[Path | None, _option("Directory for the page; out/zeng2019 when not given.")] = None,
     quick: Annotated[bool, Parameter(negative=(), help="Few values and short runs, in two minutes.")] = False,
     every: Annotated[int, _option("Every how many-th speed: 1 by 30 rev/min, 4 by 120.")] = 1,
+    machine: Annotated[str, _option("Which preset is run: zeng2019, or zeng2019-fitted that --fit made.")] = "zeng2019",
     fit: Annotated[bool, Parameter(negative=(), help="Search what is not published, instead of the page.")] = False,
     workers: Annotated[int | None, _option("Number of processes; the number of cores when not given.")] = None,
     json: Json = False,
@@ -197,7 +198,7 @@ def reproduce(
     """Reproduce a paper's figures and statements, or go on where it was interrupted."""
     from rubgen.cli.reproducing import reproduce_command
 
-    return reproduce_command(paper, figure, out, workers, every, quick=quick, fitting=fit, as_json=json)
+    return reproduce_command(paper, figure, out, workers, every, machine, quick=quick, fitting=fit, as_json=json)
 
 
 @app.command

@@ -21,6 +21,7 @@ def reproduce_command(
     out: Path | None,
     workers: int | None,
     every: int,
+    machine: str,
     *,
     quick: bool,
     fitting: bool,
@@ -28,14 +29,14 @@ def reproduce_command(
 ) -> int:
     """Compute, judge, write, or search; a Ctrl-C says how to go on."""
     _check(paper, figure, workers, every, fitting=fitting)
-    folder = out or Path("out") / (f"{paper}-quick" if quick else paper)
+    folder = out or Path("out") / (f"{machine}-quick" if quick else machine)
     console = Console(stderr=True, quiet=as_json)
     try:
         with terminable(), shown_progress(console, "pieces") as progress:
             if fitting:
                 result = _fit(folder, quick, workers, progress)
             else:
-                result = _reproduce(folder, figure, workers, progress, quick=quick, every=every)
+                result = _reproduce(folder, figure, machine, workers, progress, quick=quick, every=every)
     except KeyboardInterrupt:
         Console(stderr=True, soft_wrap=True).print(
             f"rubgen: interrupted; finished pieces are kept in {folder}: the same command makes the rest",
@@ -61,14 +62,16 @@ def _check(paper: str, figure: str | None, workers: int | None, every: int, *, f
 
 
 def _reproduce(
-    folder: Path, figure: str | None, workers: int | None, progress: Progress, *, quick: bool, every: int
+    folder: Path, figure: str | None, machine: str, workers: int | None, progress: Progress, *, quick: bool, every: int
 ) -> dict[str, object]:
-    made = reproduce(folder, figure=figure, quick=quick, every=every, workers=workers, progress=progress)
+    made = reproduce(
+        folder, figure=figure, quick=quick, every=every, machine=machine, workers=workers, progress=progress
+    )
     html = made.page.with_suffix(".html")
     return {"page": str(made.page), "html": str(html), "made": made.made, "verdicts": made.verdicts}
 
 
 def _fit(folder: Path, quick: bool, workers: int | None, progress: Progress) -> dict[str, object]:
     made = fit(folder, quick=quick, workers=workers, progress=progress)
-    shares = {"fitted": made.best.fitted, "predicted": made.best.predicted}
-    return {"page": str(made.page), "machine": str(made.machine), "made": made.made, "borne_out": shares}
+    counts = {"fitted": made.best.fitted, "predicted": made.best.predicted}
+    return {"page": str(made.page), "machine": str(made.machine), "made": made.made, "words_borne_out": counts}

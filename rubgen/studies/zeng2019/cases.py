@@ -6,16 +6,18 @@ from dataclasses import replace
 
 import numpy as np
 
+from rubgen.machine import load_machine
 from rubgen.scenario import Scenario, make_scenario
 from rubgen.studies.zeng2019.outcome import Outcome, outcome_of, run_piece
 from rubgen.studies.zeng2019.piece import Found, Piece
 from rubgen.studies.zeng2019.size import Size
 
-MACHINE = "zeng2019"
 REGIONS = {"I": (2460, 6660), "II": (6780, 7980), "III": (8100, 8910), "IV": (8940, 11100), "V": (11220, 14940)}
 """The paper's ranges of speed, rev/min."""
 SPEEDS = tuple(float(rpm) for rpm in (*range(2460, 6780, 120), *range(6780, 14941, 30)))
 """Rev/min: by 120 where nothing rubs, by 30 as in the paper's close-ups beyond."""
+ONSET_RPM = (6660.0, 6780.0)
+"""Rev/min: the last speed without rub and the first with it."""
 NAMED_SPEEDS = (7980.0, 8280.0, 8820.0, 9750.0, 10710.0, 11400.0)
 SUPPORT_RPM = 10000.0
 
@@ -36,7 +38,8 @@ DISK_SUPPORTS = tuple(
     )
 )  # fmt: skip
 """N/m, closer where the paper has its trip point (1.4e8) and its alternating region (3.70e8 to 5.45e8)."""
-NAMED_DISK_SUPPORTS = (1.4e8, 4.55e8)
+NAMED_DISK_SUPPORTS, END_OF_RUB = (1.4e8, 4.55e8), (6.7e8, 6.75e8)
+"""N/m: those of figure 18, and the last with rub and the first without."""
 CASING_SUPPORTS = tuple(
     1e2 * k
     for k in (
@@ -49,13 +52,14 @@ CASING_SUPPORTS = tuple(
 )  # fmt: skip
 """N/m a node, on the paper's own grid, closer where its regions are narrow."""
 NAMED_CASING_SUPPORTS = (3.8e3, 2.27e4)
-READINGS = {"as printed": 1.0, "times five": 5.0}
-"""The preset's casing has five times the mass of the lightest reading, and so five times its springs."""
+LIGHTEST_N_PER_M = 1e4
+"""Springs at each node of the lightest reading of the casing, 1.39 kg."""
+PRINTED = "as printed"
 
 
 def case(size: Size, friction: float = 0.0, **values: float) -> Scenario:
     """The preset with these keys of `[vary]`, with the turns of that size."""
-    scenario = size.shortened(make_scenario(MACHINE, **values))
+    scenario = size.shortened(make_scenario(size.machine, **values))
     return replace(scenario, contact=replace(scenario.contact, friction=friction)) if friction else scenario
 
 
@@ -69,9 +73,18 @@ def on_disk_support(size: Size, stiffness: float) -> Piece:
     return run_piece(case(size, speed_rpm=SUPPORT_RPM, disk_support_stiffness_n_per_m=stiffness))
 
 
+def readings(size: Size) -> dict[str, float]:
+    """How the casing's supports of the paper may be read: as printed, and times what the machine's casing is heavier.
+
+    Its frequencies fix the ratio of springs to mass: five times the lightest mass has five times its springs.
+    """
+    ratio = load_machine(size.machine).casing.radial_support_stiffness_n_per_m / LIGHTEST_N_PER_M
+    return {PRINTED: 1.0} | ({f"times {ratio:g}": ratio} if ratio != 1 else {})
+
+
 def on_casing_support(size: Size, printed: float, reading: str) -> Piece:
     """A run of the sweep of the casing's support at 10,000 rev/min; `printed` is the paper's number."""
-    stiffness = READINGS[reading] * printed
+    stiffness = readings(size)[reading] * printed
     return run_piece(case(size, speed_rpm=SUPPORT_RPM, casing_support_stiffness_n_per_m=stiffness))
 
 
@@ -81,19 +94,24 @@ def speed_sweep(size: Size) -> dict[float, Piece]:
 
 
 def swept_speeds(size: Size) -> tuple[float, ...]:
-    """The speeds of the sweep at this size, with both ends of region I: rub begins between its last and the next."""
+    """The speeds of the sweep at this size, those named in the paper, and both ends of region I.
+
+    Rub begins between the last speed of region I and the next.
+    """
     free = [rpm for rpm in SPEEDS if rpm <= REGIONS["I"][1]]
-    return (*size.of(free), *size.speeds_of(SPEEDS[len(free) :]))
+    return (*size.of(free), *sorted({*size.speeds_of(SPEEDS[len(free) :]), *NAMED_SPEEDS}))
 
 
 def disk_sweep(size: Size) -> dict[float, Piece]:
-    """All runs of the sweep of the disk's support by its stiffness."""
-    return {k: on_disk_support(size, k) for k in size.of(DISK_SUPPORTS)}
+    """All runs of the sweep of the disk's support by its stiffness, those named in the paper among them."""
+    swept = {*size.of(DISK_SUPPORTS), *NAMED_DISK_SUPPORTS, *END_OF_RUB}
+    return {k: on_disk_support(size, k) for k in sorted(swept)}
 
 
 def casing_sweep(size: Size, reading: str) -> dict[float, Piece]:
-    """All runs of the sweep of the casing's support by its printed stiffness."""
-    return {k: on_casing_support(size, k, reading) for k in size.of(CASING_SUPPORTS)}
+    """All runs of the sweep of the casing's support by its printed stiffness, those named in the paper among them."""
+    swept = {*size.of(CASING_SUPPORTS), *NAMED_CASING_SUPPORTS}
+    return {k: on_casing_support(size, k, reading) for k in sorted(swept)}
 
 
 def outcomes(pieces: dict[float, Piece], found: Found) -> dict[float, Outcome]:

@@ -37,6 +37,8 @@ def statements(size: Size, found: Found) -> Sequence[Statement]:
     failed = f"; {len(runs) - len(rub)} runs diverged or did not rub" if len(rub) < len(runs) else ""
     zones = sum(run.zones == lobes for (lobes, _), run in rub.items())
     force = sum(strongest(run.force_orders) == run.zones for run in rub.values())
+    regular = [run for run in rub.values() if run.regular]
+    calm = sum(strongest(run.force_orders) == run.zones for run in regular)
     point = sum(strongest(harmonics(run.spectrum_casing)) == run.zones for run in rub.values())
     by_lobes = ", ".join(f"{lobes}: {_orders(rub, lobes)}" for lobes in LOBES)
     return [
@@ -48,8 +50,8 @@ def statements(size: Size, found: Found) -> Sequence[Statement]:
         Statement(
             statement="The fundamental frequency of the contact load is f_r times the number of zones.",
             verdict=by_share(force, len(rub)),
-            found=f"strongest order equals the zones in {counted(force, len(rub))}; strongest orders by number of "
-            f"lobes {by_lobes}",
+            found=f"strongest order equals the zones in {counted(force, len(rub))}, of the period-1 runs in "
+            f"{counted(calm, len(regular))}; strongest orders by number of lobes {by_lobes}",
         ),
         Statement(
             statement="The fundamental frequency of the casing's vibration is f_r times the number of zones.",

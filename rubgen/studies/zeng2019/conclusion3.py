@@ -11,6 +11,7 @@ import numpy as np
 from scipy.stats import qmc, sobol_indices
 
 from rubgen.arrays import FloatArray
+from rubgen.machine import Machine, load_machine
 from rubgen.scenario import Recipe, load_recipe
 from rubgen.scenario.vary import vary
 from rubgen.studies.zeng2019.cases import disk_sweep, outcomes
@@ -55,28 +56,29 @@ def keys() -> tuple[str, ...]:
     return tuple(entry.key for entry, _ in recipe().distributions())
 
 
-def row(index: int, samples: int) -> Arrays:
+def row(index: int, machine: str) -> Arrays:
     """`values` (2 + d, 2): rms of blisk and casing at the points A, B and A with one column of B each; NaN: failed.
 
-    Saltelli's design; A and B are the halves of a scrambled Sobol sequence of twice the dimension.
+    Saltelli's design; A and B are the halves of a scrambled Sobol sequence of twice the dimension. The machine takes
+    the place of the recipe's.
     """
     count = len(keys())
-    both = qmc.Sobol(2 * count, rng=SEED).random(samples)[index]
+    both = qmc.Sobol(2 * count, rng=SEED).random(2 ** index.bit_length())[index]
     points = [both[:count], both[count:]]
     points += [np.where(np.arange(count) == i, both[count:], both[:count]) for i in range(count)]
-    return {"values": np.array([_rms(point) for point in points])}
+    return {"values": np.array([_rms(point, load_machine(machine)) for point in points])}
 
 
-def _rms(point: FloatArray) -> tuple[float, ...]:
+def _rms(point: FloatArray, machine: Machine) -> tuple[float, ...]:
     drawn = {entry.key: law.quantile(float(u)) for (entry, law), u in zip(recipe().distributions(), point, strict=True)}
-    scenario = vary(recipe().base, drawn)
+    scenario = vary(replace(recipe().base, machine=machine), drawn)
     turns = replace(scenario.operation, settle_turns=SETTLE, record_turns=RECORD)
     found = outcome_of(run(replace(scenario, operation=turns)))
     return tuple(getattr(found, name) if found.ok else float("nan") for name in QUANTITIES)
 
 
 def _pieces(size: Size) -> list[Piece]:
-    return [Piece(row, (index, size.samples)) for index in range(size.samples)]
+    return [Piece(row, (index, size.machine)) for index in range(size.samples)]
 
 
 def pieces(size: Size) -> Sequence[Piece]:
@@ -154,9 +156,10 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
         place = np.arange(len(keys())) + 0.2 * row_ - 0.1
         span = np.maximum([of.total[row_] - of.low[row_], of.high[row_] - of.total[row_]], 0)
         axes.errorbar(place, of.total[row_], yerr=span, fmt="o", color=color, label=f"rms of the {part}", markersize=4)
-    names = [key.removesuffix("_n_per_m").removesuffix("_rpm").removesuffix("_m").replace("_", " ") for key in keys()]
+    names = [key.removesuffix("_n_per_m").removesuffix("_rpm").removesuffix("_m").replace("_", "\n") for key in keys()]
     axes.set_xticks(np.arange(len(keys())), names, fontsize=7)
-    axes.legend(frameon=False, fontsize=8)
+    axes.set_ylim(-0.05, 1.25)
+    axes.legend(frameon=False, fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     style(axes, "", "Total Sobol index")
     return {"Total Sobol indices over the ranges of the embedded recipe, with 95 % intervals": figure}
 

@@ -48,7 +48,7 @@ def statements(_size: Size, found: Found) -> Sequence[Statement]:
         for mode, name in NAMES.items()
     ]
     shapes = Statement(
-        statement="The shapes of these modes.",
+        statement="The drawn shapes of the blisk's six modes.",
         verdict=UNKNOWABLE,
         found="; ".join(f"{mode}: {name}" for mode, name in NAMES.items()),
         why="The scan holds the frequencies and not the drawings.",

@@ -14,7 +14,7 @@ from rubgen.studies.zeng2019.piece import Found, Piece
 from rubgen.studies.zeng2019.section import Section
 from rubgen.studies.zeng2019.size import Size
 from rubgen.studies.zeng2019.statement import UNKNOWABLE, Statement, by_deviation
-from rubgen.viz.colors import BLUE, GREY
+from rubgen.viz.colors import BLUE, GREY, ORANGE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,7 +39,7 @@ def statements(_size: Size, found: Found) -> Sequence[Statement]:
             used_for_fitting=True,
         ),
         Statement(
-            statement="The shapes of these modes.",
+            statement="The drawn shapes of the casing's eleven modes.",
             verdict=UNKNOWABLE,
             found="circumferential orders " + ", ".join(str(order) for order in modes["order"]),
             why="The scan holds the frequencies and not the drawings.",
@@ -48,20 +48,25 @@ def statements(_size: Size, found: Found) -> Sequence[Statement]:
 
 
 def figures(_size: Size, found: Found) -> dict[str, Figure]:
-    """Eleven rings, their displacement enlarged."""
+    """Eleven rings, their displacement enlarged; some nodes show where they came from."""
     modes = found(SHAPES)
-    angle = np.linspace(0, 2 * np.pi, modes["radial"].shape[1] + 1)
-    figure = new_figure(9.5, 3.6)
+    nodes = modes["moved"].shape[2]
+    angle = np.linspace(0, 2 * np.pi, nodes + 1)
+    e_r, e_t = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    figure = new_figure(9.5, 3.8)
     panels = figure.subplots(2, 6).ravel()
-    for axes, hz, order, radial in zip(panels, modes["hz"], modes["order"], modes["radial"], strict=False):
-        ring = 1 + 0.25 * np.append(radial, radial[0]) / np.abs(modes["radial"]).max()
-        axes.plot(np.cos(angle), np.sin(angle), color=GREY, linewidth=0.6)
-        axes.plot(ring * np.cos(angle), ring * np.sin(angle), color=BLUE, linewidth=1)
+    for axes, hz, order, moved in zip(panels, modes["hz"], modes["order"], modes["moved"], strict=False):
+        radial, tangential = 0.3 * np.append(moved, moved[:, :1], axis=1) / np.abs(modes["moved"]).max()
+        place = (1 + radial) * e_r + tangential * e_t
+        axes.plot(*e_r, color=GREY, linewidth=0.6)
+        axes.plot(*place, color=BLUE, linewidth=1)
+        axes.plot(*np.stack([e_r, place])[:, :, :: nodes // 18], color=ORANGE, linewidth=0.7)
         axes.set_aspect("equal")
-        axes.set_title(f"{hz:.2f} Hz, order {order}", fontsize=8)
+        axes.set(xlim=(-1.4, 1.4), ylim=(-1.4, 1.4))
+        axes.set_title(f"{hz:.2f} Hz\norder {order}", fontsize=8)
     for axes in panels:
         axes.set_axis_off()
-    return {"Modes of the casing, radial displacement": figure}
+    return {"Modes of the casing; orange lines join some nodes with their places at rest": figure}
 
 
 SECTION = Section(

@@ -12,7 +12,7 @@ from rubgen.studies.zeng2019.measures import rubbing
 from rubgen.studies.zeng2019.piece import Found, Piece
 from rubgen.studies.zeng2019.section import Section
 from rubgen.studies.zeng2019.size import Size
-from rubgen.studies.zeng2019.statement import Statement
+from rubgen.studies.zeng2019.statement import Statement, power
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -32,7 +32,7 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
     """The two named values."""
     named = outcomes({k: on_disk_support(size, k) for k in NAMED_DISK_SUPPORTS}, found)
     caption = "Impulse of the last 49 turns by place (blue) and by blade (red), on the disk supports named in the paper"
-    return {caption: contact_figure({f"{k:.3g} N/m": run for k, run in named.items()})}
+    return {caption: contact_figure({f"{power(k)} N/m": run for k, run in named.items()})}
 
 
 SECTION = Section(

@@ -18,7 +18,7 @@ from rubgen.studies.zeng2019.piece import Arrays, Found, Piece
 from rubgen.studies.zeng2019.reduced_model import SHOWN, model_of, seen_frequencies, whirl
 from rubgen.studies.zeng2019.section import Section
 from rubgen.studies.zeng2019.size import Size
-from rubgen.studies.zeng2019.statement import DIFFERS, Statement, by_deviation, yes_or_no
+from rubgen.studies.zeng2019.statement import DIFFERS, Statement, by_deviation, power, yes_or_no
 from rubgen.viz.colors import BLUE, ORANGE, VERMILION
 
 if TYPE_CHECKING:
@@ -62,24 +62,24 @@ def statements(size: Size, found: Found) -> Sequence[Statement]:
     """Two crossings, and which part shows the resonance more."""
     lines, runs = found(PIECE), outcomes(disk_sweep(size), found)
     met = crossings(lines["k"], lines["forward"], SUPPORT_RPM / 60)
-    told = ", ".join(f"{k:.4g}" for k in met)
+    told = ", ".join(power(k, 4) for k in met) or "none"
     peaks = {part: amplification(runs, part) for part in ("blisk", "casing")}
     return [
         Statement(
             statement="A natural frequency crosses f_r at 1.3e8 N/m.",
             verdict=by_deviation(min((abs(k / CROSSINGS[0] - 1) for k in met), default=1.0)),
-            found=f"forward whirl crosses f_r at {told} N/m",
+            found=f"crossings of forward whirl with f_r, in N/m: {told}",
         ),
         Statement(
-            statement="Another crosses it at 1.5e8 N/m.",
+            statement="Another natural frequency crosses f_r at 1.5e8 N/m.",
             verdict=DIFFERS if len(met) < 2 else by_deviation(met[1] / CROSSINGS[1] - 1),
-            found=f"{len(met)} crossing of forward whirl",
+            found=f"forward whirl crosses f_r {'once' if len(met) == 1 else f'{len(met)} times'}",
             why="A consistent model has one forward lateral whirl at f_r; mixed frames give two, see `causes`.",
         ),
         Statement(
             statement="The resonances of the spectra lie at these crossings.",
             verdict=yes_or_no(all(RESONANT[0] <= k <= RESONANT[1] for k, _ in peaks.values())),
-            found=", ".join(f"{part} largest at {k:.3g} N/m" for part, (k, _) in peaks.items()),
+            found=", ".join(f"{part} largest at {power(k)} N/m" for part, (k, _) in peaks.items()),
         ),
         Statement(
             statement="The resonance is clearer in the casing than in the blisk.",

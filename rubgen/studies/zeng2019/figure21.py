@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.stats import spearmanr
 
-from rubgen.studies.zeng2019.cases import NAMED_CASING_SUPPORTS, READINGS, casing_sweep, on_casing_support, outcomes
+from rubgen.studies.zeng2019.cases import NAMED_CASING_SUPPORTS, casing_sweep, on_casing_support, outcomes, readings
 from rubgen.studies.zeng2019.contact_figure import contact_figure
 from rubgen.studies.zeng2019.figure16 import RANK, zones_and_motion
 from rubgen.studies.zeng2019.measures import rubbing
@@ -16,7 +16,7 @@ from rubgen.studies.zeng2019.outcome import Outcome, outcome_of
 from rubgen.studies.zeng2019.piece import Found, Piece
 from rubgen.studies.zeng2019.section import Section
 from rubgen.studies.zeng2019.size import Size
-from rubgen.studies.zeng2019.statement import UNKNOWABLE, Statement, yes_or_no
+from rubgen.studies.zeng2019.statement import UNKNOWABLE, Statement, power, yes_or_no
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,21 +24,21 @@ if TYPE_CHECKING:
 
 def _named(size: Size) -> dict[str, Piece]:
     return {
-        f"{k:.3g} N/m {reading}": on_casing_support(size, k, reading)
-        for reading in READINGS
+        f"{power(k)} N/m\n{reading}": on_casing_support(size, k, reading)
+        for reading in readings(size)
         for k in NAMED_CASING_SUPPORTS
     }
 
 
 def pieces(size: Size) -> Sequence[Piece]:
     """Both sweeps and the named values."""
-    sweeps = [piece for reading in READINGS for piece in casing_sweep(size, reading).values()]
+    sweeps = [piece for reading in readings(size) for piece in casing_sweep(size, reading).values()]
     return [*sweeps, *_named(size).values()]
 
 
 def statements(size: Size, found: Found) -> Sequence[Statement]:
     """Area over stiffness, zones and motion."""
-    both = {reading: rubbing(outcomes(casing_sweep(size, reading), found)) for reading in READINGS}
+    both = {reading: rubbing(outcomes(casing_sweep(size, reading), found)) for reading in readings(size)}
     return [
         *(_area(reading, runs) for reading, runs in both.items()),
         *zones_and_motion([run for runs in both.values() for run in runs.values()]),
@@ -48,7 +48,7 @@ def statements(size: Size, found: Found) -> Sequence[Statement]:
 def _area(reading: str, runs: dict[float, Outcome]) -> Statement:
     area = np.array([run.area_deg for run in runs.values()])
     rank = float(spearmanr(list(runs), area).statistic) if len(runs) > 2 and np.ptp(area) else float("nan")
-    soft, stiff = (f"{area[i]:.0f} degrees at {list(runs)[i]:.3g} N/m" for i in (0, -1))
+    soft, stiff = (f"{area[i]:.0f} degrees at {power(list(runs)[i])} N/m" for i in (0, -1))
     return Statement(
         statement=f"Casing support {reading}: the softer it is, the larger the contact area.",
         verdict=UNKNOWABLE if np.isnan(rank) else yes_or_no(rank <= -RANK),

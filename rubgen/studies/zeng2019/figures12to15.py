@@ -18,33 +18,34 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FIGURES = {"12": "II", "13": "III", "14": "IV", "15": "V"}
-Judge = Callable[[str, dict[float, Outcome], list[Outcome]], Sequence[Statement]]
+Judge = Callable[[str, dict[float, Outcome], list[Outcome], bool], Sequence[Statement]]
+"""Of a region's name, its runs, all runs, and whether its classes were fitted."""
 MASS = "How much of a sweep is chaotic hangs on the casing's mass, which is not published."
 
 
-def _second(where: str, runs: dict[float, Outcome], every: list[Outcome]) -> Sequence[Statement]:
+def _second(where: str, runs: dict[float, Outcome], every: list[Outcome], fitted: bool) -> Sequence[Statement]:
     return [
-        one_class(where, PERIODIC, "blisk", runs, every),
-        one_class(where, CHAOTIC, "casing", runs, every, MASS),
+        one_class(where, PERIODIC, "blisk", runs, every, fitted=fitted),
+        one_class(where, CHAOTIC, "casing", runs, every, MASS, fitted=fitted),
     ]
 
 
-def _third(where: str, runs: dict[float, Outcome], every: list[Outcome]) -> Sequence[Statement]:
+def _third(where: str, runs: dict[float, Outcome], every: list[Outcome], fitted: bool) -> Sequence[Statement]:
     middle = sum(REGIONS["III"]) / 2
     low, high = within(runs, 0, middle), within(runs, middle + 1, 1e9)
     return [
-        one_class(f"{where}, first half", CHAOTIC, "blisk", low, every),
-        one_class(f"{where}, second half", PERIODIC, "blisk", high, every, MASS),
+        one_class(f"{where}, first half", CHAOTIC, "blisk", low, every, fitted=fitted),
+        one_class(f"{where}, second half", PERIODIC, "blisk", high, every, MASS, fitted=fitted),
         switching(where, (CHAOTIC, MULTIPLE, PERIODIC), "casing", runs, every),
     ]
 
 
-def _fourth(where: str, runs: dict[float, Outcome], every: list[Outcome]) -> Sequence[Statement]:
+def _fourth(where: str, runs: dict[float, Outcome], every: list[Outcome], _fitted: bool) -> Sequence[Statement]:
     return [switching(where, (PERIODIC, CHAOTIC), part, runs, every) for part in ("blisk", "casing")]
 
 
-def _fifth(where: str, runs: dict[float, Outcome], every: list[Outcome]) -> Sequence[Statement]:
-    return [one_class(where, CHAOTIC, part, runs, every, MASS) for part in ("blisk", "casing")]
+def _fifth(where: str, runs: dict[float, Outcome], every: list[Outcome], fitted: bool) -> Sequence[Statement]:
+    return [one_class(where, CHAOTIC, part, runs, every, MASS, fitted=fitted) for part in ("blisk", "casing")]
 
 
 JUDGES: dict[str, Judge] = {"II": _second, "III": _third, "IV": _fourth, "V": _fifth}
@@ -58,7 +59,7 @@ def _section(number: str, region: str) -> Section:
 
     def statements(size: Size, found: Found) -> Sequence[Statement]:
         runs = outcomes(speed_sweep(size), found)
-        return JUDGES[region](f"Region {region}", within(runs, low, high), list(runs.values()))
+        return JUDGES[region](f"Region {region}", within(runs, low, high), list(runs.values()), size.fitted)
 
     def figures(size: Size, found: Found) -> dict[str, Figure]:
         runs = within(outcomes(speed_sweep(size), found), low, high)

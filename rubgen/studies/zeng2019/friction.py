@@ -54,7 +54,7 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
     axes = figure.subplots()
     for (mu, runs), color in zip(_runs(size, found).items(), (BLUE, GREEN, ORANGE, VERMILION), strict=True):
         good = {rpm: run.impulse for rpm, run in runs.items() if run.ok}
-        axes.semilogy(list(good), list(good.values()), ".-", color=color, label=f"friction {mu:g}", linewidth=0.8)
+        axes.plot(list(good), list(good.values()), ".-", color=color, label=f"friction {mu:g}", linewidth=0.8)
     axes.legend(frameon=False, fontsize=8)
     style(axes, "Speed, rev/min", "Impulse a turn, N s")
     return {"Mean normal impulse a turn, by coefficient of friction; diverged runs are left out": figure}

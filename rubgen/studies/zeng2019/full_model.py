@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import eigh
+from scipy.optimize import brentq
 from scipy.sparse.linalg import LinearOperator, eigs, eigsh, splu
 
 from rubgen.arrays import ComplexArray, FloatArray
@@ -16,10 +17,11 @@ from rubgen.fem.statics import factorize, on_springs, support_stiffness
 from rubgen.machine import Machine, load_machine
 from rubgen.reduction.craig_bampton import craig_bampton
 from rubgen.studies.zeng2019.piece import Arrays
+from rubgen.studies.zeng2019.size import MACHINE
 
-MACHINE = "zeng2019"
 SHIFT_HZ, WANTED = 180.0, 46
 """Eigenvalues at speed are sought around this frequency: so many reach from 0 to the 42nd, where a gap follows."""
+CRITICAL_BETWEEN_RPM = (8000.0, 9500.0)
 SINGLE_MODES = 7
 """The paper looks at the first seven frequencies of one blade and of the disk."""
 
@@ -114,6 +116,24 @@ def spinning_frequencies(speed_rpm: float, count: int) -> Arrays:
         raise ValueError(f"{WANTED} eigenvalues around {SHIFT_HZ:g} Hz do not reach down to 0 Hz")
     found = np.sort(values.imag[values.imag > 0]) / (2 * np.pi)
     return {"hz": found[:count]}
+
+
+def critical_speed() -> Arrays:
+    """`rpm`: speed at which the full blisk's forward lateral whirl is synchronous with the rotation, undamped.
+
+    An unbalance stands still in the turning frame: there the stiffness that it meets, the inverse of
+    e_x^T (K + Omega^2 (K_sigma - S))^-1 e_x at O_d, passes through zero.
+    """
+    machine, model = full_blisk()
+    K = on_springs(model.K, support_stiffness(machine.disk_support))
+    A = model.K_sigma - model.S
+    load = np.zeros(K.shape[0])
+    load[0] = 1.0
+
+    def met(rpm: float) -> float:
+        return float(1 / factorize(K + (rpm * np.pi / 30) ** 2 * A).solve(load)[0])
+
+    return {"rpm": np.array(brentq(met, *CRITICAL_BETWEEN_RPM, xtol=0.01))}
 
 
 def _around(M: sp.csr_array, C: sp.csr_array, K: sp.csr_array, shift: complex) -> ComplexArray:

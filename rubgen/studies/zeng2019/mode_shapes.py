@@ -8,8 +8,9 @@ from rubgen.arrays import FloatArray, IntArray
 from rubgen.fem.blisk import BliskModel
 from rubgen.machine import load_machine
 from rubgen.reduction.casing import reduce_casing
-from rubgen.studies.zeng2019.full_model import MACHINE, blade_frequencies, blisk_modes, disk_modes, full_blisk
+from rubgen.studies.zeng2019.full_model import blade_frequencies, blisk_modes, disk_modes, full_blisk
 from rubgen.studies.zeng2019.piece import Arrays
+from rubgen.studies.zeng2019.size import MACHINE
 
 BLADE_COUNT, DISK_COUNT = 6, 30
 
@@ -64,14 +65,15 @@ def drawn_modes(numbers: list[int]) -> Arrays:
 
 
 def casing_shapes(count: int) -> Arrays:
-    """`hz` (count,), radial displacement `radial` (count, nodes) and leading order `order` (count,) of casing modes."""
+    """`hz` (count,), radial and tangential displacement `moved` (count, 2, nodes), leading order `order` (count,)."""
     casing = reduce_casing(load_machine(MACHINE), count)
     angle = 2 * np.pi * np.arange(len(casing.modes_xy)) / len(casing.modes_xy)
     e_r = np.column_stack([np.cos(angle), np.sin(angle)])
     both = np.stack([e_r, np.column_stack([-e_r[:, 1], e_r[:, 0]])])
     radial, tangential = np.einsum("dni,nim->dmn", both, casing.modes_xy)
     rings = np.stack([radial.T, tangential.T], axis=1)
-    return {"hz": casing.frequencies_hz, "radial": radial, "order": nodal_diameters(rings)}
+    moved = np.stack([radial, tangential], axis=1)
+    return {"hz": casing.frequencies_hz, "moved": moved, "order": nodal_diameters(rings)}
 
 
 def _local(shapes: FloatArray, model: BliskModel, axis: int) -> FloatArray:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-from rubgen.studies.zeng2019.remarks import EVERY_REMARK, INTRODUCTION, QUICK_REMARK, RULES, TITLE
+from rubgen.studies.zeng2019.remarks import EVERY_REMARK, INTRODUCTION, MACHINES, QUICK_REMARK, TITLE, rules
 from rubgen.studies.zeng2019.section import Section
 from rubgen.studies.zeng2019.size import QUICK, Size
 from rubgen.studies.zeng2019.statement import Statement
@@ -19,6 +19,9 @@ STYLE = (
     ".differs{color:#d55e00}.agrees{color:#009e73}.unknowable{color:#8c8c8c}"
 )
 HEADER = ("statement", "verdict", "found")
+KINDS = ("agrees", "agrees within", "differs", "unknowable")
+COUNT_HEADER = ("statements", "agrees", "agrees within X", "differs", "unknowable", "all")
+HEADER_BY_FIGURE = "by figure, all kinds"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,18 +44,21 @@ class Judged:
 
 def markdown(judged: Sequence[Judged], size: Size) -> str:
     """The page as Markdown; pictures are named as they stand beside it."""
-    parts = [f"# {TITLE}", *_introduction(size), _count_table(judged)]
+    parts = [f"# {TITLE}", *_introduction(size), markdown_table(COUNT_HEADER, _by_kind(judged))]
+    parts.append(markdown_table((HEADER_BY_FIGURE, *COUNT_HEADER[1:]), _by_figure(judged)))
     for each in judged:
         parts += [f"## {each.section.title}", each.section.text, f"    {each.section.command}{size.option}"]
         parts += [f"![{picture.caption}]({picture.name})\n\n*{picture.caption}.*" for picture in each.drawn]
         rows = [[_plain(cell) for cell in _cells(one)] for one in each.statements]
-        parts.append(_table(HEADER, rows))
+        parts.append(markdown_table(HEADER, rows))
     return "\n\n".join(parts) + "\n"
 
 
 def html(judged: Sequence[Judged], size: Size) -> str:
     """The page as one HTML file with its pictures in it."""
     parts = [f"<h1>{escape(TITLE)}</h1>", *(f"<p>{_inline(text)}</p>" for text in _introduction(size))]
+    parts.append(_count_html(COUNT_HEADER, _by_kind(judged)))
+    parts.append(_count_html((HEADER_BY_FIGURE, *COUNT_HEADER[1:]), _by_figure(judged)))
     for each in judged:
         parts += [f"<h2>{escape(each.section.title)}</h2>", f"<p>{_inline(each.section.text)}</p>"]
         parts.append(f"<p><code>{escape(each.section.command + size.option)}</code></p>")
@@ -64,8 +70,8 @@ def html(judged: Sequence[Judged], size: Size) -> str:
 
 
 def _introduction(size: Size) -> list[str]:
-    remark = [QUICK_REMARK] if size.name == QUICK.name else [EVERY_REMARK] if size.option else []
-    return [INTRODUCTION, *remark, RULES]
+    remark = [QUICK_REMARK] if size.name == QUICK.name else [EVERY_REMARK] if size.speed_thin > 1 else []
+    return [INTRODUCTION + MACHINES[size.machine], *remark, rules(size)]
 
 
 def _cells(one: Statement) -> tuple[str, str, str]:
@@ -74,24 +80,29 @@ def _cells(one: Statement) -> tuple[str, str, str]:
     return one.statement, verdict, f"{one.found}. {one.why}".removesuffix(". ") if one.why else one.found
 
 
-def _count_table(judged: Sequence[Judged]) -> str:
+def _by_kind(judged: Sequence[Judged]) -> list[list[str]]:
     every = [one for each in judged for one in each.statements]
-    kinds = ("agrees", "agrees within", "differs", "unknowable")
-    rows = []
-    for name, chosen in (
-        ("predictions", [one for one in every if not (one.used_for_fitting or one.experiment)]),
-        ("used for fitting", [one for one in every if one.used_for_fitting]),
-        ("hypotheses about causes, by experiment", [one for one in every if one.experiment]),
-    ):
-        rows.append([name, *(str(sum(_kind(one) == kind for one in chosen)) for kind in kinds), str(len(chosen))])
-    return _table(("statements", "agrees", "agrees within X", "differs", "unknowable", "all"), rows)
+    return [
+        _counts("predictions", [one for one in every if not (one.used_for_fitting or one.experiment)]),
+        _counts("used for fitting", [one for one in every if one.used_for_fitting]),
+        _counts("hypotheses about causes, by experiment", [one for one in every if one.experiment]),
+    ]
+
+
+def _by_figure(judged: Sequence[Judged]) -> list[list[str]]:
+    return [_counts(each.section.title, each.statements) for each in judged]
+
+
+def _counts(name: str, chosen: Sequence[Statement]) -> list[str]:
+    return [name, *(str(sum(_kind(one) == kind for one in chosen)) for kind in KINDS), str(len(chosen))]
 
 
 def _kind(one: Statement) -> str:
     return "agrees within" if one.verdict.startswith("agrees within") else one.verdict
 
 
-def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+def markdown_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table in Markdown."""
     lines = [header, ["---"] * len(header), *rows]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
@@ -104,6 +115,12 @@ def _figure(picture: Drawn) -> str:
     data = b64encode(picture.png).decode()
     caption = escape(picture.caption)
     return f'<p><img alt="{caption}" src="data:image/png;base64,{data}"><br><em>{caption}.</em></p>'
+
+
+def _count_html(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = ["".join(f"<th>{escape(cell)}</th>" for cell in header)]
+    lines += ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows]
+    return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
 
 
 def _html_table(statements: Sequence[Statement]) -> str:

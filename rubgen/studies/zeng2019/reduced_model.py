@@ -9,8 +9,8 @@ from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.machine import load_machine
 from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import Reduction
-from rubgen.studies.zeng2019.full_model import MACHINE
 from rubgen.studies.zeng2019.piece import Arrays
+from rubgen.studies.zeng2019.size import MACHINE
 
 PURE = 0.98
 """A mode belongs to a nodal diameter that holds this share of its tips' amplitude squared."""
@@ -18,14 +18,14 @@ SHOWN = 12
 """Lowest forward and backward frequencies of one nodal diameter that are kept at each speed."""
 
 
-def model_of(blisk_modes: int) -> ReducedModel:
-    """The preset with so many blisk modes."""
-    return reduce(load_machine(MACHINE), Reduction(blisk_modes=blisk_modes))
+def model_of(blisk_modes: int, blade_modes: int = 4) -> ReducedModel:
+    """The preset with so many modes of the blisk and of each blade."""
+    return reduce(load_machine(MACHINE), Reduction(blisk_modes=blisk_modes, blade_modes=blade_modes))
 
 
-def reduced_frequencies(blisk_modes: int) -> Arrays:
+def reduced_frequencies(blisk_modes: int, blade_modes: int = 4) -> Arrays:
     """`hz` at rest of the blisk, `casing_hz`, `dof`, `full_dof`, `critical_speed_rpm`."""
-    model = model_of(blisk_modes)
+    model = model_of(blisk_modes, blade_modes)
     return {
         "hz": model.blisk_frequencies_hz(),
         "casing_hz": model.casing_frequencies_hz,

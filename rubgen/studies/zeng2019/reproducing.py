@@ -14,7 +14,7 @@ from rubgen.studies.zeng2019.drawing import png
 from rubgen.studies.zeng2019.page import Drawn, Judged, html, markdown
 from rubgen.studies.zeng2019.section import Section
 from rubgen.studies.zeng2019.sections import SECTIONS
-from rubgen.studies.zeng2019.size import FULL, QUICK, Size
+from rubgen.studies.zeng2019.size import FULL, MACHINE, MACHINES, QUICK, Size
 from rubgen.studies.zeng2019.store import Store
 
 PAGE = "zeng2019"
@@ -35,18 +35,22 @@ def reproduce(
     figure: str | None = None,
     quick: bool = False,
     every: int = 1,
+    machine: str = MACHINE,
     size: Size | None = None,
     workers: int | None = None,
     progress: Progress = lambda _done, _all: None,
 ) -> Reproduced:
     """Compute what the paper shows, judge its statements, write the page into `out`.
 
-    `every` takes every so many-th speed: 1 steps by 30 rev/min, 4 by 120. `figure` asks for one section; its page goes
-    to `out/figure-N`. Pieces of computation are kept in `out/pieces`: the same call after an interruption makes the
-    rest. Writes `zeng2019.md` with its pictures, `zeng2019.html` (one file) and `statements.json`. Raises UserError for
-    an unknown figure or paper and an `out` that is not ours or cannot be written.
+    `every` takes every so many-th speed: 1 steps by 30 rev/min, 4 by 120. `machine` is one of MACHINES. `figure` asks
+    for one section; its page goes to `out/figure-N`. Pieces of computation are kept in `out/pieces`: the same call
+    after an interruption makes the rest. Writes `zeng2019.md` with its pictures, `zeng2019.html` (one file) and `statements.json`. Raises UserError for
+    an unknown figure or machine and an `out` that is not ours or cannot be written.
     """
+    if machine not in MACHINES:
+        raise UserError(f"--machine {machine}: not a machine of this paper; choose from {', '.join(MACHINES)}")
     chosen, size = sections_of(figure), size or (QUICK if quick else replace(FULL, speed_thin=every))
+    size = replace(size, machine=machine)
     store = Store(Path(out))
     with store.claimed():
         made = compute((p for section in chosen for p in section.pieces(size)), store, workers or cores(), progress)

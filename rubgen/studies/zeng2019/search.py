@@ -14,21 +14,26 @@ from importlib.resources import files
 from itertools import product
 
 import numpy as np
+from scipy.optimize import brentq
 
 from rubgen.machine import Machine, load_machine
 from rubgen.scenario import ContactLaw, Operation, Scenario
-from rubgen.studies.onset import fit_unbalance_and_clearance
-from rubgen.studies.zeng2019.cases import MACHINE, SUPPORT_RPM
+from rubgen.studies.onset import fit_unbalance_and_clearance, tip_growth
+from rubgen.studies.zeng2019.cases import END_OF_RUB, ONSET_RPM, SUPPORT_RPM
 from rubgen.studies.zeng2019.outcome import outcome_of, run
 from rubgen.studies.zeng2019.piece import Arrays, Found, Piece
 from rubgen.studies.zeng2019.region import CHAOTIC, MEMBERS, PERIODIC
+from rubgen.studies.zeng2019.size import MACHINE
 
-DAMPING, MASS, FRICTION = (0.05, 0.10, 0.15), (1.0, 2.0, 3.5, 5.0, 8.0), (0.0, 0.02, 0.05)
+DAMPING, MASS, FRICTION = (0.05, 0.10, 0.15), (1.0, 2.0, 3.5, 5.0, 8.0), (0.0, 0.02)
 """The grid; mass in times the lightest reading of the casing, of which the preset has five."""
 PRESET_MASS = 5.0
 SETTLE, RECORD = 100, 200
 """Turns of these runs: more candidates with less certain labels."""
 ANY = "any"
+HEAD = """# The preset zeng2019 with the casing's mass, the damping, unbalance and clearance that
+# `rubgen reproduce zeng2019 --fit` found. See docs/zeng2019-fit.md and docs/preset-zeng2019.md.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,11 +82,11 @@ class Candidate:
 
 @dataclass(frozen=True, kw_only=True)
 class Score:
-    """Share of the paper's words that a candidate bears out: those used and those predicted."""
+    """How many of the paper's words a candidate bears out: of those used, and of those predicted."""
 
     candidate: Candidate
-    fitted: float
-    predicted: float
+    fitted: int
+    predicted: int
 
 
 PRESET = Candidate(damping=0.10, mass=PRESET_MASS, friction=0.0)
@@ -143,6 +148,35 @@ def _scenario(machine: Machine, mass: float, friction: float, target: Target) ->
     return Scenario(machine=machine, operation=operation, contact=ContactLaw(friction=friction))
 
 
+def words(targets: Sequence[Target]) -> int:
+    """How many words of the paper stand in the targets."""
+    return sum((target.blisk != ANY) + (target.casing != ANY) for target in targets)
+
+
+def room(damping: float) -> Arrays:
+    """`unbalance` in kg m and `clearance` in m: least and largest that the published facts leave at that damping.
+
+    They are among the four pairs in which the tips just touch at one end of the interval of onset, 6,660 or 6,780
+    rev/min, and at one end of that of the end of rub at 10,000 rev/min, 6.70e8 or 6.75e8 N/m.
+    """
+    machine = machine_of(damping, PRESET_MASS)
+    pairs = np.array([_touching(machine, rpm, k) for rpm, k in product(ONSET_RPM, END_OF_RUB)])
+    least, largest = pairs.min(axis=0), pairs.max(axis=0)
+    return {"unbalance": np.array([least[0], largest[0]]), "clearance": np.array([least[1], largest[1]])}
+
+
+def _touching(machine: Machine, rpm: float, stiffness: float) -> tuple[float, float]:
+    """Unbalance and clearance with which tips just touch at that speed, and on that support at 10,000 rev/min."""
+    stiff = replace(machine, disk_support=replace(machine.disk_support, lateral_stiffness_n_per_m=stiffness))
+
+    def apart(unbalance: float) -> float:
+        there = tip_growth(replace(machine, unbalance_kg_m=unbalance), rpm)
+        return there - tip_growth(replace(stiff, unbalance_kg_m=unbalance), SUPPORT_RPM)
+
+    unbalance = float(brentq(apart, 1e-4, 1.0, xtol=1e-8))
+    return unbalance, tip_growth(replace(machine, unbalance_kg_m=unbalance), rpm)
+
+
 def score(candidate: Candidate, found: Found) -> Score:
     """How many of the words of FITTED and of PREDICTED are borne out."""
     seen = found(candidate.piece)
@@ -150,13 +184,8 @@ def score(candidate: Candidate, found: Found) -> Score:
         [str(name) in MEMBERS[word] for name, word in ((blisk, target.blisk), (casing, target.casing)) if word != ANY]
         for target, blisk, casing in zip(TARGETS, seen["blisk"], seen["casing"], strict=True)
     ]
-    used, other = hits[: len(FITTED)], hits[len(FITTED) :]
-    return Score(candidate=candidate, fitted=_share(used), predicted=_share(other))
-
-
-def _share(hits: Sequence[Sequence[bool]]) -> float:
-    every = [hit for row in hits for hit in row]
-    return sum(every) / len(every)
+    counts = [sum(row) for row in hits]
+    return Score(candidate=candidate, fitted=sum(counts[: len(FITTED)]), predicted=sum(counts[len(FITTED) :]))
 
 
 def best(scores: Sequence[Score]) -> Score:
@@ -178,7 +207,8 @@ def toml_of(candidate: Candidate) -> str:
         "lateral": f"{candidate.damping:g}",
         "tilt": f"{candidate.damping:g}",
     }
-    text = (files("rubgen.machine") / "presets" / f"{MACHINE}.toml").read_text(encoding="utf-8")
+    preset = (files("rubgen.machine") / "presets" / f"{MACHINE}.toml").read_text(encoding="utf-8")
+    text = HEAD + preset[preset.index("name = ") :]
     for key, value in values.items():
         text, count = re.subn(rf"(?m)^{key} = .*$", f"{key} = {value}", text)
         if count != 1:

@@ -55,6 +55,12 @@ def by_share(true: int, total: int) -> str:
     return f"{AGREES} within {100 * (1 - share):.0f} % of the runs" if share >= HALF else DIFFERS
 
 
+def power(value: float, digits: int = 3) -> str:
+    """`1.4e8` and not `1.4e+08`."""
+    mantissa, _, exponent = f"{value:.{digits}g}".partition("e")
+    return f"{mantissa}e{int(exponent)}" if exponent else mantissa
+
+
 def counted(true: int, total: int, what: str = "runs") -> str:
     """`17 of 20 runs (85 %)`."""
     return f"{true} of {total} {what} ({100 * true / total:.0f} %)" if total else f"no {what}"

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PARTS = {"blisk": ("Disk centre $x$, µm", 1e6, "m"), "casing": ("Casing acceleration, m/s²", 1.0, "m/s²")}
-COLOR_NAMES = "blue period-1, green period-k, orange quasi-periodic, red chaotic, grey static"
+COLOR_NAMES = "blue period-1, green period-k, orange quasi-periodic, sky undecided, red chaotic, grey static"
 
 
 def sweep_figure(
@@ -54,7 +54,7 @@ def _points(axes: Axes, runs: dict[float, Outcome], part: str, scale: float) -> 
         if chosen:
             values = np.repeat(list(chosen), [len(getattr(run, f"points_{part}")) for run in chosen.values()])
             points = np.concatenate([getattr(run, f"points_{part}") for run in chosen.values()])
-            axes.plot(values, scale * points, ".", color=color, markersize=1.5, markeredgewidth=0)
+            axes.plot(values, scale * points, ".", color=color, markersize=2.5, markeredgewidth=0)
 
 
 def _log_note(axes: Axes) -> None:
