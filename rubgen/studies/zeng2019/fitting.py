@@ -11,7 +11,7 @@ from rubgen.studies.zeng2019 import figure10, figure16, figure17, figure18, figu
 from rubgen.studies.zeng2019.computing import Progress, compute, cores
 from rubgen.studies.zeng2019.fit_page import page
 from rubgen.studies.zeng2019.piece import Piece
-from rubgen.studies.zeng2019.search import DAMPING, Score, best, candidates, room, score, toml_of
+from rubgen.studies.zeng2019.search import DAMPING, Score, best, candidates, frictionless, room, score, toml_of
 from rubgen.studies.zeng2019.size import FULL, MACHINE, QUICK, Size
 from rubgen.studies.zeng2019.statement import Statement
 from rubgen.studies.zeng2019.store import Store
@@ -58,7 +58,7 @@ def fit(
         scores = [score(one, store) for one in tried]
         folder = Path(out) / FOLDER
         folder.mkdir(exist_ok=True)
-        found = best(scores)
+        found = best(frictionless(scores))
         _write(folder / MACHINE_FILE, toml_of(found.candidate))
         size = QUICK if quick else COARSE
         sizes = [replace(size, machine=name) for name in (MACHINE, str(folder / MACHINE_FILE))]

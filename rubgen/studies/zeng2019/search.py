@@ -193,6 +193,11 @@ def best(scores: Sequence[Score]) -> Score:
     return max(scores, key=lambda one: one.fitted)
 
 
+def frictionless(scores: Sequence[Score]) -> list[Score]:
+    """The scores of candidates without friction: a machine carries none."""
+    return [one for one in scores if one.candidate.friction == 0]
+
+
 def toml_of(candidate: Candidate) -> str:
     """The preset's TOML with the candidate's values, under the name `zeng2019-fitted`. Friction is no part of it."""
     machine = machine_of(candidate.damping, candidate.mass)
