@@ -45,7 +45,8 @@ def reproduce(
     `every` takes every so many-th speed: 1 steps by 30 rev/min, 4 by 120. `machine` is one of MACHINES. `figure` asks
     for one section; its page goes to `out/figure-N`. Pieces of computation are kept in `out/pieces`: the same call
     after an interruption makes the rest. Writes `zeng2019.md` with its pictures, `zeng2019.html` (one file) and
-    `statements.json`. Raises UserError for an unknown figure or machine and an `out` that is not ours or cannot be written.
+    `statements.json`. Raises UserError for an unknown figure or machine, and an `out` that is not ours or cannot be
+    written.
     """
     if machine not in MACHINES:
         raise UserError(f"--machine {machine}: not a machine of this paper; choose from {', '.join(MACHINES)}")
