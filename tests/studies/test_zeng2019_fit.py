@@ -1,19 +1,23 @@
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from rubgen.errors import UserError
 from rubgen.machine import load_machine
+from rubgen.machine.load import PRESETS
 from rubgen.studies.onset import ONSET_RPM, tip_growth
-from rubgen.studies.zeng2019 import fitting, search
+from rubgen.studies.zeng2019 import figure09, fitting, search
 from rubgen.studies.zeng2019.search import (
     FITTED,
     FRICTION,
     MASS,
+    PREDICTED,
     PRESET,
     TARGETS,
     Candidate,
+    Score,
     best,
     candidates,
     machine_of,
@@ -52,13 +56,14 @@ def test_another_damping_keeps_the_onset_of_rub():
 
 def test_words_are_scored_apart_for_fit_and_prediction():
     right = words(TARGETS)
-    assert score(PRESET, lambda _: right).fitted == score(PRESET, lambda _: right).predicted == 1
+    every = Score(candidate=PRESET, fitted=search.words(FITTED), predicted=search.words(PREDICTED))
+    assert score(PRESET, lambda _: right) == every
     failed = classes_of(["diverged"] * len(TARGETS), ["diverged"] * len(TARGETS))
     assert score(PRESET, lambda _: failed).fitted == 0
     half = words(TARGETS)
     half["blisk"][len(FITTED) :] = "diverged"
     found = score(PRESET, lambda _: half)
-    assert (found.fitted, found.predicted) == (1, 0.5)
+    assert (found.fitted, found.predicted) == (every.fitted, every.predicted / 2)
 
 
 def test_of_equals_the_preset_wins():
@@ -86,17 +91,51 @@ def made_up_classes(damping, mass, friction):
     return true
 
 
+def made_up_room(damping):
+    """A span that holds the preset's values, whatever the damping."""
+    return {
+        "unbalance": np.array([0.013, 0.015]),
+        "clearance": np.array([270e-6, 274e-6]),
+        "damping": np.array(damping),
+    }
+
+
 def test_the_search_writes_its_evidence(tmp_path, monkeypatch):
     monkeypatch.setattr(search, "classes", made_up_classes)
+    monkeypatch.setattr(fitting, "room", made_up_room)
+    monkeypatch.setattr(fitting, "COMPARED", (figure09.SECTION,))
     found = fitting.fit(tmp_path, workers=1)
     assert found.best.candidate == Candidate(damping=0.05, mass=1.0, friction=0.0)
-    assert found.best.fitted == 1
+    used, others = search.words(FITTED), search.words(PREDICTED)
+    assert found.best.fitted == used
     text = found.page.read_text()
-    assert "| best | 0.05 | 1 | 0 | 100 % | 100 % |" in text
-    assert text.count("| 0.15 | 100 % | 100 % |") == 1
+    assert f"`zeng2019-fitted` | 0.05 | 1 | 0 | {used} of {used} | {others} of {others} |" in text
+    assert f"| 0.15 | {used} | {others} | not excluded |" in text
+    assert "| 0.02 | 13 | 9 | excluded |" in text
+    assert "| 0.1 | 0.013 to 0.015 | 270.0 to 274.0 |" in text
+    assert "| Figure 9 | The drawn shapes of the casing's eleven modes. | unknowable | unknowable |" in text
     assert load_machine(str(found.machine)).damping.lateral == 0.05
-    assert len(json.loads((tmp_path / "fit" / "fit.json").read_text())) == found.made == 45
+    assert len(json.loads((tmp_path / "fit" / "fit.json").read_text())) == 30
+    assert found.made == 30 + 3 + 1
     assert fitting.fit(tmp_path, workers=1).made == 0
+
+
+def test_the_preset_lies_in_the_room_that_the_facts_leave():
+    """Unbalance and clearance of the preset meet both facts; the facts leave 15 % and 1.5 %."""
+    found, preset = search.room(0.10), load_machine("zeng2019")
+    assert found["unbalance"][0] < preset.unbalance_kg_m < found["unbalance"][1]
+    assert found["clearance"][0] < preset.casing.clearance_m < found["clearance"][1]
+    spans = [float(np.diff(found[name])[0] / found[name][0]) for name in ("unbalance", "clearance")]
+    assert spans == pytest.approx([0.135, 0.0146], rel=0.05)
+
+
+def test_the_fitted_preset_is_the_result_of_its_own_evidence():
+    """What docs/zeng2019-fit.md calls `zeng2019-fitted` is what the preset holds."""
+    page = (Path(__file__).parents[2] / "docs" / "zeng2019-fit.md").read_text(encoding="utf-8")
+    row = next(line for line in page.splitlines() if line.startswith("| best without friction"))
+    damping, mass, friction = (float(cell) for cell in row.split("|")[2:5])
+    preset = (PRESETS / "zeng2019-fitted.toml").read_text(encoding="utf-8")
+    assert preset == toml_of(Candidate(damping=damping, mass=mass, friction=friction))
 
 
 def test_a_wrong_directory_is_refused(tmp_path):

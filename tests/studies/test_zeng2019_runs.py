@@ -10,16 +10,31 @@ from rubgen.scenario import make_scenario
 from rubgen.solver import integrate
 from rubgen.solver.response import ContactEvents
 from rubgen.studies.zeng2019 import reproduce
-from rubgen.studies.zeng2019.cases import CASING_SUPPORTS, DISK_SUPPORTS, REGIONS, SPEEDS, swept_speeds, within
+from rubgen.studies.zeng2019.cases import (
+    CASING_SUPPORTS,
+    DISK_SUPPORTS,
+    NAMED_CASING_SUPPORTS,
+    NAMED_DISK_SUPPORTS,
+    NAMED_SPEEDS,
+    REGIONS,
+    SPEEDS,
+    casing_sweep,
+    disk_sweep,
+    readings,
+    swept_speeds,
+    within,
+)
+from rubgen.studies.zeng2019.causes import _by_modes
 from rubgen.studies.zeng2019.conclusion3 import indices
 from rubgen.studies.zeng2019.contact_pattern import contact_pattern
 from rubgen.studies.zeng2019.figure10 import _onset
 from rubgen.studies.zeng2019.figure16 import zones_and_motion
-from rubgen.studies.zeng2019.figure17 import jump
+from rubgen.studies.zeng2019.figure17 import _end, jump
 from rubgen.studies.zeng2019.figure19 import crossings
 from rubgen.studies.zeng2019.measures import fractional, harmonics, looks_regular, segments, strongest
 from rubgen.studies.zeng2019.outcome import POINTS, Outcome, outcome, outcome_of, run, run_piece
 from rubgen.studies.zeng2019.region import one_class, switching
+from rubgen.studies.zeng2019.search import Candidate, toml_of
 from rubgen.studies.zeng2019.size import FULL, QUICK
 
 TINY = replace(QUICK, settle_turns=50, record_turns=100, thin=30, speed_thin=100)
@@ -53,7 +68,8 @@ def test_sweeps_are_those_of_the_paper():
     assert list(CASING_SUPPORTS) == sorted(CASING_SUPPORTS)
     assert QUICK.of((1.0, 2.0, 3.0)) == (1.0, 3.0)
     by_120 = swept_speeds(replace(FULL, speed_thin=4))
-    assert set(np.diff(by_120)) == {120.0}
+    assert set(np.diff([rpm for rpm in by_120 if rpm % 120 == 60])) == {120.0}
+    assert set(NAMED_SPEEDS) < set(by_120)
     assert (by_120[0], by_120[-1], FULL.option, replace(FULL, speed_thin=4).option) == (2460, 14940, "", " --every 4")
     assert {6660.0, 6780.0} <= set(swept_speeds(QUICK))
 
@@ -145,6 +161,52 @@ def test_classes_in_a_range_are_counted_and_failed_runs_left_out():
     assert switching("x", ("chaotic", "multi-period"), "blisk", runs, runs.values()).verdict == "differs"
     assert list(within(runs, 2, 3)) == [2, 3]
     assert all(str(motion) for motion in Motion)
+
+
+def test_quasi_periodic_motion_stands_for_one_word_alone():
+    torus = made_up(motion_blisk="quasi-periodic")
+    runs = dict(enumerate([made_up(), torus, torus], start=1))
+    assert one_class("x", "chaotic", "blisk", runs, runs.values()).verdict == "agrees within 33 % of the runs"
+    assert switching("x", ("chaotic", "period-1"), "blisk", runs, runs.values()).verdict == "agrees"
+    assert switching("x", ("chaotic", "multi-period", "period-1"), "blisk", runs, runs.values()).verdict == "differs"
+
+
+def test_where_the_eye_sees_something_else_both_verdicts_are_given():
+    """Chaos of a hundredth of the diagram's height looks like one point."""
+    calm = made_up(motion_blisk="chaotic", points_blisk=1 + 0.01 * np.arange(POINTS) / POINTS)
+    tall = made_up(points_blisk=np.linspace(0, 2, POINTS))
+    found = one_class("x", "period-1", "blisk", {1: calm, 2: calm}, [calm, tall], fitted=True)
+    assert (found.verdict, found.used_for_fitting) == ("differs", True)
+    assert found.why == "By the scatter of 49 points, the paper's way, the verdict would be `agrees`."
+    assert one_class("x", "period-1", "blisk", {1: made_up()}, [calm, tall]).why == ""
+    assert one_class("x", "chaotic", "casing", {}, [tall]).verdict == "unknowable"
+
+
+def test_the_end_of_rub_lies_between_two_runs():
+    silent, rubs = made_up(rub=False, motion_casing="static"), made_up()
+    ended, still = _end({6.6e8: rubs, 6.7e8: rubs, 6.75e8: silent})
+    assert (ended.verdict, still.verdict) == ("agrees", "agrees")
+    assert _end({6.6e8: rubs, 6.7e8: silent, 6.75e8: silent})[0].verdict == "differs"
+    assert _end({6.7e8: rubs, 6.75e8: rubs, 6.8e8: silent})[0].verdict == "differs"
+
+
+def test_a_number_of_modes_without_odd_orders_at_the_point_would_be_a_cause():
+    both, even = np.zeros(1001), np.zeros(1001)
+    both[[100, 200]] = 3.0, 1.0
+    even[200] = 1.0
+    with_odd, without = made_up(spectrum_casing=both), made_up(spectrum_casing=even)
+    assert _by_modes({5: with_odd, 9: with_odd}).verdict == "differs"
+    assert _by_modes({5: with_odd, 9: without}).verdict == "agrees"
+    assert _by_modes({5: made_up(status="diverged")}).verdict == "unknowable"
+
+
+def test_supports_of_the_casing_are_read_in_proportion_to_its_mass(tmp_path):
+    assert readings(FULL) == {"as printed": 1, "times 5": 5}
+    light = tmp_path / "light.toml"
+    light.write_text(toml_of(Candidate(damping=0.10, mass=1.0, friction=0.0)), encoding="utf-8")
+    assert readings(replace(FULL, machine=str(light))) == {"as printed": 1}
+    assert set(NAMED_DISK_SUPPORTS) < set(disk_sweep(QUICK))
+    assert set(NAMED_CASING_SUPPORTS) < set(casing_sweep(QUICK, "times 5"))
 
 
 def test_zones_and_motion_are_counted_both_ways():

@@ -39,7 +39,7 @@ SCORE = """The score counts the paper's words for the motion of blisk and casing
 motion passes for chaotic, as 49 points cannot tell them apart. A fitted word that is borne out is no evidence; the \
 words of the two sweeps of supports were not looked at by the search and are predictions."""
 JUDGED = """The statements of the figures 10 and 12 to 18, judged with both machines, without friction, the speed by \
-120 rev/min. `(fitted)` marks what that machine was fitted to."""
+240 rev/min. `(fitted)` marks what that machine was fitted to."""
 CHANCE = """Of {words} words, each borne out with the best candidate's share, {margin:.1f} more or less are chance \
 (one standard deviation of the binomial count). A value whose best candidate lies within that of the best of all is \
 not excluded."""
