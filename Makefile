@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check bench verification sensitivity contact zeng2019 pictures schemas clean
+.PHONY: setup demo test check bench verification sensitivity contact zeng2019 zeng2019-fit pictures schemas clean
 
 setup: $(VENV)/.installed-dev
 
@@ -35,6 +35,11 @@ contact: $(VENV)/.installed-dev
 zeng2019: $(VENV)/.installed-dev
 	$(BIN)/rubgen reproduce zeng2019 --out out/zeng2019
 	cp out/zeng2019/zeng2019.md out/zeng2019/zeng2019-*.png docs/
+
+zeng2019-fit: $(VENV)/.installed-dev
+	$(BIN)/rubgen reproduce zeng2019 --fit --out out/zeng2019
+	cp out/zeng2019/fit/zeng2019-fit.md docs/
+	cp out/zeng2019/fit/zeng2019-fitted.toml rubgen/machine/presets/
 
 pictures: $(VENV)/.installed-dev
 	$(BIN)/python docs/pictures.py

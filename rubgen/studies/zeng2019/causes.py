@@ -175,7 +175,8 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
             top = np.maximum(harmonics(run.spectrum_casing), 1e-3)
             right.vlines(order, 1e-3, top, color=color, label=name, linewidth=3)
     right.set_yscale("log")
-    right.legend(frameon=False, fontsize=7)
+    right.set_ylim(1e-3, 1e5)
+    right.legend(frameon=False, fontsize=7, ncols=3, loc="upper center")
     style(right, "Order at the casing's minor axis", "Acceleration, m/s²")
     return {"Left: frequencies of one nodal diameter by model; right: orders at a point with other casings": figure}
 
