@@ -8,6 +8,9 @@ from rubgen.arrays import FloatArray
 from rubgen.contact.geometry_kernels import Surface, Tips, tip_position, undeformed_radius
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 
+ANGLE_ERROR = 1e-9
+"""More than the error in rad of `tip_angle`: x^7 / 7 for a tip that stands x < 0.07 of its radius aside."""
+
 
 @inlined_kernel
 def casing_reach(surface: Surface, q_casing: FloatArray) -> float:
@@ -51,10 +54,12 @@ def least_clearance(surface: Surface, tips: Tips, states: FloatArray, theta: Flo
 
 
 @inlined_kernel
-def tip_angle(tips: Tips, blade: int, q: FloatArray, theta: float) -> float:
-    """Polar angle of a blade's tip."""
-    radial = tips.radius + tips.static[0, blade] + q[3 * blade]
-    angle: float = theta + tips.angle[blade] + math.atan((tips.static[1, blade] + q[3 * blade + 1]) / radial)
+def tip_angle(tips: Tips, blade: int, displacement: FloatArray, theta: float) -> float:
+    """Polar angle of a blade's tip to `ANGLE_ERROR`, from the `displacement` (2 or more, any) of all."""
+    radial = tips.radius + tips.static[0, blade] + displacement[0, blade]
+    x = (tips.static[1, blade] + displacement[1, blade]) / radial
+    square = x * x
+    angle: float = theta + tips.angle[blade] + x * (1.0 - square * (1.0 / 3.0 - 0.2 * square))
     return angle
 
 
@@ -64,6 +69,7 @@ def clearance_bounds(
     tips: Tips,
     displacement: FloatArray,
     opening: float,
+    spread: float,
     cos_orders: FloatArray,
     sin_orders: FloatArray,
     bounds_out: FloatArray,
@@ -75,28 +81,25 @@ def clearance_bounds(
 
     With a and t the radial and tangential place of the tip and x = t / a, its polar angle differs from the blade's by
     x but for |x|^3 / 3, r there from r + r' x by at most |r''| x^2 / 2, and |P| <= a + t x / 2. `displacement` (2 or
-    more, any) holds the radial and the tangential displacement of each blade's tip; `cos_orders`, `sin_orders`
-    (n_harmonics,) are those of order_j (theta - phase_j).
+    more, any) holds the radial and the tangential displacement of each blade's tip, and |a - radius| and |t| are below
+    `spread` radii; `cos_orders`, `sin_orders` (n_harmonics,) are those of order_j (theta - phase_j).
     """
     base = surface.mean_radius + opening - tips.radius - surface.inset
     nearest = 1.0 / tips.radius
+    # 1 / (radius + a) is 1 / radius but for a share of 2 spread.
+    aside = nearest * surface.steepness * spread * (2.0 + spread)
+    bend = nearest * (0.5 + spread + surface.bend * nearest)
     for k in range(bounds_out.shape[0]):
-        a = tips.static[0, k] + displacement[0, k]
-        t = tips.static[1, k] + displacement[1, k]
-        # 1 / (radius + a) but for its square; the tip limit bounds |a|.
-        x = abs(t) * nearest
-        spread = abs(a) * nearest
-        bound = base - a - 0.5 * x * (1.0 + 2.0 * spread) * abs(t)
-        bound -= x * (surface.bend * x + surface.steepness * (2.0 * spread + x * x))
-        bounds_out[k] = bound
+        away = abs(tips.static[1, k] + displacement[1, k])
+        bounds_out[k] = base - (tips.static[0, k] + displacement[0, k]) - away * (aside + bend * away)
     for j in range(surface.amplitude.shape[0]):
         cosine, sine = surface.amplitude[j] * cos_orders[j], surface.amplitude[j] * sin_orders[j]
         order = surface.order[j] * nearest
         for k in range(bounds_out.shape[0]):
             t = tips.static[1, k] + displacement[1, k]
             at = cosine * tips.cos_order[j, k] - sine * tips.sin_order[j, k]
-            aside = sine * tips.cos_order[j, k] + cosine * tips.sin_order[j, k]
-            bounds_out[k] += at - order * t * aside
+            slope = sine * tips.cos_order[j, k] + cosine * tips.sin_order[j, k]
+            bounds_out[k] += at - order * t * slope
 
 
 @inlined_kernel
@@ -115,7 +118,7 @@ def deformation_bounds(surface: Surface, q_casing: FloatArray) -> tuple[float, f
         bend += size * surface.mode_bend[j]
     h = surface.node_step
     nearest: float = 0.9 * surface.mean_radius
-    return slope * reach / nearest + 0.125 * h * h * bend, slope / nearest
+    return slope * (reach / nearest + ANGLE_ERROR) + 0.125 * h * h * bend, slope / nearest
 
 
 @inlined_kernel
@@ -141,4 +144,31 @@ def is_clear(
         inward += surface.radial[at, j] * q_casing[j]
         next_inward += surface.radial[after, j] * q_casing[j]
     clearance = bound + (1.0 - share) * inward + share * next_inward - limits[0]
-    return bool(clearance > margin * (1.0 + 0.5 * limits[1] * limits[1]))
+    return bool(clearance > widened(margin, limits))
+
+
+@inlined_kernel
+def widened(margin: float, limits: tuple[float, float]) -> float:
+    """How far inside at its polar angle a point is whose distance from the surface is the margin, at most."""
+    return margin * (1.0 + 0.5 * limits[1] * limits[1])
+
+
+@inlined_kernel
+def all_clear(
+    surface: Surface,
+    tips: Tips,
+    q_casing: FloatArray,
+    displacement: FloatArray,
+    theta: float,
+    reach: float,
+    limits: tuple[float, float],
+    bounds: FloatArray,
+) -> bool:
+    """Whether certainly no tip is in the surface, from the clearance bounds of all; `reach` is the casing's."""
+    far = reach + limits[0]
+    for k in range(bounds.shape[0]):
+        if not bounds[k] > far:
+            angle = tip_angle(tips, k, displacement, theta)
+            if not is_clear(surface, q_casing, angle, bounds[k], 0.0, limits):
+                return False
+    return True

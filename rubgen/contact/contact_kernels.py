@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.contact.clearance_kernels import deformation_bounds, is_clear, tip_angle
+from rubgen.contact.clearance_kernels import is_clear, tip_angle, widened
 from rubgen.contact.friction_kernels import friction_direction, slip_velocity
 from rubgen.contact.geometry_kernels import Surface, Tips, casing_rows, foot_of, tip_position
 from rubgen.jit import allocation_free_kernel, inlined_kernel
@@ -62,26 +62,27 @@ def find_near(
     sin_theta: float,
     margin: float,
     reach: float,
+    limits: tuple[float, float],
     screen: bool,
     work: ContactWork,
 ) -> tuple[int, bool]:
     """Free gaps of all blades that may be nearer than `margin`; how many are, and whether any penetrates.
 
-    `reach` is the casing's; `displacement` (2, any) the tips' radial and tangential one, which goes into q for the
-    blades that are looked at.
+    `reach` is the casing's, `limits` its deformation bounds; `displacement` (2, any) the tips' radial and tangential
+    one, which goes into q for the blades that are looked at.
     """
     count, penetrates = 0, False
     q_casing = q[casing_start:]
-    limits = deformation_bounds(surface, q_casing)
     # The linear interpolation of u_r lies within the reach.
-    far = (reach + limits[0]) + margin * (1.0 + 0.5 * limits[1] * limits[1])
+    far = (reach + limits[0]) + widened(margin, limits)
     for k in range(work.bounds.shape[0]):
         work.gap[k] = math.nan
         if screen and work.bounds[k] > far:
             continue
-        q[3 * k], q[3 * k + 1] = displacement[0, k], displacement[1, k]
-        if screen and is_clear(surface, q_casing, tip_angle(tips, k, q, theta), work.bounds[k], margin, limits):
+        angle = tip_angle(tips, k, displacement, theta)
+        if screen and is_clear(surface, q_casing, angle, work.bounds[k], margin, limits):
             continue
+        q[3 * k], q[3 * k + 1] = displacement[0, k], displacement[1, k]
         x, y, _, _ = tip_position(tips, k, q, cos_theta, sin_theta)
         psi, gap, tx, ty = foot_of(surface, q_casing, opening, x, y, work.ends)
         if gap >= margin:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.jit import allocation_free_kernel, inlined_kernel
-from rubgen.solver.lanes_kernels import LANES, add_lines, add_two_lines, dot_lines
+from rubgen.solver.lanes_kernels import LANES, add_lines, add_two_lines, dot_lines, gather_lines
 
 
 class Product(NamedTuple):
@@ -36,7 +36,7 @@ class Harmonics(NamedTuple):
     `basis` (blades, width) holds the harmonics, orthonormal, one row for each blade, padded to a multiple of eight.
     Of an even number of blades, the first half of the harmonics keep their sign by half a turn and the others change
     it; so the sums of both halves over half of the blades tell all. `columns` (any, 8) and `lines` (any, 5) are those
-    sums, for the three tip coordinates one after the other. `places` (3, width) are the numbers of z of the harmonics
+    sums. `places` (3, width) are the numbers of z of the harmonics
     of the radial, tangential and axial tip coordinate, `rest` (n - 3 blades,) those of the other coordinates.
     """
 
@@ -87,20 +87,15 @@ def free_step(scheme: Scheme, before: FloatArray, now: FloatArray, after: FloatA
 
 @inlined_kernel
 def recover_tips(harmonics: Harmonics, z: FloatArray, share_work: FloatArray, tips_out: FloatArray) -> None:
-    """The first `tips_out.shape[0]` of radial, tangential, axial coordinate of all tips.
+    """The first `tips_out.shape[0]`, two or three, of radial, tangential, axial coordinate of all tips.
 
-    `share_work` (6, any) is scratch: the harmonics of each coordinate, then their sums.
+    `share_work` (3, any) is scratch: the sums over the harmonics of each coordinate.
     """
-    blades, many = harmonics.basis.shape[0], tips_out.shape[0]
+    blades, many, sums = harmonics.basis.shape[0], tips_out.shape[0], share_work
     half = blades // 2 if blades % 2 == 0 else blades
-    sums = share_work[3:]
-    for a in range(many):
-        for j in range(blades):
-            share_work[a, j] = z[harmonics.places[a, j]]
-        for k in range(sums.shape[1]):
-            sums[a, k] = 0.0
-    lines = harmonics.lines.shape[0] // 3 * many
-    add_lines(harmonics.lines[:lines], harmonics.columns, share_work, sums)
+    gather_lines(harmonics.lines, harmonics.columns, z, harmonics.places, 0, 1, sums)
+    if many == 3:
+        gather_lines(harmonics.lines, harmonics.columns, z, harmonics.places, 2, 2, sums)
     other = (half + LANES - 1) // LANES * LANES
     for a in range(many):
         if half == blades:

@@ -20,6 +20,9 @@ COUPLING_TOLERANCE = 1e-9
 """An entry couples when it exceeds this share of the geometric mean of its row's and its column's largest entry.
 Rounding of the reduction leaves 1e-12 to 1e-10 between nodal diameters; a mistuned blade couples far above."""
 
+ROUNDING = 1e-14
+"""What is less than this share of that mean is rounding in a matrix of differences, as K - K^T is."""
+
 
 def aligned(array: FloatArray) -> FloatArray:
     """A C-contiguous copy that begins at a cache line: rows of eight that straddle two lines load half as fast."""
@@ -48,9 +51,14 @@ def blade_harmonics(blades: int) -> FloatArray:
 
 def coupled(matrix: FloatArray) -> BoolArray:
     """Which entries couple two coordinates."""
+    return np.asarray(np.abs(matrix) > COUPLING_TOLERANCE * scale_of(matrix))
+
+
+def scale_of(matrix: FloatArray) -> FloatArray:
+    """For each entry the geometric mean of its row's and its column's largest."""
     size = np.abs(matrix)
     scale = np.sqrt(np.maximum(size.max(axis=0), size.max(axis=1)))
-    return np.asarray(size > COUPLING_TOLERANCE * np.multiply.outer(scale, scale))
+    return np.asarray(np.multiply.outer(scale, scale))
 
 
 @dataclass(frozen=True)
@@ -72,23 +80,29 @@ class Blocks:
         """A physical matrix (n, n) in blocks; what couples different blocks is dropped."""
         return self._packed(self.transform.T @ matrix @ self.transform, triangle=False)
 
-    def without_zeros(self, matrix: FloatArray) -> Product:
-        """The same without lines of zeros."""
-        product = self.product(matrix)
+    def without_zeros(self, matrix: FloatArray, like: FloatArray) -> Product:
+        """The same without what is rounding beside the matrix `like` (n, n), and without lines of zeros."""
+        Y = self.transform.T @ matrix @ self.transform
+        size = ROUNDING * scale_of(self.transform.T @ like @ self.transform)
+        product = self._packed(np.where(np.abs(Y) > size, Y, 0.0), triangle=False)
         kind, _, first, _, count = product.lines.T
         used = count * (kind // 2 + 1)
         kept = [bool(product.entries[f : f + u].any()) for f, u in zip(first, used, strict=True)]
         return Product(np.ascontiguousarray(product.lines[kept]), product.entries)
 
-    def damping(self, matrix: FloatArray) -> Product:
-        """The lower triangle of the symmetric part with half its diagonal: d^T C d = 2 d^T (triangle d)."""
+    def damping(self, matrix: FloatArray, *, whole: bool = False) -> Product:
+        """The lower triangle of the symmetric part with half its diagonal: d^T C d = 2 d^T (triangle d).
+
+        Within a block, Coriolis forces couple what dampers do not: what the symmetric part leaves uncoupled is left
+        out, unless the `whole` triangle is asked for.
+        """
         Y = self.transform.T @ matrix @ self.transform
         Y = (Y + Y.T) / 2
         order = np.argsort(self.place)
         lower = np.zeros_like(Y)
         ordered = Y[np.ix_(order, order)]
         lower[np.ix_(order, order)] = np.tril(ordered, -1) + np.diag(np.diag(ordered)) / 2
-        return self._packed(lower, triangle=True)
+        return self._packed(lower, triangle=True, coupling=np.ones_like(Y, dtype=bool) if whole else coupled(Y))
 
     def connected(self, coordinates: IntArray) -> IntArray:
         """All coordinates of y in the blocks of these, sorted."""
@@ -110,18 +124,23 @@ class Blocks:
         """Physical coordinates (n,) of z."""
         return np.asarray(self.transform @ z[self.place])
 
-    def _packed(self, Y: FloatArray, *, triangle: bool) -> Product:
-        """Lines and entries of a matrix in y; of a triangle, no more columns than its rows of results have."""
+    def _packed(self, Y: FloatArray, *, triangle: bool, coupling: BoolArray | None = None) -> Product:
+        """Lines and entries of a matrix in y; of a triangle, no more columns than its rows of results have.
+
+        Of blocks side by side only the entries of a triangle that `coupling` (n, n) connects.
+        """
         lines: list[tuple[int, int, int, int, int]] = []
         entries: list[FloatArray] = []
         row = 0
         for bundle in self.lanes:
             size = bundle.shape[1]
-            for part in parts_of(size):
-                count = part.stop if triangle else size
-                left, right = bundle[:, None, part], bundle[:, :count, None]
+            parts = [(part, slice(0, size)) for part in parts_of(size)]
+            if coupling is not None:
+                parts = _triangle_parts(_coupling_of(bundle, coupling))
+            for part, columns in parts:
+                left, right = bundle[:, None, part], bundle[:, columns, None]
                 block = np.where(left >= 0, Y[left, right], 0.0)
-                _append(lines, entries, (0, row + part.start, row), block.transpose(1, 2, 0))
+                _append(lines, entries, (0, row + part.start, row + columns.start), block.transpose(1, 2, 0))
             row += size
         for block_of in self.single:
             size = len(block_of)
@@ -141,6 +160,29 @@ def parts_of(rows: int) -> list[slice]:
     """Rows of results in parts of nearly one size, none more than a line may give."""
     parts = np.array_split(np.arange(rows), -(-rows // MOST_ROWS))
     return [slice(int(part[0]), int(part[-1]) + 1) for part in parts]
+
+
+def _coupling_of(bundle: IntArray, coupling: BoolArray) -> BoolArray:
+    """Which coordinates (m, m) of a bundle any of its blocks couples."""
+    used = bundle[bundle[:, 0] >= 0]
+    return np.asarray(np.any([coupling[np.ix_(block, block)] for block in used], axis=0))
+
+
+def _triangle_parts(coupling: BoolArray) -> list[tuple[slice, slice]]:
+    """Rows and columns of the lower triangle (m, m) in blocks that cover what is connected.
+
+    A connected set falls into runs of neighbours; every run is a block with itself and with each of the set before it.
+    """
+    label = connected_components(coupling | coupling.T, directed=False)[1]
+    ends = [*(np.flatnonzero(np.diff(label)) + 1).tolist(), len(label)]
+    runs = [slice(start, end) for start, end in zip([0, *ends], ends, strict=False)]
+    blocks = []
+    for i, run in enumerate(runs):
+        for part in parts_of(run.stop - run.start):
+            rows = slice(run.start + part.start, run.start + part.stop)
+            before = [other for other in runs[:i] if label[other.start] == label[run.start]]
+            blocks += [(rows, columns) for columns in [*before, slice(run.start, rows.stop)]]
+    return blocks
 
 
 def _append(
@@ -201,9 +243,9 @@ def half_turn(blades: int) -> int:
 
 
 def share_width(blades: int) -> int:
-    """Numbers that the recovery of tips needs for each of three coordinates: the harmonics, or their sums by halves."""
+    """Numbers that the recovery of tips needs for each of three coordinates: the sums over the harmonics by halves."""
     half = half_turn(blades)
-    return max(padded(blades), blades // half * padded(half))
+    return blades // half * padded(half)
 
 
 def system_harmonics(blocks: Blocks, blades: int) -> Harmonics:
@@ -217,7 +259,6 @@ def system_harmonics(blocks: Blocks, blades: int) -> Harmonics:
     places = np.zeros((3, width), dtype=np.int64)
     places[:, :blades] = blocks.place[: 3 * blades].reshape(blades, 3)[order].T
     rows = padded(half) // LANES
-    stride = share_width(blades)
     lines: list[tuple[int, int, int, int, int]] = []
     entries: list[FloatArray] = []
     for part in parts_of(rows):
@@ -226,15 +267,10 @@ def system_harmonics(blocks: Blocks, blades: int) -> Harmonics:
             block[:half] = basis[:half, first : first + half]
             block = block[part.start * LANES : part.stop * LANES]
             _append(lines, entries, (1, first // half * rows + part.start, first), block.T.reshape(half, -1, LANES))
-    every = [
-        (kind, a * stride // LANES + row, place, a * stride + start, count)
-        for a in range(3)
-        for kind, row, place, start, count in lines
-    ]
     return Harmonics(
         aligned(basis),
         aligned(np.concatenate(entries)),
-        np.array(every, dtype=np.int64),
+        np.array(lines, dtype=np.int64),
         places,
         blocks.place[3 * blades : n].copy(),
     )

@@ -56,8 +56,8 @@ def energy_book(system: SpinningSystem, blocks: Blocks, *, zeros: bool = False) 
     places = np.arange(force.size) if zeros else np.flatnonzero(force)
     circulatory = (system.K - system.K.T) / 2
     return Book(
-        damping=blocks.damping(system.C),
-        circulatory=blocks.product(circulatory) if zeros else blocks.without_zeros(circulatory),
+        damping=blocks.damping(system.C, whole=zeros),
+        circulatory=blocks.product(circulatory) if zeros else blocks.without_zeros(circulatory, system.K),
         M=blocks.product((system.M + system.M.T) / 2),
         K=blocks.product((system.K + system.K.T) / 2),
         force=force[places],

@@ -86,8 +86,9 @@ class Integration:
         self.record, self.rotation = operation.recorded_turns, spin.rotation
         self.closing = min(operation.closing_turns, settle)
         self.opening = start_opening(start, stepper.surface.inset)
-        self.tail: deque[FloatArray] = deque(maxlen=min(tail_turns, settle + self.record))
-        self.arrivals: deque[FloatArray] = deque(maxlen=self.tail.maxlen)
+        self.tail_turns = min(tail_turns, settle + self.record)
+        self.tail: deque[FloatArray] = deque(maxlen=self.tail_turns)
+        self.arrivals: deque[FloatArray] = deque(maxlen=self.tail_turns)
         n = stepper.system.M.shape[0]
         self.section = np.zeros((self.record, 2, n))
         self.twin: Twin | None = None
@@ -130,7 +131,8 @@ class Integration:
     def _run_turn(self, turn: int) -> None:
         liner = self.stepper.surface.liner
         removed = liner.book[REMOVED]
-        code, step = self.spin.run_turn(turn, self._opening_after)
+        recording = self._is_recorded(turn)
+        code, step = self.spin.run_turn(turn, self._opening_after, recording=recording)
         result = self.spin.result
         self.growth.add(step)
         if code == OK and not self.energy_residual() <= ENERGY_TOLERANCE:
@@ -139,10 +141,11 @@ class Integration:
             self.status = STATUS[code]
             self.reason = self._reason(turn, step)
             return
-        self.tail.append(result.taps.copy())
+        if recording:
+            self.tail.append(result.taps.copy())
+            self.arrivals.append(self.spin.arrivals)
         if self.rotation.is_steady:
             self.track.add(turn, self.stepper, len(self.spin.touches[0]))
-        self.arrivals.append(self.spin.arrivals)
         row = turn - self.settle
         if row >= 0:
             self.section[row] = result.section
@@ -158,6 +161,11 @@ class Integration:
                 # Beside a surface that has worn within the turn no trajectory is near the run's own.
                 same_surface = liner.book[REMOVED] == removed
                 self.twin_growth[row] = self.twin.run_turn(self.spin.opening).sum() if same_surface else np.nan
+
+    def _is_recorded(self, turn: int) -> bool:
+        """Whether the taps of a turn are read: those of the tail, and for orders those of each turn of a run-up."""
+        first = self.settle if not self.rotation.is_steady else self.settle + self.record
+        return turn >= min(first, self.settle + self.record - self.tail_turns)
 
     def _opening_after(self, turns: FloatArray) -> FloatArray:
         """Opening of the surface so many turns after the start."""

@@ -64,6 +64,18 @@ def add_two_lines(lines: IntArray, a: FloatArray, b: FloatArray, x: FloatArray, 
     add_lines(lines, b, y, out)
 
 
+def gather_lines(
+    lines: IntArray, a: FloatArray, z: FloatArray, places: IntArray, first: int, second: int, out: FloatArray
+) -> None:
+    """Each line's sums with the numbers of z at `places[c]`, into its rows of `out[c]`; c is `first`, then `second`.
+
+    The lines are scaled ones; `places` (any, any), `out` (any, any). Both share each load of a.
+    """
+    for line in lines:
+        for c in (first, second):
+            out[c].reshape(-1, LANES)[_results(line)] = line_sum(line, a, z[places[c]])
+
+
 def dot_lines(lines: IntArray, a: FloatArray, x: FloatArray, left: FloatArray) -> float:
     """The products of each line's sums with its rows of `left`, summed."""
     return sum(float((line_sum(line, a, x) * left.reshape(-1, LANES)[_results(line)]).sum()) for line in lines)
@@ -165,8 +177,41 @@ class _Emitter:
         return parts[0]
 
 
-def _each_line(emit: _Emitter, array: Any, sources: list[Source], use: Callable[[Any, Any], None]) -> None:
-    """Loop over lines; `use` takes a row and the sum over the sources of each."""
+    def sum_gathered(self, a: Any, z: Any, places: list[Any], line: list[Any], rows: int) -> list[list[Any]]:
+        """For each of the places and each row the sum over j < count of a[first + j rows + row] z[places[start + j]]."""
+        builder = self.builder
+        sums = [[cgutils.alloca_once_value(builder, self.zero) for _ in range(rows)] for _ in places]  # type: ignore[no-untyped-call]
+        for total in [total for each in sums for total in each]:
+            builder.store(self.zero, total)
+        with cgutils.for_range(builder, line[COUNT]) as loop:
+            base = builder.add(line[FIRST], builder.mul(loop.index, self.index(rows)))
+            place = builder.add(line[START], loop.index)
+            right = [self.spread(z, builder.load(builder.gep(each, [place]))) for each in places]
+            for row in range(rows):
+                left = self.load(a, builder.add(base, self.index(row)))
+                for number, each in zip(right, sums, strict=True):
+                    total = builder.call(self.fma, [left, number, builder.load(each[row])])
+                    builder.store(total, each[row])
+        return [[builder.load(total) for total in each] for each in sums]
+
+
+Visit = Callable[[list[Any], int, bool], None]
+"""Takes the five numbers of a line, how many rows of results it has, and whether it is scaled."""
+
+
+def _summed(emit: _Emitter, sources: list[Source], use: Callable[[Any, Any], None]) -> Visit:
+    """Give each row of results of a line and the sum over the sources there to `use`."""
+
+    def visit(line: list[Any], rows: int, spread: bool) -> None:
+        totals = emit.sum_products(sources, line[FIRST], line[START], line[COUNT], rows=rows, spread=spread)
+        for row, total in enumerate(totals):
+            use(emit.builder.add(line[ROW], emit.index(row)), total)
+
+    return visit
+
+
+def _each_line(emit: _Emitter, array: Any, visit: Visit) -> None:
+    """Loop over lines, with code of its own for each kind."""
     builder, index = emit.builder, emit.index
     lines, count = array.data, builder.extract_value(builder.load(array._get_ptr_by_name("shape")), 0)
     with cgutils.for_range(builder, count) as loop:
@@ -181,9 +226,7 @@ def _each_line(emit: _Emitter, array: Any, sources: list[Source], use: Callable[
                 case = builder.append_basic_block("line.kind")
                 switch.add_case(index(line_kind(rows, scaled=spread)), case)
                 builder.position_at_end(case)
-                totals = emit.sum_products(sources, line[FIRST], line[START], line[COUNT], rows=rows, spread=spread)
-                for row, total in enumerate(totals):
-                    use(builder.add(line[ROW], index(row)), total)
+                visit(line, rows, spread)
                 builder.branch(done)
         builder.position_at_end(done)
 
@@ -200,10 +243,34 @@ def _adding(pairs: int) -> Callable[..., Any]:
             emit.store(builder.fadd(emit.load(out, row), total), out, row)
 
         sources = [(arrays[1 + i].data, arrays[1 + pairs + i].data) for i in range(pairs)]
-        _each_line(emit, arrays[0], sources, add)
+        _each_line(emit, arrays[0], _summed(emit, sources, add))
         return context.get_dummy_value()
 
     return generate
+
+
+def _gather_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """The vector code of `gather_lines`."""
+    emit, chosen = _Emitter(context, builder), args[4:6]
+    lines, a, z, places, out = (
+        emit.array(kind, array) for i, (kind, array) in enumerate(zip(signature.args, args, strict=True)) if i not in (4, 5)
+    )
+
+    def row_of(array: Any, number: Any) -> Any:
+        width = builder.extract_value(builder.load(array._get_ptr_by_name("shape")), 1)
+        return builder.gep(array.data, [builder.mul(number, width)])
+
+    numbers = [row_of(places, c) for c in chosen]
+    outputs = [row_of(out, c) for c in chosen]
+
+    def visit(line: list[Any], rows: int, spread: bool) -> None:
+        if spread:
+            for output, totals in zip(outputs, emit.sum_gathered(a.data, z.data, numbers, line, rows), strict=True):
+                for row, total in enumerate(totals):
+                    emit.store(total, output, builder.add(line[ROW], emit.index(row)))
+
+    _each_line(emit, lines, visit)
+    return context.get_dummy_value()
 
 
 def _dot_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -216,7 +283,7 @@ def _dot_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     def add(row: Any, total: Any) -> None:
         builder.store(builder.call(emit.fma, [emit.load(left.data, row), total, builder.load(sums)]), sums)
 
-    _each_line(emit, lines, [(a.data, x.data)], add)
+    _each_line(emit, lines, _summed(emit, [(a.data, x.data)], add))
     return emit.lane_sum(builder.load(sums))
 
 
@@ -241,5 +308,6 @@ def _compile_as(plain: Callable[..., Any], result: Any, vector_code: Callable[..
 
 _compile_as(add_lines, types.void, _adding(pairs=1))
 _compile_as(add_two_lines, types.void, _adding(pairs=2))
+_compile_as(gather_lines, types.void, _gather_lines)
 _compile_as(dot_lines, types.float64, _dot_lines)
 _compile_as(dot_rows, types.float64, _dot_rows)

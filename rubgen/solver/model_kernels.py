@@ -14,7 +14,9 @@ class Laws(NamedTuple):
     """Numbers of the step: Omega, dt, friction, restitution; lengths in m; screening on or off.
 
     `margin` is the candidates' least one; a casing node displaced by more than `casing_limit` or a tip by more than
-    `tip_limit` in one direction means divergence.
+    `tip_limit` in one direction means divergence. Until then each tip is within `spread` tip radii of its place at rest
+    in both directions, steady displacement included. `lasting` tells whether gaps that a step leaves are needed again
+    where no blade touches: for restitution, and with a liner, which wears before they are asked for.
     """
 
     speed: float
@@ -24,6 +26,8 @@ class Laws(NamedTuple):
     margin: float
     casing_limit: float
     tip_limit: float
+    spread: float
+    lasting: bool
     screen: bool
 
 

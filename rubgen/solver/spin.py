@@ -45,8 +45,8 @@ class Spin(Protocol):
         """Number of the step at which a turn begins."""
         ...
 
-    def run_turn(self, turn: int, opening: Opening) -> tuple[int, int]:
-        """One turn; a code of `step_kernels`, and the step of the turn where it ended."""
+    def run_turn(self, turn: int, opening: Opening, *, recording: bool) -> tuple[int, int]:
+        """One turn; a code of `step_kernels`, and the step of the turn where it ended. Taps only where recording."""
         ...
 
 
@@ -63,11 +63,11 @@ class SteadySpin:
         """Number of the step at which a turn begins."""
         return (turn - self.settle) * self.stepper.steps
 
-    def run_turn(self, turn: int, opening: Opening) -> tuple[int, int]:
-        """One turn; a code of `step_kernels`, and the step of the turn where it ended."""
+    def run_turn(self, turn: int, opening: Opening, *, recording: bool) -> tuple[int, int]:
+        """One turn; a code of `step_kernels`, and the step of the turn where it ended. Taps only where recording."""
         steps = self.stepper.steps
         self.opening = opening(turn + np.arange(-1, steps + 1) / steps)
-        code, step, ended = self.stepper.run_turn(self.opening, self.first_step(turn))
+        code, step, ended = self.stepper.run_turn(self.opening, self.first_step(turn), recording=recording)
         self.result, self.touches = self.stepper.result, [self.stepper.touches.ended[:ended].copy()]
         self.arrivals = _arrivals(self.stepper)
         return code, step
@@ -104,8 +104,8 @@ class ChangingSpin:
         """Number of the step at which a turn begins."""
         return round(self._time_of(turn) / self.stepper.dt)
 
-    def run_turn(self, turn: int, opening: Opening) -> tuple[int, int]:
-        """One turn; a code of `step_kernels`, and the step of the turn where it ended."""
+    def run_turn(self, turn: int, opening: Opening, *, recording: bool) -> tuple[int, int]:
+        """One turn; a code of `step_kernels`, and the step of the turn where it ended. Taps only where recording."""
         starts = self._part_starts(turn)
         middles = 0.5 * (starts[:-1] + starts[1:] - 1) * self.stepper.dt
         speeds = self.rotation.speed(middles)
@@ -121,7 +121,7 @@ class ChangingSpin:
             rows = slice(start, end + 2)
             self.stepper.follow(part, float(speed), np.roll(theta[rows], -1), float(section))
             self.opening = width[rows] + self.following.mean_growth(speed)
-            code, done, ended = self.stepper.run_turn(self.opening, int(starts[0]) + start)
+            code, done, ended = self.stepper.run_turn(self.opening, int(starts[0]) + start, recording=recording)
             arrivals.append(_arrivals(self.stepper))
             results.append(_copied(self.stepper.result))
             self.touches.append(self.stepper.touches.ended[:ended].copy())

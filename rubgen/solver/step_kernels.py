@@ -13,7 +13,13 @@ from __future__ import annotations
 import math
 
 from rubgen.arrays import FloatArray
-from rubgen.contact.clearance_kernels import casing_reach, clearance_bounds, largest_nodal_displacement
+from rubgen.contact.clearance_kernels import (
+    all_clear,
+    casing_reach,
+    clearance_bounds,
+    deformation_bounds,
+    largest_nodal_displacement,
+)
 from rubgen.contact.contact_kernels import (
     ContactWork,
     build_casing_response,
@@ -156,22 +162,32 @@ def contact_step(
 ) -> tuple[int, int]:
     """Turn q* in `after` into q_n+1; OK or CONTACT_UNSOLVED, and the number of contacts that were solved.
 
-    Only blades whose free gap is below the margin enter. What the forces then close is bounded; where it exceeds the
-    margin, the margin is widened and the step solved again, so no blade can be missed. `reach` is the casing's in q*.
+    Only blades whose free gap is below the margin enter, if any is in the surface at all. What the forces then close is
+    bounded; where it exceeds the margin, the margin is widened and the step solved again, so no blade can be missed.
+    `reach` is the casing's in q*.
     """
     n_blades = work.bounds.shape[0]
     start = after.q.shape[0] - work.rows.shape[1]
     surface, laws, angles = model.surface, model.laws, model.angles
     state = State(before.q, now.q, after.q, scratch.change)
     new, inside = opening[step + 2], step + 1
-    margin = starting_margin(laws, work.held)
     clearance_bounds(
-        surface, model.tips, after.tips, new, angles.cos_orders[inside], angles.sin_orders[inside], work.bounds
-    )
+        surface, model.tips, after.tips, new, laws.spread, angles.cos_orders[inside], angles.sin_orders[inside],
+        work.bounds,
+    )  # fmt: skip
+    limits = deformation_bounds(surface, after.q[start:])
+    if laws.screen and not laws.lasting and all_clear(
+        surface, model.tips, after.q[start:], after.tips, angles.theta[inside], reach, limits, work.bounds
+    ):  # fmt: skip
+        for k in range(n_blades):
+            work.held[2, k] = math.nan
+        return OK, 0
+    margin = starting_margin(laws, work.held)
     for _ in range(MARGIN_TRIES):
         count, penetrates = find_near(
             surface, model.tips, after.q, after.tips, start, new,
-            angles.theta[inside], angles.cosine[inside], angles.sine[inside], margin, reach, laws.screen, work,
+            angles.theta[inside], angles.cosine[inside], angles.sine[inside], margin, reach, limits,
+            laws.screen, work,
         )  # fmt: skip
         for k in range(n_blades):
             work.held[2, k] = work.gap[k]

@@ -9,6 +9,7 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.contact.contact_kernels import ContactWork
 from rubgen.contact.geometry import blade_tips, casing_surface
+from rubgen.contact.geometry_kernels import Tips
 from rubgen.contact.wear_kernels import wear
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw
@@ -61,6 +62,11 @@ def closing_ramp(share: FloatArray) -> FloatArray:
     return np.asarray(1 - x**3 * (10 - 15 * x + 6 * x**2))
 
 
+def tip_spread(tips: Tips, tip_limit: float) -> float:
+    """How far, in tip radii, a tip is from its place at rest along either axis, as long as no run has diverged."""
+    return (tip_limit + float(np.abs(tips.static[:2]).max(initial=0.0))) / tips.radius
+
+
 class Stepper:
     """A system, a contact law and a number of steps per turn, with the state between them.
 
@@ -88,9 +94,11 @@ class Stepper:
         self.surface, self.tips = casing_surface(system, contact), blade_tips(system)
         margin = CANDIDATE_MARGIN_SHARE * system.tip_radius
         limits = CASING_LIMIT_SHARE * system.tip_radius, TIP_LIMIT_SHARE * system.tip_radius
+        lasting = contact.restitution > 0 or contact.liner is not None
         self.laws = Laws(
-            float(system.speed), float(self.dt), contact.friction, contact.restitution, margin, *limits, screen
-        )
+            float(system.speed), float(self.dt), contact.friction, contact.restitution, margin, *limits,
+            tip_spread(self.tips, limits[1]), lasting, screen,
+        )  # fmt: skip
         self.blocks = system_blocks(system, *alike)
         self.scheme = scheme(system.M, system.C, system.K, system.force, self.dt, self.blocks)
         self.harmonics = system_harmonics(self.blocks, system.n_blades)
@@ -154,7 +162,7 @@ class Stepper:
         self.tips, self.scheme, self.compliances = part.tips, part.scheme, part.compliances
         self.book = part.book._replace(works=self.book.works)
         self.support = part.support._replace(works=self.support.works)
-        self.laws = self.laws._replace(speed=speed)
+        self.laws = self.laws._replace(speed=speed, spread=tip_spread(part.tips, self.laws.tip_limit))
         self.steps = len(theta) - 2
         self.angles = _angles(self.system, theta, section)
         self.taps = turned_taps(self.taps, self.system, theta[: self.steps])
@@ -172,17 +180,20 @@ class Stepper:
         self.motions[2].z[:] = self.motions[1].z
         self.work.held[:] = np.nan
 
-    def run_turn(self, opening: FloatArray | None = None, clock: int = 0) -> tuple[int, int, int]:
+    def run_turn(
+        self, opening: FloatArray | None = None, clock: int = 0, *, recording: bool = True
+    ) -> tuple[int, int, int]:
         """Advance by one turn; its outputs are in `result` and `touches`.
 
         `opening` (steps + 2,) in m at steps -1, 0, ..., steps of the turn, none by default. `clock` is the number
-        that touches give to the first step. Returns a code of `step_kernels`, the step where the turn ended, and the
+        that touches give to the first step. Without `recording` taps and arrivals are not made, which moves nothing
+        else. Returns a code of `step_kernels`, the step where the turn ended, and the
         number of touches in `touches.ended`.
         """
         width = np.zeros(self.steps + 2) if opening is None else opening
         code, step, ended = run_turn(
-            self.model, width, clock, self.motions, self.work, self.scratch, self.book, self.taps, self.touches,
-            self.marks, self.result,
+            self.model, width, clock, recording, self.motions, self.work, self.scratch, self.book, self.taps,
+            self.touches, self.marks, self.result,
         )  # fmt: skip
         self._turn_motions(step)
         return code, step, ended
@@ -233,7 +244,7 @@ class Stepper:
         numbers, (blades, width) = self.blocks.rows * LANES, self.harmonics.basis.shape
         shares = share_width(blades)
         return Scratch(
-            self._motion(), aligned(np.zeros(numbers)), aligned(np.zeros(numbers)), aligned(np.zeros((6, shares))),
+            self._motion(), aligned(np.zeros(numbers)), aligned(np.zeros(numbers)), aligned(np.zeros((3, shares))),
             aligned(np.zeros(self.system.M.shape[0])), aligned(np.zeros((3, width))),
         )  # fmt: skip
 

@@ -131,6 +131,7 @@ def run_turn(
     model: Model,
     opening: FloatArray,
     clock: int,
+    recording: bool,
     motions: tuple[Motion, Motion, Motion],
     work: ContactWork,
     scratch: Scratch,
@@ -144,7 +145,8 @@ def run_turn(
 
     Its steps are those of `model.angles`. `opening` (steps + 2,) widens the surface at steps -1, 0, ..., steps. `clock`
     is the number of the first step. `motions` are those at step -1, at step 0 and one to write; they change places with
-    every step. Taps of step n carry the force lam_n that acts at that time. The last of `marks` is the end or later.
+    every step. Taps of step n carry the force lam_n that acts at that time; without `recording` there are none, no
+    orbit and no arrivals, and all else is the same. The last of `marks` is the end or later.
     """
     laws, steps = model.laws, model.angles.cosine.shape[0] - 2
     before, now, after = motions
@@ -182,10 +184,11 @@ def run_turn(
         if force > 0.0:
             result.summary[0] += force * laws.dt
             result.summary[1] += 1
-        record_taps(model, taps, state, now, scratch.z_change, s, opening[s + 1], force, torque, result.taps)
-        add_orbit(taps.signals, result.orbit)
-        if taps.timing.angle.shape[0] > 0:
-            arrivals = record_arrivals(model, taps.timing, (before, now, after), s, clock, arrivals)
+        if recording:
+            record_taps(model, taps, state, now, scratch.z_change, s, opening[s + 1], force, torque, result.taps)
+            add_orbit(taps.signals, result.orbit)
+            if taps.timing.angle.shape[0] > 0:
+                arrivals = record_arrivals(model, taps.timing, (before, now, after), s, clock, arrivals)
         frame = record_frame(result.frames, frame, s, steps, now.z)
         if s == 0:
             record_section(model, before, now, after, scratch, result.section)

@@ -79,9 +79,8 @@ def test_the_screening_bounds_hold_for_chords_in_a_deformed_casing():
         theta = rng.uniform(0, 2 * np.pi)
         orders = system.surface.order * (theta - system.surface.phase)
         bounds = np.zeros(9)
-        clearance_bounds(
-            surface, tips, np.ascontiguousarray(q[:27].reshape(9, 3).T), 1e-4, np.cos(orders), np.sin(orders), bounds
-        )
+        displacement = np.ascontiguousarray(q[:27].reshape(9, 3).T)
+        clearance_bounds(surface, tips, displacement, 1e-4, 0.01, np.cos(orders), np.sin(orders), bounds)
         limits = deformation_bounds(surface, q[29:])
         for k in range(9):
             place = system.tip_static[k] + q[3 * k : 3 * k + 3]
@@ -89,7 +88,7 @@ def test_the_screening_bounds_hold_for_chords_in_a_deformed_casing():
             gap = gap_and_foot(surface, q[29:], np.array([point.real, point.imag]), 1e-4)[0]
             radius = undeformed_radius(surface, np.angle(point))[0] + 1e-4
             assert bounds[k] <= radius - abs(point)
-            clear = is_clear(surface, q[29:], tip_angle(tips, k, q, theta), bounds[k], 2e-5, limits)
+            clear = is_clear(surface, q[29:], tip_angle(tips, k, displacement, theta), bounds[k], 2e-5, limits)
             assert gap > 2e-5 or not clear
             decided.append(clear)
     assert 0.3 < np.mean(decided) < 1

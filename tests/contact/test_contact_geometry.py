@@ -138,7 +138,7 @@ def test_screening_bound_lies_below_the_true_gap_and_near_it():
         orders = system.surface.order * (theta - system.surface.phase)
         bounds = np.zeros(9)
         displacement = np.ascontiguousarray(q[:27].reshape(9, 3).T)
-        clearance_bounds(surface, tips, displacement, 1e-4, np.cos(orders), np.sin(orders), bounds)
+        clearance_bounds(surface, tips, displacement, 1e-4, 0.01, np.cos(orders), np.sin(orders), bounds)
         limits = deformation_bounds(surface, q[29:])
         for k in range(9):
             place = system.tip_static[k] + q[3 * k : 3 * k + 3]
@@ -147,7 +147,7 @@ def test_screening_bound_lies_below_the_true_gap_and_near_it():
             radius = curve.mean_radius + curve.amplitude[0] * np.cos(2 * (angle - curve.phase[0])) + 1e-4
             tightness.append(radius - abs(point) - bounds[k])
             deformed = gap_and_foot(surface, q[29:], np.array([point.real, point.imag]), 1e-4)[0]
-            at = tip_angle(tips, k, q, theta)
+            at = tip_angle(tips, k, displacement, theta)
             assert abs(point / abs(point) - np.exp(1j * at)) < 1e-12
             for margin in (2e-5, 1e-3):
                 clear = is_clear(surface, q[29:], at, bounds[k], margin, limits)
