@@ -7,6 +7,7 @@ import math
 from rubgen.arrays import FloatArray
 from rubgen.contact.geometry_kernels import Surface, Tips, tip_position, undeformed_radius
 from rubgen.jit import allocation_free_kernel, inlined_kernel
+from rubgen.vector_kernels import LANES, blended_product, lowest_bit, not_above
 
 ANGLE_ERROR = 1e-9
 """More than the error in rad of `tip_angle`: x^7 / 7 for a tip that stands x < 0.07 of its radius aside."""
@@ -74,7 +75,7 @@ def clearance_bounds(
     sin_orders: FloatArray,
     bounds_out: FloatArray,
 ) -> None:
-    """A lower bound of r(angle of P) + opening - |P| for every tip P, into `bounds_out` (n_blades,).
+    """A lower bound of r(angle of P) + opening - |P| for every tip P, into `bounds_out` (n_blades or more,).
 
     Chords lie inside the smooth curve by at most `surface.inset`. Wear is left out: a worn surface encloses the unworn
     one, so no point is nearer to it.
@@ -89,13 +90,13 @@ def clearance_bounds(
     # 1 / (radius + a) is 1 / radius but for a share of 2 spread.
     aside = nearest * surface.steepness * spread * (2.0 + spread)
     bend = nearest * (0.5 + spread + surface.bend * nearest)
-    for k in range(bounds_out.shape[0]):
+    for k in range(tips.angle.shape[0]):
         away = abs(tips.static[1, k] + displacement[1, k])
         bounds_out[k] = base - (tips.static[0, k] + displacement[0, k]) - away * (aside + bend * away)
     for j in range(surface.amplitude.shape[0]):
         cosine, sine = surface.amplitude[j] * cos_orders[j], surface.amplitude[j] * sin_orders[j]
         order = surface.order[j] * nearest
-        for k in range(bounds_out.shape[0]):
+        for k in range(tips.angle.shape[0]):
             t = tips.static[1, k] + displacement[1, k]
             at = cosine * tips.cos_order[j, k] - sine * tips.sin_order[j, k]
             slope = sine * tips.cos_order[j, k] + cosine * tips.sin_order[j, k]
@@ -122,9 +123,21 @@ def deformation_bounds(surface: Surface, q_casing: FloatArray) -> tuple[float, f
 
 
 @inlined_kernel
+def inward_displacement(surface: Surface, casing: FloatArray, angle: float) -> float:
+    """u_r of the casing at a polar angle, linear between the nodes; `casing` as in `is_clear`."""
+    nodes = surface.radial.shape[0]
+    position = angle * (1.0 / surface.node_step)
+    first = math.floor(position)
+    at = int(first % nodes)
+    after = at + 1 if at + 1 < nodes else 0
+    inward: float = blended_product(surface.radial, at, after, position - first, casing)
+    return inward
+
+
+@inlined_kernel
 def is_clear(
     surface: Surface,
-    q_casing: FloatArray,
+    casing: FloatArray,
     angle: float,
     bound: float,
     margin: float,
@@ -132,18 +145,11 @@ def is_clear(
 ) -> bool:
     """Whether a tip at polar angle `angle` is certainly farther than `margin` inside of the deformed surface.
 
-    `bound` is its clearance bound, `limits` the deformation bounds. A point nearer than the margin would have a
-    radius nearer to the surface's at its angle than the margin times the Lipschitz constant of that radius.
+    `bound` is its clearance bound, `limits` the deformation bounds, `casing` (a multiple of eight,) the casing's
+    coordinates and zeros. A point nearer than the margin would have a radius nearer to the surface's at its angle than
+    the margin times the Lipschitz constant of that radius.
     """
-    position = angle / surface.node_step
-    first = math.floor(position)
-    share, nodes = position - first, surface.radial.shape[0]
-    at, after = int(first % nodes), int((first + 1) % nodes)
-    inward, next_inward = 0.0, 0.0
-    for j in range(q_casing.shape[0]):
-        inward += surface.radial[at, j] * q_casing[j]
-        next_inward += surface.radial[after, j] * q_casing[j]
-    clearance = bound + (1.0 - share) * inward + share * next_inward - limits[0]
+    clearance = bound + inward_displacement(surface, casing, angle) - limits[0]
     return bool(clearance > widened(margin, limits))
 
 
@@ -157,18 +163,24 @@ def widened(margin: float, limits: tuple[float, float]) -> float:
 def all_clear(
     surface: Surface,
     tips: Tips,
-    q_casing: FloatArray,
+    casing: FloatArray,
     displacement: FloatArray,
     theta: float,
     reach: float,
     limits: tuple[float, float],
     bounds: FloatArray,
 ) -> bool:
-    """Whether certainly no tip is in the surface, from the clearance bounds of all; `reach` is the casing's."""
+    """Whether certainly no tip is in the surface, from the clearance bounds of all; `reach` is the casing's.
+
+    `bounds` (a multiple of eight,) ends with numbers that are infinite.
+    """
     far = reach + limits[0]
-    for k in range(bounds.shape[0]):
-        if not bounds[k] > far:
+    for row in range(bounds.shape[0] // LANES):
+        near = not_above(bounds, row, far)
+        while near != 0:
+            k = LANES * row + lowest_bit(near)
+            near &= near - 1
             angle = tip_angle(tips, k, displacement, theta)
-            if not is_clear(surface, q_casing, angle, bounds[k], 0.0, limits):
+            if not is_clear(surface, casing, angle, bounds[k], 0.0, limits):
                 return False
     return True

@@ -14,18 +14,22 @@ from rubgen.contact.clearance_kernels import is_clear, tip_angle, widened
 from rubgen.contact.friction_kernels import friction_direction, slip_velocity
 from rubgen.contact.geometry_kernels import Surface, Tips, casing_rows, foot_of, tip_position
 from rubgen.jit import allocation_free_kernel, inlined_kernel
+from rubgen.vector_kernels import square_of_farthest
 
 
 class ContactWork(NamedTuple):
     """Arrays of the contact step, allocated once; row m of the contact arrays belongs to blade `blade[m]`.
 
-    Per blade: `bounds`, `psi`, `gap` (the free gap at q*; NaN when the blade is provably farther than the
-    margin), `tangent` (n_blades, 2), `held` (3, n_blades): the scheme's gaps at steps n - 1, n, n + 1.
+    `casing` (any,) are the casing's coordinates in q* and zeros, as the surface's `radial` has them.
+    Per blade: `bounds` (infinite behind the last, to a multiple of eight), `psi`, `gap` (the free gap at q*; NaN when
+    the blade is provably farther than the margin), `tangent` (n_blades, 2), `held` (3, n_blades): the scheme's gaps at
+    steps n - 1, n, n + 1.
     Per contact: `lam`, `b`, `W`, `normal_tip` and `full_tip` (n_blades, 3), `normal_casing` and `full_casing`
     (n_blades, n_casing), `slip` (n_blades, 2) the friction direction, `sliding` (n_blades,) the speed |v_rel| where
     friction or wear asks for it, `casing_response` (n_blades, n_casing) A^-1 B.
     """
 
+    casing: FloatArray
     bounds: FloatArray
     psi: FloatArray
     gap: FloatArray
@@ -75,12 +79,12 @@ def find_near(
     q_casing = q[casing_start:]
     # The linear interpolation of u_r lies within the reach.
     far = (reach + limits[0]) + widened(margin, limits)
-    for k in range(work.bounds.shape[0]):
+    for k in range(work.gap.shape[0]):
         work.gap[k] = math.nan
         if screen and work.bounds[k] > far:
             continue
         angle = tip_angle(tips, k, displacement, theta)
-        if screen and is_clear(surface, q_casing, angle, work.bounds[k], margin, limits):
+        if screen and is_clear(surface, work.casing, angle, work.bounds[k], margin, limits):
             continue
         q[3 * k], q[3 * k + 1] = displacement[0, k], displacement[1, k]
         x, y, _, _ = tip_position(tips, k, q, cos_theta, sin_theta)
@@ -204,12 +208,9 @@ def largest_approach(
 ) -> float:
     """A bound of how much the contact forces may have closed any gap: tip movement plus casing movement.
 
-    Tips (2, any): radial and tangential; of q (n,) the casing counts.
+    Tips (2, a multiple of eight): radial and tangential; of q (n,) the casing counts.
     """
-    tip = 0.0
-    for k in range(tips_new.shape[1]):
-        radial, tangential = tips_new[0, k] - tips_free[0, k], tips_new[1, k] - tips_free[1, k]
-        tip = max(tip, radial * radial + tangential * tangential)
+    tip = square_of_farthest(tips_new, tips_free)
     casing = 0.0
     for j in range(surface.reach.shape[0]):
         casing += abs(q_new[casing_start + j] - q_free[casing_start + j]) * surface.reach[j]

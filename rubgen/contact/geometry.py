@@ -34,6 +34,12 @@ def hermite_bends(values: FloatArray, slopes: FloatArray, step: float) -> FloatA
     return np.asarray(np.max([np.sqrt((end**2).sum(axis=1)).max(axis=0) for end in ends], axis=0))
 
 
+def with_zeros(numbers: FloatArray) -> FloatArray:
+    """Numbers of the casing's coordinates (..., n_casing) and zeros behind, to a multiple of eight."""
+    missing = -numbers.shape[-1] % 8
+    return np.ascontiguousarray(np.concatenate([numbers, np.zeros((*numbers.shape[:-1], missing))], axis=-1))
+
+
 def surface_modes(system: SpinningSystem, contact: ContactLaw) -> FloatArray:
     """X and Y displacement (nodes, 2, n_casing) that each mode gives the surface on which contact acts, at the nodes.
 
@@ -85,7 +91,7 @@ def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) ->
         reach=np.ascontiguousarray(size + 0.25 * step * slope_size),
         mode_slope=np.ascontiguousarray(between + size),
         mode_bend=np.ascontiguousarray(bends + 2 * between + size + 0.25 * step * slope_size),
-        radial=np.ascontiguousarray(modes[:, 0] * np.cos(angle) + modes[:, 1] * np.sin(angle)),
+        radial=with_zeros(modes[:, 0] * np.cos(angle) + modes[:, 1] * np.sin(angle)),
         steepness=steepness,
         bend=bend,
         corners=corners,

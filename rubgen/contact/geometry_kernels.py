@@ -23,10 +23,10 @@ class Surface(NamedTuple):
 
     `table` (nodes, n_casing, 4) holds X, Y and their derivatives by the polar angle for each node and mode; `reach`
     (n_casing,) bounds the displacement anywhere on the ring per unit of each mode, `mode_slope` and `mode_bend` the
-    first and second derivative of its radial part; `radial` (nodes, n_casing) is that part at the nodes. `steepness`
-    bounds |dr/dpsi|, `bend` |d2r/dpsi2| of the smooth curve. `corners` (nodes,) are the radii at the nodes where chords
-    join them, else (0,); `inset` bounds how far the unworn surface lies inside of the smooth curve, `slope` its
-    |dr/dpsi|.
+    first and second derivative of its radial part; `radial` (nodes, any) is that part at the nodes, and zeros behind.
+    `steepness` bounds |dr/dpsi|, `bend` |d2r/dpsi2| of the smooth curve. `corners` (nodes,) are the radii at the nodes
+    where chords join them, else (0,); `inset` bounds how far the unworn surface lies inside of the smooth curve,
+    `slope` its |dr/dpsi|.
     """
 
     mean_radius: float
@@ -112,14 +112,19 @@ def interval(psi: float, node_step: float, nodes: int) -> tuple[int, int, float]
 
 @allocation_free_kernel
 def load_interval(table: FloatArray, first: int, second: int, q_casing: FloatArray, ends_out: FloatArray) -> None:
-    """Displacement and slope (X, Y, X', Y') at two nodes, into `ends_out` (8,)."""
-    for c in range(4):
-        at_first, at_second = 0.0, 0.0
+    """Displacement and slope (X, Y, X', Y') at two nodes, into `ends_out` (8,).
+
+    Written out, so that the four numbers of a node, which stand side by side, are summed side by side.
+    """
+    for side, node in enumerate((first, second)):
+        x, y, dx, dy = 0.0, 0.0, 0.0, 0.0
         for j in range(q_casing.shape[0]):
-            at_first += table[first, j, c] * q_casing[j]
-            at_second += table[second, j, c] * q_casing[j]
-        ends_out[c] = at_first
-        ends_out[4 + c] = at_second
+            x += table[node, j, 0] * q_casing[j]
+            y += table[node, j, 1] * q_casing[j]
+            dx += table[node, j, 2] * q_casing[j]
+            dy += table[node, j, 3] * q_casing[j]
+        ends_out[4 * side], ends_out[4 * side + 1] = x, y
+        ends_out[4 * side + 2], ends_out[4 * side + 3] = dx, dy
 
 
 @allocation_free_kernel

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.jit import allocation_free_kernel, inlined_kernel
-from rubgen.solver.lanes_kernels import LANES, add_lines, add_two_lines, dot_lines, gather_lines
+from rubgen.solver.lanes_kernels import add_lines, add_two_lines, dot_lines, gather_lines
+from rubgen.vector_kernels import LANES
 
 
 class Product(NamedTuple):

@@ -14,7 +14,8 @@ from scipy.sparse.csgraph import connected_components
 
 from rubgen.arrays import BoolArray, FloatArray, IntArray
 from rubgen.solver.block_kernels import Harmonics, Product
-from rubgen.solver.lanes_kernels import LANES, MOST_ROWS, line_kind
+from rubgen.solver.lanes_kernels import MOST_ROWS, line_kind
+from rubgen.vector_kernels import LANES
 
 COUPLING_TOLERANCE = 1e-9
 """An entry couples when it exceeds this share of the geometric mean of its row's and its column's largest entry.

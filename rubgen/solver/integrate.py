@@ -168,7 +168,9 @@ class Integration:
         return turn >= min(first, self.settle + self.record - self.tail_turns)
 
     def _opening_after(self, turns: FloatArray) -> FloatArray:
-        """Opening of the surface so many turns after the start."""
+        """Opening of the surface so many turns, which rise, after the start."""
+        if turns[0] >= self.closing:
+            return np.zeros(len(turns))
         return self.opening * closing_ramp(turns / self.closing)
 
     def course(self) -> Course:

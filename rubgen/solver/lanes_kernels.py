@@ -1,9 +1,7 @@
 """Sums of products over rows of eight numbers, the solver's inner loops, written for vector registers.
 
-Numba does not keep sums of eight neighbours in registers by itself, so each function here stands twice: as plain
-Python, and as the same sums in LLVM's vector type, which compiled kernels take. Both take C-contiguous arrays of
-float64 of any shape, read as rows of eight or as single numbers. The compiled order of a sum is fixed and its products
-are fused with the sums, on every processor.
+Each function stands twice, as plain Python and in vector code (`vector_kernels`). Both take C-contiguous arrays of
+float64 of any shape, read as rows of eight or as single numbers. Products are fused with the sums.
 """
 
 from __future__ import annotations
@@ -12,16 +10,12 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 from numba.core import cgutils
-from numba.core.typing.templates import AbstractTemplate, infer_global
-from numba.core.typing.templates import signature as typed
-from numba.extending import lower_builtin
 
 from rubgen.arrays import FloatArray, IntArray
+from rubgen.vector_kernels import LANES, Emitter, compile_as
 
-LANES = 8
 MOST_ROWS = 6
 """Rows of results that one line may give: they share each load of x."""
 CHAINS = 4
@@ -90,47 +84,8 @@ Source = tuple[Any, Any]
 """Entries a and x."""
 
 
-class _Emitter:
-    """Writes the vector code of one function into LLVM's builder."""
-
-    def __init__(self, context: Any, builder: Any) -> None:
-        self.context, self.builder = context, builder
-        self.index, double = ir.IntType(64), ir.DoubleType()
-        self.vector = ir.VectorType(double, LANES)
-        self.zero = ir.Constant(self.vector, [ir.Constant(double, 0.0)] * LANES)
-        kind = ir.FunctionType(self.vector, [self.vector] * 3)
-        self.fma = cgutils.get_or_insert_function(builder.module, kind, "llvm.fma.v8f64")  # type: ignore[no-untyped-call]
-
-    def array(self, kind: Any, array: Any) -> Any:
-        return self.context.make_array(kind)(self.context, self.builder, array)
-
-    def at_row(self, data: Any, row: Any) -> Any:
-        place = self.builder.gep(data, [self.builder.mul(row, self.index(LANES))])
-        return self.builder.bitcast(place, self.vector.as_pointer())
-
-    def load(self, data: Any, row: Any) -> Any:
-        value = self.builder.load(self.at_row(data, row))
-        value.align = 8
-        return value
-
-    def store(self, value: Any, data: Any, row: Any) -> None:
-        self.builder.store(value, self.at_row(data, row)).align = 8
-
-    def spread(self, data: Any, place: Any) -> Any:
-        """One number in all lanes."""
-        number = self.builder.load(self.builder.gep(data, [place]))
-        single = self.builder.insert_element(self.zero, number, ir.IntType(32)(0))
-        return self.builder.shuffle_vector(
-            single, self.zero, ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
-        )
-
-    def lane_sum(self, total: Any) -> Any:
-        """The sum of all lanes, by halves."""
-        lanes = [self.builder.extract_element(total, ir.IntType(32)(i)) for i in range(LANES)]
-        while len(lanes) > 1:
-            half = len(lanes) // 2
-            lanes = [self.builder.fadd(lanes[i], lanes[half + i]) for i in range(half)]
-        return lanes[0]
+class _Emitter(Emitter):
+    """Writes sums of products along lines."""
 
     def sum_products(
         self, sources: list[Source], first: Any, start: Any, count: Any, *, rows: int, spread: bool
@@ -176,9 +131,8 @@ class _Emitter:
             parts = [self.builder.fadd(*parts[i : i + 2]) for i in range(0, len(parts), 2)]
         return parts[0]
 
-
     def sum_gathered(self, a: Any, z: Any, places: list[Any], line: list[Any], rows: int) -> list[list[Any]]:
-        """For each of the places and each row the sum over j < count of a[first + j rows + row] z[places[start + j]]."""
+        """For each of the places and each row sum over j < COUNT of a[FIRST + j rows + row] z[places[START + j]]."""
         builder = self.builder
         sums = [[cgutils.alloca_once_value(builder, self.zero) for _ in range(rows)] for _ in places]  # type: ignore[no-untyped-call]
         for total in [total for each in sums for total in each]:
@@ -213,7 +167,7 @@ def _summed(emit: _Emitter, sources: list[Source], use: Callable[[Any, Any], Non
 def _each_line(emit: _Emitter, array: Any, visit: Visit) -> None:
     """Loop over lines, with code of its own for each kind."""
     builder, index = emit.builder, emit.index
-    lines, count = array.data, builder.extract_value(builder.load(array._get_ptr_by_name("shape")), 0)
+    lines, count = array.data, emit.shape(array, 0)
     with cgutils.for_range(builder, count) as loop:
         line = [
             builder.load(builder.gep(lines, [builder.add(builder.mul(loop.index, index(5)), index(i))]))
@@ -252,16 +206,10 @@ def _adding(pairs: int) -> Callable[..., Any]:
 def _gather_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     """The vector code of `gather_lines`."""
     emit, chosen = _Emitter(context, builder), args[4:6]
-    lines, a, z, places, out = (
-        emit.array(kind, array) for i, (kind, array) in enumerate(zip(signature.args, args, strict=True)) if i not in (4, 5)
-    )
-
-    def row_of(array: Any, number: Any) -> Any:
-        width = builder.extract_value(builder.load(array._get_ptr_by_name("shape")), 1)
-        return builder.gep(array.data, [builder.mul(number, width)])
-
-    numbers = [row_of(places, c) for c in chosen]
-    outputs = [row_of(out, c) for c in chosen]
+    arrays = [(kind, array) for kind, array in zip(signature.args, args, strict=True) if kind is not types.int64]
+    lines, a, z, places, out = (emit.array(kind, array) for kind, array in arrays)
+    numbers = [emit.line_of(places, c) for c in chosen]
+    outputs = [emit.line_of(out, c) for c in chosen]
 
     def visit(line: list[Any], rows: int, spread: bool) -> None:
         if spread:
@@ -296,18 +244,8 @@ def _dot_rows(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     return emit.lane_sum(total)
 
 
-def _compile_as(plain: Callable[..., Any], result: Any, vector_code: Callable[..., Any]) -> None:
-    """Let compiled kernels take the vector code where their source calls the plain function."""
-
-    def generic(_template: Any, args: Any, _keywords: Any) -> Any:
-        return typed(result, *args)  # type: ignore[no-untyped-call]
-
-    infer_global(plain)(type(f"{plain.__name__} typing", (AbstractTemplate,), {"generic": generic}))  # type: ignore[no-untyped-call]
-    lower_builtin(plain, types.VarArg(types.Any))(vector_code)  # type: ignore[no-untyped-call]
-
-
-_compile_as(add_lines, types.void, _adding(pairs=1))
-_compile_as(add_two_lines, types.void, _adding(pairs=2))
-_compile_as(gather_lines, types.void, _gather_lines)
-_compile_as(dot_lines, types.float64, _dot_lines)
-_compile_as(dot_rows, types.float64, _dot_rows)
+compile_as(add_lines, types.void, _adding(pairs=1))
+compile_as(add_two_lines, types.void, _adding(pairs=2))
+compile_as(gather_lines, types.void, _gather_lines)
+compile_as(dot_lines, types.float64, _dot_lines)
+compile_as(dot_rows, types.float64, _dot_rows)

@@ -42,9 +42,10 @@ from rubgen.solver.block_kernels import (
     recover_blade,
     spread_tip_force,
 )
-from rubgen.solver.lanes_kernels import LANES, dot_rows
+from rubgen.solver.lanes_kernels import dot_rows
 from rubgen.solver.model_kernels import Laws, Model, Scratch, State
 from rubgen.solver.support_kernels import push_supports, resist_contacts, yield_to_contacts
+from rubgen.vector_kernels import LANES
 
 OK, CONTACT_UNSOLVED, DIVERGED, ENERGY, FILM_CLOSED = 0, 1, 2, 3, 4
 MARGIN_TRIES = 6
@@ -82,14 +83,19 @@ def starting_margin(laws: Laws, held: FloatArray) -> float:
 
 
 @inlined_kernel
-def recover_contacts(
-    count: int, model: Model, before: Motion, after: Motion, scale: float, work: ContactWork, change_out: FloatArray
+def recover_contacts(count: int, model: Model, motion: Motion, work: ContactWork) -> None:
+    """The q of the contacts' blades."""
+    for m in range(count):
+        recover_blade(model.harmonics, motion, work.blade[m])
+
+
+@inlined_kernel
+def change_contacts(
+    count: int, before: Motion, after: Motion, scale: float, work: ContactWork, change_out: FloatArray
 ) -> None:
-    """The q of the contacts' blades before and after, and (q_after - q_before) scale there and on the casing."""
+    """(q_after - q_before) scale on the contacts' blades and on the casing."""
     for m in range(count):
         k = work.blade[m]
-        recover_blade(model.harmonics, before, k)
-        recover_blade(model.harmonics, after, k)
         for i in range(3 * k, 3 * k + 3):
             change_out[i] = scale * (after.q[i] - before.q[i])
     for i in range(change_out.shape[0] - work.rows.shape[1], change_out.shape[0]):
@@ -166,7 +172,7 @@ def contact_step(
     bounded; where it exceeds the margin, the margin is widened and the step solved again, so no blade can be missed.
     `reach` is the casing's in q*.
     """
-    n_blades = work.bounds.shape[0]
+    n_blades = work.gap.shape[0]
     start = after.q.shape[0] - work.rows.shape[1]
     surface, laws, angles = model.surface, model.laws, model.angles
     state = State(before.q, now.q, after.q, scratch.change)
@@ -176,8 +182,10 @@ def contact_step(
         work.bounds,
     )  # fmt: skip
     limits = deformation_bounds(surface, after.q[start:])
+    for j in range(work.rows.shape[1]):
+        work.casing[j] = after.q[start + j]
     if laws.screen and not laws.lasting and all_clear(
-        surface, model.tips, after.q[start:], after.tips, angles.theta[inside], reach, limits, work.bounds
+        surface, model.tips, work.casing, after.tips, angles.theta[inside], reach, limits, work.bounds
     ):  # fmt: skip
         for k in range(n_blades):
             work.held[2, k] = math.nan
@@ -193,7 +201,9 @@ def contact_step(
             work.held[2, k] = work.gap[k]
         if count == 0 or not (penetrates or laws.restitution > 0.0):
             return OK, 0
-        recover_contacts(count, model, before, after, 0.5 / laws.dt, work, scratch.change)
+        recover_contacts(count, model, before, work)
+        recover_contacts(count, model, after, work)
+        change_contacts(count, before, after, 0.5 / laws.dt, work, scratch.change)
         if solve_contacts(count, model, step, opening, state, work) != SOLVED:
             return CONTACT_UNSOLVED, count
         copy_motion(after, scratch.free)

@@ -8,7 +8,7 @@ import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.contact.contact_kernels import ContactWork
-from rubgen.contact.geometry import blade_tips, casing_surface
+from rubgen.contact.geometry import blade_tips, casing_surface, with_zeros
 from rubgen.contact.geometry_kernels import Tips
 from rubgen.contact.wear_kernels import wear
 from rubgen.reduction.model import SpinningSystem
@@ -16,11 +16,10 @@ from rubgen.scenario import ContactLaw
 from rubgen.scenario.taps import DEFAULT_TAPS, Tap
 from rubgen.solver.admissible import check_step
 from rubgen.solver.block_kernels import Motion, bilinear, recover
-from rubgen.solver.blocks import aligned, share_width, system_harmonics
+from rubgen.solver.blocks import aligned, padded, share_width, system_harmonics
 from rubgen.solver.central_difference import compliances, energy_book, scheme, system_blocks
 from rubgen.solver.energy_kernels import ABSOLUTE, SPEED_CHANGE, stored_energy
 from rubgen.solver.following import SpeedPart
-from rubgen.solver.lanes_kernels import LANES
 from rubgen.solver.mark_kernels import Marks
 from rubgen.solver.model_kernels import Angles, Laws, Model, Scratch, State
 from rubgen.solver.rub_free import rub_free_motion
@@ -28,6 +27,7 @@ from rubgen.solver.step_kernels import advance, shift_held
 from rubgen.solver.supports import support_of
 from rubgen.solver.taps import build_taps, sampled_taps, turned_taps
 from rubgen.solver.turn_kernels import Touches, TurnResult, run_turn
+from rubgen.vector_kernels import LANES
 
 CANDIDATE_MARGIN_SHARE = 5e-5
 """Blades nearer than this share of the tip radius are solved together; a step widens it where forces reach farther."""
@@ -227,7 +227,8 @@ class Stepper:
     def energy(self) -> float:
         """Stored energy E half a step before now, J."""
         before, now, _ = self.motions
-        return stored_energy(self.book, before.z, now.z, aligned(now.z - before.z), self.dt)
+        np.subtract(now.z, before.z, out=self.scratch.z_change)
+        return stored_energy(self.book, before.z, now.z, self.scratch.z_change, self.dt)
 
     def _turn_motions(self, steps: int) -> None:
         """The motions as they stand after so many steps."""
@@ -259,7 +260,7 @@ def _contact_work(system: SpinningSystem) -> ContactWork:
     """Arrays of the contact step."""
     m, c = system.n_blades, system.n_casing
     return ContactWork(
-        bounds=np.zeros(m), psi=np.zeros(m), gap=np.zeros(m),
+        casing=with_zeros(np.zeros(c)), bounds=np.full(padded(m), np.inf), psi=np.zeros(m), gap=np.zeros(m),
         tangent=np.zeros((m, 2)), held=np.full((3, m), np.nan), blade=np.zeros(m, dtype=np.int64), lam=np.zeros(m),
         b=np.zeros(m), W=np.zeros((m, m)), normal_tip=np.zeros((m, 3)), full_tip=np.zeros((m, 3)),
         normal_casing=np.zeros((m, c)), full_casing=np.zeros((m, c)), slip=np.zeros((m, 2)), sliding=np.zeros(m),

@@ -17,7 +17,8 @@ from typing import NamedTuple
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.contact_kernels import ContactWork
 from rubgen.jit import inlined_kernel
-from rubgen.solver.lanes_kernels import LANES, dot_rows
+from rubgen.solver.lanes_kernels import dot_rows
+from rubgen.vector_kernels import LANES
 
 ANISOTROPY, FILM, GRAVITY, FILM_LOSS = range(4)
 

@@ -26,7 +26,6 @@ from rubgen.scenario.taps import (
 )
 from rubgen.solver.block_kernels import Product
 from rubgen.solver.blocks import aligned, padded
-from rubgen.solver.lanes_kernels import LANES
 from rubgen.solver.tap_kernels import (
     CONTACT_FORCE,
     CONTACT_TORQUE,
@@ -38,6 +37,7 @@ from rubgen.solver.tap_kernels import (
     X,
     Y,
 )
+from rubgen.vector_kernels import LANES
 
 if TYPE_CHECKING:
     from rubgen.solver.stepper import Stepper

@@ -14,7 +14,7 @@ from rubgen.solver.block_kernels import Motion, recover_all
 from rubgen.solver.energy_kernels import ABSOLUTE, Book, book_contact, book_linear
 from rubgen.solver.mark_kernels import Marks, keep_mark
 from rubgen.solver.model_kernels import Model, Scratch, State
-from rubgen.solver.step_kernels import OK, advance, recover_contacts, shift_held
+from rubgen.solver.step_kernels import OK, advance, change_contacts, recover_contacts, shift_held
 from rubgen.solver.support_kernels import book_supports
 from rubgen.solver.tap_kernels import SPEED_X, SPEED_Y, Taps, X, Y, record_arrivals, record_taps
 
@@ -170,7 +170,8 @@ def run_turn(
             )
         force, torque = 0.0, 0.0
         if count > 0:
-            recover_contacts(count, model, before, after, 0.5, work, scratch.change)
+            recover_contacts(count, model, after, work)  # they moved; those before stand since the contact step
+            change_contacts(count, before, after, 0.5, work, scratch.change)
         for m in range(count):
             lam = work.lam[m]
             if lam > 0.0:
@@ -195,7 +196,8 @@ def run_turn(
         reach = casing_reach(model.surface, after.q[after.q.shape[0] - taps.bend.shape[0] :])
         result.summary[2] = max(result.summary[2], reach)
         before, now, after = now, after, before
-        wear(count, model.surface.liner, laws.dt, work)
+        if model.surface.liner.depth.shape[0] > 0:
+            wear(count, model.surface.liner, laws.dt, work)
         shift_held(work)
     keep_mark(marks, mark, before, now, work)
     ended = close_touches(touches, clock + steps - 1, ended)

@@ -1,0 +1,164 @@
+"""Rows of eight numbers in vector registers, for kernels whose sums numba does not keep there by itself.
+
+A function for registers stands twice: as plain Python, and as the same in LLVM's vector type, which compiled kernels
+take instead (`compile_as`). Arrays are C-contiguous. The compiled order of a sum is fixed, on every processor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from llvmlite import ir  # type: ignore[import-untyped]
+from numba import types
+from numba.core import cgutils
+from numba.core.typing.templates import AbstractTemplate, infer_global
+from numba.core.typing.templates import signature as typed
+from numba.extending import lower_builtin
+
+from rubgen.arrays import FloatArray
+
+LANES = 8
+
+
+class Emitter:
+    """Writes the vector code of one function into LLVM's builder."""
+
+    def __init__(self, context: Any, builder: Any) -> None:
+        self.context, self.builder = context, builder
+        self.index, double = ir.IntType(64), ir.DoubleType()
+        self.vector = ir.VectorType(double, LANES)
+        self.zero = ir.Constant(self.vector, [ir.Constant(double, 0.0)] * LANES)
+        kind = ir.FunctionType(self.vector, [self.vector] * 3)
+        self.fma = cgutils.get_or_insert_function(builder.module, kind, "llvm.fma.v8f64")  # type: ignore[no-untyped-call]
+
+    def array(self, kind: Any, array: Any) -> Any:
+        """An argument of the function as an array."""
+        return self.context.make_array(kind)(self.context, self.builder, array)
+
+    def shape(self, array: Any, axis: int) -> Any:
+        """Length of an array along an axis."""
+        return self.builder.extract_value(self.builder.load(array._get_ptr_by_name("shape")), axis)
+
+    def line_of(self, array: Any, number: Any) -> Any:
+        """Where a line of a two-dimensional array begins."""
+        return self.builder.gep(array.data, [self.builder.mul(number, self.shape(array, 1))])
+
+    def at_row(self, data: Any, row: Any) -> Any:
+        """Where a row of eight begins."""
+        place = self.builder.gep(data, [self.builder.mul(row, self.index(LANES))])
+        return self.builder.bitcast(place, self.vector.as_pointer())
+
+    def load(self, data: Any, row: Any) -> Any:
+        """A row of eight."""
+        value = self.builder.load(self.at_row(data, row))
+        value.align = 8
+        return value
+
+    def store(self, value: Any, data: Any, row: Any) -> None:
+        """Write a row of eight."""
+        self.builder.store(value, self.at_row(data, row)).align = 8
+
+    def spread(self, data: Any, place: Any) -> Any:
+        """One number of an array in all lanes."""
+        return self.in_all_lanes(self.builder.load(self.builder.gep(data, [place])))
+
+    def in_all_lanes(self, number: Any) -> Any:
+        """One number in all lanes."""
+        single = self.builder.insert_element(self.zero, number, ir.IntType(32)(0))
+        return self.builder.shuffle_vector(
+            single, self.zero, ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+        )
+
+    def lane_sum(self, total: Any) -> Any:
+        """The sum of all lanes, by halves."""
+        lanes = [self.builder.extract_element(total, ir.IntType(32)(i)) for i in range(LANES)]
+        while len(lanes) > 1:
+            half = len(lanes) // 2
+            lanes = [self.builder.fadd(lanes[i], lanes[half + i]) for i in range(half)]
+        return lanes[0]
+
+    def row_count(self, numbers: Any) -> Any:
+        """How many rows of eight so many numbers fill."""
+        return self.builder.udiv(numbers, self.index(LANES))
+
+
+def compile_as(plain: Callable[..., Any], result: Any, vector_code: Callable[..., Any]) -> None:
+    """Let compiled kernels take the vector code where their source calls the plain function."""
+
+    def generic(_template: Any, args: Any, _keywords: Any) -> Any:
+        return typed(result, *args)  # type: ignore[no-untyped-call]
+
+    infer_global(plain)(type(f"{plain.__name__} typing", (AbstractTemplate,), {"generic": generic}))  # type: ignore[no-untyped-call]
+    lower_builtin(plain, types.VarArg(types.Any))(vector_code)  # type: ignore[no-untyped-call]
+
+
+def blended_product(a: FloatArray, first: int, second: int, share: float, x: FloatArray) -> float:
+    """x.(a_first + share (a_second - a_first)) with two lines of a (any, a multiple of eight), the length of x."""
+    return float((a[first] + share * (a[second] - a[first])) @ x)
+
+
+def not_above(x: FloatArray, row: int, limit: float) -> int:
+    """Which numbers in a row of eight of x (a multiple of eight,) are not above the limit: bit i for number i."""
+    return int(sum(1 << i for i, value in enumerate(x[LANES * row : LANES * (row + 1)]) if not value > limit))
+
+
+def lowest_bit(bits: int) -> int:
+    """The place of the lowest bit that is set, of one or more."""
+    return (bits & -bits).bit_length() - 1
+
+
+def square_of_farthest(a: FloatArray, b: FloatArray) -> float:
+    """The largest squared distance of two points in one column of a and b, both (2, a multiple of eight)."""
+    return float(np.square(a[:2] - b[:2]).sum(axis=0).max(initial=0.0))
+
+
+def _blended_product(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    emit = Emitter(context, builder)
+    a, x = emit.array(signature.args[0], args[0]), emit.array(signature.args[4], args[4])
+    left, right, share = emit.line_of(a, args[1]), emit.line_of(a, args[2]), emit.in_all_lanes(args[3])
+    total = cgutils.alloca_once_value(builder, emit.zero)  # type: ignore[no-untyped-call]
+    builder.store(emit.zero, total)
+    with cgutils.for_range(builder, emit.row_count(emit.shape(x, 0))) as loop:
+        start = emit.load(left, loop.index)
+        between = builder.call(emit.fma, [share, builder.fsub(emit.load(right, loop.index), start), start])
+        product = builder.call(emit.fma, [between, emit.load(x.data, loop.index), builder.load(total)])
+        builder.store(product, total)
+    return emit.lane_sum(builder.load(total))
+
+
+def _not_above(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    emit = Emitter(context, builder)
+    x = emit.array(signature.args[0], args[0])
+    near = builder.fcmp_unordered("<=", emit.load(x.data, args[1]), emit.in_all_lanes(args[2]))
+    return builder.zext(builder.bitcast(near, ir.IntType(LANES)), emit.index)
+
+
+def _lowest_bit(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+    return builder.cttz(args[0], ir.IntType(1)(0))
+
+
+def _square_of_farthest(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    emit = Emitter(context, builder)
+    a, b = (emit.array(kind, array) for kind, array in zip(signature.args, args, strict=True))
+    one = emit.index(1)
+    ends = [(a.data, b.data), (emit.line_of(a, one), emit.line_of(b, one))]
+    largest = cgutils.alloca_once_value(builder, emit.zero)  # type: ignore[no-untyped-call]
+    builder.store(emit.zero, largest)
+    with cgutils.for_range(builder, emit.row_count(emit.shape(a, 1))) as loop:
+        x, y = (builder.fsub(emit.load(p, loop.index), emit.load(q, loop.index)) for p, q in ends)
+        square = builder.fadd(builder.fmul(x, x), builder.fmul(y, y))
+        so_far = builder.load(largest)
+        builder.store(builder.select(builder.fcmp_ordered(">", square, so_far), square, so_far), largest)
+    lanes = [builder.extract_element(builder.load(largest), ir.IntType(32)(i)) for i in range(LANES)]
+    while len(lanes) > 1:
+        p, q, *rest = lanes
+        lanes = [*rest, builder.select(builder.fcmp_ordered(">", p, q), p, q)]
+    return lanes[0]
+
+
+compile_as(blended_product, types.float64, _blended_product)
+compile_as(not_above, types.int64, _not_above)
+compile_as(lowest_bit, types.int64, _lowest_bit)
+compile_as(square_of_farthest, types.float64, _square_of_farthest)
