@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from rubgen.contact.contact_kernels import ContactWork
 from rubgen.contact.liner_kernels import WORK, Liner, remove, worn_depth
-from rubgen.jit import allocation_free_kernel
+from rubgen.jit import allocation_free_kernel, inlined_kernel
+
+
+@inlined_kernel
+def wear(count: int, liner: Liner, dt: float, work: ContactWork) -> None:
+    """`wear_liner` where there is one."""
+    if liner.depth.shape[0] > 0:
+        wear_liner(count, liner, dt, work)
 
 
 @allocation_free_kernel
-def wear(count: int, liner: Liner, dt: float, work: ContactWork) -> None:
+def wear_liner(count: int, liner: Liner, dt: float, work: ContactWork) -> None:
     """Book the work on the receding surface, then wear it: volume = rate lam |v_rel| dt at each contact's foot.
 
     Archard, J. Appl. Phys. 24 (1953): V = K F s / H, `liner.rate` being K / H. The gaps of this step were found with
     the depth that still stands, those of two steps before with the older of the earlier ones, so the surface has
     receded between them, per step, by half their difference.
     """
-    if liner.depth.shape[0] == 0:
-        return
     for m in range(count):
         if work.lam[m] > 0.0:
             psi = work.psi[work.blade[m]]

@@ -206,7 +206,7 @@ def _adding(pairs: int) -> Callable[..., Any]:
 def _gather_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     """The vector code of `gather_lines`."""
     emit, chosen = _Emitter(context, builder), args[4:6]
-    arrays = [(kind, array) for kind, array in zip(signature.args, args, strict=True) if kind is not types.int64]
+    arrays = [(kind, array) for kind, array in zip(signature.args, args, strict=True) if isinstance(kind, types.Array)]
     lines, a, z, places, out = (emit.array(kind, array) for kind, array in arrays)
     numbers = [emit.line_of(places, c) for c in chosen]
     outputs = [emit.line_of(out, c) for c in chosen]

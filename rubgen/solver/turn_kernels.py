@@ -126,6 +126,36 @@ def record_frame(frames: FloatArray, frame: int, step: int, steps: int, z: Float
     return frame + 1
 
 
+@inlined_kernel
+def add_contacts(
+    count: int,
+    model: Model,
+    step: int,
+    clock: int,
+    opening: FloatArray,
+    state: State,
+    work: ContactWork,
+    book: Book,
+    touches: Touches,
+    summary: FloatArray,
+    ended: int,
+) -> tuple[float, float, int]:
+    """Book the contacts of one step and add them to their touches; their force, torque, and the ended touches."""
+    force, torque, dt = 0.0, 0.0, model.laws.dt
+    for m in range(count):
+        lam, k = work.lam[m], work.blade[m]
+        if lam > 0.0:
+            normal, friction, brake = book_contact(
+                m, model.surface, model.tips, model.laws, model.angles, step, opening, state, work, book
+            )
+            ended = add_touch(touches, k, clock + step, work.psi[k], lam * dt, friction, normal, ended)
+            force, torque = force + lam, torque + brake
+    if force > 0.0:
+        summary[0] += force * dt
+        summary[1] += 1
+    return force, torque, ended
+
+
 @allocation_free_kernel
 def run_turn(
     model: Model,
@@ -172,19 +202,9 @@ def run_turn(
         if count > 0:
             recover_contacts(count, model, after, work)  # they moved; those before stand since the contact step
             change_contacts(count, before, after, 0.5, work, scratch.change)
-        for m in range(count):
-            lam = work.lam[m]
-            if lam > 0.0:
-                force += lam
-                normal, friction, brake = book_contact(
-                    m, model.surface, model.tips, laws, model.angles, s, opening, state, work, book
-                )
-                torque += brake
-                k = work.blade[m]
-                ended = add_touch(touches, k, clock + s, work.psi[k], lam * laws.dt, friction, normal, ended)
-        if force > 0.0:
-            result.summary[0] += force * laws.dt
-            result.summary[1] += 1
+            force, torque, ended = add_contacts(
+                count, model, s, clock, opening, state, work, book, touches, result.summary, ended
+            )
         if recording:
             record_taps(model, taps, state, now, scratch.z_change, s, opening[s + 1], force, torque, result.taps)
             add_orbit(taps.signals, result.orbit)
@@ -196,8 +216,7 @@ def run_turn(
         reach = casing_reach(model.surface, after.q[after.q.shape[0] - taps.bend.shape[0] :])
         result.summary[2] = max(result.summary[2], reach)
         before, now, after = now, after, before
-        if model.surface.liner.depth.shape[0] > 0:
-            wear(count, model.surface.liner, laws.dt, work)
+        wear(count, model.surface.liner, laws.dt, work)
         shift_held(work)
     keep_mark(marks, mark, before, now, work)
     ended = close_touches(touches, clock + steps - 1, ended)
