@@ -68,10 +68,16 @@ def measure_run(name: str, keys: dict[str, float]) -> list[dict[str, object]]:
         ("labels, CPU", labels, "s", "recorded"),
         ("sensors, CPU", sensors, "s", "recorded"),
         ("labels and sensors over solver", (labels + sensors) / plain, "1", "<= 0.15"),
-        ("a run with the exponent over one without", (beside + labels + sensors) / (plain + labels + sensors), "1", "<= 2"),
+        (
+            "a run with the exponent over one without",
+            (beside + labels + sensors) / (plain + labels + sensors),
+            "1",
+            "<= 2",
+        ),
     )
     return [
-        {"name": f"{name}: {what}", "value": value, "unit": unit, "target": target} for what, value, unit, target in rows
+        {"name": f"{name}: {what}", "value": value, "unit": unit, "target": target}
+        for what, value, unit, target in rows
     ]
 
 

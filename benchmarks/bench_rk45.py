@@ -54,9 +54,9 @@ class PenaltyModel:
         r, v = system.tip_radius + place[:, 0], place[:, 1]
         angle = system.speed * t + system.blade_angles + np.arctan2(v, r)
         surface = system.surface
-        inner = surface.mean_radius + np.cos(np.multiply.outer(angle, surface.order) - surface.order * surface.phase) @ (
-            surface.amplitude
-        )
+        inner = surface.mean_radius + np.cos(
+            np.multiply.outer(angle, surface.order) - surface.order * surface.phase
+        ) @ (surface.amplitude)
         modal = q[system.casing_start :]
         nodal = self.radial @ modal
         at = np.mod(angle, 2 * np.pi) * len(nodal) / (2 * np.pi)

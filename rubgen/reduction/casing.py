@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 from scipy.linalg import eigh
@@ -10,7 +11,7 @@ from scipy.linalg import eigh
 from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
 from rubgen.fem.casing import CasingModel, assemble_casing
-from rubgen.machine.machine import Machine
+from rubgen.machine.machine import Casing, Machine
 from rubgen.reduction.model import CasingSurface
 
 # Pairs closer than this in omega^2 are one pair to the eigen-solver's precision: their orientation is chosen here.
@@ -69,6 +70,24 @@ def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
         raise UserError(
             f"casing_modes = {modes}: a ring of {machine.casing.nodes} nodes has {3 * machine.casing.nodes}"
         )
+    return _reduced(
+        _Asked(casing=machine.casing, mean_radius=machine.casing_mean_radius_m, modes=modes, machine=machine)
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Asked:
+    """All of a machine that its casing's modes come from: runs that vary the rest share them."""
+
+    casing: Casing
+    mean_radius: float
+    modes: int
+    machine: Machine = field(compare=False)
+
+
+@lru_cache(maxsize=4)
+def _reduced(asked: _Asked) -> ReducedCasing:
+    machine, modes = asked.machine, asked.modes
     _check_lobes(machine, modes)
     model = assemble_casing(machine)
     eigenvalues, vectors = _lowest_modes(model, modes)

@@ -9,7 +9,7 @@ from scipy.signal import kaiser_beta
 
 from rubgen.arrays import FloatArray
 from rubgen.scenario import Sensing
-from rubgen.sensors._kernels import interpolate_rows
+from rubgen.sensors._kernels import ABREAST, interpolate_rows
 from rubgen.sensors.front_end import memory_seconds
 
 PASS_BAND_SHARE = 2 / 2.56
@@ -66,7 +66,8 @@ def filter_bank(dt: float, sample_rate_hz: float) -> FloatArray:
     half = int(np.ceil(half_width_seconds(sample_rate_hz) / dt))
     phase = np.linspace(0.0, 1.0, PHASES + 1)[:, None]
     steps = np.arange(-half + 1, half + 1)[None, :]
-    bank = impulse_response((phase - steps) * dt, sample_rate_hz)
+    half_bank = impulse_response((phase[: PHASES // 2 + 1] - steps) * dt, sample_rate_hz)
+    bank = np.concatenate([half_bank, half_bank[-2::-1, ::-1]])  # h is even: the other half is the mirrored one
     bank /= bank.sum(axis=1, keepdims=True)
     bank.setflags(write=False)
     return bank
@@ -79,9 +80,12 @@ def band_limit(signals: FloatArray, positions: FloatArray, *, dt: float, sample_
     within 1e-4 up to sample_rate / 2.56 and below 1e-4 from sample_rate / 2 on; there is no delay. The step rate must
     be at least 2.56 sample rates, and all positions at least half a filter length inside.
     """
-    out = np.empty((positions.size, signals.shape[1]))
-    interpolate_rows(np.ascontiguousarray(signals), filter_bank(dt, sample_rate_hz), positions, out)
-    return out
+    channels = signals.shape[1]
+    padded = np.zeros((signals.shape[0], -(-channels // ABREAST) * ABREAST))
+    padded[:, :channels] = signals
+    out = np.empty((positions.size, padded.shape[1]))
+    interpolate_rows(padded, filter_bank(dt, sample_rate_hz), positions, out)
+    return out[:, :channels]
 
 
 def adc_step(range_min: float, range_max: float, bits: int) -> float:

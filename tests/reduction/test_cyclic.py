@@ -66,9 +66,9 @@ def test_what_the_masters_answer_to_a_force_agrees(both, preset, hertz):
     """With Coriolis and centrifugal terms: modes of equal frequency may be turned, the answer may not."""
     omega, speed = 2 * np.pi * hertz, 1000.0
     answers = [
-        np.linalg.inv(
-            on_springs(b, preset) + speed**2 * b.A + 2j * omega * speed * b.G - (1 + 0.01j) * omega**2 * b.M
-        )[both[2], both[2]]
+        np.linalg.inv(on_springs(b, preset) + speed**2 * b.A + 2j * omega * speed * b.G - (1 + 0.01j) * omega**2 * b.M)[
+            both[2], both[2]
+        ]
         for b in both[:2]
     ]
     assert np.abs(answers[0] - answers[1]).max() <= 1e-6 * np.abs(answers[1]).max()

@@ -104,10 +104,10 @@ def test_constant_passes_exactly() -> None:
 def test_compiled_and_plain_kernel_agree() -> None:
     rng = np.random.default_rng(0)
     bank = filter_bank(1 / 70_000, RATE)
-    signals = rng.standard_normal((bank.shape[1] + 40, 3))
+    signals = rng.standard_normal((bank.shape[1] + 40, 4))
     positions = bank.shape[1] // 2 + rng.uniform(0, 38, 5)
     positions[0] = np.floor(positions[0])  # exactly on a step
-    compiled, plain = np.empty((5, 3)), np.empty((5, 3))
+    compiled, plain = np.empty((5, 4)), np.empty((5, 4))
     interpolate_rows(signals, bank, positions, compiled)
     getattr(interpolate_rows, "py_func", interpolate_rows)(signals, bank, positions, plain)
     assert compiled == pytest.approx(plain, rel=1e-12, abs=1e-14)
