@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rubgen.labels.contact_amounts import RubExtent
 from rubgen.labels.harmonics import FLOOR, MARKED_TAP, RATIO, SPECTRUM_TURNS
 from rubgen.labels.labels import Motion
 from rubgen.scenario import Sensing
@@ -29,6 +30,8 @@ FORCE_TOLERANCE = 0.01
 """For period-1 motion; seen: 0.0003."""
 SHARE_TOLERANCE = 1e-9
 PULSE_TOLERANCE = 1e-9
+IMPULSE_TOLERANCE = 1e-5
+"""Touches are kept in single precision."""
 ENERGY_TOLERANCE = 1e-8
 
 
@@ -42,6 +45,15 @@ def label_problems(row: Row) -> Iterator[str]:
         "rub and contact_zones": row["rub"] == (row["contact_zones"] > 0),
         "contact_zones and its centres": row["contact_zones"] == len(row["contact_zone_centres_rad"]),
         "contact_zones and its widths": row["contact_zones"] == len(row["contact_zone_widths_rad"]),
+        "rub and rub_extent": row["rub"] == (row["rub_extent"] != RubExtent.NONE.value),
+        "contact_touches and blade_touches": row["contact_touches"] == sum(row["blade_touches"]),
+        "blades_touched and blade_touches": row["blades_touched"] == sum(count > 0 for count in row["blade_touches"]),
+        "blade_impulses_per_turn_n_s and contact_impulse_per_turn_n_s": math.isclose(
+            sum(row["blade_impulses_per_turn_n_s"]),
+            row["contact_impulse_per_turn_n_s"],
+            rel_tol=IMPULSE_TOLERANCE,
+            abs_tol=IMPULSE_TOLERANCE,
+        ),
         "has_2fr without rub": row["rub"] or not row["has_2fr"],
         "motion is not the less regular of the two": _rank(row["motion"])
         == max(_rank(row["motion_blisk"]), _rank(row["motion_casing"])),

@@ -35,7 +35,8 @@ def _record_problem(scenario: Scenario) -> str | None:
     turns = scenario.operation.record_turns
     if turns >= MIN_RECORD_TURNS or scenario.operation.profile != "steady":
         return None
-    return f"simulation.record_turns = {turns}: labels need at least {MIN_RECORD_TURNS} turns, the Lyapunov exponent too; raise it"
+    needed = f"labels need at least {MIN_RECORD_TURNS} turns, the Lyapunov exponent too"
+    return f"simulation.record_turns = {turns}: {needed}; raise it"
 
 
 def _tail_problem(scenario: Scenario) -> str | None:

@@ -4,6 +4,7 @@ import tomllib
 from pathlib import Path
 
 import rubgen
+from rubgen.dataset.relabel import relabel
 from rubgen.io.parquet import read_table
 
 RECIPE = Path(__file__).parents[2] / "datasets" / "run-up.toml"
@@ -17,6 +18,7 @@ def test_the_run_up_recipe_makes_a_set_that_verifies(tmp_path):
     recipe["simulation"] = {"settle_turns": 50}
     rubgen.generate(recipe, tmp_path / "set", workers=1)
     assert rubgen.verify(tmp_path / "set") == []
+    assert relabel(tmp_path / "set").differences == ()
     rows = read_table(tmp_path / "set" / "runs.parquet").to_pylist()
     assert [row["status"] for row in rows] == ["ok", "ok"]
     for row in rows:
