@@ -28,7 +28,7 @@ from rubgen.studies.zeng2019.causes import _by_modes
 from rubgen.studies.zeng2019.conclusion3 import indices
 from rubgen.studies.zeng2019.contact_pattern import contact_pattern
 from rubgen.studies.zeng2019.figure10 import _onset
-from rubgen.studies.zeng2019.figure16 import zones_and_motion
+from rubgen.studies.zeng2019.figure16 import unevenness, zones_and_motion
 from rubgen.studies.zeng2019.figure17 import _end, jump
 from rubgen.studies.zeng2019.figure19 import crossings
 from rubgen.studies.zeng2019.measures import fractional, harmonics, looks_regular, segments, strongest
@@ -215,6 +215,13 @@ def test_zones_and_motion_are_counted_both_ways():
     assert (first.verdict, second.verdict) == ("agrees", "agrees")
     assert "9 of 10" in first.found
     assert "3 of 3" in second.found
+
+
+def test_unevenness_is_that_of_the_halves_right_and_left():
+    impulse = np.zeros(120)
+    impulse[[0, 119, 60]] = 2.0, 1.0, 1.0
+    assert unevenness(made_up(on_casing=impulse)) == pytest.approx(0.5)
+    assert unevenness(made_up(on_casing=np.zeros(120))) == 0
 
 
 def test_a_jump_is_found_where_the_points_jump():
