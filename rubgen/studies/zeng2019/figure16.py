@@ -105,8 +105,8 @@ def zones_and_motion(rub: Sequence[Outcome]) -> Sequence[Statement]:
     equal, unequal = sum(run.symmetric == 1 for run in regular), sum(run.symmetric == 0 for run in chaotic)
     uneven = f"{100 * float(np.median([unevenness(run) for run in chaotic])):.1f} %" if chaotic else "nothing"
     why = (
-        "Zones are called symmetric by the impulse of each turn. Summed over 49 turns, as the paper draws them, the two "
-        f"halves of the casing are apart by {uneven} of the whole (median of these runs)."
+        "Zones are called symmetric by the impulse of each turn. Summed over 49 turns, as the paper draws them, the "
+        f"two halves of the casing are apart by {uneven} of the whole (median of these runs)."
     )
     return [
         Statement(
