@@ -17,7 +17,8 @@ from rubgen import make_scenario
 from rubgen.labels import label
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario
-from rubgen.sensors import margin_seconds, measure as record, taps_of
+from rubgen.sensors import margin_seconds, taps_of
+from rubgen.sensors import measure as record
 from rubgen.solver import Response, integrate
 
 ROUNDS = 3

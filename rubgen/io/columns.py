@@ -206,7 +206,12 @@ def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
     columns += [Column(name, "signal", *fact) for name, fact in facts.items()]
     columns += _touches()
     columns += [
-        Column(f"{tap.name}_window_amplitudes", "numbers", tap.UNIT, "amplitudes at k f_r by window, twenty each")
+        Column(
+            f"{tap.name}_window_amplitudes",
+            "numbers",
+            tap.UNIT,
+            "amplitudes at k f_r, twenty a window, the last ones",
+        )
         for tap in _ordered_taps(sensors)
     ]
     if clean:

@@ -25,7 +25,7 @@ KINDS: dict[str, tuple[pa.DataType, str]] = {
     "growth": (pa.float32(), "ln of the twin's growth in each turn"),
     "turn_impulse": (pa.float64(), "normal impulse of each turn, N s"),
     "contact_steps": (pa.int32(), "steps with contact in each turn"),
-    "orbit": (pa.float32(), "once a turn: means of X, Y, X^2 + Y^2, V_X^2 + V_Y^2, X V_Y - Y V_X"),
+    "orbit": (pa.float32(), "last 100 turns, or all: means of X, Y, X^2 + Y^2, V_X^2 + V_Y^2, X V_Y - Y V_X"),
     "rotation": (pa.float64(), "start, end (rad/s), seconds, swing (rad/s), period (s) of a changing speed"),
     "turn_steps": (pa.int32(), "first step of each turn of a changing speed"),
     "blade": (pa.int16(), "blade of each touch"),

@@ -42,8 +42,8 @@ def keep(response: Response) -> dict[str, npt.NDArray[Any]]:
 
     `section` (turns, 3 blades + 4 + 2 casing modes): displacements of the tips, x, y, v_x, v_y of the disk centre,
     casing displacements and velocities; `fractions` the same after each Nth of the last turn; `growth`, `turn_impulse`,
-    `contact_steps`, `orbit` once a turn; what `TOUCHES` names once a touch; `scalars` (9,); `rotation` (5,) and
-    `turn_steps` of a changing speed, empty otherwise.
+    `contact_steps` once a turn, `orbit` in each of the last 100 or, of a changing speed, of all; what `TOUCHES` names
+    once a touch; `scalars` (9,); `rotation` (5,) and `turn_steps` of a changing speed, empty otherwise.
     """
     course = response.course
     fractions = response.fractions

@@ -18,8 +18,8 @@ class Windows:
     """Windows of WINDOW_TURNS turns, the last one shorter: start in s, mean speed in rad/s, impulse in N s a turn.
 
     `duty` is the share of steps with contact. `orders` by tap (windows, k) are |mean over turns of the complex
-    amplitude at k f_r|, k = 1 .. 20, in the tap's unit, without taps none; `scatter`, of a changing speed, the standard
-    error of that mean.
+    amplitude at k f_r|, k = 1 .. 20, in the tap's unit, of a steady run for the last windows, which the taps cover;
+    `scatter`, of a changing speed, the standard error of that mean.
     """
 
     start: FloatArray

@@ -99,7 +99,7 @@ class Integration:
             stepper.marks = stepper.marks_at(sorted({*self.fractions.steps, *pieces}))
         self.impulse = np.zeros(self.record)
         self.contact_steps = np.zeros(self.record, dtype=np.int64)
-        self.orbit = np.zeros((self.record, 5))
+        self.orbit: deque[FloatArray] = deque(maxlen=LEAST_TAIL_TURNS if self.rotation.is_steady else None)
         self.free_penetration = float("nan")
         if self.rotation.is_steady:
             self.free_penetration = free_penetration(stepper.rub_free, stepper.surface, stepper.tips)
@@ -150,11 +150,12 @@ class Integration:
         if row >= 0:
             self.section[row] = result.section
             self.impulse[row], self.contact_steps[row] = result.summary[0], int(result.summary[1])
-            self.orbit[row] = result.orbit / result.taps.shape[1]
             self.touches += self.spin.touches
-            if self.rotation.is_steady:
-                self.window_orders.add(result.taps)
-            else:
+            if recording:
+                self.orbit.append(result.orbit / result.taps.shape[1])
+            if self.rotation.is_steady and recording:
+                self.window_orders.add(row, result.taps)
+            elif recording:
                 steps = np.arange(self.spin.first_step(turn), self.spin.first_step(turn + 1) + 1)
                 self.orders.append(turn_orders(result.taps, self.rotation.angle(steps * self.stepper.dt)))
             if self.twin is not None:
@@ -328,7 +329,7 @@ def _response(integration: Integration, taps: tuple[Tap, ...]) -> Response:
         track=integration.track.track(stepper, integration.settle) if integration.track.kept else None,
         arrivals=tip_arrivals(list(integration.arrivals), [probe.name for probe in timing_taps(taps)]),
         course=None if integration.rotation.is_steady else integration.course(),
-        orbit=integration.orbit,
+        orbit=np.array(integration.orbit).reshape(-1, 5),
         blisk_mass=stepper.system.recovery.blisk_mass if stepper.system.recovery else float("nan"),
         free_penetration=integration.free_penetration,
         window_orders=integration.window_orders.all(),

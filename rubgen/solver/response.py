@@ -151,11 +151,12 @@ class Response:
     turn, empty where none was asked for. `fractions` (N, 2, n) are q and v after 1/N, 2/N, ... 1 of the last turn, N
     the lobes of the casing, the casing turned back by as much: all equal where the motion is symmetric,
     q(t + T/N) = q(t); none for a changing speed. `worn` is what is left of the liner, None without one.
-    `orbit` (record_turns, 5) are means over each turn of X, Y (m), X^2 + Y^2, V_X^2 + V_Y^2 and X V_Y - Y V_X of the
-    disk centre in the inertial frame. `blisk_mass` in kg and `free_penetration` in m, how deep the tips of the rub-free
-    motion would enter the casing at rest (negative: clearance), are NaN where they are not known, the latter at a
-    changing speed too. `window_orders` (windows, taps, 20) are the complex amplitudes at k f_r of a steady run in
-    windows of 16 turns, for all of `taps` in their order.
+    `orbit` (turns, 5) are means over each of the last 100 turns, at a changing speed of all, of X, Y (m), X^2 + Y^2,
+    V_X^2 + V_Y^2 and X V_Y - Y V_X of the disk centre in the inertial frame. `blisk_mass` in kg and `free_penetration`
+    in m, how deep the tips of the rub-free motion would enter the casing at rest (negative: clearance), are NaN where
+    they are not known, the latter at a changing speed too. `window_orders` (windows, taps, 20) are the complex
+    amplitudes at k f_r of a steady run in windows of 16 turns, for all of `taps` in their order: the last windows of
+    the record, those that the taps cover.
     Of a changing speed, `course` says how it went; `speed` is then the record's mean, and `steps_per_turn` the number
     of steps in a turn at the highest speed.
     When `status` is not OK, `reason` says where and by how much, and no array may be used as data.

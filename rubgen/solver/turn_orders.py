@@ -14,7 +14,8 @@ WINDOW_TURNS = 16
 class WindowOrders:
     """Complex amplitudes of a steady run's taps window by window: of the mean of its turns, which is their mean.
 
-    `add` each turn's taps (taps, steps), the first step at theta = 0; the last window may be shorter.
+    `add` turns of the record up to its end, taps (taps, steps) with the first step at theta = 0. What precedes the
+    first whole window is left out; the last window may be shorter.
     """
 
     def __init__(self, taps: int, steps: int) -> None:
@@ -23,8 +24,10 @@ class WindowOrders:
         self.wave = 2 / steps * np.concatenate([np.cos(angle), -np.sin(angle)], axis=1)
         self.windows: list[ComplexArray] = []
 
-    def add(self, taps: FloatArray) -> None:
-        """Take one more turn."""
+    def add(self, turn: int, taps: FloatArray) -> None:
+        """Take the next turn, of this number in the record."""
+        if self.turns == 0 and turn % WINDOW_TURNS:
+            return
         self.sum += taps
         self.turns += 1
         if self.turns == WINDOW_TURNS:
