@@ -11,9 +11,7 @@ import sys
 import time
 from pathlib import Path
 
-NAMES = (
-    "solver", "rk45", "ross", "sweep", "recipe", "labels", "reduction", "start", "memory", "replay",
-)  # fmt: skip
+NAMES = tuple(sorted(path.stem.removeprefix("bench_") for path in Path(__file__).parent.glob("bench_*.py")))
 
 
 def main(names: tuple[str, ...]) -> None:

@@ -1,9 +1,8 @@
 """Eight-node Mindlin-Reissner shell element, flat in the plane z = 0, six DoFs a node (u, v, w, th_x, th_y, th_z).
 
-A point at height z moves by (u + z th_y, v - z th_x, w). Everything is integrated for all elements at once that are no
-turned copies of others (`ShellMesh.around`). Against
-shear locking th_x and th_y have a bubble besides the eight nodes (the heterosis idea of Hughes and Cohen 1978), which
-follows the nodes as in statics: q_54 = T q_48 in every matrix.
+A point at height z moves by (u + z th_y, v - z th_x, w). Everything is integrated at once for all elements that are no
+turned copies of others (`ShellMesh.around`). Against shear locking th_x and th_y have a bubble besides the eight nodes
+(the heterosis idea of Hughes and Cohen 1978), which follows the nodes as in statics: q_54 = T q_48 in every matrix.
 """
 
 from __future__ import annotations
@@ -65,8 +64,7 @@ def shell_inertia(mesh: ShellMesh, material: Material) -> ShellInertia:
     S = _by_direction(t, t, np.zeros_like(t), r, r)
     G = (np.kron(np.eye(9), SPIN) @ S).reshape(S.shape)
     M = _by_direction(t, t, t, r, r)
-    M, G, S = (_assemble(mesh, mesh.turned(_on_nodes(T, X))) for X in (M, G, S))
-    return ShellInertia(M=M, G=G, S=S)
+    return ShellInertia(*(_assemble(mesh, mesh.turned(_on_nodes(T, X))) for X in (M, G, S)))
 
 
 def shell_stress_stiffness(mesh: ShellMesh, material: Material, displacement: FloatArray) -> SparseMatrix:

@@ -2,8 +2,9 @@
 
 A turn Q by one blade pitch moves the disk onto itself, so every matrix X of it commutes with Q. The static shape that a
 unit displacement of rim node k causes is that of node 0, turned: Psi_k = Q^k Psi_0 R_k^T (R_k turns the six DoFs of a
-node); and a projection V^T X V on such shapes repeats its first block column, P_l,k = R_k P_(l-k),0 R_k^T. Twelve solves
-thus stand for 6 + 6 N, whatever the blades are like. Tests: tests/reduction/test_cyclic.py, against the full path.
+node); and a projection V^T X V on such shapes repeats its first block column, P_l,k = R_k P_(l-k),0 R_k^T. Twelve
+solves thus stand for 6 + 6 N, whatever the blades are like. Tests: tests/reduction/test_cyclic.py, against the full
+path.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ class Turning:
 
 
 def disk_turning(rings: IntArray, blades: int) -> Turning:
-    """Turns of a disk whose nodes stand in rings of `rings` (any,) nodes each, all multiples of the number of blades."""
+    """Turns of a disk whose nodes stand in rings of `rings` (any,) nodes each, multiples of the number of blades."""
     starts = 1 + np.concatenate([[0], np.cumsum(rings)[:-1]])
     place = np.zeros((blades, 1 + int(rings.sum())), dtype=np.int64)
     for start, count in zip(starts, rings, strict=True):
