@@ -42,7 +42,20 @@ def stray(points: FloatArray, period: int | None) -> float:
 
 def cluster_distances(points: FloatArray, period: int) -> FloatArray:
     """Distance of each point (turns, groups, values) to its cluster's mean, the largest of its groups."""
-    return np.asarray(np.linalg.norm(off_cluster(points, period), axis=2).max(axis=1), dtype=np.float64)
+    return farthest(off_cluster(points, period))
+
+
+def farthest(points: FloatArray) -> FloatArray:
+    """The largest norm of the groups of each of the points (turns, groups, values)."""
+    squares = points * points
+    # Few values a group: column by column, as a sum of fewer than eight goes anyway, but over whole arrays.
+    if 0 < points.shape[2] < 8:
+        total = squares[..., 0]
+        for value in range(1, points.shape[2]):
+            total = total + squares[..., value]
+    else:
+        total = squares.sum(axis=2)
+    return np.asarray(np.sqrt(total.max(axis=1)), dtype=np.float64)
 
 
 def without_periodic_part(points: FloatArray) -> FloatArray:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rubgen.arrays import BoolArray, FloatArray
-from rubgen.labels.clusters import EXCURSION, LONGEST_PERIOD
+from rubgen.labels.clusters import EXCURSION, LONGEST_PERIOD, farthest
 
 SHORTEST = 10
 """Turns that a segment has at least; a regular one lasts three periods, too."""
@@ -34,7 +34,7 @@ def segments(parts: list[FloatArray]) -> list[Segment]:
     turns = len(parts[0])
     period = np.zeros(turns, dtype=np.int64)
     for k in range(min(LONGEST_PERIOD, turns // 4), 0, -1):
-        back = np.max([np.linalg.norm(part[k:] - part[:-k], axis=2).max(axis=1) for part in parts], axis=0)
+        back = np.max([farthest(part[k:] - part[:-k]) for part in parts], axis=0)
         for first, last in _stretches(back <= EXCURSION):
             if last - first >= max(SHORTEST, 2 * k):
                 period[first : last + k] = k

@@ -65,7 +65,7 @@ def motion(response: Response, exponent: Exponent | None = None) -> Motions:
         system=system,
         indicators=seen,
         symmetric=is_symmetric(response) if system.motion is Motion.PERIOD_1 else None,
-        tip_chatter=_tips_alone_stray(parts),
+        tip_chatter=_tips_alone_stray(parts, seen),
         segments=_switching(parts, system.motion),
     )
 
@@ -81,10 +81,10 @@ def indicators(parts: list[FloatArray], exponent: Exponent | None) -> tuple[Indi
     )
 
 
-def _tips_alone_stray(parts: list[FloatArray]) -> bool:
+def _tips_alone_stray(parts: list[FloatArray], seen: tuple[Indicators, ...]) -> bool:
     """Whether the blisk does not repeat, but the disk centre and the casing by themselves do."""
-    shafts = [parts[0][:, :1], *parts[1:]]
-    return cluster_period(parts[0]) is None and all(cluster_period(part) is not None for part in shafts)
+    blisk, *casing = (part.period for part in seen)
+    return blisk is None and None not in casing and cluster_period(parts[0][:, :1]) is not None
 
 
 def _switching(parts: list[FloatArray], whole: Motion) -> tuple[Segment, ...]:
