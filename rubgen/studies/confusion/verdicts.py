@@ -8,8 +8,16 @@ from enum import StrEnum
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.labels.chaos import CHAOTIC_FROM, ROUNDING
-from rubgen.labels.clusters import CLUSTER_RADIUS, EXCURSION, LONGEST_PERIOD, cluster_distances, off_cluster, rms
+from rubgen.labels.chaos import CHAOTIC_FROM, ROUNDING, principal_components
+from rubgen.labels.clusters import (
+    CLUSTER_RADIUS,
+    EXCURSION,
+    LONGEST_PERIOD,
+    cluster_distances,
+    off_cluster,
+    rms,
+    without_periodic_part,
+)
 from rubgen.labels.kept import Kept, response_of
 from rubgen.labels.labels import Motion
 from rubgen.labels.lyapunov import Exponent, lyapunov_of
@@ -19,6 +27,7 @@ from rubgen.solver.response import Response
 LONG_PERIODS = range(LONGEST_PERIOD + 1, 65)
 SETTLING = 2.0
 """What strays in the third quarter of the record over the last quarter, from which a motion is still settling."""
+ONE_LINE = 0.8
 GROUPS = ("disk centre", "tips", "casing")
 
 
@@ -80,8 +89,8 @@ class Cause(StrEnum):
     SWITCHING = "intermittent: the record holds regular and irregular stretches"
     LONG_PERIOD = "a period of 17 to 64 turns, longer than those that clusters look for"
     SLOW_PHASE = (
-        "positive exponent and K below its bound: what dominates the variance keeps its phase, as lightly damped "
-        "blades do"
+        "positive exponent and K below its bound: one spectral line holds at least 80 % of what strays most, a wave of "
+        "the lightly damped blades that keeps its phase over the record, and chaos is in the rest"
     )
     UNEXPLAINED = "none of these"
 
@@ -91,7 +100,7 @@ class Case:
     """One run as the indicators see it; strays are those of the system, the largest of its parts, over the motion.
 
     `group` is what strays most: disk centre, tips or casing. `settling` is the ratio of what strays in the third and
-    the last quarter.
+    the last quarter. `line_share` is how much of its leading component one spectral line holds.
     """
 
     name: str
@@ -105,6 +114,7 @@ class Case:
     settling: float
     intermittent: bool
     long_period: int | None
+    line_share: float
 
     @property
     def agree(self) -> bool:
@@ -140,6 +150,7 @@ def judge(name: str, kept: Kept) -> Case | None:
         settling=_settling(groups),
         intermittent=found.intermittent,
         long_period=_long_period(groups),
+        line_share=line_share(list(groups.values())[int(np.argmax(strays))]),
     )
 
 
@@ -163,13 +174,13 @@ def _cause(case: Case) -> Cause:
         if test is ZeroOne.CHAOS:
             return Cause.SMALL_NOISE
         return Cause.SMALL_TORUS if case.stray > ROUNDING and case.settling < SETTLING else Cause.NEUTRAL
-    if case.long_period is not None:
-        return Cause.LONG_PERIOD
-    if case.settling > SETTLING:
-        return Cause.SETTLING
-    if case.intermittent:
-        return Cause.SWITCHING
-    return Cause.SLOW_PHASE if sign is Sign.POSITIVE else Cause.UNEXPLAINED
+    causes = {
+        Cause.SETTLING: case.settling > SETTLING,
+        Cause.SWITCHING: case.intermittent,
+        Cause.SLOW_PHASE: sign is Sign.POSITIVE and case.line_share >= ONE_LINE,
+        Cause.LONG_PERIOD: sign is not Sign.POSITIVE and case.long_period is not None,
+    }
+    return next((cause for cause, holds in causes.items() if holds), Cause.UNEXPLAINED)
 
 
 def _groups(response: Response) -> dict[str, FloatArray]:
@@ -184,6 +195,17 @@ def _least_stray(points: FloatArray) -> float:
     return min(rms(cluster_distances(points, k)) for k in range(1, LONGEST_PERIOD + 1))
 
 
+def line_share(points: FloatArray) -> float:
+    """Share of the leading component's variance in its strongest line and two on either side, under a Hann window."""
+    rest = without_periodic_part(points)
+    if rms(np.linalg.norm(rest, axis=(1, 2))) < ROUNDING:
+        return 0.0
+    component = principal_components(rest)[0]
+    power = np.abs(np.fft.rfft(component * np.hanning(component.size))) ** 2
+    line = int(np.argmax(power))
+    return float(power[max(0, line - 2) : line + 3].sum() / power.sum())
+
+
 def _settling(groups: dict[str, FloatArray]) -> float:
     """The largest ratio of what strays from one point in the first and the last half; 1 where it is only rounding."""
     ratios = [1.0]
@@ -196,8 +218,9 @@ def _settling(groups: dict[str, FloatArray]) -> float:
 
 
 def _long_period(groups: dict[str, FloatArray]) -> int | None:
-    """The least period of 17 to 64 turns after which every point of every group comes back."""
-    for k in LONG_PERIODS:
+    """The least period of 17 to 64 turns, a third of these turns at most, after which every point comes back."""
+    turns = min(map(len, groups.values()))
+    for k in (k for k in LONG_PERIODS if 3 * k <= turns):
         back = [np.linalg.norm(points[k:] - points[:-k], axis=2).max(axis=1) for points in groups.values()]
         if all(rms(each) <= 2**0.5 * CLUSTER_RADIUS and each.max() <= EXCURSION for each in back):
             return k
