@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check bench verification sensitivity contact zeng2019 zeng2019-fit pictures schemas clean
+.PHONY: setup demo test check bench verification sensitivity confusion contact zeng2019 zeng2019-fit pictures schemas clean
 
 setup: $(VENV)/.installed-dev
 
@@ -28,6 +28,9 @@ verification: $(VENV)/.installed-dev
 
 sensitivity: $(VENV)/.installed-dev
 	$(BIN)/python -m rubgen.studies.sensitivity
+
+confusion: $(VENV)/.installed-dev
+	$(BIN)/python -m rubgen.studies.confusion
 
 contact: $(VENV)/.installed-dev
 	$(BIN)/python -m rubgen.studies.contact_options

@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
+from typing import Any
 
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import read_manifest
 from rubgen.errors import UserError
-from rubgen.io.parquet import read_table, row_groups
+from rubgen.io.columns import ORDER_SUFFIXES
+from rubgen.io.parquet import row_groups
 from rubgen.io.sections import SCHEMA, kept_of
 from rubgen.labels.plain import remade_labels
 
@@ -44,13 +47,13 @@ def relabel(directory: Path) -> Relabelled:
     """
     layout = Layout(directory)
     read_manifest(layout)
-    rows = {row["run_id"]: row for row in read_table(layout.runs).to_pylist()}
     runs = labels = 0
     found: list[Difference] = []
-    for run_id, again in _remade(layout):
-        row = rows.get(run_id)
-        if row is None:
-            raise UserError(f"{layout.root}: sections/ holds {run_id}, runs.parquet does not; check it: rubgen verify")
+    for row, section in zip_longest(_good_rows(layout), _remade(layout)):
+        run_id, again = section or ("", {})
+        if row is None or row["run_id"] != run_id:
+            name = row["run_id"] if row else run_id
+            raise UserError(f"{layout.root}: sections/ and runs.parquet differ at {name}; check it: rubgen verify")
         runs, labels = runs + 1, labels + len(again)
         found += [
             Difference(run_id, name, row.get(name), value)
@@ -58,6 +61,13 @@ def relabel(directory: Path) -> Relabelled:
             if name not in row or not equal(row[name], value)
         ]
     return Relabelled(runs=runs, labels=labels, differences=tuple(found))
+
+
+def _good_rows(layout: Layout) -> Iterator[dict[str, Any]]:
+    """The runs that ended well, in order, without the columns of orders."""
+    for table in row_groups(layout.runs):
+        names = [name for name in table.schema.names if not name.endswith(ORDER_SUFFIXES)]
+        yield from (row for row in table.select(names).to_pylist() if row["status"] == "ok")
 
 
 def _remade(layout: Layout) -> Iterator[tuple[str, dict[str, object]]]:

@@ -76,6 +76,8 @@ def test_verify_holds_sections_to_the_runs(copied_set):
     assert f"{SECTIONS}: its sha256 is not the one in the manifest" in rubgen.verify(copied_set)
     reseal(copied_set)
     assert rubgen.verify(copied_set) == ["run-000000: is ok, but has no section"]
+    with pytest.raises(UserError, match=r"sections/ and runs\.parquet differ at run-000000; check it: rubgen verify"):
+        relabel(copied_set)
 
 
 def test_rounding_is_no_difference():
