@@ -9,9 +9,6 @@ from rubgen.contact.geometry_kernels import Surface, Tips, tip_position, undefor
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.vector_kernels import LANES, blended_product, lowest_bit, not_above
 
-ANGLE_ERROR = 1e-9
-"""More than the error in rad of `tip_angle`: x^7 / 7 for a tip that stands x < 0.07 of its radius aside."""
-
 
 @inlined_kernel
 def casing_reach(surface: Surface, q_casing: FloatArray) -> float:
@@ -56,12 +53,22 @@ def least_clearance(surface: Surface, tips: Tips, states: FloatArray, theta: Flo
 
 @inlined_kernel
 def tip_angle(tips: Tips, blade: int, displacement: FloatArray, theta: float) -> float:
-    """Polar angle of a blade's tip to `ANGLE_ERROR`, from the `displacement` (2 or more, any) of all."""
-    radial = tips.radius + tips.static[0, blade] + displacement[0, blade]
-    x = (tips.static[1, blade] + displacement[1, blade]) / radial
-    square = x * x
-    angle: float = theta + tips.angle[blade] + x * (1.0 - square * (1.0 / 3.0 - 0.2 * square))
+    """Polar angle of a blade's tip, from the `displacement` (2 or more, any) of all, to `angle_error`.
+
+    The tip stands t aside at a radius of a: t / radius for arctan(t / a).
+    """
+    aside = tips.static[1, blade] + displacement[1, blade]
+    angle: float = theta + tips.angle[blade] + aside / tips.radius
     return angle
+
+
+@inlined_kernel
+def angle_error(spread: float) -> float:
+    """A bound of the error of `tip_angle` in rad, |a - radius| and |t| below `spread` < 1/4 radii.
+
+    |t / radius - t / a| <= spread 4/3 spread, and |x - arctan x| <= |x|^3 / 3 with |x| <= 4/3 spread.
+    """
+    return spread * spread * (4.0 / 3.0 + 0.8 * spread)
 
 
 @inlined_kernel
@@ -104,22 +111,24 @@ def clearance_bounds(
 
 
 @inlined_kernel
-def deformation_bounds(surface: Surface, q_casing: FloatArray) -> tuple[float, float]:
+def deformation_bounds(surface: Surface, q_casing: FloatArray, spread: float) -> tuple[float, float]:
     """Bounds of the deformed surface on the whole ring, for `is_clear`.
 
-    First, how far its radius at a polar angle may lie below r + opening + u_r at that angle, u_r interpolated linearly
-    between the nodes; second, the slope of r + opening + u_r by the angle. A surface point at psi stands at a polar
-    angle that differs by at most |u_t| / |X|, so the radius is less by at most that times the slope.
+    First, how far its radius at a polar angle may lie below r + opening + u_r, u_r interpolated linearly between the
+    nodes and taken at the angle that `tip_angle` gives; second, the slope of r + opening + u_r by the angle. A surface
+    point at psi stands at a polar angle that differs by at most |u_t| / |X|, so the radius is less by at most that
+    times the slope.
     """
-    reach, slope, bend = 0.0, surface.slope, 0.0
+    reach, moved, bend = 0.0, 0.0, 0.0
     for j in range(q_casing.shape[0]):
         size = abs(q_casing[j])
         reach += size * surface.reach[j]
-        slope += size * surface.mode_slope[j]
+        moved += size * surface.mode_slope[j]
         bend += size * surface.mode_bend[j]
+    slope = surface.slope + moved
     h = surface.node_step
     nearest: float = 0.9 * surface.mean_radius
-    return slope * (reach / nearest + ANGLE_ERROR) + 0.125 * h * h * bend, slope / nearest
+    return slope * reach / nearest + moved * angle_error(spread) + 0.125 * h * h * bend, slope / nearest
 
 
 @inlined_kernel

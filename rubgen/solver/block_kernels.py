@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.jit import allocation_free_kernel, inlined_kernel
-from rubgen.solver.lanes_kernels import add_lines, add_two_lines, dot_lines, gather_lines
+from rubgen.solver.lanes_kernels import add_lines, dot_lines, gather_lines, set_two_lines
 from rubgen.vector_kernels import LANES
 
 
@@ -81,9 +81,7 @@ def bilinear(product: Product, left: FloatArray, right: FloatArray) -> float:
 @inlined_kernel
 def free_step(scheme: Scheme, before: FloatArray, now: FloatArray, after: FloatArray) -> None:
     """q* in z."""
-    for i in range(after.shape[0]):
-        after[i] = scheme.constant[i]
-    add_two_lines(scheme.lines, scheme.now, scheme.before, now, before, after)
+    set_two_lines(scheme.lines, scheme.now, scheme.before, now, before, scheme.constant, after)
 
 
 @inlined_kernel

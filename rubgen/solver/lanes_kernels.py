@@ -52,10 +52,13 @@ def add_lines(lines: IntArray, a: FloatArray, x: FloatArray, out: FloatArray) ->
         out.reshape(-1, LANES)[_results(line)] += line_sum(line, a, x)
 
 
-def add_two_lines(lines: IntArray, a: FloatArray, b: FloatArray, x: FloatArray, y: FloatArray, out: FloatArray) -> None:
-    """`add_lines` of a, x and of b, y in one."""
-    add_lines(lines, a, x, out)
-    add_lines(lines, b, y, out)
+def set_two_lines(
+    lines: IntArray, a: FloatArray, b: FloatArray, x: FloatArray, y: FloatArray, base: FloatArray, out: FloatArray
+) -> None:
+    """Each row of `out` is that of `base` and the sums of a, x and of b, y; the lines give every row once."""
+    for line in lines:
+        row = _results(line)
+        out.reshape(-1, LANES)[row] = base.reshape(-1, LANES)[row] + (line_sum(line, a, x) + line_sum(line, b, y))
 
 
 def gather_lines(
@@ -185,22 +188,28 @@ def _each_line(emit: _Emitter, array: Any, visit: Visit) -> None:
         builder.position_at_end(done)
 
 
-def _adding(pairs: int) -> Callable[..., Any]:
-    """The vector code of `add_lines` or of `add_two_lines`."""
+def _add_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """The vector code of `add_lines`."""
+    emit = _Emitter(context, builder)
+    lines, a, x, out = (emit.array(kind, array) for kind, array in zip(signature.args, args, strict=True))
 
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        emit = _Emitter(context, builder)
-        arrays = [emit.array(kind, array) for kind, array in zip(signature.args, args, strict=True)]
-        out = arrays[-1].data
+    def add(row: Any, total: Any) -> None:
+        emit.store(builder.fadd(emit.load(out.data, row), total), out.data, row)
 
-        def add(row: Any, total: Any) -> None:
-            emit.store(builder.fadd(emit.load(out, row), total), out, row)
+    _each_line(emit, lines, _summed(emit, [(a.data, x.data)], add))
+    return context.get_dummy_value()
 
-        sources = [(arrays[1 + i].data, arrays[1 + pairs + i].data) for i in range(pairs)]
-        _each_line(emit, arrays[0], _summed(emit, sources, add))
-        return context.get_dummy_value()
 
-    return generate
+def _set_two_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """The vector code of `set_two_lines`."""
+    emit = _Emitter(context, builder)
+    lines, a, b, x, y, base, out = (emit.array(kind, array) for kind, array in zip(signature.args, args, strict=True))
+
+    def place(row: Any, total: Any) -> None:
+        emit.store(builder.fadd(emit.load(base.data, row), total), out.data, row)
+
+    _each_line(emit, lines, _summed(emit, [(a.data, x.data), (b.data, y.data)], place))
+    return context.get_dummy_value()
 
 
 def _gather_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -244,8 +253,8 @@ def _dot_rows(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     return emit.lane_sum(total)
 
 
-compile_as(add_lines, types.void, _adding(pairs=1))
-compile_as(add_two_lines, types.void, _adding(pairs=2))
+compile_as(add_lines, types.void, _add_lines)
+compile_as(set_two_lines, types.void, _set_two_lines)
 compile_as(gather_lines, types.void, _gather_lines)
 compile_as(dot_lines, types.float64, _dot_lines)
 compile_as(dot_rows, types.float64, _dot_rows)

@@ -159,7 +159,7 @@ def _copied(result: TurnResult) -> TurnResult:
 
 def _arrivals(stepper: Stepper) -> FloatArray:
     """Arrivals under timing probes in what was just run."""
-    return np.array(stepper.taps.timing.arrivals[: int(stepper.result.summary[3])])
+    return stepper.taps.timing.arrivals[: int(stepper.result.summary[3])].copy()
 
 
 def _joined(parts: list[TurnResult]) -> TurnResult:

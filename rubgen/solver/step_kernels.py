@@ -181,7 +181,7 @@ def contact_step(
         surface, model.tips, after.tips, new, laws.spread, angles.cos_orders[inside], angles.sin_orders[inside],
         work.bounds,
     )  # fmt: skip
-    limits = deformation_bounds(surface, after.q[start:])
+    limits = deformation_bounds(surface, after.q[start:], laws.spread)
     for j in range(work.rows.shape[1]):
         work.casing[j] = after.q[start + j]
     if laws.screen and not laws.lasting and all_clear(

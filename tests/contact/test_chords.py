@@ -82,7 +82,7 @@ def test_the_screening_bounds_hold_for_chords_in_a_deformed_casing():
         bounds = np.zeros(9)
         displacement = np.ascontiguousarray(q[:27].reshape(9, 3).T)
         clearance_bounds(surface, tips, displacement, 1e-4, 0.01, np.cos(orders), np.sin(orders), bounds)
-        limits = deformation_bounds(surface, q[29:])
+        limits = deformation_bounds(surface, q[29:], 0.01)
         for k in range(9):
             place = system.tip_static[k] + q[3 * k : 3 * k + 3]
             point = (RADIUS + place[0] + 1j * place[1]) * np.exp(1j * (theta + system.blade_angles[k]))
