@@ -84,7 +84,7 @@ def _track(generator: np.random.Generator) -> Track:
     return Track(
         step=step,
         q=2e-4 * np.cos(np.multiply.outer(theta, np.ones(STATES)) + phase),
-        tip_growth=np.tile([1e-4, 0.0, 0.0], (BLADES, 1)),
+        tip_growth=np.tile([1e-4, 0.0, 0.0], (1, BLADES, 1)),
         casing_modes=np.transpose(modes, (2, 1, 0)),
     )
 

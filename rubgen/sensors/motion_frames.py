@@ -10,7 +10,7 @@ from rubgen.arrays import FloatArray, IntArray
 from rubgen.sensors.channel import Recording
 from rubgen.solver.response import Response
 
-COARSE_FRAMES = 60
+COARSE_FRAMES = 48
 """Most frames outside the dense turns: what keeps a file small whatever its length."""
 
 
@@ -38,26 +38,44 @@ def motion_frames(response: Response, recording: Recording) -> MotionFrames | No
 
     None where the response kept no track.
     """
-    track, steps = response.track, response.steps_per_turn
+    track, starts = response.track, _turn_steps(response)
     if track is None:
         return None
-    sections = _even_choice(np.arange(response.record_turns) * steps, response, recording)
-    sections = sections[(sections < track.step[0]) | (sections > track.step[-1])]
-    step = np.concatenate([track.step, sections])
-    q = np.concatenate([track.q, response.section_q[sections // steps]])
-    dense = np.concatenate([np.ones(track.step.size, np.int64), np.zeros(sections.size, np.int64)])
+    turns = _even_choice(starts, response, recording)
+    turns = turns[(starts[turns] < track.step[0]) | (starts[turns] > track.step[-1])]
+    step = np.concatenate([track.step, starts[turns]])
+    turn = np.concatenate([np.searchsorted(starts, track.step, side="right") - 1, turns])
+    q = np.concatenate([track.q, response.section_q[turns]])
+    angle = np.concatenate([_angle(track.step, response), np.zeros(turns.size)])  # sections lie at theta = 0
+    dense = np.concatenate([np.ones(track.step.size, np.int64), np.zeros(turns.size, np.int64)])
     order = np.argsort(step, kind="stable")
     order = order[_inside(step[order], response, recording)]
     step, q, m = step[order], q[order], 3 * response.n_blades
+    growth = track.tip_growth[np.clip(turn[order], 0, len(track.tip_growth) - 1)]
     return MotionFrames(
         time=_seconds(step, response, recording),
-        angle=2 * np.pi * (step % steps) / steps,
+        angle=angle[order],
         centre=q[:, m : m + 2],
-        tips=q[:, :m].reshape(len(q), -1, 3) + track.tip_growth,
+        tips=q[:, :m].reshape(len(q), -1, 3) + growth,
         casing=q[:, q.shape[1] - response.n_casing :],
         dense=dense[order],
         casing_modes=track.casing_modes,
     )
+
+
+def _turn_steps(response: Response) -> IntArray:
+    """The first step of each turn of the record."""
+    if response.course is not None:
+        return response.course.turn_steps[:-1]
+    return np.arange(response.record_turns) * response.steps_per_turn
+
+
+def _angle(step: IntArray, response: Response) -> FloatArray:
+    """Of the blisk at steps, in [0, 2 pi)."""
+    if response.course is not None:
+        return np.asarray(np.mod(response.course.rotation.angle(step * response.dt), 2 * np.pi))
+    steps = response.steps_per_turn
+    return 2 * np.pi * (step % steps) / steps
 
 
 def _seconds(step: IntArray, response: Response, recording: Recording) -> FloatArray:
@@ -69,7 +87,7 @@ def _inside(step: IntArray, response: Response, recording: Recording) -> IntArra
     return np.flatnonzero((time >= 0) & (time < recording.samples / recording.sample_rate_hz))
 
 
-def _even_choice(step: IntArray, response: Response, recording: Recording) -> IntArray:
-    """Those of the steps that lie inside, at most `COARSE_FRAMES`, equally far apart."""
-    inside = step[_inside(step, response, recording)]
+def _even_choice(starts: IntArray, response: Response, recording: Recording) -> IntArray:
+    """Numbers of the turns that begin inside, at most `COARSE_FRAMES`, equally far apart."""
+    inside = _inside(starts, response, recording)
     return np.asarray(inside[:: max(1, -(-inside.size // COARSE_FRAMES))], dtype=np.int64)

@@ -14,6 +14,7 @@ from rubgen.errors import UserError
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.scenario.profiles import profile_problem
+from rubgen.scenario.rotation import Rotation
 from rubgen.scenario.taps import DEFAULT_TAPS, Tap
 from rubgen.solver.admissible import check_system
 from rubgen.solver.changing import ChangingSystem
@@ -123,8 +124,7 @@ class Integration:
             if self.status is not Status.OK:
                 return
         touches = self.stepper.touches
-        if self.rotation.is_steady:
-            self.track.finish(self.settle + self.record - 1)
+        self.track.finish()
         still_open = close_touches(touches, self.spin.first_step(self.settle + self.record), 0)
         self.touches.append(touches.ended[:still_open].copy())
 
@@ -144,8 +144,7 @@ class Integration:
         if recording:
             self.tail.append(result.taps.copy())
             self.arrivals.append(self.spin.arrivals)
-        if self.rotation.is_steady:
-            self.track.add(turn, self.stepper, len(self.spin.touches[0]))
+        self.track.add(turn, self.spin)
         row = turn - self.settle
         if row >= 0:
             self.section[row] = result.section
@@ -241,8 +240,8 @@ def integrate(
     as long again and leaves the first as it is.
 
     A changing speed (`operation.profile`) needs `system_at`, the system at a speed and acceleration; time steps are
-    equal then, and sections lie between steps (`turn_kernels.record_section`). See `spin.ChangingSpin`. It has no twin,
-    no track and no fractions.
+    equal then, and sections lie between steps (`turn_kernels.record_section`). See `spin.ChangingSpin`. It has no twin
+    and no fractions.
 
     A run that fails has the status and the reason; nothing else in it is data. Raises UserError for a system that
     `check_system` refuses, for a record too short for an exponent that is asked for, for a profile that lacks a key,
@@ -292,9 +291,17 @@ def _run(
     """Integrate to the end; `start` is the system at the first instant."""
     signal_turns = tail_seconds * spin.rotation.fastest / (2 * math.pi)
     tail = max(LEAST_TAIL_TURNS, math.ceil(signal_turns))
+    if not spin.rotation.is_steady:
+        signal_turns = _last_turns(spin.rotation, operation.recorded_turns, tail_seconds)
     integration = Integration(spin, start, operation, tail, math.floor(signal_turns), twin=twin)
     integration.run()
     return _response(integration, taps)
+
+
+def _last_turns(rotation: Rotation, record: int, seconds: float) -> float:
+    """How many turns the last `seconds` of a record of so many turns hold."""
+    end = rotation.time_of(2 * math.pi * record)
+    return record - float(rotation.angle(max(end - seconds, 0.0))) / (2 * math.pi)
 
 
 def _gross_energy(stepper: Stepper) -> float:
@@ -326,7 +333,7 @@ def _response(integration: Integration, taps: tuple[Tap, ...]) -> Response:
         n_blades=stepper.system.n_blades,
         n_casing=stepper.system.n_casing,
         worn=worn_liner(stepper.surface),
-        track=integration.track.track(stepper, integration.settle) if integration.track.kept else None,
+        track=integration.track.track(integration.spin) if integration.track.kept else None,
         arrivals=tip_arrivals(list(integration.arrivals), [probe.name for probe in timing_taps(taps)]),
         course=None if integration.rotation.is_steady else integration.course(),
         orbit=np.array(integration.orbit).reshape(-1, 5),

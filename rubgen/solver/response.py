@@ -98,8 +98,9 @@ class Track:
     """The whole motion over the few turns about the hardest touch, and what places it in space.
 
     `step` (frames,) counts from the first of the record; `q` (frames, n) is the state as in `SpinningSystem`, the blisk
-    in its turning frame. `tip_growth` (n_blades, 3), steady, is added to the tips. `casing_modes` (nodes, 2, n_casing)
-    are the X and Y displacements of each casing mode at its nodes.
+    in its turning frame. `tip_growth` (1, n_blades, 3) is added to the tips; of a changing speed there is one for each
+    turn of the record. `casing_modes` (nodes, 2, n_casing) are the X and Y displacements of each casing mode at its
+    nodes.
     """
 
     step: IntArray
@@ -146,7 +147,7 @@ class Response:
     `section_v` (record_turns, n) are state and velocity once a turn at theta = 0 mod 2 pi (blisk coordinates in the
     turning frame, which coincides with the inertial one there). `impulse_per_turn` (record_turns,) in N s.
     `contact_steps_per_turn` (record_turns,) counts the steps of each turn in which any blade touched. `track` is None
-    where no signal was asked for, and for a changing speed. `arrivals` holds what each timing probe saw in the tail, by
+    where no signal was asked for. `arrivals` holds what each timing probe saw in the tail, by
     its name. `twin_growth` (record_turns,) is ln of what the distance to a trajectory beside the run grew by in each
     turn, empty where none was asked for. `fractions` (N, 2, n) are q and v after 1/N, 2/N, ... 1 of the last turn, N
     the lobes of the casing, the casing turned back by as much: all equal where the motion is symmetric,

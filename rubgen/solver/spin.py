@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from rubgen.scenario.rotation import Rotation, steady_rotation
 from rubgen.solver.following import Following
 from rubgen.solver.rub_free import RubFreeMotion
 from rubgen.solver.step_kernels import OK
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.stepper import FRAMES, Stepper
 from rubgen.solver.turn_kernels import TurnResult
 
 SPEED_SHARE = 2e-4
@@ -26,11 +26,19 @@ Opening = Callable[[FloatArray], FloatArray]
 """How far the surface is opened, m, after so many turns from the start."""
 
 
+class TurnFrames(NamedTuple):
+    """Some 32 moments of a turn: `step` (frames,) their numbers, `z` (frames, any) the motion in its blocks."""
+
+    step: IntArray
+    z: FloatArray
+
+
 class Spin(Protocol):
     """Takes a stepper turn by turn from the start; steps are numbered from the start of the record.
 
     `settle` turns go before the record. What the last turn gave: `result` with taps, section, summary; `touches`,
-    arrays of touches that ended; `arrivals` (any, 4) under timing probes; `opening` of the surface in its last part.
+    arrays of touches that ended; `arrivals` (any, 4) under timing probes; `opening` of the surface in its last part;
+    `frames` of the motion, and `tip_growth` (n_blades, 3), the tips' steady displacement at its beginning in m.
     """
 
     stepper: Stepper
@@ -40,6 +48,8 @@ class Spin(Protocol):
     touches: list[FloatArray]
     arrivals: FloatArray
     opening: FloatArray
+    frames: TurnFrames
+    tip_growth: FloatArray
 
     def first_step(self, turn: int) -> int:
         """Number of the step at which a turn begins."""
@@ -58,6 +68,7 @@ class SteadySpin:
         self.rotation = steady_rotation(stepper.system.speed)
         self.result, self.touches = stepper.result, list[FloatArray]()
         self.arrivals, self.opening = np.zeros((0, 4)), np.zeros(0)
+        self.frames, self.tip_growth = _frames(stepper.result, 0, 0), stepper.system.tip_static
 
     def first_step(self, turn: int) -> int:
         """Number of the step at which a turn begins."""
@@ -70,6 +81,7 @@ class SteadySpin:
         code, step, ended = self.stepper.run_turn(self.opening, self.first_step(turn), recording=recording)
         self.result, self.touches = self.stepper.result, [self.stepper.touches.ended[:ended].copy()]
         self.arrivals = _arrivals(self.stepper)
+        self.frames = _frames(self.result, self.first_step(turn), steps)
         return code, step
 
 
@@ -86,8 +98,8 @@ class ChangingSpin:
         self.stepper, self.following, self.rotation, self.settle = stepper, following, rotation, settle
         self.result, self.touches = stepper.result, list[FloatArray]()
         self.arrivals, self.opening = np.zeros((0, 4)), np.zeros(0)
+        self.frames, self.tip_growth = _frames(stepper.result, 0, 0), stepper.system.tip_static
         stepper.marks = stepper.marks_at([NEVER])
-        stepper.result = stepper.result._replace(frames=np.zeros((1, stepper.result.frames.shape[1])))
 
     def begin(self, motion: RubFreeMotion) -> None:
         """Put the stepper into a rub-free motion, without works so far."""
@@ -114,9 +126,11 @@ class ChangingSpin:
         section = self._time_of(turn) / self.stepper.dt - starts[0]
         results: list[TurnResult] = []
         arrivals: list[FloatArray] = []
+        frames: list[TurnFrames] = []
         self.touches = []
         code, step = OK, 0
         ends = (starts - starts[0]).tolist()
+        self._take_frames(len(ends) - 1)
         for start, end, speed, part in zip(ends[:-1], ends[1:], speeds, parts, strict=True):
             rows = slice(start, end + 2)
             self.stepper.follow(part, float(speed), np.roll(theta[rows], -1), float(section))
@@ -124,12 +138,22 @@ class ChangingSpin:
             code, done, ended = self.stepper.run_turn(self.opening, int(starts[0]) + start, recording=recording)
             arrivals.append(_arrivals(self.stepper))
             results.append(_copied(self.stepper.result))
+            frames.append(_frames(self.stepper.result, int(starts[0]) + start, end - start))
+            if start == 0:
+                self.tip_growth = part.tips.static.T.copy()
             self.touches.append(self.stepper.touches.ended[:ended].copy())
             section, step = 0.0, start + done
             if code != OK:
                 break
         self.result, self.arrivals = _joined(results), np.concatenate(arrivals)
+        self.frames = TurnFrames(*(np.concatenate(columns) for columns in zip(*frames, strict=True)))
         return code, step
+
+    def _take_frames(self, parts: int) -> None:
+        """Ask each of so many parts of a turn for its share of the frames."""
+        wanted, result = -(-FRAMES // parts), self.stepper.result
+        if len(result.frames) != wanted:
+            self.stepper.result = result._replace(frames=np.zeros((wanted, result.frames.shape[1])))
 
     def _tables(self, turn: int, first: int, last: int, opening: Opening) -> tuple[FloatArray, FloatArray]:
         """Theta at the steps first - 1, ..., last of a turn, and the surface's opening less the tips' growth."""
@@ -150,6 +174,14 @@ class ChangingSpin:
         starts = np.rint(np.linspace(first, last, parts + 1)).astype(np.int64)
         corner = round(self.rotation.seconds / self.stepper.dt)  # where the ramp ends
         return np.union1d(starts, [corner]) if first < corner < last else starts
+
+
+def _frames(result: TurnResult, first: int, steps: int) -> TurnFrames:
+    """The frames of a turn or part of so many steps from number `first` on; see `turn_kernels.record_frame`."""
+    count = min(len(result.frames), steps)
+    number = np.arange(count)
+    even = -(-number * steps // len(result.frames))
+    return TurnFrames(first + np.maximum(even, number), result.frames[:count].copy())
 
 
 def _copied(result: TurnResult) -> TurnResult:

@@ -8,7 +8,7 @@ import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.solver.response import Track
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.spin import Spin, TurnFrames
 from rubgen.solver.turn_kernels import IMPULSE
 
 TRACK_TURNS = 8
@@ -22,41 +22,40 @@ class TrackKeeper:
 
     def __init__(self, first_turn: int) -> None:
         self.first_turn = first_turn
-        self.kept_from, self.kept, self.hardest = first_turn, list[FloatArray](), -1.0
-        self.frames: deque[FloatArray] = deque(maxlen=TRACK_TURNS)
+        self.kept, self.hardest = list[TurnFrames](), -1.0
+        self.growth: list[FloatArray] = []
+        self.frames: deque[TurnFrames] = deque(maxlen=TRACK_TURNS)
         self.touches: deque[float] = deque(maxlen=TRACK_TURNS)
 
-    def add(self, turn: int, stepper: Stepper, ended: int) -> None:
-        """Take the frames of a turn that was just run, with its `ended` touches."""
+    def add(self, turn: int, spin: Spin) -> None:
+        """Take the frames of a turn that was just run."""
+        if turn >= spin.settle and not (self.growth and spin.rotation.is_steady):
+            self.growth.append(spin.tip_growth)
         if turn < self.first_turn:
             return
-        impulses = stepper.touches.ended[:ended, IMPULSE]
-        self.frames.append(stepper.result.frames.copy())
-        self.touches.append(float(impulses.max(initial=0.0)))
+        self.frames.append(spin.frames)
+        self.touches.append(max(float(touches[:, IMPULSE].max(initial=0.0)) for touches in spin.touches))
         if len(self.frames) == TRACK_TURNS:
             touches = list(self.touches)
             first = TRACK_TURNS // 2 if self.kept else 0  # the first window answers for its first half too
-            self._keep_where_harder(turn, max(touches[first : TRACK_TURNS // 2 + 1]))
+            self._keep_where_harder(max(touches[first : TRACK_TURNS // 2 + 1]))
 
-    def finish(self, last_turn: int) -> None:
+    def finish(self) -> None:
         """The last window answers for its second half, a record that is shorter than a window for all."""
         touches = list(self.touches)
-        self._keep_where_harder(last_turn, max(touches[TRACK_TURNS // 2 :] or touches, default=-1.0))
+        self._keep_where_harder(max(touches[TRACK_TURNS // 2 :] or touches, default=-1.0))
 
-    def _keep_where_harder(self, turn: int, touch: float) -> None:
+    def _keep_where_harder(self, touch: float) -> None:
         if touch > self.hardest:
-            self.hardest, self.kept, self.kept_from = touch, list(self.frames), turn + 1 - len(self.frames)
+            self.hardest, self.kept = touch, list(self.frames)
 
-    def track(self, stepper: Stepper, settle: int) -> Track:
-        """What was kept, its steps counted from the record's first, which follows `settle` turns."""
-        system, steps = stepper.system, stepper.steps
-        count = stepper.result.frames.shape[0]
-        in_turn = -(-np.arange(count) * steps // count)
-        turns = self.kept_from - settle + np.arange(len(self.kept))
-        q = np.array([stepper.blocks.to_q(z) for turn in self.kept for z in turn]).reshape(-1, len(system.M))
+    def track(self, spin: Spin) -> Track:
+        """What was kept."""
+        blocks, system = spin.stepper.blocks, spin.stepper.system
+        q = np.array([blocks.to_q(z) for frames in self.kept for z in frames.z]).reshape(-1, len(system.M))
         return Track(
-            step=(turns[:, None] * steps + in_turn).ravel(),
+            step=np.concatenate([frames.step for frames in self.kept]),
             q=q,
-            tip_growth=system.tip_static,
+            tip_growth=np.array(self.growth),
             casing_modes=system.casing_modes,
         )

@@ -8,6 +8,8 @@ from scipy.special import fresnel
 from rubgen.errors import UserError
 from rubgen.reduction.model import CasingSurface, SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
+from rubgen.sensors.channel import Channel, Recording
+from rubgen.sensors.motion_frames import motion_frames
 from rubgen.solver import Status, integrate, spin
 
 RPM = np.pi / 30
@@ -98,6 +100,46 @@ def test_a_rotor_passes_its_critical_speed_as_in_the_inertial_frame(start, end):
     assert rotation.speed(times[peak]) == pytest.approx(rotation.speed(times[exact_peak]), rel=1e-3)
     assert (rotation.speed(times[peak]) - CRITICAL) * (end - start) > 0
     assert response.energy.residual < 1e-10
+
+
+def test_the_track_holds_the_true_motion_of_whole_turns():
+    """Without contact the first eight turns of the signals; each part of a turn gives its share of frames."""
+    operation = Operation(
+        profile="run-up", speed_rpm=700 / RPM, end_speed_rpm=1300 / RPM, duration_s=0.3, settle_turns=3
+    )
+    build = jeffcott_at(0.02)
+    start = build(operation.speed_rad_per_s, 0.0)
+    response = integrate(start, operation, ContactLaw(), system_at=build, tail_seconds=0.1)
+    track, course, orbit = response.track, response.course, record_taps(response)
+    turn = np.searchsorted(course.turn_steps, track.step, side="right") - 1
+    begin = course.turn_steps[-1] - 0.1 / response.dt
+    assert np.unique(turn).tolist() == list(range(turn[0], turn[0] + 8))
+    assert np.unique(turn, return_counts=True)[1].min() >= 32
+    assert course.turn_steps[turn[0] - 1] < begin <= course.turn_steps[turn[0]] == track.step[0]
+    theta = course.rotation.angle(track.step * response.dt)
+    place = np.exp(1j * theta) * (track.q[:, 3] + 1j * track.q[:, 4])
+    np.testing.assert_allclose(place, orbit[track.step], rtol=0, atol=1e-12 * np.abs(orbit).max())
+    assert track.tip_growth.shape == (response.record_turns, 1, 3)
+
+    start = (course.turn_steps[-1] - 1) * response.dt - 0.1  # as of sensors that record the last 0.1 s
+    silent = Channel(
+        name="", unit="", quantity="", axis="", location="", range_min=0.0, range_max=0.0, resolution=0.0,
+        noise_rms=0.0,
+        values=np.zeros(100, np.float32),
+    )  # fmt: skip
+    recording = Recording(
+        sample_rate_hz=1e3, rotation_angle=0.0, channels={"": silent}, once_per_rev=np.zeros(0), start_seconds=start
+    )
+    frames = motion_frames(response, recording)
+    assert frames.dense.sum() == track.step.size
+    assert 3 < (frames.dense == 0).sum() <= 48
+    assert frames.angle[frames.dense == 0] == pytest.approx(0)
+    step = (frames.time + start) / response.dt
+    place = np.exp(1j * frames.angle) * (frames.centre[:, 0] + 1j * frames.centre[:, 1])
+    seen = np.interp(step, np.arange(orbit.size), orbit)
+    # Sections lie at theta = 0, up to half a step from the step that dates them.
+    turned = 0.6 * course.rotation.fastest * response.dt * np.abs(orbit).max()
+    np.testing.assert_allclose(place, seen, rtol=0, atol=turned)
 
 
 def test_without_damping_the_peak_lags_by_what_the_fresnel_integral_says():
