@@ -70,7 +70,12 @@ def replay_of_recorded(run: McapRun, *, source: str = "the file") -> Replay:
         tip_timing={name: _timing(columns) for name, columns in run.tip_timing.items()},
     )
     return Replay(
-        scenario=scenario, labels=run.labels, recording=recording, touches=_touches(run.contacts), frames=run.frames
+        scenario=scenario,
+        labels=run.labels,
+        recording=recording,
+        touches=_touches(run.contacts),
+        frames=run.frames,
+        motion_classes=run.motion_classes,
     )
 
 

@@ -39,7 +39,8 @@ class McapRun:
     `signals` and `clean` map a channel's name to its samples (n,), float32, in the unit that `channels[name]` names
     beside quantity, axis, location and range. `contacts` maps a field of rubgen.v1.Contact to its values (n_events,);
     `once_per_rev` (n_pulses,) in s. `tip_timing` maps a timing probe's name to fields of rubgen.v1.BladePassage.
-    `frames` is the motion, None where the file has none.
+    `frames` is the motion, None where the file has none. `motion_classes` maps each of the labels `motion`,
+    `motion_blisk`, `motion_casing` to its classes with the times in s from which on they hold.
     """
 
     scenario: dict[str, Any]
@@ -52,6 +53,7 @@ class McapRun:
     once_per_rev: FloatArray
     tip_timing: dict[str, dict[str, FloatArray]]
     frames: MotionFrames | None
+    motion_classes: dict[str, list[tuple[float, str]]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -141,6 +143,7 @@ def run_of(content: McapContent, *, gaps: bool = False) -> McapRun:
             if topic.startswith(TIMING)
         },
         frames=_frames(content),
+        motion_classes=_motion_classes(content),
     )
 
 
@@ -167,6 +170,13 @@ def _columns(content: McapContent, topic: str, message_name: str) -> dict[str, F
     rows = [message.FromString(record.data) for record in content.messages.get(topic, [])]
     names = [field.name for field in message.DESCRIPTOR.fields if field.name != "timestamp"]
     return {name: np.array([getattr(row, name) for row in rows], dtype=np.float64) for name in names}
+
+
+def _motion_classes(content: McapContent) -> dict[str, list[tuple[float, str]]]:
+    label = message_class("MotionLabel")
+    rows = [(1e-9 * row.log_time, label.FromString(row.data)) for row in content.messages.get("/labels/motion", [])]
+    names = ("motion", "motion_blisk", "motion_casing")
+    return {name: [(time, str(getattr(row, name))) for time, row in rows] for name in names}
 
 
 def _frames(content: McapContent) -> MotionFrames | None:

@@ -6,16 +6,16 @@ import numpy as np
 import rerun as rr
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.viz.colors import BLUE, rgba
+from rubgen.viz.colors import ORANGE, rgba
 from rubgen.viz.replay import Replay
 from rubgen.viz.signal_entities import time_column
 
-MOST_TOUCHES = 3000
+MOST_TOUCHES = 2000
 SECTORS = 72
 
 
 def shown_touches(replay: Replay, *, full: bool) -> IntArray:
-    """Numbers of the touches that are drawn one by one: all, or the 3,000 with the largest impulse."""
+    """Numbers of the touches that are drawn one by one: all, or the 2,000 with the largest impulse."""
     impulse = replay.touches.impulse
     if full or impulse.size <= MOST_TOUCHES:
         return np.arange(impulse.size)
@@ -33,11 +33,12 @@ def send_touches(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> N
         ("impulse", "N s", touches.impulse),
         ("blade", "number", touches.blade.astype(np.float64)),
     ):
-        points = rr.SeriesPoints(names=f"{name} [{unit}]", markers="circle", marker_sizes=1.5, colors=rgba(BLUE))
+        points = rr.SeriesPoints(names=f"{name} [{unit}]", markers="circle", marker_sizes=1.5, colors=rgba(ORANGE))
         stream.log(f"/contact/{name}", points, static=True)
         stream.send_columns(f"/contact/{name}", index, rr.Scalars.columns(scalars=values[shown]))
-    sectors = [f"casing angle, {360 // SECTORS} deg", "blade"]
-    stream.log("/contact/map", rr.Tensor(contact_map(replay).astype(np.float32), dim_names=sectors), static=True)
+    sectors = [f"casing angle from -90 deg on, {360 // SECTORS} deg each", "blade"]
+    shifted = np.roll(contact_map(replay), SECTORS // 4, axis=0)
+    stream.log("/contact/map", rr.Tensor(shifted.astype(np.float32), dim_names=sectors), static=True)
 
 
 def contact_map(replay: Replay) -> FloatArray:

@@ -19,20 +19,33 @@ PARTS = {"system": "motion", "blisk": "motion_blisk", "casing": "motion_casing"}
 
 
 def send_labels(stream: rr.RecordingStream, replay: Replay) -> None:
-    """Properties `labels` and `scenario`, both as text, lanes of motion, amplitudes of orders as bars."""
+    """Properties `labels` and `scenario`, both as text, lanes of motion, amplitudes of orders as bars.
+
+    As properties stand the labels that are one value for the whole run, and all as `json`: each property costs the
+    file up to a kilobyte, half of it in the index at its end.
+    """
     plain, scenario = replay.labels, scenario_dict(replay.scenario)
-    known: dict[str, Any] = {key: value for key, value in plain.items() if value not in (None, [])}
-    stream.send_property("labels", rr.AnyValues(**known))
+    stream.send_property("labels", rr.AnyValues(**_single(plain), json=json.dumps(plain)))
     stream.send_property("scenario", rr.AnyValues(json=json.dumps(scenario)))
     shown = {key: value for key, value in plain.items() if not key.endswith("_orders")}
     _send_table(stream, "/labels/text", "label", replay, shown)
     _send_table(stream, "/labels/scenario", "parameter", replay, _flat(scenario))
     for part, label in PARTS.items():
-        _send_motion(stream, part, str(plain[label]))
+        _send_motion(stream, part, replay.motion_classes.get(label) or [(0.0, str(plain[label]))])
     for tap, amplitudes in order_amplitudes(replay).items():
         left = np.arange(1, len(amplitudes) + 1) - BAR_WIDTH / 2
         bars = rr.BarChart(amplitudes, abscissa=left, widths=np.full(len(amplitudes), BAR_WIDTH))
         stream.log(f"/orders/{tap}", bars, static=True)
+
+
+def _single(labels: dict[str, object]) -> dict[str, Any]:
+    """The labels of one value that belong to no single tap."""
+    taps = tuple(key.removesuffix("orders") for key in labels if key.endswith("_orders"))
+    return {
+        key: value
+        for key, value in labels.items()
+        if isinstance(value, str | bool | int | float) and not key.startswith(taps)
+    }
 
 
 def order_amplitudes(replay: Replay) -> dict[str, list[float]]:
@@ -41,23 +54,24 @@ def order_amplitudes(replay: Replay) -> dict[str, list[float]]:
     return {key.removesuffix("_orders"): value for key, value in found.items()}
 
 
-def _send_motion(stream: rr.RecordingStream, part: str, motion: str) -> None:
-    """A lane, every class in its colour."""
+def _send_motion(stream: rr.RecordingStream, part: str, classes: list[tuple[float, str]]) -> None:
+    """A lane of the classes from their times (s) on, every class in its colour."""
     named = rr.StateConfiguration(
         values=[each.value for each in Motion],
         labels=[f"{part}: {each.value}" for each in Motion],
         colors=[rgba(MOTION_COLORS[each]) for each in Motion],
     )
     stream.log(f"/labels/motion/{part}", named, static=True)
-    stream.send_columns(f"/labels/motion/{part}", time_column(np.zeros(1)), rr.StateChange.columns(state=[motion]))
+    times, motions = zip(*classes, strict=True)
+    index = time_column(np.array(times))
+    stream.send_columns(f"/labels/motion/{part}", index, rr.StateChange.columns(state=list(motions)))
 
 
 def _send_table(
     stream: rr.RecordingStream, entity: str, heading: str, replay: Replay, values: dict[str, object]
 ) -> None:
     """Names and values as Markdown."""
-    scenario = replay.scenario
-    title = f"# {scenario.run_id}: {scenario.machine.name} at {scenario.operation.speed_rpm:g} rev/min"
+    title = f"# {replay.title}"
     rows = [f"| {key} | {_shown(value)} |" for key, value in values.items()]
     text = "\n".join([title, "", f"| {heading} | value |", "|---|---|", *rows])
     stream.log(entity, rr.TextDocument(text, media_type="text/markdown"), static=True)

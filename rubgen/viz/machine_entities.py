@@ -6,8 +6,9 @@ import numpy as np
 import rerun as rr
 
 from rubgen.arrays import FloatArray, IntArray
+from rubgen.machine import Machine
 from rubgen.sensors.motion_frames import MotionFrames
-from rubgen.viz.colors import BLUE, GREY, IMPULSE_COLORS, VERMILION, rgba
+from rubgen.viz.colors import BLUE, GREY, UNBALANCE, impulse_color, rgba
 from rubgen.viz.machine_shape import (
     Mesh,
     blade_leanings,
@@ -22,6 +23,8 @@ from rubgen.viz.machine_shape import (
     plate_shapes,
     shaft_mesh,
     spring,
+    unbalance_text,
+    unbalances,
     undeformed_curve,
 )
 from rubgen.viz.replay import Replay
@@ -31,6 +34,8 @@ SHAFT_SHARE = 0.45
 """Half the length of the drawn shaft over the tip radius."""
 SPRINGS = 24
 MOST_FLASHES = 24
+UNBALANCE_SHARE = 0.035
+"""Radius of an unbalance's mark over the tip radius."""
 LARGEST_POINT, SMALLEST_POINT = 0.055, 0.015
 """Radii of contact points over the tip radius, for the hardest touch and for the lightest."""
 STEEL, DARK_STEEL, RING = 0xB9C4CEFF, 0x7D8A96FF, 0x9FB4C7FF
@@ -66,7 +71,8 @@ def _send_instances(
 ) -> None:
     """Copies of a mesh at `places` and in `shapes`, each (frames, copies, ...) or (copies, ...).
 
-    Rerun 0.41 ignores static poses where others change, so what stands still is sent with every frame; it compresses.
+    Rerun 0.41 takes no pose together from static and changing or from older and newer parts, so what stands still is
+    sent with every frame; it compresses.
     """
     count = max(places.shape[-2], shapes.shape[-3])
     n = frames.time.size
@@ -92,9 +98,32 @@ def _send_rotor(stream: rr.RecordingStream, replay: Replay, frames: MotionFrames
     _log_mesh(stream, "/machine/rotor/blades", blade_mesh(machine.blades), STEEL)
     leanings = blade_leanings(machine, frames, factor)
     _send_instances(stream, "/machine/rotor/blades", frames, blade_placements(machine), leanings)
-    place = [0.92 * machine.disk.rim_radius_m, 0.0, machine.disk.rim_thickness_m / 2]
-    mark = rr.Points3D([place], colors=rgba(VERMILION), radii=0.014, labels="unbalance", show_labels=False)
-    stream.log("/machine/rotor/unbalance", mark, static=True)
+    _send_unbalances(stream, machine, frames, leanings)
+
+
+def _send_unbalances(stream: rr.RecordingStream, machine: Machine, frames: MotionFrames, leanings: FloatArray) -> None:
+    """Those on the disk stand on its front face, those on blades move with the tips."""
+    disk, size = machine.disk, UNBALANCE_SHARE * machine.tip_radius_m
+    marks = unbalances(machine)
+    place = 0.9 * disk.rim_radius_m
+    share = (place - disk.bore_radius_m) / (disk.rim_radius_m - disk.bore_radius_m)
+    height = (disk.bore_thickness_m + share * (disk.rim_thickness_m - disk.bore_thickness_m)) / 2 + size / 2
+    on_disk = [(each, each.angle_deg) for each in marks if each.angle_deg is not None]
+    if on_disk:
+        angle = np.radians([degrees for _, degrees in on_disk])
+        places = np.column_stack([place * np.cos(angle), place * np.sin(angle), np.full(angle.size, height)])
+        texts = [unbalance_text(each) for each, _ in on_disk]
+        points = rr.Points3D(places, colors=rgba(UNBALANCE), radii=size, labels=texts, show_labels=True)
+        stream.log("/machine/rotor/unbalance/disk", points, static=True)
+    on_blades = [(each, each.blade) for each in marks if each.blade is not None]
+    if on_blades:
+        blades = [blade for _, blade in on_blades]
+        tips = blade_placements(machine)[blades] + leanings[..., 0][:, blades] * machine.blades.length_m
+        columns = rr.Points3D.columns(positions=tips.reshape(-1, 3)).partition([len(blades)] * len(tips))
+        stream.send_columns("/machine/rotor/unbalance/blades", time_column(frames.time), columns)
+        texts = [f"{unbalance_text(each)}, blade {blade}" for each, blade in on_blades]
+        look = rr.Points3D.from_fields(colors=rgba(UNBALANCE), radii=size, labels=texts, show_labels=True)
+        stream.log("/machine/rotor/unbalance/blades", look, static=True)
 
 
 def _log_mesh(stream: rr.RecordingStream, entity: str, mesh: Mesh, color: int) -> None:
@@ -141,7 +170,7 @@ def _send_contact_points(stream: rr.RecordingStream, replay: Replay, frames: Mot
     positions = _on_curves(curve[frame], touches.angle[chosen])
     share = np.sqrt(touches.impulse / touches.impulse.max())[chosen]
     radii = replay.scenario.machine.tip_radius_m * (SMALLEST_POINT + (LARGEST_POINT - SMALLEST_POINT) * share)
-    colors = IMPULSE_COLORS[np.minimum((share * len(IMPULSE_COLORS)).astype(int), len(IMPULSE_COLORS) - 1)]
+    colors = impulse_color(share)
     columns = rr.Points3D.columns(positions=positions, radii=radii, colors=colors)
     lengths = [row.size for row in rows]
     stream.send_columns("/machine/contact/flash", time_column(frames.time), columns.partition(lengths))

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.machine import BladeRow, Disk, Machine
+from rubgen.machine import BladeRow, Disk, Machine, Unbalance
 from rubgen.sensors.motion_frames import MotionFrames
 
 DRAWN_SHARE = 0.12
@@ -184,8 +184,19 @@ def joined(parts: list[Mesh]) -> Mesh:
     )
 
 
+def unbalances(machine: Machine) -> list[Unbalance]:
+    """All that are not zero, the machine's own first."""
+    own = Unbalance(kg_m=machine.unbalance_kg_m, angle_deg=machine.unbalance_angle_deg)
+    return [each for each in (own, *machine.unbalances) if each.kg_m > 0]
+
+
+def unbalance_text(unbalance: Unbalance) -> str:
+    """What is written beside it."""
+    return f"unbalance {1e3 * unbalance.kg_m:.3g} g m"
+
+
 def blade_angles(blades: BladeRow) -> FloatArray:
-    """Angles of the blades from the unbalance, rad."""
+    """Angles of the blades from blade 0, rad."""
     return 2 * np.pi * np.arange(blades.count) / blades.count
 
 

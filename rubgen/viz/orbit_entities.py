@@ -2,29 +2,31 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import rerun as rr
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.viz.colors import BLUE, VERMILION, rgba
+from rubgen.viz.colors import BLUE, GREY, VERMILION, rgba
 from rubgen.viz.replay import Replay
+from rubgen.viz.shaft_orbit import section, shaft_orbit
 from rubgen.viz.signal_entities import detail_window, time_column
 
 POINTS_PER_TURN = 48
-COARSE_TURNS = 150
+COARSE_TURNS = 100
 
 
 def send_orbit(stream: rr.RecordingStream, replay: Replay) -> None:
-    """The recorded path turn by turn (all near the hardest touch, else up to 150), and every turn's first point; um."""
-    x, y = (replay.recording.channels.get(f"proximity_{axis}") for axis in "xy")
-    turns = replay.pulse_times
-    if x is None or y is None or turns.size < 2:
+    """The recorded path turn by turn (all near the hardest touch, else up to 100), and every turn's first point; um."""
+    orbit, turns = shaft_orbit(replay), replay.pulse_times
+    if orbit is None or turns.size < 2:
         return
     samples = np.arange(replay.recording.samples) / replay.recording.sample_rate_hz
 
     def at(time: FloatArray) -> FloatArray:
         """Positions in um."""
-        return 1e6 * np.stack([np.interp(time, samples, x.values), np.interp(time, samples, y.values)], axis=-1)
+        return np.stack([np.interp(time, samples, values) for values in orbit], axis=-1)
 
     line = rr.LineStrips2D.from_fields(colors=rgba(BLUE), radii=rr.Radius.ui_points(0.75))
     upwards = rr.Transform3D(mat3x3=np.diag([1.0, -1.0, 1.0]))  # the viewer's 2D views have Y downwards
@@ -36,6 +38,49 @@ def send_orbit(stream: rr.RecordingStream, replay: Replay) -> None:
     stream.send_columns("/orbit/plane/path", time_column(turns[chosen]), rr.LineStrips2D.columns(strips=list(paths)))
     points = rr.Points2D(at(turns), colors=rgba(VERMILION), radii=rr.Radius.ui_points(2.5))
     stream.log("/orbit/plane/section", points, static=True)
+    _send_scale(stream, "orbit", orbit_bounds(replay))
+    _send_scale(stream, "section", section_bounds(replay))
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """A square of the plane of the orbit, its middle and half a side in um, X to the right and Y upward."""
+
+    x: float
+    y: float
+    half: float
+
+
+def orbit_bounds(replay: Replay) -> Bounds:
+    """What holds the whole recorded path."""
+    return _bounds(shaft_orbit(replay), least=1.0)
+
+
+def section_bounds(replay: Replay) -> Bounds:
+    """What holds the points once a turn."""
+    return _bounds(section(replay), least=0.1)
+
+
+def _bounds(places: FloatArray | None, least: float) -> Bounds:
+    """About places (2, any), um; about 0 without any."""
+    if places is None or not places.size:
+        return Bounds(0.0, 0.0, least)
+    low, high = np.nanmin(places, axis=1).tolist(), np.nanmax(places, axis=1).tolist()
+    half = 0.6 * max(high[0] - low[0], high[1] - low[1], least)
+    return Bounds((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, half)
+
+
+def _send_scale(stream: rr.RecordingStream, name: str, bounds: Bounds) -> None:
+    """A bar of a round length in the lower left corner, for the viewer's planes have no axes."""
+    wanted = 0.6 * bounds.half
+    power = 10.0 ** np.floor(np.log10(wanted))
+    length = max(step * power for step in (1, 2, 5) if step * power <= wanted)
+    left, low = bounds.x - 0.9 * bounds.half, bounds.y - 0.8 * bounds.half
+    bar = rr.LineStrips2D(
+        [[[left, low], [left + length, low]]], colors=rgba(GREY), radii=rr.Radius.ui_points(1.5),
+        labels=f"{length:g} um", show_labels=True,
+    )  # fmt: skip
+    stream.log(f"/orbit/plane/scale/{name}", bar, static=True)
 
 
 def _drawn_turns(replay: Replay) -> IntArray:

@@ -15,6 +15,7 @@ from rubgen.sensors.contact_window import ContactIntervals, contact_intervals
 from rubgen.sensors.motion_frames import MotionFrames, motion_frames
 
 if TYPE_CHECKING:
+    from rubgen.labels.labels import Labels
     from rubgen.pipeline import Run
 
 
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
 class Replay:
     """One run to look at: labels by their public names, touches in order of their beginning, frames of the motion.
 
-    `frames` is None where a file holds none: there is no 3D scene then.
+    `frames` is None where a file holds none: there is no 3D scene then. `motion_classes` maps each of `motion`,
+    `motion_blisk`, `motion_casing` to its classes with the times in s from which on they hold.
     """
 
     scenario: Scenario
@@ -30,6 +32,25 @@ class Replay:
     recording: Recording
     touches: ContactIntervals
     frames: MotionFrames | None
+    motion_classes: dict[str, list[tuple[float, str]]]
+
+    @property
+    def title(self) -> str:
+        """Run, machine and speed, or the speeds between which the run goes."""
+        rotation = self.scenario.operation.rotation
+        start, end = (f"{speed * 30 / np.pi:,.0f}" for speed in (rotation.start, rotation.end))
+        speed = start if start == end else f"{start} to {end}"
+        if rotation.swing:
+            speed += f" ± {abs(rotation.swing) * 30 / np.pi:,.0f}"
+        return f"{self.scenario.run_id}: {self.scenario.machine.name} at {speed} rev/min"
+
+    @property
+    def hardest_touch(self) -> float:
+        """Time in s of the touch with the largest impulse; the middle of the recording without contact."""
+        touches = self.touches
+        if not touches.impulse.size:
+            return self.seconds / 2
+        return min(max(float(touches.start[np.argmax(touches.impulse)]), 0.0), self.seconds)
 
     @property
     def seconds(self) -> float:
@@ -59,7 +80,27 @@ def replay_of(run: Run) -> Replay:
         recording=run.recording,
         touches=sorted_touches(touches),
         frames=motion_frames(run.response, run.recording),
+        motion_classes=_motion_classes(run.labels, run.recording),
     )
+
+
+def _motion_classes(labels: Labels, recording: Recording) -> dict[str, list[tuple[float, str]]]:
+    """Those of the whole record, or where the speed changes of each change within the recording."""
+    stretches = [(0.0, labels.motion, labels.motion_blisk, labels.motion_casing)]
+    if labels.course is not None:
+        changes = labels.course.changes
+        times = [change.time - recording.start_seconds for change in changes]
+        last = recording.samples / recording.sample_rate_hz
+        stretches = [
+            (max(time, 0.0), change.motion, change.blisk, change.casing)
+            for time, after, change in zip(times, [*times[1:], np.inf], changes, strict=True)
+            if after > 0 and time < last
+        ]
+    return {
+        "motion": [(time, motion.value) for time, motion, _, _ in stretches],
+        "motion_blisk": [(time, blisk.value) for time, _, blisk, _ in stretches],
+        "motion_casing": [(time, casing.value) for time, _, _, casing in stretches],
+    }
 
 
 def sorted_touches(touches: ContactIntervals) -> ContactIntervals:

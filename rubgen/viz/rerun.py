@@ -74,7 +74,7 @@ def _recorded(replay: Replay, *, full: bool) -> bytes:
     send_touches(stream, replay, full=full)
     send_machine(stream, replay)
     send_orbit(stream, replay)
-    send_tip_timing(stream, replay)
+    send_tip_timing(stream, replay, full=full)
     send_orders(stream, replay)
     send_labels(stream, replay)
     content = memory.drain_as_bytes()

@@ -8,25 +8,31 @@ import rerun as rr
 
 from rubgen.arrays import FloatArray
 from rubgen.sensors.envelope import PREVIEW_RATE_HZ, preview
+from rubgen.viz.colors import LINES, rgba
 from rubgen.viz.replay import Replay
 
 TIMELINE = "time"
 DETAIL_TURNS = 20
-DETAIL_VALUES = 40_000
-"""Most full-rate values of all channels together: 320 kB, whatever the speed and the number of channels."""
-PREVIEW_VALUES = 40_000
-"""Most preview values of all channels together: 320 kB, whatever the length."""
+DETAIL_VALUES = 24_000
+"""Most full-rate values of all channels together: 192 kB, whatever the speed and the number of channels."""
+PREVIEW_VALUES = 24_000
+"""Most preview values of all channels together: 192 kB, whatever the length."""
+UNSHOWN = "pulse"
+"""The quantity of the pulses, which are seen as points of the orbit: left out, unless all is wanted."""
 Nanoseconds = npt.NDArray[np.timedelta64]
 
 
+def shown_channels(replay: Replay) -> int:
+    """Number of channels of which a file of moderate size holds signals."""
+    return sum(channel.quantity != UNSHOWN for channel in replay.recording.channels.values())
+
+
 def detail_window(replay: Replay) -> slice:
-    """Samples of the 20 turns, fewer where turns are long, around the hardest touch; the middle without one."""
+    """Samples of 20 turns, fewer where turns are long, around the hardest touch; the middle without one."""
     recording, samples = replay.recording, replay.recording.samples
     length = round(DETAIL_TURNS * replay.turn_seconds * recording.sample_rate_hz)
-    length = min(samples, length, DETAIL_VALUES // len(recording.channels))
-    centre = samples // 2
-    if replay.touches.impulse.size:
-        centre = round(float(replay.touches.start[np.argmax(replay.touches.impulse)]) * recording.sample_rate_hz)
+    length = min(samples, length, DETAIL_VALUES // shown_channels(replay))
+    centre = round(replay.hardest_touch * recording.sample_rate_hz)
     first = min(max(centre - length // 2, 0), samples - length)
     return slice(first, first + length)
 
@@ -43,29 +49,37 @@ def time_column(seconds: FloatArray) -> list[rr.TimeColumn]:
 
 def preview_rate(replay: Replay) -> float:
     """Bins a second of the preview: as many as stay within its values, at most 1024."""
-    columns = 2 * len(replay.recording.channels)
+    columns = 2 * shown_channels(replay)
     return min(PREVIEW_RATE_HZ, PREVIEW_VALUES / (columns * replay.seconds))
 
 
 def send_signals(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
-    """Every channel as preview and at full rate over the detail window (all of it: `full`), one entity a quantity."""
+    """Every channel as preview and at full rate over the detail window (all of it: `full`), one entity a quantity.
+
+    Minimum and maximum have the colour of their channel.
+    """
     recording, rate = replay.recording, replay.recording.sample_rate_hz
     window = slice(0, recording.samples) if full else detail_window(replay)
     times = np.arange(window.start, window.stop) / rate
     for quantity, group in recording.by_quantity().items():
+        if quantity == UNSHOWN and not full:
+            continue
+        colors = [rgba(LINES[place % len(LINES)]) for place in range(len(group))]
         shown = preview(group, rate, preview_rate(replay))
         names = [f"{name} [{group[0].unit}]" for name in shown.names]
-        _send_scalars(stream, f"/preview/{quantity}", shown.first / rate, shown.values, names)
+        pairs = [color for color in colors for _ in range(2)]
+        _send_scalars(stream, f"/preview/{quantity}", shown.first / rate, shown.values, names, pairs)
         values = np.column_stack([channel.values[window] for channel in group]).astype(np.float64)
         names = [f"{channel.name} [{channel.unit}]" for channel in group]
-        _send_scalars(stream, f"/detail/{quantity}", times, values, names)
+        _send_scalars(stream, f"/detail/{quantity}", times, values, names, colors)
 
 
 def _send_scalars(
-    stream: rr.RecordingStream, entity: str, times: FloatArray, values: FloatArray, names: list[str]
+    stream: rr.RecordingStream, entity: str, times: FloatArray, values: FloatArray, names: list[str], colors: list[int]
 ) -> None:
     """Lines of one entity: `values` (n, len(names)). Spikes survive zooming out."""
-    lines = rr.SeriesLines(names=names, aggregation_policy=rr.components.AggregationPolicy.MinMax)
+    policy = rr.components.AggregationPolicy.MinMax
+    lines = rr.SeriesLines(names=names, colors=np.array(colors, np.uint32), aggregation_policy=policy)
     stream.log(entity, lines, static=True)
     columns = rr.Scalars.columns(scalars=values.ravel()).partition([len(names)] * len(values))
     stream.send_columns(entity, time_column(times), columns)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,21 +13,31 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from rubgen.arrays import FloatArray
+from rubgen.labels.labels import Motion
+from rubgen.machine import Unbalance
 from rubgen.sensors.motion_frames import MotionFrames
-from rubgen.viz.colors import BLUE, GREY, IMPULSE_COLORS, MOTION_COLORS, PAPER_GREY, VERMILION
-from rubgen.viz.figures.style import label_axes, new_figure, note
+from rubgen.viz.colors import BLUE, GREY, MOTION_COLORS, PAPER_GREY, UNBALANCE, VERMILION, impulse_color
+from rubgen.viz.figures.style import INK, label_axes, new_figure, note
 from rubgen.viz.machine_shape import (
     blade_angles,
     casing_angles,
     casing_curve,
     drawing_factor,
     drawn_tips,
+    unbalance_text,
+    unbalances,
     undeformed_curve,
 )
 from rubgen.viz.replay import Replay
+from rubgen.viz.shaft_orbit import shaft_orbit
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 NEAR_TURNS = 3.0
+FRAMES_PER_TURN = 32
 TRACE_TURNS = 1.0
+PALETTE_FRAMES = 4
 GIF_FRAMES, GIF_MILLISECONDS, GIF_DPI = 64, 80, 80
 ARC = 360
 
@@ -47,7 +58,7 @@ def picture(replay: Replay, time: float | None = None) -> Figure:
     a replay without frames, or a time outside the recording.
     """
     scene = _scene(replay)
-    return _drawn(scene, _nearest(scene, _hardest(replay) if time is None else time))
+    return _drawn(scene, _nearest(scene, replay.hardest_touch if time is None else time))
 
 
 def write_gif(replay: Replay, path: Path) -> None:
@@ -57,11 +68,23 @@ def write_gif(replay: Replay, path: Path) -> None:
     scene = _scene(replay)
     dense = np.flatnonzero(scene.frames.dense)
     chosen = dense[:GIF_FRAMES] if dense.size else np.arange(min(scene.frames.time.size, GIF_FRAMES))
-    images = [Image.fromarray(pixels).convert("P", palette=Image.Palette.ADAPTIVE, colors=64)
-              for pixels in _pixels(scene, chosen)]  # fmt: skip
+    drawn = [Image.fromarray(pixels) for pixels in _pixels(scene, chosen)]
+    palette = _palette(drawn[:: max(1, len(drawn) // PALETTE_FRAMES)])
+    images = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in drawn]
     images[0].save(
         path, format="GIF", save_all=True, append_images=images[1:], duration=GIF_MILLISECONDS, loop=0, optimize=True
     )
+
+
+def _palette(images: list[Image.Image]) -> Image.Image:
+    """Colours for all frames from some: drawn towards means of clusters, so that rare ones stay what they are."""
+    from PIL import Image
+
+    width, height = images[0].size
+    strip = Image.new("RGB", (width, height * len(images)))
+    for place, image in enumerate(images):
+        strip.paste(image, (0, place * height))
+    return strip.quantize(256, kmeans=2, dither=Image.Dither.NONE)
 
 
 def _pixels(scene: _Scene, chosen: np.ndarray) -> Iterator[np.ndarray]:
@@ -79,14 +102,6 @@ def _scene(replay: Replay) -> _Scene:
     return _Scene(replay, frames, drawing_factor(replay.scenario.machine, frames))
 
 
-def _hardest(replay: Replay) -> float:
-    """Time of the hardest touch, of the middle without one."""
-    touches = replay.touches
-    if not touches.impulse.size:
-        return replay.seconds / 2
-    return max(0.0, float(touches.start[np.argmax(touches.impulse)]))
-
-
 def _nearest(scene: _Scene, time: float) -> int:
     seconds = scene.replay.seconds
     if not 0 <= time <= seconds:
@@ -98,9 +113,18 @@ def _drawn(scene: _Scene, row: int) -> Figure:
     figure = new_figure(10.0, 5.6)
     grid = figure.add_gridspec(2, 2, width_ratios=[1.25, 1])
     machine_along_axis(figure.add_subplot(grid[:, 0]), scene.replay, row, scene.factor)
+    figure.suptitle(scene.replay.title, x=0.01, ha="left", fontsize=11, color=INK)
+    motion = _motion_at(scene.replay, float(scene.frames.time[row]))
+    figure.text(0.5, 0.9915, motion.value, ha="right", va="top", fontsize=11, color=MOTION_COLORS[motion])
     _orbit(figure.add_subplot(grid[0, 1]), scene, row)
     _force(figure.add_subplot(grid[1, 1]), scene, row)
     return figure
+
+
+def _motion_at(replay: Replay, time: float) -> Motion:
+    """The class that holds at a time, s."""
+    known = [name for start, name in replay.motion_classes.get("motion", []) if start <= time]
+    return Motion(known[-1] if known else str(replay.labels["motion"]))
 
 
 def machine_along_axis(axes: Axes, replay: Replay, row: int, factor: float) -> None:
@@ -116,13 +140,10 @@ def machine_along_axis(axes: Axes, replay: Replay, row: int, factor: float) -> N
     centre = factor * np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) @ one.centre[0]
     _blisk(axes, replay, centre, angle, drawn_tips(machine, one, factor)[0])
     _contacts(axes, replay, frames, row, curve)
-    run, speed = replay.scenario.run_id, replay.scenario.operation.speed_rpm
-    motion = str(replay.labels["motion"])
-    axes.set_title(f"{run}, {machine.name} at {speed:,.0f} rev/min", fontsize=11, loc="left")
-    axes.text(1.0, 1.01, motion, transform=axes.transAxes, ha="right", va="bottom", fontsize=11,
-              color=MOTION_COLORS[next(each for each in MOTION_COLORS if each.value == motion)])  # fmt: skip
-    note = f"deviations from the tip circle × {factor:g}      t = {1e3 * time:.2f} ms"
-    axes.text(0.5, -0.01, note, transform=axes.transAxes, ha="center", va="top", fontsize=9)
+    text = f"deviations from the tip circle × {factor:g}; t = {1e3 * time:.2f} ms"
+    if replay.touches.impulse.size:
+        text += "\ncontacts by impulse, the present ones large, those of the last turn small"
+    axes.text(0.5, -0.01, text, transform=axes.transAxes, ha="center", va="top", fontsize=9, color=INK)
     reach = 1.04 * float(np.abs(rest).max())
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
     axes.axis("off")
@@ -137,7 +158,7 @@ def _only(frames: MotionFrames, row: int) -> MotionFrames:
 
 
 def _blisk(axes: Axes, replay: Replay, centre: FloatArray, angle: float, tips: FloatArray) -> None:
-    """Disk, blades as wide as their chord is seen along the axis, and the unbalance."""
+    """Disk, blades as wide as their chord is seen along the axis, and the unbalances."""
     machine = replay.scenario.machine
     blades, rim = machine.blades, machine.disk.rim_radius_m
     turned = angle + blade_angles(blades)
@@ -153,12 +174,22 @@ def _blisk(axes: Axes, replay: Replay, centre: FloatArray, angle: float, tips: F
     circle = np.column_stack([np.cos(round_), np.sin(round_)])
     axes.fill(*(centre + rim * circle).T, color="#7d8a96", zorder=2)
     axes.fill(*(centre + machine.disk.bore_radius_m * circle).T, color="#d5dbe1", zorder=2)
-    mark = centre + 0.88 * rim * np.array([np.cos(angle), np.sin(angle)])
-    axes.plot(*mark, "o", color=VERMILION, markersize=9, zorder=4)
-    inside = centre + 0.62 * (mark - centre)
-    axes.text(
-        float(inside[0]), float(inside[1]), "unbalance", ha="center", va="center", fontsize=8, color="white", zorder=4
-    )
+    for each in unbalances(machine):
+        _unbalance(axes, each, centre, angle, tips if each.blade is not None else rim)
+
+
+def _unbalance(axes: Axes, each: Unbalance, centre: FloatArray, angle: float, place: FloatArray | float) -> None:
+    """A mark near the rim, `place` its radius, or at the tip of its blade, `place` the tips; with its size within."""
+    if isinstance(place, float):
+        turned = angle + np.radians(each.angle_deg or 0.0)
+        mark = centre + 0.88 * place * np.array([np.cos(turned), np.sin(turned)])
+        inside = centre + 0.6 * (mark - centre)
+    else:
+        mark = place[each.blade or 0]
+        inside = centre + 0.48 * (mark - centre)
+    axes.plot(*mark, "o", color=UNBALANCE, markersize=9, markeredgecolor="white", markeredgewidth=0.8, zorder=7)
+    text = unbalance_text(each).replace(" ", "\n", 1)
+    axes.text(float(inside[0]), float(inside[1]), text, ha="center", va="center", fontsize=7.5, color="white", zorder=4)
 
 
 def _contacts(axes: Axes, replay: Replay, frames: MotionFrames, row: int, curve: FloatArray) -> None:
@@ -167,7 +198,7 @@ def _contacts(axes: Axes, replay: Replay, frames: MotionFrames, row: int, curve:
     if not touches.impulse.size:
         return
     start = float(frames.time[row])
-    end = float(frames.time[row + 1]) if row + 1 < frames.time.size else start + replay.turn_seconds / 32
+    end = start + replay.turn_seconds / FRAMES_PER_TURN
     share = np.sqrt(touches.impulse / touches.impulse.max())
     last = touches.start + touches.duration
     place = np.mod(np.round(touches.angle * ARC / (2 * np.pi)).astype(int), ARC)
@@ -175,21 +206,20 @@ def _contacts(axes: Axes, replay: Replay, frames: MotionFrames, row: int, curve:
         ((touches.start < end) & (last > start - TRACE_TURNS * replay.turn_seconds), 25.0, 5),
         ((touches.start < end) & (last > start), 260.0, 6),
     ):
-        color = IMPULSE_COLORS[np.minimum((share[chosen] * len(IMPULSE_COLORS)).astype(int), len(IMPULSE_COLORS) - 1)]
         x, y = curve[place[chosen]].T
-        named = [f"#{value >> 8:06x}" for value in color.tolist()]
+        named = [f"#{value >> 8:06x}" for value in impulse_color(share[chosen]).tolist()]
         axes.scatter(x, y, s=size * (0.15 + share[chosen]), c=named, zorder=z, linewidth=0.5, edgecolor="white")
 
 
 def _orbit(axes: Axes, scene: _Scene, row: int) -> None:
     """The recorded path of the last turns, points once a turn, and where the disk centre is."""
     replay, time = scene.replay, float(scene.frames.time[row])
-    channels = [replay.recording.channels.get(f"proximity_{axis}") for axis in "xy"]
     label_axes(axes, "Disk centre $x$, µm", "Disk centre $y$, µm")
-    if None in channels:
-        note(axes, "no proximity probes")
+    orbit = shaft_orbit(replay)
+    if orbit is None:
+        note(axes, "no pair of proximity probes")
         return
-    x, y = (1e6 * channel.values for channel in channels if channel)
+    x, y = orbit
     samples = np.arange(replay.recording.samples) / replay.recording.sample_rate_hz
     near = (samples > time - 10 * replay.turn_seconds) & (samples <= time)
     axes.plot(x[near], y[near], color=BLUE, linewidth=0.7, alpha=0.8)

@@ -6,14 +6,18 @@ import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
+from rubgen.sensors.channel import Channel
 from rubgen.viz.machine_shape import drawing_factor
+from rubgen.viz.orbit_entities import Bounds, orbit_bounds, section_bounds
 from rubgen.viz.order_entities import spectrum_channels
 from rubgen.viz.replay import Replay
-from rubgen.viz.signal_entities import TIMELINE
+from rubgen.viz.signal_entities import TIMELINE, UNSHOWN
 
-FIRST = ("contact_force", "casing_acc_0", "proximity_x", "blisk_x")
-"""What is looked at first; each view costs the file 8 kB, so orders are shown of these alone."""
 NEAR_TURNS, ORBIT_TURNS = 4.0, 10.0
+SHADE = np.uint32(0x80808066)
+"""Of the preview behind the samples."""
+MOST_NAMES = 8
+"""Longer legends hide the lines that they explain."""
 PLAYBACK = 0.02
 """A turn of 6 ms takes 0.3 s."""
 
@@ -23,7 +27,7 @@ def arrangement(replay: Replay) -> rrb.Blueprint:
     parts = [
         rrb.Vertical(*_machine(replay), _motion(), row_shares=[4, 1]) if _has_frames(replay) else _motion(),
         rrb.Vertical(*_signals(replay), row_shares=[3, 3, 3]),
-        rrb.Vertical(_orbit(replay), _orders(replay), _texts(), row_shares=[3, 3, 3]),
+        rrb.Vertical(_orbits(replay), _orders(replay), _texts(), row_shares=[3, 3, 3]),
     ]
     return rrb.Blueprint(
         rrb.Horizontal(*parts, column_shares=[4, 4, 3] if _has_frames(replay) else [1, 4, 3]),
@@ -62,12 +66,12 @@ def _machine(replay: Replay) -> list[rrb.Tabs]:
         rrb.Spatial3DView(
             origin=origin,
             contents="/machine/**",
-            name=f"{name}; deviations from the tip circle x {factor:g}",
+            name=f"{name}, deviations × {factor:g}",
             eye_controls=eye,
             line_grid=False,
             overrides={"/machine/contact/trace": trace},
         )
-        for origin, name in (("/machine", "machine"), ("/machine/rotor", "from the turning blisk"))
+        for origin, name in (("/machine", "machine"), ("/machine/rotor", "turning with the blisk"))
     ]
     return [rrb.Tabs(*views)]
 
@@ -77,20 +81,37 @@ def _motion() -> rrb.StateTimelineView:
 
 
 def _signals(replay: Replay) -> list[rrb.Tabs]:
+    """Whole run above; below a few turns about the cursor, every sample about the hardest touch, else the preview."""
     start, end = _near(replay, NEAR_TURNS, NEAR_TURNS)
     near = rrb.TimeAxis(view_range=rrb.TimeRange(start=start, end=end))
-    groups = {name: group for name, group in replay.recording.by_quantity().items() if name != "pulse"}
-    tabs = []
-    for rate, title, first, axis in (
-        ("preview", "whole run", "contact_force", None),
-        ("detail", "about the cursor", "acceleration", near),
-    ):
-        names = {quantity: f"{quantity}, {group[0].unit} ({title})" for quantity, group in groups.items()}
-        views = [
-            rrb.TimeSeriesView(origin=f"/{rate}/{quantity}", name=name, axis_x=axis) for quantity, name in names.items()
-        ]
-        tabs.append(rrb.Tabs(*views, name=title, active_tab=names.get(first, 0)))
-    return [*tabs, _contacts(replay)]
+    groups = {name: group for name, group in replay.recording.by_quantity().items() if name != UNSHOWN}
+    titles = {quantity: f"{quantity.replace('_', ' ')}, {group[0].unit}" for quantity, group in groups.items()}
+    whole = [
+        rrb.TimeSeriesView(origin=f"/preview/{quantity}", name=title, plot_legend=_legend(groups[quantity], 2))
+        for quantity, title in titles.items()
+    ]
+    close = [
+        rrb.TimeSeriesView(
+            origin=f"/detail/{quantity}",
+            contents=[f"/preview/{quantity}", f"/detail/{quantity}"],
+            name=f"near: {title}",
+            axis_x=near,
+            plot_legend=_legend(groups[quantity], 3),
+            overrides={f"/preview/{quantity}": rr.SeriesLines(colors=np.full(2 * len(groups[quantity]), SHADE))},
+        )
+        for quantity, title in titles.items()
+    ]
+    return [
+        rrb.Tabs(*whole, name="whole run", active_tab=titles.get("contact_force", 0)),
+        rrb.Tabs(*close, name="about the cursor", active_tab=f"near: {titles.get('acceleration', '')}"
+                 if "acceleration" in titles else 0),
+        _contacts(replay),
+    ]  # fmt: skip
+
+
+def _legend(group: list[Channel], lines: int) -> rrb.PlotLegend | None:
+    """None for the viewer's own, hidden where it would be long; names appear under the cursor in any case."""
+    return rrb.PlotLegend(visible=False) if len(group) * lines > MOST_NAMES else None
 
 
 def _contacts(replay: Replay) -> rrb.Tabs:
@@ -100,7 +121,7 @@ def _contacts(replay: Replay) -> rrb.Tabs:
         rrb.TimeSeriesView(origin="/contact/blade", name="blade"),
         rrb.TensorView(
             origin="/contact/map",
-            name="impulse, mN s: angle against blade",
+            name="impulse, mN s, by angle and blade",
             scalar_mapping=rrb.TensorScalarMapping(colormap="inferno"),
             view_fit="fill",
         ),
@@ -116,39 +137,54 @@ def _timing(replay: Replay) -> list[rrb.TimeSeriesView]:
     return [rrb.TimeSeriesView(origin="/blade_tip_timing", name="tip deflection from timing, um")]
 
 
-def _orbit(replay: Replay) -> rrb.Spatial2DView:
+def _orbits(replay: Replay) -> rrb.Tabs:
+    """The orbit of the last turns with all points once a turn, and these alone, enlarged."""
     start, end = _near(replay, ORBIT_TURNS)
-    found = [replay.recording.channels.get(name) for name in ("proximity_x", "proximity_y")]
-    x, y = (np.zeros(1) if channel is None else 1e6 * channel.values for channel in found)
-    half = 0.6 * max(*(float(np.nanmax(v) - np.nanmin(v)) for v in (x, y)), 1.0)
-    middle_x, middle_y = (float(np.nanmax(v) + np.nanmin(v)) / 2 for v in (x, -y))  # Y points downwards in the viewer
-    return rrb.Spatial2DView(
+    orbit = rrb.Spatial2DView(
         origin="/orbit",
-        name="orbit of the disk centre, um: last 10 turns; points once a turn",
-        visual_bounds=rrb.VisualBounds2D(
-            x_range=[middle_x - half, middle_x + half], y_range=[middle_y - half, middle_y + half]
-        ),
+        contents=["$origin/**", "- /orbit/plane/scale/section"],
+        name="orbit of the disk centre",
+        visual_bounds=_square(orbit_bounds(replay)),
         time_ranges=rrb.VisibleTimeRange(TIMELINE, start=start, end=end),
     )
+    section = rrb.Spatial2DView(
+        origin="/orbit",
+        contents=["/orbit/plane", "/orbit/plane/section", "/orbit/plane/scale/section"],
+        name="once a turn, enlarged",
+        visual_bounds=_square(section_bounds(replay)),
+    )
+    return rrb.Tabs(orbit, section, name="orbit", active_tab=0)
+
+
+def _square(bounds: Bounds) -> rrb.VisualBounds2D:
+    """Y points downwards in the viewer."""
+    x, y, half = bounds.x, -bounds.y, bounds.half
+    return rrb.VisualBounds2D(x_range=[x - half, x + half], y_range=[y - half, y + half])
 
 
 def _orders(replay: Replay) -> rrb.Tabs:
+    """Spectra at the cursor and waterfalls over the run; a waterfall first where the speed changes."""
     channels = spectrum_channels(replay)
-    first = [name for name in FIRST if name in channels] or list(channels)[:1]
     spectra = [
-        rrb.BarChartView(origin=f"/spectrum/{name}", name=f"{name}, {channels[name].unit}, over order")
-        for name in first
+        rrb.BarChartView(origin=f"/spectrum/{name}", name=f"{name}, {channel.unit}, over order")
+        for name, channel in channels.items()
     ]
     falls = [
         rrb.TensorView(
             origin=f"/waterfall/{name}",
-            name=f"waterfall of {name}, dB",
+            name=f"waterfall: {name}, dB",
             scalar_mapping=rrb.TensorScalarMapping(colormap="viridis"),
             view_fit="fill",
         )
-        for name in first
+        for name in channels
     ]
-    return rrb.Tabs(*spectra, *falls, name="orders", active_tab=0)
+    steady = replay.scenario.operation.rotation.is_steady
+    first = (
+        0
+        if steady or not falls
+        else len(spectra) + (list(channels).index("casing_acc_0") if "casing_acc_0" in channels else 0)
+    )
+    return rrb.Tabs(*spectra, *falls, name="orders", active_tab=first)
 
 
 def _texts() -> rrb.Tabs:

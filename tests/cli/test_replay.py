@@ -1,7 +1,8 @@
 """`rubgen replay`: what it shows, what it writes, and what it refuses in one line."""
 
 import dataclasses
-import subprocess
+from types import SimpleNamespace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from rerun.chunk import RrdReader
 
 from rubgen.cli import replaying
 from rubgen.io.mcap import write_mcap
+from rubgen.viz.replay import replay_of
 
 
 @pytest.fixture(scope="module")
@@ -59,21 +61,73 @@ def test_a_damaged_file_is_shown_and_its_loss_told(run, mcap_file, tmp_path):
     assert (tmp_path / "run.rrd").exists()
 
 
-@pytest.mark.parametrize("web", [(), ("--web",)])
-def test_the_viewer_gets_the_recording(run, mcap_file, monkeypatch, web):
-    started = []
+class MadeViewer:
+    """Stands where the viewer's process would: it keeps its command and what the recording holds, and ends at once."""
 
-    def start(command, *, check):
-        started.append((command[1:], entities(command[3])))
-        return subprocess.CompletedProcess(command, 0)
+    started: ClassVar[list[tuple[list[str], set[str]]]] = []
+    code = 0
 
+    def __init__(self, command):
+        self.started.append((command[1:], entities(command[3])))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def poll(self):
+        return self.code
+
+    wait = poll
+
+
+@pytest.fixture
+def made_viewer(monkeypatch):
     monkeypatch.setenv("DISPLAY", ":0")
-    monkeypatch.setattr(replaying.subprocess, "run", start)
+    monkeypatch.setattr(replaying.subprocess, "Popen", MadeViewer)
+    monkeypatch.setattr(MadeViewer, "started", [])
+    return MadeViewer
+
+
+@pytest.mark.parametrize("web", [(), ("--web",)])
+def test_the_viewer_gets_the_recording(run, mcap_file, made_viewer, web):
     assert run("replay", str(mcap_file), *web)[0] == 0
-    ((command, shown),) = started
+    ((command, shown),) = made_viewer.started
     assert command[:2] == ["-m", "rerun"]
+    assert command[command.index("--bind") + 1] == "127.0.0.1"
     assert "/machine/rotor" in shown
-    assert ("127.0.0.1" in command) == bool(web)
+    assert ("--web-viewer" in command) == bool(web)
+
+
+class MadeClient:
+    """Stands where the link to the viewer would: it answers at the third try and keeps where the cursor was put."""
+
+    tries = 0
+    put: ClassVar[list[tuple[str, float, str]]] = []
+
+    @classmethod
+    def connect(cls, url):
+        cls.tries += 1
+        if cls.tries == 1:
+            raise ConnectionError("nobody there yet")
+        assert url.startswith("rerun+http://127.0.0.1:")
+        return cls()
+
+    def get_state(self):
+        return SimpleNamespace(views=["one"], loading=["a file"] if self.tries == 2 else [])
+
+    def set_time(self, timeline, *, duration, play_state):
+        self.put.append((timeline, duration, play_state))
+
+
+def test_the_viewer_begins_at_the_turns_about_the_hardest_touch(run, rub_run, mcap_file, made_viewer, monkeypatch):
+    monkeypatch.setattr("rerun.experimental.ViewerClient", MadeClient)
+    monkeypatch.setattr(replaying.time, "sleep", lambda _: None)
+    monkeypatch.setattr(made_viewer, "poll", lambda _: None)
+    assert run("replay", str(mcap_file))[0] == 0
+    frames = replay_of(rub_run).frames
+    assert MadeClient.put == [("time", pytest.approx(frames.time[frames.dense == 1][0]), "playing")]
 
 
 @pytest.mark.parametrize(
@@ -112,9 +166,8 @@ def test_a_file_without_motion_has_no_picture(run, rub_run, tmp_path):
     assert "holds no motion, only signals" in err
 
 
-def test_a_viewer_that_fails_is_told(run, mcap_file, monkeypatch):
-    monkeypatch.setenv("DISPLAY", ":0")
-    monkeypatch.setattr(replaying.subprocess, "run", lambda command, **_: subprocess.CompletedProcess(command, 1))
+def test_a_viewer_that_fails_is_told(run, mcap_file, made_viewer, monkeypatch):
+    monkeypatch.setattr(made_viewer, "code", 1)
     code, _, err = run("replay", str(mcap_file))
     assert code == 2
     assert "the viewer ended with 1; give --save FILE.rrd" in err

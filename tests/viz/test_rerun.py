@@ -8,10 +8,12 @@ import pytest
 from rerun.chunk import RrdReader
 
 from rubgen.labels.plain import labels_dict
+from rubgen.machine import Unbalance
 from rubgen.sensors.contact_window import contact_intervals
+from rubgen.viz.machine_shape import blade_leanings, blade_placements, drawing_factor
 from rubgen.viz.replay import replay_of
 from rubgen.viz.rerun import check_rrd, recording_id, write_replay, write_rrd
-from rubgen.viz.signal_entities import PREVIEW_VALUES, detail_window, preview_rate
+from rubgen.viz.signal_entities import PREVIEW_VALUES, detail_window, preview_rate, shown_channels
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +37,7 @@ def test_full_rate_excerpt_reads_back_to_the_bit(rub_run, rrd_file):
     read = columns(rrd_file, "/detail/acceleration")
     angles = (0, 90, 180, 270)
     sent = [rub_run.recording.channels[f"casing_acc_{angle}"].values[window] for angle in angles]
-    assert window.stop - window.start == 20 * 154 - 8  # 20 turns of 1/166.67 s at 25.6 kHz
+    assert window.stop - window.start == 24_000 // 11  # of 11 channels; 20 turns would be 3,072 samples
     assert np.array(read["Scalars:scalars"], dtype=np.float32).tobytes() == np.column_stack(sent).tobytes()
     assert read["SeriesLines:names"] == [[f"casing_acc_{angle} [m/s2]" for angle in angles]]
 
@@ -73,11 +75,9 @@ def test_the_detail_window_holds_the_hardest_touch(rub_run):
 
 def test_labels_and_scenario_are_properties(rub_run, rrd_file):
     read = columns(rrd_file, "/__properties/labels")
-    known = {key: value for key, value in labels_dict(rub_run.labels).items() if value not in (None, [])}
-    assert set(known) <= set(read)
+    assert json.loads(read["json"][0][0]) == labels_dict(rub_run.labels)
     assert read["motion"] == [["period-k"]]
-    assert read["contact_zone_widths_rad"] == [[0.3, 0.31]]
-    assert read["contact_force_orders"] == [rub_run.labels.orders["contact_force"].tolist()]
+    assert read["rub"] == [[True]]
     scenario = json.loads(columns(rrd_file, "/__properties/scenario")["json"][0][0])
     assert scenario["operation"]["speed_rpm"] == 10000.0
 
@@ -116,13 +116,54 @@ def test_a_run_without_contact(free_run, tmp_path):
 
 def test_the_machine_moves_frame_by_frame(rub_run, rrd_file):
     frames = replay_of(rub_run).frames
-    assert 256 < frames.time.size <= 256 + 60
+    assert 256 < frames.time.size <= 256 + 48
     places = columns(rrd_file, "/machine/casing/ring")["InstancePoses3D:translations"]
     assert (len(places), len(places[0])) == (frames.time.size, 72)
     leanings = columns(rrd_file, "/machine/rotor/blades")["InstancePoses3D:mat3x3"]
     assert (len(leanings), len(leanings[0])) == (frames.time.size, 36)
     turned = columns(rrd_file, "/machine/rotor")["Transform3D:quaternion"]
     assert np.array(turned)[:, 0, 2] == pytest.approx(np.sin(frames.angle / 2), abs=1e-6)
+
+
+def test_every_unbalance_has_its_mark(rub_run, tmp_path):
+    """On the disk at its angle, at rest; on a blade where the drawn tip is."""
+    machine = dataclasses.replace(
+        rub_run.scenario.machine,
+        unbalance_angle_deg=30.0,
+        unbalances=(Unbalance(kg_m=2e-3, angle_deg=200.0), Unbalance(kg_m=1e-4, blade=7)),
+    )
+    run = dataclasses.replace(rub_run, scenario=dataclasses.replace(rub_run.scenario, machine=machine))
+    write_rrd(run, tmp_path / "run.rrd")
+    disk = columns(tmp_path / "run.rrd", "/machine/rotor/unbalance/disk")
+    x, y, z = np.array(disk["Points3D:positions"][0]).T
+    np.testing.assert_allclose(np.degrees(np.arctan2(y, x)) % 360, [30.0, 200.0], atol=1e-3)
+    assert z.min() > machine.disk.rim_thickness_m / 2
+    assert disk["Points3D:labels"] == [[f"unbalance {1e3 * machine.unbalance_kg_m:.3g} g m", "unbalance 2 g m"]]
+    blade = columns(tmp_path / "run.rrd", "/machine/rotor/unbalance/blades")
+    frames = replay_of(run).frames
+    leanings = blade_leanings(machine, frames, drawing_factor(machine, frames))
+    expected = blade_placements(machine)[7] + leanings[:, 7, :, 0] * machine.blades.length_m
+    np.testing.assert_allclose(np.array(blade["Points3D:positions"])[:, 0], expected, atol=1e-6)
+    assert blade["Points3D:labels"] == [["unbalance 0.1 g m, blade 7"]]
+
+
+def test_motion_lanes_change_with_the_run(rub_run, tmp_path):
+    classes = {
+        "motion": [(0.0, "period-1"), (0.1, "chaotic")],
+        "motion_blisk": [(0.0, "period-1")],
+        "motion_casing": [(0.0, "static"), (0.1, "chaotic")],
+    }
+    write_replay(dataclasses.replace(replay_of(rub_run), motion_classes=classes), tmp_path / "run.rrd")
+    for part, label in (("system", "motion"), ("blisk", "motion_blisk"), ("casing", "motion_casing")):
+        (chunk,) = [
+            each
+            for each in RrdReader(tmp_path / "run.rrd").stream().filter(content=f"/labels/motion/{part}").to_chunks()
+            if not each.is_static
+        ]
+        batch = chunk.to_record_batch()
+        states = [state for (state,) in batch.column("StateChange:state").to_pylist()]
+        times = [1e-9 * time for time in batch.column("time").cast("int64").to_pylist()]
+        assert list(zip(np.round(times, 9).tolist(), states, strict=True)) == classes[label]
 
 
 def test_contact_points_flash_while_they_touch(rub_run, rrd_file):
@@ -150,18 +191,42 @@ def test_full_holds_every_sample_and_touch(rub_run, tmp_path):
     assert np.array(read, dtype=np.float32)[:, 0].tobytes() == values.tobytes()
 
 
-def test_a_file_stays_below_two_megabytes(make_synthetic_run, tmp_path):
-    write_rrd(make_synthetic_run(seconds=0.65), tmp_path / "long.rrd")
+@pytest.mark.parametrize("sensors", ["default", "rig"])
+def test_a_file_stays_below_two_megabytes(make_synthetic_run, sensors, tmp_path):
+    write_rrd(make_synthetic_run(seconds=0.65, sensors=sensors), tmp_path / "long.rrd")
     assert (tmp_path / "long.rrd").stat().st_size < 2e6
+
+
+def test_of_many_passages_those_about_the_hardest_touch_stay_and_full_keeps_all(rig_run, monkeypatch, tmp_path):
+    monkeypatch.setattr("rubgen.viz.timing_entities.MOST_PASSAGES", 400)  # of four probes
+    replay = replay_of(rig_run)
+    for full in (False, True):
+        write_replay(replay, tmp_path / "run.rrd", full=full)
+        (chunk,) = [
+            each
+            for each in RrdReader(tmp_path / "run.rrd")
+            .stream()
+            .filter(content="/blade_tip_timing/timing_10")
+            .to_chunks()
+            if not each.is_static
+        ]
+        times = 1e-9 * np.array(chunk.to_record_batch().column("time").cast("int64").to_pylist())
+        seen = replay.recording.tip_timing["timing_10"].time
+        if full:
+            assert times.size > 0.95 * seen.size > 400
+        else:
+            assert 75 <= times.size <= 101
+            near = np.abs(times - replay.hardest_touch) < 20 / 36 * replay.turn_seconds
+            assert near.sum() >= 19
 
 
 def test_previews_do_not_grow_with_the_recording(rub_run):
     replay = replay_of(rub_run)
-    bins = preview_rate(replay) * replay.seconds * 2 * len(replay.recording.channels)
+    bins = preview_rate(replay) * replay.seconds * 2 * shown_channels(replay)
     assert bins <= PREVIEW_VALUES
     long = dataclasses.replace(replay.recording, sample_rate_hz=replay.recording.sample_rate_hz / 40)
     longer = dataclasses.replace(replay, recording=long)
-    assert preview_rate(longer) * longer.seconds * 2 * len(long.channels) == pytest.approx(PREVIEW_VALUES)
+    assert preview_rate(longer) * longer.seconds * 2 * shown_channels(longer) == pytest.approx(PREVIEW_VALUES)
 
 
 @pytest.mark.parametrize("damage", [lambda data: data[: len(data) // 2], lambda _: b"no recording", lambda _: b""])

@@ -14,6 +14,7 @@ from rubgen.viz.colors import BLUE, GREY, PAPER_GREY, VERMILION
 from rubgen.viz.figures.style import INK, label_axes, new_figure, note
 from rubgen.viz.orders import HIGHEST_ORDER, order_map
 from rubgen.viz.replay import Replay
+from rubgen.viz.shaft_orbit import section, shaft_orbit
 
 SECTORS = 90
 WAVE_TURNS = 6
@@ -24,16 +25,18 @@ def orbit_section(replay: Replay) -> Figure:
 
     Raises ValueError where the probes were not recorded.
     """
-    x, y = (1e6 * channel_of(replay, f"proximity_{axis}").values.astype(float) for axis in "xy")
+    orbit, once = shaft_orbit(replay), section(replay)
+    if orbit is None or once is None:
+        raise ValueError("no pair of proximity probes was recorded; choose sensors with two")
+    x, y = orbit
     time = np.arange(replay.recording.samples) / replay.recording.sample_rate_hz
-    once = [np.interp(replay.pulse_times, time, values) for values in (x, y)]
     figure = new_figure(9.0, 4.4)
-    path, section = figure.subplots(1, 2)
+    path, points = figure.subplots(1, 2)
     last = time > time[-1] - 30 * replay.turn_seconds
     path.plot(x[last], y[last], color=BLUE, linewidth=0.6)
     path.plot(*once, ".", color=VERMILION, markersize=4)
-    section.plot(*once, ".", color=VERMILION, markersize=4)
-    for axes, text in ((path, "orbit"), (section, "once a turn")):
+    points.plot(*once, ".", color=VERMILION, markersize=4)
+    for axes, text in ((path, "orbit"), (points, "once a turn")):
         axes.set_aspect("equal", adjustable="datalim")
         axes.margins(0.1)
         label_axes(axes, "Disk centre $x$, µm", f"Disk centre $y$, µm ({text})")
@@ -60,7 +63,7 @@ def contact_distribution(replay: Replay) -> Figure:
     blades = replay.scenario.machine.blades.count
     by_blade = 1e3 * np.bincount(touches.blade.astype(np.int64), weights=touches.impulse, minlength=blades) / turns
     bars.bar(np.arange(blades), by_blade, color=BLUE, width=0.8)
-    label_axes(bars, "Blade, counted from the unbalance", "Impulse a turn, mN s")
+    label_axes(bars, "Blade", "Impulse a turn, mN s")
     if around.any():
         polar.set_rorigin(-0.6 * around.max())
     else:
