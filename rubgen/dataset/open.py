@@ -14,7 +14,9 @@ from rubgen.arrays import FloatArray
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, read_manifest
 from rubgen.errors import UserError
+from rubgen.io.columns import signal_columns
 from rubgen.io.parquet import open_parquet, read_table
+from rubgen.scenario.recipe import recorded_recipe
 from rubgen.sensors.channel import Float32Array
 
 if TYPE_CHECKING:
@@ -34,6 +36,14 @@ class DataSet:
         """One row a run, failed ones too: parameters and labels, by `run_id`."""
         frame: pd.DataFrame = read_table(self.layout.runs).to_pandas()
         return frame.set_index("run_id", drop=False)
+
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """The unit of each recorded channel by its name, of the clean ones too where the set keeps them."""
+        identity = self.manifest.identity
+        sensing = recorded_recipe(identity.recipe, identity.machine).sensing
+        columns = signal_columns(sensing.set, clean=sensing.keep_clean)
+        return {column.name: column.unit for column in columns if column.kind == "signal"}
 
     def row(self, run_id: str) -> dict[str, Any]:
         """One run's parameters and labels by column."""

@@ -82,8 +82,9 @@ def _waveform(replay: Replay, choice: Choice) -> Figure:
 
 def _bifurcation(data: DataSet, choice: Choice) -> Figure:
     """The channel at each pulse about the mean of each run: k points for period k, whatever the orbit's size."""
-    key, name = _parameter(data, choice), choice.channel or CHANNEL
-    scale, unit = SHOWN_UNIT.get(_unit(name), (1.0, _unit(name)))
+    key, name = _parameter(data, choice), choice.channel or _without_noise(data, CHANNEL)
+    unit = data.units.get(name, "")
+    scale, unit = SHOWN_UNIT.get(unit, (1.0, unit))
     values, sections, motions = [], [], []
     for run_id, samples, pulses in data.each_channel(name):
         row = data.row(run_id)
@@ -91,7 +92,8 @@ def _bifurcation(data: DataSet, choice: Choice) -> Figure:
         section = scale * np.interp(pulses, np.arange(samples.size) / row["sample_rate_hz"], samples)
         sections.append(section - section.mean())
         motions.append(row["motion"])
-    y = f"{name} once a turn about its mean, {unit}"
+    what = "Disk centre $x$" if name.removesuffix("_clean") == CHANNEL else name
+    y = f"{what} once a turn about its mean, {unit}"
     return figures.bifurcation(np.array(values), sections, motions, x=axis_text(key), y=y)
 
 
@@ -108,7 +110,7 @@ def _cascade(data: DataSet, choice: Choice) -> Figure:
             orders = found.order
     if len({spectrum.size for spectrum in spectra}) != 1:
         raise ValueError("signals of 17 turns or more are needed; raise signal_seconds")
-    unit = _unit(name).replace("m/s2", "m/s²")
+    unit = data.units.get(name, "").replace("m/s2", "m/s²")
     return figures.spectrum_cascade(np.array(values), orders, np.array(spectra), y=axis_text(key), unit=unit)
 
 
@@ -138,10 +140,10 @@ def _parameter(data: DataSet, choice: Choice) -> str:
     return choice.parameter
 
 
-def _unit(channel: str) -> str:
-    from rubgen.io.columns import SIGNALS
-
-    return next((column.unit for column in SIGNALS if column.name == channel), "")
+def _without_noise(data: DataSet, channel: str) -> str:
+    """The clean channel where the set has it."""
+    clean = f"{channel}_clean"
+    return clean if clean in data.units else channel
 
 
 FIGURES: dict[str, Make] = {

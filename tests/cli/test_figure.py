@@ -1,5 +1,7 @@
 """`rubgen figure`: every name draws, and mistakes are named."""
 
+from typing import ClassVar
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -27,6 +29,7 @@ class MadeSet:
             "lyapunov_error": [0.01, 0.02, None],
         }
     ).set_index("run_id", drop=False)
+    units: ClassVar[dict[str, str]] = {"proximity_x": "m", "proximity_x_clean": "m", "casing_acc_0": "m/s2"}
 
     def __init__(self, _directory=None):
         pass
@@ -87,6 +90,17 @@ def test_the_bifurcation_shows_the_section_in_the_colour_of_its_class(made_set, 
     assert np.ptp(lines[0].get_ydata()) < 1e-3  # um: it repeats every turn
     assert np.ptp(lines[1].get_ydata()) > 100
     assert set(lines[1].get_xdata()) == {6100.0}
+
+
+def test_the_bifurcation_takes_the_clean_channel_and_names_its_unit(made_set, monkeypatch, tmp_path):
+    asked = []
+    each = MadeSet.each_channel
+    monkeypatch.setattr(MadeSet, "each_channel", lambda data, name: asked.append(name) or each(data, name))
+    assert make_figure("bifurcation", tmp_path, Choice()).axes[0].get_ylabel().endswith("about its mean, µm")
+    monkeypatch.setattr(MadeSet, "units", {"proximity_45": "V"})
+    figure = make_figure("bifurcation", tmp_path, Choice(channel="proximity_45"))
+    assert figure.axes[0].get_ylabel() == "proximity_45 once a turn about its mean, V"
+    assert asked == ["proximity_x_clean", "proximity_45"]
 
 
 def test_the_exponent_leaves_out_runs_without_one(made_set, tmp_path):

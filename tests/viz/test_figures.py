@@ -10,6 +10,7 @@ from matplotlib.colors import to_hex
 
 from rubgen.viz.colors import MOTION_COLORS
 from rubgen.viz.figures import dataset_overview, overview, save_png
+from rubgen.viz.figures.data_set import varied_keys
 
 
 @pytest.fixture(scope="module")
@@ -93,6 +94,22 @@ def test_the_same_run_gives_the_same_small_picture(rub_run, tmp_path):
 def test_a_failed_run_has_no_picture(rub_run):
     with pytest.raises(ValueError, match="nothing to show"):
         overview(dataclasses.replace(rub_run, recording=None))
+
+
+def test_what_follows_from_a_steady_speed_is_no_parameter(runs):
+    steady = runs.assign(end_speed_rpm=runs["speed_rpm"], duration_s=500 * 60 / runs["speed_rpm"], fluctuation_rpm=0.0)
+    expected = ["speed_rpm", "clearance_m", "casing_support_stiffness_n_per_m"]
+    assert varied_keys(steady) == expected
+    assert varied_keys(steady.assign(end_speed_rpm=9000.0)) == [*expected, "duration_s"]
+
+
+def test_long_labels_stay_inside(runs):
+    figure = dataset_overview(runs)
+    figure.canvas.draw()
+    for axes in figure.axes:
+        label = axes.yaxis.label.get_window_extent()
+        assert figure.bbox.y0 <= label.y0
+        assert label.y1 <= figure.bbox.y1
 
 
 def test_every_good_run_is_one_point_in_the_colour_of_its_motion(runs):

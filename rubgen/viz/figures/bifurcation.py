@@ -25,10 +25,11 @@ def bifurcation(
     axes = figure.subplots()
     for value, section, motion in zip(values, sections, motions, strict=True):
         color = MOTION_COLORS[Motion(motion)]
-        axes.plot(np.full(section.size, value), section, ".", color=color, markersize=2.2, markeredgewidth=0)
+        axes.plot(np.full(section.size, value), section, ".", color=color, markersize=3, markeredgewidth=0)
     label_axes(axes, x, y)
     axes.margins(x=0.01)
-    figure.legend(handles=_classes(motions), loc="outside lower center", ncols=5, frameon=False, fontsize=9)
+    dots = _classes(motions, "o")
+    figure.legend(handles=dots, loc="outside lower center", ncols=len(dots), frameon=False, fontsize=9)
     return figure
 
 
@@ -54,9 +55,11 @@ def exponent_sweep(
     return figure
 
 
-def _classes(motions: Sequence[str]) -> list[Line2D]:
+def _classes(motions: Sequence[str], marker: str | None = None) -> list[Line2D]:
+    """Marks of the classes that occur, all with one marker where one is given."""
     present = [motion for motion in Motion if motion.value in motions]
     return [
-        Line2D([], [], linestyle="none", marker=MOTION_MARKERS[each], color=MOTION_COLORS[each], label=each.value)
+        Line2D([], [], linestyle="none", marker=marker or MOTION_MARKERS[each], color=MOTION_COLORS[each],
+               label=each.value)
         for each in present
-    ]
+    ]  # fmt: skip

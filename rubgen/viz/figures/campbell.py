@@ -11,7 +11,7 @@ from rubgen.reduction import ReducedModel
 from rubgen.viz.colors import BLUE, GREY, VERMILION
 from rubgen.viz.figures.style import INK, label_axes, new_figure
 
-SPEEDS = 41
+SPEEDS = 121
 BLISK_MODES, CASING_MODES = 12, 11
 HIGHEST_ORDER = 8
 
@@ -24,6 +24,8 @@ def campbell(model: ReducedModel, *, highest_rpm: float = 15_000.0) -> Figure:
     casing likewise. Lines without damping and without contact.
     """
     speeds = np.linspace(1.0, highest_rpm, SPEEDS)
+    if model.critical_speed_rpm < highest_rpm:  # there a frequency is zero, in a corner that a grid would cut
+        speeds = np.union1d(speeds, model.critical_speed_rpm)
     figure = new_figure(10.0, 5.0)
     blisk, casing = figure.subplots(1, 2)
     _blisk(blisk, model, speeds)
@@ -39,9 +41,10 @@ def _blisk(axes: Axes, model: ReducedModel, speeds: FloatArray) -> None:
     critical = model.critical_speed_rpm
     if critical <= speeds[-1]:
         axes.axvline(critical, color=VERMILION, linewidth=1, linestyle="--")
-        text = f"critical {critical:,.0f}"
+        text = f"critical, {critical:,.0f} rev/min"
         axes.annotate(text, (critical, top), xytext=(3, -3), textcoords="offset points", color=VERMILION,
-                      rotation=90, va="top", ha="left", fontsize=8)  # fmt: skip
+                      rotation=90, va="top", ha="left", fontsize=8, zorder=4,
+                      bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})  # fmt: skip
     _finish(axes, speeds, top, "Blisk: frequency in the turning frame, Hz")
 
 

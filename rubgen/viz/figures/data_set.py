@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 from matplotlib.axes import Axes
@@ -16,7 +17,10 @@ if TYPE_CHECKING:
 
 FIRST = ("speed_rpm", "clearance_m", "casing_support_stiffness_n_per_m")
 """The parameters that are looked at first, where they vary."""
+FOLLOWING = ("end_speed_rpm", "duration_s")
 LOGARITHMIC_SPAN = 5.0
+LABEL_LETTERS = 40
+"""A longer label of an upright axis is broken into lines."""
 
 
 def dataset_overview(runs: pd.DataFrame) -> Figure:
@@ -39,15 +43,26 @@ def dataset_overview(runs: pd.DataFrame) -> Figure:
 
 
 def varied_keys(runs: pd.DataFrame) -> list[str]:
-    """The keys of `[vary]` that take more than one value, those of `FIRST` first."""
-    keys = [entry.key for entry in PARAMETERS if entry.key in runs and runs[entry.key].nunique() > 1]
+    """The keys of `[vary]` that take more than one value, those of `FIRST` first.
+
+    At steady speed the duration and the speed at the end follow from the speed and are none of their own.
+    """
+    follow = FOLLOWING if _is_steady(runs) else ()
+    known = [entry.key for entry in PARAMETERS if entry.key in runs and entry.key not in follow]
+    keys = [key for key in known if runs[key].nunique() > 1]
     return sorted(keys, key=lambda key: FIRST.index(key) if key in FIRST else len(FIRST))
+
+
+def _is_steady(runs: pd.DataFrame) -> bool:
+    if "end_speed_rpm" not in runs:
+        return True
+    return bool((runs["end_speed_rpm"] == runs["speed_rpm"]).all() and (runs["fluctuation_rpm"] == 0).all())
 
 
 def parameter_plane(axes: Axes, runs: pd.DataFrame, x: str, y: str) -> None:
     """Runs over two columns, coloured and shaped by class of motion, hollow without contact."""
     for motion, color in MOTION_COLORS.items():
-        for rub, fill in ((True, color), (False, "none")):
+        for rub, inside in ((True, color), (False, "none")):
             chosen = runs[(runs["motion"] == motion.value) & (runs["rub"] == rub)]
             axes.plot(
                 chosen[x] * scale_of(x),
@@ -55,9 +70,9 @@ def parameter_plane(axes: Axes, runs: pd.DataFrame, x: str, y: str) -> None:
                 MOTION_MARKERS[motion],
                 markersize=6.5 if len(runs) < 300 else 3.5,
                 color=color,
-                markerfacecolor=fill,
+                markerfacecolor=inside,
             )
-    label_axes(axes, axis_text(x), axis_text(y))
+    label_axes(axes, axis_text(x), fill(axis_text(y), LABEL_LETTERS))
     for key, scale in ((x, axes.set_xscale), (y, axes.set_yscale)):
         values = runs[key].to_numpy(dtype=float)
         if values.size and values.min() > 0 and values.max() > LOGARITHMIC_SPAN * values.min():
