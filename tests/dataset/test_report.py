@@ -1,5 +1,7 @@
 """The page of a data set: what it says, that it stands alone, and how it looks in a browser."""
 
+import base64
+import io
 import re
 
 import numpy as np
@@ -54,6 +56,17 @@ def test_the_ways_to_load_work(small_set):
         namespace = {}
         exec(ways[name].replace("DIR", str(small_set.directory)), namespace)  # noqa: S102 - our own lines
         np.testing.assert_array_equal(np.asarray(namespace["signal"]), expected)
+
+
+def test_pictures_keep_the_colours_of_the_classes(page):
+    """A palette of few colours would turn rare ones into others."""
+    pictures = re.findall(r"data:image/png;base64,([^\"]+)", page.read_text(encoding="utf-8"))
+    assert len(pictures) >= 2
+    with Image.open(io.BytesIO(base64.b64decode(pictures[0]))) as image:
+        colors = {
+            f"#{r:02x}{g:02x}{b:02x}" for r, g, b in np.unique(np.asarray(image.convert("RGB")).reshape(-1, 3), axis=0)
+        }
+    assert colors & set(MOTION_COLORS.values())
 
 
 def test_examples_show_each_class_and_a_run_without_contact():
