@@ -1,28 +1,77 @@
-"""The pictures of the documentation, each made by rubgen itself: `make pictures`."""
+"""The pictures of the documentation, each made by rubgen itself: `make pictures`, some five minutes on two cores.
+
+The one of the viewer needs a graphics driver, a real one or Debian's mesa-vulkan-drivers; without one it stays.
+"""
 
 from __future__ import annotations
 
+import io
+import socket
+import sys
+import tempfile
+import time
 from pathlib import Path
 
+from PIL import Image
+
 import rubgen
+from rubgen.studies.figures import Choice, make_figure
 from rubgen.viz.figures import dataset_overview, overview, save_png
+from rubgen.viz.replay import Replay, replay_of
+from rubgen.viz.rerun import write_replay
 
 DOCS = Path(__file__).parent
-DATA_SET = DOCS.parent / "out" / "demo"
+OUT = DOCS.parent / "out"
 RUNS: dict[str, dict[str, float]] = {
     "overview": {"speed_rpm": 8500},
     "period-1": {"speed_rpm": 10500},
     "three-lobes": {"speed_rpm": 9000, "lobes": 3},
 }
+TOP_BAR = 36
+"""Pixels of the viewer's own bar, which is cut off."""
 
 
 def main() -> None:
-    """Simulate the named runs, take the data set of `make demo` (made here when it is missing), write docs/*.png."""
+    """Simulate the named runs, and make or take the data sets of `make demo` and of the sweep."""
     for name, values in RUNS.items():
         run = rubgen.simulate(rubgen.make_scenario("zeng2019", **values))
         save_png(overview(run), DOCS / f"{name}.png")
-    rubgen.generate(None, DATA_SET)
-    save_png(dataset_overview(rubgen.open(DATA_SET).runs), DOCS / "data-set.png")
+        if name == "overview":
+            save_viewer(replay_of(run), DOCS / "replay.png")
+    rubgen.generate(None, OUT / "demo")
+    save_png(dataset_overview(rubgen.open(OUT / "demo").runs), DOCS / "data-set.png")
+    rubgen.generate(DOCS.parent / "datasets" / "speed-sweep.toml", OUT / "speed-sweep")
+    save_png(make_figure("bifurcation", OUT / "speed-sweep", Choice()), DOCS / "bifurcation.png")
+
+
+def save_viewer(replay: Replay, path: Path) -> None:
+    """What `rubgen replay` opens, at the hardest touch, drawn without a screen."""
+    from rerun.experimental import ViewerClient
+
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    program = str(Path(sys.executable).with_name("rerun"))
+    with tempfile.TemporaryDirectory() as folder:
+        recording = Path(folder) / "run.rrd"
+        write_replay(replay, recording)
+        try:
+            viewer = ViewerClient.spawn(headless=True, port=port, hide_welcome_screen=True, executable_path=program)
+        except RuntimeError as error:
+            sys.stderr.write(f"{path}: left as it is, for the viewer does not start without a screen ({error})\n")
+            return
+        try:
+            viewer.open(str(recording))
+            while viewer.get_state().loading:
+                time.sleep(0.1)
+            viewer.set_time("time", duration=replay.hardest_touch, play_state="paused")
+            time.sleep(8)  # meshes and spectra come some frames after their views
+            with Image.open(io.BytesIO(viewer.take_screenshot())) as image:
+                seen = image.convert("RGB").crop((0, TOP_BAR, image.width, image.height))
+        finally:
+            viewer.quit()
+    # A palette, for a file below 300 kB; drawn towards means of clusters, or rare colours would turn into others.
+    seen.quantize(256, kmeans=2, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 if __name__ == "__main__":
