@@ -125,6 +125,7 @@ def _open(path: Path, moment: float, *, web: bool) -> None:
                 _go_to(moment, port, viewer)
             code = viewer.wait()
         except KeyboardInterrupt:
+            viewer.terminate()
             viewer.wait()
             return
     if code != 0:

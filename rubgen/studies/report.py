@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 EXAMPLES, MOST_FAILED = 6, 30
 DPI = 90
-"""Few dots: a page stays below a megabyte, all its colours kept, for they tell the classes."""
+"""Few dots: a page takes about a megabyte. All colours are kept, for they tell the classes."""
 WAYS = {
     "rubgen": """import rubgen
 

@@ -15,6 +15,8 @@ from rubgen.viz.replay import Replay
 from rubgen.viz.signal_entities import time_column
 
 BAR_WIDTH = 0.8
+MOST_SHOWN = 12
+"""Longer lists are counted in the text; all values stand in the properties."""
 PARTS = {"system": "motion", "blisk": "motion_blisk", "casing": "motion_casing"}
 
 
@@ -88,6 +90,8 @@ def _flat(values: dict[str, Any], prefix: str = "") -> dict[str, object]:
 def _shown(value: object) -> str:
     if isinstance(value, float):
         return f"{value:.4g}"
+    if isinstance(value, list) and len(value) > MOST_SHOWN:
+        return f"{len(value)} values"
     if isinstance(value, list):
         return ", ".join(_shown(item) for item in value) or "none"
     return "none" if value is None else str(value)

@@ -100,6 +100,22 @@ def test_the_viewer_gets_the_recording(run, mcap_file, made_viewer, web):
     assert ("--web-viewer" in command) == bool(web)
 
 
+def test_a_simulated_run_is_shown_straight_away(run, rub_run, made_viewer, monkeypatch):
+    monkeypatch.setattr("rubgen.cli.simulating.simulate", lambda _: rub_run)
+    assert run("simulate", "--replay")[0] == 0
+    ((_, shown),) = made_viewer.started
+    assert {"/machine/rotor", "/orbit/plane/path"} <= shown
+
+
+def test_a_run_is_not_simulated_where_it_could_not_be_shown(run, monkeypatch):
+    for name in replaying.SCREENS:
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr("rubgen.cli.simulating.simulate", lambda _: pytest.fail("simulated"))
+    code, _, err = run("simulate", "--replay")
+    assert (code, err.count("\n")) == (2, 1)
+    assert "no screen for the viewer" in err
+
+
 class MadeClient:
     """Stands where the link to the viewer would: it answers at the third try and keeps where the cursor was put."""
 

@@ -82,6 +82,15 @@ def test_labels_and_scenario_are_properties(rub_run, rrd_file):
     assert scenario["operation"]["speed_rpm"] == 10000.0
 
 
+def test_the_text_counts_long_lists(rub_run, tmp_path):
+    long = replay_of(rub_run).labels | {"window_starts_s": [0.1 * i for i in range(50)], "orders_present": [1, 3]}
+    write_replay(dataclasses.replace(replay_of(rub_run), labels=long), tmp_path / "run.rrd")
+    (text,) = columns(tmp_path / "run.rrd", "/labels/text")["TextDocument:text"][0]
+    assert "| window_starts_s | 50 values |" in text
+    assert "| orders_present | 1, 3 |" in text
+    assert text.startswith("# run-000000: zeng2019 at 10,000 rev/min\n")
+
+
 def test_motion_lanes_show_each_part(rrd_file):
     lanes = {part: columns(rrd_file, f"/labels/motion/{part}")["StateChange:state"] for part in ("system", "blisk")}
     assert lanes == {"system": [["period-k"]], "blisk": [["period-1"]]}
