@@ -103,7 +103,8 @@ def _convergence(found: Found) -> Sequence[Statement]:
     blade = errors(found(BLADE))[BLADE_COUNTS.index(KEPT)]
     disk = errors(found(DISK))[DISK_COUNTS.index(KEPT)]
     four, most = blisk_errors(found, reduced(KEPT)), blisk_errors(found, reduced(REFERENCE))
-    more = blisk_errors(found, MORE_BLADE_MODES)[:COMPARED]
+    more = float(blisk_errors(found, MORE_BLADE_MODES)[:COMPARED].max())
+    limit = "second" if more > ACCURATE else "first"
     tail = [float(errors(found(BLADE))[i].max()) for i in range(len(BLADE_COUNTS))]
     bad = int(np.argmax(four > ACCURATE)) if (four > ACCURATE).any() else len(four)
     return [
@@ -119,7 +120,7 @@ def _convergence(found: Found) -> Sequence[Statement]:
             f"{REFERENCE} modes of the blisk give its first {COMPARED} frequencies.",
             most[:COMPARED],
             f"{_held(most)} With eight modes a blade in the first step instead of four the largest deviation is "
-            f"{100 * float(more.max()):.2f} %.",
+            f"{100 * more:.2f} %: it is the {limit} step that limits.",
         ),
         _accurate(f"Four modes of the blisk give its first {FIRST} frequencies.", four[:FIRST]),
         Statement(

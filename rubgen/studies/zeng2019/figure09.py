@@ -60,13 +60,17 @@ def figures(_size: Size, found: Found) -> dict[str, Figure]:
         place = (1 + radial) * e_r + tangential * e_t
         axes.plot(*e_r, color=GREY, linewidth=0.6)
         axes.plot(*place, color=BLUE, linewidth=1)
-        axes.plot(*np.stack([e_r, place])[:, :, :: nodes // 18], color=ORANGE, linewidth=0.7)
+        axes.plot(*np.stack([e_r, place], axis=1)[:, :, :: nodes // 18], color=ORANGE, linewidth=0.7)
         axes.set_aspect("equal")
         axes.set(xlim=(-1.4, 1.4), ylim=(-1.4, 1.4))
         axes.set_title(f"{hz:.2f} Hz\norder {order}", fontsize=8)
     for axes in panels:
         axes.set_axis_off()
-    return {"Modes of the casing; orange lines join some nodes with their places at rest": figure}
+    caption = (
+        "Modes of the casing, with the order that leads in radial and tangential displacement; orange lines join some "
+        "nodes with their places at rest"
+    )
+    return {caption: figure}
 
 
 SECTION = Section(
