@@ -71,7 +71,7 @@ def _orders(pairs: list[tuple[Outcome, Outcome]]) -> Statement:
     small = int(np.sum(np.all(np.abs(changes[:, [0, 2]]) < 0.05, axis=1)))
     worst = np.abs(changes).max(axis=0) if len(changes) else np.zeros(3)
     return Statement(
-        statement="They leave the spectra of regular motion: f_r of the blisk and 2 f_r of the force within 5 %.",
+        statement="More such modes leave regular motion its orders, f_r of the blisk and 2 f_r of the force, to 5 %.",
         verdict=by_share(small, len(regular)),
         found=f"{counted(small, len(regular), 'period-1 pairs')}; largest changes: f_r {100 * worst[0]:.2f} %, 3 f_r "
         f"{100 * worst[1]:.0f} %, 2 f_r of the force {100 * worst[2]:.2f} %",
