@@ -33,7 +33,7 @@ from rubgen.solver.reference import ReferenceStepper
 from rubgen.vector_kernels import LANES
 
 RUNS, PROCESSES = 16, 2
-ROUNDS = 3
+ROUNDS = 2
 LIGHT = 0.05
 """Below this share of steps with contact a run counts as light."""
 NUMPY_STEPS, NUMPY_ROUNDS = 64, 40

@@ -112,7 +112,7 @@ def clearance_bounds(
 
 @inlined_kernel
 def deformation_bounds(surface: Surface, q_casing: FloatArray, spread: float) -> tuple[float, float]:
-    """Bounds of the deformed surface on the whole ring, for `is_clear`.
+    """Bounds of the deformed surface on the whole ring, for `tighten`.
 
     First, how far its radius at a polar angle may lie below r + opening + u_r, u_r interpolated linearly between the
     nodes and taken at the angle that `tip_angle` gives; second, the slope of r + opening + u_r by the angle. A surface
@@ -133,7 +133,10 @@ def deformation_bounds(surface: Surface, q_casing: FloatArray, spread: float) ->
 
 @inlined_kernel
 def inward_displacement(surface: Surface, casing: FloatArray, angle: float) -> float:
-    """u_r of the casing at a polar angle, linear between the nodes; `casing` as in `is_clear`."""
+    """u_r of the casing at a polar angle, linear between the nodes.
+
+    `casing` (a multiple of eight,) holds the casing's coordinates and zeros.
+    """
     nodes = surface.radial.shape[0]
     position = angle * (1.0 / surface.node_step)
     first = math.floor(position)
@@ -144,52 +147,38 @@ def inward_displacement(surface: Surface, casing: FloatArray, angle: float) -> f
 
 
 @inlined_kernel
-def is_clear(
-    surface: Surface,
-    casing: FloatArray,
-    angle: float,
-    bound: float,
-    margin: float,
-    limits: tuple[float, float],
-) -> bool:
-    """Whether a tip at polar angle `angle` is certainly farther than `margin` inside of the deformed surface.
-
-    `bound` is its clearance bound, `limits` the deformation bounds, `casing` (a multiple of eight,) the casing's
-    coordinates and zeros. A point nearer than the margin would have a radius nearer to the surface's at its angle than
-    the margin times the Lipschitz constant of that radius.
-    """
-    clearance = bound + inward_displacement(surface, casing, angle) - limits[0]
-    return bool(clearance > widened(margin, limits))
-
-
-@inlined_kernel
 def widened(margin: float, limits: tuple[float, float]) -> float:
-    """How far inside at its polar angle a point is whose distance from the surface is the margin, at most."""
+    """How much larger than a point's the surface's radius at its angle is, at most, if they are a margin apart.
+
+    `limits` are the deformation bounds: the margin times the Lipschitz constant of that radius.
+    """
     return margin * (1.0 + 0.5 * limits[1] * limits[1])
 
 
 @inlined_kernel
-def all_clear(
+def tighten(
     surface: Surface,
     tips: Tips,
     casing: FloatArray,
     displacement: FloatArray,
     theta: float,
-    reach: float,
+    far: float,
     limits: tuple[float, float],
     bounds: FloatArray,
 ) -> bool:
-    """Whether certainly no tip is in the surface, from the clearance bounds of all; `reach` is the casing's.
+    """Make clearance bounds up to `far` bounds to the deformed surface; whether all bounds are positive then.
 
-    `bounds` (a multiple of eight,) ends with numbers that are infinite.
+    To the undeformed surface they were; `bounds` (a multiple of eight,) ends with numbers that are infinite. `casing`
+    is as in `inward_displacement`. A tip whose bound is above `widened` of a margin is certainly farther than it inside
+    of the deformed surface.
     """
-    far = reach + limits[0]
+    positive = True
     for row in range(bounds.shape[0] // LANES):
         near = not_above(bounds, row, far)
         while near != 0:
             k = LANES * row + lowest_bit(near)
             near &= near - 1
-            angle = tip_angle(tips, k, displacement, theta)
-            if not is_clear(surface, casing, angle, bounds[k], 0.0, limits):
-                return False
-    return True
+            inward = inward_displacement(surface, casing, tip_angle(tips, k, displacement, theta))
+            bounds[k] += inward - limits[0]
+            positive = positive and bounds[k] > 0.0
+    return positive

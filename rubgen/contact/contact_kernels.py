@@ -10,11 +10,11 @@ import math
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.contact.clearance_kernels import is_clear, tip_angle, widened
+from rubgen.contact.clearance_kernels import widened
 from rubgen.contact.friction_kernels import friction_direction, slip_velocity
 from rubgen.contact.geometry_kernels import Surface, Tips, casing_rows, foot_of, tip_position
 from rubgen.jit import allocation_free_kernel, inlined_kernel
-from rubgen.vector_kernels import square_of_farthest
+from rubgen.vector_kernels import LANES, lowest_bit, not_above, square_of_farthest
 
 
 class ContactWork(NamedTuple):
@@ -61,41 +61,35 @@ def find_near(
     displacement: FloatArray,
     casing_start: int,
     opening: float,
-    theta: float,
     cos_theta: float,
     sin_theta: float,
     margin: float,
-    reach: float,
     limits: tuple[float, float],
-    screen: bool,
     work: ContactWork,
 ) -> tuple[int, bool]:
     """Free gaps of all blades that may be nearer than `margin`; how many are, and whether any penetrates.
 
-    `reach` is the casing's, `limits` its deformation bounds; `displacement` (2, any) the tips' radial and tangential
-    one, which goes into q for the blades that are looked at.
+    They may where `work.bounds`, those to the deformed surface, allow it. `limits` are the deformation bounds;
+    `displacement` (2, any) the tips' radial and tangential one, which goes into q for the blades that are looked at.
     """
-    count, penetrates = 0, False
-    q_casing = q[casing_start:]
-    # The linear interpolation of u_r lies within the reach.
-    far = (reach + limits[0]) + widened(margin, limits)
+    count, penetrates, enough = 0, False, widened(margin, limits)
     for k in range(work.gap.shape[0]):
         work.gap[k] = math.nan
-        if screen and work.bounds[k] > far:
-            continue
-        angle = tip_angle(tips, k, displacement, theta)
-        if screen and is_clear(surface, work.casing, angle, work.bounds[k], margin, limits):
-            continue
-        q[3 * k], q[3 * k + 1] = displacement[0, k], displacement[1, k]
-        x, y, _, _ = tip_position(tips, k, q, cos_theta, sin_theta)
-        psi, gap, tx, ty = foot_of(surface, q_casing, opening, x, y, work.ends)
-        if gap >= margin:
-            continue
-        work.psi[k], work.gap[k] = psi, gap
-        work.tangent[k, 0], work.tangent[k, 1] = tx, ty
-        work.blade[count] = k
-        count += 1
-        penetrates = penetrates or gap < 0.0
+    for row in range(work.bounds.shape[0] // LANES):
+        near = not_above(work.bounds, row, enough)
+        while near != 0:
+            k = LANES * row + lowest_bit(near)
+            near &= near - 1
+            q[3 * k], q[3 * k + 1] = displacement[0, k], displacement[1, k]
+            x, y, _, _ = tip_position(tips, k, q, cos_theta, sin_theta)
+            psi, gap, tx, ty = foot_of(surface, q[casing_start:], opening, x, y, work.ends)
+            if gap >= margin:
+                continue
+            work.psi[k], work.gap[k] = psi, gap
+            work.tangent[k, 0], work.tangent[k, 1] = tx, ty
+            work.blade[count] = k
+            count += 1
+            penetrates = penetrates or gap < 0.0
     return count, penetrates
 
 

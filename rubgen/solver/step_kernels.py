@@ -14,11 +14,12 @@ import math
 
 from rubgen.arrays import FloatArray
 from rubgen.contact.clearance_kernels import (
-    all_clear,
     casing_reach,
     clearance_bounds,
     deformation_bounds,
     largest_nodal_displacement,
+    tighten,
+    widened,
 )
 from rubgen.contact.contact_kernels import (
     ContactWork,
@@ -155,6 +156,38 @@ def copy_motion(source: Motion, target: Motion) -> None:
 
 
 @inlined_kernel
+def bound_clearances(
+    model: Model,
+    inside: int,
+    opening: float,
+    after: Motion,
+    margin: float,
+    reach: float,
+    limits: tuple[float, float],
+    work: ContactWork,
+) -> bool:
+    """Bounds of how far each tip is inside of the deformed surface, as `tighten`; whether certainly none touches it.
+
+    `inside` is the row of the angles. Without screening nothing is known of any tip.
+    """
+    n_blades, n_casing = work.gap.shape[0], work.rows.shape[1]
+    if not model.laws.screen:
+        for k in range(n_blades):
+            work.bounds[k] = -math.inf
+        return False
+    angles, start = model.angles, after.q.shape[0] - n_casing
+    clearance_bounds(
+        model.surface, model.tips, after.tips, opening, model.laws.spread, angles.cos_orders[inside],
+        angles.sin_orders[inside], work.bounds,
+    )  # fmt: skip
+    for j in range(n_casing):
+        work.casing[j] = after.q[start + j]
+    # The linear interpolation of u_r lies within the reach.
+    far = (reach + limits[0]) + widened(margin, limits)
+    return tighten(model.surface, model.tips, work.casing, after.tips, angles.theta[inside], far, limits, work.bounds)
+
+
+@inlined_kernel
 def contact_step(
     model: Model,
     step: int,
@@ -177,25 +210,17 @@ def contact_step(
     surface, laws, angles = model.surface, model.laws, model.angles
     state = State(before.q, now.q, after.q, scratch.change)
     new, inside = opening[step + 2], step + 1
-    clearance_bounds(
-        surface, model.tips, after.tips, new, laws.spread, angles.cos_orders[inside], angles.sin_orders[inside],
-        work.bounds,
-    )  # fmt: skip
     limits = deformation_bounds(surface, after.q[start:], laws.spread)
-    for j in range(work.rows.shape[1]):
-        work.casing[j] = after.q[start + j]
-    if laws.screen and not laws.lasting and all_clear(
-        surface, model.tips, work.casing, after.tips, angles.theta[inside], reach, limits, work.bounds
-    ):  # fmt: skip
-        for k in range(n_blades):
-            work.held[2, k] = math.nan
-        return OK, 0
     margin = starting_margin(laws, work.held)
     for _ in range(MARGIN_TRIES):
+        apart = bound_clearances(model, inside, new, after, margin, reach, limits, work)
+        if apart and not laws.lasting:
+            for k in range(n_blades):
+                work.held[2, k] = math.nan
+            return OK, 0
         count, penetrates = find_near(
-            surface, model.tips, after.q, after.tips, start, new,
-            angles.theta[inside], angles.cosine[inside], angles.sine[inside], margin, reach, limits,
-            laws.screen, work,
+            surface, model.tips, after.q, after.tips, start, new, angles.cosine[inside], angles.sine[inside], margin,
+            limits, work,
         )  # fmt: skip
         for k in range(n_blades):
             work.held[2, k] = work.gap[k]

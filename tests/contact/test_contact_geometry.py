@@ -8,8 +8,9 @@ from rubgen.contact.clearance_kernels import (
     casing_reach,
     clearance_bounds,
     deformation_bounds,
-    is_clear,
+    tighten,
     tip_angle,
+    widened,
 )
 from rubgen.contact.contact_kernels import largest_approach
 from rubgen.contact.geometry import periodic_derivative, with_zeros
@@ -143,21 +144,25 @@ def test_screening_bound_lies_below_the_true_gap_and_near_it():
         q = np.concatenate([rng.normal(size=29) * 3e-4, rng.normal(size=3) * 2e-4])
         theta = rng.uniform(0, 2 * np.pi)
         orders = system.surface.order * (theta - system.surface.phase)
-        bounds = np.zeros(9)
+        bounds = np.full(16, np.inf)
         displacement = np.ascontiguousarray(q[:27].reshape(9, 3).T)
         clearance_bounds(surface, tips, displacement, 1e-4, 0.01, np.cos(orders), np.sin(orders), bounds)
         limits = deformation_bounds(surface, q[29:], 0.01)
+        free, casing = bounds.copy(), with_zeros(q[29:])
+        positive = tighten(surface, tips, casing, displacement, theta, 1.0, limits, bounds)
+        assert positive == (bounds.min() > 0)
+        assert np.all(np.isinf(bounds[9:]))
         for k in range(9):
             place = system.tip_static[k] + q[3 * k : 3 * k + 3]
             point = (RADIUS + place[0] + 1j * place[1]) * np.exp(1j * (theta + system.blade_angles[k]))
             curve, angle = system.surface, np.angle(point)
             radius = curve.mean_radius + curve.amplitude[0] * np.cos(2 * (angle - curve.phase[0])) + 1e-4
-            tightness.append(radius - abs(point) - bounds[k])
+            tightness.append(radius - abs(point) - free[k])
             deformed = gap_and_foot(surface, q[29:], np.array([point.real, point.imag]), 1e-4)[0]
             at = tip_angle(tips, k, displacement, theta)
             assert abs(point / abs(point) - np.exp(1j * at)) < angle_error(0.01)
             for margin in (2e-5, 1e-3):
-                clear = is_clear(surface, with_zeros(q[29:]), at, bounds[k], margin, limits)
+                clear = bounds[k] > widened(margin, limits)
                 assert deformed > margin or not clear
                 if deformed > margin:
                     decided.append(clear)
