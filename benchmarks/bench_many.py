@@ -36,7 +36,7 @@ RUNS, PROCESSES = 16, 2
 ROUNDS = 2
 LIGHT = 0.05
 """Below this share of steps with contact a run counts as light."""
-NUMPY_STEPS, NUMPY_ROUNDS = 64, 40
+NUMPY_STEPS = 256
 
 
 @dataclass(frozen=True)
@@ -94,19 +94,17 @@ def timed(scenario: Scenario) -> Timed:
 
 
 def step_time(runs: list[list[Timed]]) -> float:
-    """Mean time of a step in us, of each run the shortest of several."""
-    return 1e6 * sum(min(each.seconds for each in run) for run in runs) / sum(run[0].steps for run in runs)
+    """Mean CPU time of a step in us over runs that were each made several times."""
+    every = [each for run in runs for each in run]
+    return 1e6 * sum(each.seconds for each in every) / sum(each.steps for each in every)
 
 
 def numpy_step(reference: ReferenceStepper) -> float:
-    """Least time of a numpy step in us, the mean over a part of a turn."""
-    best = np.inf
-    for index in range(NUMPY_ROUNDS):
-        start = time.perf_counter()
-        for s in range(NUMPY_STEPS):
-            reference.step((index * NUMPY_STEPS + s) % reference.steps)
-        best = min(best, (time.perf_counter() - start) / NUMPY_STEPS)
-    return 1e6 * best
+    """Mean CPU time of a step of the reference in us, over part of a turn."""
+    start = time.process_time()
+    for index in range(NUMPY_STEPS):
+        reference.step(index)
+    return 1e6 * (time.process_time() - start) / NUMPY_STEPS
 
 
 def reference_of(scenario: Scenario, response: Response) -> ReferenceStepper:
@@ -118,12 +116,21 @@ def reference_of(scenario: Scenario, response: Response) -> ReferenceStepper:
     return reference
 
 
-def on_one_core(runs: list[Scenario]) -> tuple[list[list[Timed]], float]:
-    """All runs one after the other, several times, and the mean numpy step in their own states in us."""
+def on_one_core(runs: list[Scenario], light: ReferenceStepper) -> tuple[list[list[Timed]], float, float]:
+    """All runs one after the other, several times; between them steps of the reference, whose mean times it gives.
+
+    First those of the light rub, then those in the runs' own states, in us.
+    """
     timed(runs[0])  # kernels are compiled
-    found = [[timed(scenario) for scenario in runs] for _ in range(ROUNDS)]
-    plain = [numpy_step(reference_of(scenario, integrated(scenario))) for scenario in runs]
-    return [list(each) for each in zip(*found, strict=True)], float(np.mean(plain))
+    own = [reference_of(scenario, integrated(scenario)) for scenario in runs]
+    found: list[list[Timed]] = [[] for _ in runs]
+    plain: list[tuple[float, float]] = []
+    for _ in range(ROUNDS):
+        for run, scenario, reference in zip(found, runs, own, strict=True):
+            run.append(timed(scenario))
+            plain.append((numpy_step(light), numpy_step(reference)))
+    mean = np.mean(plain, axis=0)
+    return found, float(mean[0]), float(mean[1])
 
 
 def on_processes(runs: list[Scenario]) -> tuple[float, float, set[str]]:
@@ -163,7 +170,7 @@ def in_lanes(stepper: Stepper) -> Scheme:
 
 
 def free_step_time(scheme: Scheme) -> float:
-    """Least time of one call in us, mean over a turn's steps."""
+    """Time of one call in us, mean over a turn's steps, the least of many turns."""
     states = [aligned(np.zeros(len(scheme.constant))) for _ in range(3)]
     best = np.inf
     for _ in range(200):
@@ -178,8 +185,7 @@ def measure() -> list[dict[str, object]]:
     with threadpool_limits(1):
         runs = scenarios()
         stepper, reference = settled(CASES[0])
-        plain = numpy_step(reference)
-        alone, own = on_one_core(runs)
+        alone, plain, own = on_one_core(runs, reference)
         mixed, light = step_time(alone), [run for run in alone if run[0].contact < LIGHT]
         together, busy, digests = on_processes(runs)
         worst, unequal = np.max([deviation(*settled(case)) for case in CASES[:2]], axis=0)

@@ -8,6 +8,7 @@ blades one large block is left, and everything works as before.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
@@ -159,8 +160,9 @@ class Blocks:
 
 def parts_of(rows: int) -> list[slice]:
     """Rows of results in parts of nearly one size, none more than a line may give."""
-    parts = np.array_split(np.arange(rows), -(-rows // MOST_ROWS))
-    return [slice(int(part[0]), int(part[-1]) + 1) for part in parts]
+    count = -(-rows // MOST_ROWS)
+    ends = [part * (rows // count) + min(part, rows % count) for part in range(count + 1)]
+    return [slice(start, end) for start, end in pairwise(ends)]
 
 
 def _coupling_of(bundle: IntArray, coupling: BoolArray) -> BoolArray:

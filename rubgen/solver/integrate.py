@@ -256,15 +256,17 @@ def integrate(
         if operation.profile != "steady":
             changing = _changing(system_at, operation)
             steps = changing.steps(sample_rate_hz)
-            refusal = _film_refusal(changing.start, steps) or _decay_refusal(changing.least_stable())
+            refusal = _film_refusal(changing.start, steps) or _stability(changing.least_stable())[0]
             if refusal:
                 return _not_integrated(changing.systems[-1], operation, steps, *refusal)
             return _run(changing.spin(contact, steps, taps), changing.start, operation, tail_seconds, taps)
         steps = steps_per_turn(system, operation.steps_per_turn, sample_rate_hz)
-        refusal = _film_refusal(system, steps) or _decay_refusal(system)
+        refusal, decay = _film_refusal(system, steps), None
+        if not refusal:
+            refusal, decay = _stability(system)
         if refusal:
             return _not_integrated(system, operation, steps, *refusal)
-        settle = settle_turns(system, operation)
+        settle = settle_turns(system, operation, decay)
         spin = SteadySpin(Stepper(system, contact, steps, taps=taps), settle)
         return _run(spin, system, operation, tail_seconds, taps, twin=twin)
 
@@ -382,14 +384,14 @@ def _film_refusal(system: SpinningSystem, steps: int) -> tuple[Status, str] | No
     )
 
 
-def _decay_refusal(system: SpinningSystem) -> tuple[Status, str] | None:
-    """Why a system grows by itself, or nothing ever dies in it, if so."""
+def _stability(system: SpinningSystem) -> tuple[tuple[Status, str] | None, float]:
+    """Why a system grows by itself, or nothing ever dies in it, if so; and its slowest decay."""
     decay = slowest_decay(system)
     if decay > UNDYING_SHARE * system.speed:
-        return None
+        return None, decay
     largest = f"largest real part of the eigenvalues {-decay:.4g} 1/s at {system.speed:.6g} rad/s"
     undying = "; some motion never dies, at a critical speed it grows without limit: add damping"
-    return Status.UNSTABLE, largest + (undying if abs(decay) <= UNDYING_SHARE * system.speed else "")
+    return (Status.UNSTABLE, largest + (undying if abs(decay) <= UNDYING_SHARE * system.speed else "")), decay
 
 
 def _not_integrated(system: SpinningSystem, operation: Operation, steps: int, status: Status, reason: str) -> Response:

@@ -81,20 +81,20 @@ def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0
     return steps
 
 
-def automatic_settle_turns(system: SpinningSystem, closing_turns: int) -> int:
+def automatic_settle_turns(system: SpinningSystem, closing_turns: int, decay: float | None = None) -> int:
     """Turns until the clearance is closed and transients have fallen to a hundredth.
 
-    closing_turns + ln(100) f_r / (2 pi min(zeta f)) with the eigenvalues at speed, rounded up. Raises ValueError for
-    an unstable system.
+    closing_turns + ln(100) f_r / (2 pi min(zeta f)) with the eigenvalues at speed, rounded up. `decay` is the slowest
+    one, where it is known already. Raises ValueError for an unstable system.
     """
-    decay = slowest_decay(system)
+    decay = slowest_decay(system) if decay is None else decay
     if decay <= 0:
         raise ValueError(f"the linear system grows by itself: largest real part {-decay:g} 1/s")
     return closing_turns + math.ceil(math.log(TRANSIENT_DECAY) * system.speed / (2 * math.pi) / decay)
 
 
-def settle_turns(system: SpinningSystem, operation: Operation) -> int:
-    """The operation's settle turns, or the automatic ones."""
+def settle_turns(system: SpinningSystem, operation: Operation, decay: float | None = None) -> int:
+    """The operation's settle turns, or the automatic ones, as `automatic_settle_turns`."""
     if operation.settle_turns == "auto":
-        return automatic_settle_turns(system, operation.closing_turns)
+        return automatic_settle_turns(system, operation.closing_turns, decay)
     return operation.settle_turns

@@ -147,6 +147,43 @@ def test_tips_of_any_number_of_blades_are_recovered(small_system, blades):
     check_recovery(small_system(blades=blades))
 
 
+def entries_used(product):
+    kind, count = product.lines[:, 0], product.lines[:, 4]
+    return int(((kind // 2 + 1) * count).sum())
+
+
+def test_damping_leaves_out_what_only_coriolis_forces_couple(preset):
+    """Of blocks of six, two sets of three: 16 rows of entries instead of 36, in every lane."""
+    blocks = system_blocks(preset)
+    parted, whole = blocks.damping(preset.C), blocks.damping(preset.C, whole=True)
+    bundles = [bundle for bundle in blocks.lanes if bundle.shape[1] == 6]
+    assert len(bundles) == 2
+    assert entries_used(whole) - entries_used(parted) == 2 * (36 - 16)
+    for q in np.random.default_rng(4).normal(size=(5, len(preset.M))):
+        works = [2 * quadratic(product, blocks.to_z(q), blocks.to_z(q)) for product in (parted, whole)]
+        assert works == pytest.approx([q @ preset.C @ q] * 2, rel=1e-9)
+
+
+def test_a_dense_triangle_is_kept_whole(small_system, monkeypatch):
+    system = small_system()
+    blocks = system_blocks(system)
+    monkeypatch.setattr(block_module, "coupled", lambda matrix: np.ones(matrix.shape, dtype=bool))
+    parted, whole = blocks.damping(system.C), blocks.damping(system.C, whole=True)
+    np.testing.assert_array_equal(parted.lines, whole.lines)
+    np.testing.assert_array_equal(parted.entries, whole.entries)
+
+
+def test_rounding_beside_the_stiffness_is_no_circulatory_force(preset):
+    """Blades have none: of the preset, one block with O_d is left, to which the supports' dampers belong."""
+    blocks = system_blocks(preset)
+    skew = (preset.K - preset.K.T) / 2
+    product = blocks.without_zeros(skew, preset.K)
+    assert 0 < entries_used(product) <= 20
+    q, p = np.random.default_rng(3).normal(size=(2, len(skew)))
+    found = quadratic(product, blocks.to_z(p), blocks.to_z(q))
+    assert found == pytest.approx(p @ skew @ q, rel=1e-9)
+
+
 def test_lines_of_zeros_are_left_out(small_system):
     system = small_system()
     blocks = system_blocks(system)
