@@ -34,6 +34,8 @@ from rubgen.studies.verification.row import Row, relative, within
 TITLE = "Rub on part of a misaligned ring"
 CASES = {"light": (1.5e-3, 2000.0), "heavy": (1.8e-3, 3000.0)}
 TURNS, STEPS, EARLY = 30, 2048, 3
+RETURN = 0.01
+"""A point of the section has come back when it is nearer than this share of its size: as clusters in the labels."""
 PENALTY, DAMPING_RATIO = 1e11, 5.0
 
 
@@ -76,8 +78,16 @@ def by_penalty(unbalance: float, side_force: float) -> FloatArray:
     return np.vstack([np.diff(y[8]), y[[0, 1, 4, 5], 1:]]).T
 
 
+def repeats_after(turns: FloatArray) -> int:
+    """Turns after which rotor and ring at the end of a run come back: its class, period-k; 0 where they do not."""
+    places = turns[:, 1:]
+    size = np.abs(places[-1]).max()
+    back = (np.abs(places[-1] - places[-1 - k]).max() <= RETURN * size for k in range(1, 9))
+    return next((k for k, returned in enumerate(back, start=1) if returned), 0)
+
+
 def rows() -> Iterator[Row]:
-    """Impulse a turn, and where rotor and ring are, early and in the end."""
+    """Impulse a turn, where rotor and ring are early and in the end, and the class of motion."""
     source = "scipy LSODA with a stiff penalty"
     for name, (unbalance, side_force) in CASES.items():
         expected = by_penalty(unbalance, side_force)
@@ -85,6 +95,8 @@ def rows() -> Iterator[Row]:
         found = 2 * fine - coarse
         quantity = f"misaligned ring, {name} rub"
         yield relative(f"{quantity}: impulse a turn, N s", source, expected[-1, 0], found[-1, 0], 2e-4)
+        classes = repeats_after(expected), repeats_after(found)
+        yield within(f"{quantity}: turns after which it repeats", source, *classes, 0)
         for turn in (EARLY, TURNS):
             for part, column in (("rotor", 1), ("ring", 3)):
                 for axis, offset in (("X", 0), ("Y", 1)):
