@@ -11,7 +11,8 @@ from rubgen.studies.zeng2019 import figure10, figure16, figure17, figure18, figu
 from rubgen.studies.zeng2019.computing import Progress, compute, cores
 from rubgen.studies.zeng2019.fit_page import page
 from rubgen.studies.zeng2019.piece import Piece
-from rubgen.studies.zeng2019.search import DAMPING, Score, best, candidates, frictionless, room, score, toml_of
+from rubgen.studies.zeng2019.score import Score, best, frictionless, score
+from rubgen.studies.zeng2019.search import DAMPING, candidates, room, toml_of
 from rubgen.studies.zeng2019.size import FULL, MACHINE, QUICK, Size
 from rubgen.studies.zeng2019.statement import Statement
 from rubgen.studies.zeng2019.store import Store

@@ -7,7 +7,6 @@ from the mass, since the casing's frequencies fix their ratio. Damping of blades
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
@@ -21,8 +20,8 @@ from rubgen.scenario import ContactLaw, Operation, Scenario
 from rubgen.studies.onset import fit_unbalance_and_clearance, tip_growth
 from rubgen.studies.zeng2019.cases import END_OF_RUB, ONSET_RPM, SUPPORT_RPM
 from rubgen.studies.zeng2019.outcome import outcome_of, run
-from rubgen.studies.zeng2019.piece import Arrays, Found, Piece
-from rubgen.studies.zeng2019.region import CHAOTIC, MEMBERS, PERIODIC
+from rubgen.studies.zeng2019.piece import Arrays, Piece
+from rubgen.studies.zeng2019.region import CHAOTIC, PERIODIC
 from rubgen.studies.zeng2019.size import MACHINE
 
 DAMPING, MASS, FRICTION = (0.05, 0.10, 0.15), (1.0, 2.0, 3.5, 5.0, 8.0), (0.0, 0.02)
@@ -78,15 +77,6 @@ class Candidate:
     def piece(self) -> Piece:
         """The piece that runs the candidate at every target."""
         return Piece(classes, (self.damping, self.mass, self.friction))
-
-
-@dataclass(frozen=True, kw_only=True)
-class Score:
-    """How many of the paper's words a candidate bears out: of those used, and of those predicted."""
-
-    candidate: Candidate
-    fitted: int
-    predicted: int
 
 
 PRESET = Candidate(damping=0.10, mass=PRESET_MASS, friction=0.0)
@@ -148,11 +138,6 @@ def _scenario(machine: Machine, mass: float, friction: float, target: Target) ->
     return Scenario(machine=machine, operation=operation, contact=ContactLaw(friction=friction))
 
 
-def words(targets: Sequence[Target]) -> int:
-    """How many words of the paper stand in the targets."""
-    return sum((target.blisk != ANY) + (target.casing != ANY) for target in targets)
-
-
 def room(damping: float) -> Arrays:
     """`unbalance` in kg m and `clearance` in m: least and largest that the published facts leave at that damping.
 
@@ -175,27 +160,6 @@ def _touching(machine: Machine, rpm: float, stiffness: float) -> tuple[float, fl
 
     unbalance = float(brentq(apart, 1e-4, 1.0, xtol=1e-8))
     return unbalance, tip_growth(replace(machine, unbalance_kg_m=unbalance), rpm)
-
-
-def score(candidate: Candidate, found: Found) -> Score:
-    """How many of the words of FITTED and of PREDICTED are borne out."""
-    seen = found(candidate.piece)
-    hits = [
-        [str(name) in MEMBERS[word] for name, word in ((blisk, target.blisk), (casing, target.casing)) if word != ANY]
-        for target, blisk, casing in zip(TARGETS, seen["blisk"], seen["casing"], strict=True)
-    ]
-    counts = [sum(row) for row in hits]
-    return Score(candidate=candidate, fitted=sum(counts[: len(FITTED)]), predicted=sum(counts[len(FITTED) :]))
-
-
-def best(scores: Sequence[Score]) -> Score:
-    """The candidate with the most fitted words; of equals the first, the preset before all."""
-    return max(scores, key=lambda one: one.fitted)
-
-
-def frictionless(scores: Sequence[Score]) -> list[Score]:
-    """The scores of candidates without friction: a machine carries none."""
-    return [one for one in scores if one.candidate.friction == 0]
 
 
 def toml_of(candidate: Candidate) -> str:
