@@ -14,14 +14,13 @@ from rubgen.viz.colors import MOTION_COLORS, rgba
 from rubgen.viz.replay import Replay
 from rubgen.viz.signal_entities import time_column
 
-BAR_WIDTH = 0.8
 MOST_SHOWN = 12
 """Longer lists are counted in the text; all values stand in the properties."""
 PARTS = {"system": "motion", "blisk": "motion_blisk", "casing": "motion_casing"}
 
 
 def send_labels(stream: rr.RecordingStream, replay: Replay) -> None:
-    """Properties `labels` and `scenario`, both as text, lanes of motion, amplitudes of orders as bars.
+    """Properties `labels` and `scenario`, both as text, lanes of motion.
 
     As properties stand the labels that are one value for the whole run, and all as `json`: each property costs the
     file up to a kilobyte, half of it in the index at its end.
@@ -34,10 +33,6 @@ def send_labels(stream: rr.RecordingStream, replay: Replay) -> None:
     _send_table(stream, "/labels/scenario", "parameter", replay, _flat(scenario))
     for part, label in PARTS.items():
         _send_motion(stream, part, replay.motion_classes.get(label) or [(0.0, str(plain[label]))])
-    for tap, amplitudes in order_amplitudes(replay).items():
-        left = np.arange(1, len(amplitudes) + 1) - BAR_WIDTH / 2
-        bars = rr.BarChart(amplitudes, abscissa=left, widths=np.full(len(amplitudes), BAR_WIDTH))
-        stream.log(f"/orders/{tap}", bars, static=True)
 
 
 def _single(labels: dict[str, object]) -> dict[str, Any]:
@@ -48,12 +43,6 @@ def _single(labels: dict[str, object]) -> dict[str, Any]:
         for key, value in labels.items()
         if isinstance(value, str | bool | int | float) and not key.startswith(taps)
     }
-
-
-def order_amplitudes(replay: Replay) -> dict[str, list[float]]:
-    """Amplitudes at k f_r, k from 1, by tap."""
-    found = {key: value for key, value in replay.labels.items() if key.endswith("_orders") and isinstance(value, list)}
-    return {key.removesuffix("_orders"): value for key, value in found.items()}
 
 
 def _send_motion(stream: rr.RecordingStream, part: str, classes: list[tuple[float, str]]) -> None:

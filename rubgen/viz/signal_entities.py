@@ -13,8 +13,8 @@ from rubgen.viz.replay import Replay
 
 TIMELINE = "time"
 DETAIL_TURNS = 20
-DETAIL_VALUES = 24_000
-"""Most full-rate values of all channels together: 192 kB, whatever the speed and the number of channels."""
+DETAIL_VALUES = 28_000
+"""Most full-rate values of all channels together: 224 kB, whatever the speed and the number of channels."""
 PREVIEW_VALUES = 24_000
 """Most preview values of all channels together: 192 kB, whatever the length."""
 UNSHOWN = "pulse"

@@ -42,6 +42,7 @@ def test_the_page_stands_alone_and_is_small(page):
     assert not re.search(r"(?:src|href)=\"(?!data:)", text)
     assert "<script" not in text
     assert "url(" not in text
+    assert ".bar, .dot { print-color-adjust: exact;" in text  # else printers leave the colours of the classes out
     assert page.stat().st_size < 5e6
 
 

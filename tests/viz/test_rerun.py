@@ -37,7 +37,7 @@ def test_full_rate_excerpt_reads_back_to_the_bit(rub_run, rrd_file):
     read = columns(rrd_file, "/detail/acceleration")
     angles = (0, 90, 180, 270)
     sent = [rub_run.recording.channels[f"casing_acc_{angle}"].values[window] for angle in angles]
-    assert window.stop - window.start == 24_000 // 11  # of 11 channels; 20 turns would be 3,072 samples
+    assert window.stop - window.start == 28_000 // 11  # of 11 channels; 20 turns would be 3,072 samples
     assert np.array(read["Scalars:scalars"], dtype=np.float32).tobytes() == np.column_stack(sent).tobytes()
     assert read["SeriesLines:names"] == [[f"casing_acc_{angle} [m/s2]" for angle in angles]]
 

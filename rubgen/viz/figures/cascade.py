@@ -27,7 +27,7 @@ def spectrum_cascade(values: FloatArray, orders: FloatArray, amplitudes: FloatAr
         vmax=0, rasterized=True,
     )  # fmt: skip
     bar = figure.colorbar(mesh, ax=axes, pad=0.01)
-    bar.set_label(f"dB below {largest:.3g} {unit}", fontsize=10)
+    bar.set_label(f"dB re {largest:.3g} {unit}", fontsize=10)
     bar.ax.tick_params(labelsize=9)
     label_axes(axes, "Order $f / f_r$", y)
     axes.set_xticks(range(int(orders[-1]) + 1))
