@@ -23,6 +23,7 @@ from benchmarks.bench_solver import CASES, STEPS, deviation, settled
 from benchmarks.free_step_kernels import run_free
 from rubgen.dataset.workers import unordered, worker_pool
 from rubgen.reduction import reduce
+from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Scenario, load_recipe
 from rubgen.sensors import margin_seconds, taps_of
 from rubgen.solver import Response, Status, Stepper, integrate
@@ -58,9 +59,13 @@ def scenarios() -> list[Scenario]:
     return [recipe.scenario(index) for index in range(RUNS)]
 
 
-def integrated(scenario: Scenario) -> Response:
+def system_of(scenario: Scenario) -> SpinningSystem:
+    """The reduced system of a scenario at its speed."""
+    return reduce(scenario.machine, scenario.reduction).at_speed(scenario.operation.speed_rad_per_s)
+
+
+def integrated(scenario: Scenario, system: SpinningSystem) -> Response:
     """The response of a scenario, as the pipeline integrates it, without a twin."""
-    system = reduce(scenario.machine, scenario.reduction).at_speed(scenario.operation.speed_rad_per_s)
     sensing, seconds = scenario.sensing, scenario.signal_seconds
     return integrate(
         system,
@@ -81,10 +86,10 @@ def digest(response: Response) -> str:
 
 
 def timed(scenario: Scenario) -> Timed:
-    """One run with its time; the reduced model is there already."""
-    reduce(scenario.machine, scenario.reduction)
+    """One run with its time; the reduced model is made before."""
+    system = system_of(scenario)
     start = time.process_time()
-    response = integrated(scenario)
+    response = integrated(scenario, system)
     seconds = time.process_time() - start
     if response.status is not Status.OK:
         raise RuntimeError(f"{scenario.run_id} ended as {response.status}")
@@ -107,9 +112,10 @@ def numpy_step(reference: ReferenceStepper) -> float:
     return 1e6 * (time.process_time() - start) / NUMPY_STEPS
 
 
-def reference_of(scenario: Scenario, response: Response) -> ReferenceStepper:
+def reference_of(scenario: Scenario) -> ReferenceStepper:
     """The numpy reference in the state at the last section of a run."""
-    system = reduce(scenario.machine, scenario.reduction).at_speed(scenario.operation.speed_rad_per_s)
+    system = system_of(scenario)
+    response = integrated(scenario, system)
     reference = ReferenceStepper(system, scenario.contact.friction, response.steps_per_turn)
     q, v = response.section_q[-1], response.section_v[-1]
     reference.set_state(q - response.dt * v, q)
@@ -122,7 +128,7 @@ def on_one_core(runs: list[Scenario], light: ReferenceStepper) -> tuple[list[lis
     First those of the light rub, then those in the runs' own states, in us.
     """
     timed(runs[0])  # kernels are compiled
-    own = [reference_of(scenario, integrated(scenario)) for scenario in runs]
+    own = [reference_of(scenario) for scenario in runs]
     found: list[list[Timed]] = [[] for _ in runs]
     plain: list[tuple[float, float]] = []
     for _ in range(ROUNDS):
