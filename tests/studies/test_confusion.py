@@ -43,6 +43,8 @@ def test_three_verdicts_agree_and_have_no_cause():
         ((Clusters.REPEATS, ZeroOne.CHAOS, Sign.POSITIVE), {"motion": Motion.PERIOD_1}, Cause.SMALL_CHAOS),
         ((Clusters.REPEATS, ZeroOne.CHAOS, Sign.POSITIVE), {}, Cause.NEAR_BOUND),
         ((Clusters.REPEATS, ZeroOne.REGULAR, Sign.POSITIVE), {}, Cause.HIDDEN_CHAOS),
+        ((Clusters.REPEATS, ZeroOne.REGULAR, Sign.POSITIVE), {"line_share": 0.9}, Cause.SLOW_PHASE),
+        ((Clusters.REPEATS, ZeroOne.REGULAR, Sign.ZERO), {"settling": 13.0}, Cause.SETTLING),
         ((Clusters.REPEATS, ZeroOne.CHAOS, Sign.ZERO), {}, Cause.SMALL_NOISE),
         ((Clusters.REPEATS, ZeroOne.REGULAR, Sign.ZERO), {}, Cause.SMALL_TORUS),
         ((Clusters.REPEATS, ZeroOne.REGULAR, Sign.ZERO), {"stray": 1e-8}, Cause.NEUTRAL),

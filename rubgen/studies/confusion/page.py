@@ -19,16 +19,19 @@ def page(cases: Sequence[Case]) -> str:
 
 
 def _introduction(cases: Sequence[Case]) -> str:
-    series = "; ".join(f"{name}: {_keys(keys)}" for name, keys in SERIES.items())
+    series = "\n".join(f"- {name}: {_keys(keys)}" for name, keys in SERIES.items())
     agree = sum(case.agree for case in cases)
     return f"""
 # Three indicators of motion, and where they contradict each other
 
 Made by `{COMMAND}`: {len(cases)} runs of the preset `zeng2019` that rub, of 500 turns each, {SPEEDS_RPM[0]:,.0f} to
-{SPEEDS_RPM[-1]:,.0f} rev/min ({series}). The indicators are those of [the labels](labels.md#motion): clusters of the
-section, the 0-1 test, the Lyapunov exponent. They agree in {agree} runs, and each of the other {len(cases) - agree} was
-looked into: what of the machine strays (disk centre, tips, casing), by how much, whether it settles, comes back after
-17 to 64 turns, or switches.
+{SPEEDS_RPM[-1]:,.0f} rev/min, in {len(SERIES)} series:
+
+{series}
+
+The indicators are those of [the labels](labels.md#motion): clusters of the section, the 0-1 test, the exponent. They
+agree in {agree} runs. Each of the other {len(cases) - agree} was looked into: what of the machine strays (disk centre,
+tips, casing), by how much, whether it settles, comes back after 17 to 64 turns, switches, or is one spectral line.
 
 ![Exponent over stray](confusion.png)
 """

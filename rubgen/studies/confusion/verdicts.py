@@ -81,11 +81,14 @@ class Cause(StrEnum):
         "is quasi-periodic by both other indicators"
     )
     NEUTRAL = (
-        "a periodic motion that hardly attracts, or is not there yet: the exponent is zero within its error or within "
-        "0.001 a turn, as next to a bifurcation"
+        "a periodic motion that hardly attracts: the exponent is zero within its error or within 0.001 a turn, as next "
+        "to a bifurcation"
     )
     SMALL_NOISE = "what is left of a periodic motion is irregular, but does not grow: K of what 40 dB hide"
-    SETTLING = "not settled: what strays falls by more than half within the second half of the record"
+    SETTLING = (
+        "a transient: what strays falls by more than half within the second half of the record, and the exponent is "
+        "the mean over motion before and after"
+    )
     SWITCHING = "intermittent: the record holds regular and irregular stretches"
     LONG_PERIOD = "a period of 17 to 64 turns, longer than those that clusters look for"
     SLOW_PHASE = (
@@ -169,11 +172,13 @@ def _cause(case: Case) -> Cause:
     if clusters is Clusters.REPEATS:
         if test is ZeroOne.CHAOS and sign is Sign.POSITIVE:
             return Cause.NEAR_BOUND if case.motion is Motion.UNDECIDED else Cause.SMALL_CHAOS
-        if sign is Sign.POSITIVE:
-            return Cause.HIDDEN_CHAOS
         if test is ZeroOne.CHAOS:
             return Cause.SMALL_NOISE
-        return Cause.SMALL_TORUS if case.stray > ROUNDING and case.settling < SETTLING else Cause.NEUTRAL
+        if case.settling > SETTLING:
+            return Cause.SETTLING
+        if sign is Sign.POSITIVE:
+            return Cause.SLOW_PHASE if case.line_share >= ONE_LINE else Cause.HIDDEN_CHAOS
+        return Cause.SMALL_TORUS if case.stray > ROUNDING else Cause.NEUTRAL
     causes = {
         Cause.SETTLING: case.settling > SETTLING,
         Cause.SWITCHING: case.intermittent,
