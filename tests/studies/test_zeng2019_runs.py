@@ -250,6 +250,9 @@ def test_total_indices_of_a_sum_are_its_shares_of_variance():
     np.testing.assert_allclose(found.total[0], [0.9, 0.1], atol=0.03)
     assert (found.low <= found.total).all()
     assert (found.total <= found.high).all()
+    assert found.high[0, 0] - found.low[0, 0] < 0.5
+    again = indices(values)
+    np.testing.assert_array_equal([again.low, again.high], [found.low, found.high])
     values[0, 0] = np.nan
     assert np.isfinite(indices(values).total).all()
 

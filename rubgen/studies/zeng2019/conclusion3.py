@@ -87,18 +87,27 @@ def pieces(size: Size) -> Sequence[Piece]:
 
 
 def indices(values: FloatArray) -> Indices:
-    """Total indices of `values` (n, 2 + d, s), n a power of two; failed runs count as the largest value there is."""
+    """Total indices of `values` (n, 2 + d, s), n a power of two; failed runs count as the largest value there is.
+
+    Intervals are percentiles over RESAMPLES draws of n rows with replacement, the same for the same values.
+    """
     filled = np.where(np.isnan(values), np.nanmax(values, axis=(0, 1)), values)
+    rng, count = np.random.default_rng(SEED), len(values)
+    again = np.array([_total(filled[rng.integers(count, size=count)]) for _ in range(RESAMPLES)])
+    low, high = np.nanpercentile(again, [2.5, 97.5], axis=0)
+    return Indices(total=_total(filled), low=low, high=high)
+
+
+def _total(values: FloatArray) -> FloatArray:
+    """Total indices (s, d); NaN where all values are equal."""
     f: dict[Literal["f_A", "f_B", "f_AB"], FloatArray] = {
-        "f_A": filled[:, 0].T,
-        "f_B": filled[:, 1].T,
-        "f_AB": filled[:, 2:].transpose(1, 2, 0),
+        "f_A": values[:, 0].T,
+        "f_B": values[:, 1].T,
+        "f_AB": values[:, 2:].transpose(1, 2, 0),
     }
-    result = sobol_indices(func=f, n=len(values))
-    interval = result.bootstrap(confidence_level=0.95, n_resamples=RESAMPLES).total_order.confidence_interval
-    shape = values.shape[2], values.shape[1] - 2
-    total, low, high = (np.reshape(part, shape) for part in (result.total_order, interval.low, interval.high))
-    return Indices(total=total, low=low, high=high)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        total = sobol_indices(func=f, n=len(values)).total_order
+    return np.reshape(total, (values.shape[2], values.shape[1] - 2))
 
 
 def _values(size: Size, found: Found) -> FloatArray:
