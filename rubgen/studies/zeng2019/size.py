@@ -64,7 +64,7 @@ FULL = Size(
     speed_thin=1,
     campbell_step=250,
     full_speeds=(0.0, 5000.0, 10000.0, 15000.0),
-    samples=32,
+    samples=64,
 )
 QUICK = Size(
     name="quick",
