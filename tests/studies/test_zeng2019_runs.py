@@ -258,7 +258,8 @@ def test_total_indices_of_a_sum_are_its_shares_of_variance():
 
 
 def test_a_sweep_makes_its_page(tmp_path):
+    """Both ends and one value between of the sweep, two that figure 18 names, and the two around the end of rub."""
     made = reproduce(tmp_path, figure="18", size=TINY, workers=1)
-    assert made.made == 5
+    assert made.made == 7
     assert sum(made.verdicts.values()) == 2
     assert (tmp_path / "figure-18" / "zeng2019-18a.png").exists()
