@@ -9,6 +9,11 @@ from rubgen.contact.geometry_kernels import Surface, Tips, tip_position, undefor
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.vector_kernels import LANES, blended_product, lowest_bit, not_above
 
+LARGEST_SPREAD = 0.25
+"""The bounds hold for tips nearer than this share of their radius to their place at rest."""
+NEAREST_SHARE = 0.9
+"""The bounds hold for a deformed surface whose radius is nowhere below this share of its mean one."""
+
 
 @inlined_kernel
 def casing_reach(surface: Surface, q_casing: FloatArray) -> float:
@@ -64,7 +69,7 @@ def tip_angle(tips: Tips, blade: int, displacement: FloatArray, theta: float) ->
 
 @inlined_kernel
 def angle_error(spread: float) -> float:
-    """A bound of the error of `tip_angle` in rad, |a - radius| and |t| below `spread` < 1/4 radii.
+    """A bound of the error of `tip_angle` in rad, |a - radius| and |t| below `spread` < LARGEST_SPREAD radii.
 
     |t / radius - t / a| <= spread 4/3 spread, and |x - arctan x| <= |x|^3 / 3 with |x| <= 4/3 spread.
     """
@@ -90,7 +95,7 @@ def clearance_bounds(
     With a and t the radial and tangential place of the tip and x = t / a, its polar angle differs from the blade's by
     x but for |x|^3 / 3, r there from r + r' x by at most |r''| x^2 / 2, and |P| <= a + t x / 2. `displacement` (2 or
     more, any) holds the radial and the tangential displacement of each blade's tip, and |a - radius| and |t| are below
-    `spread` radii; `cos_orders`, `sin_orders` (n_harmonics,) are those of order_j (theta - phase_j).
+    `spread` < LARGEST_SPREAD radii; `cos_orders`, `sin_orders` (n_harmonics,) are those of order_j (theta - phase_j).
     """
     base = surface.mean_radius + opening - tips.radius - surface.inset
     nearest = 1.0 / tips.radius
@@ -127,7 +132,7 @@ def deformation_bounds(surface: Surface, q_casing: FloatArray, spread: float) ->
         bend += size * surface.mode_bend[j]
     slope = surface.slope + moved
     h = surface.node_step
-    nearest: float = 0.9 * surface.mean_radius
+    nearest: float = NEAREST_SHARE * surface.mean_radius
     return slope * reach / nearest + moved * angle_error(spread) + 0.125 * h * h * bend, slope / nearest
 
 

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.contact.clearance_kernels import LARGEST_SPREAD, NEAREST_SHARE
 from rubgen.contact.contact_kernels import ContactWork
 from rubgen.contact.geometry import blade_tips, casing_surface, with_zeros
-from rubgen.contact.geometry_kernels import Tips
+from rubgen.contact.geometry_kernels import Surface, Tips
 from rubgen.contact.wear_kernels import wear
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw
@@ -67,14 +68,25 @@ def tip_spread(tips: Tips, tip_limit: float) -> float:
     return (tip_limit + float(np.abs(tips.static[:2]).max(initial=0.0))) / tips.radius
 
 
+def bounds_hold(surface: Surface, spread: float, casing_limit: float) -> bool:
+    """Whether the bounds of `clearance_kernels` hold in every state of a run that has not diverged.
+
+    They take tips within a quarter of their radius of their place, and a surface whose radius is nowhere below 0.9 of
+    its mean, `casing_limit` (m) being its largest displacement. Blades of any machine are far within; the one "tip" of
+    a Jeffcott rotor, which stands on the axis, is not. Tests: tests/solver/test_screening.py.
+    """
+    narrowest = surface.mean_radius - float(np.abs(surface.amplitude).sum()) - surface.inset - casing_limit
+    return spread < LARGEST_SPREAD and narrowest > NEAREST_SHARE * surface.mean_radius
+
+
 class Stepper:
     """A system, a contact law and a number of steps per turn, with the state between them.
 
     `start_angle` is theta at the beginning of each turn, rad. `screen` False evaluates every blade's gap in every
-    step, which never changes a result. `taps` are the rows of `result.taps`, timing probes apart. The state begins at
-    the rub-free motion. `alike` are the same system at other speeds, whose matrices must fall into the same blocks; see
-    `follow`: `steps` are then those of the present part, `turn_steps` those of a turn of `system`. Raises UserError for
-    a step above the stability limit.
+    step, which never changes a result; where `bounds_hold` is false that is always done. `taps` are the rows of
+    `result.taps`, timing probes apart. The state begins at the rub-free motion. `alike` are the same system at other
+    speeds, whose matrices must fall into the same blocks; see `follow`: `steps` are then those of the present part,
+    `turn_steps` those of a turn of `system`. Raises UserError for a step above the stability limit.
     """
 
     def __init__(
@@ -95,9 +107,10 @@ class Stepper:
         margin = CANDIDATE_MARGIN_SHARE * system.tip_radius
         limits = CASING_LIMIT_SHARE * system.tip_radius, TIP_LIMIT_SHARE * system.tip_radius
         lasting = contact.restitution > 0 or contact.liner is not None
+        self.screen, spread = screen, tip_spread(self.tips, limits[1])
         self.laws = Laws(
-            float(system.speed), float(self.dt), contact.friction, contact.restitution, margin, *limits,
-            tip_spread(self.tips, limits[1]), lasting, screen,
+            float(system.speed), float(self.dt), contact.friction, contact.restitution, margin, *limits, spread,
+            lasting, screen and bounds_hold(self.surface, spread, limits[0]),
         )  # fmt: skip
         self.blocks = system_blocks(system, *alike)
         self.scheme = scheme(system.M, system.C, system.K, system.force, self.dt, self.blocks)
@@ -162,7 +175,9 @@ class Stepper:
         self.tips, self.scheme, self.compliances = part.tips, part.scheme, part.compliances
         self.book = part.book._replace(works=self.book.works)
         self.support = part.support._replace(works=self.support.works)
-        self.laws = self.laws._replace(speed=speed, spread=tip_spread(part.tips, self.laws.tip_limit))
+        spread = tip_spread(part.tips, self.laws.tip_limit)
+        screen = self.screen and bounds_hold(self.surface, spread, self.laws.casing_limit)
+        self.laws = self.laws._replace(speed=speed, spread=spread, screen=screen)
         self.steps = len(theta) - 2
         self.angles = _angles(self.system, theta, section)
         self.taps = turned_taps(self.taps, self.system, theta[: self.steps])

@@ -1,0 +1,47 @@
+"""Screening saves gaps and changes nothing, where its bounds hold; where they do not, nothing is screened."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rubgen.scenario import ContactLaw
+from rubgen.solver import Stepper
+from rubgen.studies.verification.jeffcott import ROTOR_STIFFNESS, jeffcott_system
+
+SMOOTH = ContactLaw()
+
+
+def runs(system):
+    """The state after a few turns of a start from rest, and the impulse of each, screened and not."""
+    for screen in (True, False):
+        stepper, impulses = Stepper(system, ContactLaw(friction=0.1), 512, screen=screen), []
+        stepper.set_state(*np.zeros((2, len(system.M))))
+        for turn in range(8):
+            stepper.run_turn(clock=turn * 512)
+            impulses.append(stepper.result.summary[0])
+        yield stepper.state.now, np.array(impulses)
+
+
+@pytest.mark.parametrize("stiffness", [1e7, 6.4e6, 5e6])
+def test_a_rotor_on_the_axis_touches_in_whatever_direction(stiffness):
+    """Its one tip stands on the axis: at and above the critical speed its whirl is aside of the tip's radial axis."""
+    system = jeffcott_system()
+    K = system.K.copy()
+    K[:2, :2] += (stiffness - ROTOR_STIFFNESS) * np.eye(2)
+    screened, every = runs(replace(system, K=K))
+    assert every[1][-1] > 1
+    np.testing.assert_array_equal(screened[1], every[1])
+    np.testing.assert_array_equal(screened[0], every[0])
+
+
+def test_only_where_the_bounds_hold_is_screened(small_system):
+    system = small_system()
+    wide, narrow = (
+        replace(system.surface, mean_radius=r, amplitude=np.array([a])) for r, a in ((0.2, -1e-3), (0.2, 0.02))
+    )
+    assert Stepper(replace(system, surface=wide), SMOOTH, 256).laws.screen
+    assert not Stepper(replace(system, surface=wide), SMOOTH, 256, screen=False).laws.screen
+    assert not Stepper(replace(system, surface=narrow), SMOOTH, 256).laws.screen
+    away = system.tip_static + np.array([0.0, 0.25 * system.tip_radius, 0.0])
+    assert not Stepper(replace(system, tip_static=away), SMOOTH, 256).laws.screen
