@@ -1,0 +1,84 @@
+"""The bounds that spare gaps, in states that try to break them: tips just within a margin of a casing bent 10 mm."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_contact_geometry import NODES, RADIUS, ring
+
+from rubgen.contact import blade_tips, casing_surface, gap_and_foot
+from rubgen.contact.clearance_kernels import (
+    clearance_bounds,
+    deformation_bounds,
+    largest_nodal_displacement,
+    tighten,
+    widened,
+)
+from rubgen.contact.geometry import with_zeros
+from rubgen.contact.geometry_kernels import tip_position, undeformed_radius
+from rubgen.scenario import ContactLaw
+from rubgen.solver.stepper import CASING_LIMIT_SHARE, TIP_LIMIT_SHARE, bounds_hold, tip_spread
+
+TIP_LIMIT = TIP_LIMIT_SHARE * RADIUS
+CASING_LIMIT = CASING_LIMIT_SHARE * RADIUS
+
+
+def thick_ring(ovality, lobes, phase):
+    """The ring with the rotations (u_t - u_r') / r = (n - 1 / n) sin(n t) / r of its sections, 3 mm thick."""
+    orders = np.array([1, 2, 4])
+    angle = 2 * np.pi * np.arange(NODES) / NODES
+    rotations = (orders - 1 / orders) * np.sin(np.multiply.outer(angle, orders)) / RADIUS
+    thick = {"casing_rotations": rotations, "half_thickness": 1.5e-3}
+    return replace(ring(ovality, lobes, phase=phase, static=2e-3), **thick)
+
+
+def near_states(surface, tips, rng):
+    """Tips (2, 16) at a few gaps about a margin, a casing (3,) within its limit, an opening, an angle, and the margin.
+
+    The casing bends by 10 um to 10 mm, the tips aside by up to 10 mm; radially they are moved until the gap is right.
+    """
+    casing = rng.normal(size=3) * (rng.random(3) < 0.7) + 1e-9
+    casing *= 10 ** rng.uniform(-5, math.log10(CASING_LIMIT)) / largest_nodal_displacement(surface, casing)
+    aside = np.clip(rng.normal(size=9) * 10 ** rng.uniform(-5, -2), -TIP_LIMIT, TIP_LIMIT)
+    displacement = with_zeros(np.stack([np.zeros(9), aside]))
+    opening, margin = rng.choice([0.0, 1e-4, 1e-3]), rng.choice([2e-5, 3e-4])
+    theta = rng.uniform(-20, 20)
+    for k, share in enumerate(rng.choice([-0.01, 0.0, 0.9, 0.999], size=9)):
+        for _ in range(8):
+            gap = gap_and_foot(surface, casing, tip_place(tips, k, displacement, theta), opening)[0]
+            displacement[0, k] = np.clip(displacement[0, k] + gap - share * margin, -TIP_LIMIT, TIP_LIMIT)
+    return displacement, casing, opening, theta, margin
+
+
+def tip_place(tips, blade, displacement, theta):
+    q = np.zeros(27)
+    q[3 * blade : 3 * blade + 2] = displacement[:, blade]
+    return np.array(tip_position(tips, blade, q, math.cos(theta), math.sin(theta))[:2])
+
+
+@pytest.mark.parametrize("lobes", [1, 2, 3, 4, 5])
+@pytest.mark.parametrize("contact", [ContactLaw(), ContactLaw(half_thickness=True), ContactLaw(surface="chords")])
+def test_no_tip_within_the_margin_is_ever_called_clear(lobes, contact):
+    rng, within = np.random.default_rng(lobes), 0
+    for ovality in (0.0, 1e-3, 8e-3):
+        system = thick_ring(ovality, lobes, rng.uniform(-7, 7))
+        surface, tips = casing_surface(system, contact), blade_tips(system)
+        spread = tip_spread(tips, TIP_LIMIT)
+        assert bounds_hold(surface, spread, CASING_LIMIT)
+        for _ in range(20):
+            displacement, casing, opening, theta, margin = near_states(surface, tips, rng)
+            orders = system.surface.order * (theta - system.surface.phase)
+            bounds, limits = np.full(16, np.inf), deformation_bounds(surface, casing, spread)
+            clearance_bounds(surface, tips, displacement, opening, spread, np.cos(orders), np.sin(orders), bounds)
+            free = bounds.copy()
+            apart = tighten(surface, tips, with_zeros(casing), displacement, theta, 1.0, limits, bounds)
+            places = [tip_place(tips, k, displacement, theta) for k in range(9)]
+            gaps = np.array([gap_and_foot(surface, casing, place, opening)[0] for place in places])
+            angles = [math.atan2(place[1], place[0]) % (2 * np.pi) for place in places]
+            radii = np.array([undeformed_radius(surface, angle)[0] for angle in angles]) + opening
+            assert np.all(free[:9] <= radii - np.hypot(*np.transpose(places)))
+            assert not apart or gaps.min() > 0
+            assert np.all(bounds[:9][gaps < margin] <= widened(margin, limits))
+            within += int((gaps < margin).sum())
+    assert within > 300
