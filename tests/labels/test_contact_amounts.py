@@ -12,7 +12,7 @@ from rubgen.labels.plain import labels_dict
 from rubgen.labels.whirl import Whirl, WhirlDirection, whirl
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver import integrate
-from rubgen.studies.verification.jeffcott import FRICTION, ROTOR_MASS, SPEED, annular_rub, jeffcott_system
+from rubgen.studies.verification.jeffcott import CLEARANCE, FRICTION, ROTOR_MASS, SPEED, annular_rub, jeffcott_system
 
 
 def amounts(response):
@@ -52,6 +52,8 @@ def test_an_annular_rub_has_its_closed_form(respond):
     assert found.severity == pytest.approx(exact.force / (ROTOR_MASS * STANDARD_GRAVITY), rel=5e-4)
     per_turn = exact.force * 2 * np.pi / SPEED
     assert found.blade_impulses == pytest.approx([per_turn], rel=5e-4)
+    slip_per_turn = 2 * np.pi * CLEARANCE  # the rotor's centre goes once round the ring
+    assert found.friction_work == pytest.approx(-FRICTION * exact.force * slip_per_turn, rel=5e-4)
 
 
 def test_a_rub_that_pauses_or_does_not_go_round_is_partial(events):
