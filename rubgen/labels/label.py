@@ -19,9 +19,10 @@ def label(response: Response) -> Labels:
     """The labels of a run that ended with status OK; every one is defined in docs/labels.md.
 
     Contact and motion come from the whole record, orders from its last 100 turns: nothing depends on how long the
-    tail of the taps is. Labels are those of the true response, before any sensor. A motion is safely told from 500
-    recorded turns on (recipes ask for them); fewer are taken too, down to 32, where UserError is raised. Where the
-    speed changes, see `course`. A response without taps, as it is kept, has no orders: everything else is the same.
+    tail of the taps is, but for the number of windows whose amplitudes are told. Labels are those of the true response,
+    before any sensor. A motion is safely told from 500 recorded turns on (recipes ask for them); fewer are taken too,
+    down to 32, where UserError is raised. Where the speed changes, see `course`. A response without taps, as it is
+    kept, has no orders: everything else is the same.
     """
     response = as_kept(response)
     contact_steps = int(response.contact_steps_per_turn.sum())

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from rubgen.labels import label
+from rubgen.labels.plain import labels_dict
 from rubgen.scenario import ContactLaw
 from rubgen.scenario.taps import DEFAULT_TAPS, TipTiming
 from rubgen.solver import Stepper, integrate
@@ -60,6 +62,10 @@ def test_a_longer_tail_is_the_same_run(small_system, operation):
         assert other.energy == short.energy
         for name, tap in short.taps.items():
             np.testing.assert_array_equal(other.taps[name][-tap.size :], tap)
+        windows = short.window_orders
+        assert len(other.window_orders) > len(windows) == 6
+        np.testing.assert_array_equal(other.window_orders[-len(windows) :], windows)
+        assert labels_dict(label(other)) == labels_dict(label(short))
         arrivals, before = other.arrivals["probe"], short.arrivals["probe"]
         assert arrivals.step.size > before.step.size > 99 * system.n_blades
         np.testing.assert_array_equal(arrivals.step[-before.step.size :], before.step)
