@@ -101,6 +101,20 @@ def test_constant_passes_exactly() -> None:
     assert out == pytest.approx(8.3e-3, rel=1e-13)
 
 
+@pytest.mark.parametrize("channels", [1, 3, 4, 5, 9])
+def test_every_channel_is_filtered_by_itself(channels: int) -> None:
+    """Against the sum of h((position - step) dt) x over all steps, each channel another signal."""
+    dt = 1 / 70_000
+    half = filter_bank(dt, RATE).shape[1] // 2
+    signals = np.random.default_rng(channels).standard_normal((2 * half + 30, channels))
+    positions = half + np.array([0.0, 3.25, 17.5, 28.75])  # rows of the bank: nothing is interpolated
+    weights = impulse_response((positions[:, None] - np.arange(len(signals))) * dt, RATE)
+    expected = weights / weights.sum(axis=1, keepdims=True) @ signals
+    found = band_limit(signals, positions, dt=dt, sample_rate_hz=RATE)
+    assert found.shape == (4, channels)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+
+
 def test_compiled_and_plain_kernel_agree() -> None:
     rng = np.random.default_rng(0)
     bank = filter_bank(1 / 70_000, RATE)
