@@ -11,6 +11,7 @@ from rubgen.labels.course import by_angle, course_labels
 from rubgen.labels.kept import keep
 from rubgen.labels.labels import Motion
 from rubgen.labels.plain import labels_dict, remade_labels, window_amplitudes
+from rubgen.labels.windows import windows
 from rubgen.scenario.rotation import Rotation
 from rubgen.solver.response import Course
 from rubgen.solver.turn_orders import turn_orders
@@ -65,16 +66,27 @@ def test_a_rub_within_the_first_window_does_not_begin_before_its_first_touch(ram
 
 
 def test_windows_tell_speed_impulse_and_orders(ramp):
-    windows = label(ramp).windows
-    assert len(windows.start) == 5
-    assert windows.start[1] == pytest.approx(ROTATION.time_of(2 * np.pi * 16))
-    assert np.all(np.diff(windows.speed) > 0)
+    found = label(ramp).windows
+    assert len(found.start) == 5
+    assert found.start[1] == pytest.approx(ROTATION.time_of(2 * np.pi * 16))
+    assert np.all(np.diff(found.speed) > 0)
     # Turns 30 and 31 of the second window rub, all of the third, 48 and 49 of the fourth.
-    np.testing.assert_allclose(windows.impulse, [0, 2 * 0.5 / 16, 0.5, 2 * 0.5 / 16, 0])
+    np.testing.assert_allclose(found.impulse, [0, 2 * 0.5 / 16, 0.5, 2 * 0.5 / 16, 0])
     counts = np.diff(ramp.course.turn_steps[[0, 16, 32, 48, 64, 80]])
-    np.testing.assert_allclose(windows.duty, [0, 6, 48, 6, 0] / counts)
-    np.testing.assert_allclose(windows.orders["casing_acc_0"][:, 1], 5.0, rtol=0.02)
-    assert windows.orders["casing_acc_0"][:, [0, 2, 3]].max() < 0.1
+    np.testing.assert_allclose(found.duty, [0, 6, 48, 6, 0] / counts)
+    np.testing.assert_allclose(found.orders["casing_acc_0"][:, 1], 5.0, rtol=0.02)
+    assert found.orders["casing_acc_0"][:, [0, 2, 3]].max() < 0.1
+
+
+def test_the_scatter_of_a_window_is_the_standard_error_of_its_mean(ramp):
+    """Of noise whose |x|^2 has the mean 2 about a steady 5: sqrt(2 / 16), whatever the 5 is."""
+    rng = np.random.default_rng(3)
+    noise = rng.normal(size=(TURNS, 1, 20)) + 1j * rng.normal(size=(TURNS, 1, 20))
+    found = windows(replace(ramp, course=replace(ramp.course, orders=5.0 + noise)))
+    rms = np.sqrt(np.mean(found.scatter["casing_acc_0"] ** 2))
+    assert rms == pytest.approx(np.sqrt(2 / 16), rel=0.06)
+    away = found.orders["casing_acc_0"] - 5.0  # of a mean far from zero: the error along it, half of both
+    assert np.sqrt(2) * np.sqrt(np.mean(away**2)) == pytest.approx(rms, rel=0.2)
 
 
 def test_touches_by_angle_have_one_spacing_a_turn(ramp):
