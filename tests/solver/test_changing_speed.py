@@ -1,5 +1,7 @@
 """A changing speed, against integrations in the inertial frame, closed forms, and the steady runs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -140,6 +142,12 @@ def test_the_track_holds_the_true_motion_of_whole_turns():
     # Sections lie at theta = 0, up to half a step from the step that dates them.
     turned = 0.6 * course.rotation.fastest * response.dt * np.abs(orbit).max()
     np.testing.assert_allclose(place, seen, rtol=0, atol=turned)
+
+    growth = np.arange(1.0, response.record_turns + 1)[:, None, None] * [1.0, 0.0, 0.0]  # of each turn its number
+    grown = motion_frames(replace(response, track=replace(track, tip_growth=growth)), recording)
+    number = np.searchsorted(course.turn_steps, np.rint(step), side="right")
+    np.testing.assert_allclose((grown.tips - frames.tips)[:, 0, 0], number, rtol=0, atol=1e-9)
+    assert len(set(number.tolist())) > 10
 
 
 def test_without_damping_the_peak_lags_by_what_the_fresnel_integral_says():
