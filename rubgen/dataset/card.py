@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 from rubgen.dataset.files import write_text
 from rubgen.dataset.layout import SPLIT, Layout
 from rubgen.dataset.manifest import Identity
 from rubgen.io.columns import Column, scalar_columns, signal_columns
+from rubgen.io.sections import KINDS
 
 LOADING = {
     "parquet": """\
@@ -18,7 +20,7 @@ data = rubgen.open("DIR")                    # data.runs: a DataFrame; data.sign
 import datasets, duckdb, pandas, polars
 pandas.read_parquet("DIR/runs.parquet")      # parameters and labels of every run, failed ones too
 datasets.load_dataset("DIR", split="train")  # with signals; offline
-polars.scan_parquet("DIR/data/*.parquet").select("run_id", "motion", "proximity_x").collect()
+polars.scan_parquet("DIR/data/*.parquet").select("run_id", "motion", "CHANNEL").collect()
 duckdb.sql("select motion, count(*) from 'DIR/data/*.parquet' group by motion")
 ```""",
     "mcap": """\
@@ -41,9 +43,10 @@ def card(identity: Identity, status: dict[str, int]) -> str:
     sensors = identity.sensor_set
     signals = signal_columns(sensors, clean=recipe["sensors"]["keep_clean"])
     columns = scalar_columns(sensors) + (signals if "parquet" in formats else ())
-    loading = "\n\n".join(LOADING[kind] for kind in LOADING if kind in formats)
+    channel = next((column.name for column in signals if column.kind == "signal"), "rotation_angle_rad")
+    loading = "\n\n".join(LOADING[kind] for kind in LOADING if kind in formats).replace("CHANNEL", channel)
     ended = ", ".join(f"{count} {name}" for name, count in status.items())
-    turns, seconds = recipe["simulation"]["record_turns"], recipe["output"]["signal_seconds"]
+    record, limits = _record(recipe), _limits(recipe)
     return f"""{_head(recipe)}
 # {recipe["name"]}
 
@@ -53,8 +56,7 @@ integrated through unilateral contact with friction; virtual sensors with noise,
 motion, never from the noisy channels. Runs by status: {ended}.
 
 Splits go by machine: runs of one machine never stand in two splits. This set has one machine, hence one split,
-`{SPLIT}`; split across data sets of several machines. The labels come from {turns} turns; the signals are the last
-{seconds:g} s of them.
+`{SPLIT}`; split across data sets of several machines. {record}
 
 ## Loading
 
@@ -72,6 +74,15 @@ all of them, and labels against signals.
 |---|---|---|---|
 {_table(columns)}
 
+## Columns of sections
+
+Each a list, row after row where it holds rows. A state has 3 n_blades + 4 + 2 n_casing numbers, an orbit five a turn.
+
+| column | type | meaning |
+|---|---|---|
+| `run_id` | string | name of the run |
+{_section_table()}
+
 ## Recipe
 
 ```json
@@ -80,9 +91,23 @@ all of them, and labels against signals.
 
 ## Limits
 
-Linear ring, constant speed, no heat, no wear, one contact point a blade. Clearance, unbalance and damping of the
+{limits} Clearance, unbalance and damping of the
 published machine are not known and were chosen. Simulated data: learn from it, do not certify with it.
 """
+
+
+def _record(recipe: dict[str, Any]) -> str:
+    """What labels and signals come from."""
+    steady = recipe["operation"]["profile"] == "steady"
+    record = f"{recipe['simulation']['record_turns']} turns" if steady else "the whole record, `duration_s`"
+    return f"The labels come from {record}; the signals are\nthe last {recipe['output']['signal_seconds']:g} s of it."
+
+
+def _limits(recipe: dict[str, Any]) -> str:
+    """What the model leaves out."""
+    speed = "constant speed" if recipe["operation"]["profile"] == "steady" else "a speed that the rub does not change"
+    wear = "no wear but the liner's" if recipe["contact"].get("liner") else "no wear"
+    return f"Linear ring, {speed}, no heat, {wear}, one contact point a blade."
 
 
 def _head(recipe: dict[str, object]) -> str:
@@ -107,3 +132,7 @@ def _head(recipe: dict[str, object]) -> str:
 
 def _table(columns: tuple[Column, ...]) -> str:
     return "\n".join(f"| `{c.name}` | {c.kind} | {c.unit} | {c.meaning} |" for c in columns)
+
+
+def _section_table() -> str:
+    return "\n".join(f"| `{name}` | {kind} | {meaning} |" for name, (kind, meaning) in KINDS.items())

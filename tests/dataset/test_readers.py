@@ -1,5 +1,8 @@
 """Others read what rubgen writes, to the bit: memory, Parquet and MCAP carry the same floats."""
 
+import re
+from pathlib import Path
+
 import duckdb
 import numpy as np
 import pandas as pd
@@ -9,11 +12,13 @@ import yaml
 
 import datasets
 import rubgen
-from rubgen.dataset.manifest import read_manifest
+from rubgen.dataset.card import card
+from rubgen.dataset.manifest import identity_of, read_manifest
 from rubgen.errors import UserError
 from rubgen.io.columns import CHANNELS, SCALARS, SIGNALS
 from rubgen.io.mcap import read_mcap
-from rubgen.scenario import parse_recipe
+from rubgen.io.sections import KINDS
+from rubgen.scenario import load_recipe, parse_recipe
 
 DATA = "data/train-00000-of-00001.parquet"
 
@@ -71,7 +76,20 @@ def test_the_card_describes_every_column_and_its_head_is_yaml(small_set):
     assert [config["config_name"] for config in values["configs"]] == ["signals", "runs", "sections"]
     for column in SCALARS + SIGNALS:
         assert f"| `{column.name}` | {column.kind} | {column.unit} |" in body
+    for name, (kind, meaning) in KINDS.items():
+        assert f"| `{name}` | {kind} | {meaning} |" in body
     assert "4 runs" in body
+
+
+@pytest.mark.parametrize("name", ["rig", "run-up", "three-lobes"])
+def test_the_card_fits_its_recipe(name):
+    """It reads a channel that these sensors have, and tells of a constant speed only where it is."""
+    recipe = load_recipe(Path(__file__).parents[2] / f"datasets/{name}.toml")
+    text = card(identity_of(recipe), {"ok": recipe.runs})
+    (channel,) = re.findall(r'select\("run_id", "motion", "(\w+)"\)', text)
+    assert channel in [sensor.name for sensor in recipe.sensing.set.sensors]
+    assert ("constant speed" in text) is (name != "run-up")
+    assert ("come from 500 turns" in text) is (name != "run-up")
 
 
 def test_open_gives_runs_as_a_frame(data, small_set):
