@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +23,9 @@ from rubgen.sensors.blade_tip_timing import TipTimes
 from rubgen.sensors.channel import Channel, Recording
 from rubgen.sensors.contact_window import ContactIntervals
 from rubgen.viz.replay import Replay, sorted_touches
+
+MOST_MEANT = 5
+"""Columns that a mistaken condition is answered with."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,7 +88,7 @@ def replay_of_recorded(run: McapRun, *, source: str = "the file") -> Replay:
 def find_runs(data: DataSet, where: str) -> list[str]:
     """Names of the good runs that meet a condition on the columns of `runs.parquet`, in order.
 
-    Raises UserError, with the names of the columns, for a condition that duckdb does not understand.
+    Raises UserError, with columns of like names, for a condition that duckdb does not understand.
     """
     import duckdb
 
@@ -93,8 +99,16 @@ def find_runs(data: DataSet, where: str) -> list[str]:
             return [str(row[0]) for row in connection.execute(query, [path]).fetchall()]
     except duckdb.Error as error:
         reason = str(error).splitlines()[0]
-        names = [name for name in data.runs.columns if not name.endswith("_orders")]
-        raise UserError(f"--where {where!r}: {reason}; columns are {', '.join(names)}") from None
+        told = f"columns are those of {data.layout.card}{_meant(where, data.runs.columns)}"
+        raise UserError(f"--where {where!r}: {reason}; {told}") from None
+
+
+def _meant(where: str, columns: Iterable[str]) -> str:
+    """Names of columns near the words of a condition that are none, to say: a set has hundreds."""
+    known = set(columns)
+    words = [word for word in re.findall(r"[A-Za-z_]\w+", where) if word not in known]
+    near = [name for word in words for name in get_close_matches(word, known, n=3)]
+    return f", such as {', '.join(near[:MOST_MEANT])}" if near else ""
 
 
 def scenario_of(data: DataSet, run_id: str) -> Scenario:
