@@ -28,7 +28,7 @@ def reproduce_command(
     as_json: bool,
 ) -> int:
     """Compute, judge, write, or search; a Ctrl-C says how to go on."""
-    _check(paper, figure, workers, every, fitting=fitting)
+    _check(paper, figure, workers, every, machine, fitting=fitting)
     folder = out or Path("out") / (f"{machine}-quick" if quick else machine)
     console = Console(stderr=True, quiet=as_json)
     try:
@@ -50,7 +50,7 @@ def reproduce_command(
     return 0
 
 
-def _check(paper: str, figure: str | None, workers: int | None, every: int, *, fitting: bool) -> None:
+def _check(paper: str, figure: str | None, workers: int | None, every: int, machine: str, *, fitting: bool) -> None:
     if paper not in PAPERS:
         raise UserError(f"{paper}: unknown paper; choose from {', '.join(PAPERS)}")
     if workers is not None and workers < 1:
@@ -59,6 +59,10 @@ def _check(paper: str, figure: str | None, workers: int | None, every: int, *, f
         raise UserError(f"--every {every}: must be at least 1; 4 gives steps of 120 rev/min")
     if fitting and figure is not None:
         raise UserError(f"--fit --figure {figure}: the search is one whole; leave --figure out")
+    if fitting and machine != paper:
+        raise UserError(
+            f"--fit --machine {machine}: the search starts from the paper's own preset; leave --machine out"
+        )
 
 
 def _reproduce(

@@ -17,6 +17,10 @@ def test_a_figure_is_reproduced(run, tmp_path):
         (["zeng2020"], "zeng2020: unknown paper; choose from zeng2019"),
         (["zeng2019", "--figure", "22"], "--figure 22: there is no such figure; choose from 6"),
         (["zeng2019", "--fit", "--figure", "9"], "--fit --figure 9: the search is one whole; leave --figure out"),
+        (
+            ["zeng2019", "--fit", "--machine", "zeng2019-fitted"],
+            "--fit --machine zeng2019-fitted: the search starts from the paper's own preset; leave --machine out",
+        ),
         (["zeng2019", "--every", "0"], "--every 0: must be at least 1; 4 gives steps of 120 rev/min"),
         (
             ["zeng2019", "--machine", "zeng2020"],
