@@ -182,6 +182,21 @@ def test_one_chattering_tip_counts_from_one_per_cent_of_the_orbit(
     assert motion(respond(blisk=blisk, casing=casing, casing_velocity=casing)).blisk == expected
 
 
+def test_tips_chatter_only_where_disk_centre_and_casing_repeat(respond: Respond) -> None:
+    tip, centre = np.zeros((500, 114)), np.zeros((500, 114))
+    tip[:, 3 * 17] = 0.05 * 3e-4 * logistic(4.0)
+    centre[:, 108] = 0.05 * 3e-4 * logistic(4.0)
+    still, irregular = np.ones((500, 11)), 1 + logistic(4.0)[:, None] * np.ones(11)
+
+    def chatter(blisk: np.ndarray, casing: np.ndarray) -> bool:
+        return motion(respond(blisk=blisk, casing=casing, casing_velocity=casing)).tip_chatter
+
+    assert chatter(tip, still)
+    assert not chatter(tip, irregular)
+    assert not chatter(tip + centre, still)
+    assert not chatter(np.zeros((500, 114)), still)
+
+
 def test_period_of_the_system_is_the_least_common_multiple(respond: Respond) -> None:
     blisk = np.zeros((500, 114))
     blisk[:, 108] = 1e-4 * np.array([0.0, 0.4, 0.1, 0.7, 0.9, 0.2])[TURN % 6]
