@@ -150,6 +150,23 @@ def test_the_track_holds_the_true_motion_of_whole_turns():
     assert len(set(number.tolist())) > 10
 
 
+def test_the_growth_of_the_tips_in_the_track_follows_the_speed():
+    """Made to be 1 nm (rad/s)^-2 Omega^2; a part of a turn stands for speeds within 0.02 %."""
+    operation = Operation(
+        profile="run-up", speed_rpm=700 / RPM, end_speed_rpm=1300 / RPM, duration_s=0.6, settle_turns=3
+    )
+    build = jeffcott_at(0.02)
+
+    def growing(speed, acceleration):
+        return replace(build(speed, acceleration), tip_static=np.array([[1e-9 * speed**2, 0.0, 0.0]]))
+
+    start = growing(operation.speed_rad_per_s, 0.0)
+    response = integrate(start, operation, ContactLaw(), system_at=growing, tail_seconds=0.05)
+    speed = response.course.rotation.speed(response.course.turn_steps[:-1] * response.dt)
+    np.testing.assert_allclose(response.track.tip_growth[:, 0, 0], 1e-9 * speed**2, rtol=3e-4)
+    assert speed[-1] > 1.5 * speed[0]
+
+
 def test_without_damping_the_peak_lags_by_what_the_fresnel_integral_says():
     """A' = e Omega^2 / (2 i omega) exp(i alpha t^2 / 2): the peak is at w = 1.2172, alpha t^2 = pi w^2."""
     operation = Operation(
