@@ -32,6 +32,7 @@ def test_screening_changes_no_bit(small_system, law):
     every, again = run_turns(small_system(speed=500.0), law, screen=False)
     assert impulse[-1] > 0.1
     np.testing.assert_array_equal(screened.state.now, every.state.now)
+    np.testing.assert_array_equal(screened.book.works, every.book.works)
     np.testing.assert_array_equal(impulse, again)
     np.testing.assert_array_equal(screened.surface.liner.depth, every.surface.liner.depth)
 
