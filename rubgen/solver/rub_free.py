@@ -23,7 +23,8 @@ FILM_RANGE = 0.999
 """Newton's steps are shortened so that the eccentricity stays below this share of the film's clearance."""
 TURN_PLACES = 64
 CLEARANCE_PLACES = 1440
-"""Places of a turn at which the clearance is taken: a quarter of a degree, 1 nm of an oval of 0.2 mm."""
+"""Places of a turn at which the clearance is taken: a quarter of a degree. It errs by at most |r''| (pi / 1440)^2 / 2,
+40 nm in an oval of 8 mm, 1 um with chords."""
 
 
 @dataclass(frozen=True, kw_only=True)
