@@ -1,5 +1,7 @@
 """One run, four readers: memory, MCAP, Parquet and Rerun agree to the bit after float32."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from rerun.chunk import RrdReader
@@ -7,6 +9,8 @@ from rerun.chunk import RrdReader
 from rubgen.io.columns import SCALARS
 from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
 from rubgen.io.parquet import read_table, write_parquet
+from rubgen.labels.course import Change, CourseLabels
+from rubgen.labels.labels import Motion
 from rubgen.labels.plain import labels_dict
 from rubgen.viz.replay import replay_of
 from rubgen.viz.rerun import write_rrd
@@ -96,3 +100,26 @@ def test_arrivals_of_blades_agree(run, folder):
 
 def test_no_problem_is_found_in_the_file(folder):
     assert check_mcap(folder / "run.mcap") == []
+
+
+def test_motion_changes_with_the_recording_in_memory_and_in_mcap(rub_run, tmp_path):
+    """A recording that begins 0.5 s into the record holds the class it begins with, and what changes within it."""
+    seconds = rub_run.recording.samples / rub_run.recording.sample_rate_hz
+    times = (0.0, 0.3, 0.5 + seconds / 4, 0.5 + 2 * seconds)
+    motions = (Motion.PERIOD_1, Motion.UNDECIDED, Motion.CHAOTIC, Motion.PERIOD_K)
+    changes = tuple(
+        Change(time=time, speed=1e3, rub=True, impulse=0.1, blisk=motion, casing=Motion.STATIC, motion=motion)
+        for time, motion in zip(times, motions, strict=True)
+    )
+    run = dataclasses.replace(
+        rub_run,
+        recording=dataclasses.replace(rub_run.recording, start_seconds=0.5),
+        labels=dataclasses.replace(
+            rub_run.labels, course=CourseLabels(changes=changes, onset_speed=1e3, end_of_rub_speed=None)
+        ),
+    )
+    write_mcap(run, tmp_path / "run.mcap")
+    for found in (replay_of(run).motion_classes, read_mcap(tmp_path / "run.mcap").motion_classes):
+        assert [motion for _, motion in found["motion"]] == ["undecided", "chaotic"]
+        assert [time for time, _ in found["motion_blisk"]] == pytest.approx([0.0, seconds / 4], abs=1e-9)
+        assert {motion for _, motion in found["motion_casing"]} == {"static"}
