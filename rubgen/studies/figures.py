@@ -65,7 +65,11 @@ def _of_run(draw: Callable[[Replay, Choice], Figure]) -> Make:
 
 def _of_set(draw: Callable[[DataSet, Choice], Figure]) -> Make:
     def make(source: Path | None, choice: Choice) -> Figure:
-        return draw(DataSet(_needed(source)), choice)
+        directory = _needed(source)
+        data = DataSet(directory)
+        if not (data.runs["status"] == "ok").any():
+            raise UserError(f"{directory}: no run is good; see `rubgen info {directory}`")
+        return draw(data, choice)
 
     return make
 

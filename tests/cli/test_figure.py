@@ -149,3 +149,13 @@ def test_every_figure_has_a_test():
     assert set(FIGURES) == {
         "campbell", "modes", "orbit", "contact", "waveform", "bifurcation", "cascade", "exponent", "overview",
     }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["overview", "bifurcation", "cascade", "exponent"])
+def test_a_set_without_a_good_run_has_no_figure(run, monkeypatch, tmp_path, name):
+    monkeypatch.setattr("rubgen.studies.figures.DataSet", MadeSet)
+    monkeypatch.setattr(MadeSet, "runs", MadeSet.runs.assign(status="diverged"))
+    code, text, error = run("figure", name, "made", "--out", str(tmp_path / "f.png"))
+    assert (code, text) == (2, "")
+    assert error == "rubgen: made: no run is good; see `rubgen info made`\n"
+    assert list(tmp_path.iterdir()) == []
