@@ -99,6 +99,12 @@ def test_open_gives_runs_as_a_frame(data, small_set):
     assert data.manifest == read_manifest(data.layout)
 
 
+def test_units_are_those_of_the_channels(data):
+    assert tuple(data.units) == CHANNELS
+    units = {name: data.units[name] for name in ("proximity_x", "casing_acc_0", "contact_force")}
+    assert units == {"proximity_x": "m", "casing_acc_0": "m/s2", "contact_force": "N"}
+
+
 def test_open_reads_mcap_where_there_is_no_parquet(copied_set, memory):
     for path in (copied_set / "data").iterdir():
         path.unlink()
