@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg import eigh
 
 from rubgen.arrays import FloatArray
 from rubgen.labels.clusters import rms, without_periodic_part
@@ -42,6 +43,8 @@ def principal_components(points: FloatArray) -> FloatArray:
     Components below 1 % of the leading one's variance are left out: they may be rounding.
     """
     flat = points.reshape(points.shape[0], -1)
-    left, size, _ = np.linalg.svd(flat - flat.mean(axis=0), full_matrices=False)
-    count = min(OBSERVABLES, int(np.sum(size**2 >= 0.01 * size[0] ** 2)))
-    return np.asarray((left * size).T[:count], dtype=np.float64)
+    flat = flat - flat.mean(axis=0)
+    width = flat.shape[1]
+    variances, axes = eigh(flat.T @ flat, subset_by_index=(max(0, width - OBSERVABLES), width - 1))
+    count = int(np.sum(variances >= 0.01 * variances[-1]))
+    return np.asarray((flat @ axes[:, ::-1][:, :count]).T, dtype=np.float64)

@@ -79,7 +79,9 @@ def harmonics(response: Response) -> dict[str, TapOrders]:
 
 def tap_orders(tap: FloatArray, response: Response) -> TapOrders:
     """The orders of one tap."""
-    turns, lines = spectrum_turns(response), order_lines(tap, response)
+    turns = spectrum_turns(response)
+    looked_at = turns * (max(HIGHEST_ORDER, response.n_blades + SIDEBANDS) + 1)
+    lines = order_lines(tap, response)[:looked_at]
     size = np.abs(lines)
     at = turns * np.arange(1, HIGHEST_ORDER + 1)
     blades = np.arange(response.n_blades - SIDEBANDS, response.n_blades + SIDEBANDS + 1)

@@ -6,12 +6,14 @@ import numpy as np
 import numpy.typing as npt
 
 from rubgen.jit import kernel
+from rubgen.solver.lanes_kernels import COUNT, FIRST, KIND, ROW, add_lines
+from rubgen.vector_kernels import LANES
 
 Array = npt.NDArray[np.float64]
 
-
-ABREAST = 4
-"""Channels that are summed side by side in registers."""
+ABREAST = 2 * LANES
+"""Channels that are summed side by side in two vector registers, always so many: a sum's order hangs on their number,
+and a channel's bits must not hang on how many others there are."""
 
 
 @kernel
@@ -20,25 +22,20 @@ def interpolate_rows(signals: Array, bank: Array, positions: Array, out: Array) 
 
     Row m of `bank` (phases + 1, 2 half) holds the weights for a position m / phases beyond a step; between two rows
     they are interpolated linearly. Tap j belongs to step floor(position) - half + 1 + j; every such step must exist.
-    The number of channels must be a multiple of ABREAST.
+    There must be ABREAST channels, and `out` must hold zeros.
     """
     phases = bank.shape[0] - 1
     taps = bank.shape[1]
+    rows = ABREAST // LANES
     weights = np.empty(taps)
+    line = np.zeros((1, 5), dtype=np.int64)
+    line[0, KIND], line[0, COUNT] = 2 * rows - 1, taps  # line_kind(rows, scaled=True)
     for i in range(positions.shape[0]):
         step = int(np.floor(positions[i]))
         phase = (positions[i] - step) * phases
         row = min(int(phase), phases - 1)
         share = phase - row
-        first = step - taps // 2 + 1
         for j in range(taps):
             weights[j] = (1.0 - share) * bank[row, j] + share * bank[row + 1, j]
-        for c in range(0, signals.shape[1], ABREAST):
-            sum_0 = sum_1 = sum_2 = sum_3 = 0.0
-            for j in range(taps):
-                weight = weights[j]
-                sum_0 += weight * signals[first + j, c]
-                sum_1 += weight * signals[first + j, c + 1]
-                sum_2 += weight * signals[first + j, c + 2]
-                sum_3 += weight * signals[first + j, c + 3]
-            out[i, c], out[i, c + 1], out[i, c + 2], out[i, c + 3] = sum_0, sum_1, sum_2, sum_3
+        line[0, ROW], line[0, FIRST] = i * rows, (step - taps // 2 + 1) * rows
+        add_lines(line, signals, weights, out)

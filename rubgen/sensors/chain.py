@@ -80,12 +80,15 @@ def band_limit(signals: FloatArray, positions: FloatArray, *, dt: float, sample_
     within 1e-4 up to sample_rate / 2.56 and below 1e-4 from sample_rate / 2 on; there is no delay. The step rate must
     be at least 2.56 sample rates, and all positions at least half a filter length inside.
     """
-    channels = signals.shape[1]
-    padded = np.zeros((signals.shape[0], -(-channels // ABREAST) * ABREAST))
-    padded[:, :channels] = signals
-    out = np.empty((positions.size, padded.shape[1]))
-    interpolate_rows(padded, filter_bank(dt, sample_rate_hz), positions, out)
-    return out[:, :channels]
+    channels, bank = signals.shape[1], filter_bank(dt, sample_rate_hz)
+    out = np.empty((positions.size, channels))
+    for start in range(0, channels, ABREAST):
+        part = signals[:, start : start + ABREAST]
+        padded, filtered = np.zeros((len(part), ABREAST)), np.zeros((positions.size, ABREAST))
+        padded[:, : part.shape[1]] = part
+        interpolate_rows(padded, bank, positions, filtered)
+        out[:, start : start + ABREAST] = filtered[:, : part.shape[1]]
+    return out
 
 
 def adc_step(range_min: float, range_max: float, bits: int) -> float:
