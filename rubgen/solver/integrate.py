@@ -152,11 +152,11 @@ class Integration:
             self.touches += self.spin.touches
             if recording:
                 self.orbit.append(result.orbit / result.taps.shape[1])
-            if self.rotation.is_steady and recording:
-                self.window_orders.add(row, result.taps)
-            elif recording:
+            if not self.rotation.is_steady:
                 steps = np.arange(self.spin.first_step(turn), self.spin.first_step(turn + 1) + 1)
                 self.orders.append(turn_orders(result.taps, self.rotation.angle(steps * self.stepper.dt)))
+            elif recording:
+                self.window_orders.add(row, result.taps)
             if self.twin is not None:
                 # Beside a surface that has worn within the turn no trajectory is near the run's own.
                 same_surface = liner.book[REMOVED] == removed

@@ -60,6 +60,8 @@ def test_a_longer_tail_is_the_same_run(small_system, operation):
     for other in (longer, whole):
         np.testing.assert_array_equal(other.section_q, short.section_q)
         assert other.energy == short.energy
+        assert len(short.orbit) == 100
+        np.testing.assert_array_equal(other.orbit, short.orbit)
         for name, tap in short.taps.items():
             np.testing.assert_array_equal(other.taps[name][-tap.size :], tap)
         windows = short.window_orders
