@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 
 class RubgenError(Exception):
     """Base of every error that rubgen raises on purpose."""
@@ -12,3 +14,15 @@ class UserError(RubgenError):
 
     The command line prints the message alone and exits with 2.
     """
+
+
+class RubgenWarning(UserWarning):
+    """What is allowed but surely not meant, or was done in another way than asked: one line, and the work goes on.
+
+    The command line prints the message alone on stderr.
+    """
+
+
+def warn(message: str) -> None:
+    """Warn the user in one line, whatever called this."""
+    warnings.warn(message, RubgenWarning, stacklevel=2)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 from cyclopts import App, CycloptsError, Parameter
 
 from rubgen import __version__
-from rubgen.errors import RubgenError, UserError
+from rubgen.errors import RubgenError, RubgenWarning, UserError
 
 DONE, WANTING, MISTAKE, INTERRUPTED = 0, 1, 2, 130
 
@@ -35,6 +36,8 @@ Directory = Annotated[Path, _option("Directory of a data set.")]
 
 def main(arguments: list[str] | None = None) -> NoReturn:
     """Run the command line; always ends the process, with one line on stderr where it fails."""
+    warnings.simplefilter("always", RubgenWarning)
+    warnings.showwarning = _show_warning
     try:
         code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
         sys.stdout.flush()
@@ -228,7 +231,13 @@ def verify(directory: Directory, /, *, json: Json = False) -> int:
     return verify_command(directory, as_json=json)
 
 
-def _one_line(error: Exception) -> str:
+def _show_warning(message: Warning | str, category: type[Warning], *_where: Any, **_how: Any) -> None:
+    """What rubgen warns of, as one line; the place in our code says nothing to a user."""
+    name = "warning" if issubclass(category, RubgenWarning) else category.__name__
+    sys.stderr.write(f"rubgen: {name}: {_one_line(message)}\n")
+
+
+def _one_line(error: Exception | str) -> str:
     return " ".join(str(error).split()).rstrip(".")
 
 

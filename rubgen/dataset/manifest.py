@@ -63,6 +63,11 @@ class Manifest(BaseModel):
     files: tuple[FileEntry, ...]
     derived: tuple[str, ...]
 
+    def listed(self, folder: str) -> list[str]:
+        """The paths below `folder` of the set, in order: what the set consists of, whatever else lies there."""
+        names = [*(entry.path for entry in self.files), *self.derived]
+        return sorted(name for name in names if name.startswith(f"{folder}/"))
+
 
 def identity_of(recipe: Recipe) -> Identity:
     """The identity of the data set that this recipe makes with the installed packages."""

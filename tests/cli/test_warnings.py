@@ -1,0 +1,27 @@
+"""What is not meant is told in one line, and the command goes on."""
+
+import warnings
+
+import pytest
+
+from rubgen.cli import app
+from rubgen.errors import RubgenWarning, warn
+
+
+@pytest.mark.parametrize("runs", [1, 2])
+def test_a_warning_is_one_line_without_a_place_in_our_code(capsys, monkeypatch, runs):
+    def warned(directory, *, as_json):
+        for _ in range(runs):
+            warn("clearance_m = 0.22: no blade can reach\n the casing")
+
+    monkeypatch.setattr("rubgen.cli.inspecting.info_command", warned)
+    with warnings.catch_warnings(), pytest.raises(SystemExit) as ended:
+        app.main(["info", "anywhere"])
+    assert ended.value.code == 0
+    line = "rubgen: warning: clearance_m = 0.22: no blade can reach the casing\n"
+    assert capsys.readouterr().err == line * runs
+
+
+def test_in_python_a_warning_is_a_warning():
+    with pytest.warns(RubgenWarning, match="nothing will rub"):
+        warn("nothing will rub")
