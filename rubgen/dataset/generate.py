@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import os
 import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -17,7 +16,7 @@ from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import identity_of, read_manifest, write_manifest
 from rubgen.dataset.stage import stage_run, warm_up
 from rubgen.dataset.verify import verify
-from rubgen.dataset.workers import unordered, worker_pool
+from rubgen.dataset.workers import unordered, usable_cores, worker_pool
 from rubgen.errors import UserError
 from rubgen.scenario import Recipe, load_recipe, parse_recipe
 from rubgen.scenario.recipe import check_recipe
@@ -46,7 +45,7 @@ def generate(
 ) -> Generated:
     """Make the data set of `recipe` (a recipe, its TOML values, its file; None: the embedded one) in `out`.
 
-    Each run is simulated alone, in `workers` processes (the number of cores; 1 works in this process), and kept as
+    Each run is simulated alone, in `workers` processes (one for each usable core; 1 works in this process), and kept as
     soon as it is finished: the same call after an interruption makes what is missing, to the same bytes. The number
     of runs belongs to the recipe (`runs` overrides it): another one is another data set and needs another directory.
     Failed runs are listed with their reason. A finished set is verified and left alone.
@@ -89,10 +88,7 @@ def _recipe(recipe: Recipe | Mapping[str, object] | Path | str | None, runs: int
 def _workers(workers: int | None) -> int:
     if workers is not None and workers < 1:
         raise UserError(f"--workers {workers}: must be at least 1; give a number of processes")
-    if workers is not None:
-        return workers
-    # Cores that this process may use, where the system can tell.
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return workers or usable_cores()
 
 
 def _nothing_to_do(layout: Layout) -> Generated:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import multiprocessing
 import os
 import signal
@@ -12,6 +13,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from itertools import islice
 from multiprocessing import connection
+from pathlib import Path
 from typing import TypeVar
 
 from rubgen.errors import RubgenError
@@ -21,6 +23,43 @@ ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "RAYON_NUM_THREADS"), "1"
 )
 WAITING_PER_WORKER = 2
+
+
+def usable_cores(root: Path = Path("/")) -> int:
+    """Cores that this process may use: its affinity and its container's CPU quota, rounded up, where there are any.
+
+    `root` is where the system's own files begin: /proc/self/cgroup and, of either version, /sys/fs/cgroup.
+    """
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return max(1, min([cores, *(math.ceil(quota) for quota in _cpu_quotas(root))]))
+
+
+def _cpu_quotas(root: Path) -> Iterator[float]:
+    """The quota in cores of every control group that this process is in, the inner and the outer ones."""
+    base = root / "sys/fs/cgroup"
+    for line in _text(root / "proc/self/cgroup").splitlines():
+        _number, controllers, inner = [*line.split(":", 2), "", ""][:3]
+        if controllers and "cpu" not in controllers.split(","):
+            continue
+        for mount in {controllers, "cpu" if controllers else ""}:
+            group = base / mount / inner.lstrip("/")
+            yield from (quota for folder in (group, *group.parents) if (quota := _quota(folder)))
+
+
+def _quota(folder: Path) -> float | None:
+    """Cores of one control group: `cpu.max` of version 2, `cpu.cfs_*` of version 1; None where nothing is limited."""
+    limit = _text(folder / "cpu.max") or f"{_text(folder / 'cpu.cfs_quota_us')} {_text(folder / 'cpu.cfs_period_us')}"
+    match limit.split():
+        case [quota, period] if quota.isdecimal() and period.isdecimal() and int(period) > 0:
+            return int(quota) / int(period)
+    return None
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="ascii")
+    except (OSError, ValueError):
+        return ""
 
 
 @contextmanager

@@ -3,7 +3,7 @@ import os
 
 import pytest
 
-from rubgen.dataset.workers import ONE_THREAD, unordered, worker_pool
+from rubgen.dataset.workers import ONE_THREAD, unordered, usable_cores, worker_pool
 from rubgen.errors import RubgenError
 
 
@@ -28,3 +28,52 @@ def test_a_worker_that_dies_is_reported_in_one_line():
 def test_what_a_worker_raises_reaches_the_caller():
     with pytest.raises(ValueError, match="negative"), worker_pool(1) as pool:
         list(unordered(pool, 1, math.factorial, [(-1,)]))
+
+
+def _system(root, groups, files):
+    """The system's own files of a container, below `root`."""
+    for name, text in {"proc/self/cgroup": groups, **files}.items():
+        path = root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return root
+
+
+@pytest.mark.parametrize(
+    ("groups", "files", "cores"),
+    [
+        ("0::/\n", {"sys/fs/cgroup/cpu.max": "200000 100000\n"}, 2),
+        ("0::/\n", {"sys/fs/cgroup/cpu.max": "250000 100000\n"}, 3),
+        ("0::/\n", {"sys/fs/cgroup/cpu.max": "10000 100000\n"}, 1),
+        ("0::/\n", {"sys/fs/cgroup/cpu.max": "max 100000\n"}, 8),
+        ("0::/\n", {"sys/fs/cgroup/cpu.max": "900000 100000\n"}, 8),
+        ("0::/a/b\n", {"sys/fs/cgroup/a/cpu.max": "300000 100000\n", "sys/fs/cgroup/a/b/cpu.max": "max 100000\n"}, 3),
+        (
+            "4:memory:/m\n3:cpu,cpuacct:/docker/x\n",
+            {
+                "sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us": "150000\n",
+                "sys/fs/cgroup/cpu,cpuacct/cpu.cfs_period_us": "50000\n",
+            },
+            3,
+        ),
+        (
+            "1:cpu:/\n0::/\n",
+            {"sys/fs/cgroup/cpu/cpu.cfs_quota_us": "-1\n", "sys/fs/cgroup/cpu/cpu.cfs_period_us": "100000\n"},
+            8,
+        ),
+        ("no table\n", {"sys/fs/cgroup/cpu.max": ""}, 8),
+    ],
+)
+def test_the_cores_are_those_of_the_containers_quota(tmp_path, monkeypatch, groups, files, cores):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _pid: set(range(8)), raising=False)
+    assert usable_cores(_system(tmp_path, groups, files)) == cores
+
+
+def test_the_affinity_limits_the_cores_where_the_system_has_one(tmp_path, monkeypatch):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _pid: {5}, raising=False)
+    assert usable_cores(tmp_path) == 1
+    monkeypatch.delattr(os, "sched_getaffinity")
+    monkeypatch.setattr(os, "cpu_count", lambda: 6)
+    assert usable_cores(tmp_path) == 6
+    monkeypatch.setattr(os, "cpu_count", lambda: None)
+    assert usable_cores(tmp_path) == 1

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable
 
 from threadpoolctl import threadpool_limits
@@ -30,11 +29,6 @@ def compute(pieces: Iterable[Piece], store: Store, workers: int, progress: Progr
         store.keep(key, arrays)
         progress(done := done + 1, len(asked))
     return len(missing)
-
-
-def cores() -> int:
-    """Number of cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _made(missing: dict[str, Piece], workers: int) -> Iterable[tuple[str, Arrays]]:

@@ -6,9 +6,10 @@ import json
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
+from rubgen.dataset.workers import usable_cores
 from rubgen.io.durable import write_durably
 from rubgen.studies.zeng2019 import figure10, figure16, figure17, figure18, figures12to15
-from rubgen.studies.zeng2019.computing import Progress, compute, cores
+from rubgen.studies.zeng2019.computing import Progress, compute
 from rubgen.studies.zeng2019.fit_page import page
 from rubgen.studies.zeng2019.piece import Piece
 from rubgen.studies.zeng2019.score import Score, best, frictionless, score
@@ -55,7 +56,7 @@ def fit(
     tried, store = candidates(QUICK_THIN if quick else 1), Store(Path(out))
     rooms = {damping: Piece(room, (damping,)) for damping in DAMPING}
     with store.claimed():
-        made = compute([*(one.piece for one in tried), *rooms.values()], store, workers or cores(), progress)
+        made = compute([*(one.piece for one in tried), *rooms.values()], store, workers or usable_cores(), progress)
         scores = [score(one, store) for one in tried]
         folder = Path(out) / FOLDER
         folder.mkdir(exist_ok=True)
@@ -64,7 +65,7 @@ def fit(
         size = QUICK if quick else COARSE
         sizes = [replace(size, machine=name) for name in (MACHINE, str(folder / MACHINE_FILE))]
         asked = [piece for one in sizes for section in COMPARED for piece in section.pieces(one)]
-        made += compute(asked, store, workers or cores(), progress)
+        made += compute(asked, store, workers or usable_cores(), progress)
         judged = [_judged(one, store) for one in sizes]
         _write(folder / "fit.json", json.dumps([asdict(one) for one in scores], indent=1) + "\n")
         spans = {damping: store(piece) for damping, piece in rooms.items()}

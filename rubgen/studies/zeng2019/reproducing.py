@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from rubgen.dataset.workers import usable_cores
 from rubgen.errors import UserError
 from rubgen.io.durable import write_durably
-from rubgen.studies.zeng2019.computing import Progress, compute, cores
+from rubgen.studies.zeng2019.computing import Progress, compute
 from rubgen.studies.zeng2019.drawing import png
 from rubgen.studies.zeng2019.page import Drawn, Judged, html, markdown
 from rubgen.studies.zeng2019.section import Section
@@ -54,7 +55,9 @@ def reproduce(
     size = replace(size, machine=machine)
     store = Store(Path(out))
     with store.claimed():
-        made = compute((p for section in chosen for p in section.pieces(size)), store, workers or cores(), progress)
+        made = compute(
+            (p for section in chosen for p in section.pieces(size)), store, workers or usable_cores(), progress
+        )
         judged = [judge(section, size, store) for section in chosen]
         folder = Path(out) if figure is None else Path(out) / f"figure-{chosen[0].name}"
         folder.mkdir(exist_ok=True)
