@@ -4,9 +4,22 @@ from __future__ import annotations
 
 import hashlib
 import json
+from fnmatch import fnmatch
 from pathlib import Path
 
 from rubgen.io.durable import PART, write_durably
+
+SYSTEM_FILES = (
+    ".DS_Store", "._*", ".Spotlight-V100", ".Trashes", ".fseventsd", ".TemporaryItems", ".apdisk",  # macOS
+    "Thumbs.db", "ehthumbs.db", "desktop.ini", "$RECYCLE.BIN", "System Volume Information",  # Windows
+    "lost+found", ".directory", ".Trash-*", ".nfs*", ".fuse_hidden*", "@eaDir",  # Linux, file servers
+)  # fmt: skip
+"""What systems put into any directory; in whatever case. It is no content."""
+
+
+def is_system_file(name: str) -> bool:
+    """Whether a file or folder of that name is of the system and not of whoever uses the directory."""
+    return any(fnmatch(name.lower(), pattern.lower()) for pattern in SYSTEM_FILES)
 
 
 def write_text(path: Path, text: str) -> None:
