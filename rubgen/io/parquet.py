@@ -6,7 +6,7 @@ from the rows alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,9 +15,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from rubgen.arrays import FloatArray
-from rubgen.errors import UserError
 from rubgen.io.columns import Column, scalar_columns, signal_columns
 from rubgen.io.durable import write_durably
+from rubgen.io.parquet_read import open_parquet, read_table, row_groups
 from rubgen.labels.plain import labels_dict, window_amplitudes
 from rubgen.scenario.sensor_set import default_sensor_set
 from rubgen.scenario.sensors import SensorSet
@@ -27,6 +27,8 @@ from rubgen.sensors.contact_window import contact_intervals
 
 if TYPE_CHECKING:  # Run carries the solver's imports; who reads a file needs none of them
     from rubgen.pipeline import Run
+
+__all__ = ["open_parquet", "read_table", "row_groups", "run_table", "schema", "write_parquet", "write_table"]
 
 TYPES = {
     "text": pa.string(),
@@ -90,39 +92,6 @@ def write_parquet(run: Run, path: Path) -> None:
     """One run as a Parquet file of one row, with its signals; raises OSError when it cannot be written."""
     table = run_table(run)
     write_table([table], table.schema, path)
-
-
-def read_table(path: Path, columns: list[str] | None = None) -> pa.Table:
-    """The rows of a Parquet file, every page checked; UserError where it is missing or damaged."""
-    with open_parquet(path) as file:
-        try:
-            return file.read(columns=columns)
-        except (pa.ArrowException, OSError) as error:
-            raise damaged(path, error) from None
-
-
-def row_groups(path: Path) -> Iterator[pa.Table]:
-    """One row group after another, every page checked; UserError where the file is missing or damaged."""
-    with open_parquet(path) as file:
-        for group in range(file.num_row_groups):
-            try:
-                yield file.read_row_group(group)
-            except (pa.ArrowException, OSError) as error:
-                raise damaged(path, error) from None
-
-
-def open_parquet(path: Path) -> pq.ParquetFile:
-    """The file, not read yet, with page checksums switched on; UserError where it is missing or no Parquet."""
-    try:
-        return pq.ParquetFile(path, page_checksum_verification=True)
-    except (pa.ArrowException, OSError) as error:
-        raise damaged(path, error) from None
-
-
-def damaged(path: Path, error: Exception) -> UserError:
-    """One line for a Parquet file that cannot be read."""
-    reason = " ".join(str(error).split())
-    return UserError(f"{path}: missing, damaged or no Parquet file ({reason}); generate it again")
 
 
 def _field(column: Column) -> pa.Field:

@@ -58,7 +58,7 @@ def test_a_flipped_bit_is_found(name, copied_set):
     ("name", "message"),
     [
         ("mcap/run-000000.mcap", "mcap/run-000000.mcap: "),
-        (DATA, "train-00000-of-00001.parquet: missing, damaged"),
+        (DATA, "train-00000-of-00001.parquet: damaged"),
     ],
 )
 def test_damage_is_found_even_where_the_manifest_was_made_to_fit(name, message, copied_set):

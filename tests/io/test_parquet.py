@@ -151,9 +151,9 @@ def test_a_flipped_bit_is_found(file, tmp_path):
     content[start + 2000] ^= 1
     path = tmp_path / "bad.parquet"
     path.write_bytes(content)
-    with pytest.raises(UserError, match=r"bad.parquet: missing, damaged or no Parquet file"):
+    with pytest.raises(UserError, match=r"bad\.parquet: damaged or no Parquet file"):
         read_table(path)
-    with pytest.raises(UserError, match=r"bad.parquet: missing, damaged or no Parquet file"):
+    with pytest.raises(UserError, match=r"bad\.parquet: damaged or no Parquet file"):
         list(row_groups(path))
 
 

@@ -1,0 +1,132 @@
+"""Tables back from Parquet files: correct, or one line that names the file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+
+from rubgen.errors import UserError
+from rubgen.io.regular_file import check_regular
+
+MOST_BYTES = 256 * 1024**2
+"""What a row group may always unpack to: eight runs of ten seconds and 30 channels take as much."""
+MOST_TIMES = 1000
+"""A larger row group may unpack to so many times its size in the file; constant signals reach some hundred."""
+
+
+class ParquetSource:
+    """An open Parquet file of rubgen. Every damage is a UserError that names it.
+
+    Page checksums, UTF-8 and offsets are checked; sizes are bounded before anything is unpacked.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Read the footer; UserError where it is missing or damaged, or rubgen writes no such columns."""
+        self.path = path
+        check_regular(path)
+        with damage_named(path):
+            with pq.ParquetFile(path) as footer:
+                facts = footer.metadata
+                self.schema_arrow: pa.Schema = footer.schema_arrow.remove_metadata()
+            self.num_row_groups: int = facts.num_row_groups
+            self._text = _text_columns(path, self.schema_arrow)
+            self._file = pq.ParquetFile(
+                path, metadata=facts, read_dictionary=self._text, page_checksum_verification=True
+            )
+
+    def __enter__(self) -> ParquetSource:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._file.close()
+
+    def read_row_group(self, group: int, columns: Sequence[str] | None = None) -> pa.Table:
+        """The rows of one group; UserError where a page is damaged or a column is missing."""
+        names = self._names(columns)
+        with damage_named(self.path):
+            self._check_size(group)
+            return self._plain(self._file.read_row_group(group, columns=names), names)
+
+    def read(self, columns: Sequence[str] | None = None) -> pa.Table:
+        """All rows; UserError as for one group."""
+        groups = [self.read_row_group(group, columns) for group in range(self.num_row_groups)]
+        types = pa.schema([self.schema_arrow.field(name) for name in self._names(columns)])
+        return pa.concat_tables([types.empty_table(), *groups])
+
+    def _names(self, columns: Sequence[str] | None) -> list[str]:
+        there = self.schema_arrow.names
+        missing = [name for name in columns or () if name not in there]
+        if missing:
+            raise UserError(f"{self.path}: has no column {missing[0]!r}; it is of another rubgen, generate it again")
+        return list(there if columns is None else columns)
+
+    def _check_size(self, group: int) -> None:
+        facts = self._file.metadata.row_group(group)
+        columns = [facts.column(number) for number in range(facts.num_columns)]
+        unpacked = sum(max(column.total_uncompressed_size, 8 * column.num_values) for column in columns)
+        packed = sum(column.total_compressed_size for column in columns)
+        self._refuse_above(unpacked, packed)
+
+    def _plain(self, table: pa.Table, names: list[str]) -> pa.Table:
+        """The table with text as text. It comes as a dictionary, for a long word may stand for a million rows."""
+        text = [chunk for name in names if name in self._text for chunk in table[name].chunks]
+        table.validate(full=True)
+        self._refuse_above(sum(_text_bytes(chunk) for chunk in text), 0)
+        return table.cast(pa.schema([self.schema_arrow.field(name) for name in names]))
+
+    def _refuse_above(self, unpacked: int, packed: int) -> None:
+        if unpacked > max(MOST_BYTES, MOST_TIMES * packed):
+            raise UserError(f"{self.path}: would unpack to {unpacked:,} bytes; that is no file of rubgen")
+
+
+def open_parquet(path: Path) -> ParquetSource:
+    """The file, not read yet but for its footer; UserError where it is missing, damaged or no Parquet of rubgen."""
+    return ParquetSource(path)
+
+
+def read_table(path: Path, columns: Sequence[str] | None = None) -> pa.Table:
+    """The rows of a Parquet file, every page checked; UserError where it is missing, damaged or lacks a column."""
+    with open_parquet(path) as file:
+        return file.read(columns)
+
+
+def row_groups(path: Path) -> Iterator[pa.Table]:
+    """One row group after another, every page checked; UserError where the file is missing or damaged."""
+    with open_parquet(path) as file:
+        for group in range(file.num_row_groups):
+            yield file.read_row_group(group)
+
+
+@contextmanager
+def damage_named(path: Path) -> Iterator[None]:
+    """Whatever pyarrow raises within, as one line that names the file."""
+    try:
+        yield
+    except (pa.ArrowException, OSError, ValueError, LookupError, MemoryError, OverflowError) as error:
+        reason = " ".join(str(error).split())[:200]
+        raise UserError(f"{path}: damaged or no Parquet file of rubgen ({reason}); generate it again") from None
+
+
+def _text_columns(path: Path, types: pa.Schema) -> list[str]:
+    """Names of the text columns; UserError where two columns share a name or one is of a kind that rubgen has not."""
+    if len(set(types.names)) != len(types.names):
+        raise UserError(f"{path}: two columns share a name; that is no file of rubgen")
+    for field in types:
+        leaf = field.type.value_type if pa.types.is_list(field.type) else field.type
+        number = pa.types.is_integer(leaf) or pa.types.is_floating(leaf) or pa.types.is_boolean(leaf)
+        if not (number or pa.types.is_string(field.type)):
+            raise UserError(f"{path}: column {field.name!r} is {field.type!s:.60}; that is no file of rubgen")
+    return [field.name for field in types if pa.types.is_string(field.type)]
+
+
+def _text_bytes(chunk: pa.DictionaryArray) -> int:
+    lengths = pc.take(pc.binary_length(chunk.dictionary), chunk.indices)
+    return int(pc.sum(lengths).as_py() or 0)
