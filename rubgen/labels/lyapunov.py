@@ -12,6 +12,8 @@ from rubgen.solver.response import Response
 ALIGNING = 0.1
 """Share of the record in which the twin turns into the direction of fastest growth; left out."""
 BLOCKS = 10
+BRIDGE_RANGE = np.sqrt(np.pi / 2)
+"""Mean range of a Brownian bridge of unit variance over unit time."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,21 +46,43 @@ LEAST = 1e-3
 def lyapunov(growth: FloatArray) -> Exponent | None:
     """The exponent of a trajectory whose twin's distance grew by exp(growth) (n,) from one renormalisation to the next.
 
-    The mean of the growths but for the first tenth (Benettin, Galgani, Giorgilli, Strelcyn 1980, Meccanica 15, 9). Its
-    standard error comes from the means of ten blocks, which correlation from turn to turn does not fool as it does the
-    scatter of single turns, and it is no less than half of what the two halves differ by: a drift is an error too.
-    None without growths, or where one is no number: the twin could not follow.
+    The mean of the growths without the first tenth (Benettin, Galgani, Giorgilli, Strelcyn 1980, Meccanica 15, 9). None
+    without growths, or where one is no number: the twin could not follow. For the error see `standard_error`.
     """
     counted = growth[int(ALIGNING * growth.size) :]
     if counted.size < 2 * BLOCKS or not np.isfinite(growth).all():
         return None
-    blocks = np.array([block.mean() for block in np.array_split(counted, BLOCKS)])
-    halves = [half.mean() for half in np.array_split(counted, 2)]
     ends = np.cumsum([len(block) for block in np.array_split(counted, BLOCKS)])
     return Exponent(
         per_turn=float(counted.mean()),
-        error=float(max(blocks.std(ddof=1) / np.sqrt(BLOCKS), abs(halves[1] - halves[0]) / 2)),
+        error=standard_error(counted),
         convergence=np.cumsum(counted)[ends - 1] / ends,
+    )
+
+
+def standard_error(growth: FloatArray) -> float:
+    """The standard error of the mean of growths (n,) that follow each other in time; n is at least ten.
+
+    The largest of three estimates, for each of which there is a motion that the two others underrate:
+
+    - Chaos: the scatter of the means of ten blocks over sqrt(10). Correlation from turn to turn does not fool it.
+    - Tori: range(S) / (n sqrt(pi / 2)), where S is the sum of the growths less its straight line from first to last.
+      On a torus S stays within bounds, and the mean is wrong by about range(S) / n at most, which is 1.25 errors;
+      means of blocks do not show it. Of independent growths S is a Brownian bridge, whose mean range is sqrt(pi n / 2)
+      times their deviation (Feller 1951, Ann. Math. Statist. 22, 427): the estimate is the standard error again.
+    - Drifts: half of what the means of the two halves differ by.
+
+    `tests/labels/test_lyapunov.py` holds it to tori and to chaos.
+    """
+    blocks = [block.mean() for block in np.array_split(growth, BLOCKS)]
+    first, second = (half.mean() for half in np.array_split(growth, 2))
+    from_line = np.cumsum(growth - growth.mean(), dtype=np.float64)
+    return float(
+        max(
+            np.std(blocks, ddof=1) / np.sqrt(BLOCKS),
+            np.ptp([0.0, *from_line]) / (growth.size * BRIDGE_RANGE),
+            abs(second - first) / 2,
+        )
     )
 
 

@@ -12,7 +12,7 @@ from rubgen.studies.verification.report import Group, page, shown
 from rubgen.studies.verification.row import relative, within
 
 # The others take seconds each; `make verification` runs them all.
-SLOW = {"plates", "impact_oscillator", "turning_frame"}
+SLOW = {"plates", "impact_oscillator", "turning_frame", "exponent_errors"}
 
 
 @pytest.fixture(scope="module")
@@ -37,12 +37,14 @@ def test_there_are_enough_rows_and_each_has_its_own_name_and_source(table):
 
 
 def test_tolerances_are_tight(table):
-    # A published range or a fitted preset apart, no row lets more than 1 % of its value pass.
+    # Published ranges, a fitted preset and scatter of records apart, no row lets more than 1 % of its value pass.
     loose = [
         row.quantity
         for name, group in table.items()
         for row in group.rows
-        if name not in {"preset", "chaos_indicators"} and row.expected and row.tolerance > 0.01 * abs(row.expected)
+        if name not in {"preset", "chaos_indicators", "exponent_errors"}
+        and row.expected
+        and row.tolerance > 0.01 * abs(row.expected)
     ]
     assert all("order" in quantity for quantity in loose), loose
 

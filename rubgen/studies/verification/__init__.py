@@ -29,6 +29,7 @@ GROUPS = (
     "surface_options",
     "chaos_indicators",
     "lyapunov_exponents",
+    "exponent_errors",
     "preset",
 )
 
