@@ -2,32 +2,38 @@
 
 from __future__ import annotations
 
-import json
+import hashlib
 import platform
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, NonNegativeInt, TypeAdapter, ValidationError
 
 from rubgen.dataset.files import json_text, sha256_of, write_text
 from rubgen.dataset.layout import FOLDERS, Layout
 from rubgen.errors import UserError
+from rubgen.io.json_read import read_json
+from rubgen.io.regular_file import check_regular
 from rubgen.machine import Machine
+from rubgen.machine.problems import first_problem
 from rubgen.scenario import Recipe
+from rubgen.scenario.recipe import recorded_recipe
 from rubgen.scenario.sensors import SensorSet
 
 PACKAGES = ("rubgen", "numpy", "scipy", "numba", "llvmlite", "pyarrow", "mcap", "protobuf", "zstandard", "rerun-sdk")
 _STRICT = ConfigDict(extra="forbid", frozen=True)
+InnerPath = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*(/[A-Za-z0-9][A-Za-z0-9._-]*)*$")]
+"""The path of a file within the set: no other place can be named."""
 
 
 class FileEntry(BaseModel):
     """A file whose bytes follow from the recipe."""
 
     model_config = _STRICT
-    path: str
-    bytes: int
-    sha256: str
+    path: InnerPath
+    bytes: NonNegativeInt
+    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
 
 class Identity(BaseModel):
@@ -42,6 +48,16 @@ class Identity(BaseModel):
     def same_recipe(self, other: Identity) -> bool:
         """Whether both describe the same data set, whatever the versions."""
         return (self.recipe, self.machine, self.sensors) == (other.recipe, other.machine, other.sensors)
+
+    def checked(self, source: str) -> Identity:
+        """The same with every key in its place; UserError, beginning with `source`, where it is no identity."""
+        if "rubgen" not in self.packages:
+            raise UserError(f"{source}: identity.packages names no rubgen; generate the set again")
+        return _identity(self.recorded(f"{source}: identity"), self.packages)
+
+    def recorded(self, source: str = "manifest") -> Recipe:
+        """The recipe with machine and sensors as they were; UserError, beginning with `source`, for an unknown one."""
+        return recorded_recipe(self.recipe, self.machine, self.sensors, source)
 
     @property
     def sensor_set(self) -> SensorSet:
@@ -58,10 +74,10 @@ class Manifest(BaseModel):
     license: str
     seed: int
     runs: int
-    status: dict[str, int]
+    status: dict[str, NonNegativeInt]
     identity: Identity
     files: tuple[FileEntry, ...]
-    derived: tuple[str, ...]
+    derived: tuple[InnerPath, ...]
 
     def listed(self, folder: str) -> list[str]:
         """The paths below `folder` of the set, in order: what the set consists of, whatever else lies there."""
@@ -71,7 +87,10 @@ class Manifest(BaseModel):
 
 def identity_of(recipe: Recipe) -> Identity:
     """The identity of the data set that this recipe makes with the installed packages."""
-    packages = {name: version(name) for name in PACKAGES} | {"python": platform.python_version()}
+    return _identity(recipe, {name: version(name) for name in PACKAGES} | {"python": platform.python_version()})
+
+
+def _identity(recipe: Recipe, packages: dict[str, str]) -> Identity:
     return Identity(
         recipe=recipe.model_dump(mode="json", exclude_none=True),
         machine=TypeAdapter(Machine).dump_python(recipe.base.machine, mode="json"),
@@ -99,22 +118,36 @@ def write_manifest(layout: Layout, identity: Identity, status: dict[str, int]) -
 
 
 def read_manifest(layout: Layout) -> Manifest:
-    """The manifest of a finished set; UserError where there is none, or it is damaged."""
+    """The manifest of a finished set; UserError where there is none, or it is damaged or of no set of rubgen."""
     try:
+        for path in (layout.manifest, layout.digest):
+            check_regular(path)
         content = layout.manifest.read_bytes()
         digest = layout.digest.read_text(encoding="ascii").split()
-    except (OSError, UnicodeDecodeError) as error:
+    except (UserError, OSError, UnicodeDecodeError) as error:
         raise UserError(
             f"{layout.root}: no finished data set of rubgen ({error}); give the directory of `rubgen generate`"
         ) from None
-    if digest[:1] != [sha256_of(layout.manifest)]:
+    if digest[:1] != [hashlib.sha256(content).hexdigest()]:
         raise UserError(f"{layout.manifest}: its digest is not the one in {layout.digest.name}; generate the set again")
     try:
-        return Manifest.model_validate(json.loads(content))
-    except (ValidationError, ValueError) as error:
-        raise UserError(
-            f"{layout.manifest}: not a manifest of rubgen ({_one_line(error)}); generate it again"
-        ) from None
+        manifest = Manifest.model_validate(read_json(content))
+    except ValidationError as error:
+        raise first_problem(layout.manifest, error, read_json(content)) from None
+    except ValueError as error:
+        raise UserError(f"{layout.manifest}: not a manifest of rubgen ({error}); generate the set again") from None
+    return _checked(manifest, layout.manifest)
+
+
+def _checked(manifest: Manifest, path: Path) -> Manifest:
+    """The manifest with its identity complete; UserError where the two say different things."""
+    identity = manifest.identity.checked(str(path))
+    for key in ("name", "license", "seed", "runs"):
+        if getattr(manifest, key) != identity.recipe[key]:
+            raise UserError(f"{path}: {key} is not the one of its recipe; generate the set again")
+    if sum(manifest.status.values()) != manifest.runs:
+        raise UserError(f"{path}: status counts other than {manifest.runs} runs; generate the set again")
+    return manifest.model_copy(update={"identity": identity})
 
 
 def hashed_files(layout: Layout) -> list[Path]:
@@ -130,7 +163,3 @@ def derived_files(layout: Layout) -> list[Path]:
 
 def _entry(path: Path, root: Path) -> FileEntry:
     return FileEntry(path=path.relative_to(root).as_posix(), bytes=path.stat().st_size, sha256=sha256_of(path))
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split())[:200]

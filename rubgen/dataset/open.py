@@ -16,7 +16,6 @@ from rubgen.dataset.manifest import Manifest, read_manifest
 from rubgen.errors import UserError
 from rubgen.io.columns import signal_columns
 from rubgen.io.parquet import open_parquet, read_table
-from rubgen.scenario.recipe import recorded_recipe
 from rubgen.sensors.channel import Float32Array
 
 if TYPE_CHECKING:
@@ -40,8 +39,7 @@ class DataSet:
     @cached_property
     def units(self) -> dict[str, str]:
         """The unit of each recorded channel by its name, of the clean ones too where the set keeps them."""
-        identity = self.manifest.identity
-        sensing = recorded_recipe(identity.recipe, identity.machine).sensing
+        sensing = self.manifest.identity.recorded().sensing
         columns = signal_columns(sensing.set, clean=sensing.keep_clean)
         return {column.name: column.unit for column in columns if column.kind == "signal"}
 

@@ -18,7 +18,6 @@ from rubgen.dataset.open import DataSet
 from rubgen.errors import UserError
 from rubgen.io.mcap_read import McapRun
 from rubgen.scenario import Scenario
-from rubgen.scenario.recipe import recorded_recipe
 from rubgen.sensors.blade_tip_timing import TipTimes
 from rubgen.sensors.channel import Channel, Recording
 from rubgen.sensors.contact_window import ContactIntervals
@@ -113,8 +112,7 @@ def _meant(where: str, columns: Iterable[str]) -> str:
 
 def scenario_of(data: DataSet, run_id: str) -> Scenario:
     """The scenario of a run, from the manifest's recipe and machine."""
-    identity = data.manifest.identity
-    return recorded_recipe(identity.recipe, identity.machine).scenario(int(run_id.removeprefix("run-")))
+    return data.manifest.identity.recorded().scenario(int(run_id.removeprefix("run-")))
 
 
 def _from_data_set(directory: Path, run_id: str | None, where: str | None) -> Found:

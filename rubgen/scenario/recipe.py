@@ -28,6 +28,7 @@ from rubgen.scenario.scenario import (
     TurnCount,
 )
 from rubgen.scenario.sensor_set import DEFAULT_SET, load_sensor_set
+from rubgen.scenario.sensors import SensorSet
 from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, vary
 
 DEFAULT_RECIPE = Path(__file__).parent / "zeng2019-mini.toml"
@@ -107,6 +108,7 @@ class Recipe(BaseModel):
     contact: ContactLaw = ContactLaw()
     _folder: Path = PrivateAttr(default_factory=Path)
     _machine: Machine | None = PrivateAttr(default=None)
+    _sensor_set: SensorSet | None = PrivateAttr(default=None)
 
     @cached_property
     def base(self) -> Scenario:
@@ -130,7 +132,7 @@ class Recipe(BaseModel):
     def sensing(self) -> Sensing:
         """`[sensors]` with the set that it names."""
         rest = self.sensors.model_dump(exclude={"set"})
-        return Sensing(set=load_sensor_set(self.sensors.set, self._folder), **rest)
+        return Sensing(set=self._sensor_set or load_sensor_set(self.sensors.set, self._folder), **rest)
 
     def distributions(self) -> Iterator[tuple[Parameter, Distribution]]:
         """The keys that the recipe names, with their distributions, in the order of the registry."""
@@ -184,17 +186,23 @@ def parse_recipe(
     return recipe
 
 
-def recorded_recipe(data: dict[str, Any], machine: dict[str, Any]) -> Recipe:
-    """The recipe of a data set from its manifest, with the machine as it was, whatever its file says by now.
+def recorded_recipe(data: object, machine: object, sensors: object, source: str = "manifest") -> Recipe:
+    """The recipe of a data set from its manifest, with machine and sensors as they were, whatever their files now say.
 
-    Raises UserError where this rubgen cannot read them.
+    Raises UserError, beginning with `source`, where this rubgen cannot read them.
     """
-    try:
-        recipe = Recipe.model_validate(data)
-        recipe._machine = TypeAdapter(Machine).validate_python(machine)
-    except ValidationError as error:
-        raise first_problem("manifest", error, data, TypeAdapter(Recipe)) from None
+    recipe: Recipe = _recorded(Recipe, data, f"{source}: recipe")
+    recipe._machine = _recorded(Machine, machine, f"{source}: machine")
+    recipe._sensor_set = _recorded(SensorSet, sensors, f"{source}: sensors")
     return recipe
+
+
+def _recorded(kind: Any, data: object, source: str) -> Any:
+    adapter: TypeAdapter[Any] = TypeAdapter(kind)
+    try:
+        return adapter.validate_python(data)
+    except ValidationError as error:
+        raise first_problem(source, error, data, adapter) from None
 
 
 def check_recipe(recipe: Recipe, source: str = "recipe") -> None:
