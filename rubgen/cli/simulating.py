@@ -13,6 +13,7 @@ from rubgen.cli.printing import print_json, print_pairs
 from rubgen.cli.replaying import Showing, show
 from rubgen.errors import UserError
 from rubgen.labels.plain import labels_dict
+from rubgen.machine.problems import first_problem
 from rubgen.pipeline import Run, simulate
 from rubgen.scenario import Labelling, Operation, Scenario, Sensing, make_scenario
 from rubgen.scenario.feasible import check_feasible
@@ -83,8 +84,7 @@ def _scenario(options: dict[str, Any]) -> Scenario:
             seed=options["seed"],
         )
     except ValidationError as error:
-        problem = error.errors()[0]
-        raise UserError(f"{problem['loc'][0]} = {problem['input']!r}: {problem['msg']}; correct this value") from None
+        raise first_problem("", error, options) from None
     check_feasible(scenario)
     return scenario
 

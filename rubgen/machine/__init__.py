@@ -2,6 +2,7 @@
 
 from rubgen.machine.load import load_machine, preset_names
 from rubgen.machine.machine import (
+    NUMBER,
     STRICT,
     BladeRow,
     Casing,
@@ -15,11 +16,14 @@ from rubgen.machine.machine import (
     NonNegative,
     Positive,
     Ratio,
+    Seed,
     SqueezeFilm,
+    Switch,
     Unbalance,
 )
 
 __all__ = [
+    "NUMBER",
     "STRICT",
     "BladeRow",
     "Casing",
@@ -33,7 +37,9 @@ __all__ = [
     "NonNegative",
     "Positive",
     "Ratio",
+    "Seed",
     "SqueezeFilm",
+    "Switch",
     "Unbalance",
     "load_machine",
     "preset_names",

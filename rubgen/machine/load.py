@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import json
-import tomllib
 from pathlib import Path
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
 from rubgen.errors import UserError
 from rubgen.machine.machine import Machine
-from rubgen.machine.problems import first_problem, nearest
+from rubgen.machine.problems import nearest, validated
+from rubgen.machine.toml_file import names_toml, read_toml, toml_path
 
 PRESETS = Path(__file__).parent / "presets"
 
@@ -28,10 +28,10 @@ def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
     """
     if name_or_path in preset_names():
         return _machine_from(PRESETS / f"{name_or_path}.toml")
-    if not name_or_path.endswith(".toml"):
+    if not names_toml(name_or_path):
         hint = nearest(name_or_path, preset_names())
         raise UserError(f"machine = {name_or_path!r}: no such preset; {hint}, or the path of a machine .toml")
-    return _machine_from((folder or Path()) / name_or_path)
+    return _machine_from(toml_path(name_or_path, folder))
 
 
 def machine_id(machine: Machine) -> str:
@@ -43,24 +43,5 @@ def machine_id(machine: Machine) -> str:
     return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()[:12]
 
 
-def read_toml(path: Path) -> dict[str, object]:
-    """The content of a TOML file; a UserError of one line when it is missing or not TOML."""
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise UserError(f"{path}: there is no such file; check the path") from None
-    except UnicodeDecodeError:
-        raise UserError(f"{path}: not a text file in UTF-8; give a TOML file") from None
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read ({error.strerror}); give a readable TOML file") from None
-    except tomllib.TOMLDecodeError as error:
-        raise UserError(f"{path}: not TOML ({error}); mend the line that is named") from None
-
-
 def _machine_from(path: Path) -> Machine:
-    data = read_toml(path)
-    adapter = TypeAdapter(Machine)
-    try:
-        return adapter.validate_python(data)
-    except ValidationError as error:
-        raise first_problem(path, error, data, adapter) from None
+    return validated(path, read_toml(path), TypeAdapter(Machine))

@@ -8,16 +8,35 @@ from __future__ import annotations
 from typing import Annotated, Self
 
 import numpy as np
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 from pydantic.dataclasses import dataclass
+from pydantic_core import PydanticCustomError
 
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Finite = Annotated[float, Field(allow_inf_nan=False)]
-Ratio = Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)]
-Deviation = Annotated[float, Field(gt=-1, allow_inf_nan=False)]
-Anisotropy = Annotated[float, Field(gt=-1, lt=1, allow_inf_nan=False)]
+
+def _no_text(value: object) -> object:
+    """A number as it is; pydantic would read "0.3" as 0.3 and true as 1."""
+    if isinstance(value, str | bytes | bool | np.bool_):
+        raise PydanticCustomError("number", "must be a number")
+    return value
+
+
+NUMBER = BeforeValidator(_no_text)
+"""Stands last in the annotation of every number."""
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), NUMBER]
+NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False), NUMBER]
+Finite = Annotated[float, Field(allow_inf_nan=False), NUMBER]
+Ratio = Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False), NUMBER]
+Deviation = Annotated[float, Field(gt=-1, allow_inf_nan=False), NUMBER]
+Anisotropy = Annotated[float, Field(gt=-1, lt=1, allow_inf_nan=False), NUMBER]
+Switch = Annotated[bool, Field(strict=True)]
+Seed = Annotated[int, Field(ge=0, le=2**63 - 1), NUMBER]
 STRICT = ConfigDict(extra="forbid")
+MOST_BLADES = 1000
+MOST_BLADE_ELEMENTS = 200
+MOST_RADIAL_ELEMENTS = 200
+MOST_CIRCUMFERENTIAL_ELEMENTS = 3600
+MOST_CASING_NODES = 1440
+MOST_LOBES = 100
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -25,7 +44,7 @@ class Material:
     """Linear isotropic elastic material."""
 
     youngs_modulus_pa: Positive
-    poisson_ratio: Annotated[float, Field(gt=-1, lt=0.5, allow_inf_nan=False)]
+    poisson_ratio: Annotated[float, Field(gt=-1, lt=0.5, allow_inf_nan=False), NUMBER]
     density_kg_per_m3: Positive
 
     @property
@@ -43,8 +62,8 @@ class Disk:
     rim_radius_m: Positive
     bore_thickness_m: Positive
     rim_thickness_m: Positive
-    radial_elements: Annotated[int, Field(ge=1)] = 7
-    circumferential_elements: Annotated[int, Field(ge=3)] = 72
+    radial_elements: Annotated[int, Field(ge=1, le=MOST_RADIAL_ELEMENTS), NUMBER] = 7
+    circumferential_elements: Annotated[int, Field(ge=3, le=MOST_CIRCUMFERENTIAL_ELEMENTS), NUMBER] = 72
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -58,7 +77,7 @@ class Mistuning:
 
     pattern: Annotated[tuple[Deviation, ...], Field(min_length=1)] | None = None
     relative_std: Ratio | None = None
-    seed: Annotated[int, Field(ge=0)] | None = None
+    seed: Seed | None = None
 
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:
@@ -84,7 +103,7 @@ class BladeRow:
     """
 
     material: Material
-    count: Annotated[int, Field(ge=1)]
+    count: Annotated[int, Field(ge=1, le=MOST_BLADES), NUMBER]
     length_m: Positive
     root_chord_m: Positive
     tip_chord_m: Positive
@@ -92,7 +111,7 @@ class BladeRow:
     tip_thickness_m: Positive
     root_angle_deg: Finite
     tip_angle_deg: Finite
-    elements: Annotated[int, Field(ge=1)] = 20
+    elements: Annotated[int, Field(ge=1, le=MOST_BLADE_ELEMENTS), NUMBER] = 20
     mistuning: Mistuning | None = None
 
     @model_validator(mode="after")
@@ -123,11 +142,11 @@ class Casing:
     width_m: Positive
     clearance_m: Positive
     ovality_m: NonNegative
-    lobes: Annotated[int, Field(ge=2)] = 2
+    lobes: Annotated[int, Field(ge=2, le=MOST_LOBES), NUMBER] = 2
     lobe_angle_deg: Finite = 0.0
     radial_support_stiffness_n_per_m: Positive
     circumferential_support_stiffness_n_per_m: Positive
-    nodes: Annotated[int, Field(ge=12)] = 180
+    nodes: Annotated[int, Field(ge=12, le=MOST_CASING_NODES), NUMBER] = 180
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -200,7 +219,7 @@ class Unbalance:
 
     kg_m: NonNegative
     angle_deg: Finite | None = None
-    blade: Annotated[int, Field(ge=0)] | None = None
+    blade: Annotated[int, Field(ge=0), NUMBER] | None = None
 
     @model_validator(mode="after")
     def _one_place(self) -> Self:

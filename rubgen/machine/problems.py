@@ -1,55 +1,200 @@
-"""A failed validation as one line for the user: file, key, value, what is allowed, how to mend it."""
+"""Data that does not fit its type, as one line for the user: file, key, value, what is allowed, how to mend it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
 from rubgen.errors import UserError
+from rubgen.machine.schema_nodes import Path, SchemaNodes, bounds_in_words
+from rubgen.machine.sentences import DECIMAL_COMMA, sentence
 
+T = TypeVar("T")
 UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
-BOUNDS = ("less_than", "greater_than_equal")
+DEEPEST = 16
+NEAR, FAR = 0.6, 0.75
+"""How like a known key an unknown one must be, in its own table and elsewhere."""
+WHOLE_NUMBERS = 2**63
+SHARES = ("below 1", "at most 1", "at most 0.3")
+"""How the range of a share ends."""
+LONGEST = 120
+"""Longer values are not shown."""
+OTHER_NAMES = {"channels": "set", "channel": "set", "mu": "friction", "rpm": "speed_rpm", "fs": "sample_rate_hz"}
+"""Keys that people write for ours and that do not look like them."""
+
+
+def validated(
+    source: object, data: object, adapter: TypeAdapter[T], place: Callable[[Path], Path] = lambda path: path
+) -> T:
+    """The data as the adapter's type; `place` says where in the file `source` a value of the data stands.
+
+    Raises UserError of one line: the first problem in the order of the file, and how many there are.
+    """
+    check_plain(source, data)
+    try:
+        return adapter.validate_python(data)
+    except ValidationError as error:
+        raise first_problem(source, error, data, adapter, place) from None
 
 
 def first_problem(
-    source: object, error: ValidationError, data: object, adapter: TypeAdapter[Any] | None = None
+    source: object,
+    error: ValidationError,
+    data: object,
+    adapter: TypeAdapter[Any] | None = None,
+    place: Callable[[Path], Path] = lambda path: path,
 ) -> UserError:
-    """The first problem in `data`, which came from the file `source` and does not fit the type of `adapter`."""
-    # A misspelt key is also a missing one: say what is there, not what is not.
-    problem = min(error.errors(), key=lambda each: each["type"] not in UNKNOWN)
-    location = _path_in(data, problem["loc"], missing=problem["type"] == "missing")
-    key = ".".join(str(part) for part in location) or "the file"
-    if problem["type"] == "missing":
-        return UserError(f"{source}: {key}: this key is missing; add it")
-    if problem["type"] in UNKNOWN:
-        known = sorted(_keys_at(adapter, location[:-1])) if adapter else []
-        return UserError(f"{source}: {key}: unknown key; {nearest(str(location[-1]), known)}")
-    message = problem["msg"].removeprefix("Value error, ")
-    if location[-1:] == ["angle_deg"] and problem["type"] in BOUNDS:
-        message = "an angle round the casing is at least 0 and below 360 degrees"
-    remedy = "" if ";" in message else "; correct this value"
-    value = problem.get("input")
-    # Of a whole table, a message that shows the key and its value says enough.
-    shown = "" if isinstance(value, Mapping) and " = " in message else _shown(value)
-    return UserError(f"{source}: {key}{shown}: {message}{remedy}")
+    """The first problem in `data`, which came from `source` and does not fit the type of `adapter`."""
+    problems = _problems(error, data)
+    first = min(problems, key=lambda each: _order(data, each.path))
+    schema = SchemaNodes(adapter) if adapter else None
+    path = place(first.path)
+    text = f"{source}: {key_name(path) or 'the file'}{first.text(data, schema)}"
+    others = f" ({len(problems)} problems in all)" if len(problems) > 1 else ""
+    return UserError(f"{text}{others}".removeprefix(": "))
+
+
+def check_plain(source: object, value: object, path: Path = ()) -> None:
+    """Raise UserError where data is nested without end, or holds an integer that does not fit in 64 bits."""
+    if len(path) > DEEPEST:
+        raise UserError(f"{source}: {key_name(path[:3])}: tables or lists in one another without end; write it flat")
+    if isinstance(value, Mapping):
+        for key, each in value.items():
+            check_plain(source, each, (*path, str(key)))
+    elif isinstance(value, list | tuple):
+        for number, each in enumerate(value):
+            check_plain(source, each, (*path, number))
+    elif isinstance(value, int) and not -WHOLE_NUMBERS <= value < WHOLE_NUMBERS:
+        raise UserError(f"{source}: {key_name(path)}: an integer that does not fit in 64 bits; give a smaller one")
 
 
 def nearest(name: str, known: list[str]) -> str:
     """What to do about an unknown `name`: the known one that is nearest, and all of them."""
-    close = get_close_matches(name, known, n=1, cutoff=0.5)
-    hint = f"did you mean {close[0]}? " if close else ""
+    close = _closest(name, known)
+    hint = f"did you mean {close}? " if close else ""
     return f"{hint}allowed: {', '.join(known)}" if known else "remove it"
 
 
+def key_name(path: Path) -> str:
+    """A path as it stands in TOML, `blades.material`; a part that is no bare key is quoted."""
+    return ".".join(str(part) if re.fullmatch(r"[A-Za-z0-9_-]{1,60}", str(part)) else _cut(repr(part)) for part in path)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Problem:
+    """All that pydantic says of the value at one path: branches of a union complain each for itself."""
+
+    path: Path
+    errors: list[Any]
+
+    @property
+    def kind(self) -> str:
+        return str(self.errors[0]["type"])
+
+    def text(self, data: object, schema: SchemaNodes | None) -> str:
+        """Value, what is allowed and how to mend it, after the key."""
+        if self.kind == "missing":
+            return ": this key is missing; add it"
+        if self.kind in UNKNOWN:
+            return f": unknown key; {_instead(self.path, data, schema)}"
+        nodes = schema.at(data, self.path) if schema else []
+        sentences = [sentence(each, bounds_in_words(nodes), nodes) for each in self.errors]
+        message = " or ".join(dict.fromkeys(sentences)).replace(" or must be", " or")
+        value = self.errors[0].get("input")
+        hint = _hint(value, message)
+        remedy = "" if hint or ";" in message else "; change the value"
+        # Of a whole table, a message that shows the key and its value says enough.
+        shown = "" if isinstance(value, Mapping) and " = " in message else _shown(value)
+        return f"{shown}: {message}{hint}{remedy}"
+
+
+def _problems(error: ValidationError, data: object) -> list[_Problem]:
+    found: dict[tuple[Path, bool], _Problem] = {}
+    for each in error.errors(include_url=False):
+        lacking = each["type"] == "missing"
+        path = _path_in(data, each["loc"], missing=lacking)
+        if lacking and isinstance(path[-1], int):  # too few values of a pair
+            path, each["input"] = path[:-1], _at(data, path[:-1])
+            each["type"] = "pair"
+        found.setdefault((path, each["type"] in UNKNOWN), _Problem(path=path, errors=[])).errors.append(each)
+    return [each for each in found.values() if not _follows(each, list(found.values()))]
+
+
+def _follows(problem: _Problem, problems: list[_Problem]) -> bool:
+    """Whether a problem goes with another: a misspelt key is also a missing one, and a list lacks its bad value."""
+    path, others = problem.path, [each for each in problems if each is not problem]
+    if problem.kind == "too_short":
+        return any(each.path[: len(path)] == path for each in others)
+    unknown = [each.path for each in others if each.kind in UNKNOWN and each.path[:-1] == path[:-1]]
+    return problem.kind == "missing" and any(_closest(str(each[-1]), [str(path[-1])]) for each in unknown)
+
+
+def _instead(path: Path, data: object, schema: SchemaNodes | None) -> str:
+    """What to write for an unknown key: a near one of its table, or one of that name elsewhere."""
+    if schema is None:
+        return "remove it"
+    name, here = str(path[-1]), schema.keys(data, path[:-1])
+    wanted = OTHER_NAMES.get(name, name)
+    if wanted in here:
+        return f"did you mean {wanted}? allowed: {', '.join(here)}"
+    elsewhere = [key for key in schema.every_key() if key[-1] == wanted]
+    if elsewhere:
+        parts = [part for part in path[:-1] if isinstance(part, str)]
+        best = max(elsewhere, key=lambda key: sum(a == b for a, b in zip(key, parts, strict=False)))
+        return f"did you mean {'.'.join(best)}? allowed: {', '.join(here)}"
+    if _closest(name, here):
+        return nearest(name, here)
+    every = {key[-1]: key for key in schema.every_key()}
+    far = _closest(name, list(every), FAR)
+    return f"did you mean {'.'.join(every[far])}? {nearest(name, here)}" if far else nearest(name, here)
+
+
+def _closest(name: str, known: list[str], cutoff: float = NEAR) -> str | None:
+    """The known name that is most like `name`, or has it as one of its words."""
+    lower = {each.lower(): each for each in known}
+    close = get_close_matches(name.lower(), lower, n=1, cutoff=cutoff)
+    if not close and cutoff < FAR:
+        close = [each for each in lower if name.lower() in each.split("_")]
+    return lower[close[0]] if close else None
+
+
+def _hint(value: object, message: str) -> str:
+    """What is meant, where a text should be a number or a share stands in percent."""
+    if isinstance(value, int | float) and 1 < value <= 100 and message.endswith(SHARES):
+        return f"; {value:g} % is written {value / 100:g}"
+    if not isinstance(value, str) or "number" not in message:
+        return ""
+    comma = DECIMAL_COMMA.fullmatch(value.strip())
+    if comma:
+        return f"; decimals have a point, write {comma[1]}.{comma[2]}"
+    try:
+        float(value)
+    except ValueError:
+        return ""
+    return "; write it without quotes"
+
+
 def _shown(value: object) -> str:
-    text = repr(value)
-    return f" = {text}" if len(text) <= 120 else ""
+    text = str(value).lower() if isinstance(value, bool) else repr(value)
+    return f" = {text}" if len(text) <= LONGEST else ""
 
 
-def _path_in(data: object, loc: tuple[int | str, ...], *, missing: bool) -> list[int | str]:
+def _cut(text: str) -> str:
+    return text if len(text) <= LONGEST else f"{text[:60]}..."
+
+
+def _at(data: object, path: Path) -> Any:
+    for part in path:
+        data = data[part]  # type: ignore[index]
+    return data
+
+
+def _path_in(data: object, loc: tuple[int | str, ...], *, missing: bool) -> Path:
     """The parts of `loc` that are keys of the data; pydantic mixes the names of union members in."""
     path: list[int | str] = []
     for position, part in enumerate(loc):
@@ -61,29 +206,14 @@ def _path_in(data: object, loc: tuple[int | str, ...], *, missing: bool) -> list
             path.append(part)
         elif missing and position == len(loc) - 1:
             path.append(part)
-    return path
+    return tuple(path)
 
 
-def _keys_at(adapter: TypeAdapter[Any], location: list[int | str]) -> set[str]:
-    root = adapter.json_schema()
-    nodes = list(_alternatives(root, root))
-    for part in location:
-        found: list[Any] = [node["properties"][part] for node in nodes if part in node.get("properties", {})]
-        if isinstance(part, int):
-            found = [node["items"] for node in nodes if "items" in node]
-        nodes = [each for node in found for each in _alternatives(node, root)]
-    return {key for node in nodes for key in node.get("properties", {})}
-
-
-def _alternatives(
-    node: dict[str, object], root: dict[str, object]
-) -> Iterator[dict[str, dict[str, dict[str, object]]]]:
-    """The node itself, or what it refers to: every branch of a union."""
-    if "$ref" in node:
-        name = str(node["$ref"]).rsplit("/", 1)[-1]
-        yield from _alternatives(root["$defs"][name], root)  # type: ignore[index]
-        return
-    for key in ("anyOf", "oneOf", "allOf"):
-        for branch in node.get(key, []):  # type: ignore[attr-defined]
-            yield from _alternatives(branch, root)
-    yield node  # type: ignore[misc]
+def _order(data: object, path: Path) -> tuple[int, ...]:
+    """Where a path stands in the file; what is missing stands at the end of its table."""
+    order = []
+    for part in path:
+        keys = list(data) if isinstance(data, Mapping) else list(range(len(data))) if isinstance(data, list) else []
+        order.append(keys.index(part) if part in keys else len(keys))
+        data = _at(data, (part,)) if part in keys else None
+    return tuple(order)

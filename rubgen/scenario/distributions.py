@@ -7,12 +7,16 @@ field of its own name, and one line in `Distribution`.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from numbers import Real
 from typing import Annotated, Self, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, RootModel, Tag, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, RootModel, Tag, model_validator
+from pydantic_core import PydanticCustomError
 from scipy.special import ndtr, ndtri
 
 from rubgen.machine import Finite, Positive
+from rubgen.machine.problems import nearest
 
 T = TypeVar("T")
 _FROZEN = ConfigDict(extra="forbid", frozen=True)
@@ -126,10 +130,34 @@ KINDS = ("uniform", "log_uniform", "normal", "choice")
 
 def _kind(value: object) -> str | None:
     """The tag of the union; in angle brackets, so that no key of a recipe has the same name."""
-    if isinstance(value, int | float | Constant) and not isinstance(value, bool):
+    if isinstance(value, Constant) or _are_numbers(value):
         return "<number>"
-    names = list(value) if isinstance(value, dict) else list(getattr(type(value), "model_fields", ()))
+    names = list(value) if isinstance(value, Mapping) else list(getattr(type(value), "model_fields", ()))
     return f"<{names[0]}>" if len(names) == 1 and names[0] in KINDS else None
+
+
+def _known(value: object) -> object:
+    """The value, where it is a distribution of some kind."""
+    if _kind(value) is None:
+        raise PydanticCustomError("distribution", "{message}", {"message": _unknown(value)})
+    return value
+
+
+def _unknown(value: object) -> str:
+    """What to write for a value that is no distribution."""
+    allowed = f"give a number or a table of one key: {', '.join(KINDS)}"
+    match value:
+        case [low, high] | {"min": low, "max": high} if _are_numbers(low, high):
+            return f"a range is written {{ uniform = [{low}, {high}] }}; {allowed}"
+        case list() | tuple():
+            return f"values to choose from are written {{ choice = {list(value)} }}; {allowed}"
+        case dict() if len(value) == 1:
+            return f"no such distribution; {nearest(str(next(iter(value))), list(KINDS))}"
+    return f"no such distribution; {allowed}"
+
+
+def _are_numbers(*values: object) -> bool:
+    return all(isinstance(value, Real) and not isinstance(value, bool) for value in values)
 
 
 Distribution = Annotated[
@@ -138,11 +166,8 @@ Distribution = Annotated[
     | Annotated[LogUniform, Tag("<log_uniform>")]
     | Annotated[Normal, Tag("<normal>")]
     | Annotated[Choice, Tag("<choice>")],
-    Discriminator(
-        _kind,
-        custom_error_type="distribution",
-        custom_error_message=f"no such distribution; give a number or a table of one key: {', '.join(KINDS)}",
-    ),
+    Discriminator(_kind),
+    BeforeValidator(_known),
 ]
 
 

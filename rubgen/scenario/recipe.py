@@ -11,9 +11,11 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, TypeAdapter, ValidationError, create_model
 
 from rubgen.errors import UserError
-from rubgen.machine import Machine, NonNegative, Positive, load_machine
-from rubgen.machine.load import machine_id, read_toml
-from rubgen.machine.problems import first_problem
+from rubgen.machine import NUMBER, Machine, NonNegative, Positive, Seed, Switch, load_machine
+from rubgen.machine.load import machine_id
+from rubgen.machine.problems import first_problem, validated
+from rubgen.machine.sentences import FILE_NAME
+from rubgen.machine.toml_file import read_toml, toml_path
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.sampling import sobol_point
@@ -73,8 +75,8 @@ class Sensors(BaseModel):
     set: Annotated[str, Field(min_length=1)] = DEFAULT_SET
     sample_rate_hz: Positive = 25600.0
     noise: NonNegative = 1.0
-    adc_bits: Annotated[int, Field(ge=8, le=32)] = 16
-    keep_clean: bool = False
+    adc_bits: Annotated[int, Field(ge=8, le=32), NUMBER] = 16
+    keep_clean: Switch = False
 
 
 def _vary_fields() -> dict[str, Any]:
@@ -93,9 +95,9 @@ class Recipe(BaseModel):
     """A data set before it exists: a machine, what varies in it, how long each run is, what is written."""
 
     model_config = _STRICT
-    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
-    seed: Annotated[int, Field(ge=0)] = 0
-    runs: Annotated[int, Field(ge=1, le=1_000_000)]
+    name: Annotated[str, Field(pattern=FILE_NAME)]
+    seed: Seed = 0
+    runs: Annotated[int, Field(ge=1, le=1_000_000), NUMBER]
     machine: Annotated[str, Field(min_length=1)]
     license: Annotated[str, Field(min_length=1)] = "CC-BY-4.0"
     vary: Vary = Vary()
@@ -165,7 +167,7 @@ def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> R
 
     Raises UserError with file, key, value, what is allowed and how to mend it, before anything is computed.
     """
-    file = DEFAULT_RECIPE if path is None else Path(path)
+    file = DEFAULT_RECIPE if path is None else toml_path(path)
     return parse_recipe(read_toml(file), source=str(file), folder=file.parent, runs=runs)
 
 
@@ -174,13 +176,10 @@ def parse_recipe(
 ) -> Recipe:
     """The recipe of these TOML values; paths in it start from `folder`, errors begin with `source`."""
     if runs is not None:
-        if runs < 1:
+        if not isinstance(runs, int) or runs < 1:
             raise UserError(f"--runs {runs}: must be at least 1; give a whole number of runs")
         data = {**data, "runs": runs}
-    try:
-        recipe = Recipe.model_validate(data)
-    except ValidationError as error:
-        raise first_problem(source, error, data, TypeAdapter(Recipe)) from None
+    recipe = validated(source, data, TypeAdapter(Recipe))
     recipe._folder = folder or Path()
     check_recipe(recipe, source)
     return recipe

@@ -12,12 +12,12 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine import STRICT, Machine, NonNegative, Positive
+from rubgen.machine import NUMBER, STRICT, Machine, NonNegative, Positive, Seed, Switch
 from rubgen.scenario.rotation import Rotation
 from rubgen.scenario.sensor_set import default_sensor_set
 from rubgen.scenario.sensors import SensorSet
 
-TurnCount = Annotated[int, Field(ge=1)]
+TurnCount = Annotated[int, Field(ge=1, le=1_000_000), NUMBER]
 RPM = 0.10471975511965977
 """One rev/min in rad/s, 2 pi / 60."""
 ProfileName = Literal["steady", "run-up", "coast-down", "fluctuating"]
@@ -27,10 +27,10 @@ ProfileName = Literal["steady", "run-up", "coast-down", "fluctuating"]
 class Reduction:
     """Numbers of Craig-Bampton modes kept: per blade, of the disk, of the coupled blisk, of the casing."""
 
-    blade_modes: Annotated[int, Field(ge=0)] = 4
-    disk_modes: Annotated[int, Field(ge=0)] = 4
-    blisk_modes: Annotated[int, Field(ge=0)] = 4
-    casing_modes: Annotated[int, Field(ge=1)] = 11
+    blade_modes: Annotated[int, Field(ge=0, le=500), NUMBER] = 4
+    disk_modes: Annotated[int, Field(ge=0, le=500), NUMBER] = 4
+    blisk_modes: Annotated[int, Field(ge=0, le=500), NUMBER] = 4
+    casing_modes: Annotated[int, Field(ge=1, le=500), NUMBER] = 11
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -101,7 +101,7 @@ class Liner:
     thickness_m: Positive
     wear_m2_per_n: Positive
     width_m: Positive
-    bins: Annotated[int, Field(ge=36, le=3600)] = 360
+    bins: Annotated[int, Field(ge=36, le=3600), NUMBER] = 360
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -113,9 +113,9 @@ class ContactLaw:
     the casing's nodes by straight lines instead of the smooth curve through them. A `liner` wears where blades touch.
     """
 
-    friction: Annotated[float, Field(ge=0, le=0.3, allow_inf_nan=False)] = 0.0
-    restitution: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] = 0.0
-    half_thickness: bool = False
+    friction: Annotated[float, Field(ge=0, le=0.3, allow_inf_nan=False), NUMBER] = 0.0
+    restitution: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False), NUMBER] = 0.0
+    half_thickness: Switch = False
     surface: Literal["smooth", "chords"] = "smooth"
     liner: Liner | None = None
 
@@ -130,8 +130,8 @@ class Sensing:
 
     sample_rate_hz: Positive = 25600.0
     noise: NonNegative = 1.0
-    adc_bits: Annotated[int, Field(ge=8, le=32)] = 16
-    keep_clean: bool = False
+    adc_bits: Annotated[int, Field(ge=8, le=32), NUMBER] = 16
+    keep_clean: Switch = False
     set: SensorSet = Field(default_factory=default_sensor_set)
 
     @property
@@ -144,7 +144,7 @@ class Sensing:
 class Labelling:
     """What is computed for the labels alone: the Lyapunov exponent, which takes a second trajectory."""
 
-    lyapunov: bool = True
+    lyapunov: Switch = True
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -158,8 +158,8 @@ class Scenario:
     sensing: Sensing = Sensing()
     labelling: Labelling = Labelling()
     signal_seconds: Positive = 1.0
-    seed: Annotated[int, Field(ge=0)] = 0
-    index: Annotated[int, Field(ge=0)] = 0
+    seed: Seed = 0
+    index: Seed = 0
     machine_id: str = ""
 
     @property

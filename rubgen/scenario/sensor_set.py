@@ -6,11 +6,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
 from rubgen.errors import UserError
-from rubgen.machine.load import read_toml
-from rubgen.machine.problems import first_problem, nearest
+from rubgen.machine.problems import check_plain, nearest, validated
+from rubgen.machine.schema_nodes import Path as Place
+from rubgen.machine.toml_file import names_toml, read_toml, toml_path
 from rubgen.scenario.sensors import KINDS, SensorSet
 
 SETS = Path(__file__).parents[1] / "sensors" / "sets"
@@ -36,38 +37,54 @@ def load_sensor_set(name_or_path: str, folder: Path | None = None) -> SensorSet:
     """
     if name_or_path in sensor_set_names():
         return parse_sensor_set(SETS / f"{name_or_path}.toml")
-    if not name_or_path.endswith(".toml"):
+    if not names_toml(name_or_path):
         hint = nearest(name_or_path, sensor_set_names())
         raise UserError(f"sensors.set = {name_or_path!r}: no such set; {hint}, or the path of a sensor set .toml")
-    return parse_sensor_set((folder or Path()) / name_or_path)
+    return parse_sensor_set(toml_path(name_or_path, folder))
 
 
 def parse_sensor_set(path: Path) -> SensorSet:
     """The set in a TOML file."""
     data = read_toml(path)
-    kinds = data.pop("kinds", {})
-    listed = data.get("sensors")
-    if isinstance(listed, list) and isinstance(kinds, dict):
-        _check_kinds(path, [str(each) for each in kinds], "kinds.")
-        data["sensors"] = [_completed(path, number, each, kinds) for number, each in enumerate(listed)]
-    adapter = TypeAdapter(SensorSet)
-    try:
-        return adapter.validate_python(data)
-    except ValidationError as error:
-        raise first_problem(path, error, data, adapter) from None
+    check_plain(path, data)
+    kinds, listed = _kinds(path, data.pop("kinds", {})), data.get("sensors")
+    if not isinstance(listed, list):
+        return validated(path, data, TypeAdapter(SensorSet))
+    data["sensors"] = [_completed(path, number, each, kinds) for number, each in enumerate(listed)]
+
+    def place(where: Place) -> Place:
+        """A value that a sensor has from its kind stands in the table of that kind."""
+        match where:
+            case ("sensors", int(number), str(key), *rest) if key not in listed[number]:
+                kind = listed[number]["kind"]
+                return ("kinds", kind, key, *rest) if key in kinds.get(kind, {}) else where
+        return where
+
+    return validated(path, data, TypeAdapter(SensorSet), place)
 
 
-def _completed(path: Path, number: int, sensor: Any, kinds: dict[str, Any]) -> Any:
+def _kinds(path: Path, kinds: Any) -> dict[str, dict[str, Any]]:
+    """The tables `[kinds.<kind>]`, each with values for all sensors of a kind."""
+    if not isinstance(kinds, dict):
+        raise UserError(f"{path}: kinds = {kinds!r:.60}: must be tables; write [kinds.proximity], say")
+    for kind, table in kinds.items():
+        _check_kind(path, kind, "kinds.")
+        if not isinstance(table, dict):
+            raise UserError(f"{path}: kinds.{kind} = {table!r:.60}: must be a table; write [kinds.{kind}]")
+    return kinds
+
+
+def _completed(path: Path, number: int, sensor: Any, kinds: dict[str, dict[str, Any]]) -> Any:
     """A sensor's table with the values of its kind."""
     if not isinstance(sensor, dict):
         return sensor
     if "kind" not in sensor:
         raise UserError(f"{path}: sensors.{number}.kind: this key is missing; add it, one of {', '.join(KINDS)}")
-    _check_kinds(path, [str(sensor["kind"])], f"sensors.{number}.kind = ")
+    _check_kind(path, sensor["kind"], f"sensors.{number}.kind = ")
     return {**kinds.get(sensor["kind"], {}), **sensor}
 
 
-def _check_kinds(path: Path, found: list[str], where: str) -> None:
-    for kind in found:
-        if kind not in KINDS:
-            raise UserError(f"{path}: {where}{kind}: unknown kind of sensor; {nearest(kind, list(KINDS))}")
+def _check_kind(path: Path, kind: object, where: str) -> None:
+    if kind not in KINDS:
+        shown = kind if isinstance(kind, str) and kind.isprintable() else repr(kind)
+        raise UserError(f"{path}: {where}{shown:.60}: unknown kind of sensor; {nearest(str(kind), list(KINDS))}")

@@ -8,8 +8,9 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Field, model_validator
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine import STRICT, Finite, NonNegative, Positive
+from rubgen.machine import NUMBER, STRICT, Finite, NonNegative, Positive
 from rubgen.machine.problems import nearest
+from rubgen.machine.sentences import CHANNEL_NAME
 from rubgen.scenario.taps import Angle
 
 Interval = tuple[Finite, Finite]
@@ -21,7 +22,7 @@ GRAVITY = 9.80665
 class Sensor:
     """A sensor; its name is that of its channel or topic. Its place in the set decides which random numbers it gets."""
 
-    name: Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
+    name: Annotated[str, Field(pattern=CHANNEL_NAME)]
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -41,20 +42,20 @@ class SampledSensor(Sensor):
     unit: str = ""
     bandwidth_hz: Positive | None = None
     resonance_hz: Positive | None = None
-    resonance_damping: Annotated[float, Field(gt=0, lt=1, allow_inf_nan=False)] = 0.02
+    resonance_damping: Annotated[float, Field(gt=0, lt=1, allow_inf_nan=False), NUMBER] = 0.02
     saturation: Interval | None = None
-    gain_error: Annotated[float, Field(gt=-1, allow_inf_nan=False)] = 0.0
+    gain_error: Annotated[float, Field(gt=-1, allow_inf_nan=False), NUMBER] = 0.0
     offset: Finite = 0.0
     drift_per_s: Finite = 0.0
     noise_rms: NonNegative = 0.0
     noise_density: NonNegative = 0.0
     noise_corner_hz: NonNegative = 0.0
     range: Interval | None = None
-    adc_bits: Annotated[int, Field(ge=8, le=32)] | None = None
+    adc_bits: Annotated[int, Field(ge=8, le=32), NUMBER] | None = None
     dropouts_per_s: NonNegative = 0.0
     dropout_s: Positive = 1e-3
-    clock_offset_s: Annotated[float, Field(ge=-1, le=1, allow_inf_nan=False)] = 0.0
-    clock_ppm: Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False)] = 0.0
+    clock_offset_s: Annotated[float, Field(ge=-1, le=1, allow_inf_nan=False), NUMBER] = 0.0
+    clock_ppm: Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False), NUMBER] = 0.0
 
     @model_validator(mode="after")
     def _has_a_unit(self) -> Self:
@@ -100,7 +101,7 @@ class BladeStrain(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"1": 1.0, "um/m": 1e6}
     kind: Literal["blade_strain"] = "blade_strain"
-    blade: Annotated[int, Field(ge=0)]
+    blade: Annotated[int, Field(ge=0), NUMBER]
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -161,7 +162,7 @@ class TimingProbe(Sensor):
     jitter_s: NonNegative = 0.0
     clock_hz: NonNegative = 0.0
     clock_offset_s: Finite = 0.0
-    missed: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)] = 0.0
+    missed: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False), NUMBER] = 0.0
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -196,7 +197,7 @@ KINDS = (
 class RunoutOrder:
     """One order of the shaft's profile under the proximity probes: `amplitude_m` cos(order (angle - phase))."""
 
-    order: Annotated[int, Field(ge=1)]
+    order: Annotated[int, Field(ge=1), NUMBER]
     amplitude_m: NonNegative
     phase_deg: Finite = 0.0
 

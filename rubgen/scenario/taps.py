@@ -7,9 +7,10 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine import STRICT, Finite
+from rubgen.machine import NUMBER, STRICT, Finite
+from rubgen.machine.sentences import CHANNEL_NAME
 
-Angle = Annotated[float, Field(ge=0, lt=360, allow_inf_nan=False)]
+Angle = Annotated[float, Field(ge=0, lt=360, allow_inf_nan=False), NUMBER]
 """Polar angle in the inertial frame, in degrees."""
 
 
@@ -19,7 +20,7 @@ class Tap:
 
     UNIT: ClassVar[str] = ""
 
-    name: Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
+    name: Annotated[str, Field(pattern=CHANNEL_NAME)]
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -88,7 +89,7 @@ class RootStrain(Tap):
     """Spanwise strain at the root of a blade, mid-chord on the face of the thickness normal, vibration alone."""
 
     UNIT: ClassVar[str] = "1"
-    blade: Annotated[int, Field(ge=0)]
+    blade: Annotated[int, Field(ge=0), NUMBER]
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)

@@ -14,6 +14,7 @@ from typing import Any
 from rubgen.errors import UserError
 from rubgen.machine import load_machine
 from rubgen.machine.load import machine_id
+from rubgen.machine.machine import MOST_LOBES
 from rubgen.machine.problems import nearest
 from rubgen.scenario.scenario import Operation, Scenario
 
@@ -43,8 +44,8 @@ class Parameter:
     @property
     def allowed(self) -> str:
         """The allowed range in words."""
-        kind = "a whole number " if self.whole else ""
-        low = f"{kind}{'above' if self.above else 'of at least'} {self.minimum:g}"
+        kind = "a whole number of " if self.whole else ""
+        low = f"{kind}{'above' if self.above else 'at least'} {self.minimum:g}"
         return low if math.isinf(self.maximum) else f"{low} and at most {self.maximum:g}"
 
 
@@ -159,6 +160,7 @@ PARAMETERS = (
         read=lambda scenario: scenario.machine.casing.lobes,
         apply=_lobes,
         minimum=2,
+        maximum=MOST_LOBES,
         above=False,
         whole=True,
     ),
@@ -260,7 +262,9 @@ def vary(scenario: Scenario, values: Mapping[str, float], source: str = "") -> S
     for key, value in values.items():
         entry = parameter(key, source)
         if not entry.allows(value):
-            raise UserError(f"{source}{key} = {value:g}: must be {entry.allowed}; change the value")
+            share = 1 < value <= 100 and entry.maximum < 1
+            remedy = f"{value:g} % is written {value / 100:g}" if share else "change the value"
+            raise UserError(f"{source}{key} = {value:g}: must be {entry.allowed}; {remedy}")
         scenario = entry.apply(scenario, value)
     return scenario
 

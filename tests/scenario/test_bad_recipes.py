@@ -17,7 +17,10 @@ CASES = {
         RUN_UP + "duration_s = 2\nend_speed_rpm = 12000\n[vary]\nend_speed_rpm = { uniform = [9000, 11000] }",
         "operation.end_speed_rpm = 9000: a run-up ends above its start, speed_rpm = 10000; raise it",
     ),
-    "unknown profile": (GOOD + '[operation]\nprofile = "runup"', "operation.profile = 'runup': "),
+    "unknown profile": (
+        GOOD + '[operation]\nprofile = "runup"',
+        "operation.profile = 'runup': unknown value; did you mean run-up? allowed: steady, run-up,",
+    ),
     "key of another profile": (
         VARY + "fluctuation_rpm = 3",
         'operation.fluctuation_rpm = 3: the profile "steady" has none; remove it or choose another profile',
@@ -57,8 +60,8 @@ CASES = {
     "negative clearance": (VARY + "clearance_m = -1e-4", "vary.clearance_m = -0.0001: must be above 0"),
     "clearance reaches 0": (VARY + "clearance_m = { uniform = [0, 1e-3] }", "vary.clearance_m = 0: must be above 0"),
     "speed 0": (VARY + "speed_rpm = 0", "vary.speed_rpm = 0: must be above 0"),
-    "nan": (VARY + "speed_rpm = nan", "vary.speed_rpm = nan: Input should be a finite number"),
-    "inf": (VARY + "speed_rpm = { uniform = [1000, inf] }", "vary.speed_rpm.uniform.1 = inf: Input should be a finite"),
+    "nan": (VARY + "speed_rpm = nan", "vary.speed_rpm = nan: must be a finite number; change the value"),
+    "inf": (VARY + "speed_rpm = { uniform = [1000, inf] }", "vary.speed_rpm.uniform.1 = inf: must be a finite number"),
     "min above max": (
         VARY + "speed_rpm = { uniform = [9000, 8000] }",
         "vary.speed_rpm = {'uniform': [9000, 8000]}: the lower end 9000 is above the upper end 8000; swap them",
@@ -66,16 +69,19 @@ CASES = {
     "log of 0": (VARY + "friction = { log_uniform = [0, 0.1] }", "both ends must be above 0"),
     "normal without width": (
         VARY + "friction = { normal = { mean = 0.1, std = 0, min = 0, max = 0.2 } }",
-        "vary.friction.normal.std = 0: Input should be greater than 0",
+        "vary.friction.normal.std = 0: must be above 0; change the value",
     ),
     "normal turned round": (
         VARY + "friction = { normal = { mean = 0.1, std = 0.1, min = 0.2, max = 0 } }",
         "the lower end 0.2 is above the upper end 0; swap them",
     ),
     "empty choice": (VARY + "lobes = { choice = [] }", "vary.lobes.choice = []: "),
-    "friction too high": (VARY + "friction = 0.4", "vary.friction = 0.4: must be of at least 0 and at most 0.3"),
+    "friction too high": (VARY + "friction = 0.4", "vary.friction = 0.4: must be at least 0 and at most 0.3; change"),
     "unknown key of contact": (GOOD + "[contact]\nmu = 0.1", "contact.mu: unknown key; "),
-    "restitution above 1": (GOOD + "[contact]\nrestitution = 1.2", "contact.restitution = 1.2: Input should be less"),
+    "restitution above 1": (
+        GOOD + "[contact]\nrestitution = 1.2",
+        "contact.restitution = 1.2: must be at least 0 and at most 1; 1.2 % is written 0.012",
+    ),
     "half a lobe": (VARY + "lobes = 2.5", "vary.lobes = 2.5: must be a whole number of at least 2"),
     "lobes from a range": (VARY + "lobes = { uniform = [2, 4] }", "vary.lobes: takes whole numbers only"),
     "lobes beyond the modes": (
@@ -101,14 +107,17 @@ CASES = {
         "simulation.steps_per_turn = 20000: must be at most 16384",
     ),
     "settle": (GOOD + "[simulation]\nsettle_turns = 0", "simulation.settle_turns"),
-    "no runs": ('name = "a"\nruns = 0\nmachine = "zeng2019"', "runs = 0: Input should be greater than or equal to 1"),
+    "no runs": (
+        'name = "a"\nruns = 0\nmachine = "zeng2019"',
+        "runs = 0: must be at least 1 and at most 1,000,000; change the value",
+    ),
     "unknown preset": (
         'name = "a"\nruns = 1\nmachine = "zeng2018"',
         "machine = 'zeng2018': no such preset; did you mean",
     ),
     "unknown format": (
         GOOD + "[output]\nformats = ['csv']",
-        "output.formats.0 = 'csv': Input should be 'parquet', 'mcap'",
+        "output.formats.0 = 'csv': unknown value; allowed: parquet, mcap, rrd",
     ),
     "no format": (GOOD + "[output]\nformats = []", "output.formats = []: "),
     "format twice": (GOOD + "[output]\nformats = ['mcap', 'mcap']", "output.formats = ['mcap', 'mcap']: name each"),
@@ -141,7 +150,7 @@ def test_directory_for_a_file(tmp_path):
 
 def test_not_text(tmp_path):
     (tmp_path / "a.toml").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(UserError, match="not a text file in UTF-8"):
+    with pytest.raises(UserError, match=r"a text file in UTF-16; save it in UTF-8"):
         load_recipe(tmp_path / "a.toml")
 
 

@@ -74,12 +74,12 @@ WRONG = [
     (
         "angle_deg = 30",
         "angle_deg = 360",
-        "sensors.0.angle_deg = 360: an angle round the casing is at least 0 and below 360 d",
+        "sensors.0.angle_deg = 360: must be at least 0 and below 360; change the value",
     ),
     (
         "angle_deg = 30",
         "angle_deg = -1",
-        "sensors.0.angle_deg = -1: an angle round the casing is at least 0 and below 360",
+        "sensors.0.angle_deg = -1: must be at least 0 and below 360; change the value",
     ),
     ("angle_deg = 30", "", "sensors.0.angle_deg: this key is missing; add it"),
     ("angle_deg = 30", "angel_deg = 30", "sensors.0.angel_deg: unknown key; did you mean angle_deg?"),
@@ -87,7 +87,7 @@ WRONG = [
     ('name = "q"', 'name = "q q"', "sensors.1.name = 'q q': "),
     ("noise_rms = 2.0", "range = [5, 5]", "range = [5.0, 5.0] of q: must ascend; give the lower limit first"),
     ("noise_rms = 2.0", "resonance_hz = 2e6", "resonance_hz = 2e+06 of q: at 10000 rev/min the step feeds at most"),
-    ("noise_rms = 2.0", "noise_rms = -2.0", "sensors.1.noise_rms = -2.0: Input should be greater than or equal"),
+    ("noise_rms = 2.0", "noise_rms = -2.0", "sensors.1.noise_rms = -2.0: must be at least 0; change the value"),
     (
         '"blade_tip_timing"\nangle_deg = 0',
         '"blade_strain"\nblade = 36',

@@ -133,9 +133,15 @@ def test_a_recipe_asks_for_the_options_and_is_told_what_is_wrong_with_them():
     contact = parse_recipe({**recipe, "contact": {"surface": "chords", "liner": liner}}).scenario(0).contact
     assert contact == ContactLaw(surface="chords", liner=Liner(**liner))
     for wrong, message in (
-        ({"surface": "round"}, "contact.surface = 'round': Input should be 'smooth' or 'chords'"),
-        ({"liner": {**liner, "thickness_m": 0.0}}, "contact.liner.thickness_m = 0.0: Input should be greater than 0"),
-        ({"liner": {**liner, "bins": 10}}, "contact.liner.bins = 10: Input should be greater than or equal to 36"),
+        ({"surface": "round"}, "contact.surface = 'round': unknown value; allowed: smooth, chords"),
+        (
+            {"liner": {**liner, "thickness_m": 0.0}},
+            "contact.liner.thickness_m = 0.0: must be above 0; change the value",
+        ),
+        (
+            {"liner": {**liner, "bins": 10}},
+            "contact.liner.bins = 10: must be at least 36 and at most 3,600; change the value",
+        ),
     ):
         with pytest.raises(UserError) as caught:
             parse_recipe({**recipe, "contact": wrong})

@@ -1,0 +1,97 @@
+"""What a type allows at a place of its data, read from its JSON schema: keys, and bounds of a number."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from pydantic import TypeAdapter
+
+Path = tuple[int | str, ...]
+Node = Mapping[str, Any]
+BOUNDS = {
+    "minimum": "at least",
+    "exclusiveMinimum": "above",
+    "maximum": "at most",
+    "exclusiveMaximum": "below",
+}
+DEEPEST = 6
+"""No table of a recipe, machine or sensor set stands deeper."""
+
+
+class SchemaNodes:
+    """The JSON schema of an adapter's type, walked along data: a sensor's kind says which keys it may have."""
+
+    def __init__(self, adapter: TypeAdapter[Any]) -> None:
+        self.root: Node = adapter.json_schema()
+
+    def at(self, data: object, path: Path) -> list[Node]:
+        """All nodes that describe the value at `path` of `data`."""
+        nodes = list(self._branches(self.root, data))
+        for part in path:
+            data = _within(data, part)
+            found = (node.get("items") if isinstance(part, int) else _properties(node).get(part) for node in nodes)
+            nodes = [branch for node in found if isinstance(node, Mapping) for branch in self._branches(node, data)]
+        return nodes
+
+    def keys(self, data: object, path: Path) -> list[str]:
+        """Keys that a table at `path` may have, sorted."""
+        return sorted({key for node in self.at(data, path) for key in _properties(node)})
+
+    def every_key(self) -> list[tuple[str, ...]]:
+        """Paths of all keys of all tables, without numbers of list elements."""
+        return list(self._below(self.root, ()))
+
+    def _below(self, node: Node, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+        if len(path) > DEEPEST:
+            return
+        for branch in self._branches(node, None):
+            for key, child in _properties(branch).items():
+                yield (*path, key)
+                yield from self._below(child, (*path, key))
+
+    def _branches(self, node: Node, data: object) -> Iterator[Node]:
+        """The node itself, or what it refers to: every branch of a union that the data may be."""
+        if "$ref" in node:
+            yield from self._branches(self.root["$defs"][str(node["$ref"]).rsplit("/", 1)[-1]], data)
+            return
+        chosen = _chosen(node, data)
+        for key in ("anyOf", "oneOf", "allOf"):
+            for branch in [chosen] if chosen else node.get(key, ()):
+                yield from self._branches(branch, data)
+        yield node
+
+
+def bounds_in_words(nodes: list[Node]) -> str:
+    """The allowed range of a number, "at least 0 and below 1"; empty where there is none."""
+    for node in nodes:
+        if any(key in node for key in BOUNDS):
+            return " and ".join(f"{words} {limit(node[key])}" for key, words in BOUNDS.items() if key in node)
+    return ""
+
+
+def limit(value: float) -> str:
+    """A bound as people write it."""
+    return f"{value:,}" if isinstance(value, int) else f"{value:,.12g}"
+
+
+def _chosen(node: Node, data: object) -> Node | None:
+    """The branch that a discriminator of the data names, if it does."""
+    tags = node.get("discriminator", {})
+    if not isinstance(data, Mapping) or "mapping" not in tags:
+        return None
+    reference = tags["mapping"].get(str(data.get(tags["propertyName"])))
+    return {"$ref": reference} if reference else None
+
+
+def _properties(node: Node) -> Mapping[str, Any]:
+    found = node.get("properties", {})
+    return found if isinstance(found, Mapping) else {}
+
+
+def _within(data: object, part: int | str) -> object:
+    if isinstance(data, Mapping):
+        return data.get(part)
+    if isinstance(data, list | tuple) and isinstance(part, int) and part < len(data):
+        return data[part]
+    return None
