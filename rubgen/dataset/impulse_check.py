@@ -1,0 +1,118 @@
+"""Whether the label of impulse fits the channel of contact force, as far as that channel resolves it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.sensors.channel import Float32Array
+from rubgen.solver.turn_orders import WINDOW_TURNS
+
+Row = dict[str, Any]
+LEAST_TURNS = 2
+"""Fewer whole turns leave no weights without orders: nothing is said."""
+SIGMAS = 6.5
+"""A Gaussian number lies beyond it once in 1e10 times."""
+STOP_BAND = 10 ** (-85 / 20)
+"""What the anti-alias filter lets pass beyond half the sample rate (`sensors/chain.py`)."""
+ROUNDING = 1e-9
+"""Of the label: sums in another order."""
+
+
+def windows_fit(row: Row) -> bool:
+    """Whether the impulse a turn is the mean of its windows, each weighted with its number of turns."""
+    turns, values = _window_turns(row), row["window_impulse_per_turn_n_s"]
+    if len(values) != turns.size:
+        return False
+    mean = float(turns @ np.asarray(values)) / row["record_turns"]
+    return math.isclose(mean, row["contact_impulse_per_turn_n_s"], rel_tol=ROUNDING, abs_tol=ROUNDING)
+
+
+def impulse_problems(row: Row, force: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
+    """What contradicts between the impulse label of a period-1 run in contact and its force channel in N.
+
+    The channel's mean over whole turns times the time of one is the impulse a turn. `noise_rms` and `step` (ADC) are in
+    N. Silent where fewer than LEAST_TURNS turns are recorded, or the label contradicts its windows.
+    """
+    weights = whole_turn_weights(force.size, samples_per_turn(row))
+    if weights is None or not windows_fit(row):
+        return
+    impulse = float(weights @ force.astype(np.float64)) * 60 / row["speed_rpm"]
+    label = row["contact_impulse_per_turn_n_s"] * _share_of_covered_windows(row, weights)
+    if abs(impulse - label) > resolved_impulse(row, weights, noise_rms, step):
+        yield f"contact_impulse_per_turn_n_s is {label:.4g}, the channel gives {impulse:.4g}"
+
+
+def samples_per_turn(row: Row) -> float:
+    """Samples of a channel in one turn, rarely a whole number."""
+    return float(row["sample_rate_hz"] * 60 / row["speed_rpm"])
+
+
+def whole_turn_weights(samples: int, turn: float) -> FloatArray | None:
+    """Weights (samples,) of a mean over all m whole turns of `turn` samples; None below LEAST_TURNS.
+
+    A boxcar of one turn convolved with one of m - 1 turns: every order k >= 1 falls out, wherever the samples stand in
+    the turn and although a turn is no whole number of samples. A plain mean would keep up to half a sample at its edge,
+    where a blade may touch.
+    """
+    turns = math.floor(samples / turn)
+    if turns < LEAST_TURNS:
+        return None
+    middle = (samples - 1) / 2
+    from_edge = turns * turn / 2 - np.abs(np.arange(samples) - middle)
+    weights = np.clip(from_edge / turn, 0.0, 1.0)
+    return np.asarray(weights / weights.sum(), dtype=np.float64)
+
+
+def resolved_impulse(row: Row, weights: FloatArray, noise_rms: float, step: float) -> float:
+    """The least difference of impulse a turn, in N s, that the channel can tell; four errors that are known.
+
+    - Noise of rms s and ADC steps d: the weighted mean has the standard error sqrt((s^2 + d^2 / 12) sum w^2).
+    - The ADC's bias where noise does not dither it. The mean error of a rounded Gaussian is the series
+      (d / pi) sum_k (+-1 / k) q^(k^2) sin(2 pi k x / d), q = exp(-2 (pi s / d)^2) (Widrow, Kollar: Quantization Noise):
+      at most -(d / pi) ln(1 - q), and never more than d / 2.
+    - Sampling: a force that only pushes has orders of at most twice its mean F. With N samples a turn, those below half
+      the rate alias into the mean by 4 F / (pi^2 N (m - 1)), for the weights' spectrum falls as 1 / (pi^2 f^2 (m - 1))
+      with f in orders. Those beyond it come back through the filter's stop band, by one image for each sample period
+      that the steps resolve: 2 F STOP_BAND a step in a sample.
+    - Turns that are not all alike: the scatter of the windows of the record's second half, from which period-1 is told,
+      is that of means over WINDOW_TURNS turns. It gives the standard error of a mean over the recorded turns.
+    """
+    turn_seconds, turn = 60 / row["speed_rpm"], samples_per_turn(row)
+    turns = math.floor(weights.size / turn)
+    error = math.sqrt((noise_rms**2 + step**2 / 12) * float(weights @ weights)) * turn_seconds
+    aliases = 4 / (math.pi**2 * turn * (turns - 1)) + 2 * STOP_BAND * row["steps_per_turn"] / turn
+    known = _adc_bias(noise_rms, step) * turn_seconds + aliases * row["contact_impulse_per_turn_n_s"]
+    return SIGMAS * math.hypot(error, _scatter_of_turns(row, turns)) + known
+
+
+def _adc_bias(noise_rms: float, step: float) -> float:
+    """The largest mean error of an ADC, in its unit."""
+    q = math.exp(-2 * (math.pi * noise_rms / step) ** 2)
+    return min(step / 2, -step / math.pi * math.log1p(-q)) if q < 1 else step / 2
+
+
+def _scatter_of_turns(row: Row, turns: int) -> float:
+    """Standard error of the mean impulse over so many turns, as the record's turns scatter."""
+    whole = np.asarray(row["window_impulse_per_turn_n_s"])[: row["record_turns"] // WINDOW_TURNS]
+    late = whole[whole.size // 2 :]
+    return float(np.std(late, ddof=1)) * math.sqrt(WINDOW_TURNS / turns) if late.size > 1 else 0.0
+
+
+def _share_of_covered_windows(row: Row, weights: FloatArray) -> float:
+    """Impulse of the windows that the channel covers over that of all: where the record begins with a transient."""
+    times = row["signal_start_s"] + np.arange(weights.size) / row["sample_rate_hz"]
+    number = np.searchsorted(np.asarray(row["window_starts_s"]), times, side="right") - 1
+    values = np.asarray(row["window_impulse_per_turn_n_s"])
+    everything = float(_window_turns(row) @ values) / row["record_turns"]
+    return float(weights @ values[np.maximum(number, 0)]) / everything
+
+
+def _window_turns(row: Row) -> FloatArray:
+    """Turns of each window: WINDOW_TURNS, and what is left."""
+    starts = np.arange(0, row["record_turns"], WINDOW_TURNS)
+    return np.minimum(WINDOW_TURNS, row["record_turns"] - starts).astype(np.float64)
