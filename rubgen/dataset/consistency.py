@@ -5,13 +5,13 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
 from rubgen.dataset.impulse_check import Row, impulse_problems, windows_fit
+from rubgen.dataset.order_check import NOISE_PEAK, order_problems
 from rubgen.labels.contact_amounts import RubExtent
-from rubgen.labels.harmonics import FLOOR, MARKED_TAP, RATIO, SPECTRUM_TURNS
+from rubgen.labels.harmonics import FLOOR, MARKED_TAP, RATIO
 from rubgen.labels.labels import Motion
 from rubgen.scenario import Sensing
 from rubgen.scenario.sensors import OncePerRev, Proximity, SampledSensor
@@ -19,13 +19,6 @@ from rubgen.sensors.channel import Float32Array
 from rubgen.sensors.registry import tap_of, usual_range
 
 REGULARITY = [motion.value for motion in Motion]
-COMPARED_ORDERS = 10
-"""Orders that channels are held to: all lie within the anti-alias filter's pass band at any rate in use."""
-NOISE_PEAK = 6.5
-"""Gaussian noise of 1e6 samples stays below 6.5 times its rms."""
-ORDER_TOLERANCE = {True: 0.01, False: 0.1}
-"""Of the largest amplitude, for a motion that repeats and one that does not: the channel ends half a filter length
-before the label's window. In 23 runs of the default recipe nothing and 0.016 went beyond the noise."""
 SHARE_TOLERANCE = 1e-9
 PULSE_TOLERANCE = 1e-9
 IMPULSE_TOLERANCE = 1e-5
@@ -103,40 +96,11 @@ def _sensor_problems(row: Row, sensor: SampledSensor, values: Float32Array, sens
         limit = NOISE_PEAK * noise_rms + step
         if np.abs(values).max() > limit:
             yield f"rub is false, but {sensor.name} reaches {np.abs(values).max():.4g} N (noise allows {limit:.4g})"
-    if tap == "contact_force" and row["motion"] == Motion.PERIOD_1.value and row["rub"]:
+    repeats = row["motion"] == Motion.PERIOD_1.value and not row["change_times_s"]
+    if tap == "contact_force" and repeats and row["rub"]:
         yield from impulse_problems(row, values, noise_rms, step)
-    yield from _order_problems(row, tap, values, noise_rms, step)
-
-
-def _order_problems(row: Row, tap: str, values: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
-    if row["change_times_s"]:  # of a changing speed
-        return
-    samples = round(min(SPECTRUM_TURNS, row["record_turns"]) * row["sample_rate_hz"] * 60 / row["speed_rpm"])
-    if values.size < samples:
-        return
-    amplitudes = order_amplitudes(values[-samples:], row["speed_rpm"] / 60 / row["sample_rate_hz"])
-    labels = np.asarray(row[f"{tap}_orders"][:COMPARED_ORDERS])
-    error = np.abs(amplitudes - labels)
-    if error.max() > ORDER_TOLERANCE[row["period"] is not None] * labels.max() + _spectral_floor(
-        noise_rms, step, samples
-    ):
-        k = int(error.argmax())
-        yield f"{tap}_orders: order {k + 1} is {labels[k]:.4g}, the channel gives {amplitudes[k]:.4g}"
-
-
-def _spectral_floor(noise_rms: float, step: float, samples: int) -> float:
-    """Largest amplitude that noise and ADC steps put into a line: white where the noise dithers the steps."""
-    if noise_rms < step / 2:
-        return step
-    return NOISE_PEAK * math.sqrt((noise_rms**2 + step**2 / 12) * 2 / samples)
-
-
-def order_amplitudes(values: Float32Array, turns_per_sample: float) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Peak amplitudes at k = 1..10 times the rotation frequency: 2/n |sum x exp(-2 pi i k turns)|, mean removed."""
-    turns = np.arange(values.size) * turns_per_sample
-    centred = values.astype(np.float64) - values.mean(dtype=np.float64)
-    sums = [np.exp(-2j * np.pi * k * turns) @ centred for k in range(1, COMPARED_ORDERS + 1)]
-    return np.asarray(2 / values.size * np.abs(sums))
+    if not row["change_times_s"]:  # of a changing speed
+        yield from order_problems(row, tap, values, noise_rms, step)
 
 
 def _pulse_problems(row: Row, sensor: OncePerRev, pulses: Float32Array) -> Iterator[str]:

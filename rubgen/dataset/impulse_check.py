@@ -87,20 +87,20 @@ def resolved_impulse(row: Row, weights: FloatArray, noise_rms: float, step: floa
     error = math.sqrt((noise_rms**2 + step**2 / 12) * float(weights @ weights)) * turn_seconds
     aliases = 4 / (math.pi**2 * turn * (turns - 1)) + 2 * STOP_BAND * row["steps_per_turn"] / turn
     known = _adc_bias(noise_rms, step) * turn_seconds + aliases * row["contact_impulse_per_turn_n_s"]
-    return SIGMAS * math.hypot(error, _scatter_of_turns(row, turns)) + known
+    return float(SIGMAS * math.hypot(error, _scatter_of_turns(row, turns)) + known)
 
 
 def _adc_bias(noise_rms: float, step: float) -> float:
     """The largest mean error of an ADC, in its unit."""
     q = math.exp(-2 * (math.pi * noise_rms / step) ** 2)
-    return min(step / 2, -step / math.pi * math.log1p(-q)) if q < 1 else step / 2
+    return float(min(step / 2, -step / math.pi * math.log1p(-q))) if q < 1 else step / 2
 
 
 def _scatter_of_turns(row: Row, turns: int) -> float:
     """Standard error of the mean impulse over so many turns, as the record's turns scatter."""
     whole = np.asarray(row["window_impulse_per_turn_n_s"])[: row["record_turns"] // WINDOW_TURNS]
     late = whole[whole.size // 2 :]
-    return float(np.std(late, ddof=1)) * math.sqrt(WINDOW_TURNS / turns) if late.size > 1 else 0.0
+    return float(np.std(late, ddof=1) * math.sqrt(WINDOW_TURNS / turns)) if late.size > 1 else 0.0
 
 
 def _share_of_covered_windows(row: Row, weights: FloatArray) -> float:
@@ -108,11 +108,11 @@ def _share_of_covered_windows(row: Row, weights: FloatArray) -> float:
     times = row["signal_start_s"] + np.arange(weights.size) / row["sample_rate_hz"]
     number = np.searchsorted(np.asarray(row["window_starts_s"]), times, side="right") - 1
     values = np.asarray(row["window_impulse_per_turn_n_s"])
-    everything = float(_window_turns(row) @ values) / row["record_turns"]
+    everything = float(_window_turns(row) @ values / row["record_turns"])
     return float(weights @ values[np.maximum(number, 0)]) / everything
 
 
 def _window_turns(row: Row) -> FloatArray:
     """Turns of each window: WINDOW_TURNS, and what is left."""
     starts = np.arange(0, row["record_turns"], WINDOW_TURNS)
-    return np.minimum(WINDOW_TURNS, row["record_turns"] - starts).astype(np.float64)
+    return np.asarray(np.minimum(WINDOW_TURNS, row["record_turns"] - starts), dtype=np.float64)

@@ -6,8 +6,9 @@ from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
-from rubgen.dataset.consistency import Row, label_problems, signal_problems
+from rubgen.dataset.consistency import label_problems, signal_problems
 from rubgen.dataset.files import sha256_of
+from rubgen.dataset.impulse_check import Row
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, derived_files, hashed_files, read_manifest
 from rubgen.dataset.open import is_signal, row_signals

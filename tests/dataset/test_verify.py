@@ -9,9 +9,10 @@ import pyarrow.parquet as pq
 import pytest
 
 import rubgen
-from rubgen.dataset.consistency import label_problems, order_amplitudes, signal_problems
+from rubgen.dataset.consistency import label_problems, signal_problems
 from rubgen.dataset.files import sha256_of
 from rubgen.dataset.open import row_signals
+from rubgen.dataset.order_check import order_amplitudes
 from rubgen.errors import UserError
 from rubgen.io.parquet import write_table
 from rubgen.scenario import Sensing
