@@ -28,6 +28,9 @@ Finite = Annotated[float, Field(allow_inf_nan=False), NUMBER]
 Ratio = Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False), NUMBER]
 Deviation = Annotated[float, Field(gt=-1, allow_inf_nan=False), NUMBER]
 Anisotropy = Annotated[float, Field(gt=-1, lt=1, allow_inf_nan=False), NUMBER]
+Length = Annotated[float, Field(ge=1e-7, le=100, allow_inf_nan=False), NUMBER]
+Stiffness = Annotated[float, Field(ge=1e-3, le=1e16, allow_inf_nan=False), NUMBER]
+UnbalanceSize = Annotated[float, Field(ge=0, le=1e7, allow_inf_nan=False), NUMBER]
 Switch = Annotated[bool, Field(strict=True)]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1), NUMBER]
 STRICT = ConfigDict(extra="forbid")
@@ -43,9 +46,9 @@ MOST_LOBES = 100
 class Material:
     """Linear isotropic elastic material."""
 
-    youngs_modulus_pa: Positive
+    youngs_modulus_pa: Annotated[float, Field(ge=1, le=1e15, allow_inf_nan=False), NUMBER]
     poisson_ratio: Annotated[float, Field(gt=-1, lt=0.5, allow_inf_nan=False), NUMBER]
-    density_kg_per_m3: Positive
+    density_kg_per_m3: Annotated[float, Field(ge=1e-3, le=1e6, allow_inf_nan=False), NUMBER]
 
     @property
     def shear_modulus_pa(self) -> float:
@@ -58,10 +61,10 @@ class Disk:
     """Annular disk whose thickness is linear in the radius, and its mesh of eight-node shells."""
 
     material: Material
-    bore_radius_m: Positive
-    rim_radius_m: Positive
-    bore_thickness_m: Positive
-    rim_thickness_m: Positive
+    bore_radius_m: Length
+    rim_radius_m: Length
+    bore_thickness_m: Length
+    rim_thickness_m: Length
     radial_elements: Annotated[int, Field(ge=1, le=MOST_RADIAL_ELEMENTS), NUMBER] = 7
     circumferential_elements: Annotated[int, Field(ge=3, le=MOST_CIRCUMFERENTIAL_ELEMENTS), NUMBER] = 72
 
@@ -104,11 +107,11 @@ class BladeRow:
 
     material: Material
     count: Annotated[int, Field(ge=1, le=MOST_BLADES), NUMBER]
-    length_m: Positive
-    root_chord_m: Positive
-    tip_chord_m: Positive
-    root_thickness_m: Positive
-    tip_thickness_m: Positive
+    length_m: Length
+    root_chord_m: Length
+    tip_chord_m: Length
+    root_thickness_m: Length
+    tip_thickness_m: Length
     root_angle_deg: Finite
     tip_angle_deg: Finite
     elements: Annotated[int, Field(ge=1, le=MOST_BLADE_ELEMENTS), NUMBER] = 20
@@ -138,14 +141,14 @@ class Casing:
     """
 
     material: Material
-    thickness_m: Positive
-    width_m: Positive
-    clearance_m: Positive
-    ovality_m: NonNegative
+    thickness_m: Length
+    width_m: Length
+    clearance_m: Length
+    ovality_m: Annotated[float, Field(ge=0, le=100, allow_inf_nan=False), NUMBER]
     lobes: Annotated[int, Field(ge=2, le=MOST_LOBES), NUMBER] = 2
     lobe_angle_deg: Finite = 0.0
-    radial_support_stiffness_n_per_m: Positive
-    circumferential_support_stiffness_n_per_m: Positive
+    radial_support_stiffness_n_per_m: Stiffness
+    circumferential_support_stiffness_n_per_m: Stiffness
     nodes: Annotated[int, Field(ge=12, le=MOST_CASING_NODES), NUMBER] = 180
 
 
@@ -163,9 +166,9 @@ class SqueezeFilm:
     about half of C_0 and a stiffness of its own; fluid inertia, supply grooves and end seals are left out.
     """
 
-    radius_m: Positive
-    length_m: Positive
-    clearance_m: Positive
+    radius_m: Length
+    length_m: Length
+    clearance_m: Length
     viscosity_pa_s: Positive
 
     @property
@@ -182,10 +185,10 @@ class DiskSupport:
     `lateral_damping_anisotropy` the same of the dampers beside them. Tilt springs and dampers are isotropic.
     """
 
-    lateral_stiffness_n_per_m: Positive
-    axial_stiffness_n_per_m: Positive
-    tilt_stiffness_nm_per_rad: Positive
-    torsion_stiffness_nm_per_rad: Positive
+    lateral_stiffness_n_per_m: Stiffness
+    axial_stiffness_n_per_m: Stiffness
+    tilt_stiffness_nm_per_rad: Stiffness
+    torsion_stiffness_nm_per_rad: Stiffness
     lateral_stiffness_anisotropy: Anisotropy = 0.0
     lateral_damping_anisotropy: Anisotropy = 0.0
     squeeze_film: SqueezeFilm | None = None
@@ -217,7 +220,7 @@ class Unbalance:
     changes, bends it: on the disk it moves O_d alone.
     """
 
-    kg_m: NonNegative
+    kg_m: UnbalanceSize
     angle_deg: Finite | None = None
     blade: Annotated[int, Field(ge=0), NUMBER] | None = None
 
@@ -243,10 +246,10 @@ class Machine:
     casing: Casing
     disk_support: DiskSupport
     damping: Damping
-    unbalance_kg_m: NonNegative
+    unbalance_kg_m: UnbalanceSize
     unbalance_angle_deg: Finite = 0.0
     unbalances: tuple[Unbalance, ...] = ()
-    gravity_m_per_s2: NonNegative = 0.0
+    gravity_m_per_s2: Annotated[float, Field(ge=0, le=1e4, allow_inf_nan=False), NUMBER] = 0.0
 
     @model_validator(mode="after")
     def _unbalances_have_their_blades(self) -> Self:

@@ -10,6 +10,7 @@ from scipy.linalg import block_diag, eig, eigh
 from threadpoolctl import threadpool_limits
 
 from rubgen.arrays import FloatArray
+from rubgen.errors import UserError
 from rubgen.fem.beam import blade_matrices
 from rubgen.fem.root_strain import held_root_strain
 from rubgen.fem.statics import support_stiffness
@@ -20,6 +21,7 @@ from rubgen.reduction.casing import ReducedCasing, reduce_casing
 from rubgen.reduction.damping import elastic_damping, support_damping
 from rubgen.reduction.model import Recovery, SpinningSystem, TurningForces
 from rubgen.scenario import Reduction
+from rubgen.scenario.costs import reduction_problem
 
 # e_z x on the translations and rotations of O_d.
 S6 = np.kron(np.eye(2), np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]))
@@ -225,11 +227,21 @@ def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:
     """The reduced model of `machine`: two-step Craig-Bampton for the blisk, modes for the casing.
 
     The blisk comes from the cache where it can; the result has the same bits then, and with any number of BLAS
-    threads. Raises UserError for meshes, mode numbers or lobes that do not fit.
+    threads. Raises UserError for meshes, mode numbers or lobes that do not fit, for more memory than a reduction may
+    take, and for matrices that cannot be factorised.
     """
-    with threadpool_limits(1, user_api="blas"):
-        blisk = cached_blisk(machine.disk, machine.blades, machine.disk_support, reduction)
-        casing = reduce_casing(machine, reduction.casing_modes)
+    problem = reduction_problem(machine, reduction)
+    if problem:
+        raise UserError(problem)
+    try:
+        with threadpool_limits(1, user_api="blas"):
+            blisk = cached_blisk(machine.disk, machine.blades, machine.disk_support, reduction)
+            casing = reduce_casing(machine, reduction.casing_modes)
+    except (np.linalg.LinAlgError, RuntimeError) as error:  # of LAPACK, ARPACK and SuperLU
+        raise UserError(
+            f"machine {machine.name}: its stiffness or mass cannot be factorised ({_first_line(error)}); correct its "
+            f"sizes, stiffnesses or materials, which are {_materials(machine)}"
+        ) from error
     springs = support_stiffness(machine.disk_support)
     return ReducedModel(
         machine=machine,
@@ -238,4 +250,16 @@ def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:
         springs=springs,
         dampers=support_damping(machine.damping, springs, blisk.rigid_inertia),
         beta=elastic_damping(machine.damping, blisk.blade_frequency),
+    )
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).split("\n")[0].rstrip(".")
+
+
+def _materials(machine: Machine) -> str:
+    """Modulus and density of each part, as its keys say them."""
+    parts = {"disk": machine.disk.material, "blades": machine.blades.material, "casing": machine.casing.material}
+    return ", ".join(
+        f"{part} {each.youngs_modulus_pa:g} Pa and {each.density_kg_per_m3:g} kg/m3" for part, each in parts.items()
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from rubgen.errors import UserError
+from rubgen.scenario.costs import STEPS_PER_SAMPLE, reduction_problem, run_problem
 from rubgen.scenario.profiles import profile_problem
 from rubgen.scenario.scenario import Scenario
 from rubgen.scenario.sensors import BladeStrain, TimingProbe
@@ -13,8 +14,6 @@ MIN_RECORD_TURNS = 500
 """Fewer strobed turns call quasi-periodic motion chaotic (49 do), so labels ask for these."""
 MAX_STEPS_PER_TURN = 16384
 """The steps of a turn are doubled until they feed the sensors, up to here."""
-STEPS_PER_SAMPLE = 2.56
-"""Steps per recorded sample that leave room for the anti-alias filter."""
 QUARTERS = 4
 
 
@@ -140,6 +139,10 @@ def _axial_problem(scenario: Scenario) -> str | None:
     return None
 
 
+def _memory_problem(scenario: Scenario) -> str | None:
+    return reduction_problem(scenario.machine, scenario.reduction) or run_problem(scenario)
+
+
 PROBLEMS = (
     _profile_problem,
     _record_problem,
@@ -148,5 +151,6 @@ PROBLEMS = (
     _steps_problem,
     _lobe_problem,
     _node_problem,
+    _memory_problem,
 )
 SENSOR_PROBLEMS = (_front_end_problem, _blade_problem, _axial_problem)

@@ -21,12 +21,14 @@ from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.sampling import sobol_point
 from rubgen.scenario.scenario import (
     ContactLaw,
+    Duration,
     Labelling,
     Operation,
     ProfileName,
     Reduction,
     Scenario,
     Sensing,
+    Speed,
     TurnCount,
 )
 from rubgen.scenario.sensor_set import DEFAULT_SET, load_sensor_set
@@ -53,11 +55,11 @@ class Profile(BaseModel):
 
     model_config = _STRICT
     profile: ProfileName = "steady"
-    end_speed_rpm: Positive | None = None
-    duration_s: Positive | None = None
+    end_speed_rpm: Speed | None = None
+    duration_s: Duration | None = None
     fluctuation_rpm: NonNegative = 0.0
-    fluctuation_period_s: Positive = 1.0
-    forbidden_speed_rpm: tuple[tuple[Positive, Positive], ...] = ()
+    fluctuation_period_s: Duration = 1.0
+    forbidden_speed_rpm: tuple[tuple[Speed, Speed], ...] = ()
 
 
 class Output(BaseModel):
@@ -65,7 +67,7 @@ class Output(BaseModel):
 
     model_config = _STRICT
     formats: Annotated[tuple[Format, ...], Field(min_length=1)] = ("parquet", "mcap", "rrd")
-    signal_seconds: Positive = 1.0
+    signal_seconds: Duration = 1.0
 
 
 class Sensors(BaseModel):

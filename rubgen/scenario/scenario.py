@@ -18,6 +18,8 @@ from rubgen.scenario.sensor_set import default_sensor_set
 from rubgen.scenario.sensors import SensorSet
 
 TurnCount = Annotated[int, Field(ge=1, le=1_000_000), NUMBER]
+Speed = Annotated[float, Field(gt=0, le=1e6, allow_inf_nan=False), NUMBER]
+Duration = Annotated[float, Field(gt=0, le=1e5, allow_inf_nan=False), NUMBER]
 RPM = 0.10471975511965977
 """One rev/min in rad/s, 2 pi / 60."""
 ProfileName = Literal["steady", "run-up", "coast-down", "fluctuating"]
@@ -47,17 +49,17 @@ class Operation:
     The speed must stay out of the bands `forbidden_speed_rpm`, each a lower and an upper end.
     """
 
-    speed_rpm: Positive
+    speed_rpm: Speed
     settle_turns: TurnCount | Literal["auto"] = "auto"
     record_turns: TurnCount = 500
     steps_per_turn: TurnCount = 1024
     closing_turns: TurnCount = 40
     profile: ProfileName = "steady"
-    end_speed_rpm: Positive | None = None
-    duration_s: Positive | None = None
+    end_speed_rpm: Speed | None = None
+    duration_s: Duration | None = None
     fluctuation_rpm: NonNegative = 0.0
-    fluctuation_period_s: Positive = 1.0
-    forbidden_speed_rpm: tuple[tuple[Positive, Positive], ...] = ()
+    fluctuation_period_s: Duration = 1.0
+    forbidden_speed_rpm: tuple[tuple[Speed, Speed], ...] = ()
 
     @property
     def rotation(self) -> Rotation:
@@ -157,7 +159,7 @@ class Scenario:
     reduction: Reduction = Reduction()
     sensing: Sensing = Sensing()
     labelling: Labelling = Labelling()
-    signal_seconds: Positive = 1.0
+    signal_seconds: Duration = 1.0
     seed: Seed = 0
     index: Seed = 0
     machine_id: str = ""

@@ -114,6 +114,7 @@ PARAMETERS = (
         meaning="spin speed, of a run-up or coast-down at its start",
         read=lambda scenario: scenario.operation.speed_rpm,
         apply=_operation("speed_rpm"),
+        maximum=1e6,
     ),
     Parameter(
         key="clearance_m",
@@ -121,6 +122,7 @@ PARAMETERS = (
         meaning="smallest gap between blade tips and casing at rest",
         read=lambda scenario: scenario.machine.casing.clearance_m,
         apply=_casing("clearance_m"),
+        maximum=100,
     ),
     Parameter(
         key="ovality_m",
@@ -128,6 +130,7 @@ PARAMETERS = (
         meaning="largest minus smallest radius of the casing's inner surface",
         read=lambda scenario: scenario.machine.casing.ovality_m,
         apply=_casing("ovality_m"),
+        maximum=100,
         above=False,
     ),
     Parameter(
@@ -136,6 +139,7 @@ PARAMETERS = (
         meaning="lateral stiffness of the disk support, mean of X and Y",
         read=lambda scenario: scenario.machine.disk_support.lateral_stiffness_n_per_m,
         apply=_disk_support,
+        maximum=1e16,
     ),
     Parameter(
         key="casing_support_stiffness_n_per_m",
@@ -143,6 +147,7 @@ PARAMETERS = (
         meaning="radial and circumferential stiffness under each casing node",
         read=lambda scenario: scenario.machine.casing.radial_support_stiffness_n_per_m,
         apply=_casing("radial_support_stiffness_n_per_m", "circumferential_support_stiffness_n_per_m"),
+        maximum=1e16,
     ),
     Parameter(
         key="friction",
@@ -170,6 +175,7 @@ PARAMETERS = (
         meaning="mass unbalance of the blisk",
         read=lambda scenario: scenario.machine.unbalance_kg_m,
         apply=_unbalance,
+        maximum=1e7,
         above=False,
     ),
     Parameter(
@@ -178,6 +184,7 @@ PARAMETERS = (
         meaning="radial thickness of the casing ring",
         read=lambda scenario: scenario.machine.casing.thickness_m,
         apply=_casing("thickness_m"),
+        maximum=100,
     ),
     Parameter(
         key="lateral_damping",
@@ -204,6 +211,7 @@ PARAMETERS = (
         meaning="gravity along -Y on the blisk; 0 for a vertical axis",
         read=lambda scenario: scenario.machine.gravity_m_per_s2,
         apply=_gravity,
+        maximum=1e4,
         above=False,
     ),
     Parameter(
@@ -212,6 +220,7 @@ PARAMETERS = (
         meaning="spin speed at the end of a run-up or coast-down",
         read=lambda scenario: scenario.operation.end_speed_rpm or scenario.operation.speed_rpm,
         apply=_operation("end_speed_rpm"),
+        maximum=1e6,
     ),
     Parameter(
         key="duration_s",
@@ -219,6 +228,7 @@ PARAMETERS = (
         meaning="duration of the record, and of a run-up or coast-down",
         read=_record_seconds,
         apply=_operation("duration_s"),
+        maximum=1e5,
     ),
     Parameter(
         key="fluctuation_rpm",
@@ -226,6 +236,7 @@ PARAMETERS = (
         meaning="amplitude of a fluctuation of the speed",
         read=lambda scenario: scenario.operation.fluctuation_rpm,
         apply=_operation("fluctuation_rpm"),
+        maximum=1e6,
         above=False,
     ),
     Parameter(
@@ -234,6 +245,7 @@ PARAMETERS = (
         meaning="period of a fluctuation of the speed",
         read=lambda scenario: scenario.operation.fluctuation_period_s,
         apply=_operation("fluctuation_period_s"),
+        maximum=1e5,
     ),
     Parameter(
         key="unbalance_angle_deg",

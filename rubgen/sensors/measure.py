@@ -7,7 +7,7 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
 from rubgen.scenario import Sensing
-from rubgen.scenario.feasible import STEPS_PER_SAMPLE
+from rubgen.scenario.costs import STEPS_PER_SAMPLE
 from rubgen.scenario.sensors import OncePerRev, SampledSensor, TimingProbe
 from rubgen.sensors.blade_tip_timing import TipTimes, blurred, tip_times
 from rubgen.sensors.chain import half_width_seconds, late_seconds

@@ -18,7 +18,7 @@ from rubgen.scenario.rotation import Rotation
 from rubgen.scenario.taps import DEFAULT_TAPS, Tap
 from rubgen.solver.admissible import check_system
 from rubgen.solver.changing import ChangingSystem
-from rubgen.solver.divergence import Growth
+from rubgen.solver.divergence import ADVICE, Growth
 from rubgen.solver.energy_kernels import (
     ABSOLUTE,
     CIRCULATORY,
@@ -198,19 +198,21 @@ class Integration:
         where = f"turn {turn} of {self.settle + self.record}, step {step} of {self.stepper.turn_steps}"
         match self.status:
             case Status.DIVERGED:
-                return f"{self._what_diverged()} in {where}; {self.growth.told()}"
+                branch, what = self._what_diverged()
+                return f"{what} in {where}; {self.growth.told()}; {ADVICE[branch]}"
             case Status.ENERGY:
                 return f"residual {self.energy_residual():.3g} above {ENERGY_TOLERANCE:g} after {where}"
             case _:
                 return f"in {where}"
 
-    def _what_diverged(self) -> str:
-        """Which of the two branches ended the run: a blade, or the casing."""
+    def _what_diverged(self) -> tuple[str, str]:
+        """Which of the two branches ended the run, "blade" or "casing", and how."""
         system, laws = self.stepper.system, self.stepper.laws
         tips = np.abs(self.stepper.state.after[: 3 * system.n_blades])
         if not np.all(tips <= laws.tip_limit):
-            return f"blade {int(np.argmax(~(tips <= laws.tip_limit))) // 3} bent beyond {1e3 * laws.tip_limit:.3g} mm"
-        return f"the casing left {1e3 * laws.casing_limit:.3g} mm"
+            blade = int(np.argmax(~(tips <= laws.tip_limit))) // 3
+            return "blade", f"blade {blade} bent beyond {1e3 * laws.tip_limit:.3g} mm"
+        return "casing", f"the casing left {1e3 * laws.casing_limit:.3g} mm"
 
 
 def integrate(

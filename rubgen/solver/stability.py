@@ -11,7 +11,7 @@ from rubgen.arrays import ComplexArray
 from rubgen.errors import UserError
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Operation
-from rubgen.scenario.feasible import STEPS_PER_SAMPLE
+from rubgen.scenario.costs import STEPS_PER_SAMPLE
 from rubgen.solver.floquet import floquet_exponents, linearised, quadratic_eigenvalues
 
 STEP_SAFETY = 0.95

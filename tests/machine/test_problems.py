@@ -244,3 +244,11 @@ def test_whatever_stands_in_a_recipe_works_or_is_refused_in_one_plain_line(key, 
         text = str(error)
         assert "\n" not in text
         assert not RAW.search(text)
+
+
+@pytest.mark.parametrize("value", ["1e-300", "0.5", "1e30", "1e300", "inf"])
+def test_a_modulus_with_which_nothing_can_be_factorised_is_refused(value, tmp_path):
+    text = (PRESETS / "zeng2019.toml").read_text().replace("2.06e11", value, 1)
+    (tmp_path / "m.toml").write_text(text)
+    with pytest.raises(UserError, match=r"disk.material.youngs_modulus_pa = \S+: must be (at least 1 and|a finite)"):
+        load_machine("m.toml", tmp_path)

@@ -7,6 +7,7 @@ import pytest
 from rubgen.contact import gap_and_foot
 from rubgen.scenario import ContactLaw
 from rubgen.solver import Status, Stepper, integrate
+from rubgen.solver.divergence import ADVICE
 from rubgen.solver.stepper import closing_ramp
 
 
@@ -228,11 +229,14 @@ def test_a_deep_rub_diverges_with_its_branch_turn_and_rates_of_growth(small_syst
     found = re.fullmatch(
         r"(the casing left 5 mm|blade \d bent beyond 5 mm) in turn \d+ of \d+, step \d+ of 256; (growing|no steady "
         r"growth, an excursion of an irregular motion): rate over the last (\d+) turns blades (\S+) a turn "
-        r"\((\S+) 1/s\) about (\S+) mm, casing (\S+) a turn \(\S+ 1/s\) about (\S+) mm",
+        r"\((\S+) 1/s\) about (\S+) mm, casing (\S+) a turn \(\S+ 1/s\) about (\S+) mm"
+        r"; (of 24 such runs .*)",
         response.reason,
     )
     assert found
-    turns, *numbers = (float(number) for number in found.groups()[2:])
+    branch = "casing" if found[1].startswith("the casing") else "blade"
+    assert found[len(found.groups())] == ADVICE[branch]
+    turns, *numbers = (float(number) for number in found.groups()[2:-1])
     assert found[2] == "growing"
     assert 1 <= turns <= 10
     assert max(numbers[0], numbers[3]) * turns > np.log(2)

@@ -1,11 +1,14 @@
 """Rates of growth in the reason of a run that diverges."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from rubgen.scenario import ContactLaw
 from rubgen.solver import Stepper
-from rubgen.solver.divergence import Growth, trend
+from rubgen.solver.divergence import ADVICE, Growth, trend
 
 
 @pytest.fixture
@@ -64,3 +67,16 @@ def test_amplitudes_that_are_no_numbers_are_left_out():
     assert found.turns == 2
     assert found.size == pytest.approx(np.exp(-0.5))
     assert trend(np.array([1.0, np.nan])) is None
+
+
+def test_the_advice_counts_what_the_page_of_the_model_counts():
+    page = (Path(__file__).parents[2] / "docs/model.md").read_text()
+    rows = dict(re.findall(r"^\| (friction 0.02|[^|]+?) \| (.+) \|$", page, re.MULTILINE))
+    expected = {
+        "blade": ["friction 0.02", "casing support stiffness / 4", "damping of the blades x 4"],
+        "casing": ["casing support stiffness x 4", "unbalance / 2", "damping of the casing x 4"],
+    }
+    for column, (branch, changes) in enumerate(expected.items()):
+        counts = [rows[change].split(" | ")[column] for change in changes]
+        assert re.findall(r"(\d+)(?: stayed| with)", ADVICE[branch]) == counts
+        assert counts == sorted(counts, key=int, reverse=True)

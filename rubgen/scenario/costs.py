@@ -1,0 +1,115 @@
+"""What a machine and a run take of memory, from their numbers alone: known before anything is built."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from rubgen.machine import Disk, Machine
+from rubgen.scenario.scenario import Reduction, Scenario
+
+MOST_REDUCTION_BYTES = 4e9
+MOST_RUN_BYTES = 2e9
+BYTES_A_DOF = 14_000
+"""Sparse matrices of the full blisk and their factor, per degree of freedom."""
+STEPS_PER_SAMPLE = 2.56
+"""Steps per recorded sample that leave room for the anti-alias filter."""
+LEAST_TAIL_TURNS = 100
+LEAST_TAPS = 11
+GIGA = 1e9
+
+
+def reduction_bytes(machine: Machine, reduction: Reduction) -> float:
+    """Bytes that the reduction of a machine takes at most: 14 kB n + 8 (1.5 n_d m + 4 j^2 + 4 (3 c)^2).
+
+    n DoFs of the full blisk, n_d of its disk, m = 6 + 6 blades + disk modes the columns of the disk's basis, j DoFs of
+    disk and blades joined, c nodes of the casing. Measured against the growth of memory of `reduce_blisk` in a process
+    of its own: 155 MB in the preset (0.24 GB here), 1.6 GB with a disk of 20 x 288 elements (1.9 GB), 2.1 GB with 240
+    blades of 10 elements on 10 x 240 (3.5 GB).
+    """
+    blades = machine.blades
+    plate = 6 * _disk_nodes(machine.disk)
+    full = plate + 6 * blades.count * (blades.elements + 1)
+    columns = 6 + 6 * blades.count + reduction.disk_modes
+    joined = columns + blades.count * (12 + reduction.blade_modes)
+    dense = 1.5 * plate * columns + 4.0 * joined**2 + 4.0 * (3 * machine.casing.nodes) ** 2
+    return BYTES_A_DOF * full + 8 * dense
+
+
+def reduction_problem(machine: Machine, reduction: Reduction) -> str | None:
+    """Why the reduction of a machine takes too much memory, with what to change; None where it does not."""
+    needed, disk, blades = reduction_bytes(machine, reduction), machine.disk, machine.blades
+    if needed <= MOST_REDUCTION_BYTES:
+        return None
+    size = (
+        f"machine {machine.name}: its reduction takes about {needed / GIGA:.3g} GB of memory, with {blades.count} "
+        f"blades and {disk.radial_elements} x {disk.circumferential_elements} elements of the disk; at most "
+        f"{MOST_REDUCTION_BYTES / GIGA:g} GB:"
+    )
+    for radial in range(disk.radial_elements - 1, 0, -1):
+        smaller = replace(machine, disk=replace(disk, radial_elements=radial))
+        if reduction_bytes(smaller, reduction) <= MOST_REDUCTION_BYTES:
+            return f"{size} lower disk.radial_elements to {radial}"
+    return f"{size} lower disk.circumferential_elements, or the number of blades"
+
+
+def steps_per_turn(scenario: Scenario) -> int:
+    """Steps of a turn at the highest speed: the operation's, doubled until they feed the sensors.
+
+    Stability may double them further, which only the reduced model tells.
+    """
+    operation = scenario.operation
+    needed = STEPS_PER_SAMPLE * scenario.sensing.fastest_hz * 2 * math.pi / operation.rotation.fastest
+    steps = operation.steps_per_turn
+    return steps << max(0, math.ceil(math.log2(needed / steps)))
+
+
+def bytes_a_turn(scenario: Scenario) -> float:
+    """Bytes that are kept of each turn of the record: state and velocity once a turn, orders at a changing speed."""
+    orders = 0 if scenario.operation.profile == "steady" else 20 * 16 * _taps(scenario)
+    return 8 * 2 * coordinates(scenario) + orders
+
+
+def bytes_a_second(scenario: Scenario) -> float:
+    """Bytes of each second of signal: taps at every step, twice while they are joined; channels, clean ones beside."""
+    operation, sensing = scenario.operation, scenario.sensing
+    steps = steps_per_turn(scenario) * operation.rotation.fastest / (2 * math.pi)
+    return 8 * _taps(scenario) * (2 * steps + (3 if sensing.keep_clean else 2) * sensing.sample_rate_hz)
+
+
+def coordinates(scenario: Scenario) -> int:
+    """Degrees of freedom of the reduced model: three a blade, two of the disk centre, modes of blisk and casing."""
+    modes = scenario.reduction.blisk_modes + scenario.reduction.casing_modes
+    return 3 * scenario.machine.blades.count + 2 + modes
+
+
+def run_problem(scenario: Scenario) -> str | None:
+    """Why what is kept of a run takes too much memory, with the number that would do; None where it does not."""
+    operation = scenario.operation
+    turn, second = bytes_a_turn(scenario), bytes_a_second(scenario)
+    if operation.recorded_turns * turn > MOST_RUN_BYTES:
+        return _too_long(scenario, int(MOST_RUN_BYTES / turn))
+    tail = max(scenario.signal_seconds, LEAST_TAIL_TURNS / operation.rotation_frequency_hz)
+    if tail * second <= MOST_RUN_BYTES:
+        return None
+    needed = f"takes about {tail * second / GIGA:.3g} GB of memory, at most {MOST_RUN_BYTES / GIGA:g} GB"
+    seconds = MOST_RUN_BYTES / second
+    return f"output.signal_seconds = {scenario.signal_seconds:g}: {needed}; lower it to {seconds:.3g}, or the rate"
+
+
+def _too_long(scenario: Scenario, most: int) -> str:
+    operation = scenario.operation
+    needed = f"{operation.recorded_turns:,} turns take more than {MOST_RUN_BYTES / GIGA:g} GB of memory"
+    if operation.duration_s is None:
+        return f"simulation.record_turns = {operation.record_turns}: {needed}; lower it to {most}"
+    seconds = most / operation.recorded_turns * operation.duration_s
+    return f"operation.duration_s = {operation.duration_s:g}: {needed}; lower it to {seconds:.3g}"
+
+
+def _taps(scenario: Scenario) -> int:
+    return max(LEAST_TAPS, len(scenario.sensing.set.sensors))
+
+
+def _disk_nodes(disk: Disk) -> int:
+    """Corner nodes stand on rings of two an element, the others on rings between them of one."""
+    return disk.circumferential_elements * (3 * disk.radial_elements + 2)
