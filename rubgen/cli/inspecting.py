@@ -31,7 +31,7 @@ def info_command(directory: Path, *, as_json: bool) -> int:
     (print_json if as_json else print_pairs)(result)
     if not as_json:
         for row in runs[runs["status"] != "ok"].itertuples():
-            say(f"{row.run_id}  {row.status}: {row.reason}")
+            say(f"{row.Index}  {row.status}: {row.reason}")
     return 0
 
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from functools import cached_property
+from html import escape
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,115 +16,195 @@ import pyarrow as pa
 from rubgen.arrays import FloatArray
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, read_manifest
+from rubgen.dataset.rows import RunRows
+from rubgen.dataset.runs_frame import runs_frame
+from rubgen.dataset.stored_run import StoredRun, stored_run
+from rubgen.dataset.touches import COLUMNS, touches_frame
 from rubgen.errors import UserError
 from rubgen.io.columns import signal_columns
-from rubgen.io.parquet import open_parquet, read_table
+from rubgen.io.parquet import read_table, schema
+from rubgen.io.parquet_read import damage_named
+from rubgen.io.sections import SCHEMA
+from rubgen.machine.problems import nearest
+from rubgen.scenario import Recipe, Sensing
 from rubgen.sensors.channel import Float32Array
 
 if TYPE_CHECKING:
     import pandas as pd
 
+MOST_SHOWN = 5
+"""Runs that a notebook shows of a set."""
+PULSES = "once_per_rev_s"
+
 
 class DataSet:
-    """The data set in a directory: `runs` is read once, signals one row group at a time."""
+    """The data set in a directory; what is not asked for is not read.
+
+    `len(data)` counts its runs, failed ones too, `data[run_id]` is one of them, and iteration gives their names.
+    The set is what its manifest lists, whatever else lies in the directory.
+    """
 
     def __init__(self, directory: Path) -> None:
         """Raise UserError where `directory` holds no finished data set; read the manifest alone."""
         self.layout = Layout(directory)
         self.manifest: Manifest = read_manifest(self.layout)
 
+    def __len__(self) -> int:
+        return self.manifest.runs
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._numbers)
+
+    def __contains__(self, run_id: object) -> bool:
+        return run_id in self._numbers
+
+    def __getitem__(self, run_id: str) -> StoredRun:
+        """The run of that name; UserError where there is none."""
+        return stored_run(self, self.row(run_id))
+
     @cached_property
     def runs(self) -> pd.DataFrame:
-        """One row a run, failed ones too: parameters and labels, by `run_id`."""
-        frame: pd.DataFrame = read_table(self.layout.runs).to_pandas()
-        return frame.set_index("run_id", drop=False)
+        """One row a run, failed ones too: parameters and labels. `run_id` is the index. See `runs_frame`."""
+        return runs_frame(self._table, self._sensing.set)
+
+    @property
+    def ok(self) -> pd.DataFrame:
+        """The good runs among `runs`: they have labels, signals and touches."""
+        return self.runs[self.runs["status"] == "ok"]
 
     @cached_property
     def units(self) -> dict[str, str]:
         """The unit of each recorded channel by its name, of the clean ones too where the set keeps them."""
-        sensing = self.manifest.identity.recorded().sensing
-        columns = signal_columns(sensing.set, clean=sensing.keep_clean)
+        columns = signal_columns(self._sensing.set, clean=self._sensing.keep_clean)
         return {column.name: column.unit for column in columns if column.kind == "signal"}
 
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the recorded channels, of the clean ones too where the set keeps them."""
+        return tuple(self.units)
+
+    @property
+    def sample_rate_hz(self) -> float:
+        """Samples a second of every channel."""
+        return self._sensing.sample_rate_hz
+
     def row(self, run_id: str) -> dict[str, Any]:
-        """One run's parameters and labels by column."""
-        return {str(key): value for key, value in self.runs.loc[run_id].to_dict().items()}
+        """One run's parameters and labels by column, as plain values; UserError where there is no such run."""
+        if run_id not in self:
+            raise UserError(f"{self.layout.root}: {self._no_such_run(run_id)}")
+        row: dict[str, Any] = self._table.slice(self._numbers[run_id], 1).to_pylist()[0]
+        return row
 
-    def signals(self, run_id: str) -> dict[str, Float32Array]:
-        """The recorded channels of a run, each (n_samples,) in its column's unit, sample i at i / sample_rate_hz.
+    def signals(self, run_id: str, channels: Sequence[str] | None = None) -> dict[str, Float32Array]:
+        """The recorded channels of a run, each (n_samples,) in its unit of `units`, sample i at i / sample_rate_hz.
 
-        Raises UserError where there is no such run, it failed, or the set has neither Parquet data nor MCAP files.
+        `channels` names those that are wanted; no other is decoded. Raises UserError where there is no such run or
+        channel, the run failed, a file is damaged, or the set has neither Parquet data nor MCAP files.
         """
-        if run_id in self._places:
-            return self._signals_from_parquet(run_id)
-        path = self.layout.export("mcap", run_id)
-        if path.exists():
-            from rubgen.io.mcap import read_mcap
+        names = self._known(channels)
+        self.check_has_signals(run_id)
+        ((_, table),) = self._tables([run_id], names)
+        return row_signals(table, 0)
 
-            run = read_mcap(path)
-            return run.signals | {f"{name}_clean": values for name, values in run.clean.items()}
-        raise UserError(f"{self.layout.root}: {self._why_no_signals(run_id)}")
+    def touches(self, run_id: str) -> pd.DataFrame:
+        """One row a touch of a blade within the whole record, in order of its start. See `touches_frame`.
+
+        Raises UserError where there is no such run, it failed, or the file is damaged.
+        """
+        self.check_has_signals(run_id)
+        ((_, table),) = self._sections.each([run_id], COLUMNS)
+        with damage_named(self._sections.places[run_id].file):
+            return touches_frame(table, self._sensing, self._recipe.output.signal_seconds)
 
     def each_channel(self, name: str) -> Iterator[tuple[str, Float32Array, FloatArray]]:
         """Name of the run, samples of one channel and arrival times (s) of the pulses, run by run.
 
         Only what is asked for is read. Raises UserError where that channel was not recorded.
         """
-        if not self._places:
-            yield from self._each_from_mcap(name)
-        for path in self.layout.shards():
-            with open_parquet(path) as file:
-                names = [field.name for field in file.schema_arrow if is_signal(field)]
-                if name not in names:
-                    raise UserError(f"{self.layout.root}: no channel {name!r}; give one of {', '.join(names)}")
-                for group in range(file.num_row_groups):
-                    table = file.read_row_group(group, columns=["run_id", name, "once_per_rev_s"])
-                    for row, run_id in enumerate(table["run_id"].to_pylist()):
-                        pulses = np.asarray(table["once_per_rev_s"][row].values, dtype=np.float64)
-                        yield run_id, np.asarray(table[name][row].values, dtype=np.float32), pulses
-
-    def _each_from_mcap(self, name: str) -> Iterator[tuple[str, Float32Array, FloatArray]]:
-        from rubgen.io.mcap import read_mcap
-
-        good = self.runs.index[self.runs["status"] == "ok"]
-        if not self.layout.export("mcap", str(good[0])).exists():
-            raise UserError(f"{self.layout.root}: {self._why_no_signals(str(good[0]))}")
-        for run_id in good:
-            run = read_mcap(self.layout.export("mcap", run_id))
-            if name not in run.signals:
-                raise UserError(f"{self.layout.root}: no channel {name!r}; give one of {', '.join(run.signals)}")
-            yield run_id, run.signals[name], run.once_per_rev
+        names = self._known([name])
+        for run_id, table in self._tables(list(self.ok.index), names):
+            yield run_id, row_signals(table, 0)[name], np.asarray(table[PULSES][0].values, dtype=np.float64)
 
     def check_has_signals(self, run_id: str) -> None:
         """Raise UserError where there is no such run, or it failed."""
-        if run_id not in self.runs.index or self.runs.loc[run_id, "status"] != "ok":
-            raise UserError(f"{self.layout.root}: {self._why_no_signals(run_id)}")
+        row = self.row(run_id)
+        if row["status"] != "ok":
+            failed = f"{run_id} failed ({row['status']}: {row['reason']}) and has no signals"
+            raise UserError(f"{self.layout.root}: {failed}; choose a run with status ok")
 
     @cached_property
-    def _places(self) -> dict[str, tuple[Path, int, int]]:
-        """File, row group and row of every run with signals."""
-        places: dict[str, tuple[Path, int, int]] = {}
-        for path in self.layout.shards():
-            with open_parquet(path) as file:
-                for group in range(file.num_row_groups):
-                    names = file.read_row_group(group, columns=["run_id"])["run_id"].to_pylist()
-                    places |= {name: (path, group, row) for row, name in enumerate(names)}
-        return places
+    def _recipe(self) -> Recipe:
+        return self.manifest.identity.recorded()
 
-    def _signals_from_parquet(self, run_id: str) -> dict[str, Float32Array]:
-        path, group, row = self._places[run_id]
-        with open_parquet(path) as file:
-            names = [field.name for field in file.schema_arrow if is_signal(field)]
-            table = file.read_row_group(group, columns=names)
-        return row_signals(table, row)
+    @property
+    def _sensing(self) -> Sensing:
+        return self._recipe.sensing
 
-    def _why_no_signals(self, run_id: str) -> str:
-        if run_id not in self.runs.index:
-            return f"no run {run_id!r}; give one of runs.run_id, like {self.runs.index[0]!r}"
-        status, reason = self.runs.loc[run_id, ["status", "reason"]]
-        if status != "ok":
-            return f"{run_id} failed ({status}: {reason}) and has no signals; choose a run with status ok"
-        return "has no files with signals; generate it with formats parquet or mcap"
+    @cached_property
+    def _table(self) -> pa.Table:
+        types = schema(signals=False, sensors=self._sensing.set)
+        table = read_table(self.layout.runs, types.names)
+        with damage_named(self.layout.runs):
+            return table.cast(types)
+
+    @cached_property
+    def _numbers(self) -> dict[str, int]:
+        """The row of each run."""
+        return {run_id: number for number, run_id in enumerate(self._table["run_id"].to_pylist())}
+
+    @cached_property
+    def _data(self) -> RunRows:
+        types = schema(signals=True, clean=self._sensing.keep_clean, sensors=self._sensing.set)
+        return RunRows([self.layout.root / name for name in self.manifest.listed("data")], types)
+
+    @cached_property
+    def _sections(self) -> RunRows:
+        return RunRows([self.layout.root / name for name in self.manifest.listed("sections")], SCHEMA)
+
+    def _tables(self, run_ids: Sequence[str], names: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
+        """Channels and pulses of each run, from Parquet where the set has it, else from MCAP."""
+        if self._data.files:
+            yield from self._data.each(run_ids, [*names, PULSES])
+            return
+        from rubgen.io.mcap import read_mcap
+
+        listed = self.manifest.listed("mcap")
+        for run_id in run_ids:
+            if f"mcap/{run_id}.mcap" not in listed:
+                raise UserError(
+                    f"{self.layout.root}: has no files with signals; generate it with formats parquet or mcap"
+                )
+            run = read_mcap(self.layout.export("mcap", run_id), channels=names)
+            found = run.signals | {f"{name}_clean": values for name, values in run.clean.items()}
+            yield run_id, pa.table({name: [found[name]] for name in names} | {PULSES: [run.once_per_rev]})
+
+    def _known(self, channels: Sequence[str] | None) -> tuple[str, ...]:
+        if isinstance(channels, str):
+            raise UserError(f"channels = {channels!r}: give a list of names, [{channels!r}]")
+        for name in channels or ():
+            if name not in self.units:
+                raise UserError(f"{self.layout.root}: no channel {name!r}; {nearest(name, list(self.channels))}")
+        return self.channels if channels is None else tuple(channels)
+
+    def _no_such_run(self, run_id: object) -> str:
+        digits = re.sub(r"[^0-9]", "", str(run_id))[:9]
+        meant = f"run-{int(digits or -1):06d}"
+        hint = f"did you mean {meant}? " if meant in self else ""
+        return f"no run {run_id!r}; {hint}give one of {', '.join(islice(self, 3))}{', ...' if len(self) > 3 else ''}"
+
+    def __repr__(self) -> str:
+        status = ", ".join(f"{count} {name}" for name, count in self.manifest.status.items())
+        return (
+            f"Data set {self.manifest.name!r} in {self.layout.root}: {len(self)} runs ({status}), "
+            f"{len(self.channels)} channels at {self.sample_rate_hz:g} Hz"
+        )
+
+    def _repr_html_(self) -> str:
+        from rubgen.viz.figures.data_set import varied_keys
+
+        shown = [*(varied_keys(self.runs) or ["speed_rpm"]), "rub", "motion", "contact_impulse_per_turn_n_s", "status"]
+        table: str = self.runs[shown].head(MOST_SHOWN).to_html()
+        return f"<p>{escape(repr(self))}</p>{table}"
 
 
 def is_signal(field: Any) -> bool:

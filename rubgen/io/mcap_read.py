@@ -6,8 +6,8 @@ import json
 import struct
 import zlib
 from collections import defaultdict
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -66,18 +66,31 @@ class McapContent:
     attachments: dict[str, bytes]
 
 
-def read_mcap(path: Path) -> McapRun:
+def read_mcap(path: Path, *, channels: Collection[str] | None = None) -> McapRun:
     """The run in the file at `path`; chunk, data and summary CRCs are validated.
 
+    With `channels` (`<name>_clean` for a clean one) these alone are decoded, and the pulses, of all that was recorded.
     Raises UserError, one line, when there is no such file, it is damaged, or no run of rubgen is in it.
     """
     try:
-        return run_of(read_content(path))
+        content = read_content(path)
+        return run_of(content if channels is None else _only(content, channels))
     except OSError as error:
         raise UserError(f"{path}: cannot be read ({error.strerror}); give an existing .mcap file") from None
     except UNREADABLE as error:
         reason = f"{type(error).__name__}: {error}".strip(": ")
         raise UserError(f"{path}: damaged or no run of rubgen ({reason}); generate it again") from None
+
+
+def _only(content: McapContent, channels: Collection[str]) -> McapContent:
+    """The content without the messages of all other channels and of what is no signal but a pulse."""
+    clean = {f"/clean/{name.removesuffix('_clean')}" for name in channels if name.endswith("_clean")}
+    topics = {"/once_per_rev", *(f"/raw/{name}" for name in channels), *clean}
+    return replace(
+        content,
+        channels={topic: channel for topic, channel in content.channels.items() if topic in topics},
+        messages={topic: messages for topic, messages in content.messages.items() if topic in topics},
+    )
 
 
 def read_content(path: Path) -> McapContent:

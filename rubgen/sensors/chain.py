@@ -37,6 +37,13 @@ def late_seconds(sensing: Sensing, seconds: float, *, sign: int = 1) -> float:
     return max([0.0, *(sign * (offset + share * slow) for offset, slow in clocks for share in (0, 1))])
 
 
+def start_seconds(sensing: Sensing, seconds: float, *, steps: int, dt: float) -> float:
+    """When the first sample of `seconds` is taken, in s from the start of a record of so many steps of `dt` s."""
+    rate = sensing.sample_rate_hz
+    end = (steps - 1) * dt - half_width_seconds(rate)
+    return float(end - (late_seconds(sensing, seconds) + (round(seconds * rate) - 1) / rate))
+
+
 def margin_seconds(sensing: Sensing, seconds: float = 0.0) -> float:
     """Signal that a recording of `seconds` needs beyond itself, in s: half the filter's length on either side.
 

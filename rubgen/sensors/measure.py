@@ -10,7 +10,7 @@ from rubgen.scenario import Sensing
 from rubgen.scenario.costs import STEPS_PER_SAMPLE
 from rubgen.scenario.sensors import OncePerRev, SampledSensor, TimingProbe
 from rubgen.sensors.blade_tip_timing import TipTimes, blurred, tip_times
-from rubgen.sensors.chain import half_width_seconds, late_seconds
+from rubgen.sensors.chain import half_width_seconds, late_seconds, start_seconds
 from rubgen.sensors.channel import Channel, Recording
 from rubgen.sensors.once_per_rev import pulse_channel
 from rubgen.sensors.sampled import feed_of, filtered, recorded
@@ -32,8 +32,7 @@ def measure(response: Response, sensing: Sensing, *, seconds: float, rng: np.ran
     positions = sample_positions(response, sensing, seconds)
     angle = shaft_angle(response, positions)
     covered = positions.size / rate
-    start = (record_steps(response) - 1) * response.dt - half_width_seconds(rate)
-    start -= late_seconds(sensing, seconds) + (positions.size - 1) / rate
+    start = start_seconds(sensing, seconds, steps=record_steps(response), dt=response.dt)
     pulses = pulse_times(response, float(angle[0]), start, covered)
     streams = dict(zip((sensor.name for sensor in sensors), rng.spawn(len(sensors)), strict=True))
     channels = _channels(response, sensing, positions, angle, streams)

@@ -67,7 +67,7 @@ def _of_set(draw: Callable[[DataSet, Choice], Figure]) -> Make:
     def make(source: Path | None, choice: Choice) -> Figure:
         directory = _needed(source)
         data = DataSet(directory)
-        if not (data.runs["status"] == "ok").any():
+        if data.ok.empty:
             raise UserError(f"{directory}: no run is good; see `rubgen info {directory}`")
         return draw(data, choice)
 
@@ -120,8 +120,8 @@ def _cascade(data: DataSet, choice: Choice) -> Figure:
 
 def _exponent(data: DataSet, choice: Choice) -> Figure:
     """The column `lyapunov_per_turn` with its error."""
-    key, runs = _parameter(data, choice), data.runs
-    known = runs[(runs["status"] == "ok") & runs["lyapunov_per_turn"].notna()]
+    key, good = _parameter(data, choice), data.ok
+    known = good[good["lyapunov_per_turn"].notna()]
     if known.empty:
         raise ValueError("no run has an exponent; generate with lyapunov = true under [labels]")
     return figures.exponent_sweep(

@@ -81,7 +81,7 @@ def write_report(directory: Path, path: Path) -> None:
 def render_report(directory: Path) -> str:
     """The page as text."""
     data = DataSet(directory)
-    good = data.runs[data.runs["status"] == "ok"]
+    good = data.ok
     if good.empty:
         raise UserError(f"{directory}: no run is good, so there is nothing to show; see `rubgen info {directory}`")
     replays = {run_id: find_replay(directory, run_id).replay for run_id in example_runs(good)}
@@ -102,7 +102,7 @@ def render_report(directory: Path) -> str:
         classes=_classes(good),
         overview=as_data_url(dataset_overview(data.runs)),
         parameters=_parameters(good, identity.recipe),
-        failed=data.runs[data.runs["status"] != "ok"].head(MOST_FAILED).to_dict("records"),
+        failed=data.runs[data.runs["status"] != "ok"].head(MOST_FAILED).reset_index().to_dict("records"),
         failed_more=max(0, len(data.runs) - len(good) - MOST_FAILED),
         examples=[_example(data.row(run_id), replay) for run_id, replay in replays.items()],
         channels=_channels(first),

@@ -28,11 +28,15 @@ class MadeSet:
             "lyapunov_per_turn": [-0.1, 0.3, None],
             "lyapunov_error": [0.01, 0.02, None],
         }
-    ).set_index("run_id", drop=False)
+    ).set_index("run_id")
     units: ClassVar[dict[str, str]] = {"proximity_x": "m", "proximity_x_clean": "m", "casing_acc_0": "m/s2"}
 
     def __init__(self, _directory=None):
         pass
+
+    @property
+    def ok(self):
+        return self.runs[self.runs["status"] == "ok"]
 
     def row(self, run_id):
         return self.runs.loc[run_id].to_dict()

@@ -25,7 +25,7 @@ def test_valid_and_loaded_to_the_bit(mlcroissant, small_set):
     assert not described.metadata.issues.errors
     rows = list(described.records("signals"))
     data = rubgen.open(small_set.directory)
-    assert [row["signals/run_id"].decode() for row in rows] == data.runs["run_id"].tolist()
+    assert [row["signals/run_id"].decode() for row in rows] == list(data)
     for row in rows:
         signals = data.signals(row["signals/run_id"].decode())
         loaded = np.array(row["signals/contact_force"], dtype=np.float32)

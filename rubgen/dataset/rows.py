@@ -1,0 +1,73 @@
+"""Rows of single runs out of Parquet files that hold many."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
+from itertools import groupby
+from pathlib import Path
+from typing import NamedTuple
+
+import pyarrow as pa
+
+from rubgen.errors import UserError
+from rubgen.io.parquet import open_parquet
+from rubgen.io.parquet_read import damage_named
+
+
+class Place(NamedTuple):
+    """Where the row of a run stands."""
+
+    file: Path
+    group: int
+    row: int
+
+
+class RunRows:
+    """The rows of these files, one a run; files are opened when a row is asked for."""
+
+    def __init__(self, files: Sequence[Path], types: pa.Schema) -> None:
+        self.files, self.types = files, types
+
+    @cached_property
+    def places(self) -> dict[str, Place]:
+        """The place of every run; UserError where a file is missing or damaged."""
+        places: dict[str, Place] = {}
+        for path in self.files:
+            with open_parquet(path) as file:
+                for group in range(file.num_row_groups):
+                    names = file.read_row_group(group, columns=["run_id"])["run_id"].to_pylist()
+                    places |= {name: Place(path, group, row) for row, name in enumerate(names)}
+        return places
+
+    def each(self, run_ids: Iterable[str], columns: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
+        """Name and row of each run, in that order, these columns alone.
+
+        A file is opened once, and a group read once, for runs that follow one another in it.
+        Raises UserError that names file and run where a page is damaged, or a run lacks a value.
+        """
+        run_ids = list(run_ids)
+        lost = [run_id for run_id in run_ids if run_id not in self.places]
+        if lost:
+            folder = self.files[0].parent if self.files else "the set"
+            raise UserError(f"{lost[0]}: has no row in {folder}; generate the set again")
+        types = pa.schema([self.types.field(name) for name in columns])
+        for path, names in groupby(run_ids, key=lambda run_id: self.places[run_id].file):
+            with open_parquet(path) as file:
+                for group, members in groupby(names, key=lambda run_id: self.places[run_id].group):
+                    runs = list(members)
+                    try:
+                        table = file.read_row_group(group, columns=columns)
+                        with damage_named(path):
+                            table = table.cast(types)
+                    except UserError as error:
+                        raise UserError(f"{', '.join(runs)}: {error}") from None
+                    for run_id in runs:
+                        yield run_id, _whole(table.slice(self.places[run_id].row, 1), run_id, path)
+
+
+def _whole(row: pa.Table, run_id: str, path: Path) -> pa.Table:
+    for name in row.column_names:
+        if row[name].null_count:
+            raise UserError(f"{run_id}: {path}: has no {name} of this run; generate the set again")
+    return row
