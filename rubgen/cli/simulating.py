@@ -17,6 +17,7 @@ from rubgen.machine.problems import first_problem
 from rubgen.pipeline import Run, simulate
 from rubgen.scenario import Labelling, Operation, Scenario, Sensing, make_scenario
 from rubgen.scenario.feasible import check_feasible
+from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.sensor_set import load_sensor_set
 from rubgen.scenario.vary import KEYS, varied_values
 from rubgen.solver import Status
@@ -86,6 +87,7 @@ def _scenario(options: dict[str, Any]) -> Scenario:
     except ValidationError as error:
         raise first_problem("", error, options) from None
     check_feasible(scenario)
+    warn_of([scenario])
     return scenario
 
 

@@ -59,7 +59,7 @@ def steps_per_turn(scenario: Scenario) -> int:
     Stability may double them further, which only the reduced model tells.
     """
     operation = scenario.operation
-    needed = STEPS_PER_SAMPLE * scenario.sensing.fastest_hz * 2 * math.pi / operation.rotation.fastest
+    needed = max(1.0, STEPS_PER_SAMPLE * scenario.sensing.fastest_hz * 2 * math.pi / operation.rotation.fastest)
     steps = operation.steps_per_turn
     return steps << max(0, math.ceil(math.log2(needed / steps)))
 

@@ -6,6 +6,14 @@ import math
 
 from rubgen.errors import UserError
 from rubgen.scenario.costs import STEPS_PER_SAMPLE, reduction_problem, run_problem
+from rubgen.scenario.plausible import (
+    MOST_CLEARANCE,
+    MOST_OVALITY,
+    MOST_THICKNESS,
+    eccentricity,
+    gram,
+    millimetres,
+)
 from rubgen.scenario.profiles import profile_problem
 from rubgen.scenario.scenario import Scenario
 from rubgen.scenario.sensors import BladeStrain, TimingProbe
@@ -139,6 +147,25 @@ def _axial_problem(scenario: Scenario) -> str | None:
     return None
 
 
+def _size_problem(scenario: Scenario) -> str | None:
+    """What cannot be meant: an oval larger than the radius, a ring without a bore, a blisk beside its axis."""
+    machine, casing = scenario.machine, scenario.machine.casing
+    tip, mean = machine.tip_radius_m, machine.casing_mean_radius_m
+    for key, value, limit, share, what in (
+        ("clearance_m", casing.clearance_m, tip, MOST_CLEARANCE, "the radius of the blade tips"),
+        ("ovality_m", casing.ovality_m, tip, MOST_OVALITY, "the radius of the blade tips"),
+        ("casing_thickness_m", casing.thickness_m, mean, MOST_THICKNESS, "the radius of the casing"),
+    ):
+        if value >= limit:
+            remedy = millimetres(value, share * tip) or "; lower it"
+            return f"{key} = {value:g}: must be below {what}, {limit:g} m{remedy}"
+    unbalance = machine.unbalance_kg_m
+    if eccentricity(machine, unbalance) >= tip:
+        away = f"would move the centre of mass {eccentricity(machine, unbalance):.3g} m off the axis"
+        return f"unbalance_kg_m = {unbalance:g}: {away}, outside of the blisk{gram(unbalance)}"
+    return None
+
+
 def _memory_problem(scenario: Scenario) -> str | None:
     return reduction_problem(scenario.machine, scenario.reduction) or run_problem(scenario)
 
@@ -151,6 +178,7 @@ PROBLEMS = (
     _steps_problem,
     _lobe_problem,
     _node_problem,
+    _size_problem,
     _memory_problem,
 )
 SENSOR_PROBLEMS = (_front_end_problem, _blade_problem, _axial_problem)

@@ -18,6 +18,7 @@ from rubgen.machine.sentences import FILE_NAME
 from rubgen.machine.toml_file import read_toml, toml_path
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.feasible import check_feasible
+from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.sampling import sobol_point
 from rubgen.scenario.scenario import (
     ContactLaw,
@@ -184,6 +185,7 @@ def parse_recipe(
     recipe = validated(source, data, TypeAdapter(Recipe))
     recipe._folder = folder or Path()
     check_recipe(recipe, source)
+    warn_of(recipe.corners(), f"{source}: ")
     return recipe
 
 

@@ -5,7 +5,7 @@ import warnings
 import pytest
 
 from rubgen.cli import app
-from rubgen.errors import RubgenWarning, warn
+from rubgen.errors import RubgenWarning, UserError, warn
 
 
 @pytest.mark.parametrize("runs", [1, 2])
@@ -25,3 +25,18 @@ def test_a_warning_is_one_line_without_a_place_in_our_code(capsys, monkeypatch, 
 def test_in_python_a_warning_is_a_warning():
     with pytest.warns(RubgenWarning, match="nothing will rub"):
         warn("nothing will rub")
+
+
+def test_one_run_with_a_clearance_in_millimetres_warns_before_it_is_made(run, monkeypatch):
+    def stop(_scenario):
+        raise UserError("made")
+
+    monkeypatch.setattr("rubgen.cli.simulating.simulate", stop)
+    with warnings.catch_warnings():
+        code, out, err = run("simulate", "--clearance-m", "0.22")
+    assert (code, out) == (2, "")
+    warning, end = err.splitlines()
+    assert warning.startswith(
+        "rubgen: warning: clearance_m = 0.22: 55 % of the radius of the blade tips; were mm meant"
+    )
+    assert end == "rubgen: made"
