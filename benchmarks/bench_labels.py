@@ -19,7 +19,8 @@ from rubgen.reduction import reduce
 from rubgen.scenario import Scenario
 from rubgen.sensors import margin_seconds, taps_of
 from rubgen.sensors import measure as record
-from rubgen.solver import Response, integrate
+from rubgen.solver import Response
+from rubgen.solver.integrate import integrate
 
 ROUNDS = 3
 RUNS = {

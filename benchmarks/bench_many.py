@@ -26,11 +26,13 @@ from rubgen.reduction import reduce
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Scenario, load_recipe
 from rubgen.sensors import margin_seconds, taps_of
-from rubgen.solver import Response, Status, Stepper, integrate
+from rubgen.solver import Response, Status
 from rubgen.solver.block_kernels import Scheme
 from rubgen.solver.blocks import aligned, parts_of
+from rubgen.solver.integrate import integrate
 from rubgen.solver.lanes_kernels import line_kind
 from rubgen.solver.reference import ReferenceStepper
+from rubgen.solver.stepper import Stepper
 from rubgen.vector_kernels import LANES
 
 RUNS, PROCESSES = 16, 2

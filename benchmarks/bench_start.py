@@ -20,7 +20,7 @@ from rubgen import make_scenario
 from rubgen.reduction import reduce
 from rubgen.sensors import measure
 from rubgen.labels import label
-from rubgen.solver import Stepper
+from rubgen.solver.stepper import Stepper
 scenario = make_scenario("zeng2019")
 system = reduce(scenario.machine, scenario.reduction).at_speed(scenario.operation.speed_rad_per_s)
 Stepper(system, scenario.contact, scenario.operation.steps_per_turn).run_turn()

@@ -20,7 +20,8 @@ SETTLE_TURNS, RECORD_TURNS, WORKERS = 100, 50, 2
 def run(speed_rpm: float) -> tuple[float, int]:
     """CPU seconds of one run and its steps in contact."""
     from rubgen.reduction import reduce
-    from rubgen.solver import Status, integrate
+    from rubgen.solver import Status
+    from rubgen.solver.integrate import integrate
 
     begun = time.process_time()
     scenario = make_scenario("zeng2019", speed_rpm=speed_rpm)

@@ -11,7 +11,9 @@ from rubgen.labels import Labels, label
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario
 from rubgen.sensors import Recording, margin_seconds, measure, taps_of
-from rubgen.solver import Response, Status, integrate, no_response
+from rubgen.solver import Response, Status
+from rubgen.solver.integrate import integrate
+from rubgen.solver.refusal import no_response
 
 
 @dataclass(frozen=True, kw_only=True)

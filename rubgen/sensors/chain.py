@@ -8,7 +8,6 @@ import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.scenario import Sensing
-from rubgen.sensors._kernels import ABREAST, interpolate_rows
 from rubgen.sensors.front_end import memory_seconds
 
 PASS_BAND_SHARE = 2 / 2.56
@@ -87,6 +86,8 @@ def band_limit(signals: FloatArray, positions: FloatArray, *, dt: float, sample_
     within 1e-4 up to sample_rate / 2.56 and below 1e-4 from sample_rate / 2 on; there is no delay. The step rate must
     be at least 2.56 sample rates, and all positions at least half a filter length inside.
     """
+    from rubgen.sensors._kernels import ABREAST, interpolate_rows  # compiled: those who read data need no numba
+
     channels, bank = signals.shape[1], filter_bank(dt, sample_rate_hz)
     out = np.empty((positions.size, channels))
     for start in range(0, channels, ABREAST):

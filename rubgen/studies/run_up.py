@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from rubgen.machine import Machine, load_machine
 from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import ContactLaw, Operation, Reduction
-from rubgen.solver import integrate
+from rubgen.solver.integrate import integrate
 
 RPM = np.pi / 30
 START_RPM, END_RPM = 6400.0, 6950.0

@@ -24,7 +24,8 @@ from rubgen.scenario.sensors import SensorSet, TimingProbe
 from rubgen.sensors import Recording, margin_seconds, measure, taps_of
 from rubgen.sensors.blade_tip_timing import tip_deflections
 from rubgen.sensors.chain import PASS_BAND_SHARE, band_limit, half_width_seconds
-from rubgen.solver import Response, integrate
+from rubgen.solver import Response
+from rubgen.solver.integrate import integrate
 from rubgen.viz.colors import BLUE, VERMILION
 from rubgen.viz.figures import save_png
 

@@ -11,7 +11,7 @@ from rubgen.labels.contact_zones import contact_zones
 from rubgen.labels.plain import labels_dict
 from rubgen.labels.whirl import Whirl, WhirlDirection, whirl
 from rubgen.scenario import ContactLaw, Operation
-from rubgen.solver import integrate
+from rubgen.solver.integrate import integrate
 from rubgen.studies.verification.jeffcott import CLEARANCE, FRICTION, ROTOR_MASS, SPEED, annular_rub, jeffcott_system
 
 

@@ -8,7 +8,7 @@ from rubgen.labels import label
 from rubgen.labels.kept import as_kept, keep, response_of
 from rubgen.labels.plain import labels_dict
 from rubgen.scenario import ContactLaw, Operation
-from rubgen.solver import integrate
+from rubgen.solver.integrate import integrate
 from rubgen.solver.response import Response
 from rubgen.studies.verification.jeffcott import jeffcott_system
 

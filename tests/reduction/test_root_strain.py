@@ -14,7 +14,7 @@ from rubgen.machine import load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
 from rubgen.scenario.taps import DriveTorque, RootStrain
-from rubgen.solver import Stepper
+from rubgen.solver.stepper import Stepper
 
 BLADE = 5
 

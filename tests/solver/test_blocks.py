@@ -8,12 +8,12 @@ import pytest
 from rubgen.machine import load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
-from rubgen.solver import Stepper
 from rubgen.solver import blocks as block_module
 from rubgen.solver.block_kernels import Product, free_step, multiply, quadratic, recover_all
 from rubgen.solver.blocks import aligned, blade_harmonics, find_blocks
 from rubgen.solver.central_difference import scheme, system_blocks
 from rubgen.solver.reference import ReferenceStepper
+from rubgen.solver.stepper import Stepper
 
 
 def mistuned(system, spread=0.03):

@@ -12,7 +12,8 @@ from rubgen.reduction.model import CasingSurface, SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.sensors.channel import Channel, Recording
 from rubgen.sensors.motion_frames import motion_frames
-from rubgen.solver import Status, integrate, spin
+from rubgen.solver import Status, spin
+from rubgen.solver.integrate import integrate
 
 RPM = np.pi / 30
 MASS, STIFFNESS, UNBALANCE = 10.0, 1e7, 2e-4

@@ -7,9 +7,9 @@ from rubgen.contact import gap_and_foot
 from rubgen.contact.contact_kernels import build_rows
 from rubgen.contact.geometry_kernels import casing_rows
 from rubgen.scenario import ContactLaw
-from rubgen.solver import Stepper
 from rubgen.solver.energy_kernels import CONTACT, DRIVE_LIMIT, FRICTION, NORMAL, book_contact
 from rubgen.solver.model_kernels import State
+from rubgen.solver.stepper import Stepper
 
 MU, THETA, BLADE = 0.3, 0.7, 2
 

@@ -6,9 +6,10 @@ import pytest
 
 from rubgen.contact import gap_and_foot
 from rubgen.scenario import ContactLaw
-from rubgen.solver import Status, Stepper, integrate
+from rubgen.solver import Status
 from rubgen.solver.divergence import ADVICE
-from rubgen.solver.stepper import closing_ramp
+from rubgen.solver.integrate import integrate
+from rubgen.solver.stepper import Stepper, closing_ramp
 
 
 @pytest.fixture(scope="module")

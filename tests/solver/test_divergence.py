@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from rubgen.scenario import ContactLaw
-from rubgen.solver import Stepper
 from rubgen.solver.divergence import ADVICE, Growth, trend
+from rubgen.solver.stepper import Stepper
 
 
 @pytest.fixture

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from rubgen.scenario import ContactLaw
-from rubgen.solver import Status, Stepper, integrate
-from rubgen.solver.integrate import Integration
+from rubgen.solver import Status
+from rubgen.solver.integrate import Integration, integrate
 from rubgen.solver.spin import SteadySpin
 from rubgen.solver.step_kernels import has_diverged
-from rubgen.solver.stepper import closing_ramp
+from rubgen.solver.stepper import Stepper, closing_ramp
 
 
 @pytest.fixture

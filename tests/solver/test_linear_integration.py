@@ -3,9 +3,11 @@ import pytest
 import scipy.linalg as la
 
 from rubgen.scenario import ContactLaw
-from rubgen.solver import Status, Stepper, automatic_settle_turns, eigenvalues, integrate, stable_step, steps_per_turn
+from rubgen.solver import Status
+from rubgen.solver.integrate import integrate
 from rubgen.solver.rub_free import steady_state
-from rubgen.solver.stepper import closing_ramp, start_opening
+from rubgen.solver.stability import automatic_settle_turns, eigenvalues, stable_step, steps_per_turn
+from rubgen.solver.stepper import Stepper, closing_ramp, start_opening
 
 
 def exact_flow(system, seconds):

@@ -10,8 +10,8 @@ import pytest
 
 from rubgen.scenario import ContactLaw, Liner
 from rubgen.scenario.taps import DEFAULT_TAPS, ContactTorque, TipTiming
-from rubgen.solver import Stepper
 from rubgen.solver.energy_kernels import WORKS
+from rubgen.solver.stepper import Stepper
 
 SCRIPT = """
 import numpy as np

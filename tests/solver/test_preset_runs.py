@@ -7,7 +7,8 @@ from threadpoolctl import threadpool_limits
 from rubgen.machine import load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Operation, Reduction
-from rubgen.solver import Status, integrate
+from rubgen.solver import Status
+from rubgen.solver.integrate import integrate
 
 
 @pytest.fixture(scope="module")

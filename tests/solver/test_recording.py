@@ -6,8 +6,8 @@ from rubgen.labels import label
 from rubgen.labels.plain import labels_dict
 from rubgen.scenario import ContactLaw
 from rubgen.scenario.taps import DEFAULT_TAPS, TipTiming
-from rubgen.solver import Stepper, integrate
-from rubgen.solver.stepper import closing_ramp
+from rubgen.solver.integrate import integrate
+from rubgen.solver.stepper import Stepper, closing_ramp
 
 STEPS = 256
 TAPS = (*DEFAULT_TAPS, TipTiming(name="probe", angle_deg=40.0, axial_m=1e-3))

@@ -8,7 +8,10 @@ from scipy.optimize import brentq
 
 from rubgen.errors import UserError
 from rubgen.scenario import ContactLaw
-from rubgen.solver import Status, Stepper, integrate, stable_step
+from rubgen.solver import Status
+from rubgen.solver.integrate import integrate
+from rubgen.solver.stability import stable_step
+from rubgen.solver.stepper import Stepper
 
 
 def changed(system, name, number, value):

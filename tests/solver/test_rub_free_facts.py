@@ -8,7 +8,7 @@ from rubgen.labels.whirl import WhirlDirection, whirl
 from rubgen.machine import load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
-from rubgen.solver import integrate
+from rubgen.solver.integrate import integrate
 from rubgen.solver.rub_free import free_penetration, rub_free_motion
 from rubgen.studies.run_up import predicted_onset, reach
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rubgen.scenario import ContactLaw
-from rubgen.solver import Stepper
+from rubgen.solver.stepper import Stepper
 from rubgen.studies.verification.jeffcott import ROTOR_STIFFNESS, jeffcott_system
 
 SMOOTH = ContactLaw()

@@ -6,8 +6,9 @@ import pytest
 from rubgen.contact.liner_kernels import REMOVED, WORK
 from rubgen.errors import UserError
 from rubgen.scenario import ContactLaw, Liner, parse_recipe
-from rubgen.solver import Status, Stepper, integrate
-from rubgen.solver.stepper import closing_ramp, start_opening
+from rubgen.solver import Status
+from rubgen.solver.integrate import integrate
+from rubgen.solver.stepper import Stepper, closing_ramp, start_opening
 
 LINER = Liner(thickness_m=1e-3, wear_m2_per_n=4e-12, width_m=0.02, bins=240)
 LAWS = {

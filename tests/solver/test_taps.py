@@ -19,9 +19,10 @@ from rubgen.scenario.taps import (
     SupportForce,
     TipTiming,
 )
-from rubgen.solver import Stepper, integrate
 from rubgen.solver.energy_kernels import DRIVE_LIMIT
+from rubgen.solver.integrate import integrate
 from rubgen.solver.rub_free import steady_state
+from rubgen.solver.stepper import Stepper
 
 OPENING = np.linspace(4e-4, 0, 258)
 

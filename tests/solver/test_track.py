@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rubgen.scenario import ContactLaw
-from rubgen.solver import integrate
+from rubgen.solver.integrate import integrate
 from rubgen.solver.stepper import FRAMES
 from rubgen.solver.track import TRACK_TURNS
 

@@ -10,9 +10,11 @@ from scipy.integrate import quad
 from rubgen.machine import SqueezeFilm
 from rubgen.reduction.model import TurningForces
 from rubgen.scenario import ContactLaw
-from rubgen.solver import Status, Stepper, eigenvalues, integrate, slowest_decay, stable_step
+from rubgen.solver import Status
+from rubgen.solver.integrate import integrate
 from rubgen.solver.rub_free import rub_free_motion
-from rubgen.solver.stepper import start_opening
+from rubgen.solver.stability import eigenvalues, slowest_decay, stable_step
+from rubgen.solver.stepper import Stepper, start_opening
 from rubgen.solver.supports import turning_force
 
 CASES = ("gravity", "springs", "dampers", "film", "all")

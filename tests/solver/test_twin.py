@@ -4,8 +4,10 @@ import pytest
 from rubgen.errors import UserError
 from rubgen.labels.lyapunov import lyapunov
 from rubgen.scenario import ContactLaw
-from rubgen.solver import Stepper, integrate, slowest_decay
 from rubgen.solver.fractions import turned_back
+from rubgen.solver.integrate import integrate
+from rubgen.solver.stability import slowest_decay
+from rubgen.solver.stepper import Stepper
 from rubgen.solver.twin import Twin, piece_ends
 
 STEPS = 256

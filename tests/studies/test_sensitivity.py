@@ -7,7 +7,7 @@ import pytest
 
 from rubgen.labels import label
 from rubgen.reduction import reduce
-from rubgen.solver import integrate
+from rubgen.solver.integrate import integrate
 from rubgen.studies.sensitivity import __main__ as command
 from rubgen.studies.sensitivity import kept as kept_module
 from rubgen.studies.sensitivity.cases import AUTO, CASES, STUDIES, case, with_operation

@@ -7,7 +7,7 @@ from scipy.stats import qmc
 from rubgen.labels import Motion
 from rubgen.reduction import reduce
 from rubgen.scenario import make_scenario
-from rubgen.solver import integrate
+from rubgen.solver.integrate import integrate
 from rubgen.solver.response import ContactEvents
 from rubgen.studies.zeng2019 import reproduce
 from rubgen.studies.zeng2019.cases import (

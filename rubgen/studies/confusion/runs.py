@@ -13,7 +13,8 @@ from rubgen.dataset.workers import unordered, worker_pool
 from rubgen.labels.kept import Kept, keep
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario, make_scenario
-from rubgen.solver import Status, integrate
+from rubgen.solver import Status
+from rubgen.solver.integrate import integrate
 
 SERIES: dict[str, dict[str, float]] = {
     "preset": {},

@@ -13,7 +13,8 @@ from rubgen.labels.motion import blisk_points, casing_points, chaos_indicator, c
 from rubgen.reduction import reduce
 from rubgen.reduction.reduced import ReducedModel
 from rubgen.scenario import Scenario
-from rubgen.solver import Response, Status, integrate
+from rubgen.solver import Response, Status
+from rubgen.solver.integrate import integrate
 from rubgen.solver.twin import LEAST_TURNS
 
 BLOCKS = 10

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rubgen.scenario import ContactLaw, Operation
-from rubgen.solver import integrate
+from rubgen.solver.integrate import integrate
 from rubgen.studies.verification.jeffcott import (
     CLEARANCE,
     FRICTION,

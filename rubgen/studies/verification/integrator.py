@@ -18,8 +18,8 @@ from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.machine import load_machine
 from rubgen.reduction import SpinningSystem, reduce
 from rubgen.scenario import ContactLaw, Reduction
-from rubgen.solver import Stepper
 from rubgen.solver.rub_free import steady_state
+from rubgen.solver.stepper import Stepper
 from rubgen.studies.verification.jeffcott import jeffcott_system
 from rubgen.studies.verification.row import Row, within
 

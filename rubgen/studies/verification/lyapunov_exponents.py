@@ -22,7 +22,7 @@ import scipy.linalg as la
 from rubgen.arrays import FloatArray
 from rubgen.labels.lyapunov import Exponent, lyapunov
 from rubgen.scenario import ContactLaw, Operation
-from rubgen.solver import integrate
+from rubgen.solver.integrate import integrate
 from rubgen.solver.twin_kernels import bring_back
 from rubgen.studies.verification.flow_kernels import lorenz_steps
 from rubgen.studies.verification.impact_oscillator import REGULAR, RESTITUTION, free_flight, orbit_in_closed_form

@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 
 from rubgen.arrays import FloatArray
 from rubgen.scenario import ContactLaw
-from rubgen.solver import Stepper
+from rubgen.solver.stepper import Stepper
 from rubgen.studies.verification.jeffcott import (
     CLEARANCE,
     FRICTION,

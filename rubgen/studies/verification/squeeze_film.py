@@ -20,8 +20,9 @@ from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.machine import SqueezeFilm
 from rubgen.reduction import SpinningSystem, TurningForces, reduce
 from rubgen.scenario import ContactLaw, Operation, Reduction
-from rubgen.solver import eigenvalues, integrate
+from rubgen.solver.integrate import integrate
 from rubgen.solver.rub_free import rub_free_motion
+from rubgen.solver.stability import eigenvalues
 from rubgen.solver.supports import turning_force
 from rubgen.studies.verification.rigid_rotor import rigid_rotor
 from rubgen.studies.verification.rotors import NO_DAMPING, STIFF, UNBALANCE, annulus_inertia, plain_rotor

@@ -23,8 +23,7 @@ from rubgen.fem.casing import assemble_casing
 from rubgen.machine import Machine, load_machine
 from rubgen.reduction.casing import reduce_casing
 from rubgen.scenario import ContactLaw, Liner
-from rubgen.solver import Stepper
-from rubgen.solver.stepper import closing_ramp, start_opening
+from rubgen.solver.stepper import Stepper, closing_ramp, start_opening
 from rubgen.studies.verification.jeffcott import CLEARANCE, FRICTION, SPEED, annular_rub, jeffcott_system
 from rubgen.studies.verification.row import Row, relative
 

@@ -22,7 +22,7 @@ from rubgen.arrays import FloatArray
 from rubgen.machine import SqueezeFilm
 from rubgen.reduction import SpinningSystem, TurningForces
 from rubgen.scenario import ContactLaw
-from rubgen.solver import Stepper
+from rubgen.solver.stepper import Stepper
 from rubgen.studies.verification.jeffcott import (
     CLEARANCE,
     FRICTION,

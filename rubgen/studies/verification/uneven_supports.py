@@ -19,8 +19,9 @@ from scipy.optimize import brentq
 
 from rubgen.reduction import ReducedModel, SpinningSystem, TurningForces, reduce
 from rubgen.scenario import ContactLaw, Operation, Reduction
-from rubgen.solver import eigenvalues, integrate
+from rubgen.solver.integrate import integrate
 from rubgen.solver.rub_free import rub_free_motion
+from rubgen.solver.stability import eigenvalues
 from rubgen.studies.verification.rigid_rotor import rigid_rotor, weight_of
 from rubgen.studies.verification.rotors import NO_DAMPING, STIFF, UNBALANCE, annulus_inertia, plain_rotor
 from rubgen.studies.verification.row import Row, relative, within

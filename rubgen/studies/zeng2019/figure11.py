@@ -9,7 +9,8 @@ import numpy as np
 
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario
-from rubgen.solver import Status, integrate
+from rubgen.solver import Status
+from rubgen.solver.integrate import integrate
 from rubgen.studies.zeng2019.cases import case
 from rubgen.studies.zeng2019.drawing import new_figure, style
 from rubgen.studies.zeng2019.outcome import POINTS

@@ -12,7 +12,7 @@ from rubgen.fem.casing import assemble_casing
 from rubgen.reduction import reduce
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Scenario
-from rubgen.solver import integrate
+from rubgen.solver.integrate import integrate
 from rubgen.studies.zeng2019.mode_shapes import nodal_diameters
 from rubgen.studies.zeng2019.outcome import outcome
 from rubgen.studies.zeng2019.piece import Arrays

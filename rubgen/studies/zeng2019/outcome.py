@@ -12,7 +12,8 @@ from rubgen.labels import Labels, Motion, label
 from rubgen.labels.harmonics import HIGHEST_ORDER, order_spectrum
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario
-from rubgen.solver import Response, Status, integrate
+from rubgen.solver import Response, Status
+from rubgen.solver.integrate import integrate
 from rubgen.studies.zeng2019.contact_pattern import ContactPattern, contact_pattern
 from rubgen.studies.zeng2019.piece import Arrays, Piece
 

@@ -1,0 +1,27 @@
+"""What only reads imports no kernel and no compiler: it works where nothing can be compiled or kept."""
+
+import subprocess
+import sys
+
+READERS = [
+    "rubgen.dataset.open",
+    "rubgen.dataset.verify",
+    "rubgen.dataset.relabel",
+    "rubgen.dataset.replaying",
+    "rubgen.cli.inspecting",
+    "rubgen.cli.drawing",
+    "rubgen.studies.report",
+    "rubgen.viz.rerun",
+    "rubgen.dataset.generate",  # the parent of workers: they compile
+]
+LOOK = """
+import importlib, sys
+for module in sys.argv[1:]:
+    importlib.import_module(module)
+    print(module, [m for m in sys.modules if m.split('.')[0] in ('numba', 'llvmlite') or m.endswith('_kernels')])
+"""
+
+
+def test_a_reader_imports_no_kernel():
+    done = subprocess.run([sys.executable, "-c", LOOK, *READERS], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines() == [f"{module} []" for module in READERS]
