@@ -6,11 +6,12 @@ is fast: what a function needs is imported when it is called.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rubgen.errors import RubgenError, UserError
+from rubgen.progress import shown
 
 if TYPE_CHECKING:
     from rubgen.dataset.generate import Generated
@@ -50,7 +51,8 @@ def simulate(scenario: Scenario) -> Run:
     """
     from rubgen.pipeline import simulate
 
-    return simulate(scenario)
+    with shown():
+        return simulate(scenario)
 
 
 def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> Recipe:
@@ -69,15 +71,18 @@ def generate(
     *,
     runs: int | None = None,
     workers: int | None = None,
+    progress: Callable[[int, int], None] | bool | None = None,
 ) -> Generated:
     """The data set of a recipe in the directory `out`, completed where it was begun.
 
-    See `rubgen.dataset.generate`. Raises UserError for bad input, a directory that holds something else or cannot be
-    written, and a full disk; RubgenError where a worker process dies.
+    Progress is shown on a terminal and in a notebook, with True everywhere, with False nowhere; a function is called
+    with the numbers of finished and of all runs instead. See `rubgen.dataset.generate`. Raises UserError for bad
+    input, a directory that holds something else or cannot be written, and a full disk; RubgenError where a worker
+    process dies.
     """
     from rubgen.dataset.generate import generate
 
-    return generate(recipe, out, runs=runs, workers=workers)
+    return generate(recipe, out, runs=runs, workers=workers, progress=progress)
 
 
 def open(directory: Path | str) -> DataSet:  # noqa: A001

@@ -31,6 +31,12 @@ def kernel_cache_dir() -> Path:
     return cache_root() / "kernels" / digest.hexdigest()[:16]
 
 
+def kernels_are_compiled() -> bool:
+    """Whether kernels of this code were compiled before: a run need not wait for the compiler."""
+    config: Any = numba.config
+    return bool(config.DISABLE_JIT) or any(kernel_cache_dir().rglob("*.nbi"))
+
+
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile `function` with numba, without the GIL, without fastmath, cached in `kernel_cache_dir()`.
 

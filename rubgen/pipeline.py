@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from rubgen.jit import kernels_are_compiled
 from rubgen.labels import Labels, label
+from rubgen.progress import COMPILING, step
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario
 from rubgen.sensors import Recording, margin_seconds, measure, taps_of
@@ -36,21 +39,28 @@ def simulate(scenario: Scenario) -> Run:
     operation, sensing = scenario.operation, scenario.sensing
     with threadpool_limits(1, user_api="blas"):
         model = reduce(scenario.machine, scenario.reduction)
-        response = integrate(
-            model.at_speed(operation.speed_rad_per_s),
-            operation,
-            scenario.contact,
-            tail_seconds=scenario.signal_seconds + margin_seconds(sensing, scenario.signal_seconds),
-            sample_rate_hz=sensing.fastest_hz,
-            taps=taps_of(sensing.set),
-            twin=scenario.labelling.lyapunov and operation.profile == "steady",
-            system_at=model.at_speed,
-        )
+        with _shown_step():
+            response = integrate(
+                model.at_speed(operation.speed_rad_per_s),
+                operation,
+                scenario.contact,
+                tail_seconds=scenario.signal_seconds + margin_seconds(sensing, scenario.signal_seconds),
+                sample_rate_hz=sensing.fastest_hz,
+                taps=taps_of(sensing.set),
+                twin=scenario.labelling.lyapunov and operation.profile == "steady",
+                system_at=model.at_speed,
+            )
         if response.status is not Status.OK:
             return Run(scenario=scenario, response=response, recording=None, labels=None)
         rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(scenario.index,)))
         recording = measure(response, sensing, seconds=scenario.signal_seconds, rng=rng)
         return Run(scenario=scenario, response=response, recording=recording, labels=label(response))
+
+
+def _shown_step() -> AbstractContextManager[None]:
+    """What a user sees of a run: its turns, and why the first run takes so long."""
+    compiled = kernels_are_compiled()
+    return step("simulate" if compiled else COMPILING, "turns", long=not compiled)
 
 
 def refused(scenario: Scenario, reason: str) -> Run:

@@ -2,68 +2,33 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from shutil import which
 from types import FrameType
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TextColumn, TimeRemainingColumn
-from rich.text import Text
-
 from rubgen.cli.printing import print_json, say
 from rubgen.dataset.generate import Generated, finished_runs, generate
 
 
-class Rate(ProgressColumn):
-    """Runs a minute, or whatever is counted."""
-
-    def __init__(self, unit: str) -> None:
-        super().__init__()
-        self.unit = unit
-
-    def render(self, task: Task) -> Text:
-        """The rate so far, or dots before the first is done."""
-        return Text(f"{60 * task.speed:.1f} {self.unit}/min" if task.speed else f"... {self.unit}/min")
-
-
 def generate_command(recipe: Path | None, out: Path, runs: int | None, workers: int | None, *, as_json: bool) -> int:
     """Generate, and say what was made; a Ctrl-C says how to go on."""
-    console = Console(stderr=True, quiet=as_json)
     try:
-        with terminable(), shown_progress(console, "runs") as progress:
-            made = generate(recipe, out, runs=runs, workers=workers, progress=progress)
+        with terminable():
+            made = generate(recipe, out, runs=runs, workers=workers, progress=not as_json)
     except KeyboardInterrupt:
-        Console(stderr=True, soft_wrap=True).print(
+        sys.stderr.write(
             f"rubgen: interrupted; {finished_runs(out)} finished runs are kept in {out}: "
-            "the same command makes the rest",
-            highlight=False,
+            "the same command makes the rest\n"
         )
         return 130
     _report(made, as_json=as_json)
     return 0
-
-
-@contextmanager
-def shown_progress(console: Console, unit: str) -> Iterator[Callable[[int, int], None]]:
-    """A progress bar that appears with the first report: what is refused before shows its one line alone."""
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Rate(unit), TimeRemainingColumn())
-    bar = Progress(*columns, console=console)
-    task = bar.add_task(unit, total=None)
-
-    def report(done: int, total: int) -> None:
-        bar.start()
-        bar.update(task, completed=done, total=total)
-
-    try:
-        yield report
-    finally:
-        if bar.live.is_started:
-            bar.stop()
 
 
 @contextmanager
@@ -83,17 +48,22 @@ def terminable() -> Iterator[None]:
 
 def _report(made: Generated, *, as_json: bool) -> None:
     if as_json:
-        print_json(
-            {"directory": str(made.directory), "runs": made.runs, "made": made.made, "status": dict(made.status)}
-        )
-    elif made.made == 0:
-        say(f"{made.directory}: complete and verified, {made.runs} runs; nothing to do")
-    else:
-        status = ", ".join(f"{count} {name}" for name, count in made.status.items())
-        say(f"{made.directory}: {made.runs} runs ({status}), {made.made} of them new")
-    if not as_json:
-        for line in _ways_to_look(made.directory):
-            say(line)
+        print_json(dataclasses.asdict(made) | {"directory": str(made.directory)})
+        return
+    for line in (*_what_was_made(made), *_ways_to_look(made.directory)):
+        say(line)
+
+
+def _what_was_made(made: Generated) -> Iterator[str]:
+    """Counts of runs, rub and classes, then each way in which runs failed with its shortest reason."""
+    outcome = made.outcome
+    status = ", ".join(f"{made.status[name]} {name}" for name in sorted(made.status, key=lambda name: name != "ok"))
+    done = "nothing to do, verified" if made.verified else f"{made.made} of them new"
+    yield f"{made.directory}: {made.runs} runs, {done}: {status}; {outcome.rub} rub, {outcome.no_rub} do not"
+    if outcome.motion:
+        yield f"  motion: {', '.join(f'{count} {name}' for name, count in outcome.motion.items())}"
+    for failure in outcome.failures:
+        yield f"  {failure.count} {failure.status}, such as {failure.run_id}: {failure.reason}"
 
 
 def _ways_to_look(directory: Path) -> Iterator[str]:

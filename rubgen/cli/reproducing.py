@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
-from rich.console import Console
-
-from rubgen.cli.generating import shown_progress, terminable
+from rubgen.cli.generating import terminable
 from rubgen.cli.printing import print_json, print_pairs
 from rubgen.errors import UserError
+from rubgen.progress import count, shown, step
 from rubgen.studies.zeng2019 import fit, reproduce
 from rubgen.studies.zeng2019.computing import Progress
 
@@ -30,17 +30,15 @@ def reproduce_command(
     """Compute, judge, write, or search; a Ctrl-C says how to go on."""
     _check(paper, figure, workers, every, machine, fitting=fitting)
     folder = out or Path("out") / (f"{machine}-quick" if quick else machine)
-    console = Console(stderr=True, quiet=as_json)
     try:
-        with terminable(), shown_progress(console, "pieces") as progress:
+        with terminable(), shown(not as_json), step("simulate", "pieces"):
             if fitting:
-                result = _fit(folder, quick, workers, progress)
+                result = _fit(folder, quick, workers, count)
             else:
-                result = _reproduce(folder, figure, machine, workers, progress, quick=quick, every=every)
+                result = _reproduce(folder, figure, machine, workers, count, quick=quick, every=every)
     except KeyboardInterrupt:
-        Console(stderr=True, soft_wrap=True).print(
-            f"rubgen: interrupted; finished pieces are kept in {folder}: the same command makes the rest",
-            highlight=False,
+        sys.stderr.write(
+            f"rubgen: interrupted; finished pieces are kept in {folder}: the same command makes the rest\n"
         )
         return 130
     if as_json:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import errno
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,25 +15,30 @@ from rubgen.dataset.claim import claimed, finished
 from rubgen.dataset.croissant import write_croissant
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import identity_of, read_manifest, write_manifest
-from rubgen.dataset.stage import stage_run, warm_up
+from rubgen.dataset.outcome import Outcome, outcome_of
+from rubgen.dataset.stage import stage_run, warm_up, warming_up
 from rubgen.dataset.verify import verify
 from rubgen.dataset.workers import unordered, usable_cores, worker_pool
 from rubgen.errors import UserError
+from rubgen.progress import Report, count, shown, step
 from rubgen.scenario import Recipe, load_recipe, parse_recipe
 from rubgen.scenario.recipe import check_recipe
-
-Progress = Callable[[int, int], None]
-"""Called with the number of finished runs and of all runs."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Generated:
-    """What `generate` left behind: `made` of the `runs` are new, `status` counts how all of them ended."""
+    """What `generate` left behind: `made` of the `runs` are new, `status` counts how all of them ended.
+
+    `outcome` counts rub and classes of motion and tells why runs failed. `verified` says that nothing was to do and the
+    whole set was verified; a set that was made or put together in this call is not.
+    """
 
     directory: Path
     runs: int
     made: int
     status: dict[str, int]
+    outcome: Outcome
+    verified: bool = False
 
 
 def generate(
@@ -41,14 +47,15 @@ def generate(
     *,
     runs: int | None = None,
     workers: int | None = None,
-    progress: Progress | None = None,
+    progress: Report | bool | None = None,
 ) -> Generated:
     """Make the data set of `recipe` (a recipe, its TOML values, its file; None: the embedded one) in `out`.
 
     Each run is simulated alone, in `workers` processes (one for each usable core; 1 works in this process), and kept as
     soon as it is finished: the same call after an interruption makes what is missing, to the same bytes. The number
     of runs belongs to the recipe (`runs` overrides it): another one is another data set and needs another directory.
-    Failed runs are listed with their reason. A finished set is verified and left alone.
+    Failed runs are listed with their reason. A finished set is verified and left alone. `progress` is called with the
+    numbers of finished and of all runs; True shows it on stderr, None does so on a terminal or in a notebook.
 
     Raises UserError, one line, for bad input, a directory that is not ours or not writable, and a full disk.
     """
@@ -57,9 +64,11 @@ def generate(
     layout, identity = Layout(Path(out)), identity_of(recipe)
     try:
         if finished(layout, identity):
-            return _nothing_to_do(layout)
+            with _shown(progress), step("verify the set"):
+                return _nothing_to_do(layout)
         with claimed(layout, identity):
-            made = _make_missing(recipe, layout, workers, progress)
+            with _shown(progress):
+                made = _make_missing(recipe, layout, workers, progress if callable(progress) else None)
             status = dict(sorted(assemble(recipe, layout).items()))
             write_card(layout, identity, status)
             write_croissant(layout, identity)
@@ -67,7 +76,7 @@ def generate(
         shutil.rmtree(layout.staging)
     except OSError as error:
         raise _disk_problem(layout.root, error) from None
-    return Generated(directory=layout.root, runs=recipe.runs, made=made, status=status)
+    return Generated(directory=layout.root, runs=recipe.runs, made=made, status=status, outcome=outcome_of(layout))
 
 
 def finished_runs(out: Path | str) -> int:
@@ -97,30 +106,50 @@ def _nothing_to_do(layout: Layout) -> Generated:
         raise UserError(f"{problems[0]} ({len(problems)} problems in all); delete {layout.root} and generate it again")
     shutil.rmtree(layout.staging, ignore_errors=True)
     manifest = read_manifest(layout)
-    return Generated(directory=layout.root, runs=manifest.runs, made=0, status=manifest.status)
+    return Generated(
+        directory=layout.root,
+        runs=manifest.runs,
+        made=0,
+        status=manifest.status,
+        outcome=outcome_of(layout),
+        verified=True,
+    )
 
 
-def _make_missing(recipe: Recipe, layout: Layout, workers: int, progress: Progress | None) -> int:
+def _make_missing(recipe: Recipe, layout: Layout, workers: int, progress: Report | None) -> int:
     formats = recipe.output.formats
     missing = [index for index in range(recipe.runs) if not _is_staged(layout, index)]
     jobs = ((recipe.scenario(index), layout.root.resolve(), formats) for index in missing)
-    report = progress or (lambda _done, _all: None)
     done = recipe.runs - len(missing)
-    report(done, recipe.runs)
+    if progress:
+        progress(done, recipe.runs)
     if not missing:
         return 0
     first = recipe.scenario(missing[0]), tuple(recipe.corners())
     if workers == 1 or len(missing) < 2:
-        warm_up(*first)
-        for job in jobs:
-            stage_run(*job)
-            report(done := done + 1, recipe.runs)
+        with warming_up():
+            warm_up(*first)
+        _see_end((stage_run(*job) for job in jobs), done, recipe.runs, progress)
         return len(missing)
     with worker_pool(min(workers, len(missing))) as pool:
-        list(unordered(pool, 1, warm_up, [first]))
-        for _status in unordered(pool, workers, stage_run, jobs):
-            report(done := done + 1, recipe.runs)
+        with warming_up():
+            list(unordered(pool, 1, warm_up, [first]))
+        _see_end(unordered(pool, workers, stage_run, jobs), done, recipe.runs, progress)
     return len(missing)
+
+
+def _see_end(ended: Iterable[str], done: int, runs: int, progress: Report | None) -> None:
+    """Tell of every run that ends; `done` were there before."""
+    with step("simulate", "runs", long=True):
+        count(done, runs)
+        for now, _status in enumerate(ended, start=done + 1):
+            count(now, runs)
+            if progress:
+                progress(now, runs)
+
+
+def _shown(progress: Report | bool | None) -> AbstractContextManager[None]:
+    return shown(progress if isinstance(progress, bool) or progress is None else False)
 
 
 def _is_staged(layout: Layout, index: int) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from rubgen.dataset.layout import Layout
 from rubgen.errors import UserError
 from rubgen.io.durable import write_durably
+from rubgen.progress import COMPILING, step
 from rubgen.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -54,6 +55,14 @@ def warm_up(scenario: Scenario, corners: tuple[Scenario, ...]) -> None:
     operation = replace(operation, closing_turns=WARM_UP_TURNS)
     with suppress(UserError):  # this run's own values, not the recipe's ends: it will be recorded as refused
         simulate(replace(scenario, operation=operation, signal_seconds=5 / operation.rotation_frequency_hz))
+
+
+def warming_up() -> AbstractContextManager[None]:
+    """The step to show while `warm_up` works here or in a worker."""
+    from rubgen.jit import kernels_are_compiled
+
+    compiled = kernels_are_compiled()
+    return step("reduce the machine" if compiled else COMPILING, long=not compiled)
 
 
 def _write_exports(run: Run, layout: Layout, formats: tuple[str, ...]) -> None:

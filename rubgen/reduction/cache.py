@@ -18,6 +18,7 @@ from filelock import FileLock
 from rubgen.arrays import FloatArray
 from rubgen.cache_root import cache_root
 from rubgen.machine import BladeRow, Disk, DiskSupport
+from rubgen.progress import step
 from rubgen.reduction.blisk import ReducedBlisk, reduce_blisk
 from rubgen.reduction.growth import CentrifugalGrowth
 from rubgen.scenario import Reduction
@@ -48,11 +49,16 @@ def cached_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: 
         with FileLock(path.with_suffix(".lock")):
             stored = _load(path)
             if stored is None:
-                stored = reduce_blisk(disk, blades, support, reduction)
+                stored = _made(disk, blades, support, reduction)
                 _save(path, stored)
     except OSError:
-        stored = stored or reduce_blisk(disk, blades, support, reduction)
+        stored = stored or _made(disk, blades, support, reduction)
     return stored
+
+
+def _made(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> ReducedBlisk:
+    with step("reduce the machine, once"):
+        return reduce_blisk(disk, blades, support, reduction)
 
 
 def _key(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> str:

@@ -11,6 +11,7 @@ from threadpoolctl import threadpool_limits
 from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.contact.liner_kernels import REMOVED, WORK
 from rubgen.errors import UserError
+from rubgen.progress import count
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.scenario.profiles import profile_problem
@@ -116,7 +117,9 @@ class Integration:
 
     def run(self) -> None:
         """Integrate until the end of the record, or until the status is no longer OK."""
-        for turn in range(self.settle + self.record):
+        turns = self.settle + self.record
+        for turn in range(turns):
+            count(turn, turns)
             if turn == self.settle:
                 self.stepper.touches.open[:, STEPS] = 0.0  # a touch that began before is counted from here
                 self.twin = Twin(self.stepper) if self.twin_growth.size else None

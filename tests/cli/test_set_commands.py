@@ -2,9 +2,13 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
+from rubgen.cli.generating import _what_was_made
+from rubgen.dataset.generate import Generated
+from rubgen.dataset.outcome import Outcome
 from rubgen.solver.response import Status
 
 
@@ -30,10 +34,20 @@ def generate(run, make_synthetic_run, tmp_path, monkeypatch):
 
 def test_generate_says_what_it_made(generate, tmp_path):
     code, output, errors = generate()
-    made, *look = output.splitlines()
-    assert (code, made) == (0, f"{tmp_path / 'set'}: 3 runs (1 diverged, 2 ok), 3 of them new")
+    made, motion, failed, *look = output.splitlines()
+    assert (code, made) == (0, f"{tmp_path / 'set'}: 3 runs, 3 of them new: 2 ok, 1 diverged; 0 rub, 2 do not")
+    assert motion == "  motion: 2 period-1"
+    assert failed == "  1 diverged, such as run-000002: in turn 7"
     assert any(line.endswith(f"verify {tmp_path / 'set'}") for line in look)
-    assert "3/3" in errors
+    assert errors == "rubgen: simulate\n"  # no terminal: the step at once, then a line a minute
+
+
+def test_only_a_set_that_was_verified_is_called_so():
+    outcome = Outcome(rub=2, no_rub=1, motion={"chaotic": 2, "period-1": 1}, failures=())
+    made = Generated(directory=Path("set"), runs=3, made=0, status={"ok": 3}, outcome=outcome)
+    assert next(_what_was_made(made)) == "set: 3 runs, 0 of them new: 3 ok; 2 rub, 1 do not"
+    verified = replace(made, verified=True)
+    assert next(_what_was_made(verified)) == "set: 3 runs, nothing to do, verified: 3 ok; 2 rub, 1 do not"
 
 
 def test_generate_for_programs(generate, tmp_path):
@@ -44,6 +58,13 @@ def test_generate_for_programs(generate, tmp_path):
         "runs": 3,
         "made": 3,
         "status": {"diverged": 1, "ok": 2},
+        "outcome": {
+            "rub": 0,
+            "no_rub": 2,
+            "motion": {"period-1": 2},
+            "failures": [{"status": "diverged", "count": 1, "run_id": "run-000002", "reason": "in turn 7"}],
+        },
+        "verified": False,
     }
 
 
@@ -99,4 +120,4 @@ def test_ctrl_c_says_how_to_go_on(generate, run, tmp_path, monkeypatch):
         code, _, errors = generate()
     assert code == 130
     assert f"interrupted; 1 finished runs are kept in {tmp_path / 'set'}: the same command makes the rest" in errors
-    assert generate()[1].splitlines()[0].endswith("2 of them new")
+    assert ": 3 runs, 2 of them new: " in generate()[1].splitlines()[0]

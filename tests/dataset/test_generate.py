@@ -55,6 +55,7 @@ def test_the_set_has_every_file_and_nothing_else(small_set):
     }
     assert small_set.made.made == small_set.made.runs == 4
     assert small_set.made.status == {"ok": 4}
+    assert not small_set.made.verified
 
 
 def test_simulated_runs_hold_both_classes_of_rub(small_set):
@@ -82,6 +83,9 @@ def test_a_finished_set_is_left_alone(small_set, fake_simulate):
     before = {path: path.stat().st_mtime_ns for path in small_set.directory.rglob("*")}
     again = rubgen.generate(small_set.recipe, small_set.directory)
     assert (again.made, again.runs, again.status) == (0, 4, {"ok": 4})
+    assert again.verified
+    assert again.outcome == small_set.made.outcome
+    assert sum(again.outcome.motion.values()) == again.outcome.rub + again.outcome.no_rub == 4
     assert fake_simulate == []
     assert {path: path.stat().st_mtime_ns for path in small_set.directory.rglob("*")} == before
 

@@ -1,0 +1,194 @@
+"""A step that takes long says what it does: a bar on a terminal, a line in a notebook, else one line a minute.
+
+Nothing is shown unless a program asks for it with `shown`; worker processes never do, so they stay silent.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from typing import Protocol
+
+Report = Callable[[int, int], None]
+"""Called with how much is done and how much there is in all."""
+
+SOON_S = 1.0
+"""A step that ends sooner is not shown at all."""
+EVERY_S = 60.0
+"""Time between two lines where there is no terminal."""
+COMPILING = "simulate (the kernels are compiled first, once, in about a minute)"
+_NOTEBOOK = "ipykernel"
+
+
+class Show(Protocol):
+    """A way to show steps, one at a time."""
+
+    def __call__(self, text: str, unit: str, *, long: bool) -> AbstractContextManager[Report]:
+        """Show while the block runs; `long` steps are shown at once."""
+        ...
+
+
+_showing: ContextVar[Show | None] = ContextVar("showing", default=None)
+_counting: ContextVar[Report] = ContextVar("counting", default=lambda _done, _total: None)
+
+
+@contextmanager
+def step(text: str, unit: str = "", *, long: bool = False) -> Iterator[None]:
+    """Show `text` while the block runs, with the `unit` that it counts; a step within another is not shown.
+
+    `long` says that it is known to take more than some seconds.
+    """
+    show = _showing.get()
+    around = show(text, unit, long=long) if show else nullcontext(_nothing)
+    showing = _showing.set(None)
+    try:
+        with around as report:
+            counting = _counting.set(report)
+            try:
+                yield
+            finally:
+                _counting.reset(counting)
+    finally:
+        _showing.reset(showing)
+
+
+def count(done: int, total: int) -> None:
+    """Say that so much of the step around is done, of so much in all."""
+    _counting.get()(done, total)
+
+
+@contextmanager
+def shown(wanted: bool | None = None) -> Iterator[None]:
+    """Show the steps of the block on stderr: where `wanted` is None, only on a terminal or in a notebook."""
+    show = _way(wanted)
+    token = _showing.set(show) if show else None
+    try:
+        yield
+    finally:
+        if token:
+            _showing.reset(token)
+
+
+def _way(wanted: bool | None) -> Show | None:
+    if wanted is False:
+        return None
+    if sys.stderr is not None and sys.stderr.isatty():
+        return _bar
+    if _NOTEBOOK in sys.modules:
+        return _in_place
+    return _lines if wanted else None
+
+
+def _nothing(_done: int, _total: int) -> None:
+    """Report to nobody."""
+
+
+@contextmanager
+def _bar(text: str, unit: str, *, long: bool) -> Iterator[Report]:
+    """A bar on the terminal, gone when the step ends."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[state]}")
+    bar = Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True), transient=True)
+    task = bar.add_task(text, total=None, state="")
+    so_far = _SoFar(text, unit)
+
+    def report(done: int, total: int) -> None:
+        so_far.done, so_far.total = done, total
+        bar.update(task, completed=done, total=total, state=so_far.state())
+
+    timer = threading.Timer(0.0 if long else SOON_S, bar.start)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield report
+    finally:
+        timer.cancel()
+        timer.join()
+        bar.stop()
+
+
+@contextmanager
+def _lines(text: str, unit: str, *, long: bool) -> Iterator[Report]:
+    """A line every minute, the first at once where the step is long."""
+    with _told(_SoFar(text, unit), EVERY_S, long=long, line="rubgen: {}\n") as report:
+        yield report
+
+
+@contextmanager
+def _in_place(text: str, unit: str, *, long: bool) -> Iterator[Report]:
+    """One line of a notebook, written anew every second, and empty when the step ends."""
+    with _told(_SoFar(text, unit), SOON_S, long=long, line="\r{:<78}") as report:
+        yield report
+    sys.stderr.write(f"\r{'':<78}\r")
+
+
+@dataclass
+class _SoFar:
+    """How far a step is."""
+
+    text: str
+    unit: str
+    done: int = 0
+    total: int = 0
+    start: float = field(default_factory=lambda: time.monotonic())
+    first: int | None = None
+    """What was done before: no time was spent on it."""
+
+    def state(self) -> str:
+        """How many of how many, and how long the rest takes at the rate so far."""
+        if not self.total:
+            return ""
+        if self.first is None:
+            self.first = self.done
+        counted = f"{self.done:,} of {self.total:,} {self.unit}".rstrip()
+        new = self.done - self.first
+        if not new or self.done >= self.total:
+            return counted
+        left = (self.total - self.done) * (time.monotonic() - self.start) / new
+        return f"{counted}, about {_duration(left)} left"
+
+    def line(self) -> str:
+        """The step and how far it is."""
+        passed = time.monotonic() - self.start
+        parts = [self.state(), f"{_duration(passed)} so far" if passed > SOON_S else ""]
+        return ": ".join(filter(None, (self.text, ", ".join(filter(None, parts)))))
+
+
+@contextmanager
+def _told(so_far: _SoFar, every: float, *, long: bool, line: str) -> Iterator[Report]:
+    """Write the line to stderr from a thread, as the step may not report for long."""
+    ended = threading.Event()
+    stream = sys.stderr
+
+    def report(done: int, total: int) -> None:
+        so_far.done, so_far.total = done, total
+        so_far.state()
+
+    def tell() -> None:
+        while not ended.wait(every):
+            stream.write(line.format(so_far.line()))
+            stream.flush()
+
+    if long:
+        stream.write(line.format(so_far.line()))
+        stream.flush()
+    thread = threading.Thread(target=tell, daemon=True)
+    thread.start()
+    try:
+        yield report
+    finally:
+        ended.set()
+        thread.join()
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 90:
+        return f"{max(1, round(seconds))} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
