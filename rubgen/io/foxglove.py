@@ -51,6 +51,11 @@ def transform(time_ns: int, angle: float, centre: list[float]) -> bytes:
     return bytes(message.SerializeToString(deterministic=True))
 
 
+def read_transform(data: bytes) -> Any:
+    """The message back; protobuf's DecodeError where the bytes are none."""
+    return _message_class().FromString(data)
+
+
 @cache
 def _message_class() -> Any:
     pool = descriptor_pool.DescriptorPool()

@@ -14,8 +14,9 @@ from mcap.writer import Writer
 from rubgen.io.durable import write_durably
 from rubgen.io.foxglove import TRANSFORM, transform, transform_descriptor_set
 from rubgen.io.mcap_check import check_mcap
+from rubgen.io.mcap_content import TIMING
 from rubgen.io.mcap_messages import MESSAGES, PACKAGE, file_descriptor_set, message_class, sample_block, timestamp
-from rubgen.io.mcap_read import TIMING, McapRun, read_mcap
+from rubgen.io.mcap_read import McapRun, read_mcap
 from rubgen.io.multi_array import SCHEMA, SCHEMA_NAME, multi_arrays
 from rubgen.labels.plain import labels_dict
 from rubgen.scenario.plain import scenario_dict

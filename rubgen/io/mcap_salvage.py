@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from pathlib import Path
 
-from google.protobuf.message import DecodeError
-from mcap.records import Attachment, Channel, Chunk, McapRecord, Message, Metadata
-from mcap.stream_reader import StreamReader, breakup_chunk
-
 from rubgen.errors import UserError
-from rubgen.io.mcap_read import UNREADABLE, McapContent, McapRun, read_mcap, run_of
+from rubgen.io.mcap_content import read_content
+from rubgen.io.mcap_read import McapRun, read_mcap, run_of
+from rubgen.io.mcap_records import DamageError
 
 MOST_NAMED = 3
 
@@ -19,59 +16,20 @@ def salvage_mcap(path: Path) -> tuple[McapRun, list[str]]:
     """The run in the file at `path`, and what of it is lost, one sentence each: none for a good file.
 
     Chunks that fail their CRC, and what stands behind the place where the file cannot be followed any more, are left
-    out; samples lost that way are NaN. Raises UserError where scenario or labels are lost, or it is no file of rubgen.
+    out; samples lost that way are NaN. Raises UserError where scenario or labels are lost, where what is left
+    contradicts itself, or it is no file of rubgen.
     """
     try:
         return read_mcap(path), []
     except UserError as error:
-        if not path.is_file():
-            raise
-        whole = error
-    content, lost = _readable(path)
-    try:
-        return run_of(content, gaps=True), _shortened(lost) or [f"{path}: the damage touches no data that is shown"]
-    except (*UNREADABLE, DecodeError):
-        raise whole from None
-
-
-def _readable(path: Path) -> tuple[McapContent, list[str]]:
-    """Every record that can be decoded, chunk by chunk, and the losses."""
-    content = McapContent(channels={}, messages=defaultdict(list), metadata={}, attachments={})
-    topics: dict[int, str] = {}
-    messages: list[Message] = []
+        whole = UserError(str(error))  # without the frames that still hold what was read
     lost: list[str] = []
-    end = 0
-    with path.open("rb") as stream:
-        try:
-            for record in StreamReader(stream, emit_chunks=True).records:
-                for part in _unpacked(record, lost):
-                    if isinstance(part, Channel):
-                        topics[part.id], content.channels[part.topic] = part.topic, part
-                    elif isinstance(part, Message):
-                        messages.append(part)
-                        end = max(end, part.log_time)
-                    elif isinstance(part, Metadata):
-                        content.metadata[part.name] = part.metadata
-                    elif isinstance(part, Attachment):
-                        content.attachments[part.name] = part.data
-        except UNREADABLE:
-            lost.append(f"the file cannot be followed to its end; the last message read stands at {1e-9 * end:.3g} s")
-    for message in messages:
-        if message.channel_id in topics:
-            content.messages[topics[message.channel_id]].append(message)
-    return content, lost
-
-
-def _unpacked(record: McapRecord, lost: list[str]) -> list[McapRecord]:
-    """The records of a chunk, none of a damaged one; any other record is itself."""
-    if not isinstance(record, Chunk):
-        return [record]
     try:
-        return breakup_chunk(record, validate_crc=True)
-    except UNREADABLE:
-        start, end = (1e-9 * time for time in (record.message_start_time, record.message_end_time))
-        lost.append(f"everything between {start:.3g} and {end:.3g} s")
-        return []
+        content = read_content(path, lost)
+        run = run_of(content, gaps=bool(lost))
+    except (DamageError, UserError, OSError):
+        raise whole from None
+    return run, _shortened(lost) or ["nothing that is shown"]
 
 
 def _shortened(lost: list[str]) -> list[str]:

@@ -46,5 +46,20 @@ def multi_arrays(names: Sequence[str], values: FloatArray) -> list[bytes]:
     return [message.tobytes() for message in messages]
 
 
+def read_multi_array(data: bytes) -> tuple[list[str], FloatArray]:
+    """Names and values of a message of `multi_arrays`; ValueError or struct.error where it is none."""
+    if data[: len(_ENCAPSULATION)] != _ENCAPSULATION:
+        raise ValueError("no little-endian CDR")
+    body = data[len(_ENCAPSULATION) :]
+    dimensions, length = struct.unpack_from("<II", body)
+    label = body[8 : 8 + length]
+    place = 8 + length + -length % 4
+    count, stride, offset, values = struct.unpack_from("<IIII", body, place)
+    place += 16 + -(place + 16) % 8
+    if (dimensions, stride, offset, values) != (1, count, 0, count) or len(body) - place != 8 * count:
+        raise ValueError("its sizes contradict each other")
+    return label.rstrip(b"\0").decode().split(", "), np.frombuffer(body, "<f8", count, place)
+
+
 def _padded(data: bytes, size: int) -> bytes:
     return data + bytes(-len(data) % size)
