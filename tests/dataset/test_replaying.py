@@ -57,7 +57,7 @@ def test_without_mcap_the_run_is_simulated_again(copied_set, short_records):
 @pytest.mark.parametrize(
     ("run_id", "where", "message"),
     [
-        ("run-000099", None, "no run 'run-000099'; give one of runs.run_id, like 'run-000000'"),
+        ("run-000099", None, "no run 'run-000099'; give one of run-000000, "),
         (None, "speed_rpm > 1e6", "no run meets 'speed_rpm > 1e6'; see `rubgen info"),
         (None, "speed > 9000", r"columns are those of .*README\.md, such as .*speed_rpm"),
         (None, "speed_rpm >", r"--where 'speed_rpm >': Parser Error.*columns are those of .*README\.md$"),

@@ -139,11 +139,11 @@ CHANGES = {
     "scenario a list": (replaced("scenario.json", b"[]"), "scenario.json is no table"),
     "scenario empty": (replaced("scenario.json", b"{}"), "of another rubgen"),
     "scenario without end": (
-        lambda parts: changed_json(parts, "scenario.json", signal_seconds=1e30), "samples a channel"
+        lambda parts: changed_json(parts, "scenario.json", signal_seconds=1e30), "samples a channel|of another rubgen"
     ),
     "scenario of nothing": (lambda parts: changed_json(parts, "scenario.json", signal_seconds=0), "of another rubgen"),
     "rate of the scenario": (sensing(sample_rate_hz=float("nan")), "of another rubgen"),
-    "absurd rate of the scenario": (sensing(sample_rate_hz=1e30), "samples a channel"),
+    "absurd rate of the scenario": (sensing(sample_rate_hz=1e30), "samples a channel|of another rubgen"),
     "range no number": (facts(range_min="x"), f"metadata of {FORCE} .range_min"),
     "range nan": (facts(range_max="nan"), f"metadata of {FORCE} .range_max"),
     "range empty": (facts(range_min="5", range_max="-5"), "the range is empty"),
