@@ -231,6 +231,17 @@ def verify(directory: Directory, /, *, json: Json = False) -> int:
     return verify_command(directory, as_json=json)
 
 
+@app.command
+def repair(directory: Directory, /, *, json: Json = False) -> int:
+    """Make README.md, croissant.json and .rrd files again where they are lost or damaged; exit 1 if more is wrong.
+
+    Data files are only read, and nothing is deleted.
+    """
+    from rubgen.cli.inspecting import repair_command
+
+    return repair_command(directory, as_json=json)
+
+
 def _show_warning(message: Warning | str, category: type[Warning], *_where: Any, **_how: Any) -> None:
     """What rubgen warns of, as one line; the place in our code says nothing to a user."""
     name = "warning" if issubclass(category, RubgenWarning) else category.__name__

@@ -1,4 +1,4 @@
-"""`rubgen info`, `rubgen label`, `rubgen verify`: what a data set holds, whether it is true, whether it is whole."""
+"""`rubgen info`, `label`, `verify`, `repair`: what a data set holds, whether it is true, whether it is whole."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import rubgen
 from rubgen.cli.printing import print_json, print_pairs, say
+from rubgen.dataset.inventory import Finding
 from rubgen.dataset.relabel import relabel
+from rubgen.dataset.verify import advice, findings
 from rubgen.labels import Motion
 
 if TYPE_CHECKING:
@@ -37,14 +39,30 @@ def info_command(directory: Path, *, as_json: bool) -> int:
 
 def verify_command(directory: Path, *, as_json: bool) -> int:
     """Check, list the problems; 1 where there are any."""
-    problems = rubgen.verify(directory)
+    return _tell(directory, findings(directory), {}, as_json=as_json)
+
+
+def repair_command(directory: Path, *, as_json: bool) -> int:
+    """Make again what is derived, say what was made and what is still wrong; 1 where anything is."""
+    from rubgen.dataset.repair import repair
+
+    done = repair(directory)
+    if not as_json:
+        for path in done.made:
+            say(f"{path}: made again")
+    return _tell(directory, list(done.left), {"made": list(done.made)}, as_json=as_json)
+
+
+def _tell(directory: Path, found: list[Finding], more: dict[str, object], *, as_json: bool) -> int:
+    """The problems and what to do about them; 1 where there are any."""
+    what_to_do = advice(directory, found) if found else ""
     if as_json:
-        print_json({"ok": not problems, "problems": list(problems)})
-    elif problems:
-        say("\n".join(problems))
+        print_json({"ok": not found, **more, "problems": [each.text for each in found], "advice": what_to_do})
+    elif found:
+        say("\n".join([*(each.text for each in found), what_to_do]))
     else:
         say(f"{directory}: nothing wrong")
-    return 1 if problems else 0
+    return 1 if found else 0
 
 
 def label_command(directory: Path, *, as_json: bool) -> int:

@@ -27,7 +27,8 @@ duckdb.sql("select motion, count(*) from 'DIR/data/*.parquet' group by motion")
 `mcap/<run_id>.mcap`: one file a run; `rubgen.io.mcap.read_mcap(path)`, the `mcap` package, or Foxglove. Blocks of
 1024 samples on `/raw/<channel>`, contacts on `/contact`, labels and scenario as metadata.""",
     "rrd": """\
-`rrd/<run_id>.rrd`: the same run to look at, `rerun rrd/run-000000.rrd`. A derived view, without a hash.""",
+`rrd/<run_id>.rrd`: the same run to look at, `rerun rrd/run-000000.rrd`. A derived view, whose
+bytes differ from writing to writing: their sha256 stands in `derived.json`, not in the manifest.""",
 }
 
 
@@ -66,7 +67,8 @@ Splits go by machine: runs of one machine never stand in two splits. This set ha
 record, the growths behind the Lyapunov exponent. `rubgen label DIR` makes all labels but those of orders from it again.
 
 `manifest.json` holds the recipe, the machine, the versions and the sha256 of every file; `rubgen verify DIR` checks
-all of them, and labels against signals.
+all of them, and labels against signals. `rubgen repair DIR` makes again what is not data: this page, `croissant.json`,
+.rrd files.
 
 ## Columns
 

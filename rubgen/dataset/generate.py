@@ -17,7 +17,7 @@ from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import identity_of, read_manifest, write_manifest
 from rubgen.dataset.outcome import Outcome, outcome_of
 from rubgen.dataset.stage import stage_run, warm_up, warming_up
-from rubgen.dataset.verify import verify
+from rubgen.dataset.verify import advice, findings
 from rubgen.dataset.workers import unordered, usable_cores, worker_pool
 from rubgen.errors import UserError
 from rubgen.progress import Report, count, shown, step
@@ -101,9 +101,9 @@ def _workers(workers: int | None) -> int:
 
 
 def _nothing_to_do(layout: Layout) -> Generated:
-    problems = verify(layout.root)
-    if problems:
-        raise UserError(f"{problems[0]} ({len(problems)} problems in all); delete {layout.root} and generate it again")
+    found = findings(layout.root)
+    if found:
+        raise UserError(f"{found[0].text} ({len(found)} problems in all); {advice(layout.root, found)}")
     shutil.rmtree(layout.staging, ignore_errors=True)
     manifest = read_manifest(layout)
     return Generated(

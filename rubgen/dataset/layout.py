@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,6 +28,11 @@ class Layout:
     def digest(self) -> Path:
         """The sha256 of the manifest."""
         return self.root / "manifest.json.sha256"
+
+    @property
+    def derived(self) -> Path:
+        """Sizes and sha256 of the derived files, of this writing."""
+        return self.root / "derived.json"
 
     @property
     def runs(self) -> Path:
@@ -86,6 +92,10 @@ class Layout:
     def shard(self, number: int, count: int) -> Path:
         """A data file."""
         return self.data / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
+
+    def number_of_shards(self, good_runs: int) -> int:
+        """Data files of a set with so many runs that ended well, and files of sections: one at least."""
+        return max(1, math.ceil(good_runs / RUNS_PER_SHARD))
 
     def shards(self) -> list[Path]:
         """The data files that are there, in order."""

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import platform
+from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, NonNegativeInt, TypeAdapter, ValidationError
 
 from rubgen.dataset.files import json_text, sha256_of, write_text
-from rubgen.dataset.layout import FOLDERS, Layout
+from rubgen.dataset.layout import Layout
 from rubgen.errors import UserError
 from rubgen.io.json_read import read_json
+from rubgen.io.parquet_read import read_table
 from rubgen.io.regular_file import check_regular
 from rubgen.machine import Machine
 from rubgen.machine.problems import first_problem
@@ -22,13 +24,15 @@ from rubgen.scenario.recipe import recorded_recipe
 from rubgen.scenario.sensors import SensorSet
 
 PACKAGES = ("rubgen", "numpy", "scipy", "numba", "llvmlite", "pyarrow", "mcap", "protobuf", "zstandard", "rerun-sdk")
+FORMAT: Literal["rubgen data set 1"] = "rubgen data set 1"
+MAKE_AGAIN = "make the set again in a new directory: rubgen generate RECIPE --out NEW"
 _STRICT = ConfigDict(extra="forbid", frozen=True)
 InnerPath = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*(/[A-Za-z0-9][A-Za-z0-9._-]*)*$")]
 """The path of a file within the set: no other place can be named."""
 
 
 class FileEntry(BaseModel):
-    """A file whose bytes follow from the recipe."""
+    """A file of the set, its size and digest."""
 
     model_config = _STRICT
     path: InnerPath
@@ -52,7 +56,7 @@ class Identity(BaseModel):
     def checked(self, source: str) -> Identity:
         """The same with every key in its place; UserError, beginning with `source`, where it is no identity."""
         if "rubgen" not in self.packages:
-            raise UserError(f"{source}: identity.packages names no rubgen; generate the set again")
+            raise UserError(f"{source}: identity.packages names no rubgen; {MAKE_AGAIN}")
         return _identity(self.recorded(f"{source}: identity"), self.packages)
 
     def recorded(self, source: str = "manifest") -> Recipe:
@@ -66,10 +70,13 @@ class Identity(BaseModel):
 
 
 class Manifest(BaseModel):
-    """The content of manifest.json; `derived` lists files that may differ in their bytes and can be made again."""
+    """The content of manifest.json; `derived` lists files that may differ in their bytes and can be made again.
+
+    Their digests are of one writing and stand in derived.json: two makings of a set have the same manifest.
+    """
 
     model_config = _STRICT
-    format: str = "rubgen data set 1"
+    format: Literal["rubgen data set 1"] = FORMAT
     name: str
     license: str
     seed: int
@@ -100,8 +107,9 @@ def _identity(recipe: Recipe, packages: dict[str, str]) -> Identity:
 
 
 def write_manifest(layout: Layout, identity: Identity, status: dict[str, int]) -> Manifest:
-    """Hash every file of the finished set and write the manifest, then its digest."""
+    """Hash every file of the finished set; write the digests of the derived ones, the manifest, then its digest."""
     recipe = identity.recipe
+    hashed, derived = content_of(layout, recipe["output"]["formats"])
     manifest = Manifest(
         name=recipe["name"],
         license=recipe["license"],
@@ -109,11 +117,12 @@ def write_manifest(layout: Layout, identity: Identity, status: dict[str, int]) -
         runs=recipe["runs"],
         status=status,
         identity=identity,
-        files=tuple(_entry(path, layout.root) for path in hashed_files(layout)),
-        derived=tuple(path.relative_to(layout.root).as_posix() for path in derived_files(layout)),
+        files=tuple(entry_of(path, layout.root) for path in hashed),
+        derived=tuple(path.relative_to(layout.root).as_posix() for path in derived),
     )
+    write_derived(layout, manifest.derived)
     write_text(layout.manifest, json_text(manifest.model_dump(mode="json")))
-    write_text(layout.digest, f"{sha256_of(layout.manifest)}  {layout.manifest.name}\n")
+    write_text(layout.digest, _digest_text(layout, layout.manifest.read_bytes()))
     return manifest
 
 
@@ -122,20 +131,19 @@ def read_manifest(layout: Layout) -> Manifest:
     try:
         for path in (layout.manifest, layout.digest):
             check_regular(path)
-        content = layout.manifest.read_bytes()
-        digest = layout.digest.read_text(encoding="ascii").split()
-    except (UserError, OSError, UnicodeDecodeError) as error:
+        content, digest = layout.manifest.read_bytes(), layout.digest.read_bytes()
+    except (UserError, OSError) as error:
         raise UserError(
             f"{layout.root}: no finished data set of rubgen ({error}); give the directory of `rubgen generate`"
         ) from None
-    if digest[:1] != [hashlib.sha256(content).hexdigest()]:
-        raise UserError(f"{layout.manifest}: its digest is not the one in {layout.digest.name}; generate the set again")
+    if digest != _digest_text(layout, content).encode():
+        raise UserError(f"{layout.manifest}: its digest is not the one in {layout.digest.name}; {MAKE_AGAIN}")
     try:
         manifest = Manifest.model_validate(read_json(content))
     except ValidationError as error:
         raise first_problem(layout.manifest, error, read_json(content)) from None
     except ValueError as error:
-        raise UserError(f"{layout.manifest}: not a manifest of rubgen ({error}); generate the set again") from None
+        raise UserError(f"{layout.manifest}: not a manifest of rubgen ({error}); {MAKE_AGAIN}") from None
     return _checked(manifest, layout.manifest)
 
 
@@ -144,22 +152,63 @@ def _checked(manifest: Manifest, path: Path) -> Manifest:
     identity = manifest.identity.checked(str(path))
     for key in ("name", "license", "seed", "runs"):
         if getattr(manifest, key) != identity.recipe[key]:
-            raise UserError(f"{path}: {key} is not the one of its recipe; generate the set again")
+            raise UserError(f"{path}: {key} is not the one of its recipe; {MAKE_AGAIN}")
     if sum(manifest.status.values()) != manifest.runs:
-        raise UserError(f"{path}: status counts other than {manifest.runs} runs; generate the set again")
+        raise UserError(f"{path}: status counts other than {manifest.runs} runs; {MAKE_AGAIN}")
     return manifest.model_copy(update={"identity": identity})
 
 
-def hashed_files(layout: Layout) -> list[Path]:
-    """The files whose sha256 the manifest holds, in its order."""
-    folders = [*layout.shards(), *layout.section_shards(), *sorted((layout.root / FOLDERS["mcap"]).glob("*.mcap"))]
-    return [path for path in (layout.card, layout.croissant, layout.runs, *folders) if path.exists()]
+def content_of(layout: Layout, formats: Sequence[str]) -> tuple[list[Path], list[Path]]:
+    """The files whose sha256 the manifest holds, and those that it names alone, each in its order.
+
+    They follow from `runs.parquet` and the formats. Whatever else lies in the folders is no content.
+    """
+    rows = read_table(layout.runs, ["run_id", "status"]).to_pylist()
+    good = [row["run_id"] for row in rows if row["status"] == "ok"]
+    shards = layout.number_of_shards(len(good))
+    data = [layout.shard(number, shards) for number in range(shards)] if "parquet" in formats else []
+    sections = [layout.section_shard(number, shards) for number in range(shards)]
+    mcap, rrd = ([layout.export(kind, name) for name in good if kind in formats] for kind in ("mcap", "rrd"))
+    return [layout.card, layout.croissant, layout.runs, *data, *sections, *mcap], rrd
 
 
-def derived_files(layout: Layout) -> list[Path]:
-    """The files that the manifest lists without a hash."""
-    return sorted((layout.root / FOLDERS["rrd"]).glob("*.rrd"))
-
-
-def _entry(path: Path, root: Path) -> FileEntry:
+def entry_of(path: Path, root: Path) -> FileEntry:
+    """A file as it is now."""
     return FileEntry(path=path.relative_to(root).as_posix(), bytes=path.stat().st_size, sha256=sha256_of(path))
+
+
+def write_derived(layout: Layout, names: Sequence[str]) -> bool:
+    """Write sizes and digests of the derived files, where there are any; whether that changed the file."""
+    if not names:
+        return False
+    text = _derived_text(tuple(entry_of(layout.root / name, layout.root) for name in names))
+    if layout.derived.is_file() and layout.derived.read_bytes() == text.encode():
+        return False
+    write_text(layout.derived, text)
+    return True
+
+
+def read_derived(layout: Layout) -> dict[str, FileEntry]:
+    """The derived files as they were written, by path; UserError where their digests are missing or damaged."""
+    try:
+        check_regular(layout.derived)
+        content = layout.derived.read_bytes()
+    except OSError as error:
+        raise UserError(f"{layout.derived}: cannot be read ({error.strerror})") from None
+    try:
+        entries = TypeAdapter(tuple[FileEntry, ...]).validate_python(read_json(content)["files"])
+    except (ValueError, LookupError, TypeError):  # a ValidationError is a ValueError
+        entries = ()
+    if content != _derived_text(entries).encode():
+        raise UserError(f"{layout.derived}: damaged, its digest is another")
+    return {entry.path: entry for entry in entries}
+
+
+def _derived_text(entries: tuple[FileEntry, ...]) -> str:
+    """The entries and the sha256 of their JSON: a flipped bit anywhere makes it another text."""
+    files = [entry.model_dump() for entry in entries]
+    return json_text({"files": files, "sha256": hashlib.sha256(json_text(files).encode()).hexdigest()})
+
+
+def _digest_text(layout: Layout, content: bytes) -> str:
+    return f"{hashlib.sha256(content).hexdigest()}  {layout.manifest.name}\n"

@@ -46,10 +46,10 @@ def relabel(directory: Path) -> Relabelled:
     The data set is only read. Raises UserError where `directory` holds no finished data set, or one without sections.
     """
     layout = Layout(directory)
-    read_manifest(layout)
+    sections = read_manifest(layout).listed("sections")
     runs = labels = 0
     found: list[Difference] = []
-    for row, section in zip_longest(_good_rows(layout), _remade(layout)):
+    for row, section in zip_longest(_good_rows(layout), _remade(layout, sections)):
         run_id, again = section or ("", {})
         if row is None or row["run_id"] != run_id:
             name = row["run_id"] if row else run_id
@@ -70,12 +70,11 @@ def _good_rows(layout: Layout) -> Iterator[dict[str, Any]]:
         yield from (row for row in table.select(names).to_pylist() if row["status"] == "ok")
 
 
-def _remade(layout: Layout) -> Iterator[tuple[str, dict[str, object]]]:
+def _remade(layout: Layout, names: list[str]) -> Iterator[tuple[str, dict[str, object]]]:
     """Name and labels of each run with a section."""
-    paths = layout.section_shards()
-    if not paths:
+    if not names:
         raise UserError(f"{layout.root}: no sections/ to make labels from; generate the set again with this rubgen")
-    for path in paths:
+    for path in (layout.root / name for name in names):
         for table in row_groups(path):
             if not table.schema.equals(SCHEMA):
                 raise UserError(f"{path}: its columns are not those of this rubgen; generate the set again")

@@ -48,6 +48,10 @@ class ParquetSource:
     ) -> None:
         self._file.close()
 
+    def rows_of(self, group: int) -> int:
+        """Rows of one group, as the footer says."""
+        return int(self._file.metadata.row_group(group).num_rows)
+
     def read_row_group(self, group: int, columns: Sequence[str] | None = None) -> pa.Table:
         """The rows of one group; UserError where a page is damaged or a column is missing."""
         names = self._names(columns)

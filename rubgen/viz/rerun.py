@@ -102,10 +102,8 @@ def _send_blueprint(stream: RecordingStream, blueprint: Blueprint) -> None:
     own.disconnect()
 
 
-def check_rrd(path: Path) -> list[str]:
-    """Problems of the recording at `path`, none for a good one: `rerun rrd verify`, and what `write_rrd` promises."""
-    from rerun.chunk import RrdReader
-
+def check_rrd(path: Path, run_id: str | None = None) -> list[str]:
+    """Problems of the recording at `path`, none for a good one: `rerun rrd verify`, then `content_problems`."""
     if not path.is_file():
         return ["there is no such file"]
     command = [sys.executable, "-m", "rerun", "rrd", "verify", str(path)]
@@ -113,10 +111,24 @@ def check_rrd(path: Path) -> list[str]:
     if done.returncode != 0:
         lines = (done.stderr.strip() or done.stdout.strip() or "no reason given").splitlines()
         return [f"rerun rrd verify: {lines[-1]}"]
+    return content_problems(path, run_id)
+
+
+def content_problems(path: Path, run_id: str | None = None) -> list[str]:
+    """What `write_rrd` promises and the recording at `path` has not; it must be of the named run, where one is named.
+
+    Decodes in this process: for files of which is known that their bytes are those that were written.
+    """
+    from rerun.chunk import RrdReader
+
     try:
-        entities = {chunk.entity_path for chunk in RrdReader(path).stream().to_chunks()}
+        reader = RrdReader(path)
+        entities = {chunk.entity_path for chunk in reader.stream().to_chunks()}
+        runs = {entry.recording_id.rpartition("-")[0] for entry in reader.recordings()}
     except RuntimeError as error:
         return [str(error)]
+    if run_id is not None and runs != {run_id}:
+        return [f"holds {', '.join(sorted(runs)) or 'no run'}"]
     return [f"no {name}" for name in ENTITIES if not any(entity.startswith(name) for entity in entities)]
 
 

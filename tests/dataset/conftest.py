@@ -56,3 +56,19 @@ def small_set(tmp_path_factory):
 def copied_set(small_set, tmp_path):
     """A copy that a test may damage."""
     return shutil.copytree(small_set.directory, tmp_path / "copy")
+
+
+@pytest.fixture(scope="session")
+def shown_set(tmp_path_factory):
+    """Directory of a set of two runs with every format."""
+    directory = tmp_path_factory.mktemp("sets") / "shown"
+    output = {"formats": ["parquet", "mcap", "rrd"], "signal_seconds": 0.1}
+    with _short_records():
+        rubgen.generate({**RECIPE, "name": "shown", "runs": 2, "output": output}, directory, workers=1)
+    return directory
+
+
+@pytest.fixture
+def copied_shown_set(shown_set, tmp_path):
+    """A copy that a test may damage."""
+    return shutil.copytree(shown_set, tmp_path / "copy")

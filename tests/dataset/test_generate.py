@@ -32,8 +32,9 @@ def fake_simulate(short_records, make_synthetic_run, monkeypatch):
 
 
 def tree(directory):
-    """Path and content of every file but the derived ones."""
+    """Path and content of every file but the derived ones and their digests."""
     files = [path for path in sorted(directory.rglob("*")) if path.is_file() and path.suffix != ".rrd"]
+    files = [path for path in files if path.name != "derived.json"]
     return {path.relative_to(directory).as_posix(): path.read_bytes() for path in files}
 
 
@@ -149,7 +150,8 @@ def test_a_set_without_one_valid_run_is_still_whole(fake_simulate, tmp_path, mak
 
 
 def test_many_runs_go_into_several_files_and_groups(fake_simulate, tmp_path, monkeypatch):
-    monkeypatch.setattr("rubgen.dataset.assemble.RUNS_PER_SHARD", 5)
+    for module in ("assemble", "layout", "table_check"):
+        monkeypatch.setattr(f"rubgen.dataset.{module}.RUNS_PER_SHARD", 5)
     monkeypatch.setattr("rubgen.dataset.assemble.RUNS_PER_ROW_GROUP", 2)
     rubgen.generate(recipe(runs=7, output={"signal_seconds": 0.1, "formats": ["parquet"]}), tmp_path / "set", workers=1)
     shards = Layout(tmp_path / "set").shards()

@@ -1,0 +1,145 @@
+"""The files of a data set beside what its manifest lists: whole, damaged, missing, or not of the set."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+from rubgen.dataset.files import is_system_file, sha256_of
+from rubgen.dataset.layout import FOLDERS, Layout
+from rubgen.dataset.manifest import FileEntry, Manifest, read_derived
+from rubgen.errors import UserError
+
+REPORT = "report.html"
+REPORT_MARK = b'<meta name="generator" content="rubgen report">'
+"""In the head of a page that `rubgen report` wrote."""
+HEAD_BYTES = 2000
+
+
+class Kind(Enum):
+    """What a finding asks for."""
+
+    DATA = "make the set again"
+    DERIVED = "rubgen repair"
+    STRANGE = "move it away"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """Something wrong with a set, in one line that names the file or the run."""
+
+    text: str
+    kind: Kind = Kind.DATA
+    path: str = ""
+    """Of a file that is not what was written; empty where the content of whole files is wrong."""
+    closed: bool = False
+    """Whether the file must not be opened: there is none, it is no regular file, or it is outside of the set."""
+
+
+def file_findings(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
+    """What is wrong with the files that the manifest lists."""
+    remade = {layout.card.name, layout.croissant.name}
+    for entry in manifest.files:
+        kind = Kind.DERIVED if entry.path in remade else Kind.DATA
+        yield from _entry_findings(layout.root, entry.path, entry, "the manifest", kind)
+    digests, found = derived_digests(layout, manifest)
+    yield from found
+    for name in manifest.derived:
+        yield from _entry_findings(layout.root, name, digests.get(name), layout.derived.name, Kind.DERIVED)
+
+
+def derived_digests(layout: Layout, manifest: Manifest) -> tuple[dict[str, FileEntry], list[Finding]]:
+    """The derived files as they were written, by path, and what is wrong with that list."""
+    name = layout.derived.name
+    if not manifest.derived:
+        return {}, []
+    try:
+        _check_within(layout.root, layout.derived)
+        digests = read_derived(layout)
+    except (OSError, UserError) as error:
+        return {}, [Finding(text=f"{name}: {_reason(error)}", kind=Kind.DERIVED, path=name)]
+    if sorted(digests) != sorted(manifest.derived):
+        return {}, [Finding(text=f"{name}: lists other files than the manifest", kind=Kind.DERIVED, path=name)]
+    return digests, []
+
+
+def _entry_findings(root: Path, name: str, entry: FileEntry | None, where: str, kind: Kind) -> Iterator[Finding]:
+    path = root / name
+    try:
+        size = _check_within(root, path)
+        if entry is not None and size != entry.bytes:
+            yield Finding(text=f"{name}: has {size:,} bytes, {where} says {entry.bytes:,}", kind=kind, path=name)
+        elif entry is not None and sha256_of(path) != entry.sha256:
+            yield Finding(text=f"{name}: its sha256 is not the one in {where}", kind=kind, path=name)
+    except (OSError, UserError) as error:
+        yield Finding(text=f"{name}: {_reason(error)}", kind=kind, path=name, closed=True)
+
+
+def _check_within(root: Path, path: Path) -> int:
+    """Size of a regular file that stands in the set itself; UserError or OSError for anything else."""
+    try:
+        real = path.resolve(strict=True)
+    except RuntimeError:
+        raise UserError("is a link to itself") from None
+    if not real.is_relative_to(root.resolve()):
+        raise UserError("is a link out of the set; put the file itself there")
+    found = real.stat()
+    if not stat.S_ISREG(found.st_mode):
+        raise UserError("is no regular file")
+    return found.st_size
+
+
+def _reason(error: OSError | UserError) -> str:
+    if isinstance(error, FileNotFoundError):
+        return "listed in the manifest, but not there"
+    if isinstance(error, OSError):
+        return f"cannot be read ({error.strerror or error})"
+    return str(error).rpartition(": ")[2]
+
+
+def strangers(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
+    """Files and folders below the set that neither the manifest nor rubgen's other commands account for.
+
+    What systems leave in any directory is no content. `.staging` stays where the making was stopped at its very end.
+    A page of `rubgen report` is known by its name and its mark.
+    """
+    known = {entry.path for entry in manifest.files} | set(manifest.derived)
+    known |= {layout.manifest.name, layout.digest.name}
+    known |= {layout.derived.name} if manifest.derived else set()
+    folders = {parent.as_posix() for name in known for parent in Path(name).parents}
+    folders |= {FOLDERS.get(kind, layout.data.name) for kind in manifest.identity.recipe["output"]["formats"]}
+    unreadable: list[OSError] = []
+    for folder, inner, names in os.walk(layout.root, onerror=unreadable.append):
+        here = Path(folder).relative_to(layout.root)
+        for name in _own(inner):
+            if (here / name).as_posix() not in folders and (here / name) != Path(layout.staging.name):
+                yield _stranger((here / name).as_posix())
+        inner[:] = [name for name in _own(inner) if (here / name).as_posix() in folders]
+        for name in _own(names):
+            path = (here / name).as_posix()
+            if path not in known and not (path == REPORT and _is_report(layout.root / path)):
+                yield _stranger(path)
+    for error in unreadable:
+        yield Finding(text=f"{Path(error.filename).name}: cannot be read ({error.strerror})", kind=Kind.STRANGE)
+
+
+def _own(names: Iterable[str]) -> list[str]:
+    return sorted(name for name in names if not is_system_file(name))
+
+
+def _stranger(path: str) -> Finding:
+    return Finding(text=f"{path}: not listed in the manifest", kind=Kind.STRANGE)
+
+
+def _is_report(path: Path) -> bool:
+    try:
+        if not stat.S_ISREG(path.lstat().st_mode):
+            return False
+        with path.open("rb") as stream:
+            return REPORT_MARK in stream.read(HEAD_BYTES)
+    except OSError:
+        return False
