@@ -18,6 +18,7 @@ from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, read_manifest
 from rubgen.dataset.rows import RunRows
 from rubgen.dataset.runs_frame import runs_frame
+from rubgen.dataset.runs_table import check_runs
 from rubgen.dataset.stored_run import StoredRun, stored_run
 from rubgen.dataset.touches import COLUMNS, touches_frame
 from rubgen.errors import UserError
@@ -145,7 +146,9 @@ class DataSet:
         types = schema(signals=False, sensors=self._sensing.set)
         table = read_table(self.layout.runs, types.names)
         with damage_named(self.layout.runs):
-            return table.cast(types)
+            table = table.cast(types)
+        check_runs(table, self.manifest, self.layout.runs)
+        return table
 
     @cached_property
     def _numbers(self) -> dict[str, int]:

@@ -79,7 +79,7 @@ def _remade(layout: Layout, names: list[str]) -> Iterator[tuple[str, dict[str, o
             if not table.schema.equals(SCHEMA):
                 raise UserError(f"{path}: its columns are not those of this rubgen; generate the set again")
             for row, run_id in enumerate(table["run_id"].to_pylist()):
-                yield run_id, remade_labels(kept_of(table, row))
+                yield run_id, remade_labels(kept_of(table, row, path))
 
 
 def equal(one: object, other: object) -> bool:

@@ -17,12 +17,19 @@ from rubgen.dataset.layout import Layout
 from rubgen.dataset.open import DataSet
 from rubgen.errors import UserError
 from rubgen.io.mcap_read import McapRun
+from rubgen.io.parquet_read import read_table
 from rubgen.scenario import Scenario
+from rubgen.scenario.recipe import check_recipe
 from rubgen.sensors.blade_tip_timing import TipTimes
 from rubgen.sensors.channel import Channel, Recording
 from rubgen.sensors.contact_window import ContactIntervals
 from rubgen.viz.replay import Replay, sorted_touches
 
+ONLY_READ: dict[str, bool | int | float | str | list[str]] = {
+    "enable_external_access": False,
+    "lock_configuration": True,
+}
+"""A condition sees the table of runs alone: no file, no setting."""
 MOST_MEANT = 5
 """Columns that a mistaken condition is answered with."""
 
@@ -91,11 +98,12 @@ def find_runs(data: DataSet, where: str) -> list[str]:
     """
     import duckdb
 
-    path = str(data.layout.runs)
-    query = f"SELECT run_id FROM read_parquet(?) WHERE status = 'ok' AND ({where}\n) ORDER BY run_id"  # noqa: S608
+    runs = read_table(data.layout.runs)
+    query = f"SELECT run_id FROM runs WHERE status = 'ok' AND ({where}\n) ORDER BY run_id"  # noqa: S608
     try:
-        with duckdb.connect() as connection:
-            return [str(row[0]) for row in connection.execute(query, [path]).fetchall()]
+        with duckdb.connect(config=ONLY_READ) as connection:
+            connection.register("runs", runs)
+            return [str(row[0]) for row in connection.execute(query).fetchall()]
     except duckdb.Error as error:
         reason = str(error).splitlines()[0]
         told = f"columns are those of {data.layout.card}{_meant(where, data.runs.columns)}"
@@ -125,6 +133,7 @@ def _from_data_set(directory: Path, run_id: str | None, where: str | None) -> Fo
     from rubgen.pipeline import simulate
     from rubgen.viz.replay import replay_of
 
+    check_recipe(data.manifest.identity.recorded(), str(data.layout.manifest))
     run = simulate(scenario_of(data, chosen))
     return Found(replay=replay_of(run), remarks=(*remarks, f"{chosen} has no MCAP file and was simulated again"))
 
@@ -135,7 +144,7 @@ def _choose(data: DataSet, run_id: str | None, where: str | None) -> tuple[str, 
     if run_id is not None:
         data.check_has_signals(run_id)
         return run_id, ()
-    found = find_runs(data, where or "TRUE")
+    found = find_runs(data, where) if where else [str(run_id) for run_id in data.ok.index]
     if not found:
         what = f"meets {where!r}" if where else "is good"
         raise UserError(f"{data.layout.root}: no run {what}; see `rubgen info {data.layout.root}`")

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from rubgen.errors import UserError
 from rubgen.io.parquet import write_table
-from rubgen.labels.kept import SCALARS, Kept, keep
+from rubgen.labels.kept import SCALARS, TOUCHES, Kept, keep
 from rubgen.solver.response import Response
 
 KINDS: dict[str, tuple[pa.DataType, str]] = {
@@ -55,13 +56,34 @@ def write_section(run_id: str, response: Response, path: Path) -> None:
     write_table([section_table(run_id, response)], SCHEMA, path)
 
 
-def kept_of(table: pa.Table, row: int) -> Kept:
-    """What was kept of the run in that row."""
+def kept_of(table: pa.Table, row: int, path: Path) -> Kept:
+    """What was kept of the run in that row of the file at `path`; UserError where its lists do not fit each other."""
     kept: dict[str, np.ndarray[Any, Any]] = {}
-    for name in KINDS:
-        kept[name] = np.asarray(table[name][row].values)
-    scalars = dict(zip(SCALARS, kept["scalars"].tolist(), strict=True))
-    width = 3 * int(scalars["n_blades"]) + 4 + 2 * int(scalars["n_casing"])
-    for name, columns in (("section", width), ("fractions", width), ("orbit", 5)):
-        kept[name] = kept[name].reshape(-1, columns)
+    try:
+        for name in KINDS:
+            kept[name] = np.asarray(table[name][row].values)
+        scalars = dict(zip(SCALARS, kept["scalars"].tolist(), strict=True))
+        width = 3 * int(scalars["n_blades"]) + 4 + 2 * int(scalars["n_casing"])
+        for name, columns in (("section", width), ("fractions", width), ("orbit", 5)):
+            kept[name] = kept[name].reshape(-1, columns)
+        _check_lengths(kept, int(scalars["record_turns"]), int(scalars["n_blades"]))
+    except (ValueError, OverflowError) as error:
+        run_id = table["run_id"][row].as_py()
+        raise UserError(f"{path}: {run_id}: {' '.join(str(error).split())[:200]}; generate the set again") from None
     return kept
+
+
+def _check_lengths(kept: Kept, turns: int, blades: int) -> None:
+    """Raise ValueError where lists of turns or of touches differ in length, or a number cannot be one."""
+    for name, values in kept.items():
+        if values.dtype == object or not np.isfinite(values).all():
+            raise ValueError(f"{name} is missing or not finite")
+    for name in ("section", "turn_impulse", "contact_steps"):
+        if len(kept[name]) != turns:
+            raise ValueError(f"{name} has {len(kept[name])} of {turns} turns")
+    if len({kept[name].size for name in TOUCHES}) > 1:
+        raise ValueError("lists of touches differ in length")
+    if kept["blade"].size and not 0 <= kept["blade"].min() <= kept["blade"].max() < blades:
+        raise ValueError(f"a touch is of a blade that is none of {blades}")
+    if kept["rotation"].size not in (0, 5) or (kept["rotation"].size and kept["turn_steps"].size != turns + 1):
+        raise ValueError("the course of the speed does not fit the turns")
