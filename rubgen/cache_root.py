@@ -1,15 +1,133 @@
-"""Where rubgen keeps what it would otherwise make anew: compiled kernels and reduced blisks."""
+"""Where rubgen keeps what it would otherwise make anew: compiled kernels and reduced blisks.
+
+A cache is a convenience. Where its folder cannot be used, a private temporary folder takes its place; where a file is
+damaged, it is made anew; where nothing can be kept, everything is made in each process. One line says so.
+"""
 
 from __future__ import annotations
 
+import atexit
+import hashlib
+import multiprocessing
 import os
+import shutil
+import stat
+import tempfile
+import uuid
+from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
 import platformdirs
 
+from rubgen.errors import warn
+
 CACHE_VARIABLE = "RUBGEN_CACHE_DIR"
+FOLDERS = ("kernels", "reduction")
+_DIGEST_BYTES = hashlib.sha256().digest_size
+
+untold: list[str] = []
+"""What this process has to say of its caches, where it is a worker: its parent says it."""
 
 
-def cache_root() -> Path:
+def wanted_root() -> Path:
     """The folder of all caches: $RUBGEN_CACHE_DIR, or the user's cache folder of rubgen."""
-    return Path(os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_dir("rubgen"))
+    root = Path(os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_dir("rubgen"))
+    with suppress(RuntimeError):  # there is no home folder
+        root = root.expanduser()
+    return root
+
+
+def cache_folder(name: str) -> Path | None:
+    """The folder `name` of the caches, one of FOLDERS; None where nothing can be kept.
+
+    Processes that are started later use the same folder: a temporary one is handed on in $RUBGEN_CACHE_DIR.
+    """
+    root = _settled_root(wanted_root())
+    return None if root is None else root / name
+
+
+def problem_of(root: Path) -> str:
+    """Why caches cannot be kept below `root`, which is made where it is missing; empty where they can.
+
+    A folder of another user, or one that all may write to, is refused: compiled code from there is not ours.
+    """
+    if str(root).startswith("~"):
+        return "there is no home folder"
+    try:
+        for folder in (root, *(root / name for name in FOLDERS)):
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+            if _is_foreign(folder.stat()):
+                return f"{folder} belongs to another user, or every user may write to it"
+            with tempfile.TemporaryFile(dir=folder) as file:
+                file.write(bytes(4096))
+    except OSError as error:
+        return f"{error.filename or root}: {error.strerror or error}"
+    return ""
+
+
+def keep(path: Path, content: bytes) -> None:
+    """Write `content` behind its SHA-256 into a cache, whole or not at all; that it cannot be written is a remark."""
+    part = path.with_name(f"{path.name}.{uuid.uuid4().hex[:12]}.tmp")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part.write_bytes(hashlib.sha256(content).digest() + content)
+        part.replace(path)
+    except OSError as error:
+        _say_once(f"nothing more can be kept in the cache {wanted_root()} ({error.strerror or error})")
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+
+
+def kept(path: Path) -> bytes | None:
+    """What `keep` wrote there; None where there is no such file, it is damaged, or another user's."""
+    try:
+        with path.open("rb") as file:
+            foreign, content = _is_foreign(os.fstat(file.fileno())), file.read()
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        _say_once(f"the cache {wanted_root()} cannot be read ({error.strerror or error})")
+        return None
+    if foreign or hashlib.sha256(content[_DIGEST_BYTES:]).digest() != content[:_DIGEST_BYTES]:
+        _say_once(f"files in the cache {wanted_root()} are damaged or another user's, and are made anew")
+        return None
+    return content[_DIGEST_BYTES:]
+
+
+@cache
+def _settled_root(wanted: Path) -> Path | None:
+    problem = problem_of(wanted)
+    if not problem:
+        return wanted
+    try:
+        temporary = Path(tempfile.mkdtemp(prefix="rubgen-cache-"))
+        atexit.register(_remove, temporary, os.getpid())
+    except OSError:
+        temporary = None
+    usable = temporary is not None and not problem_of(temporary)
+    use = "a temporary folder is used" if usable else "nothing is kept, and every process compiles for itself"
+    if multiprocessing.parent_process() is None:
+        _say_once(f"the cache {wanted} cannot be used ({problem}); {use}")
+    if temporary is None or not usable:
+        return None
+    os.environ[CACHE_VARIABLE] = str(temporary)
+    return temporary
+
+
+def _remove(folder: Path, owner: int) -> None:
+    if os.getpid() == owner:  # a process that was forked from it runs this too
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _is_foreign(status: os.stat_result) -> bool:
+    return hasattr(os, "geteuid") and (status.st_uid != os.geteuid() or bool(status.st_mode & stat.S_IWOTH))
+
+
+@cache
+def _say_once(message: str) -> None:
+    line = f"{message}; {CACHE_VARIABLE} names another folder"
+    if multiprocessing.parent_process() is None:
+        warn(line)
+    else:
+        untold.append(line)

@@ -1,44 +1,62 @@
-"""The one decorator for compiled kernels.
+"""The one decorator for compiled kernels, and where they are kept.
 
-Numba's on-disk cache looks at the file of the compiled function alone and misses a change in a kernel that it calls
-from another file. The cache therefore lives in a folder that is named after a hash of every kernel source of rubgen.
+Numba's own cache looks at the file of the compiled function alone and misses a change in a kernel that it calls from
+another file; where it cannot write, it silently goes beside the sources; and it unpickles whatever lies there. Here a
+folder is named after all that compiled code comes from, and a file is believed only where its SHA-256 agrees.
 """
 
 from __future__ import annotations
 
 import hashlib
+import os
+import pickle
+import sys
 from collections.abc import Callable
-from functools import cache
+from functools import cache, cached_property
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
+import numba.core.caching
+import numpy as np
 
-from rubgen.cache_root import cache_root
+from rubgen.cache_root import cache_folder, keep, kept
 
 P = ParamSpec("P")
 R = TypeVar("R")
+caching: Any = numba.core.caching
+"""Private to numba, hence the bounds of its version in pyproject.toml."""
 
 
 @cache
-def kernel_cache_dir() -> Path:
-    """Folder of the compiled kernels: `cache_root()`, `kernels`, then a hash of numba's version and kernel sources."""
+def kernel_key() -> str:
+    """A hash of all that compiled kernels come from, but the processor, which numba's own index tells apart.
+
+    Kernel sources, Python, numba, llvmlite, numpy and what numba reads from the environment. The number of threads,
+    which workers have set, does not enter.
+    """
     root = Path(__file__).parent
-    digest = hashlib.sha256(numba.__version__.encode())
+    made_by = [sys.version, numba.__version__, version("llvmlite"), np.__version__]
+    settings = sorted(
+        item for item in os.environ.items() if item[0].startswith("NUMBA_") and item[0] != "NUMBA_NUM_THREADS"
+    )
+    digest = hashlib.sha256(repr((made_by, settings)).encode())
     for source in [*sorted(root.rglob("*_kernels.py")), Path(__file__)]:
         digest.update(source.relative_to(root).as_posix().encode())
         digest.update(source.read_bytes())
-    return cache_root() / "kernels" / digest.hexdigest()[:16]
+    return digest.hexdigest()[:16]
 
 
 def kernels_are_compiled() -> bool:
     """Whether kernels of this code were compiled before: a run need not wait for the compiler."""
     config: Any = numba.config
-    return bool(config.DISABLE_JIT) or any(kernel_cache_dir().rglob("*.nbi"))
+    folder = cache_folder("kernels")
+    return bool(config.DISABLE_JIT) or (folder is not None and any((folder / kernel_key()).rglob("*.nbc")))
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile `function` with numba, without the GIL, without fastmath, cached in `kernel_cache_dir()`.
+    """Compile `function` with numba, without the GIL, without fastmath, and keep it in the cache `kernels`.
 
     Kernels live in files named `*_kernels.py`, take arrays and scalars only, and never raise (a division by zero gives
     inf or NaN). `NUMBA_DISABLE_JIT=1` runs them as plain Python.
@@ -64,11 +82,97 @@ def inlined_kernel(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def _compiled(function: Callable[P, R], **options: bool) -> Callable[P, R]:
-    config: Any = numba.config
     njit: Any = numba.njit
-    previous = config.CACHE_DIR
-    config.CACHE_DIR = str(kernel_cache_dir())
-    try:
-        return cast("Callable[P, R]", njit(cache=True, nogil=True, error_model="numpy", **options)(function))
-    finally:
-        config.CACHE_DIR = previous
+    dispatcher = njit(nogil=True, error_model="numpy", **options)(function)
+    if dispatcher is not function:  # NUMBA_DISABLE_JIT gives the function back
+        dispatcher._cache = _KernelCache(function)
+    return cast("Callable[P, R]", dispatcher)
+
+
+class _KernelCache(caching.NullCache):  # type: ignore[misc]
+    """Numba's cache in our folder, which is looked for when a kernel is first called; no cache where there is none."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._function = function
+
+    @cached_property
+    def _cache(self) -> Any:
+        folder = cache_folder("kernels")
+        return caching.NullCache() if folder is None else _FolderCache(self._function, folder / kernel_key())
+
+    @property
+    def cache_path(self) -> Any:
+        """Numba's name for the folder."""
+        return self._cache.cache_path
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """The kernel compiled for these types, or None."""
+        return self._cache.load_overload(sig, target_context)
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep it."""
+        self._cache.save_overload(sig, data)
+
+
+class _FolderCache(caching.FunctionCache):  # type: ignore[misc]
+    """Numba's logic of keys and signatures, over files that are believed only whole."""
+
+    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
+        self._name, self._py_func = repr(function), function
+        self._impl = _Implementation(function, folder)
+        locator = self._impl.locator
+        self._cache_path = locator.get_cache_path()
+        self._cache_file = _SealedFiles(self._cache_path, self._impl.filename_base, locator.get_source_stamp())
+        self.enable()
+
+
+class _Implementation(caching.CompileResultCacheImpl):  # type: ignore[misc]
+    """How numba turns compiled code into bytes; the place is ours, whatever numba's settings say."""
+
+    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
+        source = Path(function.__code__.co_filename)
+        self._lineno = function.__code__.co_firstlineno
+        self._locator = _Locator(function, source, folder)
+        self._filename_base = self.get_filename_base(f"{source.stem}.{function.__qualname__}", sys.abiflags)
+
+
+class _Locator(caching._SourceFileBackedLocatorMixin, caching._CacheLocator):  # type: ignore[misc]
+    def __init__(self, function: Callable[..., Any], source: Path, folder: Path) -> None:
+        self._py_file, self._lineno = str(source), function.__code__.co_firstlineno
+        self._cache_path = str(folder / self.get_suitable_cache_subpath(str(source)))
+
+    def get_cache_path(self) -> str:
+        return self._cache_path
+
+    def ensure_cache_path(self) -> None:
+        """Nothing: the folder is made when a file is written."""
+
+
+class _SealedFiles(caching.IndexDataCacheFile):  # type: ignore[misc]
+    """Index and data, each behind its SHA-256; the data says for which kernel and types it was compiled."""
+
+    def save(self, key: Any, data: Any) -> None:
+        super().save(key, (self._owner(key), data))
+
+    def load(self, key: Any) -> Any:
+        """The data of `key`; None where another process has just put other types into that file."""
+        owner, data = super().load(key) or (None, None)
+        return data if owner == self._owner(key) else None
+
+    def _owner(self, key: Any) -> Any:
+        return self._index_name, self._source_stamp, key
+
+    def _load_index(self) -> Any:
+        content = kept(Path(self._index_path))
+        stamp, overloads = (None, {}) if content is None else pickle.loads(content)  # noqa: S301  # our own, whole
+        return overloads if stamp == self._source_stamp else {}
+
+    def _save_index(self, overloads: Any) -> None:
+        keep(Path(self._index_path), self._dump((self._source_stamp, overloads)))
+
+    def _load_data(self, name: str) -> Any:
+        content = kept(Path(self._data_path(name)))
+        return None if content is None else pickle.loads(content)  # noqa: S301  # our own, whole
+
+    def _save_data(self, name: str, data: Any) -> None:
+        keep(Path(self._data_path(name)), self._dump(data))

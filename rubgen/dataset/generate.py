@@ -7,6 +7,7 @@ import shutil
 from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 from rubgen.dataset.assemble import assemble
@@ -19,7 +20,7 @@ from rubgen.dataset.outcome import Outcome, outcome_of
 from rubgen.dataset.stage import stage_run, warm_up, warming_up
 from rubgen.dataset.verify import advice, findings
 from rubgen.dataset.workers import unordered, usable_cores, worker_pool
-from rubgen.errors import UserError
+from rubgen.errors import UserError, warn
 from rubgen.progress import Report, count, shown, step
 from rubgen.scenario import Recipe, load_recipe, parse_recipe
 from rubgen.scenario.recipe import check_recipe
@@ -133,7 +134,9 @@ def _make_missing(recipe: Recipe, layout: Layout, workers: int, progress: Report
         return len(missing)
     with worker_pool(min(workers, len(missing))) as pool:
         with warming_up():
-            list(unordered(pool, 1, warm_up, [first]))
+            remarks = list(chain.from_iterable(unordered(pool, 1, warm_up, [first])))
+        for remark in remarks:
+            warn(remark)
         _see_end(unordered(pool, workers, stage_run, jobs), done, recipe.runs, progress)
     return len(missing)
 

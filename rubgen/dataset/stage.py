@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rubgen.cache_root import untold
 from rubgen.dataset.layout import Layout
 from rubgen.errors import UserError
 from rubgen.io.durable import write_durably
@@ -41,8 +42,8 @@ def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
     return run.response.status.code
 
 
-def warm_up(scenario: Scenario, corners: tuple[Scenario, ...]) -> None:
-    """Reduce the machine at the extremes of `[vary]`, then run a few turns.
+def warm_up(scenario: Scenario, corners: tuple[Scenario, ...]) -> list[str]:
+    """Reduce the machine at the extremes of `[vary]`, then run a few turns; gives what a worker found wrong in caches.
 
     What cannot be done fails before any run; kernels are compiled and the reduced model cached before workers start.
     """
@@ -55,6 +56,7 @@ def warm_up(scenario: Scenario, corners: tuple[Scenario, ...]) -> None:
     operation = replace(operation, closing_turns=WARM_UP_TURNS)
     with suppress(UserError):  # this run's own values, not the recipe's ends: it will be recorded as refused
         simulate(replace(scenario, operation=operation, signal_seconds=5 / operation.rotation_frequency_hz))
+    return untold
 
 
 def warming_up() -> AbstractContextManager[None]:

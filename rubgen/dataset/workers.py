@@ -16,6 +16,7 @@ from multiprocessing import connection
 from pathlib import Path
 from typing import TypeVar
 
+from rubgen.cache_root import cache_folder
 from rubgen.errors import RubgenError
 
 R = TypeVar("R")
@@ -66,6 +67,7 @@ def _text(path: Path) -> str:
 def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     """A pool of fresh processes with one thread of BLAS each; left early, its processes are ended at once."""
     before = set(multiprocessing.active_children())
+    cache_folder("kernels")  # found, and where it is a temporary one handed on, before there are workers
     with _environment(ONE_THREAD):
         with _interrupts_held():
             pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), initializer=_start_worker)

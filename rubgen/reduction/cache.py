@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import json
-import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict
 from functools import cache
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 import scipy
 from filelock import FileLock
 
 from rubgen.arrays import FloatArray
-from rubgen.cache_root import cache_root
+from rubgen.cache_root import cache_folder, keep, kept
 from rubgen.machine import BladeRow, Disk, DiskSupport
 from rubgen.progress import step
 from rubgen.reduction.blisk import ReducedBlisk, reduce_blisk
@@ -29,31 +29,40 @@ _NUMBERS = ("blade_frequency", "full_size")
 _GROWTH = ("K", "A", "f", "tips", "moment")
 
 
-def cache_directory() -> Path:
-    """Where reduced blisks are kept."""
-    return cache_root() / "reduction"
-
-
 def cached_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> ReducedBlisk:
     """`reduce_blisk` from the cache, or made and kept there: the same bits either way.
 
     Lateral stiffness and the number of casing modes do not enter, so runs that vary them share one file. A damaged
-    file is made anew; a directory that cannot be written costs time, not the run. Several processes make it once.
+    file is made anew; where nothing can be kept, that costs time, not the run. Several processes make it once.
     """
-    path = cache_directory() / f"{_key(disk, blades, support, reduction)}.npz"
+    folder = cache_folder("reduction")
+    if folder is None:
+        return _made(disk, blades, support, reduction)
+    path = folder / f"{_key(disk, blades, support, reduction)}.blisk"
     stored = _load(path)
     if stored is not None:
         return stored
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with FileLock(path.with_suffix(".lock")):
-            stored = _load(path)
-            if stored is None:
-                stored = _made(disk, blades, support, reduction)
-                _save(path, stored)
-    except OSError:
-        stored = stored or _made(disk, blades, support, reduction)
+    with _lock(path):
+        stored = _load(path)
+        if stored is None:
+            stored = _made(disk, blades, support, reduction)
+            keep(path, _packed(stored))
     return stored
+
+
+@contextmanager
+def _lock(path: Path) -> Iterator[None]:
+    """One process makes the file at `path`; where files cannot be locked, several may, to the same bytes."""
+    lock = FileLock(path.with_suffix(".lock"))
+    try:
+        lock.acquire()
+    except (OSError, NotImplementedError):
+        yield
+        return
+    try:
+        yield
+    finally:
+        lock.release()
 
 
 def _made(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> ReducedBlisk:
@@ -82,24 +91,20 @@ def _digest_of_code(package: Path) -> bytes:
     return digest.digest()
 
 
-def _save(path: Path, blisk: ReducedBlisk) -> None:
+def _packed(blisk: ReducedBlisk) -> bytes:
     fields = {name: getattr(blisk, name) for name in _ARRAYS + _NUMBERS}
     fields |= {f"growth_{name}": getattr(blisk.growth, name) for name in _GROWTH}
-    temporary = path.with_suffix(f".{os.getpid()}.tmp")
-    try:
-        with temporary.open("wb") as file:
-            np.savez(file, allow_pickle=False, **fields)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    packed = io.BytesIO()
+    np.savez(packed, allow_pickle=False, **fields)
+    return packed.getvalue()
 
 
 def _load(path: Path) -> ReducedBlisk | None:
-    try:
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            return _restore({name: file[name] for name in file.files})
-    except (OSError, ValueError, KeyError, EOFError, BadZipFile):
+    content = kept(path)
+    if content is None:
         return None
+    with np.load(io.BytesIO(content), allow_pickle=False) as file:
+        return _restore({name: file[name] for name in file.files})
 
 
 def _restore(file: Mapping[str, FloatArray]) -> ReducedBlisk:

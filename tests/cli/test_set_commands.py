@@ -15,7 +15,7 @@ from rubgen.solver.response import Status
 @pytest.fixture
 def generate(run, make_synthetic_run, tmp_path, monkeypatch):
     """Runs `rubgen generate` for three runs without contact, the last of which diverges."""
-    monkeypatch.setattr("rubgen.dataset.generate.warm_up", lambda *_: None)
+    monkeypatch.setattr("rubgen.dataset.generate.warm_up", lambda *_: [])
     template = make_synthetic_run(contact=False, seconds=0.1)
 
     def simulate(scenario):

@@ -27,7 +27,7 @@ def fake_simulate(short_records, make_synthetic_run, monkeypatch):
         return replace(template, scenario=scenario)
 
     monkeypatch.setattr("rubgen.pipeline.simulate", simulate)
-    monkeypatch.setattr(generating, "warm_up", lambda *_: None)
+    monkeypatch.setattr(generating, "warm_up", lambda *_: [])
     return made
 
 

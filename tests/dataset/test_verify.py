@@ -188,7 +188,7 @@ def test_recordings_are_listed_by_name_and_their_digests_are_in_a_file_of_their_
 ):
     template = make_synthetic_run(seconds=0.1)
     monkeypatch.setattr("rubgen.pipeline.simulate", lambda scenario: replace(template, scenario=scenario))
-    monkeypatch.setattr("rubgen.dataset.generate.warm_up", lambda *_: None)
+    monkeypatch.setattr("rubgen.dataset.generate.warm_up", lambda *_: [])
     output = {"formats": ["rrd"], "signal_seconds": 0.1}
     rubgen.generate({"name": "a", "runs": 1, "machine": "zeng2019", "output": output}, tmp_path / "set", workers=1)
     manifest = json.loads((tmp_path / "set/manifest.json").read_text())

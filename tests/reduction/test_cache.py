@@ -1,9 +1,12 @@
 """The cache of reduced blisks: the same bits, nothing stale, nothing fatal."""
 
+import errno
 from dataclasses import replace
 
 import pytest
 
+from rubgen import cache_root
+from rubgen.errors import RubgenWarning
 from rubgen.reduction import cache
 from rubgen.reduction.blisk import reduce_blisk
 from rubgen.scenario import Reduction
@@ -48,7 +51,7 @@ def test_what_enters_makes_another_entry(small, calls):
     take(replace(small, disk_support=replace(small.disk_support, tilt_stiffness_nm_per_rad=4e5)))
     take(small, replace(MODES, blade_modes=2))
     assert len(calls) == 5
-    assert len(list(cache.cache_directory().glob("*.npz"))) == 5
+    assert len(list(cache.cache_folder("reduction").glob("*.blisk"))) == 5
 
 
 def test_what_does_not_enter_shares_the_entry(small, calls):
@@ -71,19 +74,40 @@ def test_other_code_makes_another_entry(small, calls, tmp_path, monkeypatch):
 @pytest.mark.parametrize("damage", ["empty", "truncated", "garbage", "flipped"])
 def test_a_damaged_file_is_made_anew(small, calls, damage):
     good = bits(take(small))
-    (path,) = cache.cache_directory().glob("*.npz")
+    (path,) = cache.cache_folder("reduction").glob("*.blisk")
     content = path.read_bytes()
     middle = len(content) // 2
     flipped = content[:middle] + bytes([content[middle] ^ 255]) + content[middle + 1 :]
     path.write_bytes({"empty": b"", "truncated": content[:middle], "garbage": b"no zip", "flipped": flipped}[damage])
-    assert bits(take(small)) == good
+    cache_root._say_once.cache_clear()
+    with pytest.warns(RubgenWarning, match="RUBGEN_CACHE_DIR") as said:
+        assert bits(take(small)) == good
+    assert len(said) == 1
     assert len(calls) == 2
     assert path.read_bytes() == content
-    assert not list(cache.cache_directory().glob("*.tmp"))
+    assert not list(cache.cache_folder("reduction").glob("*.tmp"))
 
 
-def test_a_directory_that_cannot_be_made_costs_no_run(small, calls, tmp_path, monkeypatch):
-    (tmp_path / "file").write_text("")
-    monkeypatch.setenv("RUBGEN_CACHE_DIR", str(tmp_path / "file"))
+def test_where_nothing_can_be_kept_it_is_made_each_time(small, calls, monkeypatch):
+    monkeypatch.setattr(cache, "cache_folder", lambda _name: None)
     assert bits(take(small)) == bits(take(small))
     assert len(calls) == 2
+
+
+@pytest.mark.parametrize("error", [OSError(errno.ENOLCK, "No locks available"), NotImplementedError("no flock")])
+def test_where_files_cannot_be_locked_it_is_kept_all_the_same(small, calls, monkeypatch, error):
+    def refuse(_lock):
+        raise error
+
+    monkeypatch.setattr(cache.FileLock, "acquire", refuse)
+    assert bits(take(small)) == bits(take(small))
+    assert len(calls) == 1
+
+
+def test_a_file_without_seal_is_not_believed(small, calls):
+    good = bits(take(small))
+    (path,) = cache.cache_folder("reduction").glob("*.blisk")
+    path.write_bytes(path.read_bytes()[32:])
+    cache_root._say_once.cache_clear()
+    with pytest.warns(RubgenWarning, match="RUBGEN_CACHE_DIR"):
+        assert bits(take(small)) == good

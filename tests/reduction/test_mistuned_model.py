@@ -119,7 +119,7 @@ def test_the_cache_tells_patterns_and_seeds_apart(small, tmp_path, monkeypatch):
     modes = Reduction(blade_modes=1, disk_modes=1, blisk_modes=1)
     machines = [small, mistuned(small, PATTERN), mistuned(small, PATTERN[::-1]), drawn(small, 1), drawn(small, 2)]
     taken = [cache.cached_blisk(m.disk, m.blades, m.disk_support, modes) for m in machines]
-    assert len(list(cache.cache_directory().glob("*.npz"))) == len(machines)
+    assert len(list(cache.cache_folder("reduction").glob("*.blisk"))) == len(machines)
     assert len({blisk.K.tobytes() for blisk in taken}) == len(machines)
     again = cache.cached_blisk(small.disk, machines[1].blades, small.disk_support, modes)
     assert again.growth.moment.any()
