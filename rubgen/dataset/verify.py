@@ -67,8 +67,9 @@ def _mcap_problems(path: Path) -> Iterator[str]:
     except UserError as error:
         yield str(error)
         return
-    if path.stem != f"run-{index:06d}":
-        yield f"holds run-{index:06d}"
+    held = f"run-{index:06d}" if isinstance(index, int) else "no run that rubgen numbers"
+    if path.stem != held:
+        yield f"holds {held}"
 
 
 def _recording_findings(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[Finding]:

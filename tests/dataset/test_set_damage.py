@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from test_verify import reseal
@@ -17,6 +18,7 @@ import rubgen
 from rubgen.dataset.inventory import Kind
 from rubgen.dataset.verify import findings
 from rubgen.errors import UserError
+from rubgen.io.parquet import write_table
 
 DATA = "data/train-00000-of-00001.parquet"
 RUNS = ["run-000000", "run-000001"]
@@ -255,3 +257,14 @@ def test_verify_imports_no_kernel(shown_set):
     code = f"import rubgen, sys; print(rubgen.verify({str(shown_set)!r}), 'rerun' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[] True\n"
+
+
+@pytest.mark.parametrize("column", ["window_impulse_per_turn_n_s", "rub", "casing_acc_0_orders", "speed_rpm"])
+def test_values_that_cannot_be_compared_are_findings(column, copied_shown_set):
+    for name in ("runs.parquet", DATA):
+        table = pq.read_table(copied_shown_set / name)
+        rows = [row | {column: None} for row in table.to_pylist()]
+        write_table([pa.Table.from_pylist(rows, table.schema)], table.schema, copied_shown_set / name)
+    reseal(copied_shown_set)
+    problems = rubgen.verify(copied_shown_set)
+    assert any(problem.startswith("run-000000: ") for problem in problems)
