@@ -242,6 +242,14 @@ def repair(directory: Directory, /, *, json: Json = False) -> int:
     return repair_command(directory, as_json=json)
 
 
+@app.command
+def doctor(*, json: Json = False) -> int:
+    """Print versions, caches, cores and Vulkan of this machine; exit 1 where a package that is needed is missing."""
+    from rubgen.cli.doctor import doctor_command
+
+    return doctor_command(as_json=json)
+
+
 def _show_warning(message: Warning | str, category: type[Warning], *_where: Any, **_how: Any) -> None:
     """What rubgen warns of, as one line; the place in our code says nothing to a user."""
     name = "warning" if issubclass(category, RubgenWarning) else category.__name__
