@@ -9,6 +9,8 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
+
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import read_manifest
 from rubgen.errors import UserError
@@ -79,7 +81,17 @@ def _remade(layout: Layout, names: list[str]) -> Iterator[tuple[str, dict[str, o
             if not table.schema.equals(SCHEMA):
                 raise UserError(f"{path}: its columns are not those of this rubgen; generate the set again")
             for row, run_id in enumerate(table["run_id"].to_pylist()):
-                yield run_id, remade_labels(kept_of(table, row, path))
+                yield run_id, _labels_of(table, row, path)
+
+
+def _labels_of(table: pa.Table, row: int, path: Path) -> dict[str, object]:
+    kept = kept_of(table, row, path)
+    try:
+        return remade_labels(kept)
+    except (ValueError, LookupError, ArithmeticError) as error:
+        reason = " ".join(f"{type(error).__name__} {error}".split())[:200]
+        run_id = table["run_id"][row].as_py()
+        raise UserError(f"{path}: {run_id}: labels cannot be made ({reason}); generate the set again") from None
 
 
 def equal(one: object, other: object) -> bool:

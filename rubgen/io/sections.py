@@ -74,10 +74,10 @@ def kept_of(table: pa.Table, row: int, path: Path) -> Kept:
 
 
 def _check_lengths(kept: Kept, turns: int, blades: int) -> None:
-    """Raise ValueError where lists of turns or of touches differ in length, or a number cannot be one."""
-    for name, values in kept.items():
-        if values.dtype == object or not np.isfinite(values).all():
-            raise ValueError(f"{name} is missing or not finite")
+    """Raise ValueError where lists of turns or of touches differ in length, or a number of theirs is none."""
+    for name in (*TOUCHES, "turn_impulse", "contact_steps"):
+        if not np.isfinite(kept[name]).all():
+            raise ValueError(f"{name} is not finite")
     for name in ("section", "turn_impulse", "contact_steps"):
         if len(kept[name]) != turns:
             raise ValueError(f"{name} has {len(kept[name])} of {turns} turns")
