@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check bench verification sensitivity confusion contact zeng2019 zeng2019-fit pictures schemas clean
+.PHONY: setup demo test check bench verification sensitivity confusion contact faults fuzz zeng2019 zeng2019-fit pictures schemas clean
 
 setup: $(VENV)/.installed-dev
 
@@ -34,6 +34,12 @@ confusion: $(VENV)/.installed-dev
 
 contact: $(VENV)/.installed-dev
 	$(BIN)/python -m rubgen.studies.contact_options
+
+faults: $(VENV)/.installed-dev
+	$(BIN)/python -m validation.reliability
+
+fuzz: $(VENV)/.installed-dev
+	$(BIN)/python -m validation.reliability --only fuzz
 
 zeng2019: $(VENV)/.installed-dev
 	$(BIN)/rubgen reproduce zeng2019 --out out/zeng2019

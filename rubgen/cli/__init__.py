@@ -1,5 +1,14 @@
 """The command line: `rubgen generate`, `simulate`, `modes`, `reproduce`, `info`, `verify`; imports wait for them."""
 
-from rubgen.cli.app import main
+from typing import NoReturn
 
 __all__ = ["main"]
+
+
+def main(arguments: list[str] | None = None) -> NoReturn:
+    """Run the command line; a Ctrl-C while it is still being imported ends it as quietly as any other."""
+    try:
+        from rubgen.cli.app import main as run
+    except KeyboardInterrupt:
+        raise SystemExit(130) from None
+    run(arguments)

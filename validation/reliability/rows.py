@@ -1,0 +1,84 @@
+"""The table of the campaign: out/faults.json and docs/reliability.md."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+PAGE = Path("docs/reliability.md")
+COLUMNS = ("fault", "tries", "lost", "differing", "missed", "tracebacks", "seconds")
+BEGIN, END = "<!-- table of faults -->", "<!-- end of table -->"
+
+
+@dataclass
+class Row:
+    """How often a fault was tried, and how often it did harm."""
+
+    fault: str
+    tries: int = 0
+    lost: int = 0
+    """Runs that were kept and were made again, and sets that the same command does not complete."""
+    differing: int = 0
+    """Sets whose bytes are other than those of an undisturbed making; readings that are wrong without a word."""
+    missed: int = 0
+    """Damage that `rubgen verify` does not find."""
+    tracebacks: int = 0
+    """Ends that are neither right nor one line for the user: tracebacks, signals, hangs, memory beyond its bound."""
+    seconds: float = 0.0
+    skipped: str = ""
+    """Why nothing was tried."""
+    failures: list[str] = field(default_factory=list)
+    """What to give to try each failure again."""
+
+    def fail(self, column: str, what: str) -> None:
+        """Count a failure, and say at once how it repeats."""
+        setattr(self, column, getattr(self, column) + 1)
+        self.failures.append(f"{column}: {what}")
+        sys.stderr.write(f"{self.fault}: {column}: {what}\n")
+
+    @property
+    def good(self) -> bool:
+        """Whether nothing was lost, different, missed or ended in a traceback."""
+        return not (self.lost or self.differing or self.missed or self.tracebacks)
+
+
+@contextmanager
+def timed(row: Row) -> Iterator[Row]:
+    """Count the seconds of the block to the row."""
+    start = time.perf_counter()
+    yield row
+    row.seconds = round(row.seconds + time.perf_counter() - start, 1)
+
+
+def write_rows(rows: list[Row], out: Path) -> None:
+    """Write the rows to `out`, those from before under their own names kept, and the table into the page."""
+    kept = {row["fault"]: row for row in _before(out)}
+    kept |= {row.fault: asdict(row) for row in rows}
+    out.parent.mkdir(parents=True, exist_ok=True)
+    out.write_text(json.dumps(list(kept.values()), indent=1) + "\n", encoding="utf-8")
+
+
+def write_page(out: Path, page: Path = PAGE) -> None:
+    """Put the table of `out` into the page; its other lines stay."""
+    text = page.read_text(encoding="utf-8")
+    before, _, rest = text.partition(BEGIN)
+    _, _, after = rest.partition(END)
+    page.write_text(f"{before}{BEGIN}\n{table(_before(out))}{END}{after}", encoding="utf-8")
+
+
+def table(rows: list[dict[str, object]]) -> str:
+    """The rows in Markdown."""
+    lines = [f"| {' | '.join(COLUMNS)} |", f"|---|{'---:|' * (len(COLUMNS) - 1)}"]
+    for row in rows:
+        cells = [f"{row[name]:,.0f}" if name == "seconds" else f"{row[name]}" for name in COLUMNS]
+        lines.append(f"| {' | '.join(cells)} |" if not row["skipped"] else f"| {row['fault']} | {row['skipped']} |")
+    return "\n".join(lines) + "\n"
+
+
+def _before(out: Path) -> list[dict[str, object]]:
+    return json.loads(out.read_text(encoding="utf-8")) if out.exists() else []
