@@ -38,8 +38,8 @@ def json_text(values: object) -> str:
 
 
 def remove_parts(directory: Path) -> None:
-    """Remove what a killed run left half-written."""
-    for path in directory.glob(f"**/*{PART}*"):
+    """Remove what a killed run left half-written in this folder."""
+    for path in directory.glob(f"*{PART}*"):
         if path.is_file():
             path.unlink(missing_ok=True)
 

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import errno
-import shutil
 from collections.abc import Iterable, Mapping
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 
 from rubgen.dataset.assemble import assemble
 from rubgen.dataset.card import write_card
-from rubgen.dataset.claim import claimed, finished
+from rubgen.dataset.claim import begun, claimed, finished, has_remains, remove_staging
 from rubgen.dataset.croissant import write_croissant
 from rubgen.dataset.layout import Layout
-from rubgen.dataset.manifest import identity_of, read_manifest, write_manifest
+from rubgen.dataset.manifest import Identity, identity_of, read_manifest, write_manifest
 from rubgen.dataset.outcome import Outcome, outcome_of
-from rubgen.dataset.stage import stage_run, warm_up, warming_up
+from rubgen.dataset.problems_told import problems_told
+from rubgen.dataset.stage import is_staged, stage_run, warm_up, warming_up
 from rubgen.dataset.verify import advice, findings
 from rubgen.dataset.workers import unordered, usable_cores, worker_pool
 from rubgen.errors import UserError, warn
@@ -58,26 +57,20 @@ def generate(
     Failed runs are listed with their reason. A finished set is verified and left alone. `progress` is called with the
     numbers of finished and of all runs; True shows it on stderr, None does so on a terminal or in a notebook.
 
-    Raises UserError, one line, for bad input, a directory that is not ours or not writable, and a full disk.
+    Works from a script without a main guard, a notebook, a pipe or a thread: workers do not import the main module.
+    Raises UserError, one line, for bad input, a directory that is not ours or not writable, and a full disk;
+    RubgenError where a worker process dies or the system fails elsewhere.
     """
     recipe = _recipe(recipe, runs)
     workers = _workers(workers)
     layout, identity = Layout(Path(out)), identity_of(recipe)
-    try:
-        if finished(layout, identity):
-            with _shown(progress), step("verify the set"):
-                return _nothing_to_do(layout)
-        with claimed(layout, identity):
-            with _shown(progress):
-                made = _make_missing(recipe, layout, workers, progress if callable(progress) else None)
-            status = dict(sorted(assemble(recipe, layout).items()))
-            write_card(layout, identity, status)
-            write_croissant(layout, identity)
-            write_manifest(layout, identity, status)
-        shutil.rmtree(layout.staging)
-    except OSError as error:
-        raise _disk_problem(layout.root, error) from None
-    return Generated(directory=layout.root, runs=recipe.runs, made=made, status=status, outcome=outcome_of(layout))
+    with problems_told(layout.root):
+        if not finished(layout, identity):
+            with claimed(layout, identity):
+                if not finished(layout, identity):  # another rubgen may have done it meanwhile
+                    return _make(recipe, layout, identity, workers, progress)
+        with _shown(progress), step("verify the set"):
+            return _nothing_to_do(layout, identity)
 
 
 def finished_runs(out: Path | str) -> int:
@@ -101,11 +94,27 @@ def _workers(workers: int | None) -> int:
     return workers or usable_cores()
 
 
-def _nothing_to_do(layout: Layout) -> Generated:
+def _make(
+    recipe: Recipe, layout: Layout, identity: Identity, workers: int, progress: Report | bool | None
+) -> Generated:
+    with begun(layout, identity):
+        with _shown(progress):
+            made = _make_missing(recipe, layout, workers, progress if callable(progress) else None)
+        status = dict(sorted(assemble(recipe, layout).items()))
+        write_card(layout, identity, status)
+        write_croissant(layout, identity)
+        write_manifest(layout, identity, status)
+    remove_staging(layout)
+    return Generated(directory=layout.root, runs=recipe.runs, made=made, status=status, outcome=outcome_of(layout))
+
+
+def _nothing_to_do(layout: Layout, identity: Identity) -> Generated:
     found = findings(layout.root)
     if found:
         raise UserError(f"{found[0].text} ({len(found)} problems in all); {advice(layout.root, found)}")
-    shutil.rmtree(layout.staging, ignore_errors=True)
+    if has_remains(layout):
+        with suppress(OSError, UserError), claimed(layout, identity):  # it may be in use, or read-only
+            remove_staging(layout)
     manifest = read_manifest(layout)
     return Generated(
         directory=layout.root,
@@ -119,7 +128,7 @@ def _nothing_to_do(layout: Layout) -> Generated:
 
 def _make_missing(recipe: Recipe, layout: Layout, workers: int, progress: Report | None) -> int:
     formats = recipe.output.formats
-    missing = [index for index in range(recipe.runs) if not _is_staged(layout, index)]
+    missing = [index for index in range(recipe.runs) if not is_staged(layout, index, formats)]
     jobs = ((recipe.scenario(index), layout.root.resolve(), formats) for index in missing)
     done = recipe.runs - len(missing)
     if progress:
@@ -127,15 +136,10 @@ def _make_missing(recipe: Recipe, layout: Layout, workers: int, progress: Report
     if not missing:
         return 0
     first = recipe.scenario(missing[0]), tuple(recipe.corners())
-    if workers == 1 or len(missing) < 2:
-        with warming_up():
-            warm_up(*first)
-        _see_end((stage_run(*job) for job in jobs), done, recipe.runs, progress)
-        return len(missing)
     with worker_pool(min(workers, len(missing))) as pool:
         with warming_up():
-            remarks = list(chain.from_iterable(unordered(pool, 1, warm_up, [first])))
-        for remark in remarks:
+            remarks = list(unordered(pool, 1, warm_up, [first]))
+        for remark in chain.from_iterable(remarks if pool else []):  # this process has warned already
             warn(remark)
         _see_end(unordered(pool, workers, stage_run, jobs), done, recipe.runs, progress)
     return len(missing)
@@ -153,14 +157,3 @@ def _see_end(ended: Iterable[str], done: int, runs: int, progress: Report | None
 
 def _shown(progress: Report | bool | None) -> AbstractContextManager[None]:
     return shown(progress if isinstance(progress, bool) or progress is None else False)
-
-
-def _is_staged(layout: Layout, index: int) -> bool:
-    return layout.staged(f"run-{index:06d}").exists()
-
-
-def _disk_problem(root: Path, error: OSError) -> UserError:
-    where = error.filename or root
-    if error.errno == errno.ENOSPC:
-        return UserError(f"{root}: the disk is full; make room and give the same command again: finished runs are kept")
-    return UserError(f"{where}: cannot be written ({error.strerror or error}); give a directory that you may write to")

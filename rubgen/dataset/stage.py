@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rubgen.cache_root import untold
-from rubgen.dataset.layout import Layout
+from rubgen.dataset.layout import FOLDERS, Layout
 from rubgen.errors import UserError
 from rubgen.io.durable import write_durably
 from rubgen.progress import COMPILING, step
@@ -40,6 +40,21 @@ def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
     table = run_table(run, signals="parquet" in formats)
     write_table([table], table.schema, layout.staged(scenario.run_id))
     return run.response.status.code
+
+
+def is_staged(layout: Layout, index: int, formats: tuple[str, ...]) -> bool:
+    """Whether the run and all its files are there; a row that cannot be read, or whose files are lost, is not."""
+    from rubgen.io.parquet import read_table
+
+    run_id = f"run-{index:06d}"
+    if not layout.staged(run_id).exists():
+        return False
+    try:
+        status = read_table(layout.staged(run_id), ["status"])["status"].to_pylist()
+    except UserError:
+        return False
+    files = [layout.export(kind, run_id) for kind in FOLDERS if kind in formats]
+    return status != ["ok"] or all(file.exists() for file in (layout.staged_section(run_id), *files))
 
 
 def warm_up(scenario: Scenario, corners: tuple[Scenario, ...]) -> list[str]:

@@ -6,6 +6,7 @@ import math
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -13,17 +14,20 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from itertools import islice
 from multiprocessing import connection
+from multiprocessing.context import SpawnContext, SpawnProcess
 from pathlib import Path
-from typing import TypeVar
+from types import ModuleType
+from typing import Any, TypeVar
 
 from rubgen.cache_root import cache_folder
-from rubgen.errors import RubgenError
+from rubgen.errors import RubgenError, warn
 
 R = TypeVar("R")
 ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "RAYON_NUM_THREADS"), "1"
 )
 WAITING_PER_WORKER = 2
+_ONE_START = threading.Lock()
 
 
 def usable_cores(root: Path = Path("/")) -> int:
@@ -64,32 +68,40 @@ def _text(path: Path) -> str:
 
 
 @contextmanager
-def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """A pool of fresh processes with one thread of BLAS each; left early, its processes are ended at once."""
-    before = set(multiprocessing.active_children())
+def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor | None]:
+    """A pool of fresh processes with one thread of BLAS each; left early, its processes are ended at once.
+
+    None, for `unordered` to work in this process, for one worker and, with a remark, where no process can be started.
+    Raises RubgenError where a process dies or memory runs out.
+    """
+    context = _OwnMain()
     cache_folder("kernels")  # found, and where it is a temporary one handed on, before there are workers
-    with _environment(ONE_THREAD):
-        with _interrupts_held():
-            pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), initializer=_start_worker)
+    with _environment(ONE_THREAD if workers > 1 else {}):
+        pool = _started(workers, context) if workers > 1 else None
         try:
             yield pool
         except BrokenProcessPool:
+            _end(pool, context)
             raise RubgenError(
-                "a worker process died, perhaps for want of memory; finished runs are kept: give the same command "
-                "again, with fewer --workers"
+                f"a worker process {_how_it_ended(context)}; what is finished is kept: the same command makes the "
+                "rest, and with --workers 1 it starts no worker process"
+            ) from None
+        except MemoryError as error:
+            raise RubgenError(
+                f"memory ran out ({error or 'no more is known'}); what is finished is kept: "
+                "give the same command again, with fewer --workers"
             ) from None
         finally:
-            pool.shutdown(wait=False, cancel_futures=True)
-            for process in set(multiprocessing.active_children()) - before:
-                process.terminate()
-                process.join()
-            pool.shutdown(wait=True)  # its thread has seen the processes end, and gives back what they shared
+            _end(pool, context)
 
 
 def unordered(
-    pool: ProcessPoolExecutor, workers: int, work: Callable[..., R], jobs: Iterable[tuple[object, ...]]
+    pool: ProcessPoolExecutor | None, workers: int, work: Callable[..., R], jobs: Iterable[tuple[object, ...]]
 ) -> Iterator[R]:
     """Results of `work(*job)` as they come; only a few jobs are in flight, whatever their number."""
+    if pool is None:
+        yield from (work(*job) for job in jobs)
+        return
     remaining = iter(jobs)
     running: set[Future[R]] = set()
     while True:
@@ -103,10 +115,73 @@ def unordered(
             yield future.result()
 
 
+class _Worker(SpawnProcess):
+    """A process that does not import the user's main module, which would run a script a second time."""
+
+    def start(self) -> None:
+        """Start it while the main module is one without a file: nothing that workers do comes from there."""
+        with _ONE_START:
+            main = sys.modules["__main__"]
+            sys.modules["__main__"] = ModuleType("__main__")
+            try:
+                super().start()
+            finally:
+                sys.modules["__main__"] = main
+
+
+class _OwnMain(SpawnContext):
+    """Makes such processes and remembers them."""
+
+    def __init__(self) -> None:
+        self.workers: list[_Worker] = []
+
+    def Process(self, *args: Any, **kwargs: Any) -> _Worker:  # type: ignore[override]
+        """A process of this context, as the pool asks for it."""
+        self.workers.append(_Worker(*args, **kwargs))
+        return self.workers[-1]
+
+
+def _started(workers: int, context: _OwnMain) -> ProcessPoolExecutor | None:
+    pool, reason = None, "this process is a daemon, which may have no children"
+    if not multiprocessing.current_process().daemon:
+        try:
+            with _interrupts_held():
+                pool = ProcessPoolExecutor(workers, context, initializer=_start_worker)
+                pool.submit(os.getpid)  # the first job starts every process
+        except (OSError, ImportError, RuntimeError) as error:  # no semaphores, too many processes, threads or files
+            reason = error.strerror or str(error) if isinstance(error, OSError) else str(error)
+        else:
+            return pool
+    _end(pool, context)
+    warn(f"worker processes cannot be started ({reason}); the work goes on in one process")
+    return None
+
+
+def _end(pool: ProcessPoolExecutor | None, context: _OwnMain) -> None:
+    if pool is not None:
+        pool.shutdown(wait=False, cancel_futures=True)
+    for process in context.workers:
+        if process.pid is not None:
+            process.terminate()
+            process.join()
+    if pool is not None:
+        pool.shutdown(wait=True)  # its thread has seen the processes end, and gives back what they shared
+
+
+def _how_it_ended(context: _OwnMain) -> str:
+    """What the system knows of the process that broke the pool; the pool ends the others by SIGTERM."""
+    codes = [process.exitcode for process in context.workers if process.exitcode]
+    first = next((code for code in codes if code != -signal.SIGTERM), -signal.SIGTERM if codes else 0)
+    if first >= 0:
+        return f"ended with exit code {first}"
+    names = {number.value: number.name for number in signal.Signals}
+    return f"was ended by {names.get(-first, f'signal {-first}')}"
+
+
 def _start_worker() -> None:
     # Ctrl-C reaches the whole process group; the parent alone decides what it means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    _set_mask("SIG_UNBLOCK", {signal.SIGINT})
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
@@ -126,21 +201,27 @@ def _interrupts_held() -> Iterator[None]:
     until they are ready to ignore Ctrl-C; the handlers are for this one, where a signal may reach another thread.
     """
     held: list[int] = []
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    mask = _set_mask("SIG_BLOCK", {signal.SIGINT})
     main = threading.current_thread() is threading.main_thread()
     handlers = {
         name: signal.signal(name, lambda number, _frame: held.append(number))
         for name in (signal.SIGINT, signal.SIGTERM)
-        if main
+        if main and signal.getsignal(name) is not None  # None: not set from Python, so it could not be put back
     }
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        _set_mask("SIG_SETMASK", mask)
         for name, handler in handlers.items():
             signal.signal(name, handler)
     if held:
         signal.raise_signal(held[0])
+
+
+def _set_mask(how: str, signals: Iterable[int]) -> set[signal.Signals | int]:
+    """The mask of signals before; Windows has none."""
+    set_mask = getattr(signal, "pthread_sigmask", None)
+    return set(set_mask(getattr(signal, how), signals)) if set_mask else set()
 
 
 @contextmanager

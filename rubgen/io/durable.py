@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 PART = ".part"
 """End of the name under which a file is written before it is complete."""
+_NO_SYNC = (errno.EBADF, errno.EINVAL, errno.ENOSYS, errno.ENOTSUP)
+"""What file systems answer that cannot flush a directory."""
 
 
 def write_durably(path: Path, write: Callable[[Path], object]) -> None:
     """Let `write` make the file under a temporary name, flush it to the disk, then give it its name.
 
-    Whatever `write` raises passes on, an OSError of the disk too; then no file is there, or the one from before.
+    Whatever `write` raises passes on; then no file is there, or the one from before. An OSError of the file itself
+    names `path`.
     """
     part = path.with_name(f"{path.stem}{PART}{path.suffix}")
     try:
@@ -22,14 +27,25 @@ def write_durably(path: Path, write: Callable[[Path], object]) -> None:
             os.fsync(stream.fileno())
         part.replace(path)
         sync_directory(path.parent)
+    except OSError as error:
+        if error.filename is not None and str(error.filename) != str(part):
+            raise
+        raise OSError(error.errno or errno.EIO, error.strerror or str(error), str(path)) from error
     finally:
-        part.unlink(missing_ok=True)
+        with suppress(OSError):  # it is there only after another error, which says more
+            part.unlink()
 
 
 def sync_directory(directory: Path) -> None:
-    """Make the names in a directory durable."""
-    descriptor = os.open(directory, os.O_RDONLY)
+    """Make the names in a directory durable, where the system can; an OSError names the directory."""
+    try:
+        descriptor = os.open(directory, os.O_RDONLY)
+    except PermissionError:  # Windows opens no directory
+        return
     try:
         os.fsync(descriptor)
+    except OSError as error:
+        if error.errno not in _NO_SYNC:
+            raise OSError(error.errno, error.strerror, str(directory)) from error
     finally:
         os.close(descriptor)
