@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rubgen.dataset.generate import Generated
     from rubgen.dataset.open import DataSet
     from rubgen.pipeline import Run
-    from rubgen.scenario import Recipe, Scenario
+    from rubgen.scenario import Recipe, Scenario, make_scenario
 
 __all__ = [
     "RubgenError",
@@ -33,14 +33,17 @@ __all__ = [
 __version__ = "0.1.0"
 
 
-def make_scenario(machine: str = "zeng2019", **values: float) -> Scenario:
-    """A scenario of a machine (preset or path of a TOML) with keys of `[vary]` set: `make_scenario(speed_rpm=6780)`.
+def __getattr__(name: str) -> object:
+    """`make_scenario`, imported when it is asked for: its many keys have one home."""
+    if name == "make_scenario":
+        from rubgen.scenario import make_scenario
 
-    Raises UserError for an unknown machine or key and for a value that is not allowed.
-    """
-    from rubgen.scenario import make_scenario
+        return make_scenario
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
-    return make_scenario(machine, **values)
+
+def __dir__() -> list[str]:
+    return __all__
 
 
 def simulate(scenario: Scenario) -> Run:

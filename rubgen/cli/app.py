@@ -97,13 +97,15 @@ def simulate(
     fluctuation_rpm: Annotated[float | None, _option("Amplitude of a fluctuating speed, rev/min.")] = None,
     fluctuation_period_s: Annotated[float | None, _option("Period of a fluctuating speed, s.")] = None,
     settle_turns: Annotated[int | None, _option("Turns before the record; automatic when not given.")] = None,
-    record_turns: Annotated[int, _option("Turns from which the labels come, at least 500.")] = 500,
+    record_turns: Annotated[
+        int | None, _option("Turns of a steady record, at least 500, which is the default.")
+    ] = None,
     steps_per_turn: Annotated[int, _option("Least number of integration steps in a turn.")] = 1024,
     sample_rate_hz: Annotated[float, _option("Samples a second of the recorded channels.")] = 25600.0,
     sensors: Annotated[str, _option("Sensor set: default, rig, or the path of a TOML.")] = "default",
     signal_seconds: Annotated[float, _option("Length of the recorded signals: the end of the record.")] = 1.0,
     seed: Annotated[int, _option("Seed of the sensor noise.")] = 0,
-    lyapunov: Annotated[bool, _option("Whether to compute the Lyapunov exponent, half as long again.")] = True,
+    lyapunov: Annotated[bool | None, _option("Whether to compute the exponent of a steady run; on by default.")] = None,
     out: Annotated[Path | None, _option("File to write: .mcap, .parquet or .rrd.")] = None,
     replay: Annotated[bool, Parameter(negative=(), help="Then show the run in the viewer.")] = False,
     json: Json = False,

@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from inspect import signature
 from pathlib import Path
 from typing import Any
-
-from pydantic import ValidationError
 
 from rubgen.cli.printing import print_json, print_pairs
 from rubgen.cli.replaying import Showing, show
 from rubgen.errors import UserError
 from rubgen.labels.plain import labels_dict
-from rubgen.machine.problems import first_problem
 from rubgen.pipeline import Run, simulate
-from rubgen.scenario import Labelling, Operation, Scenario, Sensing, make_scenario
-from rubgen.scenario.feasible import check_feasible
-from rubgen.scenario.plausible import warn_of
-from rubgen.scenario.sensor_set import load_sensor_set
-from rubgen.scenario.vary import KEYS, varied_values
+from rubgen.scenario import Scenario, make_scenario
+from rubgen.scenario.vary import varied_values
 from rubgen.solver import Status
 from rubgen.viz.replay import replay_of
 
@@ -73,32 +67,7 @@ def simulate_command(options: dict[str, Any], out: Path | None, *, replay: bool 
 
 
 def _scenario(options: dict[str, Any]) -> Scenario:
-    varied = {key: options[key] for key in KEYS if options[key] is not None}
-    scenario = make_scenario(options["machine"], **varied)
-    try:
-        scenario = replace(
-            scenario,
-            operation=_operation(scenario.operation, options),
-            sensing=Sensing(sample_rate_hz=options["sample_rate_hz"], set=load_sensor_set(options["sensors"])),
-            labelling=Labelling(lyapunov=options["lyapunov"]),
-            signal_seconds=options["signal_seconds"],
-            seed=options["seed"],
-        )
-    except ValidationError as error:
-        raise first_problem("", error, options) from None
-    check_feasible(scenario)
-    warn_of([scenario])
-    return scenario
-
-
-def _operation(operation: Operation, options: dict[str, Any]) -> Operation:
-    return replace(
-        operation,
-        settle_turns="auto" if options["settle_turns"] is None else options["settle_turns"],
-        record_turns=options["record_turns"],
-        profile=options["profile"],
-        steps_per_turn=options["steps_per_turn"],
-    )
+    return make_scenario(**{key: options[key] for key in signature(make_scenario).parameters})
 
 
 def _writer(out: Path | None) -> Callable[[Run, Path], None] | None:

@@ -54,15 +54,15 @@ def first_problem(
     first = min(problems, key=lambda each: _order(data, each.path))
     schema = SchemaNodes(adapter) if adapter else None
     path = place(first.path)
-    text = f"{source}: {key_name(path) or 'the file'}{first.text(data, schema)}"
+    text = _of(source, f"{key_name(path) or 'the file'}{first.text(data, schema)}")
     others = f" ({len(problems)} problems in all)" if len(problems) > 1 else ""
-    return UserError(f"{text}{others}".removeprefix(": "))
+    return UserError(f"{text}{others}")
 
 
 def check_plain(source: object, value: object, path: Path = ()) -> None:
     """Raise UserError where data is nested without end, or holds an integer that does not fit in 64 bits."""
     if len(path) > DEEPEST:
-        raise UserError(f"{source}: {key_name(path[:3])}: tables or lists in one another without end; write it flat")
+        raise UserError(_of(source, f"{key_name(path[:3])}: tables or lists in one another without end; write it flat"))
     if isinstance(value, Mapping):
         for key, each in value.items():
             check_plain(source, each, (*path, str(key)))
@@ -70,7 +70,12 @@ def check_plain(source: object, value: object, path: Path = ()) -> None:
         for number, each in enumerate(value):
             check_plain(source, each, (*path, number))
     elif isinstance(value, int) and not -WHOLE_NUMBERS <= value < WHOLE_NUMBERS:
-        raise UserError(f"{source}: {key_name(path)}: an integer that does not fit in 64 bits; give a smaller one")
+        raise UserError(_of(source, f"{key_name(path)}: an integer that does not fit in 64 bits; give a smaller one"))
+
+
+def _of(source: object, text: str) -> str:
+    """The text after its source, if that has a name."""
+    return f"{source}: {text}".removeprefix(": ")
 
 
 def nearest(name: str, known: list[str]) -> str:

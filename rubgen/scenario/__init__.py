@@ -1,8 +1,8 @@
 """What is varied: scenarios of single runs, and the recipes that draw them."""
 
+from rubgen.scenario.make import make_scenario
 from rubgen.scenario.recipe import Recipe, load_recipe, parse_recipe
 from rubgen.scenario.scenario import ContactLaw, Labelling, Liner, Operation, Reduction, Scenario, Sensing
-from rubgen.scenario.vary import make_scenario
 
 __all__ = [
     "ContactLaw",

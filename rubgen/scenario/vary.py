@@ -12,11 +12,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from rubgen.errors import UserError
-from rubgen.machine import load_machine
-from rubgen.machine.load import machine_id
 from rubgen.machine.machine import MOST_LOBES
 from rubgen.machine.problems import nearest
-from rubgen.scenario.scenario import Operation, Scenario
+from rubgen.scenario.scenario import Scenario
 
 DEFAULT_SPEED_RPM = 10_000.0
 """Speed where none is given: the machine itself has none."""
@@ -284,14 +282,3 @@ def vary(scenario: Scenario, values: Mapping[str, float], source: str = "") -> S
 def varied_values(scenario: Scenario) -> dict[str, float]:
     """The value of every key of `[vary]` in this scenario, in the order of the keys."""
     return {entry.key: entry.read(scenario) for entry in PARAMETERS}
-
-
-def make_scenario(machine: str = "zeng2019", **values: float) -> Scenario:
-    """A scenario of a machine (preset or path of a TOML) with keys of `[vary]` set: `make_scenario(speed_rpm=6780)`.
-
-    What is not named keeps the machine's value; the speed is 10,000 rev/min where none is given.
-    Raises UserError for an unknown machine, an unknown key or a value that is not allowed.
-    """
-    loaded = load_machine(machine)
-    base = Scenario(machine=loaded, operation=Operation(speed_rpm=DEFAULT_SPEED_RPM), machine_id=machine_id(loaded))
-    return vary(base, values)

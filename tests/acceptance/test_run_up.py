@@ -1,7 +1,5 @@
 """One run-up of the preset through the onset of rub, from the machine to its labels, channels and files."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from mcap.reader import make_reader
@@ -15,9 +13,11 @@ ONSET_RPM = 6720.0
 
 @pytest.fixture(scope="module")
 def run():
-    scenario = make_scenario(speed_rpm=6650, end_speed_rpm=6850, duration_s=0.3, friction=0.01)
-    operation = replace(scenario.operation, profile="run-up", settle_turns=60)
-    return simulate(replace(scenario, operation=operation, signal_seconds=0.3))
+    scenario = make_scenario(
+        speed_rpm=6650, profile="run-up", end_speed_rpm=6850, duration_s=0.3, friction=0.01, settle_turns=60,
+        signal_seconds=0.3,
+    )  # fmt: skip
+    return simulate(scenario)
 
 
 def test_rub_begins_at_the_steady_onset(run):

@@ -61,6 +61,15 @@ def test_public_names():
 
 def test_every_key_of_vary_is_an_option_of_simulate():
     assert set(KEYS) <= set(signature(simulate).parameters)
+
+
+def test_simulate_takes_the_keys_of_make_scenario_with_the_same_defaults():
+    own = {"out", "replay", "json"}
+    options = {name: option.default for name, option in signature(simulate).parameters.items() if name not in own}
+    assert options == {name: key.default for name, key in signature(rubgen.make_scenario).parameters.items()}
+
+
+def test_commands_are_there():
     assert set(app) >= {"generate", "simulate", "modes", "info", "verify"}
 
 

@@ -13,6 +13,7 @@ from rubgen.dataset.workers import unordered, worker_pool
 from rubgen.labels.kept import Kept, keep
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario, make_scenario
+from rubgen.scenario.vary import vary
 from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
 
@@ -22,7 +23,7 @@ SERIES: dict[str, dict[str, float]] = {
     "more unbalance": {"unbalance_kg_m": 2e-2},
     "closer casing": {"clearance_m": 2.2e-4, "friction": 0.01},
 }
-"""Keys of `make_scenario` beside the speed."""
+"""Keys of `[vary]` beside the speed."""
 SPEEDS_RPM = tuple(float(speed) for speed in range(6540, 14941, 120))
 """The part of the paper's sweep in which the preset rubs."""
 
@@ -35,7 +36,7 @@ def run_name(series: str, speed_rpm: float) -> str:
 def scenarios(*, every: int = 1) -> dict[str, Scenario]:
     """Name to scenario: every series at every so many-th speed, 500 turns each."""
     return {
-        run_name(name, speed): make_scenario("zeng2019", speed_rpm=speed, **keys)
+        run_name(name, speed): vary(make_scenario("zeng2019"), {"speed_rpm": speed, **keys})
         for name, keys in SERIES.items()
         for speed in SPEEDS_RPM[::every]
     }

@@ -10,6 +10,7 @@ from rubgen.arrays import FloatArray
 from rubgen.fem.draw_in import draw_in_matrix
 from rubgen.pipeline import Run
 from rubgen.scenario import ContactLaw, Liner, Scenario, make_scenario
+from rubgen.scenario.vary import vary
 from rubgen.solver import EnergyBook, Status
 from rubgen.solver.response import WornLiner
 from rubgen.studies.contact_options.draw_in import deflections, draw_in
@@ -52,7 +53,7 @@ class Found:
 
 def option_scenario(case: str, option: str) -> Scenario:
     """One of the sensitivity studies' cases with an option of contact."""
-    scenario = make_scenario("zeng2019", **CASES[case])
+    scenario = vary(make_scenario("zeng2019"), CASES[case])
     return replace(scenario, contact=replace(OPTIONS[option], friction=scenario.contact.friction))
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from rubgen.scenario import Scenario, make_scenario
+from rubgen.scenario.vary import vary
 
 CASES: dict[str, dict[str, float]] = {
     "light": {"speed_rpm": 10000.0, "disk_support_stiffness_n_per_m": 2e8},
@@ -45,7 +46,7 @@ class Study:
 
 def case(name: str) -> Scenario:
     """The scenario of one of the CASES."""
-    return make_scenario("zeng2019", **CASES[name])
+    return vary(make_scenario("zeng2019"), CASES[name])
 
 
 def with_operation(scenario: Scenario, **changes: Any) -> Scenario:

@@ -8,6 +8,7 @@ import numpy as np
 
 from rubgen.machine import load_machine
 from rubgen.scenario import Scenario, make_scenario
+from rubgen.scenario.vary import vary
 from rubgen.studies.zeng2019.outcome import Outcome, outcome_of, run_piece
 from rubgen.studies.zeng2019.piece import Found, Piece
 from rubgen.studies.zeng2019.size import Size
@@ -59,7 +60,7 @@ PRINTED = "as printed"
 
 def case(size: Size, friction: float = 0.0, **values: float) -> Scenario:
     """The preset with these keys of `[vary]`, with the turns of that size."""
-    scenario = size.shortened(make_scenario(size.machine, **values))
+    scenario = size.shortened(vary(make_scenario(size.machine), values))
     return replace(scenario, contact=replace(scenario.contact, friction=friction)) if friction else scenario
 
 

@@ -1,0 +1,161 @@
+"""A single run by its keys: the same names, units and checks for Python and for `rubgen simulate`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from functools import wraps
+from inspect import signature
+from pathlib import Path
+from typing import Annotated, Any, ParamSpec
+
+from pydantic import TypeAdapter
+
+from rubgen.errors import UserError
+from rubgen.machine import NUMBER
+from rubgen.machine.problems import nearest, validated
+from rubgen.scenario.feasible import check_feasible
+from rubgen.scenario.plausible import warn_of
+from rubgen.scenario.recipe import Recipe
+from rubgen.scenario.scenario import ProfileName, Scenario
+from rubgen.scenario.vary import KEYS, vary
+
+P = ParamSpec("P")
+PROFILES_OF: dict[str, tuple[ProfileName, ...]] = {
+    "end_speed_rpm": ("run-up", "coast-down"),
+    "duration_s": ("run-up", "coast-down", "fluctuating"),
+    "fluctuation_rpm": ("fluctuating",),
+    "fluctuation_period_s": ("fluctuating",),
+    "record_turns": ("steady",),
+    "lyapunov": ("steady",),
+}
+"""The profiles that use a key; every other key goes with all."""
+TABLES = {
+    "operation": ("profile",),
+    "simulation": ("settle_turns", "record_turns", "steps_per_turn"),
+    "sensors": ("sample_rate_hz",),
+    "output": ("signal_seconds",),
+    "labels": ("lyapunov",),
+}
+"""The tables of a recipe in which the keys stand that are not drawn."""
+_NUMBERS: TypeAdapter[dict[str, float]] = TypeAdapter(dict[str, Annotated[float, NUMBER]])
+_RECIPE = TypeAdapter(Recipe)
+
+
+def _known_keys(function: Callable[P, Scenario]) -> Callable[P, Scenario]:
+    """The function, which refuses an unknown key with the one that was meant."""
+    known = list(signature(function).parameters)
+
+    @wraps(function)
+    def checked(*arguments: P.args, **keys: P.kwargs) -> Scenario:
+        for key in keys:
+            if key not in known:
+                raise UserError(f"{key}: unknown key; {nearest(key, known)}")
+        return function(*arguments, **keys)
+
+    return checked
+
+
+@_known_keys
+def make_scenario(
+    machine: str | Path = "zeng2019",
+    *,
+    speed_rpm: float | None = None,
+    clearance_m: float | None = None,
+    ovality_m: float | None = None,
+    disk_support_stiffness_n_per_m: float | None = None,
+    casing_support_stiffness_n_per_m: float | None = None,
+    friction: float | None = None,
+    lobes: float | None = None,
+    unbalance_kg_m: float | None = None,
+    casing_thickness_m: float | None = None,
+    lateral_damping: float | None = None,
+    support_anisotropy: float | None = None,
+    gravity_m_per_s2: float | None = None,
+    unbalance_angle_deg: float | None = None,
+    profile: ProfileName = "steady",
+    end_speed_rpm: float | None = None,
+    duration_s: float | None = None,
+    fluctuation_rpm: float | None = None,
+    fluctuation_period_s: float | None = None,
+    settle_turns: int | None = None,
+    record_turns: int | None = None,
+    steps_per_turn: int = 1024,
+    sample_rate_hz: float = 25600.0,
+    sensors: str | Path = "default",
+    signal_seconds: float = 1.0,
+    seed: int = 0,
+    lyapunov: bool | None = None,
+) -> Scenario:
+    """One run of a machine, ready for `simulate`; a key that is not given keeps the machine's value.
+
+    - `machine`: name of a preset ("zeng2019"), or path of a machine TOML
+    - `speed_rpm`: spin speed in rev/min, of a run-up or coast-down at its start, > 0; 10,000 when not given
+    - `clearance_m`: smallest gap between blade tips and casing at rest in m, > 0
+    - `ovality_m`: largest minus smallest radius of the casing's inner surface in m, >= 0
+    - `disk_support_stiffness_n_per_m`: lateral stiffness of the disk support, mean of X and Y, in N/m, > 0
+    - `casing_support_stiffness_n_per_m`: radial and circumferential stiffness under each casing node in N/m, > 0
+    - `friction`: Coulomb coefficient of sliding friction, 0 to 0.3
+    - `lobes`: number of lobes of the casing's inner surface, whole, >= 2
+    - `unbalance_kg_m`: mass unbalance of the blisk in kg m, >= 0
+    - `casing_thickness_m`: radial thickness of the casing ring in m, > 0
+    - `lateral_damping`: damping ratio of the blisk moving laterally as a rigid body, 0 to 0.99
+    - `support_anisotropy`: (k_X - k_Y) / (k_X + k_Y) of the disk support, -0.9 to 0.9
+    - `gravity_m_per_s2`: gravity along -Y on the blisk in m/s2, >= 0; 0 for a vertical axis
+    - `unbalance_angle_deg`: angle of the unbalance from blade 0 in degrees, -360 to 360
+    - `profile`: how the speed goes: "steady", "run-up", "coast-down" or "fluctuating"
+    - `end_speed_rpm`: speed at the end of a run-up or coast-down in rev/min, > 0; these two profiles need it
+    - `duration_s`: duration of a record whose speed changes in s, > 0; every profile but "steady" needs it
+    - `fluctuation_rpm`: amplitude of a fluctuating speed in rev/min, below speed_rpm; this profile needs it
+    - `fluctuation_period_s`: period of a fluctuating speed in s, > 0; 1 when not given
+    - `settle_turns`: turns before the record, >= 1; from the slowest decay of the machine when not given
+    - `record_turns`: turns from which the labels of a steady run come, >= 500; 500 when not given
+    - `steps_per_turn`: least number of integration steps in a turn, at most 16384
+    - `sample_rate_hz`: samples a second of the recorded channels, > 0
+    - `sensors`: sensor set, "default", "rig" or the path of a TOML
+    - `signal_seconds`: length of the recorded signals in s, the end of the record, at most all of it
+    - `seed`: seed of the sensor noise, >= 0
+    - `lyapunov`: whether to compute the Lyapunov exponent of a steady run, half as long again; yes when not given
+
+    Warns (RubgenWarning) of values that are allowed and surely not meant.
+    Raises UserError for an unknown machine or sensor set, a value that is not allowed, and keys that do not go
+    together.
+    """
+    given = {key: value for key, value in locals().items() if value is not None}
+    recipe = validated("", _recipe_values(given), _RECIPE, _key_alone)
+    _check_profile(recipe.operation.profile, given)
+    numbers = validated("", {key: given[key] for key in KEYS if key in given}, _NUMBERS)
+    scenario = vary(recipe.base, numbers)
+    check_feasible(scenario)
+    warn_of([scenario])
+    return scenario
+
+
+def _recipe_values(given: dict[str, Any]) -> dict[str, Any]:
+    """A recipe of one run with what is given but for the keys of `[vary]`."""
+    values: dict[str, Any] = {"name": "run", "runs": 1}
+    for table, keys in TABLES.items():
+        values[table] = {key: given[key] for key in keys if key in given}
+    values |= {key: _text(given[key]) for key in ("machine", "seed") if key in given}
+    if "sensors" in given:
+        values["sensors"]["set"] = _text(given["sensors"])
+    return values
+
+
+def _text(value: Any) -> Any:
+    """A path as text."""
+    return os.fspath(value) if isinstance(value, os.PathLike) else value
+
+
+def _key_alone(path: tuple[int | str, ...]) -> tuple[int | str, ...]:
+    """The key of `make_scenario` that stands at this place of the recipe."""
+    return ("sensors",) if path == ("sensors", "set") else path[-1:]
+
+
+def _check_profile(profile: ProfileName, given: dict[str, Any]) -> None:
+    """Raise UserError for a key that this profile would ignore; `profile_problem` says what it lacks."""
+    for key, profiles in PROFILES_OF.items():
+        if key in given and profile not in profiles and given[key] is not False:
+            allowed = " or ".join(f'"{each}"' for each in profiles)
+            value = "true" if given[key] is True else f"{given[key]:g}"
+            raise UserError(f'{key} = {value}: the profile "{profile}" has none; leave it out or give {allowed}')
