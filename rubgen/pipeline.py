@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from rubgen.brief import html_table, number, table
 from rubgen.jit import kernels_are_compiled
 from rubgen.labels import Labels, label
 from rubgen.progress import COMPILING, step
@@ -18,6 +21,9 @@ from rubgen.solver import Response, Status
 from rubgen.solver.integrate import integrate
 from rubgen.solver.refusal import no_response
 
+if TYPE_CHECKING:
+    from rubgen.output import Figure
+
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
@@ -27,6 +33,48 @@ class Run:
     response: Response
     recording: Recording | None
     labels: Labels | None
+
+    def __repr__(self) -> str:
+        return table(*self._shown())
+
+    def _repr_html_(self) -> str:
+        return html_table(*self._shown())
+
+    def _shown(self) -> tuple[str, dict[str, str]]:
+        """A title and the facts that one looks at first."""
+        scenario, response, recording, labels = self.scenario, self.response, self.recording, self.labels
+        title = f"{scenario.run_id}: {scenario.machine.name}, {scenario.operation.title}"
+        if recording is None or labels is None:
+            return title, {"status": f"{response.status.code}: {response.reason}"}
+        return title, {
+            "rub": number(labels.rub),
+            "motion": f"{labels.motion.value}, period {number(labels.period)}",
+            "contact": f"{number(labels.contact_duty)} of the time, "
+            f"{labels.blades_touched} blades, {labels.contact_zones} zones",
+            "impulse": f"{number(labels.impulse_per_turn)} N s a turn",
+            "record": f"{response.record_turns} turns after {response.settle_turns}",
+            "recording": f"{len(recording.channels)} channels of {recording.samples} samples at "
+            f"{recording.sample_rate_hz:g} Hz",
+            "more": "labels, recording.channels[name].values, response; save(path), plot(), replay()",
+        }
+
+    def save(self, path: Path | str) -> None:
+        """Write the run to a file whose name ends in .mcap, .parquet or .rrd. See `rubgen.output.save`."""
+        from rubgen.output import save
+
+        save(self, Path(path))
+
+    def plot(self) -> Figure:
+        """A matplotlib Figure of the run: orbit, waveform, contact by angle, orders. See `rubgen.output.plot`."""
+        from rubgen.output import plot
+
+        return plot(self)
+
+    def replay(self, *, web: bool = False) -> None:
+        """Show the run in Rerun's viewer until it is closed, with `web` in the browser. See `rubgen.output.replay`."""
+        from rubgen.output import replay
+
+        replay(self, web=web)
 
 
 def simulate(scenario: Scenario) -> Run:

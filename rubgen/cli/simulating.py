@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from inspect import signature
 from pathlib import Path
 from typing import Any
 
 from rubgen.cli.printing import print_json, print_pairs
 from rubgen.cli.replaying import Showing, show
-from rubgen.errors import UserError
 from rubgen.labels.plain import labels_dict
-from rubgen.pipeline import Run, simulate
+from rubgen.output import save, writer_of
+from rubgen.pipeline import simulate
 from rubgen.scenario import Scenario, make_scenario
 from rubgen.scenario.vary import varied_values
 from rubgen.solver import Status
@@ -42,7 +41,8 @@ def simulate_command(options: dict[str, Any], out: Path | None, *, replay: bool 
     """Simulate, print, write and show; 1 where the run failed."""
     if replay:
         Showing().check()
-    write = _writer(out)
+    if out:
+        writer_of(out, f"--out {out}")
     run = simulate(_scenario(options))
     labels = labels_dict(run.labels) if run.labels else {}
     result: dict[str, object] = {
@@ -59,8 +59,8 @@ def simulate_command(options: dict[str, Any], out: Path | None, *, replay: bool 
         print_pairs(result | {name: labels[name] for name in LABEL_NAMES if name in labels})
     if run.response.status is not Status.OK:
         return 1
-    if out and write:
-        _write(run, out, write)
+    if out:
+        save(run, out, named=f"--out {out}")
     if replay:
         show(replay_of(run), Showing())
     return 0
@@ -68,31 +68,3 @@ def simulate_command(options: dict[str, Any], out: Path | None, *, replay: bool 
 
 def _scenario(options: dict[str, Any]) -> Scenario:
     return make_scenario(**{key: options[key] for key in signature(make_scenario).parameters})
-
-
-def _writer(out: Path | None) -> Callable[[Run, Path], None] | None:
-    """How to write that kind of file; refused before the run where the name or the folder will not do."""
-    if out is None:
-        return None
-    if not out.parent.is_dir():
-        raise UserError(f"--out {out}: there is no directory {out.parent}; make it first")
-    if out.suffix == ".mcap":
-        from rubgen.io.mcap import write_mcap
-
-        return write_mcap
-    if out.suffix == ".parquet":
-        from rubgen.io.parquet import write_parquet
-
-        return write_parquet
-    if out.suffix == ".rrd":
-        from rubgen.viz.rerun import write_rrd
-
-        return write_rrd
-    raise UserError(f"--out {out}: unknown kind of file; end the name in .mcap, .parquet or .rrd")
-
-
-def _write(run: Run, out: Path, write: Callable[[Run, Path], None]) -> None:
-    try:
-        write(run, out)
-    except OSError as error:
-        raise UserError(f"--out {out}: cannot be written ({error.strerror or error}); choose another place") from None

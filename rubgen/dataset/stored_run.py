@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from html import escape
 from typing import TYPE_CHECKING, Any
 
+from rubgen.brief import html_table, number, table
 from rubgen.scenario.vary import KEYS
 from rubgen.sensors.channel import Float32Array
 
@@ -41,18 +41,16 @@ class StoredRun:
         return self.data.touches(self.run_id)
 
     def __repr__(self) -> str:
-        facts = "\n".join(f"  {name:<{28}}  {value}" for name, value in self._shown().items())
-        return f"{self.run_id} of {self.data.layout.root}\n{facts}"
+        return table(f"{self.run_id} of {self.data.layout.root}", self._shown())
 
     def _repr_html_(self) -> str:
-        rows = "".join(f"<tr><th>{name}</th><td>{escape(str(each))}</td></tr>" for name, each in self._shown().items())
-        return f"<table><caption>{escape(self.run_id)}</caption>{rows}</table>"
+        return html_table(self.run_id, self._shown())
 
-    def _shown(self) -> dict[str, Any]:
+    def _shown(self) -> dict[str, str]:
         if self.status != "ok":
             return {"status": f"{self.status}: {self.reason}"}
         speed = self.parameters["speed_rpm"]
-        return {"speed_rpm": f"{speed:,.6g}", **{name: _short(self.labels.get(name)) for name in SHOWN}}
+        return {"speed_rpm": f"{speed:,.6g}", **{name: number(self.labels.get(name)) for name in SHOWN}}
 
 
 def stored_run(data: DataSet, row: dict[str, Any]) -> StoredRun:
@@ -66,7 +64,3 @@ def stored_run(data: DataSet, row: dict[str, Any]) -> StoredRun:
         labels={name: value for name, value in row.items() if name not in own},
         data=data,
     )
-
-
-def _short(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -7,6 +7,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from rubgen.arrays import FloatArray
+from rubgen.brief import number
 from rubgen.labels.harmonics import TapOrders
 from rubgen.labels.lyapunov import Exponent
 
@@ -81,3 +82,10 @@ class Labels:
     windows: Windows | None = None
     amounts: ContactAmounts | None = None
     whirl: Whirl | None = None
+
+    def __repr__(self) -> str:
+        duty, zones = number(self.contact_duty), self.contact_zones
+        contact = f"contact_duty={duty}, blades_touched={self.blades_touched}, contact_zones={zones}"
+        impulse = f"impulse_per_turn={number(self.impulse_per_turn)}"
+        motion = f"motion={self.motion.value!r}, period={self.period}, has_2fr={self.has_2fr}"
+        return f"Labels(rub={self.rub}, {contact}, {impulse}, {motion}, orders of {len(self.orders)} signals)"

@@ -12,6 +12,8 @@ from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 from pydantic.dataclasses import dataclass
 from pydantic_core import PydanticCustomError
 
+from rubgen.brief import brief
+
 
 def _no_text(value: object) -> object:
     """A number as it is; pydantic would read "0.3" as 0.3 and true as 1."""
@@ -250,6 +252,8 @@ class Machine:
     unbalance_angle_deg: Finite = 0.0
     unbalances: tuple[Unbalance, ...] = ()
     gravity_m_per_s2: Annotated[float, Field(ge=0, le=1e4, allow_inf_nan=False), NUMBER] = 0.0
+
+    __repr__ = brief
 
     @model_validator(mode="after")
     def _unbalances_have_their_blades(self) -> Self:

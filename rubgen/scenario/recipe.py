@@ -115,6 +115,12 @@ class Recipe(BaseModel):
     _machine: Machine | None = PrivateAttr(default=None)
     _sensor_set: SensorSet | None = PrivateAttr(default=None)
 
+    def __repr__(self) -> str:
+        varied = ", ".join(entry.key for entry, _ in self.distributions()) or "nothing"
+        return f"Recipe({self.name!r}: {self.runs} runs of {self.machine}, seed {self.seed}; [vary] has {varied})"
+
+    __str__ = __repr__
+
     @cached_property
     def base(self) -> Scenario:
         """The scenario before `[vary]`: the machine as its file says, at the default speed."""

@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
+from rubgen.brief import brief
 from rubgen.machine import NUMBER, STRICT, Machine, NonNegative, Positive, Seed, Switch
 from rubgen.scenario.rotation import Rotation
 from rubgen.scenario.sensor_set import default_sensor_set
@@ -81,6 +82,13 @@ class Operation:
         return max(1, math.ceil(turns - 1e-9))
 
     @property
+    def title(self) -> str:
+        """The profile and its speeds, for people."""
+        end = f" to {self.end_speed_rpm:,.6g}" if self.end_speed_rpm else ""
+        swing = f" ± {self.fluctuation_rpm:,.6g}" if self.fluctuation_rpm else ""
+        return f"{self.profile} at {self.speed_rpm:,.6g}{end}{swing} rev/min"
+
+    @property
     def speed_rad_per_s(self) -> float:
         """Spin speed Omega in rad/s."""
         return self.speed_rpm * RPM
@@ -136,6 +144,8 @@ class Sensing:
     keep_clean: Switch = False
     set: SensorSet = Field(default_factory=default_sensor_set)
 
+    __repr__ = brief
+
     @property
     def fastest_hz(self) -> float:
         """The highest frequency that steps must feed: the sample rate, or that of a sensor's own dynamics."""
@@ -163,6 +173,12 @@ class Scenario:
     seed: Seed = 0
     index: Seed = 0
     machine_id: str = ""
+
+    def __repr__(self) -> str:
+        friction, sensing = self.contact.friction, self.sensing
+        sensors = f"{len(sensing.set.sensors)} sensors {sensing.set.name!r} at {sensing.sample_rate_hz:g} Hz"
+        facts = f"{self.operation.title}, friction {friction:g}, {sensors} for {self.signal_seconds:g} s"
+        return f"Scenario({self.run_id}: {self.machine.name}, {facts}, seed {self.seed})"
 
     @property
     def run_id(self) -> str:

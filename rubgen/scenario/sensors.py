@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Field, model_validator
 from pydantic.dataclasses import dataclass
 
+from rubgen.brief import brief
 from rubgen.machine import NUMBER, STRICT, Finite, NonNegative, Positive
 from rubgen.machine.problems import nearest
 from rubgen.machine.sentences import CHANNEL_NAME
@@ -209,6 +210,8 @@ class SensorSet:
     name: Annotated[str, Field(min_length=1)]
     sensors: Annotated[tuple[AnySensor, ...], Field(min_length=1)]
     shaft_runout: tuple[RunoutOrder, ...] = ()
+
+    __repr__ = brief
 
     @model_validator(mode="after")
     def _names_differ(self) -> Self:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rubgen.arrays import FloatArray
+from rubgen.brief import brief
 from rubgen.sensors.blade_tip_timing import TipTimes
 
 Float32Array = npt.NDArray[np.float32]
@@ -28,6 +29,8 @@ class Channel:
     noise_rms: float
     values: Float32Array
     clean: Float32Array | None = None
+
+    __repr__ = brief
 
 
 def quantity_key(quantity: str) -> str:
@@ -51,6 +54,8 @@ class Recording:
     once_per_rev: FloatArray
     start_seconds: float = 0.0
     tip_timing: dict[str, TipTimes] = field(default_factory=dict)
+
+    __repr__ = brief
 
     @property
     def samples(self) -> int:

@@ -8,6 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from rubgen.arrays import ComplexArray, FloatArray, IntArray
+from rubgen.brief import brief
 from rubgen.scenario.rotation import Rotation
 
 
@@ -46,6 +47,8 @@ class ContactEvents:
     normal_loss: FloatArray
     """Work lost in the normal direction, J, <= 0 for restitution 0."""
 
+    __repr__ = brief
+
 
 @dataclass(frozen=True, kw_only=True)
 class TipArrivals:
@@ -56,6 +59,8 @@ class TipArrivals:
     """Time in steps from the start of the record, with its fraction; negative in the settling."""
     displacement: FloatArray
     """How far the tip's chord stands along the rotation, in m, from its place on the undeformed machine at rest."""
+
+    __repr__ = brief
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,6 +113,8 @@ class Track:
     tip_growth: FloatArray
     casing_modes: FloatArray
 
+    __repr__ = brief
+
 
 @dataclass(frozen=True, kw_only=True)
 class WornLiner:
@@ -122,6 +129,8 @@ class WornLiner:
     volume: float
     removed: float
 
+    __repr__ = brief
+
 
 @dataclass(frozen=True, kw_only=True)
 class Course:
@@ -135,6 +144,8 @@ class Course:
     rotation: Rotation
     turn_steps: IntArray
     orders: ComplexArray
+
+    __repr__ = brief
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -189,6 +200,8 @@ class Response:
     blisk_mass: float = float("nan")
     free_penetration: float = float("nan")
     window_orders: ComplexArray = field(default_factory=lambda: np.zeros((0, 0, 20), dtype=np.complex128))
+
+    __repr__ = brief
 
     @property
     def turn_seconds(self) -> float:

@@ -9,8 +9,8 @@ import pytest
 from PIL import Image
 from rerun.chunk import RrdReader
 
-from rubgen.cli import replaying
 from rubgen.io.mcap import write_mcap
+from rubgen.viz import viewer
 from rubgen.viz.replay import replay_of
 
 
@@ -85,7 +85,7 @@ class MadeViewer:
 @pytest.fixture
 def made_viewer(monkeypatch):
     monkeypatch.setenv("DISPLAY", ":0")
-    monkeypatch.setattr(replaying.subprocess, "Popen", MadeViewer)
+    monkeypatch.setattr(viewer.subprocess, "Popen", MadeViewer)
     monkeypatch.setattr(MadeViewer, "started", [])
     return MadeViewer
 
@@ -108,7 +108,7 @@ def test_a_simulated_run_is_shown_straight_away(run, rub_run, made_viewer, monke
 
 
 def test_a_run_is_not_simulated_where_it_could_not_be_shown(run, monkeypatch):
-    for name in replaying.SCREENS:
+    for name in viewer.SCREENS:
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr("rubgen.cli.simulating.simulate", lambda _: pytest.fail("simulated"))
     code, _, err = run("simulate", "--replay")
@@ -139,7 +139,7 @@ class MadeClient:
 
 def test_the_viewer_begins_at_the_turns_about_the_hardest_touch(run, rub_run, mcap_file, made_viewer, monkeypatch):
     monkeypatch.setattr("rerun.experimental.ViewerClient", MadeClient)
-    monkeypatch.setattr(replaying.time, "sleep", lambda _: None)
+    monkeypatch.setattr(viewer.time, "sleep", lambda _: None)
     monkeypatch.setattr(made_viewer, "poll", lambda _: None)
     assert run("replay", str(mcap_file))[0] == 0
     frames = replay_of(rub_run).frames

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rubgen
-from rubgen.errors import UserError
+from rubgen.errors import RubgenWarning, UserError
 from rubgen.scenario import load_recipe, make_scenario, parse_recipe
 from rubgen.scenario.plain import scenario_dict
 from rubgen.scenario.vary import KEYS, PARAMETERS
@@ -125,3 +125,8 @@ def test_the_run_up_of_a_recipe_and_of_keys_are_one():
     operation = first.operation
     keys = {name: getattr(operation, name) for name in ("speed_rpm", "profile", "end_speed_rpm", "duration_s")}
     assert make_scenario(**keys).operation.rotation == operation.rotation
+
+
+def test_a_value_that_is_surely_not_meant_is_warned_of():
+    with pytest.warns(RubgenWarning, match="clearance_m = 0.22: "):
+        make_scenario(clearance_m=0.22)

@@ -38,6 +38,14 @@ def warned(tables):
     return [str(each.message) for each in found]
 
 
+def made(*machine, **keys):
+    """A scenario and what it was warned of."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        scenario = make_scenario(*machine, **keys)
+    return scenario, [str(each.message) for each in found]
+
+
 @pytest.mark.parametrize("key", VARIED)
 def test_a_varied_value_that_is_surely_not_meant(key):
     wrong, message, right = VARIED[key]
@@ -123,7 +131,8 @@ MACHINES = [
 def test_a_machine_in_other_units(old, new, message, tmp_path):
     assert old in TEXT
     (tmp_path / "m.toml").write_text(TEXT.replace(old, new, 1))
-    found = list(implausible(make_scenario(str(tmp_path / "m.toml"))))
+    scenario, found = made(str(tmp_path / "m.toml"))
+    assert found == list(implausible(scenario))
     assert (len(found) > 0) == (message is not None)
     assert message is None or found[0].startswith(message)
 
@@ -154,7 +163,7 @@ def test_what_cannot_be_meant_is_an_error(key):
     with pytest.raises(UserError) as caught:
         parse_recipe({**MINIMAL, "vary": {key: wrong}})
     assert f"recipe: {key} = {wrong:g}: {message}" in str(caught.value)
-    check_feasible(make_scenario(**{key: neighbour}))
+    check_feasible(made(**{key: neighbour})[0])
 
 
 @pytest.mark.parametrize(

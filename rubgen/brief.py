@@ -1,0 +1,64 @@
+"""Values as a notebook should show them: a line, not pages."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from enum import Enum
+from html import escape
+from itertools import islice
+
+import numpy as np
+
+FEW, LONGEST, MOST = 3, 60, 780
+
+
+def brief(value: object) -> str:
+    """A dataclass as `Name(field=..., ...)`: arrays by their shape, tables and long lists by their size.
+
+    Fields with their default value are left out. As `__repr__` it serves every class with large fields.
+    """
+    fields = dataclasses.fields(value) if dataclasses.is_dataclass(value) else ()
+    shown = [f"{field.name}={_short(getattr(value, field.name))}" for field in fields if _is_told(value, field)]
+    text = ", ".join(shown)
+    return f"{type(value).__name__}({text if len(text) <= MOST else text[:MOST] + '...'})"
+
+
+def table(title: str, rows: Mapping[str, str]) -> str:
+    """A title and pairs of name and value, one a line."""
+    width = max(map(len, rows), default=0)
+    return "\n".join([title, *(f"  {name:<{width}}  {value}" for name, value in rows.items())])
+
+
+def html_table(title: str, rows: Mapping[str, str]) -> str:
+    """The same for a notebook."""
+    cells = "".join(f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows.items())
+    return f"<table><caption>{escape(title)}</caption>{cells}</table>"
+
+
+def number(value: object) -> str:
+    """A label or parameter in a few characters; what is undefined as -."""
+    if value is None:
+        return "-"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def _is_told(value: object, field: dataclasses.Field[object]) -> bool:
+    one = getattr(value, field.name)
+    return field.repr and not (isinstance(one, int | float | str | None) and one == field.default)
+
+
+def _short(value: object) -> str:
+    if isinstance(value, np.ndarray):
+        return f"array{value.shape}"
+    if isinstance(value, Mapping):
+        first = ", ".join(map(str, islice(value, FEW)))
+        return f"{{{len(value)}: {first}{', ...' if len(value) > FEW else ''}}}"
+    if isinstance(value, list | tuple) and len(value) > FEW:
+        return f"({len(value)} values)"
+    if isinstance(value, Enum):
+        return str(value.value).split(":")[0]
+    if dataclasses.is_dataclass(value):
+        return f"{type(value).__name__}(...)"
+    text = f"{value:.6g}" if isinstance(value, float) else repr(value)
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]}..."

@@ -1,0 +1,81 @@
+"""One run as a file, as a picture, in the viewer: what `Run.save`, `Run.plot` and `Run.replay` do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rubgen.errors import UserError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Figure
+
+    from rubgen.pipeline import Run
+
+Write = Callable[["Run", Path], None]
+
+
+def save(run: Run, path: Path, *, named: str = "") -> None:
+    """Write `run` to `path`, complete or not at all: .mcap, .parquet (one row) or .rrd, by the ending.
+
+    `named` is how messages call the file. Raises UserError for a failed run, another ending, a folder that does not
+    exist, and a file that cannot be written.
+    """
+    named = named or str(path)
+    write = writer_of(path, named)
+    _check_good(run, "save")
+    try:
+        write(run, path)
+    except OSError as error:
+        raise UserError(f"{named}: cannot be written ({error.strerror or error}); choose another place") from None
+
+
+def writer_of(path: Path, named: str) -> Write:
+    """What writes that kind of file; UserError where the ending or the folder will not do."""
+    if not path.parent.is_dir():
+        raise UserError(f"{named}: there is no directory {path.parent}; make it first")
+    if path.suffix == ".mcap":
+        from rubgen.io.mcap import write_mcap
+
+        return write_mcap
+    if path.suffix == ".parquet":
+        from rubgen.io.parquet import write_parquet
+
+        return write_parquet
+    if path.suffix == ".rrd":
+        from rubgen.viz.rerun import write_rrd
+
+        return write_rrd
+    raise UserError(f"{named}: unknown kind of file; end the name in .mcap, .parquet or .rrd")
+
+
+def plot(run: Run) -> Figure:
+    """Four panels: orbit with its section, a recorded channel, contact by angle, orders of the contact force.
+
+    Raises UserError for a failed run.
+    """
+    from rubgen.viz.figures import overview
+
+    _check_good(run, "plot")
+    return overview(run)
+
+
+def replay(run: Run, *, web: bool = False) -> None:
+    """Show `run` in Rerun's viewer, or with `web` in the browser of this machine alone, and wait until it is closed.
+
+    Raises UserError for a failed run and where there is no screen.
+    """
+    from rubgen.viz.replay import replay_of
+    from rubgen.viz.viewer import has_screen, open_viewer
+
+    _check_good(run, "replay")
+    if not web and not has_screen():
+        raise UserError('there is no screen for the viewer (DISPLAY is not set); use save("run.rrd") or web=True')
+    open_viewer(replay_of(run), web=web)
+
+
+def _check_good(run: Run, what: str) -> None:
+    if run.recording is None:
+        status = f"{run.response.status.code}: {run.response.reason}"
+        raise UserError(f"{run.scenario.run_id} failed ({status}); there is nothing to {what}")

@@ -1,0 +1,81 @@
+"""Rerun's viewer on one replay, until it is closed."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from rubgen.errors import UserError
+from rubgen.viz.replay import Replay
+
+HOST = "127.0.0.1"
+OPENING_TRIES = 100
+SCREENS = ("DISPLAY", "WAYLAND_DISPLAY")
+
+
+def open_viewer(replay: Replay, *, web: bool = False, full: bool = False) -> None:
+    """Show a replay in the viewer, or with `web` in the browser of this machine alone, and wait until it is closed.
+
+    Raises UserError where the viewer ends with an error, OSError where its file cannot be written.
+    """
+    from rubgen.viz.rerun import write_replay
+
+    with tempfile.TemporaryDirectory(prefix="rubgen-") as folder:
+        path = Path(folder) / f"{replay.scenario.run_id}.rrd"
+        write_replay(replay, path, full=full)
+        _open(path, _first_moment(replay), web=web)
+
+
+def has_screen() -> bool:
+    """Whether a window can be opened; other systems than Linux have one."""
+    return not sys.platform.startswith("linux") or any(os.environ.get(name) for name in SCREENS)
+
+
+def _first_moment(replay: Replay) -> float:
+    """Where the turns about the hardest touch begin."""
+    frames = replay.frames
+    if frames is None or not frames.dense.any():
+        return replay.hardest_touch
+    return float(frames.time[frames.dense == 1][0])
+
+
+def _open(path: Path, moment: float, *, web: bool) -> None:
+    """Rerun's viewer at a moment (s), or its web viewer for this machine alone, until it is closed."""
+    with socket.socket() as free:
+        free.bind((HOST, 0))
+        port = free.getsockname()[1]
+    command = [sys.executable, "-m", "rerun", str(path), "--hide-welcome-screen", "--bind", HOST, "--port", str(port)]
+    with subprocess.Popen([*command, "--web-viewer"] if web else command) as viewer:  # noqa: S603 - our own interpreter
+        try:
+            if not web:
+                _go_to(moment, port, viewer)
+            code = viewer.wait()
+        except KeyboardInterrupt:
+            viewer.terminate()
+            viewer.wait()
+            return
+    if code != 0:
+        raise UserError(f"the viewer ended with {code}; give --save FILE.rrd and open that file elsewhere")
+
+
+def _go_to(moment: float, port: int, viewer: subprocess.Popen[bytes]) -> None:
+    """Put the cursor there, as a file cannot say where it begins; a viewer that does not answer is left as it is."""
+    from rerun.experimental import ViewerClient
+
+    for _ in range(OPENING_TRIES):
+        if viewer.poll() is not None:
+            return
+        try:
+            client = ViewerClient.connect(f"rerun+http://{HOST}:{port}/proxy")
+            state = client.get_state()
+            if state.views and not state.loading:
+                client.set_time("time", duration=moment, play_state="playing")
+                return
+        except (ConnectionError, RuntimeError, ValueError):
+            pass
+        time.sleep(0.2)
