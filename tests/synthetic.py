@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from rubgen.labels.contact_amounts import ContactAmounts, RubExtent
 from rubgen.labels.harmonics import FRACTIONS, HIGHEST_ORDER, TapOrders
 from rubgen.labels.labels import Labels, Motion
 from rubgen.machine import load_machine
@@ -125,10 +126,23 @@ def _orders(generator: np.random.Generator) -> TapOrders:
     )
 
 
+def _no_contact() -> ContactAmounts:
+    return ContactAmounts(
+        touches=0,
+        friction_work=0.0,
+        blade_touches=np.zeros(BLADES, dtype=np.int64),
+        blade_impulses=np.zeros(BLADES),
+        severity=0.0,
+        free_penetration=-1e-4,
+        extent=RubExtent.NONE,
+    )
+
+
 def _labels(generator: np.random.Generator, contact: bool) -> Labels:
     names = ["blisk_x", "casing_acc_0", "contact_force"]
     details = {name: _orders(generator) for name in names}
     return Labels(
+        amounts=None if contact else _no_contact(),
         rub=contact,
         contact_duty=0.125 if contact else 0.0,
         impulse_per_turn=1.5 if contact else 0.0,

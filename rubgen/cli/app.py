@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any, Literal, NoReturn
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, CycloptsError, Parameter, Token
 
 from rubgen import __version__
+from rubgen.cli.mistakes import mistake
 from rubgen.errors import RubgenError, RubgenWarning, UserError
+from rubgen.progress import shown
 
 DONE, WANTING, MISTAKE, INTERRUPTED = 0, 1, 2, 130
 
@@ -29,8 +33,18 @@ def _option(text: str) -> Parameter:
     return Parameter(help=text)
 
 
+def _whole_number(text: str) -> Parameter:
+    return Parameter(help=text, converter=_whole)
+
+
+def _whole(_type: Any, tokens: Sequence[Token]) -> int:
+    """An integer as written: cyclopts would cut 2.5 to 2."""
+    return int(tokens[0].value)
+
+
 Json = Annotated[bool, Parameter(name="--json", negative=(), help="Print JSON, for programs.")]
 MachineName = Annotated[str, _option("Name of a preset, or path of a machine TOML.")]
+Force = Annotated[bool, Parameter(negative=(), help="Replace a file that is there.")]
 Directory = Annotated[Path, _option("Directory of a data set.")]
 
 
@@ -38,12 +52,17 @@ def main(arguments: list[str] | None = None) -> NoReturn:
     """Run the command line; always ends the process, with one line on stderr where it fails."""
     warnings.simplefilter("always", RubgenWarning)
     warnings.showwarning = _show_warning
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a name that cannot be shown here costs no result
+    words = sys.argv[1:] if arguments is None else arguments
     try:
-        code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+        with shown("--json" not in words):
+            code = app(words, exit_on_error=False, print_error=False, result_action="return_value")
         sys.stdout.flush()
         sys.exit(DONE if code is None else code)
     except CycloptsError as error:
-        _fail(f"{_one_line(error)}; see rubgen --help", MISTAKE)
+        _fail(mistake(error, app), MISTAKE)
     except UserError as error:
         _fail(str(error), MISTAKE)
     except RubgenError as error:
@@ -54,6 +73,11 @@ def main(arguments: list[str] | None = None) -> NoReturn:
         # Whoever read our output has gone; nothing may be flushed to it any more.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(WANTING)
+    except UnicodeEncodeError as error:
+        _fail(f"{str(error.object)[:200]!r}: cannot be written as {error.encoding} ({error.reason})", MISTAKE)
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        _fail(f"{where}{error.strerror or _one_line(error)}", MISTAKE)
 
 
 @app.command
@@ -62,8 +86,8 @@ def generate(
     /,
     *,
     out: Annotated[Path, _option("New or empty directory, or one of the same recipe, which is then completed.")],
-    runs: Annotated[int | None, _option("Number of runs, instead of the recipe's.")] = None,
-    workers: Annotated[int | None, _option("Number of processes; the number of cores when not given.")] = None,
+    runs: Annotated[int | None, _whole_number("Number of runs, instead of the recipe's.")] = None,
+    workers: Annotated[int | None, _whole_number("Number of processes; the number of cores when not given.")] = None,
     json: Json = False,
 ) -> int:
     """Make the data set of a recipe, or complete it where it was interrupted."""
@@ -96,17 +120,18 @@ def simulate(
     duration_s: Annotated[float | None, _option("Duration of a record whose speed changes, s.")] = None,
     fluctuation_rpm: Annotated[float | None, _option("Amplitude of a fluctuating speed, rev/min.")] = None,
     fluctuation_period_s: Annotated[float | None, _option("Period of a fluctuating speed, s.")] = None,
-    settle_turns: Annotated[int | None, _option("Turns before the record; automatic when not given.")] = None,
+    settle_turns: Annotated[int | None, _whole_number("Turns before the record; automatic when not given.")] = None,
     record_turns: Annotated[
-        int | None, _option("Turns of a steady record, at least 500, which is the default.")
+        int | None, _whole_number("Turns of a steady record, at least 500, which is the default.")
     ] = None,
-    steps_per_turn: Annotated[int, _option("Least number of integration steps in a turn.")] = 1024,
+    steps_per_turn: Annotated[int, _whole_number("Least number of integration steps in a turn.")] = 1024,
     sample_rate_hz: Annotated[float, _option("Samples a second of the recorded channels.")] = 25600.0,
     sensors: Annotated[str, _option("Sensor set: default, rig, or the path of a TOML.")] = "default",
     signal_seconds: Annotated[float, _option("Length of the recorded signals: the end of the record.")] = 1.0,
-    seed: Annotated[int, _option("Seed of the sensor noise.")] = 0,
+    seed: Annotated[int, _whole_number("Seed of the sensor noise.")] = 0,
     lyapunov: Annotated[bool | None, _option("Whether to compute the exponent of a steady run; on by default.")] = None,
     out: Annotated[Path | None, _option("File to write: .mcap, .parquet or .rrd.")] = None,
+    force: Force = False,
     replay: Annotated[bool, Parameter(negative=(), help="Then show the run in the viewer.")] = False,
     json: Json = False,
 ) -> int:
@@ -114,7 +139,7 @@ def simulate(
     options = dict(locals())
     from rubgen.cli.simulating import simulate_command
 
-    return simulate_command(options, out, replay=replay, as_json=json)
+    return simulate_command(options, out, replay=replay, force=force, as_json=json)
 
 
 @app.command
@@ -134,11 +159,12 @@ def replay(
     full: Annotated[
         bool, Parameter(negative=(), help="Every sample and touch, not only those about the hardest.")
     ] = False,
+    force: Force = False,
 ) -> int:
     """Show a run in Rerun: the machine in 3D, orbit, signals, orders, contact and labels on one time line."""
     from rubgen.cli.replaying import Showing, replay_command
 
-    showing = Showing(save=save, gif=gif, png=png, time=time, web=web, full=full)
+    showing = Showing(save=save, gif=gif, png=png, time=time, web=web, full=full, force=force)
     return replay_command(source, run, where, showing)
 
 
@@ -156,13 +182,14 @@ def figure(
     where: Annotated[str | None, _option("The first run that meets this condition.")] = None,
     over: Annotated[str | None, _option("Parameter of a sweep; the first that varies when not given.")] = None,
     channel: Annotated[str | None, _option("Recorded channel to draw.")] = None,
+    force: Force = False,
 ) -> int:
     """Draw a figure of a machine, a run or a data set."""
     from rubgen.cli.drawing import figure_command
     from rubgen.studies.figures import Choice
 
     choice = Choice(run_id=run, where=where, parameter=over, channel=channel)
-    return figure_command(name, source, out, choice)
+    return figure_command(name, source, out, choice, force=force)
 
 
 @app.command
@@ -171,11 +198,12 @@ def report(
     /,
     *,
     out: Annotated[Path | None, _option("File to write; DIR/report.html when not given.")] = None,
+    force: Force = False,
 ) -> int:
     """Write one page that shows a data set: classes, coverage, failures, examples, channels, how to load it."""
     from rubgen.cli.drawing import report_command
 
-    return report_command(directory, out)
+    return report_command(directory, out, force=force)
 
 
 @app.command
@@ -194,10 +222,10 @@ def reproduce(
     figure: Annotated[str | None, _option("One figure, 6 to 21, or a group of statements, by its name.")] = None,
     out: Annotated[Path | None, _option("Directory for the page; out/zeng2019 when not given.")] = None,
     quick: Annotated[bool, Parameter(negative=(), help="Few values and short runs, in two minutes.")] = False,
-    every: Annotated[int, _option("Every how many-th speed: 1 by 30 rev/min, 4 by 120.")] = 1,
+    every: Annotated[int, _whole_number("Every how many-th speed: 1 by 30 rev/min, 4 by 120.")] = 1,
     machine: Annotated[str, _option("Which preset is run: zeng2019, or zeng2019-fitted that --fit made.")] = "zeng2019",
     fit: Annotated[bool, Parameter(negative=(), help="Search what is not published, instead of the page.")] = False,
-    workers: Annotated[int | None, _option("Number of processes; the number of cores when not given.")] = None,
+    workers: Annotated[int | None, _whole_number("Number of processes; the number of cores when not given.")] = None,
     json: Json = False,
 ) -> int:
     """Reproduce a paper's figures and statements, or go on where it was interrupted."""
@@ -250,6 +278,15 @@ def doctor(*, json: Json = False) -> int:
     from rubgen.cli.doctor import doctor_command
 
     return doctor_command(as_json=json)
+
+
+@app.command
+def completion(
+    shell: Annotated[Literal["bash", "zsh", "fish", "powershell"], _option("The shell that is to complete.")], /
+) -> int:
+    """Print what makes a shell complete commands and options: eval "$(rubgen completion bash)" in ~/.bashrc."""
+    sys.stdout.write(app.generate_completion(shell=shell))
+    return 0
 
 
 def _show_warning(message: Warning | str, category: type[Warning], *_where: Any, **_how: Any) -> None:

@@ -4,34 +4,34 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from rubgen.cli.new_file import check_new_file, write_file
 from rubgen.cli.printing import say
-from rubgen.cli.replaying import check_new_file
-from rubgen.errors import UserError
+from rubgen.progress import step
 from rubgen.studies.figures import Choice, make_figure
 
 ENDINGS = (".png", ".svg", ".pdf")
 
 
-def figure_command(name: str, source: Path | None, out: Path, choice: Choice) -> int:
+def figure_command(name: str, source: Path | None, out: Path, choice: Choice, *, force: bool) -> int:
     """Draw and write."""
     from rubgen.viz.figures import save_figure
 
-    check_new_file("--out", out, ENDINGS)
-    figure = make_figure(name, source, choice)
-    try:
-        save_figure(figure, out)
-    except OSError as error:
-        raise UserError(f"--out {out}: cannot be written ({error.strerror or error}); choose another place") from None
+    check_new_file("--out", out, ENDINGS, force=force)
+    with step(f"draw {name}"):
+        figure = make_figure(name, source, choice)
+        write_file("--out", out, lambda part: save_figure(figure, part))
     say(str(out))
     return 0
 
 
-def report_command(directory: Path, out: Path | None) -> int:
+def report_command(directory: Path, out: Path | None, *, force: bool) -> int:
     """Write the page."""
     from rubgen.studies.report import write_report
 
     path = out or directory / "report.html"
-    check_new_file("--out", path, (".html",))
-    write_report(directory, path)
+    if directory.is_dir():
+        check_new_file("--out", path, (".html",), force=force)
+    with step("draw the page", "examples"):
+        write_report(directory, path)
     say(f"{path}: open it in any browser")
     return 0

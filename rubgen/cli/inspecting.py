@@ -11,21 +11,27 @@ import rubgen
 from rubgen.cli.printing import print_json, print_pairs, say
 from rubgen.dataset.inventory import Finding
 from rubgen.dataset.relabel import relabel
+from rubgen.dataset.unfinished import Unfinished, unfinished
 from rubgen.dataset.verify import advice, findings
 from rubgen.labels import Motion
+from rubgen.progress import step
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
 def info_command(directory: Path, *, as_json: bool) -> int:
-    """Count runs."""
+    """Count runs; of a set that was interrupted, those that are kept."""
+    begun = unfinished(directory)
+    if begun is not None:
+        return _tell_unfinished(directory, begun, as_json=as_json)
     data = rubgen.open(directory)
     runs = data.runs
     motions = [motion.value for motion in Motion]
     result: dict[str, object] = {
         "name": data.manifest.name,
         "runs": len(runs),
+        "finished": True,
         "status": _counts(runs["status"]),
         "rub": _counts(runs["rub"], ("true", "false")),
         **{name: _counts(runs[name], motions) for name in ("motion", "motion_blisk", "motion_casing")},
@@ -37,16 +43,28 @@ def info_command(directory: Path, *, as_json: bool) -> int:
     return 0
 
 
+def _tell_unfinished(directory: Path, begun: Unfinished, *, as_json: bool) -> int:
+    if as_json:
+        print_json({"name": begun.name, "runs": begun.runs, "finished": False, "kept": begun.kept})
+    else:
+        say(f"{directory}: unfinished, {begun.kept} of {begun.runs} runs of the recipe {begun.name!r} are kept")
+        say("  the command that began it makes the rest: rubgen generate [RECIPE.toml] --out ... with the same recipe")
+    return 0
+
+
 def verify_command(directory: Path, *, as_json: bool) -> int:
     """Check, list the problems; 1 where there are any."""
-    return _tell(directory, findings(directory), {}, as_json=as_json)
+    with step("verify"):
+        found = findings(directory)
+    return _tell(directory, found, {}, as_json=as_json)
 
 
 def repair_command(directory: Path, *, as_json: bool) -> int:
     """Make again what is derived, say what was made and what is still wrong; 1 where anything is."""
     from rubgen.dataset.repair import repair
 
-    done = repair(directory)
+    with step("repair"):
+        done = repair(directory)
     if not as_json:
         for path in done.made:
             say(f"{path}: made again")
@@ -67,7 +85,8 @@ def _tell(directory: Path, found: list[Finding], more: dict[str, object], *, as_
 
 def label_command(directory: Path, *, as_json: bool) -> int:
     """Make labels again, say where they differ; 1 where they do."""
-    done = relabel(directory)
+    with step("make labels again"):
+        done = relabel(directory)
     if as_json:
         differences = [dataclasses.asdict(each) for each in done.differences]
         print_json({"runs": done.runs, "labels": done.labels, "differences": differences})

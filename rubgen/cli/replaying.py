@@ -7,8 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from rubgen.cli.new_file import check_new_file, write_file
 from rubgen.cli.printing import say
 from rubgen.errors import UserError
+from rubgen.progress import step
 from rubgen.viz.replay import Replay
 from rubgen.viz.viewer import has_screen, open_viewer
 
@@ -23,6 +25,7 @@ class Showing:
     time: float | None = None
     web: bool = False
     full: bool = False
+    force: bool = False
 
     def check(self) -> None:
         """Raise UserError, before any work, where a file exists or cannot be, or there is nothing to show it with."""
@@ -32,7 +35,7 @@ class Showing:
             ("--png", self.png, ".png"),
         ):
             if path is not None:
-                check_new_file(option, path, (ending,))
+                check_new_file(option, path, (ending,), force=self.force)
         if self.time is not None and self.png is None:
             raise UserError(f"--time {self.time:g}: goes with --png FILE; name the file")
         if not (self.save or self.gif or self.png or self.web) and not has_screen():
@@ -57,19 +60,14 @@ def show(replay: Replay, showing: Showing) -> None:
     """Write the files that are asked for, or open the viewer and wait until it is closed."""
     from rubgen.viz.rerun import write_replay
 
-    try:
-        if showing.save:
-            write_replay(replay, showing.save, full=showing.full)
-            say(f"{showing.save}: open it with: rerun {showing.save}")
-        _write_pictures(replay, showing)
-        if not (showing.save or showing.gif or showing.png):
-            if showing.web:
-                say("close it with Ctrl-C")
-            open_viewer(replay, web=showing.web, full=showing.full)
-    except OSError as error:
-        raise UserError(
-            f"{error.filename or 'file'}: cannot be written ({error.strerror or error}); choose another place"
-        ) from None
+    if showing.save:
+        write_file("--save", showing.save, lambda part: write_replay(replay, part, full=showing.full))
+        say(f"{showing.save}: open it with: rerun {showing.save}")
+    _write_pictures(replay, showing)
+    if not (showing.save or showing.gif or showing.png):
+        if showing.web:
+            say("close it with Ctrl-C")
+        open_viewer(replay, web=showing.web, full=showing.full)
 
 
 def _write_pictures(replay: Replay, showing: Showing) -> None:
@@ -78,27 +76,15 @@ def _write_pictures(replay: Replay, showing: Showing) -> None:
     from rubgen.viz.figures.style import save_png
     from rubgen.viz.snapshot import picture, write_gif
 
-    def attempt(make: Callable[[], None]) -> None:
+    def attempt(option: str, path: Path, make: Callable[[Path], None]) -> None:
         try:
-            make()
+            write_file(option, path, make)
         except ValueError as error:
             raise UserError(str(error)) from None
+        say(str(path))
 
     if showing.png:
-        png = showing.png
-        attempt(lambda: save_png(picture(replay, showing.time), png))
-        say(str(png))
+        attempt("--png", showing.png, lambda part: save_png(picture(replay, showing.time), part))
     if showing.gif:
-        gif = showing.gif
-        attempt(lambda: write_gif(replay, gif))
-        say(str(gif))
-
-
-def check_new_file(option: str, path: Path, endings: tuple[str, ...]) -> None:
-    """Raise UserError for a file that exists, a folder that does not, or a name with another ending."""
-    if path.suffix not in endings:
-        raise UserError(f"{option} {path}: unknown kind of file; end the name in {' or '.join(endings)}")
-    if path.exists():
-        raise UserError(f"{option} {path}: exists already; delete it or choose another name")
-    if not path.parent.is_dir():
-        raise UserError(f"{option} {path}: there is no directory {path.parent}; make it first")
+        with step("draw the animation", "frames"):
+            attempt("--gif", showing.gif, lambda part: write_gif(replay, part))

@@ -6,11 +6,14 @@ from inspect import signature
 from pathlib import Path
 from typing import Any
 
-from rubgen.cli.printing import print_json, print_pairs
+from rubgen.cli.new_file import check_new_file
+from rubgen.cli.printing import print_json, print_pairs, say
 from rubgen.cli.replaying import Showing, show
+from rubgen.cli.run_summary import run_summary
 from rubgen.labels.plain import labels_dict
-from rubgen.output import save, writer_of
-from rubgen.pipeline import simulate
+from rubgen.output import save
+from rubgen.pipeline import Run, simulate
+from rubgen.progress import step
 from rubgen.scenario import Scenario, make_scenario
 from rubgen.scenario.vary import varied_values
 from rubgen.solver import Status
@@ -34,36 +37,46 @@ LABEL_NAMES = (
     "contact_force_orders",
     "blisk_x_orders",
 )
-"""What people are shown; programs get all labels."""
+"""Labels that programs find as null where a run failed."""
+WRITERS = {".mcap": "MCAP, for Foxglove and rubgen replay", ".parquet": "Parquet", ".rrd": "for the Rerun viewer"}
 
 
-def simulate_command(options: dict[str, Any], out: Path | None, *, replay: bool = False, as_json: bool) -> int:
+def simulate_command(
+    options: dict[str, Any], out: Path | None, *, replay: bool = False, force: bool = False, as_json: bool
+) -> int:
     """Simulate, print, write and show; 1 where the run failed."""
     if replay:
         Showing().check()
     if out:
-        writer_of(out, f"--out {out}")
+        check_new_file("--out", out, tuple(WRITERS), force=force)
     run = simulate(_scenario(options))
-    labels = labels_dict(run.labels) if run.labels else {}
-    result: dict[str, object] = {
+    good = run.response.status is Status.OK
+    if as_json:
+        print_json(_all_labels(run))
+    else:
+        print_pairs(dict(run_summary(run)))
+    if out and good:
+        with step("write the file"):
+            save(run, out, named=f"--out {out}")
+        if not as_json:
+            say(f"written        {out}: {out.stat().st_size / 1e6:.2g} MB, {WRITERS[out.suffix]}")
+    if replay and good:
+        show(replay_of(run), Showing())
+    return 0 if good else 1
+
+
+def _all_labels(run: Run) -> dict[str, object]:
+    """Status, parameters and labels by name."""
+    return {
         "status": run.response.status.code,
         "reason": run.response.reason,
         **varied_values(run.scenario),
         "steps_per_turn": run.response.steps_per_turn,
         "settle_turns": run.response.settle_turns,
         "record_turns": run.response.record_turns,
+        **dict.fromkeys(LABEL_NAMES),
+        **(labels_dict(run.labels) if run.labels else {}),
     }
-    if as_json:
-        print_json(result | dict.fromkeys(LABEL_NAMES) | labels)
-    else:
-        print_pairs(result | {name: labels[name] for name in LABEL_NAMES if name in labels})
-    if run.response.status is not Status.OK:
-        return 1
-    if out:
-        save(run, out, named=f"--out {out}")
-    if replay:
-        show(replay_of(run), Showing())
-    return 0
 
 
 def _scenario(options: dict[str, Any]) -> Scenario:

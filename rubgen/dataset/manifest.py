@@ -128,6 +128,8 @@ def write_manifest(layout: Layout, identity: Identity, status: dict[str, int]) -
 
 def read_manifest(layout: Layout) -> Manifest:
     """The manifest of a finished set; UserError where there is none, or it is damaged or of no set of rubgen."""
+    if not layout.manifest.exists():
+        raise UserError(f"{layout.root}: no finished data set of rubgen: {_why_none(layout)}")
     try:
         for path in (layout.manifest, layout.digest):
             check_regular(path)
@@ -145,6 +147,13 @@ def read_manifest(layout: Layout) -> Manifest:
     except ValueError as error:
         raise UserError(f"{layout.manifest}: not a manifest of rubgen ({error}); {MAKE_AGAIN}") from None
     return _checked(manifest, layout.manifest)
+
+
+def _why_none(layout: Layout) -> str:
+    if layout.identity.exists():
+        return "it is unfinished; the `rubgen generate` command that began it makes the rest"
+    what = "it has no manifest.json" if layout.root.is_dir() else "there is no such directory"
+    return f"{what}; give the directory of `rubgen generate`"
 
 
 def _checked(manifest: Manifest, path: Path) -> Manifest:

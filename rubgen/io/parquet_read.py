@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -31,13 +32,14 @@ class ParquetSource:
         self.path = path
         self._size = check_regular(path)
         with damage_named(path):
-            with pq.ParquetFile(path) as footer:
+            self._stream = pa.OSFile(os.fsencode(path))  # the bytes of a name that is no UTF-8 too
+            with pq.ParquetFile(self._stream) as footer:
                 facts = footer.metadata
                 self.schema_arrow: pa.Schema = footer.schema_arrow.remove_metadata()
             self.num_row_groups: int = facts.num_row_groups
             self._text = _text_columns(path, self.schema_arrow)
             self._file = pq.ParquetFile(
-                path, metadata=facts, read_dictionary=self._text, page_checksum_verification=True
+                self._stream, metadata=facts, read_dictionary=self._text, page_checksum_verification=True
             )
 
     def __enter__(self) -> ParquetSource:
@@ -47,6 +49,7 @@ class ParquetSource:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._file.close()
+        self._stream.close()
 
     def rows_of(self, group: int) -> int:
         """Rows of one group, as the footer says."""

@@ -16,6 +16,7 @@ from rubgen.machine import load_machine
 from rubgen.machine.problems import nearest
 from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import Reduction
+from rubgen.scenario.vary import KEYS
 from rubgen.viz import figures
 from rubgen.viz.figures.data_set import axis_text, scale_of, varied_keys
 from rubgen.viz.orders import order_map
@@ -138,10 +139,16 @@ def _parameter(data: DataSet, choice: Choice) -> str:
     if choice.parameter is None:
         return varied[0] if varied else "speed_rpm"
     if choice.parameter not in varied:
-        raise UserError(
-            f"--over {choice.parameter}: does not vary in this set; give one of {', '.join(varied) or 'none'}"
-        )
+        raise UserError(f"--over {choice.parameter}: {_why_not_over(choice.parameter, varied)}")
     return choice.parameter
+
+
+def _why_not_over(name: str, varied: list[str]) -> str:
+    if not varied:
+        return "no parameter varies in this set; leave --over out"
+    if name in KEYS:
+        return f"does not vary in this set; give one of {', '.join(varied)}"
+    return f"unknown parameter; {nearest(name, varied)}"
 
 
 def _without_noise(data: DataSet, channel: str) -> str:

@@ -15,6 +15,7 @@ from rubgen.dataset.verify import verify
 from rubgen.errors import UserError
 from rubgen.io.durable import write_durably
 from rubgen.labels.labels import Motion
+from rubgen.progress import count
 from rubgen.scenario.vary import PARAMETERS
 from rubgen.viz.colors import MOTION_COLORS
 from rubgen.viz.figures.data_set import dataset_overview, varied_keys
@@ -84,7 +85,10 @@ def render_report(directory: Path) -> str:
     good = data.ok
     if good.empty:
         raise UserError(f"{directory}: no run is good, so there is nothing to show; see `rubgen info {directory}`")
-    replays = {run_id: find_replay(directory, run_id).replay for run_id in example_runs(good)}
+    examples, replays = example_runs(good), {}
+    for done, run_id in enumerate(examples):
+        count(done, len(examples))
+        replays[run_id] = find_replay(directory, run_id).replay
     first = next(iter(replays.values()))
     environment = Environment(loader=PackageLoader("rubgen.studies", "."), autoescape=True, undefined=StrictUndefined)
     identity = data.manifest.identity

@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from rubgen.arrays import FloatArray
 from rubgen.labels.labels import Motion
 from rubgen.machine import Unbalance
+from rubgen.progress import count
 from rubgen.sensors.motion_frames import MotionFrames
 from rubgen.viz.colors import BLUE, GREY, MOTION_COLORS, PAPER_GREY, UNBALANCE, VERMILION, impulse_color
 from rubgen.viz.figures.style import INK, label_axes, new_figure, note
@@ -88,7 +89,8 @@ def _palette(images: list[Image.Image]) -> Image.Image:
 
 
 def _pixels(scene: _Scene, chosen: np.ndarray) -> Iterator[np.ndarray]:
-    for row in chosen:
+    for done, row in enumerate(chosen):
+        count(done, len(chosen))
         figure = _drawn(scene, int(row))
         figure.set_dpi(GIF_DPI)
         figure.canvas.draw()

@@ -1,4 +1,5 @@
 import json
+import os
 import subprocess
 import sys
 from inspect import signature
@@ -8,6 +9,8 @@ import pytest
 
 import rubgen
 from rubgen.cli.app import app, simulate
+from rubgen.cli.new_file import write_file
+from rubgen.errors import UserError
 from rubgen.io.mcap import read_mcap
 from rubgen.scenario.vary import KEYS
 
@@ -64,7 +67,7 @@ def test_every_key_of_vary_is_an_option_of_simulate():
 
 
 def test_simulate_takes_the_keys_of_make_scenario_with_the_same_defaults():
-    own = {"out", "replay", "json"}
+    own = {"out", "force", "replay", "json"}
     options = {name: option.default for name, option in signature(simulate).parameters.items() if name not in own}
     assert options == {name: key.default for name, key in signature(rubgen.make_scenario).parameters.items()}
 
@@ -135,7 +138,12 @@ def test_simulate_with_contact_writes_a_file(run, short, tmp_path):
 def test_simulate_for_people(run, short):
     code, output, _ = run("simulate", "--speed-rpm", "6000", *short)
     assert code == 0
-    assert "motion_casing                     static" in output
+    lines = dict(line.split("  ", 1) for line in output.splitlines())
+    assert len(output.splitlines()) <= 25
+    assert lines["rub"].strip() == "no"
+    assert "rev/min, 110 turns after 90 to settle" in lines["run"]
+    assert lines["motion"].strip() == "period-1, confidence 1.00 (blisk period-1, casing static)"
+    assert lines["smallest gap"].endswith("µm without contact")
 
 
 def test_a_failed_run_ends_with_1(run, short, monkeypatch, rub_run):
@@ -153,10 +161,25 @@ def test_a_failed_run_ends_with_1(run, short, monkeypatch, rub_run):
 
 
 BAD = {
-    "unknown command": (["simulat"], "simulat"),
-    "unknown option": (["simulate", "--sped-rpm", "3"], "--sped-rpm"),
-    "no number": (["simulate", "--speed-rpm", "fast"], "fast"),
-    "missing option": (["generate"], "--out"),
+    "unknown command": (["simulat"], "simulat: unknown command; did you mean simulate? commands: completion, "),
+    "unlike any command": (["zzz"], "zzz: unknown command; commands: completion, "),
+    "last command": (["infoo"], "simulate, verify\n"),
+    "unknown option": (
+        ["simulate", "--sped-rpm", "3"],
+        "--sped-rpm: unknown option of rubgen simulate; did you mean --speed-rpm? see rubgen simulate --help",
+    ),
+    "unlike any option": (["info", "x", "--qqq"], "--qqq: unknown option of rubgen info; see rubgen info --help"),
+    "no number": (["simulate", "--speed-rpm", "fast"], "--speed-rpm fast: must be a number; see"),
+    "no whole number": (["simulate", "--settle-turns", "2.5"], "--settle-turns 2.5: must be a whole number; see"),
+    "no whole runs": (["generate", "--out", "x", "--runs", "1e1"], "--runs 1e1: must be a whole number; see"),
+    "no flag": (["info", "x", "--json=foo"], "--json foo: must be true or false; see"),
+    "missing option": (["generate"], "--out: rubgen generate needs it; see rubgen generate --help"),
+    "missing value": (["generate", "--out"], "--out: a value must follow; see rubgen generate --help"),
+    "missing argument": (["info"], "DIRECTORY: rubgen info needs it; see rubgen info --help"),
+    "too many": (["info", "a", "b"], "b: one argument too many for rubgen info; see"),
+    "twice": (["modes", "--json", "--json"], "--json: given more than once; give it once"),
+    "shell": (["completion", "zhs"], "SHELL zhs: must be one of bash, zsh, fish, powershell; did you mean zsh?"),
+    "no report": (["report", "none"], "none: no finished data set of rubgen: there is no such directory; give"),
     "speed 0": (["simulate", "--speed-rpm", "0"], "speed_rpm = 0: must be above 0"),
     "nan": (["simulate", "--friction", "nan"], "friction = nan: must be at least 0 and at most 0.3"),
     "inf": (["simulate", "--speed-rpm", "inf"], "speed_rpm = inf: must be above 0"),
@@ -202,3 +225,83 @@ def test_ctrl_c_ends_with_130(run, monkeypatch, short):
 
     monkeypatch.setattr("rubgen.cli.simulating.simulate", interrupt)
     assert run("simulate", *short) == (130, "", "rubgen: interrupted\n")
+
+
+def test_a_file_that_is_there_is_kept_unless_forced(run, short, tmp_path):
+    path = tmp_path / "run.mcap"
+    path.write_bytes(b"mine")
+    code, _, errors = run("simulate", *short, "--no-lyapunov", "--out", str(path))
+    assert (code, path.read_bytes()) == (2, b"mine")
+    assert errors == f"rubgen: --out {path}: exists already; choose another name, or replace it with --force\n"
+    code, output, _ = run("simulate", *short, "--no-lyapunov", "--out", str(path), "--force")
+    assert code == 0
+    assert output.splitlines()[-1].startswith(f"written        {path}: ")
+    assert read_mcap(path).labels["rub"]
+    assert [file.name for file in tmp_path.iterdir()] == ["run.mcap"]
+
+
+def test_a_file_stays_whole_where_its_replacement_cannot_be_written(tmp_path):
+    path = tmp_path / "run.mcap"
+    path.write_bytes(b"mine")
+
+    def fail(part):
+        part.write_bytes(b"half")
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(UserError, match="cannot be written"):
+        write_file("--out", path, fail)
+    assert path.read_bytes() == b"mine"
+    assert [file.name for file in tmp_path.iterdir()] == ["run.mcap"]
+
+
+def test_a_folder_is_never_replaced(run, tmp_path):
+    folder = tmp_path / "run.mcap"
+    folder.mkdir()
+    code, _, errors = run("simulate", "--out", str(folder), "--force")
+    assert code == 2
+    assert f"--out {folder}: exists already and is no file; choose another name" in errors
+
+
+@pytest.mark.parametrize("name", ["Ελλάδα", "Größe-日本"])
+def test_a_name_that_stdout_cannot_encode_costs_nothing(name, tmp_path):
+    code = f"import sys, rubgen.cli.printing as p; from rubgen.cli import app; app.app.command(lambda: p.say({name!r}),"
+    code += " name='x'); app.main(['x'])"
+    environment = os.environ | {"PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == name.encode("ascii", "backslashreplace").decode() + "\n"
+
+
+@pytest.mark.parametrize(
+    ("error", "line"),
+    [
+        (OSError(13, "Permission denied", "/a/b"), "rubgen: /a/b: Permission denied\n"),
+        (OSError("no room"), "rubgen: no room\n"),
+        (UnicodeEncodeError("utf-8", "x\udcff", 1, 2, "surrogates not allowed"), "cannot be written as utf-8"),
+    ],
+)
+def test_what_nobody_foresaw_is_one_line_without_a_cause(run, monkeypatch, error, line):
+    def fail(*_args, **_options):
+        raise error
+
+    monkeypatch.setattr("rubgen.cli.inspecting.info_command", fail)
+    code, output, errors = run("info", "x")
+    assert (code, output, errors.count("\n")) == (2, "", 1)
+    assert line in errors
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish", "powershell"])
+def test_completion_is_printed_for_each_shell(run, shell):
+    code, output, errors = run("completion", shell)
+    assert (code, errors) == (0, "")
+    assert "rubgen" in output
+    assert "simulate" in output
+
+
+def test_bash_takes_the_completion(run, tmp_path):
+    script = tmp_path / "completion.bash"
+    script.write_text(run("completion", "bash")[1])
+    done = subprocess.run(
+        ["bash", "-c", f". {script} && complete -p rubgen"], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip().endswith("rubgen")

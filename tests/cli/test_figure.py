@@ -129,9 +129,10 @@ def test_the_command_writes_vectors_and_pixels(run, mcap_file, tmp_path, ending)
     [
         (("orbits", "{mcap}", "--out", "{tmp}/a.png"), "did you mean orbit? allowed: campbell, modes"),
         (("orbit", "--out", "{tmp}/a.png"), "this figure needs a source"),
-        (("orbit", "{mcap}", "--out", "{tmp}/a.jpg"), "end the name in .png or .svg or .pdf"),
+        (("orbit", "{mcap}", "--out", "{tmp}/a.jpg"), "end the name in .png, .svg or .pdf"),
         (("orbit", "{mcap}", "--out", "{tmp}/there.png"), "exists already"),
-        (("waveform", "{mcap}", "--channel", "speech", "--out", "{tmp}/a.png"), "no channel 'speech'; give one of"),
+        (("waveform", "{mcap}", "--channel", "speech", "--out", "{tmp}/a.png"), "no channel 'speech'; allowed: "),
+        (("waveform", "{mcap}", "--channel", "casing_ac", "--out", "{tmp}/a.png"), "did you mean casing_acc_0?"),
         (("campbell", "nowhere", "--out", "{tmp}/a.png"), "nowhere"),
         (("overview", "{tmp}", "--out", "{tmp}/a.png"), "no finished data set of rubgen"),
     ],
@@ -163,3 +164,15 @@ def test_a_set_without_a_good_run_has_no_figure(run, monkeypatch, tmp_path, name
     assert (code, text) == (2, "")
     assert error == "rubgen: made: no run is good; see `rubgen info made`\n"
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("speed", "--over speed: unknown parameter; did you mean speed_rpm? allowed: speed_rpm"),
+        ("clearance_m", "--over clearance_m: does not vary in this set; give one of speed_rpm"),
+    ],
+)
+def test_a_parameter_to_draw_over_is_named(made_set, tmp_path, name, message):
+    with pytest.raises(UserError, match=message.replace("?", r"\?")):
+        make_figure("exponent", tmp_path, Choice(parameter=name))

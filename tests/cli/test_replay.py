@@ -50,6 +50,16 @@ def test_pictures_need_no_screen(run, mcap_file, tmp_path, monkeypatch):
     assert files[0].stat().st_size < 300_000
 
 
+def test_force_replaces_files(run, mcap_file, tmp_path):
+    for name in ("a.rrd", "a.png"):
+        (tmp_path / name).write_bytes(b"mine")
+    files = "--save", str(tmp_path / "a.rrd"), "--png", str(tmp_path / "a.png")
+    assert run("replay", str(mcap_file), *files)[0] == 2
+    assert run("replay", str(mcap_file), *files, "--force")[0] == 0
+    assert min((tmp_path / name).stat().st_size for name in ("a.rrd", "a.png")) > 1000
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.png", "a.rrd"]
+
+
 def test_a_damaged_file_is_shown_and_its_loss_told(run, mcap_file, tmp_path):
     data = bytearray(mcap_file.read_bytes())
     data[len(data) // 3] ^= 1
@@ -151,7 +161,7 @@ def test_the_viewer_begins_at_the_turns_about_the_hardest_touch(run, rub_run, mc
     [
         (("none",), "none: cannot be read"),
         (("{mcap}", "run-000001", "--save", "{tmp}/a.rrd"), "is one run, not a data set"),
-        (("{mcap}", "--save", "{tmp}/there.rrd"), "exists already; delete it or choose another name"),
+        (("{mcap}", "--save", "{tmp}/there.rrd"), "exists already; choose another name, or replace it with --force"),
         (("{mcap}", "--save", "{tmp}/a.mcap"), "end the name in .rrd"),
         (("{mcap}", "--save", "{tmp}/no/a.rrd"), "there is no directory"),
         (("{mcap}", "--png", "{tmp}/a.png", "--time", "9"), "lies outside the recording; give 0 to 0.3"),

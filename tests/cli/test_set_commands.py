@@ -77,7 +77,8 @@ def test_another_number_of_runs_is_refused(generate):
 
 def test_info_counts(generate, run, tmp_path):
     generate()
-    code, output, _ = run("info", str(tmp_path / "set"), "--json")
+    code, output, errors = run("info", str(tmp_path / "set"), "--json")
+    assert errors == ""
     values = json.loads(output)
     assert code == 0
     assert (values["runs"], values["status"], values["rub"]) == (3, {"diverged": 1, "ok": 2}, {"true": 0, "false": 2})
@@ -119,5 +120,20 @@ def test_ctrl_c_says_how_to_go_on(generate, run, tmp_path, monkeypatch):
         patch.setattr(generating, "stage_run", interrupted)
         code, _, errors = generate()
     assert code == 130
+    directory = str(tmp_path / "set")
+    assert run("info", directory)[1].startswith(f"{directory}: unfinished, 1 of 3 runs of the recipe 'free' are kept\n")
+    assert json.loads(run("info", directory, "--json")[1]) == {"name": "free", "runs": 3, "finished": False, "kept": 1}
+    for command in ("verify", "label", "report"):
+        told = run(command, directory)[2]
+        assert told.endswith("it is unfinished; the `rubgen generate` command that began it makes the rest\n")
     assert f"interrupted; 1 finished runs are kept in {tmp_path / 'set'}: the same command makes the rest" in errors
     assert ": 3 runs, 2 of them new: " in generate()[1].splitlines()[0]
+
+
+@pytest.mark.parametrize("content", ["[]", "no json", '{"recipe": {"name": "free"}}'])
+def test_info_of_a_damaged_unfinished_set_is_one_line(run, tmp_path, content):
+    (tmp_path / ".staging").mkdir()
+    (tmp_path / ".staging/identity.json").write_text(content)
+    code, output, errors = run("info", str(tmp_path))
+    assert (code, output, errors.count("\n")) == (2, "", 1)
+    assert f"{tmp_path}/.staging/identity.json: cannot be read" in errors

@@ -1,3 +1,4 @@
+import os
 from dataclasses import replace
 
 import duckdb
@@ -175,3 +176,9 @@ def test_nothing_is_left_where_writing_fails(rub_run, tmp_path):
     with pytest.raises(OSError, match="No space left"):
         write_table(tables(), schema(signals=True), path)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_name_that_is_no_utf8_is_written_and_read(rub_run, tmp_path):
+    path = tmp_path / os.fsdecode(b"\xff run.parquet")
+    write_parquet(rub_run, path)
+    assert read_table(path, ["status"])["status"].to_pylist() == ["ok"]

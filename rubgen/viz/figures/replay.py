@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
+from rubgen.machine.problems import nearest
 from rubgen.sensors.channel import Channel
 from rubgen.viz.colors import BLUE, GREY, PAPER_GREY, VERMILION
 from rubgen.viz.figures.style import INK, label_axes, new_figure, note
@@ -109,5 +110,5 @@ def channel_of(replay: Replay, name: str) -> Channel:
     """The recorded channel of that name; ValueError, with the names there are, where there is none."""
     channels = replay.recording.channels
     if name not in channels:
-        raise ValueError(f"no channel {name!r}; give one of {', '.join(channels)}")
+        raise ValueError(f"no channel {name!r}; {nearest(name, list(channels))}")
     return channels[name]

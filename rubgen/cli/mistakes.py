@@ -1,0 +1,65 @@
+"""What is wrong with a command line, in one line: the word, what is allowed, what was perhaps meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, get_args, get_origin
+
+from cyclopts import CycloptsError
+from cyclopts.exceptions import (
+    CoercionError,
+    MissingArgumentError,
+    RepeatArgumentError,
+    UnknownCommandError,
+    UnknownOptionError,
+    UnusedCliTokensError,
+)
+
+if TYPE_CHECKING:
+    from cyclopts import App
+
+KINDS = {float: "a number", int: "a whole number", bool: "true or false", Path: "a path"}
+
+
+def mistake(error: CycloptsError, app: App) -> str:
+    """The line for a command line that cannot be understood."""
+    command = " ".join(["rubgen", *(error.command_chain or ())])
+    see = f"see {command} --help"
+    match error:
+        case UnknownCommandError():
+            word = (error.unused_tokens or [""])[0]
+            names = [name for name in app if not name.startswith("-")]
+            return f"{word}: unknown command;{meant(word, names)} commands: {', '.join(sorted(names))}"
+        case UnknownOptionError():
+            word = (error.token.keyword or error.token.value).split("=")[0]
+            names = [name for argument in error.argument_collection for name in argument.names]
+            return f"{word}: unknown option of {command};{meant(word, names)} {see}"
+        case CoercionError() if error.token is not None:
+            name = error.token.keyword or (error.argument.name if error.argument else "argument")
+            return f"{name} {error.token.value}: {_allowed(error)}; {see}"
+        case MissingArgumentError() if error.argument is not None:
+            name = error.keyword or error.argument.name
+            given = error.keyword is not None or bool(error.argument.tokens)
+            return f"{name}: {'a value must follow' if given else f'{command} needs it'}; {see}"
+        case RepeatArgumentError() if error.token.keyword:
+            return f"{error.token.keyword}: given more than once; give it once"
+        case UnusedCliTokensError() if error.unused_tokens:
+            return f"{error.unused_tokens[0]}: one argument too many for {command}; {see}"
+    return f"{' '.join(str(error).split()).rstrip('.')}; {see}"
+
+
+def _allowed(error: CoercionError) -> str:
+    wanted: object = error.target_type
+    if get_origin(wanted) is Literal and error.token is not None:
+        choices = [str(choice) for choice in get_args(wanted)]
+        return f"must be one of {', '.join(choices)};{meant(error.token.value, choices)}".rstrip(";")
+    kinds = [KINDS[kind] for kind in (wanted, *get_args(wanted)) if kind in KINDS]
+    return f"must be {kinds[0] if kinds else 'of another kind'}"
+
+
+def meant(word: str, known: Iterable[str]) -> str:
+    """` did you mean ...?` where a known name is near, else nothing."""
+    close = get_close_matches(word, list(known), n=1)
+    return f" did you mean {close[0]}?" if close else ""
