@@ -100,7 +100,8 @@ def test_killed_interrupted_and_completed_to_the_same_bytes(start, small_set, tm
         assert finished_runs(directory) >= kept > 0
 
     output, errors = start().communicate(timeout=PATIENCE_S)
-    assert "4 runs (4 ok)" in output, errors
+    assert "4 runs, " in output, errors
+    assert ": 4 ok; " in output
     for path in small_set.directory.rglob("*"):
         if path.is_file():
             assert (directory / path.relative_to(small_set.directory)).read_bytes() == path.read_bytes()
