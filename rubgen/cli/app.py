@@ -74,7 +74,7 @@ def main(arguments: list[str] | None = None) -> NoReturn:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(WANTING)
     except UnicodeEncodeError as error:
-        _fail(f"{str(error.object)[:200]!r}: cannot be written as {error.encoding} ({error.reason})", MISTAKE)
+        _fail(f"{str(error.object)[:200]!r}: cannot be encoded as {error.encoding} ({error.reason})", MISTAKE)
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         _fail(f"{where}{error.strerror or _one_line(error)}", MISTAKE)

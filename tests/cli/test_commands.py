@@ -277,7 +277,7 @@ def test_a_name_that_stdout_cannot_encode_costs_nothing(name, tmp_path):
     [
         (OSError(13, "Permission denied", "/a/b"), "rubgen: /a/b: Permission denied\n"),
         (OSError("no room"), "rubgen: no room\n"),
-        (UnicodeEncodeError("utf-8", "x\udcff", 1, 2, "surrogates not allowed"), "cannot be written as utf-8"),
+        (UnicodeEncodeError("utf-8", "x\udcff", 1, 2, "surrogates not allowed"), "cannot be encoded as utf-8"),
     ],
 )
 def test_what_nobody_foresaw_is_one_line_without_a_cause(run, monkeypatch, error, line):
