@@ -10,6 +10,7 @@ from rubgen.cli.new_file import check_new_file
 from rubgen.cli.printing import print_json, print_pairs, say
 from rubgen.cli.replaying import Showing, show
 from rubgen.cli.run_summary import run_summary
+from rubgen.errors import warn
 from rubgen.labels.plain import labels_dict
 from rubgen.output import save
 from rubgen.pipeline import Run, simulate
@@ -17,6 +18,7 @@ from rubgen.progress import step
 from rubgen.scenario import Scenario, make_scenario
 from rubgen.scenario.vary import varied_values
 from rubgen.solver import Status
+from rubgen.solver.reach import no_rub
 from rubgen.viz.replay import replay_of
 
 LABEL_NAMES = (
@@ -49,7 +51,11 @@ def simulate_command(
         Showing().check()
     if out:
         check_new_file("--out", out, tuple(WRITERS), force=force)
-    run = simulate(_scenario(options))
+    scenario = _scenario(options)
+    text = no_rub([scenario])
+    if text:
+        warn(text)
+    run = simulate(scenario)
     good = run.response.status is Status.OK
     if as_json:
         print_json(_all_labels(run))

@@ -24,6 +24,9 @@ from rubgen.progress import Report, count, shown, step
 from rubgen.scenario import Recipe, load_recipe, parse_recipe
 from rubgen.scenario.recipe import check_recipe
 
+LOOKED_AT = 16
+"""First runs of which one must be able to rub; a recipe in which none can rubs rarely at best."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Generated:
@@ -135,11 +138,12 @@ def _make_missing(recipe: Recipe, layout: Layout, workers: int, progress: Report
         progress(done, recipe.runs)
     if not missing:
         return 0
-    first = recipe.scenario(missing[0]), tuple(recipe.corners())
+    first_runs = tuple(recipe.scenario(index) for index in range(min(recipe.runs, LOOKED_AT)))
+    first = recipe.scenario(missing[0]), tuple(recipe.corners()), first_runs
     with worker_pool(min(workers, len(missing))) as pool:
         with warming_up():
             remarks = list(unordered(pool, 1, warm_up, [first]))
-        for remark in chain.from_iterable(remarks if pool else []):  # this process has warned already
+        for remark in chain.from_iterable(remarks):
             warn(remark)
         _see_end(unordered(pool, workers, stage_run, jobs), done, recipe.runs, progress)
     return len(missing)

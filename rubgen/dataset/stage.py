@@ -57,13 +57,16 @@ def is_staged(layout: Layout, index: int, formats: tuple[str, ...]) -> bool:
     return status != ["ok"] or all(file.exists() for file in (layout.staged_section(run_id), *files))
 
 
-def warm_up(scenario: Scenario, corners: tuple[Scenario, ...]) -> list[str]:
-    """Reduce the machine at the extremes of `[vary]`, then run a few turns; gives what a worker found wrong in caches.
+def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple[Scenario, ...]) -> list[str]:
+    """Reduce the machine at the extremes of `[vary]`, then run a few turns.
+
+    Gives what to warn of: what a worker found wrong in caches, and that none of the first runs can rub.
 
     What cannot be done fails before any run; kernels are compiled and the reduced model cached before workers start.
     """
     from rubgen.pipeline import simulate
     from rubgen.reduction import reduce
+    from rubgen.solver.reach import no_rub
 
     for corner in corners:
         reduce(corner.machine, corner.reduction)
@@ -71,7 +74,8 @@ def warm_up(scenario: Scenario, corners: tuple[Scenario, ...]) -> list[str]:
     operation = replace(operation, closing_turns=WARM_UP_TURNS)
     with suppress(UserError):  # this run's own values, not the recipe's ends: it will be recorded as refused
         simulate(replace(scenario, operation=operation, signal_seconds=5 / operation.rotation_frequency_hz))
-    return untold
+    text = no_rub(first_runs)
+    return [*untold, text] if text else untold
 
 
 def warming_up() -> AbstractContextManager[None]:

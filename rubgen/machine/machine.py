@@ -22,6 +22,8 @@ def _no_text(value: object) -> object:
     return value
 
 
+LEAST_LENGTH = 1e-7
+LEAST_STIFFNESS = 1e-3
 NUMBER = BeforeValidator(_no_text)
 """Stands last in the annotation of every number."""
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), NUMBER]
@@ -30,8 +32,8 @@ Finite = Annotated[float, Field(allow_inf_nan=False), NUMBER]
 Ratio = Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False), NUMBER]
 Deviation = Annotated[float, Field(gt=-1, allow_inf_nan=False), NUMBER]
 Anisotropy = Annotated[float, Field(gt=-1, lt=1, allow_inf_nan=False), NUMBER]
-Length = Annotated[float, Field(ge=1e-7, le=100, allow_inf_nan=False), NUMBER]
-Stiffness = Annotated[float, Field(ge=1e-3, le=1e16, allow_inf_nan=False), NUMBER]
+Length = Annotated[float, Field(ge=LEAST_LENGTH, le=100, allow_inf_nan=False), NUMBER]
+Stiffness = Annotated[float, Field(ge=LEAST_STIFFNESS, le=1e16, allow_inf_nan=False), NUMBER]
 UnbalanceSize = Annotated[float, Field(ge=0, le=1e7, allow_inf_nan=False), NUMBER]
 Switch = Annotated[bool, Field(strict=True)]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1), NUMBER]

@@ -111,11 +111,12 @@ def _check_lobes(machine: Machine, modes: int) -> None:
     lobes, carried = machine.casing.lobes, carried_orders(machine, modes)
     if lobes in carried:
         return
-    enough = next(n for n in range(modes, 4 * machine.casing.nodes) if lobes in carried_orders(machine, n))
+    most = 3 * machine.casing.nodes
+    enough = next((n for n in range(modes, most + 1) if lobes in carried_orders(machine, n)), None)
     held = f"the orders {carried[0]} to {carried[-1]}" if carried else "no order in full"
+    remedy = f"or at least {enough} casing modes" if enough else "or less stiff springs of the casing"
     raise UserError(
-        f"casing.lobes = {lobes}: {modes} casing modes carry {held}; take another number of lobes, or at least "
-        f"{enough} casing modes"
+        f"casing.lobes = {lobes}: {modes} casing modes carry {held}; take another number of lobes, {remedy}"
     )
 
 

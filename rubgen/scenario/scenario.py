@@ -19,7 +19,8 @@ from rubgen.scenario.sensor_set import default_sensor_set
 from rubgen.scenario.sensors import SensorSet
 
 TurnCount = Annotated[int, Field(ge=1, le=1_000_000), NUMBER]
-Speed = Annotated[float, Field(gt=0, le=1e6, allow_inf_nan=False), NUMBER]
+LEAST_RPM = 1e-3
+Speed = Annotated[float, Field(ge=LEAST_RPM, le=1e6, allow_inf_nan=False), NUMBER]
 Duration = Annotated[float, Field(gt=0, le=1e5, allow_inf_nan=False), NUMBER]
 RPM = 0.10471975511965977
 """One rev/min in rad/s, 2 pi / 60."""

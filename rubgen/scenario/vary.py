@@ -11,10 +11,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from pydantic import ValidationError
+
 from rubgen.errors import UserError
-from rubgen.machine.machine import MOST_LOBES
+from rubgen.machine.machine import LEAST_LENGTH, LEAST_STIFFNESS, MOST_LOBES
 from rubgen.machine.problems import nearest
-from rubgen.scenario.scenario import Scenario
+from rubgen.machine.sentences import sentence
+from rubgen.scenario.scenario import LEAST_RPM, Scenario
 
 DEFAULT_SPEED_RPM = 10_000.0
 """Speed where none is given: the machine itself has none."""
@@ -112,7 +115,9 @@ PARAMETERS = (
         meaning="spin speed, of a run-up or coast-down at its start",
         read=lambda scenario: scenario.operation.speed_rpm,
         apply=_operation("speed_rpm"),
+        minimum=LEAST_RPM,
         maximum=1e6,
+        above=False,
     ),
     Parameter(
         key="clearance_m",
@@ -120,7 +125,9 @@ PARAMETERS = (
         meaning="smallest gap between blade tips and casing at rest",
         read=lambda scenario: scenario.machine.casing.clearance_m,
         apply=_casing("clearance_m"),
+        minimum=LEAST_LENGTH,
         maximum=100,
+        above=False,
     ),
     Parameter(
         key="ovality_m",
@@ -137,7 +144,9 @@ PARAMETERS = (
         meaning="lateral stiffness of the disk support, mean of X and Y",
         read=lambda scenario: scenario.machine.disk_support.lateral_stiffness_n_per_m,
         apply=_disk_support,
+        minimum=LEAST_STIFFNESS,
         maximum=1e16,
+        above=False,
     ),
     Parameter(
         key="casing_support_stiffness_n_per_m",
@@ -145,7 +154,9 @@ PARAMETERS = (
         meaning="radial and circumferential stiffness under each casing node",
         read=lambda scenario: scenario.machine.casing.radial_support_stiffness_n_per_m,
         apply=_casing("radial_support_stiffness_n_per_m", "circumferential_support_stiffness_n_per_m"),
+        minimum=LEAST_STIFFNESS,
         maximum=1e16,
+        above=False,
     ),
     Parameter(
         key="friction",
@@ -182,7 +193,9 @@ PARAMETERS = (
         meaning="radial thickness of the casing ring",
         read=lambda scenario: scenario.machine.casing.thickness_m,
         apply=_casing("thickness_m"),
+        minimum=LEAST_LENGTH,
         maximum=100,
+        above=False,
     ),
     Parameter(
         key="lateral_damping",
@@ -218,7 +231,9 @@ PARAMETERS = (
         meaning="spin speed at the end of a run-up or coast-down",
         read=lambda scenario: scenario.operation.end_speed_rpm or scenario.operation.speed_rpm,
         apply=_operation("end_speed_rpm"),
+        minimum=LEAST_RPM,
         maximum=1e6,
+        above=False,
     ),
     Parameter(
         key="duration_s",
@@ -275,7 +290,11 @@ def vary(scenario: Scenario, values: Mapping[str, float], source: str = "") -> S
             share = 1 < value <= 100 and entry.maximum < 1
             remedy = f"{value:g} % is written {value / 100:g}" if share else "change the value"
             raise UserError(f"{source}{key} = {value:g}: must be {entry.allowed}; {remedy}")
-        scenario = entry.apply(scenario, value)
+        try:
+            scenario = entry.apply(scenario, value)
+        except ValidationError as error:
+            text = sentence(error.errors()[0], "", [])
+            raise UserError(f"{source}{key} = {value:g}: {text}; change the value") from None
     return scenario
 
 

@@ -180,10 +180,10 @@ BAD = {
     "twice": (["modes", "--json", "--json"], "--json: given more than once; give it once"),
     "shell": (["completion", "zhs"], "SHELL zhs: must be one of bash, zsh, fish, powershell; did you mean zsh?"),
     "no report": (["report", "none"], "none: no finished data set of rubgen: there is no such directory; give"),
-    "speed 0": (["simulate", "--speed-rpm", "0"], "speed_rpm = 0: must be above 0"),
+    "speed 0": (["simulate", "--speed-rpm", "0"], "speed_rpm = 0: must be at least 0.001"),
     "nan": (["simulate", "--friction", "nan"], "friction = nan: must be at least 0 and at most 0.3"),
-    "inf": (["simulate", "--speed-rpm", "inf"], "speed_rpm = inf: must be above 0"),
-    "negative clearance": (["simulate", "--clearance-m", "-1e-4"], "clearance_m = -0.0001: must be above 0"),
+    "inf": (["simulate", "--speed-rpm", "inf"], "speed_rpm = inf: must be at least 0.001"),
+    "negative clearance": (["simulate", "--clearance-m", "-1e-4"], "clearance_m = -0.0001: must be at least 1e-07"),
     "lobes": (["simulate", "--lobes", "6"], "lobes = 6: 11 casing modes carry at most 5 lobes"),
     "few turns": (
         ["simulate", "--record-turns", "60"],

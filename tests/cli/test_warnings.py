@@ -40,3 +40,7 @@ def test_one_run_with_a_clearance_in_millimetres_warns_before_it_is_made(run, mo
         "rubgen: warning: clearance_m = 0.22: 55 % of the radius of the blade tips; were mm meant"
     )
     assert end == "rubgen: made"
+    with warnings.catch_warnings():
+        _, _, err = run("simulate", "--speed-rpm", "900", "--signal-seconds", "0.1")
+    assert "rubgen: warning: no blade can reach the casing in this run: the largest free penetration is" in err
+    assert "were rad/s meant? A blade would: 900 rad/s are 8594.37 rev/min\n" in err

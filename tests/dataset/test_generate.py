@@ -12,7 +12,7 @@ from rubgen.dataset import generate as generating
 from rubgen.dataset.files import sha256_of
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.stage import stage_run
-from rubgen.errors import UserError
+from rubgen.errors import RubgenWarning, UserError
 from rubgen.solver.response import Status
 
 
@@ -268,7 +268,8 @@ def test_a_run_that_its_own_values_forbid_is_recorded_with_its_reason(tmp_path, 
         "simulation": {"settle_turns": 20, "record_turns": 100, "closing_turns": 20},
         "output": {"formats": ["parquet"], "signal_seconds": 0.3},
     }
-    made = rubgen.generate(asked, tmp_path / "set", workers=1)
+    with pytest.warns(RubgenWarning, match="no blade can reach the casing in any of the 2 runs looked at"):
+        made = rubgen.generate(asked, tmp_path / "set", workers=1)
     runs = rubgen.open(tmp_path / "set").runs
     fast = runs["speed_rpm"] == 16000.0
     assert set(runs["status"][fast]) == {"refused"}

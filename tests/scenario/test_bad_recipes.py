@@ -1,9 +1,12 @@
 """One case for each rule: the message names the file, the key, the value, what is allowed and how to mend it."""
 
+import warnings
+
 import pytest
 
-from rubgen.errors import UserError
+from rubgen.errors import RubgenWarning, UserError
 from rubgen.scenario import load_recipe, make_scenario, parse_recipe
+from rubgen.scenario.vary import KEYS
 
 GOOD = 'name = "a"\nruns = 2\nmachine = "zeng2019"\n'
 VARY = GOOD + "[vary]\n"
@@ -57,9 +60,15 @@ CASES = {
     ),
     "missing key": ('name = "a"\nmachine = "zeng2019"', "runs: this key is missing; add it"),
     "text for a number": (VARY + 'speed_rpm = "fast"', "vary.speed_rpm = 'fast': no such distribution; give a number"),
-    "negative clearance": (VARY + "clearance_m = -1e-4", "vary.clearance_m = -0.0001: must be above 0"),
-    "clearance reaches 0": (VARY + "clearance_m = { uniform = [0, 1e-3] }", "vary.clearance_m = 0: must be above 0"),
-    "speed 0": (VARY + "speed_rpm = 0", "vary.speed_rpm = 0: must be above 0"),
+    "negative clearance": (
+        VARY + "clearance_m = -1e-4",
+        "vary.clearance_m = -0.0001: must be at least 1e-07 and at most 100",
+    ),
+    "clearance reaches 0": (
+        VARY + "clearance_m = { uniform = [0, 1e-3] }",
+        "vary.clearance_m = 0: must be at least 1e-07 and",
+    ),
+    "speed 0": (VARY + "speed_rpm = 0", "vary.speed_rpm = 0: must be at least 0.001"),
     "nan": (VARY + "speed_rpm = nan", "vary.speed_rpm = nan: must be a finite number; change the value"),
     "inf": (VARY + "speed_rpm = { uniform = [1000, inf] }", "vary.speed_rpm.uniform.1 = inf: must be a finite number"),
     "min above max": (
@@ -167,7 +176,20 @@ def test_runs_option():
 def test_scenario_keys():
     with pytest.raises(UserError, match="speed_rmp: unknown key; did you mean speed_rpm"):
         make_scenario(speed_rmp=9000)
-    with pytest.raises(UserError, match="clearance_m = -1: must be above 0"):
+    with pytest.raises(UserError, match="clearance_m = -1: must be at least 1e-07"):
         make_scenario(clearance_m=-1.0)
     with pytest.raises(UserError, match="'nothing': no such preset"):
         make_scenario("nothing")
+
+
+@pytest.mark.parametrize("value", [5e-324, 1e-8, 1e3, 1e300])
+@pytest.mark.parametrize("key", KEYS)
+def test_a_value_beyond_all_machines_is_refused_before_a_run(key, value):
+    text = ""
+    with warnings.catch_warnings(action="ignore", category=RubgenWarning):
+        try:
+            parse_recipe({"name": "a", "runs": 1, "machine": "zeng2019", "vary": {key: value}})
+        except UserError as error:
+            text = str(error)
+    assert "\n" not in text
+    assert "Input should" not in text

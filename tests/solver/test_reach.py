@@ -1,0 +1,76 @@
+"""A set in which nothing can rub is told before it is made, from the motion without rub."""
+
+import warnings
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from rubgen.dataset.generate import generate
+from rubgen.dataset.open import DataSet
+from rubgen.errors import RubgenWarning
+from rubgen.pipeline import simulate
+from rubgen.scenario import Labelling, load_recipe, make_scenario, parse_recipe
+from rubgen.solver.reach import deepest, no_rub
+
+DATASETS = Path(__file__).parents[2] / "datasets"
+SLOW = {
+    "name": "slow",
+    "runs": 2,
+    "machine": "zeng2019",
+    "vary": {"speed_rpm": {"uniform": [690, 1190]}},
+    "sensors": {"sample_rate_hz": 2560},
+    "labels": {"lyapunov": False},
+    "output": {"formats": ["parquet"], "signal_seconds": 0.2},
+}
+
+
+@pytest.mark.parametrize("speed", [8000.0, 3000.0])
+def test_the_penetration_is_that_of_the_run(speed):
+    scenario = replace(make_scenario(speed_rpm=speed), labelling=Labelling(lyapunov=False), signal_seconds=0.1)
+    response = simulate(scenario).response
+    depth, at = deepest(scenario)
+    assert at == pytest.approx(speed)
+    assert depth == pytest.approx(response.free_penetration, abs=1e-7)
+    rubs = bool(response.contact_steps_per_turn.any())
+    assert rubs == (depth > 0) == (no_rub([scenario, scenario]) is None) == (speed > 5000)
+
+
+def test_speeds_in_rad_per_s_are_asked_about_where_they_would_rub():
+    text = no_rub([parse_recipe(SLOW).scenario(index) for index in range(2)])
+    assert text.startswith(
+        "no blade can reach the casing in any of the 2 runs looked at: the largest free penetration "
+    )
+    assert "; were rad/s meant? A blade would: " in text
+    for values in ({"speed_rpm": 4000}, {"clearance_m": 2e-3}):
+        scenario = make_scenario(**values)
+        assert "rad/s" not in no_rub([scenario, scenario])
+        assert no_rub([scenario]) is None  # one run without rub may be meant
+    assert "in this run" in no_rub([make_scenario(speed_rpm=1000.0)])
+
+
+def test_a_run_up_is_looked_at_over_its_speeds():
+    recipe = load_recipe(DATASETS / "run-up.toml")
+    depth, speed = deepest(recipe.scenario(0))
+    assert depth > 0
+    assert speed > 8000
+
+
+@pytest.mark.parametrize("name", [None, "rig", "speed-sweep", "three-lobes", "run-up"])
+def test_what_is_shipped_can_rub(name):
+    recipe = load_recipe(DATASETS / f"{name}.toml" if name else None)
+    assert no_rub([recipe.scenario(index) for index in range(3)]) is None
+
+
+def test_a_run_that_is_refused_says_nothing_here():
+    assert no_rub([make_scenario(speed_rpm=40_000)]) is None
+
+
+def test_a_set_that_cannot_rub_is_warned_of_once_and_made(tmp_path):
+    with pytest.warns(RubgenWarning, match="no blade can reach the casing in any of the 2 runs") as found:
+        generate(SLOW, tmp_path / "set", workers=1)
+    assert len(found) == 1
+    assert not DataSet(tmp_path / "set").runs["rub"].any()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        generate(SLOW, tmp_path / "set", workers=1)
