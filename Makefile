@@ -24,16 +24,16 @@ bench: $(VENV)/.installed-dev
 	$(BIN)/python -m benchmarks
 
 verification: $(VENV)/.installed-dev
-	$(BIN)/python -m rubgen.studies.verification
+	$(BIN)/python -m validation.verification
 
 sensitivity: $(VENV)/.installed-dev
-	$(BIN)/python -m rubgen.studies.sensitivity
+	$(BIN)/python -m validation.sensitivity
 
 confusion: $(VENV)/.installed-dev
-	$(BIN)/python -m rubgen.studies.confusion
+	$(BIN)/python -m validation.confusion
 
 contact: $(VENV)/.installed-dev
-	$(BIN)/python -m rubgen.studies.contact_options
+	$(BIN)/python -m validation.contact_options
 
 faults: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.reliability
@@ -42,11 +42,11 @@ fuzz: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.reliability --only fuzz
 
 zeng2019: $(VENV)/.installed-dev
-	$(BIN)/rubgen reproduce zeng2019 --out out/zeng2019
+	$(BIN)/python -m validation.zeng2019 --out out/zeng2019
 	cp out/zeng2019/zeng2019.md out/zeng2019/zeng2019-*.png docs/
 
 zeng2019-fit: $(VENV)/.installed-dev
-	$(BIN)/rubgen reproduce zeng2019 --fit --out out/zeng2019
+	$(BIN)/python -m validation.zeng2019 --fit --out out/zeng2019
 	cp out/zeng2019/fit/zeng2019-fit.md docs/
 	cp out/zeng2019/fit/zeng2019-fitted.toml rubgen/machine/presets/
 

@@ -31,9 +31,9 @@ from rubgen.solver.block_kernels import Scheme
 from rubgen.solver.blocks import aligned, parts_of
 from rubgen.solver.integrate import integrate
 from rubgen.solver.lanes_kernels import line_kind
-from rubgen.solver.reference import ReferenceStepper
 from rubgen.solver.stepper import Stepper
 from rubgen.vector_kernels import LANES
+from validation.reference_step import ReferenceStepper
 
 RUNS, PROCESSES = 16, 2
 ROUNDS = 2

@@ -16,8 +16,8 @@ from threadpoolctl import threadpool_limits
 from rubgen import make_scenario
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
-from rubgen.solver.reference import ReferenceStepper
 from rubgen.solver.stepper import Stepper, closing_ramp, start_opening
+from validation.reference_step import ReferenceStepper
 
 STEPS = 1024
 CLOSING_TURNS, SETTLE_TURNS = 40, 120

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from rubgen import make_scenario
 from rubgen.dataset.workers import unordered, worker_pool
-from rubgen.studies.sensitivity.halving import SPEEDS_RPM
+from validation.sensitivity.halving import SPEEDS_RPM
 
 SETTLE_TURNS, RECORD_TURNS, WORKERS = 100, 50, 2
 

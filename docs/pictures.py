@@ -15,7 +15,7 @@ from pathlib import Path
 from PIL import Image
 
 import rubgen
-from rubgen.studies.figures import Choice, make_figure
+from rubgen.report.figures import Choice, make_figure
 from rubgen.viz.figures import dataset_overview, overview, save_png
 from rubgen.viz.replay import Replay, replay_of
 from rubgen.viz.rerun import write_replay

@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 DOCUMENTS = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in ROOT.glob("docs/*.md")}
 DOCUMENTS |= {"README.md": README, "CHANGELOG.md": (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")}
-FOLDERS = ("rubgen", "tests", "docs", "schemas", "datasets", "benchmarks")
+FOLDERS = ("rubgen", "tests", "docs", "schemas", "datasets", "benchmarks", "validation")
 
 
 def blocks(text: str, language: str = "") -> list[str]:

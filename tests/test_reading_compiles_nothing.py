@@ -10,7 +10,7 @@ READERS = [
     "rubgen.dataset.replaying",
     "rubgen.cli.inspecting",
     "rubgen.cli.drawing",
-    "rubgen.studies.report",
+    "rubgen.report.page",
     "rubgen.viz.rerun",
     "rubgen.dataset.generate",  # the parent of workers: they compile
 ]

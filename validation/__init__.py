@@ -1,0 +1,1 @@
+"""Research on rubgen, not installed: what it is checked against, and how far it can be trusted."""

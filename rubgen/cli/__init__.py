@@ -1,4 +1,4 @@
-"""The command line: `rubgen generate`, `simulate`, `modes`, `reproduce`, `info`, `verify`; imports wait for them."""
+"""The command line: `rubgen generate`, `simulate`, `modes`, `info`, `verify`; imports wait for them."""
 
 from typing import NoReturn
 

@@ -186,7 +186,7 @@ def figure(
 ) -> int:
     """Draw a figure of a machine, a run or a data set."""
     from rubgen.cli.drawing import figure_command
-    from rubgen.studies.figures import Choice
+    from rubgen.report.figures import Choice
 
     choice = Choice(run_id=run, where=where, parameter=over, channel=channel)
     return figure_command(name, source, out, choice, force=force)
@@ -212,26 +212,6 @@ def modes(machine: MachineName = "zeng2019", /, *, json: Json = False) -> int:
     from rubgen.cli.modes import modes_command
 
     return modes_command(machine, as_json=json)
-
-
-@app.command
-def reproduce(
-    paper: Annotated[str, _option("What to reproduce: zeng2019.")],
-    /,
-    *,
-    figure: Annotated[str | None, _option("One figure, 6 to 21, or a group of statements, by its name.")] = None,
-    out: Annotated[Path | None, _option("Directory for the page; out/zeng2019 when not given.")] = None,
-    quick: Annotated[bool, Parameter(negative=(), help="Few values and short runs, in two minutes.")] = False,
-    every: Annotated[int, _whole_number("Every how many-th speed: 1 by 30 rev/min, 4 by 120.")] = 1,
-    machine: Annotated[str, _option("Which preset is run: zeng2019, or zeng2019-fitted that --fit made.")] = "zeng2019",
-    fit: Annotated[bool, Parameter(negative=(), help="Search what is not published, instead of the page.")] = False,
-    workers: Annotated[int | None, _whole_number("Number of processes; the number of cores when not given.")] = None,
-    json: Json = False,
-) -> int:
-    """Reproduce a paper's figures and statements, or go on where it was interrupted."""
-    from rubgen.cli.reproducing import reproduce_command
-
-    return reproduce_command(paper, figure, out, workers, every, machine, quick=quick, fitting=fit, as_json=json)
 
 
 @app.command

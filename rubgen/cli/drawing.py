@@ -7,7 +7,7 @@ from pathlib import Path
 from rubgen.cli.new_file import check_new_file, write_file
 from rubgen.cli.printing import say
 from rubgen.progress import step
-from rubgen.studies.figures import Choice, make_figure
+from rubgen.report.figures import Choice, make_figure
 
 ENDINGS = (".png", ".svg", ".pdf")
 
@@ -26,7 +26,7 @@ def figure_command(name: str, source: Path | None, out: Path, choice: Choice, *,
 
 def report_command(directory: Path, out: Path | None, *, force: bool) -> int:
     """Write the page."""
-    from rubgen.studies.report import write_report
+    from rubgen.report.page import write_report
 
     path = out or directory / "report.html"
     if directory.is_dir():

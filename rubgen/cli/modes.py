@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from rubgen.cli.printing import print_json, print_pairs, say
 from rubgen.machine import load_machine
+from rubgen.machine.published import BLISK_HZ, CASING_HZ, blisk_deviation, casing_deviation
 from rubgen.reduction import reduce
 from rubgen.scenario import Reduction
-from rubgen.studies.published import BLISK_HZ, CASING_HZ, blisk_deviation, casing_deviation
 
 PUBLISHED_MACHINE = "zeng2019"
 SHOWN_BLISK_MODES = 42

@@ -37,7 +37,7 @@ print("heavy", sorted({HEAVY!r} & set(sys.modules)), file=sys.stderr)
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stderr.splitlines() == ["code 0", "heavy []"]
-    for command in ("generate", "simulate", "modes", "reproduce", "info", "verify"):
+    for command in ("generate", "simulate", "modes", "info", "verify"):
         assert command in done.stdout
 
 

@@ -9,7 +9,7 @@ from PIL import Image
 
 from rubgen.errors import UserError
 from rubgen.io.mcap import write_mcap
-from rubgen.studies.figures import FIGURES, Choice, make_figure
+from rubgen.report.figures import FIGURES, Choice, make_figure
 from rubgen.viz.colors import MOTION_COLORS
 
 
@@ -50,7 +50,7 @@ class MadeSet:
 
 @pytest.fixture
 def made_set(monkeypatch):
-    monkeypatch.setattr("rubgen.studies.figures.DataSet", MadeSet)
+    monkeypatch.setattr("rubgen.report.figures.DataSet", MadeSet)
 
 
 @pytest.fixture(scope="module")
@@ -158,7 +158,7 @@ def test_every_figure_has_a_test():
 
 @pytest.mark.parametrize("name", ["overview", "bifurcation", "cascade", "exponent"])
 def test_a_set_without_a_good_run_has_no_figure(run, monkeypatch, tmp_path, name):
-    monkeypatch.setattr("rubgen.studies.figures.DataSet", MadeSet)
+    monkeypatch.setattr("rubgen.report.figures.DataSet", MadeSet)
     monkeypatch.setattr(MadeSet, "runs", MadeSet.runs.assign(status="diverged"))
     code, text, error = run("figure", name, "made", "--out", str(tmp_path / "f.png"))
     assert (code, text) == (2, "")

@@ -10,8 +10,8 @@ from rubgen.dataset.relabel import relabel
 from rubgen.dataset.replaying import find_replay, find_runs
 from rubgen.errors import UserError
 from rubgen.io.parquet import write_table
-from rubgen.studies.figures import Choice, make_figure
-from rubgen.studies.report import render_report
+from rubgen.report.figures import Choice, make_figure
+from rubgen.report.page import render_report
 
 SECTIONS = "sections/train-00000-of-00001.parquet"
 

@@ -12,7 +12,7 @@ from PIL import Image
 
 import rubgen
 from rubgen.errors import UserError
-from rubgen.studies.report import example_runs, loading, write_report
+from rubgen.report.page import example_runs, loading, write_report
 from rubgen.viz.colors import MOTION_COLORS
 
 
@@ -89,7 +89,7 @@ def test_a_failed_run_is_listed_with_its_reason(small_set, tmp_path, monkeypatch
     runs = rubgen.open(small_set.directory).runs.copy()
     runs.loc["run-000003", ["status", "reason"]] = "diverged", "blade 3 <bent> in turn 7"
     monkeypatch.setattr("rubgen.dataset.open.DataSet.runs", runs)
-    monkeypatch.setattr("rubgen.studies.report.verify", lambda _directory: ["data: broken"])
+    monkeypatch.setattr("rubgen.report.page.verify", lambda _directory: ["data: broken"])
     write_report(small_set.directory, tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "<td>run-000003</td><td>diverged</td><td>blade 3 &lt;bent&gt; in turn 7</td>" in text

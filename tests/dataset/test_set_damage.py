@@ -165,7 +165,7 @@ def test_what_systems_leave_and_reports_are_no_strays(copied_shown_set):
 
 
 def rubgen_report(directory):
-    from rubgen.studies.report import write_report
+    from rubgen.report.page import write_report
 
     write_report(directory, directory / "report.html")
 

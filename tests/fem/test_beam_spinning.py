@@ -1,4 +1,4 @@
-"""The blade element in rotation, beside the published rotating beams of tests/studies/test_verification.py."""
+"""The blade element in rotation, beside the published rotating beams of tests/validation/test_verification.py."""
 
 import dataclasses
 
@@ -11,8 +11,8 @@ from test_beam_statics import rigid_motion, volume
 
 from rubgen.fem.beam import blade_matrices
 from rubgen.machine.machine import Material
-from rubgen.studies.verification.beams import FLAP, THICK, TIMOSHENKO, cantilever_frequencies
-from rubgen.studies.verification.twisted_blades import RADIUS, TWISTED
+from validation.verification.beams import FLAP, THICK, TIMOSHENKO, cantilever_frequencies
+from validation.verification.twisted_blades import RADIUS, TWISTED
 
 
 def test_rotary_spin_softening_is_seen() -> None:

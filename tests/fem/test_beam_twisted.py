@@ -1,10 +1,10 @@
-"""How the frequencies of the pre-twisted tapered blade converge; their values are in tests/studies."""
+"""How the frequencies of the pre-twisted tapered blade converge; their values are in tests/validation."""
 
 import dataclasses
 
 import numpy as np
 
-from rubgen.studies.verification.twisted_blades import TWISTED, element_frequencies, shooting_frequency
+from validation.verification.twisted_blades import TWISTED, element_frequencies, shooting_frequency
 
 
 def test_frequencies_come_from_above_with_the_second_order() -> None:

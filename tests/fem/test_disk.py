@@ -1,12 +1,12 @@
-"""The disk against closed forms; tests/studies/test_verification.py holds the frequencies of plates and membranes."""
+"""The disk against closed forms; frequencies of plates and membranes: tests/validation/test_verification.py."""
 
 import numpy as np
 import pytest
 
 from rubgen.fem.disk import assemble_disk
 from rubgen.machine import load_machine
-from rubgen.studies.verification.plates import annulus, lowest, out_of_plane
-from rubgen.studies.verification.spinning_disks import growth_constants, membrane_squares, rotating_displacement
+from validation.verification.plates import annulus, lowest, out_of_plane
+from validation.verification.spinning_disks import growth_constants, membrane_squares, rotating_displacement
 
 U, V, W, TH_X, TH_Y, TH_Z = range(6)
 

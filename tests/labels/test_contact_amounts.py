@@ -12,7 +12,7 @@ from rubgen.labels.plain import labels_dict
 from rubgen.labels.whirl import Whirl, WhirlDirection, whirl
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver.integrate import integrate
-from rubgen.studies.verification.jeffcott import CLEARANCE, FRICTION, ROTOR_MASS, SPEED, annular_rub, jeffcott_system
+from validation.verification.jeffcott import CLEARANCE, FRICTION, ROTOR_MASS, SPEED, annular_rub, jeffcott_system
 
 
 def amounts(response):

@@ -1,10 +1,10 @@
-"""The 0-1 test on circle maps; tests/studies/test_verification.py holds K of the logistic map and Henon's."""
+"""The 0-1 test on circle maps; tests/validation/test_verification.py holds K of the logistic map and Henon's."""
 
 import numpy as np
 import pytest
 
 from rubgen.labels.zero_one_test import FREQUENCIES, growth_correlation
-from rubgen.studies.verification.chaos_indicators import henon
+from validation.verification.chaos_indicators import henon
 
 GOLDEN = (np.sqrt(5) - 1) / 2
 

@@ -12,8 +12,8 @@ from rubgen.solver import blocks as block_module
 from rubgen.solver.block_kernels import Product, free_step, multiply, quadratic, recover_all
 from rubgen.solver.blocks import aligned, blade_harmonics, find_blocks
 from rubgen.solver.central_difference import scheme, system_blocks
-from rubgen.solver.reference import ReferenceStepper
 from rubgen.solver.stepper import Stepper
+from validation.reference_step import ReferenceStepper
 
 
 def mistuned(system, spread=0.03):

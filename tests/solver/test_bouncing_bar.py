@@ -1,9 +1,9 @@
-"""The bar that bounces off a wall, beside its values in tests/studies/test_verification.py."""
+"""The bar that bounces off a wall, beside its values in tests/validation/test_verification.py."""
 
 import numpy as np
 import pytest
 
-from rubgen.studies.verification.bouncing_bar import bounce
+from validation.verification.bouncing_bar import bounce
 
 
 def test_impulse_and_rebound_converge_with_the_order_of_a_dispersed_front() -> None:

@@ -5,8 +5,8 @@ from threadpoolctl import threadpool_limits
 from rubgen import make_scenario
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
-from rubgen.solver.reference import ReferenceStepper, differentiation_matrix
 from rubgen.solver.stepper import Stepper
+from validation.reference_step import ReferenceStepper, differentiation_matrix
 
 
 def compare_turns(system, friction, steps, turns, opening, settle=6, restitution=0.0):

@@ -1,14 +1,11 @@
 """The script that the benchmark times: both hands of it are one model, and it pushes as a contact must."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 
 @pytest.fixture
 def models(small_system, monkeypatch):
-    monkeypatch.syspath_prepend(Path(__file__).parents[2])
     from benchmarks.bench_rk45 import LoopedModel, PenaltyModel
 
     system = small_system(clearance=2e-3)

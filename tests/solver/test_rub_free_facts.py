@@ -10,7 +10,7 @@ from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
 from rubgen.solver.integrate import integrate
 from rubgen.solver.rub_free import free_penetration, rub_free_motion
-from rubgen.studies.run_up import predicted_onset, reach
+from validation.run_up import predicted_onset, reach
 
 RPM = np.pi / 30
 SMOOTH = ContactLaw()

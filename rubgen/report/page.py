@@ -1,0 +1,208 @@
+"""One page that shows a data set to people: `rubgen report DIR`."""
+
+from __future__ import annotations
+
+import base64
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from rubgen.dataset.open import DataSet
+from rubgen.dataset.replaying import find_replay
+from rubgen.dataset.verify import verify
+from rubgen.errors import UserError
+from rubgen.io.durable import write_durably
+from rubgen.labels.labels import Motion
+from rubgen.progress import count
+from rubgen.scenario.vary import PARAMETERS
+from rubgen.viz.colors import MOTION_COLORS
+from rubgen.viz.figures.data_set import dataset_overview, varied_keys
+from rubgen.viz.figures.replay import waveform_orders
+from rubgen.viz.replay import Replay
+from rubgen.viz.snapshot import picture
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+EXAMPLES, MOST_FAILED = 6, 30
+DPI = 90
+"""Few dots: a page takes about a megabyte. All colours are kept, for they tell the classes."""
+WAYS = {
+    "rubgen": """import rubgen
+
+data = rubgen.open("DIR")
+runs = data.runs
+signal = data.signals("RUN")["CHANNEL"]""",
+    "pandas": """import glob
+import pandas as pd
+
+files = sorted(glob.glob("DIR/data/train-*.parquet"))
+runs = pd.concat(map(pd.read_parquet, files))
+signal = runs["CHANNEL"].iloc[0]""",
+    "polars": """import polars as pl
+
+runs = pl.scan_parquet("DIR/data/train-*.parquet")
+signal = runs.select("CHANNEL").head(1).collect()["CHANNEL"][0]""",
+    "datasets": """from datasets import load_dataset
+
+runs = load_dataset("parquet", data_files="DIR/data/train-*.parquet", split="train")
+signal = runs[0]["CHANNEL"]""",
+    "torch": """import torch
+from datasets import load_dataset
+
+runs = load_dataset("parquet", data_files="DIR/data/train-*.parquet", split="train")
+runs = runs.select_columns(["CHANNEL", "motion"]).with_format("torch")
+loader = torch.utils.data.DataLoader(runs, batch_size=16)""",
+    "MCAP": """from pathlib import Path
+from rubgen.io.mcap import read_mcap
+
+run = read_mcap(Path("DIR/mcap/RUN.mcap"))
+signal = run.signals["CHANNEL"]
+labels = run.labels""",
+}
+
+
+def write_report(directory: Path, path: Path) -> None:
+    """Write the page of the data set in `directory` to `path`: one file, which needs nothing else.
+
+    What the set is, balance of classes, coverage of parameters, failed runs and why, six examples with pictures, the
+    channels, how to load it, and which checks it passed. Raises UserError where there is no finished data set, no good
+    run, or the file cannot be written.
+    """
+    html = render_report(directory)
+    try:
+        write_durably(path, lambda part: part.write_text(html, encoding="utf-8"))
+    except OSError as error:
+        raise UserError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from None
+
+
+def render_report(directory: Path) -> str:
+    """The page as text."""
+    data = DataSet(directory)
+    good = data.ok
+    if good.empty:
+        raise UserError(f"{directory}: no run is good, so there is nothing to show; see `rubgen info {directory}`")
+    examples, replays = example_runs(good), {}
+    for done, run_id in enumerate(examples):
+        count(done, len(examples))
+        replays[run_id] = find_replay(directory, run_id).replay
+    first = next(iter(replays.values()))
+    environment = Environment(loader=PackageLoader("rubgen.report", "."), autoescape=True, undefined=StrictUndefined)
+    identity = data.manifest.identity
+    return environment.get_template("report.html.j2").render(
+        name=data.manifest.name,
+        machine=identity.machine["name"],
+        runs=len(data.runs),
+        good=len(good),
+        rubbing=int(good["rub"].sum()),
+        seconds=f"{first.seconds:g}",
+        rate=f"{first.recording.sample_rate_hz:,.0f}",
+        seed=data.manifest.seed,
+        version=identity.packages["rubgen"],
+        license=data.manifest.license,
+        classes=_classes(good),
+        overview=as_data_url(dataset_overview(data.runs)),
+        parameters=_parameters(good, identity.recipe),
+        failed=data.runs[data.runs["status"] != "ok"].head(MOST_FAILED).reset_index().to_dict("records"),
+        failed_more=max(0, len(data.runs) - len(good) - MOST_FAILED),
+        examples=[_example(data.row(run_id), replay) for run_id, replay in replays.items()],
+        channels=_channels(first),
+        loading=[{"name": name, "code": code} for name, code in loading(data, first).items()],
+        problems=verify(directory),
+        files=len(data.manifest.files),
+    )
+
+
+def example_runs(good: pd.DataFrame) -> list[str]:
+    """Up to six runs: the hardest rub of each class, then a run without contact, then the hardest of the rest."""
+    by_impulse = good.sort_index().sort_values("contact_impulse_per_turn_n_s", ascending=False, kind="stable")
+    hardest = [by_impulse.index[by_impulse["motion"] == motion.value][:1] for motion in Motion]
+    free = by_impulse.index[~by_impulse["rub"].astype(bool)][:1]
+    candidates = [str(run_id) for group in (*hardest, free, by_impulse.index) for run_id in group]
+    return list(dict.fromkeys(candidates))[:EXAMPLES]
+
+
+def as_data_url(figure: Figure) -> str:
+    """The figure as a PNG inside an address."""
+    picture = io.BytesIO()
+    figure.savefig(picture, dpi=DPI, format="png", metadata={"Software": None})
+    return f"data:image/png;base64,{base64.b64encode(picture.getvalue()).decode('ascii')}"
+
+
+def _classes(good: pd.DataFrame) -> list[dict[str, Any]]:
+    rows = []
+    for motion in Motion:
+        mine = good[good["motion"] == motion.value]
+        if len(mine):
+            percent = f"{100 * len(mine) / len(good):.1f}"
+            rows.append(
+                {"name": motion.value, "count": len(mine), "percent": percent, "color": MOTION_COLORS[motion],
+                 "rub": int(mine["rub"].sum())}
+            )  # fmt: skip
+    return rows
+
+
+def _parameters(good: pd.DataFrame, recipe: dict[str, Any]) -> list[dict[str, str]]:
+    meaning = {entry.key: ", ".join(filter(None, (entry.meaning, entry.unit.strip("1")))) for entry in PARAMETERS}
+    return [
+        {
+            "key": key,
+            "meaning": meaning[key],
+            "least": f"{good[key].min():.5g}",
+            "largest": f"{good[key].max():.5g}",
+            "drawn": _drawn(recipe.get("vary", {}).get(key)),
+        }
+        for key in varied_keys(good)
+    ]
+
+
+def _drawn(distribution: object) -> str:
+    """A distribution as in the recipe, numbers short."""
+    if isinstance(distribution, dict):
+        return ", ".join(f"{key} {_drawn(value)}" for key, value in distribution.items() if value is not None)
+    if isinstance(distribution, list):
+        return f"[{', '.join(map(_drawn, distribution))}]"
+    return f"{distribution:.6g}" if isinstance(distribution, float) else str(distribution)
+
+
+def _example(row: dict[str, Any], replay: Replay) -> dict[str, str]:
+    impulse = float(row["contact_impulse_per_turn_n_s"])
+    contact = f"{impulse:.3g} N s a turn on {int(row['blades_touched'])} blades" if row["rub"] else "no contact"
+    has_motion = replay.frames is not None and replay.frames.time.size
+    figure = picture(replay) if has_motion else waveform_orders(replay, next(iter(replay.recording.channels)))
+    return {
+        "run_id": row["run_id"],
+        "motion": row["motion"],
+        "text": f"{float(row['speed_rpm']):,.0f} rev/min, {contact}",
+        "picture": as_data_url(figure),
+    }
+
+
+def _channels(replay: Replay) -> list[dict[str, str]]:
+    return [
+        {
+            "name": channel.name,
+            "quantity": channel.quantity,
+            "axis": channel.axis,
+            "location": channel.location,
+            "unit": channel.unit,
+            "range": f"{channel.range_min:g} to {channel.range_max:g}",
+            "noise": f"{channel.noise_rms:g}",
+        }
+        for channel in replay.recording.channels.values()
+    ]
+
+
+def loading(data: DataSet, replay: Replay) -> dict[str, str]:
+    """Ways to load the set, each a few lines of Python in which DIR stands for its directory."""
+    formats = data.manifest.identity.recipe["output"]["formats"]
+    ways = {"rubgen": WAYS["rubgen"]}
+    if "parquet" in formats:
+        ways |= {name: WAYS[name] for name in ("pandas", "polars", "datasets", "torch")}
+    if "mcap" in formats:
+        ways["MCAP"] = WAYS["MCAP"]
+    channel, run_id = next(iter(replay.recording.channels)), replay.scenario.run_id
+    return {name: code.replace("CHANNEL", channel).replace("RUN", run_id) for name, code in ways.items()}

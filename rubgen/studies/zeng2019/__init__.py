@@ -1,6 +1,0 @@
-"""Zeng et al. (2019) done again: every figure and statement, with a verdict. See `docs/zeng2019.md`."""
-
-from rubgen.studies.zeng2019.fitting import Fitted, fit
-from rubgen.studies.zeng2019.reproducing import Reproduced, reproduce
-
-__all__ = ["Fitted", "Reproduced", "fit", "reproduce"]

@@ -1,0 +1,265 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import qmc
+
+from rubgen.labels import Motion
+from rubgen.reduction import reduce
+from rubgen.scenario import make_scenario
+from rubgen.solver.integrate import integrate
+from rubgen.solver.response import ContactEvents
+from validation.zeng2019 import reproduce
+from validation.zeng2019.cases import (
+    CASING_SUPPORTS,
+    DISK_SUPPORTS,
+    NAMED_CASING_SUPPORTS,
+    NAMED_DISK_SUPPORTS,
+    NAMED_SPEEDS,
+    REGIONS,
+    SPEEDS,
+    casing_sweep,
+    disk_sweep,
+    readings,
+    swept_speeds,
+    within,
+)
+from validation.zeng2019.causes import _by_modes
+from validation.zeng2019.conclusion3 import indices
+from validation.zeng2019.contact_pattern import contact_pattern
+from validation.zeng2019.figure10 import _onset
+from validation.zeng2019.figure16 import unevenness, zones_and_motion
+from validation.zeng2019.figure17 import _end, jump
+from validation.zeng2019.figure19 import crossings
+from validation.zeng2019.measures import fractional, harmonics, looks_regular, segments, strongest
+from validation.zeng2019.outcome import POINTS, Outcome, outcome, outcome_of, run, run_piece
+from validation.zeng2019.region import one_class, switching
+from validation.zeng2019.search import Candidate, toml_of
+from validation.zeng2019.size import FULL, QUICK
+
+TINY = replace(QUICK, settle_turns=50, record_turns=100, thin=30, speed_thin=100)
+NONE = np.zeros(0)
+
+
+def made_up(**changes) -> Outcome:
+    """A period-1 rub with symmetric zones, all arrays empty, but for the changes."""
+    arrays = {name: NONE for name, field in Outcome.__dataclass_fields__.items() if field.type == "FloatArray"}
+    values = {"status": "ok", "reason": "", "motion_blisk": "period-1", "motion_casing": "period-1", "rub": True}
+    points = {"points_blisk": np.ones(POINTS), "points_casing": np.ones(POINTS)}
+    return Outcome(**(arrays | values | points | {"symmetric": 1, "zones": 2} | changes))
+
+
+@pytest.fixture(scope="module")
+def rub():
+    """Scenario and response of a short light rub."""
+    values = {"speed_rpm": 10000.0, "disk_support_stiffness_n_per_m": 2e8}
+    scenario = TINY.shortened(make_scenario("zeng2019", **values))
+    system = reduce(scenario.machine, scenario.reduction).at_speed(scenario.operation.speed_rad_per_s)
+    return scenario, integrate(system, scenario.operation, scenario.contact)
+
+
+def test_sweeps_are_those_of_the_paper():
+    assert (SPEEDS[0], SPEEDS[-1], len(SPEEDS)) == (2460, 14940, 309)
+    assert {float(rpm) for rpm in range(2460, 14941, 120)} <= set(SPEEDS)
+    assert all(low in SPEEDS and high in SPEEDS for low, high in REGIONS.values())
+    assert {1.4e8, 3.7e8, 4.5e8, 5.4e8, 6.75e8} <= {round(k) for k in DISK_SUPPORTS}
+    ends = {200, 15500, 16400, 20000, 20900, 26300, 27200, 66800, 67700, 200000}
+    assert ends <= {round(k) for k in CASING_SUPPORTS}
+    assert list(CASING_SUPPORTS) == sorted(CASING_SUPPORTS)
+    assert QUICK.of((1.0, 2.0, 3.0)) == (1.0, 3.0)
+    by_120 = swept_speeds(replace(FULL, speed_thin=4))
+    assert set(np.diff([rpm for rpm in by_120 if rpm % 120 == 60])) == {120.0}
+    assert set(NAMED_SPEEDS) < set(by_120)
+    assert (by_120[0], by_120[-1], FULL.option, replace(FULL, speed_thin=4).option) == (2460, 14940, "", " --every 4")
+    assert {6660.0, 6780.0} <= set(swept_speeds(QUICK))
+
+
+def test_an_outcome_holds_what_the_response_says(rub):
+    _, response = rub
+    found, taps, steps = outcome(response), response.taps, response.steps_per_turn
+    assert found.rub
+    last = taps["blisk_x"].size - 1
+    picked = [taps["blisk_x"][last - back * steps] for back in (0, 1, 48)]
+    assert [found.points_blisk[-1], found.points_blisk[-2], found.points_blisk[0]] == picked
+    wave = taps["casing_acc_0"][-100 * steps :]
+    line = 2 / wave.size * abs(np.sum(wave * np.exp(-2j * np.pi * 3 * np.arange(wave.size) / steps)))
+    assert harmonics(found.spectrum_casing)[2] == pytest.approx(line, rel=1e-5)
+    assert found.blisk_rms == pytest.approx(taps["blisk_x"][-POINTS * steps :].std())
+    assert found.even_field[1] > 100 * found.even_field[0]
+    assert found.odd_field[0] > 100 * found.odd_field[1]
+
+
+def test_an_outcome_comes_back_from_its_arrays(rub):
+    scenario, response = rub
+    again, direct = outcome_of(run(scenario)), outcome(response)
+    assert run_piece(scenario).key == run_piece(replace(scenario)).key
+    assert (again.label, again.zones, again.impulse) == (direct.label, direct.zones, direct.impulse)
+    np.testing.assert_array_equal(again.points_casing, direct.points_casing)
+
+
+def test_a_run_that_diverges_has_no_arrays():
+    scenario = TINY.shortened(make_scenario("zeng2019", casing_support_stiffness_n_per_m=2e3))
+    found = outcome_of(run(scenario))
+    assert (found.ok, found.label, found.points_blisk.size) == (False, "diverged", 0)
+    assert found.reason
+
+
+def test_the_contact_pattern_counts_blades_at_the_same_time(rub):
+    """Blades 3 and 4 together for 5 steps, blade 20 alone for 10: a third of the contact has neighbours."""
+    _, response = rub
+    steps = response.steps_per_turn
+    first = (response.record_turns - POINTS) * steps
+    events = ContactEvents(
+        blade=np.array([3, 4, 20, 7]),
+        start_step=np.array([first, first + 2, first + 100, first - 50]),
+        steps=np.array([7, 5, 8, 9]),
+        angle=np.radians([10.0, 12.0, 190.0, 90.0]),
+        impulse=np.array([1.0, 2.0, 3.0, 50.0]),
+        friction_loss=np.zeros(4),
+        normal_loss=np.zeros(4),
+    )
+    pattern = contact_pattern(replace(response, events=events), POINTS)
+    assert pattern.at_once == 2
+    assert pattern.neighbours == pytest.approx(5 / 15)
+    assert pattern.on_blades[[3, 4, 20, 7]].tolist() == [1.0, 2.0, 3.0, 0.0]
+    assert pattern.on_casing.sum() == pytest.approx(6.0)
+    assert pattern.on_casing[60:].sum() == pytest.approx(3.0)
+
+
+def test_orders_and_lines_between_them():
+    spectrum = np.zeros(1001)
+    spectrum[[100, 300, 250]] = 4.0, 2.0, 1.0
+    assert strongest(harmonics(spectrum)) == 1
+    assert strongest(harmonics(spectrum), 2) == 3
+    assert fractional(spectrum) == pytest.approx(0.25)
+    assert fractional(np.zeros(1001)) == 0
+    assert strongest(np.zeros(10)) == 0
+
+
+def test_points_that_hardly_move_look_like_one():
+    calm = made_up(points_blisk=1 + 1e-3 * np.arange(POINTS) / POINTS)
+    assert looks_regular(calm, "blisk", 0.1)
+    assert not looks_regular(calm, "blisk", 0.01)
+
+
+def test_stretches_of_one_class_and_mixed_ones():
+    found = segments([1, 2, 3, 4, 5, 6, 7], list("aaabcdd"), 2)
+    assert found == [("a", 1, 3), ("mixed", 4, 5), ("d", 6, 7)]
+
+
+def test_the_onset_lies_between_two_runs():
+    silent, rubs = made_up(rub=False), made_up()
+    assert _onset({6540.0: silent, 6660.0: silent, 6780.0: rubs}).verdict == "agrees"
+    assert _onset({6540.0: silent, 6660.0: rubs, 6780.0: rubs}).verdict == "differs"
+
+
+def test_classes_in_a_range_are_counted_and_failed_runs_left_out():
+    wild = made_up(motion_blisk="chaotic", symmetric=0)
+    runs = dict(enumerate([made_up(), wild, wild, made_up(status="diverged")], start=1))
+    assert one_class("x", "chaotic", "blisk", runs, runs.values()).verdict == "agrees within 33 % of the runs"
+    assert switching("x", ("chaotic", "period-1"), "blisk", runs, runs.values()).verdict == "agrees"
+    assert switching("x", ("chaotic", "multi-period"), "blisk", runs, runs.values()).verdict == "differs"
+    assert list(within(runs, 2, 3)) == [2, 3]
+    assert all(str(motion) for motion in Motion)
+
+
+def test_quasi_periodic_motion_stands_for_one_word_alone():
+    torus = made_up(motion_blisk="quasi-periodic")
+    runs = dict(enumerate([made_up(), torus, torus], start=1))
+    assert one_class("x", "chaotic", "blisk", runs, runs.values()).verdict == "agrees within 33 % of the runs"
+    assert switching("x", ("chaotic", "period-1"), "blisk", runs, runs.values()).verdict == "agrees"
+    assert switching("x", ("chaotic", "multi-period", "period-1"), "blisk", runs, runs.values()).verdict == "differs"
+
+
+def test_where_the_eye_sees_something_else_both_verdicts_are_given():
+    """Chaos of a hundredth of the diagram's height looks like one point."""
+    calm = made_up(motion_blisk="chaotic", points_blisk=1 + 0.01 * np.arange(POINTS) / POINTS)
+    tall = made_up(points_blisk=np.linspace(0, 2, POINTS))
+    found = one_class("x", "period-1", "blisk", {1: calm, 2: calm}, [calm, tall], fitted=True)
+    assert (found.verdict, found.used_for_fitting) == ("differs", True)
+    assert found.why == "By the scatter of 49 points, the paper's way, the verdict would be `agrees`."
+    assert one_class("x", "period-1", "blisk", {1: made_up()}, [calm, tall]).why == ""
+    assert one_class("x", "chaotic", "casing", {}, [tall]).verdict == "unknowable"
+
+
+def test_the_end_of_rub_lies_between_two_runs():
+    silent, rubs = made_up(rub=False, motion_casing="static"), made_up()
+    ended, still = _end({6.6e8: rubs, 6.7e8: rubs, 6.75e8: silent})
+    assert (ended.verdict, still.verdict) == ("agrees", "agrees")
+    assert _end({6.4e8: rubs, 6.6e8: silent, 6.75e8: silent})[0].verdict == "agrees within 2.2 %"
+    assert _end({6.7e8: rubs, 6.75e8: rubs, 7.5e8: silent})[0].verdict == "differs"
+
+
+def test_a_number_of_modes_without_odd_orders_at_the_point_would_be_a_cause():
+    both, even = np.zeros(1001), np.zeros(1001)
+    both[[100, 200]] = 3.0, 1.0
+    even[200] = 1.0
+    with_odd, without = made_up(spectrum_casing=both), made_up(spectrum_casing=even)
+    assert _by_modes({5: with_odd, 9: with_odd}).verdict == "differs"
+    assert _by_modes({5: with_odd, 9: without}).verdict == "agrees"
+    assert _by_modes({5: made_up(status="diverged")}).verdict == "unknowable"
+
+
+def test_supports_of_the_casing_are_read_in_proportion_to_its_mass(tmp_path):
+    assert readings(FULL) == {"as printed": 1, "times 5": 5}
+    light = tmp_path / "light.toml"
+    light.write_text(toml_of(Candidate(damping=0.10, mass=1.0, friction=0.0)), encoding="utf-8")
+    assert readings(replace(FULL, machine=str(light))) == {"as printed": 1}
+    assert set(NAMED_DISK_SUPPORTS) < set(disk_sweep(QUICK))
+    assert set(NAMED_CASING_SUPPORTS) < set(casing_sweep(QUICK, "times 5"))
+
+
+def test_zones_and_motion_are_counted_both_ways():
+    wild = made_up(motion_blisk="chaotic", symmetric=0)
+    first, second = zones_and_motion([made_up()] * 9 + [made_up(symmetric=0)] + [wild] * 3)
+    assert (first.verdict, second.verdict) == ("agrees", "agrees")
+    assert "9 of 10" in first.found
+    assert "3 of 3" in second.found
+
+
+def test_unevenness_is_that_of_the_halves_right_and_left():
+    impulse = np.zeros(120)
+    impulse[[0, 119, 60]] = 2.0, 1.0, 1.0
+    assert unevenness(made_up(on_casing=impulse)) == pytest.approx(0.5)
+    assert unevenness(made_up(on_casing=np.zeros(120))) == 0
+
+
+def test_a_jump_is_found_where_the_points_jump():
+    """Whatever the steps of the sweep: a slow change over a wide step is none."""
+    heights = (1.0, 1.1, 5.0, 5.1)
+    runs = {k: made_up(points_casing=np.full(POINTS, h)) for k, h in zip((1.0, 2.0, 3.0, 4.0), heights, strict=True)}
+    assert jump(runs) == 2.5
+    wide = {-100.0: made_up(points_casing=np.full(POINTS, -9.0))} | runs
+    assert jump(wide) == 2.5
+
+
+def test_crossings_are_interpolated():
+    k = np.array([0.0, 1.0, 2.0])
+    lines = np.array([[0.0, 9.0], [2.0, 5.0], [4.0, np.nan]])
+    assert crossings(k, lines, 3.0) == [1.5]
+    assert crossings(k, lines, 6.0) == pytest.approx([0.75])
+
+
+def test_total_indices_of_a_sum_are_its_shares_of_variance():
+    """f = 3 a + b of uniform a, b: shares 0.9 and 0.1; a failed run counts as the largest value."""
+    both = qmc.Sobol(4, rng=1).random(256)
+    a, b = both[:, :2], both[:, 2:]
+    points = [a, b, np.column_stack([b[:, 0], a[:, 1]]), np.column_stack([a[:, 0], b[:, 1]])]
+    values = np.stack([3 * p[:, 0] + p[:, 1] for p in points], axis=1)[..., None]
+    found = indices(values)
+    np.testing.assert_allclose(found.total[0], [0.9, 0.1], atol=0.03)
+    assert (found.low <= found.total).all()
+    assert (found.total <= found.high).all()
+    assert found.high[0, 0] - found.low[0, 0] < 0.5
+    again = indices(values)
+    np.testing.assert_array_equal([again.low, again.high], [found.low, found.high])
+    values[0, 0] = np.nan
+    assert np.isfinite(indices(values).total).all()
+
+
+def test_a_sweep_makes_its_page(tmp_path):
+    """Both ends and one value between of the sweep, two that figure 18 names, and the two around the end of rub."""
+    made = reproduce(tmp_path, figure="18", size=TINY, workers=1)
+    assert made.made == 7
+    assert sum(made.verdicts.values()) == 2
+    assert (tmp_path / "figure-18" / "zeng2019-18a.png").exists()

@@ -1,0 +1,68 @@
+"""`python -m validation.contact_options [--quick]`: runs, figures, `docs/contact-options.md`.
+
+With `--quick`, one case, two speeds and short records, everything goes to `out/contact-options-quick/`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from rubgen.fem.draw_in import soft_draw_in
+from rubgen.pipeline import Run, simulate
+from rubgen.reduction import reduce
+from rubgen.scenario import Scenario
+from rubgen.viz.figures import save_png
+from validation.contact_options.chords import artefact
+from validation.contact_options.figures import chords_figure, liner_figure
+from validation.contact_options.page import page
+from validation.contact_options.runs import HEAVY_RPM, OPTIONS, Found, heavy_scenario, option_scenario, read
+from validation.sensitivity.cases import CASES
+
+QUICK_SETTLE, QUICK_RECORD = 60, 64
+
+
+def main(arguments: Sequence[str], folder: Path) -> int:
+    """Run everything; paths start from `folder`."""
+    parser = argparse.ArgumentParser(prog="python -m validation.contact_options")
+    parser.add_argument("--quick", action="store_true", help="little and short, into out/contact-options-quick")
+    quick = parser.parse_args(arguments).quick
+    out = folder / ("out/contact-options-quick" if quick else "docs")
+    out.mkdir(parents=True, exist_ok=True)
+    cases, speeds = (list(CASES)[:1], HEAVY_RPM[-2:]) if quick else (list(CASES), HEAVY_RPM)
+    options = [
+        read(case, option, _run(option_scenario(case, option), quick=quick)) for case in cases for option in OPTIONS
+    ]
+    heavy = [read("heavy", "none", _run(heavy_scenario(speed), quick=quick)) for speed in speeds]
+    scenario = option_scenario(cases[0], "none")
+    system = reduce(scenario.machine, scenario.reduction).at_speed(scenario.operation.speed_rad_per_s)
+    hits = artefact(system)
+    save_png(chords_figure(hits, *_first(options, "none", "chords")), out / "contact-options-chords.png")
+    save_png(liner_figure(options), out / "contact-options-liner.png")
+    factor, _ = soft_draw_in(scenario.machine.blades, scenario.machine.disk.rim_radius_m)
+    text = page(options, heavy, hits, factor)
+    (out / "contact-options.md").write_text(text, encoding="utf-8")
+    return 0
+
+
+def _first(found: Sequence[Found], *options: str) -> list[Found]:
+    """The first case with each of these options."""
+    return [next(each for each in found if each.option == option) for option in options]
+
+
+def _run(scenario: Scenario, *, quick: bool) -> Run:
+    if quick:
+        operation = replace(scenario.operation, settle_turns=QUICK_SETTLE, record_turns=QUICK_RECORD)
+        scenario = replace(scenario, operation=operation, signal_seconds=0.2)
+    run = simulate(scenario)
+    motion = run.labels.motion if run.labels else run.response.reason
+    sys.stdout.write(f"{scenario.operation.speed_rpm:6.0f} rev/min, {scenario.contact}: {motion}\n")
+    sys.stdout.flush()
+    return run
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:], Path()))

@@ -1,0 +1,84 @@
+"""The verification table as text and as a page of the documents."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from validation.verification.row import Row
+
+HEAD = """# Verification
+
+Every value that rubgen computes with its own elements, reduction, contact and integrator below stands beside one from
+a source that is independent of what is checked: a closed form, the literature, or another method written for the
+purpose (shooting, Runge-Kutta, Rayleigh-Ritz, Bessel determinants, dense full models). A row is ok when |found -
+expected| is at most the tolerance, in the unit of the row; a range has its middle as expected value, a broken bound
+is counted. Tolerances follow from the last digit of a table and from observed convergence, as each section says; none
+was widened to pass. Found values are rounded to a hundredth of the tolerance.
+
+`make verification` makes this page and `out/verification.json`, and fails when a row is not ok.
+
+"""
+
+
+@dataclass(frozen=True)
+class Group:
+    """A section of the table: its title, how its values and tolerances come about, its rows."""
+
+    title: str
+    text: str
+    rows: Sequence[Row]
+
+
+def shown(value: float, tolerance: float) -> str:
+    """The value rounded to a hundredth of the tolerance, so that rounding errors of a machine do not show."""
+    if not math.isfinite(value):
+        return str(value)
+    if tolerance == 0:
+        return f"{value:.12g}"
+    places = 2 - math.floor(math.log10(tolerance))
+    return f"{round(value, places) + 0.0:.12g}"
+
+
+def line(row: Row) -> str:
+    """One line for people at a terminal."""
+    found, state = shown(row.found, row.tolerance), "ok" if row.ok else "NOT OK"
+    return f"{row.quantity:<82} {row.expected:>14.9g} {found:>16} +- {row.tolerance:<9.2g} {state}"
+
+
+def page(groups: Sequence[Group]) -> str:
+    """The page: a section with its table for each group."""
+    rows = [row for group in groups for row in group.rows]
+    failed = sum(not row.ok for row in rows)
+    summary = f"{len(rows)} values, {len(rows) - failed} ok, {failed} not ok.\n\n"
+    return HEAD + summary + "\n".join(_section(group) for group in groups)
+
+
+def _section(group: Group) -> str:
+    head = "| quantity | source | expected | found | tolerance | ok |\n|---|---|---|---|---|---|\n"
+    return f"## {group.title}\n\n{group.text}\n\n{head}{''.join(_cells(row) for row in group.rows)}"
+
+
+def _cells(row: Row) -> str:
+    cells = (
+        _escaped(row.quantity),
+        _escaped(row.source),
+        f"{row.expected:.9g}",
+        shown(row.found, row.tolerance),
+        f"{row.tolerance:.2g}",
+        "yes" if row.ok else "**no**",
+    )
+    return f"| {' | '.join(cells)} |\n"
+
+
+def _escaped(text: str) -> str:
+    return text.replace("|", "\\|")
+
+
+def summary(groups: Mapping[str, Group], seconds: Mapping[str, float]) -> str:
+    """Rows, failures and the time of each group, for the end of a run."""
+    rows = [row for group in groups.values() for row in group.rows]
+    failed = [row.quantity for row in rows if not row.ok]
+    times = ", ".join(f"{name} {seconds[name]:.1f} s" for name in groups)
+    return "\n".join([f"{len(rows)} values, {len(failed)} not ok", *failed, times])

@@ -1,0 +1,124 @@
+"""The whole: what is asked for is computed, judged and written."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from rubgen.dataset.workers import usable_cores
+from rubgen.errors import UserError
+from rubgen.io.durable import write_durably
+from validation.zeng2019.computing import Progress, compute
+from validation.zeng2019.drawing import png
+from validation.zeng2019.page import Drawn, Judged, html, markdown
+from validation.zeng2019.section import Section
+from validation.zeng2019.sections import SECTIONS
+from validation.zeng2019.size import FULL, MACHINE, MACHINES, QUICK, Size
+from validation.zeng2019.store import Store
+
+PAGE = "zeng2019"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reproduced:
+    """What `reproduce` left behind: the page, how many pieces were made now, how often each verdict was given."""
+
+    page: Path
+    made: int
+    verdicts: dict[str, int]
+
+
+def reproduce(
+    out: Path | str,
+    *,
+    figure: str | None = None,
+    quick: bool = False,
+    every: int = 1,
+    machine: str = MACHINE,
+    size: Size | None = None,
+    workers: int | None = None,
+    progress: Progress = lambda _done, _all: None,
+) -> Reproduced:
+    """Compute what the paper shows, judge its statements, write the page into `out`.
+
+    `every` takes every so many-th speed: 1 steps by 30 rev/min, 4 by 120. `machine` is one of MACHINES. `figure` asks
+    for one section; its page goes to `out/figure-N`. Pieces of computation are kept in `out/pieces`: the same call
+    after an interruption makes the rest. Writes `zeng2019.md` with its pictures, `zeng2019.html` (one file) and
+    `statements.json`. Raises UserError for an unknown figure or machine, and an `out` that is not ours or cannot be
+    written.
+    """
+    if machine not in MACHINES:
+        raise UserError(f"--machine {machine}: not a machine of this paper; choose from {', '.join(MACHINES)}")
+    chosen, size = sections_of(figure), size or (QUICK if quick else replace(FULL, speed_thin=every))
+    size = replace(size, machine=machine)
+    store = Store(Path(out))
+    with store.claimed():
+        made = compute(
+            (p for section in chosen for p in section.pieces(size)), store, workers or usable_cores(), progress
+        )
+        judged = [judge(section, size, store) for section in chosen]
+        folder = Path(out) if figure is None else Path(out) / f"figure-{chosen[0].name}"
+        folder.mkdir(exist_ok=True)
+        page = write(judged, size, folder)
+    return Reproduced(page=page, made=made, verdicts=_count(judged))
+
+
+def sections_of(figure: str | None) -> Sequence[Section]:
+    """All sections, or the one of that name; UserError where there is none."""
+    if figure is None:
+        return SECTIONS
+    chosen = [section for section in SECTIONS if figure in (section.name, *section.also)]
+    if not chosen:
+        names = ", ".join(name for section in SECTIONS for name in (section.name, *section.also))
+        raise UserError(f"--figure {figure}: there is no such figure; choose from {names}")
+    return chosen
+
+
+def judge(section: Section, size: Size, store: Store) -> Judged:
+    """The section with its verdicts and pictures."""
+    drawn = [
+        Drawn(name=f"{PAGE}-{section.name}{'abcdef'[i]}.png", caption=caption, png=png(figure))
+        for i, (caption, figure) in enumerate(section.figures(size, store).items())
+    ]
+    return Judged(section=section, statements=tuple(section.statements(size, store)), drawn=tuple(drawn))
+
+
+def write(judged: Sequence[Judged], size: Size, folder: Path) -> Path:
+    """Write page, pictures and statements into `folder`; gives the Markdown's path."""
+    for picture in (picture for each in judged for picture in each.drawn):
+        _write(folder / picture.name, picture.png)
+    _write(folder / "statements.json", statements_json(judged, size).encode())
+    _write(folder / f"{PAGE}.html", html(judged, size).encode())
+    _write(folder / f"{PAGE}.md", markdown(judged, size).encode())
+    return folder / f"{PAGE}.md"
+
+
+def statements_json(judged: Sequence[Judged], size: Size) -> str:
+    """A JSON list of `figure`, `statement`, `verdict`, `found`, `why`, `used_for_fitting`, `experiment`, `command`."""
+    rows = [
+        {
+            "figure": each.section.name,
+            "statement": one.statement,
+            "verdict": one.verdict,
+            "found": one.found,
+            "why": one.why,
+            "used_for_fitting": one.used_for_fitting,
+            "experiment": one.experiment,
+            "command": each.section.command + size.option,
+        }
+        for each in judged
+        for one in each.statements
+    ]
+    return json.dumps(rows, indent=1, ensure_ascii=False) + "\n"
+
+
+def _write(path: Path, data: bytes) -> None:
+    write_durably(path, lambda part: part.write_bytes(data))
+
+
+def _count(judged: Sequence[Judged]) -> dict[str, int]:
+    verdicts = [one.verdict for each in judged for one in each.statements]
+    kinds = ["agrees within" if verdict.startswith("agrees within") else verdict for verdict in verdicts]
+    return {kind: kinds.count(kind) for kind in ("agrees", "agrees within", "differs", "unknowable")}
