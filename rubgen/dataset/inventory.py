@@ -104,7 +104,8 @@ def _reason(error: OSError | UserError) -> str:
 def strangers(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
     """Files and folders below the set that neither the manifest nor rubgen's other commands account for.
 
-    What systems leave in any directory is no content. `.staging` stays where the making was stopped at its very end.
+    What systems leave in any directory is no content. `.staging` and its lock stay where the making was stopped at its
+    very end; the next `generate` removes them.
     A page of `rubgen report` is known by its name and its mark.
     """
     known = {entry.path for entry in manifest.files} | set(manifest.derived)
@@ -116,12 +117,12 @@ def strangers(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
     for folder, inner, names in os.walk(layout.root, onerror=unreadable.append):
         here = Path(folder).relative_to(layout.root)
         for name in _own(inner):
-            if (here / name).as_posix() not in folders and (here / name) != Path(layout.staging.name):
+            if (here / name).as_posix() not in folders and not _is_left(layout, here / name):
                 yield _stranger((here / name).as_posix())
         inner[:] = [name for name in _own(inner) if (here / name).as_posix() in folders]
         for name in _own(names):
             path = (here / name).as_posix()
-            if path not in known and not (path == REPORT and _is_report(layout.root / path)):
+            if path not in known and not _is_left(layout, here / name) and not _is_report(layout.root, path):
                 yield _stranger(path)
     for error in unreadable:
         yield Finding(text=f"{Path(error.filename).name}: cannot be read ({error.strerror})", kind=Kind.STRANGE)
@@ -131,13 +132,18 @@ def _own(names: Iterable[str]) -> list[str]:
     return sorted(name for name in names if not is_system_file(name))
 
 
+def _is_left(layout: Layout, path: Path) -> bool:
+    return path.parent == Path() and path.name.startswith(layout.staging.name)
+
+
 def _stranger(path: str) -> Finding:
     return Finding(text=f"{path}: not listed in the manifest", kind=Kind.STRANGE)
 
 
-def _is_report(path: Path) -> bool:
+def _is_report(root: Path, name: str) -> bool:
+    path = root / name
     try:
-        if not stat.S_ISREG(path.lstat().st_mode):
+        if name != REPORT or not stat.S_ISREG(path.lstat().st_mode):
             return False
         with path.open("rb") as stream:
             return REPORT_MARK in stream.read(HEAD_BYTES)

@@ -12,7 +12,9 @@ from filelock import FileLock
 
 import rubgen
 from rubgen.dataset import generate as generating
+from rubgen.dataset.inventory import strangers
 from rubgen.dataset.layout import Layout
+from rubgen.dataset.manifest import read_manifest
 from rubgen.errors import RubgenWarning, UserError
 
 RECIPE = {"name": "fake", "runs": 2, "machine": "zeng2019", "output": {"signal_seconds": 0.1, "formats": ["mcap"]}}
@@ -29,9 +31,13 @@ class Stopped(BaseException):
 def fake_simulate(short_records, make_synthetic_run, monkeypatch):
     template = make_synthetic_run(seconds=0.1)
     monkeypatch.setattr("rubgen.pipeline.simulate", lambda scenario: replace(template, scenario=scenario))
-    monkeypatch.setattr(generating, "warm_up", lambda *_: None)
+    monkeypatch.setattr(generating, "warm_up", lambda *_: [])
     # Made-up labels and signals contradict each other; files are compared here byte by byte instead.
-    monkeypatch.setattr(generating, "findings", lambda _directory: [])
+    monkeypatch.setattr(generating, "findings", _stray_files)
+
+
+def _stray_files(directory):
+    return list(strangers(Layout(directory), read_manifest(Layout(directory))))
 
 
 def make(out, **changes):

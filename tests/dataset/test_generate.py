@@ -112,11 +112,14 @@ def test_an_interrupted_set_is_completed_to_the_same_bytes(fake_simulate, tmp_pa
     assert tree(tmp_path / "parts") == tree(tmp_path / "whole")
 
 
-def test_a_stop_after_the_manifest_leaves_only_the_staging_to_remove(small_set, copied_set, short_records):
-    (copied_set / ".staging/runs").mkdir(parents=True)
-    again = rubgen.generate(small_set.recipe, copied_set)
-    assert again.made == 0
-    assert not (copied_set / ".staging").exists()
+@pytest.mark.parametrize("names", [[".staging/runs/", ".staging.lock"], [".staging.lock"], [".staging.part/runs/"]])
+def test_what_a_stop_after_the_manifest_leaves_is_no_fault_and_removed(small_set, copied_set, short_records, names):
+    for name in names:
+        (copied_set / name).parent.mkdir(exist_ok=True)
+        (copied_set / name).mkdir() if name.endswith("/") else (copied_set / name).touch()
+    assert rubgen.verify(copied_set) == []
+    assert rubgen.generate(small_set.recipe, copied_set).made == 0
+    assert not list(copied_set.glob(".staging*"))
 
 
 def test_failed_runs_are_listed_and_have_no_files(fake_simulate, tmp_path, make_synthetic_run, monkeypatch):
