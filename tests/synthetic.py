@@ -126,15 +126,17 @@ def _orders(generator: np.random.Generator) -> TapOrders:
     )
 
 
-def _no_contact() -> ContactAmounts:
+def _amounts(contact: bool) -> ContactAmounts:
+    """Fifty touches of every blade that share the impulse of 1.5 N s a turn, or none."""
+    count = 50 if contact else 0
     return ContactAmounts(
-        touches=0,
-        friction_work=0.0,
-        blade_touches=np.zeros(BLADES, dtype=np.int64),
-        blade_impulses=np.zeros(BLADES),
-        severity=0.0,
-        free_penetration=-1e-4,
-        extent=RubExtent.NONE,
+        touches=count * BLADES,
+        friction_work=-0.5 if contact else 0.0,
+        blade_touches=np.full(BLADES, count),
+        blade_impulses=np.full(BLADES, 1.5 / BLADES if contact else 0.0),
+        severity=0.2 if contact else 0.0,
+        free_penetration=1e-5 if contact else -1e-4,
+        extent=RubExtent.PARTIAL if contact else RubExtent.NONE,
     )
 
 
@@ -142,7 +144,7 @@ def _labels(generator: np.random.Generator, contact: bool) -> Labels:
     names = ["blisk_x", "casing_acc_0", "contact_force"]
     details = {name: _orders(generator) for name in names}
     return Labels(
-        amounts=None if contact else _no_contact(),
+        amounts=_amounts(contact),
         rub=contact,
         contact_duty=0.125 if contact else 0.0,
         impulse_per_turn=1.5 if contact else 0.0,

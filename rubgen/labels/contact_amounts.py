@@ -8,6 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from rubgen.arrays import FloatArray, IntArray
+from rubgen.brief import brief
 from rubgen.labels.contact_zones import ContactZones
 from rubgen.solver.response import Response
 
@@ -41,6 +42,7 @@ class ContactAmounts:
     severity: float | None
     free_penetration: float | None
     extent: RubExtent
+    __repr__ = brief
 
 
 def contact_amounts(response: Response, zones: ContactZones, *, record_steps: int) -> ContactAmounts:

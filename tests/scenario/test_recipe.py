@@ -1,4 +1,5 @@
 import re
+import warnings
 from dataclasses import asdict
 from pathlib import Path
 
@@ -8,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy.stats import qmc
 
-from rubgen.errors import UserError
+from rubgen.errors import RubgenWarning, UserError
 from rubgen.scenario import load_recipe, make_scenario, parse_recipe
 from rubgen.scenario.sampling import DIMENSIONS, sobol_point
 from rubgen.scenario.vary import KEYS, PARAMETERS, varied_values
@@ -159,10 +160,12 @@ def test_machine_path_starts_from_the_recipe(tmp_path):
 def test_whatever_stands_in_vary_either_works_or_is_refused_in_one_line(table):
     data = {**MINIMAL, "output": {"signal_seconds": 1e-3}, "vary": table}
     message = ""
-    try:
-        recipe = parse_recipe(data, source="r.toml")
-    except UserError as error:
-        message = str(error)
+    with warnings.catch_warnings(record=True):  # of values that are allowed but surely not meant
+        warnings.simplefilter("always", RubgenWarning)
+        try:
+            recipe = parse_recipe(data, source="r.toml")
+        except UserError as error:
+            message = str(error)
     if message:
         assert "\n" not in message
         assert message.startswith("r.toml: ")
