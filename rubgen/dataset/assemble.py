@@ -9,7 +9,8 @@ from typing import TypeVar
 
 import pyarrow as pa
 
-from rubgen.dataset.layout import RUNS_PER_SHARD, Layout
+from rubgen.dataset.layout import RUNS_PER_ROW_GROUP, RUNS_PER_SHARD, Layout
+from rubgen.dataset.rows import asked_bytes
 from rubgen.errors import RubgenError, UserError
 from rubgen.io.durable import sync_directory
 from rubgen.io.parquet import read_table, schema, write_table
@@ -17,34 +18,31 @@ from rubgen.io.sections import SCHEMA
 from rubgen.scenario import Recipe
 
 T = TypeVar("T")
-RUNS_PER_ROW_GROUP = 8
-"""Measured on 32 runs of 1 s: as small (634 kB a run; 723 with 1) and as fast to stream as 16, and one run is read in
-20 ms (35 with 16, 6 with 1)."""
 ROWS_PER_TABLE_GROUP = 4096
 
 
 def assemble(recipe: Recipe, layout: Layout) -> Counter[str]:
     """Write `runs.parquet`, data files and sections from the staged runs; gives how many ended with which status."""
     staged = [layout.staged(f"run-{index:06d}") for index in range(recipe.runs)]
-    sensors = recipe.sensing.set
-    status = _write_runs(staged, layout, schema(signals=False, sensors=sensors))
-    valid = _valid(staged)
+    sensors, asked = recipe.sensing.set, asked_bytes(recipe)
+    status = _write_runs(staged, layout, schema(signals=False, sensors=sensors), asked)
+    valid = _valid(staged, asked)
     if "parquet" in recipe.output.formats:
         types = schema(signals=True, clean=recipe.sensors.keep_clean, sensors=sensors)
-        _write_shards(valid, valid, layout.shard, types)
+        _write_shards(valid, valid, layout.shard, types, asked)
         sync_directory(layout.data)
-    _write_shards([layout.staged_section(path.stem) for path in valid], valid, layout.section_shard, SCHEMA)
+    _write_shards([layout.staged_section(path.stem) for path in valid], valid, layout.section_shard, SCHEMA, asked)
     sync_directory(layout.sections)
     sync_directory(layout.root)
     return status
 
 
-def _write_runs(staged: Sequence[Path], layout: Layout, types: pa.Schema) -> Counter[str]:
+def _write_runs(staged: Sequence[Path], layout: Layout, types: pa.Schema, asked: float) -> Counter[str]:
     status: Counter[str] = Counter()
 
     def tables() -> Iterator[pa.Table]:
         for paths in _batches(staged, ROWS_PER_TABLE_GROUP):
-            table = pa.concat_tables([_read(path, path, types.names) for path in paths]).combine_chunks()
+            table = pa.concat_tables([_read(path, path, types.names, asked) for path in paths]).combine_chunks()
             status.update(table["status"].to_pylist())
             yield table.cast(types)
 
@@ -52,28 +50,32 @@ def _write_runs(staged: Sequence[Path], layout: Layout, types: pa.Schema) -> Cou
     return status
 
 
-def _valid(staged: Sequence[Path]) -> list[Path]:
-    return [path for path in staged if read_table(path, ["status"])["status"][0].as_py() == "ok"]
+def _valid(staged: Sequence[Path], asked: float) -> list[Path]:
+    return [path for path in staged if read_table(path, ["status"], asked)["status"][0].as_py() == "ok"]
 
 
 def _write_shards(
-    staged: Sequence[Path], rows: Sequence[Path], name_of: Callable[[int, int], Path], types: pa.Schema
+    staged: Sequence[Path],
+    rows: Sequence[Path],
+    name_of: Callable[[int, int], Path],
+    types: pa.Schema,
+    asked: float,
 ) -> None:
     """Files of staged tables of one row; `rows` are the staged runs that they belong to."""
     shards = list(_batches(list(zip(staged, rows, strict=True)), RUNS_PER_SHARD)) or [[]]
     for number, shard in enumerate(shards):
-        groups = (_joined(group, types) for group in _batches(shard, RUNS_PER_ROW_GROUP))
+        groups = (_joined(group, types, asked) for group in _batches(shard, RUNS_PER_ROW_GROUP))
         write_table(groups, types, name_of(number, len(shards)))
 
 
-def _joined(group: Sequence[tuple[Path, Path]], types: pa.Schema) -> pa.Table:
-    return pa.concat_tables([_read(path, row, types.names) for path, row in group]).combine_chunks()
+def _joined(group: Sequence[tuple[Path, Path]], types: pa.Schema, asked: float) -> pa.Table:
+    return pa.concat_tables([_read(path, row, types.names, asked) for path, row in group]).combine_chunks()
 
 
-def _read(path: Path, row: Path, names: list[str]) -> pa.Table:
+def _read(path: Path, row: Path, names: list[str], asked: float) -> pa.Table:
     """A staged table; where it is damaged its run counts no more as finished, and the next call makes it again."""
     try:
-        return read_table(path, names)
+        return read_table(path, names, asked)
     except UserError as error:
         row.unlink(missing_ok=True)
         raise RubgenError(f"{error}: give the same command again, it makes this run anew") from None

@@ -16,6 +16,7 @@ from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Identity, identity_of, read_manifest, write_manifest
 from rubgen.dataset.outcome import Outcome, outcome_of
 from rubgen.dataset.problems_told import problems_told
+from rubgen.dataset.rows import asked_bytes
 from rubgen.dataset.stage import is_staged, stage_run, warm_up, warming_up
 from rubgen.dataset.verify import advice, findings
 from rubgen.dataset.workers import unordered, usable_cores, worker_pool
@@ -131,7 +132,8 @@ def _nothing_to_do(layout: Layout, identity: Identity) -> Generated:
 
 def _make_missing(recipe: Recipe, layout: Layout, workers: int, progress: Report | None) -> int:
     formats = recipe.output.formats
-    missing = [index for index in range(recipe.runs) if not is_staged(layout, index, formats)]
+    asked = asked_bytes(recipe)
+    missing = [index for index in range(recipe.runs) if not is_staged(layout, index, formats, asked)]
     jobs = ((recipe.scenario(index), layout.root.resolve(), formats) for index in missing)
     done = recipe.runs - len(missing)
     if progress:

@@ -10,6 +10,9 @@ SPLIT = "train"
 """Splits go by machine, never by run; a recipe has one machine, hence one split."""
 RUNS_PER_SHARD = 256
 """About 160 MB of signals of one second."""
+RUNS_PER_ROW_GROUP = 8
+"""Measured on 32 runs of 1 s: as small (634 kB a run; 723 with 1) and as fast to stream as 16, and one run is read in
+20 ms (35 with 16, 6 with 1)."""
 FOLDERS = {"mcap": "mcap", "rrd": "rrd"}
 
 

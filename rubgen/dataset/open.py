@@ -16,7 +16,7 @@ import pyarrow as pa
 from rubgen.arrays import FloatArray
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, read_manifest
-from rubgen.dataset.rows import RunRows
+from rubgen.dataset.rows import RunRows, asked_bytes
 from rubgen.dataset.runs_frame import runs_frame
 from rubgen.dataset.runs_table import check_runs
 from rubgen.dataset.stored_run import StoredRun, stored_run
@@ -158,11 +158,15 @@ class DataSet:
     @cached_property
     def _data(self) -> RunRows:
         types = schema(signals=True, clean=self._sensing.keep_clean, sensors=self._sensing.set)
-        return RunRows([self.layout.root / name for name in self.manifest.listed("data")], types)
+        return RunRows(
+            [self.layout.root / name for name in self.manifest.listed("data")], types, asked_bytes(self._recipe)
+        )
 
     @cached_property
     def _sections(self) -> RunRows:
-        return RunRows([self.layout.root / name for name in self.manifest.listed("sections")], SCHEMA)
+        return RunRows(
+            [self.layout.root / name for name in self.manifest.listed("sections")], SCHEMA, asked_bytes(self._recipe)
+        )
 
     def _tables(self, run_ids: Sequence[str], names: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
         """Channels and pulses of each run, from Parquet where the set has it, else from MCAP."""

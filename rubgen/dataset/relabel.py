@@ -13,6 +13,7 @@ import pyarrow as pa
 
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import read_manifest
+from rubgen.dataset.rows import asked_bytes
 from rubgen.errors import UserError
 from rubgen.io.columns import ORDER_SUFFIXES
 from rubgen.io.parquet import row_groups
@@ -48,10 +49,11 @@ def relabel(directory: Path) -> Relabelled:
     The data set is only read. Raises UserError where `directory` holds no finished data set, or one without sections.
     """
     layout = Layout(directory)
-    sections = read_manifest(layout).listed("sections")
+    manifest = read_manifest(layout)
+    sections, asked = manifest.listed("sections"), asked_bytes(manifest.identity.recorded(str(layout.manifest)))
     runs = labels = 0
     found: list[Difference] = []
-    for row, section in zip_longest(_good_rows(layout), _remade(layout, sections)):
+    for row, section in zip_longest(_good_rows(layout), _remade(layout, sections, asked)):
         run_id, again = section or ("", {})
         if row is None or row["run_id"] != run_id:
             name = row["run_id"] if row else run_id
@@ -72,12 +74,12 @@ def _good_rows(layout: Layout) -> Iterator[dict[str, Any]]:
         yield from (row for row in table.select(names).to_pylist() if row["status"] == "ok")
 
 
-def _remade(layout: Layout, names: list[str]) -> Iterator[tuple[str, dict[str, object]]]:
+def _remade(layout: Layout, names: list[str], asked: float) -> Iterator[tuple[str, dict[str, object]]]:
     """Name and labels of each run with a section."""
     if not names:
         raise UserError(f"{layout.root}: no sections/ to make labels from; generate the set again with this rubgen")
     for path in (layout.root / name for name in names):
-        for table in row_groups(path):
+        for table in row_groups(path, asked):
             if not table.schema.equals(SCHEMA):
                 raise UserError(f"{path}: its columns are not those of this rubgen; generate the set again")
             for row, run_id in enumerate(table["run_id"].to_pylist()):

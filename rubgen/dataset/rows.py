@@ -10,9 +10,17 @@ from typing import NamedTuple
 
 import pyarrow as pa
 
+from rubgen.dataset.layout import RUNS_PER_ROW_GROUP
 from rubgen.errors import UserError
 from rubgen.io.parquet import open_parquet
 from rubgen.io.parquet_read import damage_named
+from rubgen.scenario import Recipe
+from rubgen.scenario.costs import stored_bytes
+
+
+def asked_bytes(recipe: Recipe) -> float:
+    """Bytes that a row group of this recipe's set unpacks to, for its channels and states."""
+    return RUNS_PER_ROW_GROUP * max(map(stored_bytes, recipe.corners()))
 
 
 class Place(NamedTuple):
@@ -26,15 +34,16 @@ class Place(NamedTuple):
 class RunRows:
     """The rows of these files, one a run; files are opened when a row is asked for."""
 
-    def __init__(self, files: Sequence[Path], types: pa.Schema) -> None:
-        self.files, self.types = files, types
+    def __init__(self, files: Sequence[Path], types: pa.Schema, asked_bytes: float) -> None:
+        """`asked_bytes` is what a row group holds by the recipe."""
+        self.files, self.types, self._asked_bytes = files, types, asked_bytes
 
     @cached_property
     def places(self) -> dict[str, Place]:
         """The place of every run; UserError where a file is missing or damaged."""
         places: dict[str, Place] = {}
         for path in self.files:
-            with open_parquet(path) as file:
+            with open_parquet(path, self._asked_bytes) as file:
                 for group in range(file.num_row_groups):
                     names = file.read_row_group(group, columns=["run_id"])["run_id"].to_pylist()
                     places |= {name: Place(path, group, row) for row, name in enumerate(names)}
@@ -53,7 +62,7 @@ class RunRows:
             raise UserError(f"{lost[0]}: has no row in {folder}; generate the set again")
         types = pa.schema([self.types.field(name) for name in columns])
         for path, names in groupby(run_ids, key=lambda run_id: self.places[run_id].file):
-            with open_parquet(path) as file:
+            with open_parquet(path, self._asked_bytes) as file:
                 for group, members in groupby(names, key=lambda run_id: self.places[run_id].group):
                     runs = list(members)
                     try:

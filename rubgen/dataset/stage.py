@@ -42,15 +42,18 @@ def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
     return run.response.status.code
 
 
-def is_staged(layout: Layout, index: int, formats: tuple[str, ...]) -> bool:
-    """Whether the run and all its files are there; a row that cannot be read, or whose files are lost, is not."""
+def is_staged(layout: Layout, index: int, formats: tuple[str, ...], asked_bytes: float) -> bool:
+    """Whether the run and all its files are there; a row that cannot be read, or whose files are lost, is not.
+
+    `asked_bytes` is what the recipe lets its row unpack to.
+    """
     from rubgen.io.parquet import read_table
 
     run_id = f"run-{index:06d}"
     if not layout.staged(run_id).exists():
         return False
     try:
-        status = read_table(layout.staged(run_id), ["status"])["status"].to_pylist()
+        status = read_table(layout.staged(run_id), ["status"], asked_bytes)["status"].to_pylist()
     except UserError:
         return False
     files = [layout.export(kind, run_id) for kind in FOLDERS if kind in formats]

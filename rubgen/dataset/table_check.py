@@ -12,6 +12,7 @@ from rubgen.dataset.impulse_check import Row
 from rubgen.dataset.layout import RUNS_PER_SHARD, Layout
 from rubgen.dataset.manifest import Manifest
 from rubgen.dataset.open import is_signal, row_signals
+from rubgen.dataset.rows import asked_bytes
 from rubgen.errors import UserError
 from rubgen.io.parquet import schema
 from rubgen.io.parquet_read import ParquetSource, open_parquet
@@ -31,10 +32,11 @@ def table_problems(layout: Layout, manifest: Manifest, closed: set[str]) -> Iter
     """What is wrong in `runs.parquet`, in sections and data files, but for those that must stay `closed`."""
     identity = manifest.identity
     recorded = identity.recorded(str(layout.manifest))
+    asked = asked_bytes(recorded)
     rows: dict[str, Row] = {}
     if layout.runs.name not in closed:
         types = schema(signals=False, sensors=identity.sensor_set)
-        for table, problem in _groups(layout, layout.runs.name, types, "run-{:06d}".format):
+        for table, problem in _groups(layout, layout.runs.name, types, "run-{:06d}".format, asked):
             yield from problem
             rows |= {row["run_id"]: row for row in (table.to_pylist() if table is not None else ())}
         yield from _run_problems(layout.runs.name, rows, manifest)
@@ -42,10 +44,10 @@ def table_problems(layout: Layout, manifest: Manifest, closed: set[str]) -> Iter
     for name, row in good.items():
         yield from _compared(name, lambda row=row: list(label_problems(row)))  # type: ignore[misc]
     yield from _list_problems(manifest, recorded.output.formats, set(good))
-    yield from _section_problems(layout, manifest.listed("sections"), closed, list(good))
+    yield from _section_problems(layout, manifest.listed("sections"), closed, list(good), asked)
     if "parquet" in recorded.output.formats:
         sensing = Sensing(set=identity.sensor_set, **recorded.sensors.model_dump(exclude={"set"}))
-        yield from _data_problems(layout, manifest.listed("data"), closed, sensing, good)
+        yield from _data_problems(layout, manifest.listed("data"), closed, sensing, good, asked)
 
 
 def _run_problems(name: str, rows: dict[str, Row], manifest: Manifest) -> Iterator[str]:
@@ -66,11 +68,15 @@ def _list_problems(manifest: Manifest, formats: Sequence[str], good: set[str]) -
             yield f"{name}: {'run is not ok or unknown' if name in listed else 'missing in the manifest'}"
 
 
-def _section_problems(layout: Layout, names: list[str], closed: set[str], good: list[str]) -> Iterator[str]:
+def _section_problems(
+    layout: Layout, names: list[str], closed: set[str], good: list[str], asked: float
+) -> Iterator[str]:
     seen: set[str] = set()
     whole = bool(names)
     for shard, name in enumerate(names):
-        for table, problem in _groups(layout, name, SCHEMA, _namer(good, shard)) if name not in closed else CLOSED:
+        for table, problem in (
+            _groups(layout, name, SCHEMA, _namer(good, shard), asked) if name not in closed else CLOSED
+        ):
             yield from problem
             whole &= table is not None
             seen |= set(table["run_id"].to_pylist()) if table is not None else set()
@@ -78,14 +84,15 @@ def _section_problems(layout: Layout, names: list[str], closed: set[str], good: 
 
 
 def _data_problems(
-    layout: Layout, names: list[str], closed: set[str], sensing: Sensing, good: dict[str, Row]
+    layout: Layout, names: list[str], closed: set[str], sensing: Sensing, good: dict[str, Row], asked: float
 ) -> Iterator[str]:
     types = schema(signals=True, clean=sensing.keep_clean, sensors=sensing.set)
     scalars = [field.name for field in types if not is_signal(field)]
     seen: set[str] = set()
     whole = bool(names)
     for shard, name in enumerate(names):
-        for table, problem in _groups(layout, name, types, _namer(list(good), shard)) if name not in closed else CLOSED:
+        groups = _groups(layout, name, types, _namer(list(good), shard), asked)
+        for table, problem in groups if name not in closed else CLOSED:
             yield from problem
             whole &= table is not None
             for number, row in enumerate(table.select(scalars).to_pylist() if table is not None else ()):
@@ -117,12 +124,12 @@ def _compared(run_id: str, problems: Callable[[], list[str]]) -> Iterator[str]:
 
 
 def _groups(
-    layout: Layout, name: str, types: pa.Schema, name_of: Callable[[int], str]
+    layout: Layout, name: str, types: pa.Schema, name_of: Callable[[int], str], asked: float
 ) -> Iterator[tuple[pa.Table | None, list[str]]]:
     """Each row group of a file, or None with what is wrong with it; `name_of` gives the run of a row."""
     path, first = layout.root / name, 0
     try:
-        with open_parquet(path) as file:
+        with open_parquet(path, asked) as file:
             if not file.schema_arrow.equals(types):
                 yield None, [f"{name}: its columns are not those of this rubgen"]
                 return

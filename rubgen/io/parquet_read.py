@@ -18,7 +18,8 @@ from rubgen.io.regular_file import check_regular
 MOST_BYTES = 256 * 1024**2
 """What a row group may always unpack to: eight runs of ten seconds and 30 channels take as much."""
 MOST_TIMES = 1000
-"""A larger row group may unpack to so many times its size in the file; constant signals reach some hundred."""
+"""A larger row group may unpack to so many times its size in the file, and to what its recipe asks for beside: signals
+without noise that repeat every turn reach 5,000 times, constant ones 20,000."""
 
 
 class ParquetSource:
@@ -27,9 +28,12 @@ class ParquetSource:
     Page checksums, UTF-8 and offsets are checked; sizes are bounded before anything is unpacked.
     """
 
-    def __init__(self, path: Path) -> None:
-        """Read the footer; UserError where it is missing or damaged, or rubgen writes no such columns."""
-        self.path = path
+    def __init__(self, path: Path, asked_bytes: float = 0.0) -> None:
+        """Read the footer; UserError where it is missing or damaged, or rubgen writes no such columns.
+
+        `asked_bytes` is what a row group holds by the recipe of its set, where that is known.
+        """
+        self.path, self._asked_bytes = path, asked_bytes
         self._size = check_regular(path)
         with damage_named(path):
             self._stream = pa.OSFile(os.fsencode(path))  # the bytes of a name that is no UTF-8 too
@@ -82,7 +86,7 @@ class ParquetSource:
         """
         facts = self._file.metadata.row_group(group)
         unpacked = max(facts.total_byte_size, 8 * facts.num_rows * len(self.schema_arrow))
-        self._refuse_above(unpacked, self._size)
+        self._refuse_above(unpacked, self._size, self._asked_bytes)
 
     def _plain(self, table: pa.Table, names: list[str]) -> pa.Table:
         """The table with text as text. It comes as a dictionary, for a long word may stand for a million rows."""
@@ -91,25 +95,28 @@ class ParquetSource:
         self._refuse_above(sum(_text_bytes(chunk) for chunk in text), 0)
         return table.cast(pa.schema([self.schema_arrow.field(name) for name in names]))
 
-    def _refuse_above(self, unpacked: int, packed: int) -> None:
-        if unpacked > max(MOST_BYTES, MOST_TIMES * packed):
+    def _refuse_above(self, unpacked: int, packed: int, asked: float = 0.0) -> None:
+        if unpacked > max(MOST_BYTES, MOST_TIMES * packed) + asked:
             raise UserError(f"{self.path}: would unpack to {unpacked:,} bytes; that is no file of rubgen")
 
 
-def open_parquet(path: Path) -> ParquetSource:
-    """The file, not read yet but for its footer; UserError where it is missing, damaged or no Parquet of rubgen."""
-    return ParquetSource(path)
+def open_parquet(path: Path, asked_bytes: float = 0.0) -> ParquetSource:
+    """The file, of which only the footer is read yet; UserError where it is missing, damaged or no Parquet of rubgen.
+
+    A row group may unpack to the general bounds and `asked_bytes`: what the recipe of the set asks for.
+    """
+    return ParquetSource(path, asked_bytes)
 
 
-def read_table(path: Path, columns: Sequence[str] | None = None) -> pa.Table:
+def read_table(path: Path, columns: Sequence[str] | None = None, asked_bytes: float = 0.0) -> pa.Table:
     """The rows of a Parquet file, every page checked; UserError where it is missing, damaged or lacks a column."""
-    with open_parquet(path) as file:
+    with open_parquet(path, asked_bytes) as file:
         return file.read(columns)
 
 
-def row_groups(path: Path) -> Iterator[pa.Table]:
+def row_groups(path: Path, asked_bytes: float = 0.0) -> Iterator[pa.Table]:
     """One row group after another, every page checked; UserError where the file is missing or damaged."""
-    with open_parquet(path) as file:
+    with open_parquet(path, asked_bytes) as file:
         for group in range(file.num_row_groups):
             yield file.read_row_group(group)
 

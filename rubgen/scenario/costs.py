@@ -83,6 +83,14 @@ def coordinates(scenario: Scenario) -> int:
     return 3 * scenario.machine.blades.count + 2 + modes
 
 
+def stored_bytes(scenario: Scenario) -> float:
+    """Bytes of a run's channels and states as a file keeps them, unpacked: numbers of 4 bytes."""
+    sensing = scenario.sensing
+    channels = (2 if sensing.keep_clean else 1) * len(sensing.set.sensors)
+    states = 2 * coordinates(scenario) * scenario.operation.recorded_turns
+    return 4 * (channels * scenario.signal_seconds * sensing.sample_rate_hz + states)
+
+
 def run_problem(scenario: Scenario) -> str | None:
     """Why what is kept of a run takes too much memory, with the number that would do; None where it does not."""
     operation = scenario.operation
