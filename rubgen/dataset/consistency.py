@@ -8,7 +8,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rubgen.dataset.impulse_check import Row, impulse_problems, windows_fit
+from rubgen.dataset.impulse_check import (
+    Row,
+    duty_fits,
+    exponents_fit,
+    impulse_problems,
+    window_times_fit,
+    windows_fit,
+)
 from rubgen.dataset.order_check import NOISE_PEAK, order_problems
 from rubgen.labels.contact_amounts import RubExtent
 from rubgen.labels.harmonics import FLOOR, MARKED_TAP, RATIO
@@ -46,6 +53,9 @@ def label_problems(row: Row) -> Iterator[str]:
             abs_tol=IMPULSE_TOLERANCE,
         ),
         "contact_impulse_per_turn_n_s and its windows": windows_fit(row),
+        "contact_duty and its windows": duty_fits(row),
+        "windows and speed_rpm": window_times_fit(row),
+        "lyapunov_per_second and lyapunov_per_turn": exponents_fit(row),
         "has_2fr without rub": row["rub"] or not row["has_2fr"],
         "motion is not the less regular of the two": _rank(row["motion"])
         == max(_rank(row["motion_blisk"]), _rank(row["motion_casing"])),

@@ -1,4 +1,4 @@
-"""Whether the label of impulse fits the channel of contact force, as far as that channel resolves it."""
+"""Whether labels of windows fit the run's, and the impulse the contact force as far as that channel resolves it."""
 
 from __future__ import annotations
 
@@ -30,6 +30,36 @@ def windows_fit(row: Row) -> bool:
         return False
     mean = float(turns @ np.asarray(values)) / row["record_turns"]
     return math.isclose(mean, row["contact_impulse_per_turn_n_s"], rel_tol=ROUNDING, abs_tol=ROUNDING)
+
+
+def duty_fits(row: Row) -> bool:
+    """Whether the duty is the mean of its windows, each weighted with its turns; true of turns of unequal length."""
+    turns, values = _window_turns(row), row["window_contact_duty"]
+    if row["change_times_s"] or len(values) != turns.size:
+        return bool(row["change_times_s"])
+    mean = float(turns @ np.asarray(values)) / row["record_turns"]
+    return math.isclose(mean, row["contact_duty"], rel_tol=ROUNDING, abs_tol=ROUNDING)
+
+
+def window_times_fit(row: Row) -> bool:
+    """Whether windows begin after whole turns, at the run's speed; true of a changing speed."""
+    if row["change_times_s"]:
+        return True
+    starts = np.arange(0, row["record_turns"], WINDOW_TURNS) * 60 / row["speed_rpm"]
+    if not len(row["window_starts_s"]) == len(row["window_speeds_rpm"]) == starts.size:
+        return False
+    speeds = np.full(starts.size, row["speed_rpm"])
+    pairs = (row["window_starts_s"], starts), (row["window_speeds_rpm"], speeds)
+    return all(np.allclose(values, exact, rtol=ROUNDING, atol=ROUNDING) for values, exact in pairs)
+
+
+def exponents_fit(row: Row) -> bool:
+    """Whether the exponent by the second is the one by the turn over a turn's time; true of a changing speed."""
+    by_turn, by_second = row["lyapunov_per_turn"], row["lyapunov_per_second"]
+    if row["change_times_s"] or (by_turn is None and by_second is None):
+        return True
+    known = by_turn is not None and by_second is not None
+    return known and math.isclose(by_turn * row["speed_rpm"] / 60, by_second, rel_tol=ROUNDING, abs_tol=ROUNDING)
 
 
 def impulse_problems(row: Row, force: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
