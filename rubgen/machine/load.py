@@ -11,7 +11,7 @@ from pydantic import TypeAdapter
 from rubgen.errors import UserError
 from rubgen.machine.machine import Machine
 from rubgen.machine.problems import nearest, validated
-from rubgen.machine.toml_file import names_toml, read_toml, toml_path
+from rubgen.machine.toml_file import check_kind, named_toml, names_toml, read_toml
 
 PRESETS = Path(__file__).parent / "presets"
 
@@ -31,7 +31,7 @@ def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
     if not names_toml(name_or_path):
         hint = nearest(name_or_path, preset_names())
         raise UserError(f"machine = {name_or_path!r}: no such preset; {hint}, or the path of a machine .toml")
-    return _machine_from(toml_path(name_or_path, folder))
+    return _machine_from(named_toml("machine", name_or_path, folder))
 
 
 def machine_id(machine: Machine) -> str:
@@ -44,4 +44,6 @@ def machine_id(machine: Machine) -> str:
 
 
 def _machine_from(path: Path) -> Machine:
-    return validated(path, read_toml(path), TypeAdapter(Machine))
+    data = read_toml(path)
+    check_kind(path, data, "machine")
+    return validated(path, data, TypeAdapter(Machine))

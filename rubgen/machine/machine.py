@@ -72,6 +72,13 @@ class Disk:
     radial_elements: Annotated[int, Field(ge=1, le=MOST_RADIAL_ELEMENTS), NUMBER] = 7
     circumferential_elements: Annotated[int, Field(ge=3, le=MOST_CIRCUMFERENTIAL_ELEMENTS), NUMBER] = 72
 
+    @model_validator(mode="after")
+    def _bore_is_inside(self) -> Self:
+        if self.bore_radius_m >= self.rim_radius_m:
+            rim = f"rim_radius_m = {self.rim_radius_m:g}"
+            raise ValueError(f"bore_radius_m = {self.bore_radius_m:g} must be below {rim}; change one of them")
+        return self
+
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Mistuning:

@@ -12,7 +12,8 @@ from pydantic import TypeAdapter, ValidationError
 
 from rubgen.errors import UserError
 from rubgen.machine.schema_nodes import Path, SchemaNodes, bounds_in_words
-from rubgen.machine.sentences import DECIMAL_COMMA, sentence
+from rubgen.machine.sentences import DECIMAL_COMMA, OWN, sentence
+from rubgen.machine.toml_text import toml_text
 
 T = TypeVar("T")
 UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
@@ -22,9 +23,21 @@ NEAR, FAR = 0.6, 0.75
 WHOLE_NUMBERS = 2**63
 SHARES = ("below 1", "at most 1", "at most 0.3")
 """How the range of a share ends."""
+SIGNED = re.compile(r"at least -")
+"""Times and angles may be negative."""
 LONGEST = 120
 """Longer values are not shown."""
-OTHER_NAMES = {"channels": "set", "channel": "set", "mu": "friction", "rpm": "speed_rpm", "fs": "sample_rate_hz"}
+OTHER_NAMES = {
+    "channels": "set",
+    "channel": "set",
+    "mu": "friction",
+    "rpm": "speed_rpm",
+    "fs": "sample_rate_hz",
+    "E": "youngs_modulus_pa",
+    "nu": "poisson_ratio",
+    "rho": "density_kg_per_m3",
+    "sigma": "std",
+}
 """Keys that people write for ours and that do not look like them."""
 
 
@@ -54,7 +67,8 @@ def first_problem(
     first = min(problems, key=lambda each: _order(data, each.path))
     schema = SchemaNodes(adapter) if adapter else None
     path = place(first.path)
-    text = _of(source, f"{key_name(path) or 'the file'}{first.text(data, schema)}")
+    words = first.text(data, schema)
+    text = _of(source, f"{key_name(path) or 'the file'}{words}" if path or not first.own else words)
     others = f" ({len(problems)} problems in all)" if len(problems) > 1 else ""
     return UserError(f"{text}{others}")
 
@@ -101,6 +115,11 @@ class _Problem:
     def kind(self) -> str:
         return str(self.errors[0]["type"])
 
+    @property
+    def own(self) -> bool:
+        """Whether the message is ours, written where the rule stands; it then names its key."""
+        return self.kind in OWN
+
     def text(self, data: object, schema: SchemaNodes | None) -> str:
         """Value, what is allowed and how to mend it, after the key."""
         if self.kind == "missing":
@@ -111,6 +130,8 @@ class _Problem:
         sentences = [sentence(each, bounds_in_words(nodes), nodes) for each in self.errors]
         message = " or ".join(dict.fromkeys(sentences)).replace(" or must be", " or")
         value = self.errors[0].get("input")
+        if not self.path and self.own:
+            return message
         hint = _hint(value, message)
         remedy = "" if hint or ";" in message else "; change the value"
         # Of a whole table, a message that shows the key and its value says enough.
@@ -147,7 +168,7 @@ def _instead(path: Path, data: object, schema: SchemaNodes | None) -> str:
     wanted = OTHER_NAMES.get(name, name)
     if wanted in here:
         return f"did you mean {wanted}? allowed: {', '.join(here)}"
-    elsewhere = [key for key in schema.every_key() if key[-1] == wanted]
+    elsewhere = [key for key in schema.every_key() if key[-1] == wanted and key != path[:-1]]
     if elsewhere:
         parts = [part for part in path[:-1] if isinstance(part, str)]
         best = max(elsewhere, key=lambda key: sum(a == b for a, b in zip(key, parts, strict=False)))
@@ -162,6 +183,9 @@ def _instead(path: Path, data: object, schema: SchemaNodes | None) -> str:
 def _closest(name: str, known: list[str], cutoff: float = NEAR) -> str | None:
     """The known name that is most like `name`, or has it as one of its words."""
     lower = {each.lower(): each for each in known}
+    units = [each for each in lower if each.rpartition("_")[0] == name.lower()]  # all but its unit
+    if len(units) == 1:
+        return lower[units[0]]
     close = get_close_matches(name.lower(), lower, n=1, cutoff=cutoff)
     if not close and cutoff < FAR:
         close = [each for each in lower if name.lower() in each.split("_")]
@@ -170,7 +194,7 @@ def _closest(name: str, known: list[str], cutoff: float = NEAR) -> str | None:
 
 def _hint(value: object, message: str) -> str:
     """What is meant, where a text should be a number or a share stands in percent."""
-    if isinstance(value, int | float) and 1 < value <= 100 and message.endswith(SHARES):
+    if isinstance(value, int | float) and 1 < value <= 100 and message.endswith(SHARES) and not SIGNED.search(message):
         return f"; {value:g} % is written {value / 100:g}"
     if not isinstance(value, str) or "number" not in message:
         return ""
@@ -185,7 +209,7 @@ def _hint(value: object, message: str) -> str:
 
 
 def _shown(value: object) -> str:
-    text = str(value).lower() if isinstance(value, bool) else repr(value)
+    text = toml_text(value)
     return f" = {text}" if len(text) <= LONGEST else ""
 
 

@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import codecs
+import os
 import re
 import stat
 import tomllib
 from pathlib import Path
 
 from rubgen.errors import UserError
-from rubgen.machine.sentences import DECIMAL_COMMA
+from rubgen.machine.toml_syntax import remedy
 
 MOST_BYTES = 2**20
 """A recipe has one or two thousand bytes; a pattern for 1,000 blades 20,000."""
 UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
-BACKSLASH = re.compile(r'"[^"]*\\[^"]*"')
 LINE = re.compile(r"at line (\d+)")
+SHOWN = 80
+"""Letters of a bad line that are shown."""
+KINDS = {
+    "recipe": ("runs", "vary", "machine", "simulation", "operation", "output"),
+    "machine": ("disk", "blades", "casing", "disk_support", "damping"),
+    "sensor set": ("kinds", "shaft_runout"),
+}
+"""Tables and keys that one kind of file has alone."""
 
 
 def names_toml(name: str) -> bool:
@@ -39,6 +47,25 @@ def toml_path(name: str | Path, folder: Path | None = None) -> Path:
         return (folder or Path()) / text
 
 
+def named_toml(key: str, name: str, folder: Path | None = None) -> Path:
+    """The path of the TOML file that `key` names; UserError with the key where there is none."""
+    path = toml_path(name, folder)
+    if os.path.lexists(path):
+        return path
+    hint = "$HOME and its like are not replaced, write ~ or the whole path" if "$" in name else "check the path"
+    raise UserError(f"{key} = {name!r}: {path}: there is no such file; {hint}")
+
+
+def check_kind(path: Path | str, data: dict[str, object], wanted: str) -> None:
+    """Raise UserError for a file of another kind: a machine for a recipe, say."""
+    if any(key in data for key in KINDS[wanted]):
+        return
+    for kind, keys in KINDS.items():
+        listed = kind == "sensor set" and isinstance(data.get("sensors"), list)
+        if kind != wanted and (listed or sum(key in data for key in keys) > 1):
+            raise UserError(f"{path}: this is a {kind}, no {wanted}; give the TOML file of a {wanted}")
+
+
 def read_toml(path: Path) -> dict[str, object]:
     """The content of a TOML file; a UserError of one line when it is missing, no text, too large or not TOML.
 
@@ -49,7 +76,7 @@ def read_toml(path: Path) -> dict[str, object]:
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise UserError(f"{path}: not TOML ({error}); {_remedy(text, str(error))}") from None
+        raise UserError(f"{path}: {_not_toml(text, str(error))}") from None
     except RecursionError:
         raise UserError(f"{path}: tables or lists in one another without end; write each table once") from None
     except ValueError:  # Python reads integers of up to 4,300 digits
@@ -87,15 +114,11 @@ def _text(path: Path, content: bytes) -> str:
         raise UserError(f"{path}: not a text file in UTF-8 (line {line}); save it in UTF-8") from None
 
 
-def _remedy(text: str, error: str) -> str:
-    """What to do about a line that is not TOML."""
+def _not_toml(text: str, error: str) -> str:
+    """The line that is not TOML, and what to do about it."""
     found = LINE.search(error)
-    lines = text.split("\n")
-    line = lines[int(found[1]) - 1] if found else lines[-1]
-    value = line.partition("=")[2].strip()
-    comma = DECIMAL_COMMA.search(value)
-    if BACKSLASH.search(value):
-        return "a path with backslashes stands in single quotes, 'C:\\folder\\file.toml', or is written with /"
-    if comma:
-        return f"decimals have a point, write {comma[1]}.{comma[2]}"
-    return "mend the line that is named"
+    lines = text.rstrip().split("\n")
+    number = min(int(found[1]), len(lines)) if found else len(lines)
+    line = lines[number - 1]
+    shown = "".join(letter if letter.isprintable() else "?" for letter in line.strip())[:SHOWN]
+    return f"line {number} is not TOML, {shown}: {remedy(line, error)}"

@@ -89,7 +89,23 @@ class NormalShape(BaseModel):
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
-        return _check_order(self, self.min, self.max)
+        _check_order(self, self.min, self.max)
+        if self.min < self.max and not self.probability > 0:
+            ends = f"min = {self.min:g} and max = {self.max:g}"
+            raise ValueError(f"mean = {self.mean:g} and std = {self.std:g} leave nothing between {ends}; change them")
+        return self
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The share of the density below min and below max."""
+        low, high = (float(ndtr((end - self.mean) / self.std)) for end in (self.min, self.max))
+        return low, high
+
+    @property
+    def probability(self) -> float:
+        """The share of the density that is kept."""
+        low, high = self.ends
+        return high - low
 
 
 class Normal(BaseModel):
@@ -101,7 +117,7 @@ class Normal(BaseModel):
     def quantile(self, u: float) -> float:
         """The value mean + std Phi^-1(Phi(a) + u (Phi(b) - Phi(a))), a and b the standardised min and max."""
         shape = self.normal
-        low, high = (float(ndtr((end - shape.mean) / shape.std)) for end in (shape.min, shape.max))
+        low, high = shape.ends
         value = shape.mean + shape.std * float(ndtri(low + u * (high - low)))
         return min(max(value, shape.min), shape.max)
 
@@ -147,10 +163,13 @@ def _unknown(value: object) -> str:
     """What to write for a value that is no distribution."""
     allowed = f"give a number or a table of one key: {', '.join(KINDS)}"
     match value:
-        case [low, high] | {"min": low, "max": high} if _are_numbers(low, high):
+        case [low, high] if _are_numbers(low, high):
             return f"a range is written {{ uniform = [{low}, {high}] }}; {allowed}"
         case list() | tuple():
             return f"values to choose from are written {{ choice = {list(value)} }}; {allowed}"
+        case dict() if len(value) == 2 and _are_numbers(*value.values()) and "mean" not in value:
+            low, high = value.values()
+            return f"a range is written {{ uniform = [{low}, {high}] }}; {allowed}"
         case dict() if len(value) == 1:
             return f"no such distribution; {nearest(str(next(iter(value))), list(KINDS))}"
     return f"no such distribution; {allowed}"

@@ -15,7 +15,7 @@ from rubgen.machine import NUMBER, Machine, NonNegative, Positive, Seed, Switch,
 from rubgen.machine.load import machine_id
 from rubgen.machine.problems import first_problem, validated
 from rubgen.machine.sentences import FILE_NAME
-from rubgen.machine.toml_file import read_toml, toml_path
+from rubgen.machine.toml_file import check_kind, read_toml, toml_path
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import warn_of
@@ -177,7 +177,9 @@ def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> R
     Raises UserError with file, key, value, what is allowed and how to mend it, before anything is computed.
     """
     file = DEFAULT_RECIPE if path is None else toml_path(path)
-    return parse_recipe(read_toml(file), source=str(file), folder=file.parent, runs=runs)
+    data = read_toml(file)
+    check_kind(file, data, "recipe")
+    return parse_recipe(data, source=str(file), folder=file.parent, runs=runs)
 
 
 def parse_recipe(

@@ -11,7 +11,8 @@ from pydantic import TypeAdapter
 from rubgen.errors import UserError
 from rubgen.machine.problems import check_plain, nearest, validated
 from rubgen.machine.schema_nodes import Path as Place
-from rubgen.machine.toml_file import names_toml, read_toml, toml_path
+from rubgen.machine.toml_file import check_kind, named_toml, names_toml, read_toml
+from rubgen.machine.toml_text import toml_text
 from rubgen.scenario.sensors import KINDS, SensorSet
 
 SETS = Path(__file__).parents[1] / "sensors" / "sets"
@@ -40,16 +41,18 @@ def load_sensor_set(name_or_path: str, folder: Path | None = None) -> SensorSet:
     if not names_toml(name_or_path):
         hint = nearest(name_or_path, sensor_set_names())
         raise UserError(f"sensors.set = {name_or_path!r}: no such set; {hint}, or the path of a sensor set .toml")
-    return parse_sensor_set(toml_path(name_or_path, folder))
+    return parse_sensor_set(named_toml("sensors.set", name_or_path, folder))
 
 
 def parse_sensor_set(path: Path) -> SensorSet:
     """The set in a TOML file."""
     data = read_toml(path)
+    check_kind(path, data, "sensor set")
     check_plain(path, data)
     kinds, listed = _kinds(path, data.pop("kinds", {})), data.get("sensors")
     if not isinstance(listed, list):
         return validated(path, data, TypeAdapter(SensorSet))
+    _check_used(path, kinds, listed)
     data["sensors"] = [_completed(path, number, each, kinds) for number, each in enumerate(listed)]
 
     def place(where: Place) -> Place:
@@ -66,12 +69,20 @@ def parse_sensor_set(path: Path) -> SensorSet:
 def _kinds(path: Path, kinds: Any) -> dict[str, dict[str, Any]]:
     """The tables `[kinds.<kind>]`, each with values for all sensors of a kind."""
     if not isinstance(kinds, dict):
-        raise UserError(f"{path}: kinds = {kinds!r:.60}: must be tables; write [kinds.proximity], say")
+        raise UserError(f"{path}: kinds = {toml_text(kinds):.60}: must be tables; write [kinds.proximity], say")
     for kind, table in kinds.items():
         _check_kind(path, kind, "kinds.")
         if not isinstance(table, dict):
-            raise UserError(f"{path}: kinds.{kind} = {table!r:.60}: must be a table; write [kinds.{kind}]")
+            raise UserError(f"{path}: kinds.{kind} = {toml_text(table):.60}: must be a table; write [kinds.{kind}]")
     return kinds
+
+
+def _check_used(path: Path, kinds: dict[str, dict[str, Any]], listed: list[Any]) -> None:
+    """Raise UserError for a table that gives values to no sensor."""
+    used = [each.get("kind") for each in listed if isinstance(each, dict)]
+    for kind in kinds:
+        if kind not in used:
+            raise UserError(f"{path}: kinds.{kind}: the set has no sensor of this kind; add one or remove the table")
 
 
 def _completed(path: Path, number: int, sensor: Any, kinds: dict[str, dict[str, Any]]) -> Any:
@@ -86,5 +97,5 @@ def _completed(path: Path, number: int, sensor: Any, kinds: dict[str, dict[str, 
 
 def _check_kind(path: Path, kind: object, where: str) -> None:
     if kind not in KINDS:
-        shown = kind if isinstance(kind, str) and kind.isprintable() else repr(kind)
+        shown = kind if isinstance(kind, str) and kind.isprintable() else toml_text(kind)
         raise UserError(f"{path}: {where}{shown:.60}: unknown kind of sensor; {nearest(str(kind), list(KINDS))}")

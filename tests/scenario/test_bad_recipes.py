@@ -52,7 +52,7 @@ CASES = {
     "unknown key of vary": (VARY + "speed = 9000", "vary.speed: unknown key; did you mean speed_rpm?"),
     "unknown distribution": (
         VARY + "speed_rpm = { unifrom = [1, 2] }",
-        "vary.speed_rpm = {'unifrom': [1, 2]}: no such",
+        "vary.speed_rpm = { unifrom = [1, 2] }: no such",
     ),
     "two distributions": (
         VARY + "friction = { uniform = [0.1, 0.2], choice = [0.1] }",
@@ -73,7 +73,7 @@ CASES = {
     "inf": (VARY + "speed_rpm = { uniform = [1000, inf] }", "vary.speed_rpm.uniform.1 = inf: must be a finite number"),
     "min above max": (
         VARY + "speed_rpm = { uniform = [9000, 8000] }",
-        "vary.speed_rpm = {'uniform': [9000, 8000]}: the lower end 9000 is above the upper end 8000; swap them",
+        "vary.speed_rpm = { uniform = [9000, 8000] }: the lower end 9000 is above the upper end 8000; swap them",
     ),
     "log of 0": (VARY + "friction = { log_uniform = [0, 0.1] }", "both ends must be above 0"),
     "normal without width": (
@@ -84,6 +84,15 @@ CASES = {
         VARY + "friction = { normal = { mean = 0.1, std = 0.1, min = 0.2, max = 0 } }",
         "the lower end 0.2 is above the upper end 0; swap them",
     ),
+    "normal far from its ends": (
+        VARY + "friction = { normal = { mean = 9, std = 1e-3, min = 0, max = 0.2 } }",
+        "mean = 9 and std = 0.001 leave nothing between min = 0 and max = 0.2; change them",
+    ),
+    "range by other words": (
+        VARY + "friction = { low = 0, high = 0.2 }",
+        "a range is written { uniform = [0, 0.2] }",
+    ),
+    "date for a number": (GOOD + "seed = 2020-01-31", "seed = 2020-01-31: must be a whole number"),
     "empty choice": (VARY + "lobes = { choice = [] }", "vary.lobes.choice = []: "),
     "friction too high": (VARY + "friction = 0.4", "vary.friction = 0.4: must be at least 0 and at most 0.3; change"),
     "unknown key of contact": (GOOD + "[contact]\nmu = 0.1", "contact.mu: unknown key; "),
