@@ -21,6 +21,7 @@ from rubgen.dataset.stage import is_staged, stage_run, warm_up, warming_up
 from rubgen.dataset.verify import advice, findings
 from rubgen.dataset.workers import unordered, usable_cores, worker_pool
 from rubgen.errors import UserError, warn
+from rubgen.io.columns import signal_columns
 from rubgen.progress import Report, count, shown, step
 from rubgen.scenario import Recipe, load_recipe, parse_recipe
 from rubgen.scenario.recipe import check_recipe
@@ -67,6 +68,7 @@ def generate(
     """
     recipe = _recipe(recipe, runs)
     workers = _workers(workers)
+    signal_columns(recipe.sensing.set, clean=recipe.sensing.keep_clean)  # refuses names that columns have
     layout, identity = Layout(Path(out)), identity_of(recipe)
     with problems_told(layout.root):
         if not finished(layout, identity):

@@ -89,23 +89,7 @@ class NormalShape(BaseModel):
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
-        _check_order(self, self.min, self.max)
-        if self.min < self.max and not self.probability > 0:
-            ends = f"min = {self.min:g} and max = {self.max:g}"
-            raise ValueError(f"mean = {self.mean:g} and std = {self.std:g} leave nothing between {ends}; change them")
-        return self
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """The share of the density below min and below max."""
-        low, high = (float(ndtr((end - self.mean) / self.std)) for end in (self.min, self.max))
-        return low, high
-
-    @property
-    def probability(self) -> float:
-        """The share of the density that is kept."""
-        low, high = self.ends
-        return high - low
+        return _check_order(self, self.min, self.max)
 
 
 class Normal(BaseModel):
@@ -117,7 +101,7 @@ class Normal(BaseModel):
     def quantile(self, u: float) -> float:
         """The value mean + std Phi^-1(Phi(a) + u (Phi(b) - Phi(a))), a and b the standardised min and max."""
         shape = self.normal
-        low, high = shape.ends
+        low, high = (float(ndtr((end - shape.mean) / shape.std)) for end in (shape.min, shape.max))
         value = shape.mean + shape.std * float(ndtri(low + u * (high - low)))
         return min(max(value, shape.min), shape.max)
 

@@ -281,3 +281,13 @@ def test_a_run_that_its_own_values_forbid_is_recorded_with_its_reason(tmp_path, 
     assert runs["reason"][fast].str.contains("pass the casing everywhere, its widest gap at rest is 0.0003 m").all()
     assert runs["motion"][fast].isna().all()
     assert rubgen.verify(tmp_path / "set") == []
+
+
+@pytest.mark.parametrize("name", ["rub", "run_id"])
+def test_a_sensor_with_the_name_of_a_column_is_refused_before_anything_is_written(name, tmp_path):
+    sensors = f'name = "s"\n[[sensors]]\nkind = "proximity"\nname = "{name}"\nangle_deg = 0\n'
+    (tmp_path / "s.toml").write_text(sensors)
+    recipe = {"name": "a", "runs": 1, "machine": "zeng2019", "sensors": {"set": str(tmp_path / "s.toml")}}
+    with pytest.raises(UserError, match=f"two columns would be called {name}; rename that sensor"):
+        rubgen.generate(recipe, tmp_path / "out", workers=1)
+    assert not (tmp_path / "out").exists()

@@ -94,7 +94,7 @@ BAD = [
     ({"speed_rmp": 9000}, "speed_rmp: unknown key; did you mean speed_rpm? allowed: machine, speed_rpm, "),
     ({"speed_rpm": "6000"}, "speed_rpm = '6000': must be a number; write it without quotes"),
     ({"clearance_m": True}, "clearance_m = true: must be a number"),
-    ({"friction": {"uniform": [0, 0.1]}}, "friction = {'uniform': [0, 0.1]}: must be a number"),
+    ({"friction": {"uniform": [0, 0.1]}}, "friction = { uniform = [0, 0.1] }: must be a number"),
     ({"speed_rpm": np.array([1.0, 2.0])}, "speed_rpm = array([1., 2.]): must be a number"),
     ({"speed_rpm": 10**400}, "speed_rpm: an integer that does not fit in 64 bits"),
     ({"seed": 2**63}, "seed: an integer that does not fit in 64 bits"),
