@@ -27,7 +27,7 @@ QUARTERS = 4
 
 def check_feasible(scenario: Scenario, source: str = "") -> None:
     """Raise UserError where the scenario cannot be run; keys are named as in a recipe, after `source` (its file)."""
-    for problem in (*PROBLEMS, *SENSOR_PROBLEMS):
+    for problem in (*PROBLEMS, *SENSOR_PROBLEMS, _memory_problem):
         text = problem(scenario)
         if text:
             raise UserError(source + text)
@@ -179,6 +179,5 @@ PROBLEMS = (
     _lobe_problem,
     _node_problem,
     _size_problem,
-    _memory_problem,
 )
 SENSOR_PROBLEMS = (_front_end_problem, _blade_problem, _axial_problem)

@@ -11,6 +11,8 @@ PROFILE_KEYS: dict[str, tuple[str, ...]] = {
     "fluctuating": ("duration_s", "fluctuation_rpm"),
 }
 """The keys that each profile needs; it takes no others of these."""
+LEAST_PERIOD_TURNS = 0.1
+"""Shorter fluctuations are not resolved by the steps."""
 
 
 def profile_problem(operation: Operation) -> str | None:
@@ -42,6 +44,9 @@ def _value_problem(operation: Operation) -> str | None:
         return f"end_speed_rpm = {end:g}: a coast-down ends below its start, speed_rpm = {start:g}; lower it"
     if operation.fluctuation_rpm >= start:
         return f"fluctuation_rpm = {operation.fluctuation_rpm:g}: must be below speed_rpm = {start:g}; lower it"
+    period, least = operation.fluctuation_period_s, LEAST_PERIOD_TURNS * 60 / start
+    if operation.profile == "fluctuating" and period < least:
+        return f"fluctuation_period_s = {period:g}: must be at least a tenth of a turn, {least:.3g} s; raise it"
     return None
 
 

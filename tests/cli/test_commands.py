@@ -191,7 +191,7 @@ BAD = {
     ),
     "no turns": (["simulate", "--settle-turns", "-1"], "settle_turns = -1: "),
     "zero turns": (["simulate", "--settle-turns", "0"], "settle_turns = 0: "),
-    "rate": (["simulate", "--sample-rate-hz", "-5"], "sample_rate_hz = -5.0: must be above 0; change the value"),
+    "rate": (["simulate", "--sample-rate-hz", "-5"], "sample_rate_hz = -5: must be above 0; change the value"),
     "rate too high": (["simulate", "--sample-rate-hz", "2e6"], "sample_rate_hz = 2e+06: at 10000 rev/min the step"),
     "signal": (["simulate", "--signal-seconds", "9"], "signal_seconds = 9: the record lasts 3 s"),
     "kind of file": (["simulate", "--out", "x.csv"], "--out x.csv: unknown kind of file"),

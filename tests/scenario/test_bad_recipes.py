@@ -36,6 +36,10 @@ CASES = {
         GOOD + "[operation]\nforbidden_speed_rpm = [[1, 2], [9000, 10000]]",
         "operation.forbidden_speed_rpm = [9000, 10000]: the speed is 10000 rev/min; stay out of the band",
     ),
+    "fluctuation within a step": (
+        GOOD + '[operation]\nprofile = "fluctuating"\nduration_s = 2\nfluctuation_rpm = 9\nfluctuation_period_s = 1e-4',
+        "operation.fluctuation_period_s = 0.0001: must be at least a tenth of a turn, 0.0006 s; raise it",
+    ),
     "band upside down": (
         GOOD + "[operation]\nforbidden_speed_rpm = [[3000, 2000]]",
         "operation.forbidden_speed_rpm = [3000, 2000]: the lower end comes first; swap the two",
