@@ -147,6 +147,7 @@ def _started(workers: int, context: _OwnMain) -> ProcessPoolExecutor | None:
         try:
             with _interrupts_held():
                 pool = ProcessPoolExecutor(workers, context, initializer=_start_worker)
+            with _interrupts_held():  # anew: Python's tracker of semaphores, just started, lets Ctrl-C through again
                 pool.submit(os.getpid)  # the first job starts every process
         except (OSError, ImportError, RuntimeError) as error:  # no semaphores, too many processes, threads or files
             reason = error.strerror or str(error) if isinstance(error, OSError) else str(error)
