@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rubgen.errors import UserError
+from rubgen.errors import UserError, write_problems
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Figure
@@ -25,10 +25,8 @@ def save(run: Run, path: Path, *, named: str = "") -> None:
     named = named or str(path)
     write = writer_of(path, named)
     _check_good(run, "save")
-    try:
+    with write_problems(path, named=named):
         write(run, path)
-    except OSError as error:
-        raise UserError(f"{named}: cannot be written ({error.strerror or error}); choose another place") from None
 
 
 def writer_of(path: Path, named: str) -> Write:

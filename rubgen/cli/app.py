@@ -14,7 +14,7 @@ from cyclopts import App, CycloptsError, Parameter, Token
 
 from rubgen import __version__
 from rubgen.cli.mistakes import mistake
-from rubgen.errors import RubgenError, RubgenWarning, UserError
+from rubgen.errors import RubgenError, RubgenWarning, UserError, os_reason
 from rubgen.progress import shown
 
 DONE, WANTING, MISTAKE, INTERRUPTED = 0, 1, 2, 130
@@ -76,8 +76,7 @@ def main(arguments: list[str] | None = None) -> NoReturn:
     except UnicodeEncodeError as error:
         _fail(f"{str(error.object)[:200]!r}: cannot be encoded as {error.encoding} ({error.reason})", MISTAKE)
     except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
-        _fail(f"{where}{error.strerror or _one_line(error)}", MISTAKE)
+        _fail(os_reason(error), MISTAKE)
 
 
 @app.command

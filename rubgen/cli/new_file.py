@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from rubgen.errors import UserError
+from rubgen.errors import UserError, write_problems
 
 
 def check_new_file(option: str, path: Path, endings: tuple[str, ...], *, force: bool = False) -> None:
@@ -25,9 +25,5 @@ def write_file(option: str, path: Path, write: Callable[[Path], object]) -> None
     """Write under a temporary name, then rename: a file that was there stays whole until then."""
     from rubgen.io.durable import write_durably
 
-    try:
+    with write_problems(path, named=f"{option} {path}"):
         write_durably(path, write)
-    except OSError as error:
-        raise UserError(
-            f"{option} {path}: cannot be written ({error.strerror or error}); choose another place"
-        ) from None

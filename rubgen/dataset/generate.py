@@ -15,17 +15,17 @@ from rubgen.dataset.croissant import write_croissant
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Identity, identity_of, read_manifest, write_manifest
 from rubgen.dataset.outcome import Outcome, outcome_of
-from rubgen.dataset.problems_told import problems_told
 from rubgen.dataset.rows import asked_bytes
 from rubgen.dataset.stage import is_staged, stage_run, warm_up, warming_up
 from rubgen.dataset.verify import advice, findings
 from rubgen.dataset.workers import unordered, usable_cores, worker_pool
-from rubgen.errors import UserError, warn
+from rubgen.errors import UserError, warn, write_problems
 from rubgen.io.columns import signal_columns
 from rubgen.progress import Report, count, shown, step
 from rubgen.scenario import Recipe, load_recipe, parse_recipe
 from rubgen.scenario.recipe import check_recipe
 
+KEPT = "finished runs are kept"
 LOOKED_AT = 16
 """First runs of which one must be able to rub; a recipe in which none can rubs rarely at best."""
 
@@ -70,7 +70,7 @@ def generate(
     workers = _workers(workers)
     signal_columns(recipe.sensing.set, clean=recipe.sensing.keep_clean)  # refuses names that columns have
     layout, identity = Layout(Path(out)), identity_of(recipe)
-    with problems_told(layout.root):
+    with write_problems(layout.root, advice="give a directory that you may write to", kept=KEPT):
         if not finished(layout, identity):
             with claimed(layout, identity):
                 if not finished(layout, identity):  # another rubgen may have done it meanwhile

@@ -16,7 +16,7 @@ from rubgen.dataset.manifest import Manifest, identity_of, read_manifest, write_
 from rubgen.dataset.open import DataSet
 from rubgen.dataset.replaying import replay_of_mcap, scenario_of
 from rubgen.dataset.verify import findings
-from rubgen.errors import UserError
+from rubgen.errors import UserError, write_problems
 from rubgen.io.durable import write_durably
 
 
@@ -40,12 +40,9 @@ def repair(directory: Path) -> Repaired:
     manifest = read_manifest(layout)
     before = findings(directory)
     wrong = {finding.path for finding in before if finding.path}
-    try:
+    with write_problems(directory, advice="make it writable"):
         made = list(_texts(layout, manifest, wrong))
         made += _recordings(layout, manifest, wrong)
-    except OSError as error:
-        where = error.filename or directory
-        raise UserError(f"{where}: cannot be written ({error.strerror or error}); make it writable") from None
     return Repaired(made=tuple(made), left=tuple(findings(directory) if made else before))
 
 

@@ -12,7 +12,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from rubgen.dataset.open import DataSet
 from rubgen.dataset.replaying import find_replay
 from rubgen.dataset.verify import verify
-from rubgen.errors import UserError
+from rubgen.errors import UserError, write_problems
 from rubgen.io.durable import write_durably
 from rubgen.labels.labels import Motion
 from rubgen.progress import count
@@ -73,10 +73,8 @@ def write_report(directory: Path, path: Path) -> None:
     run, or the file cannot be written.
     """
     html = render_report(directory)
-    try:
+    with write_problems(path):
         write_durably(path, lambda part: part.write_text(html, encoding="utf-8"))
-    except OSError as error:
-        raise UserError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from None
 
 
 def render_report(directory: Path) -> str:

@@ -8,13 +8,17 @@ import subprocess
 import sys
 import tempfile
 import time
+from importlib.util import find_spec
 from pathlib import Path
 
-from rubgen.errors import UserError
+from rubgen.errors import UserError, os_reason
 from rubgen.viz.replay import Replay
 
 HOST = "127.0.0.1"
 OPENING_TRIES = 100
+PROGRAMS = ("rerun", "rerun.exe", "Rerun.app/Contents/MacOS/Rerun")
+"""Where the package rerun_cli keeps the viewer's program, on one system or another."""
+ELSEWHERE = "give --save FILE.rrd and open that file elsewhere"
 SCREENS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
@@ -50,7 +54,7 @@ def _open(path: Path, moment: float, *, web: bool) -> None:
         free.bind((HOST, 0))
         port = free.getsockname()[1]
     command = [sys.executable, "-m", "rerun", str(path), "--hide-welcome-screen", "--bind", HOST, "--port", str(port)]
-    with subprocess.Popen([*command, "--web-viewer"] if web else command) as viewer:  # noqa: S603 - our own interpreter
+    with _started([*command, "--web-viewer"] if web else command) as viewer:
         try:
             if not web:
                 _go_to(moment, port, viewer)
@@ -60,7 +64,24 @@ def _open(path: Path, moment: float, *, web: bool) -> None:
             viewer.wait()
             return
     if code != 0:
-        raise UserError(f"the viewer ended with {code}; give --save FILE.rrd and open that file elsewhere")
+        raise UserError(f"the viewer ended with {code}; {ELSEWHERE}")
+
+
+def _started(command: list[str]) -> subprocess.Popen[bytes]:
+    """The viewer's process; UserError where its program is missing or cannot be executed, or no process starts."""
+    package = find_spec("rerun_cli")
+    folder = Path(package.origin if package and package.origin else "rerun_cli/__init__.py").parent
+    named = os.environ.get("RERUN_CLI_PATH")  # which rerun follows
+    places = [Path(named)] if named else [folder / name for name in PROGRAMS]
+    program = next((place for place in places if place.exists()), None)
+    if program is None:
+        raise UserError(f"{places[0]}: the viewer's program is not there; install rerun-sdk again, or {ELSEWHERE}")
+    if not os.access(program, os.X_OK):
+        raise UserError(f"{program}: the viewer's program may not be executed; make it executable, or {ELSEWHERE}")
+    try:
+        return subprocess.Popen(command)  # noqa: S603 - our own interpreter
+    except OSError as error:
+        raise UserError(f"the viewer cannot be started ({os_reason(error)}); {ELSEWHERE}") from None
 
 
 def _go_to(moment: float, port: int, viewer: subprocess.Popen[bytes]) -> None:

@@ -110,6 +110,24 @@ def test_the_viewer_gets_the_recording(run, mcap_file, made_viewer, web):
     assert ("--web-viewer" in command) == bool(web)
 
 
+@pytest.mark.parametrize("there", [True, False])
+def test_a_viewer_that_cannot_be_executed_is_one_line(run, mcap_file, monkeypatch, tmp_path, there):
+    program = tmp_path / "rerun"
+    if there:
+        program.write_text("no program")
+    monkeypatch.setenv("RERUN_CLI_PATH", str(program))
+    code, _, err = run("replay", str(mcap_file), "--web")
+    assert (code, err.count("\n")) == (2, 1)
+    assert f"{program}: the viewer's program {'may not be executed' if there else 'is not there'}; " in err
+
+
+def test_a_process_that_cannot_be_started_is_one_line(run, mcap_file, monkeypatch):
+    monkeypatch.setattr(viewer.sys, "executable", "/nowhere/python")
+    code, _, err = run("replay", str(mcap_file), "--web")
+    assert (code, err.count("\n")) == (2, 1)
+    assert "the viewer cannot be started (/nowhere/python: No such file or directory); give --save" in err
+
+
 def test_a_simulated_run_is_shown_straight_away(run, rub_run, made_viewer, monkeypatch):
     monkeypatch.setattr("rubgen.cli.simulating.simulate", lambda _: rub_run)
     assert run("simulate", "--replay")[0] == 0

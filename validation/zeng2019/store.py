@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,7 +10,7 @@ from zipfile import BadZipFile
 import numpy as np
 from filelock import FileLock, Timeout
 
-from rubgen.errors import UserError
+from rubgen.errors import UserError, write_problems
 from rubgen.io.durable import write_durably
 from validation.zeng2019.piece import Arrays, Piece
 
@@ -33,18 +32,19 @@ class Store:
         and where another process is at work there.
         """
         root = self.root
-        try:
+        named, advice = f"--out {root}", "give a directory you may write to"
+        with write_problems(root, named=named, advice=advice, kept="pieces are kept"):
             _check(root)
             self._pieces.mkdir(parents=True, exist_ok=True)
             (root / MARK).touch()
-            with FileLock(root / f"{MARK}.lock", timeout=0):
+            try:
+                lock = FileLock(root / f"{MARK}.lock", timeout=0).acquire()
+            except Timeout:
+                raise UserError(f"{named}: another rubgen works there; wait for it or choose another") from None
+            with lock:
                 for part in self._pieces.glob("*.part.npz"):
                     part.unlink()
                 yield
-        except Timeout:
-            raise UserError(f"--out {root}: another rubgen works there; wait for it or choose another") from None
-        except OSError as error:
-            raise _problem(root, error) from None
 
     def __call__(self, piece: Piece) -> Arrays:
         """The arrays of a piece that is kept."""
@@ -87,10 +87,3 @@ def _check(root: Path) -> None:
         raise UserError(f"--out {root}: is a file; give a new or empty directory")
     if root.is_dir() and any(root.iterdir()) and not (root / MARK).exists():
         raise UserError(f"--out {root}: not empty and not made by this command; give a new or empty directory")
-
-
-def _problem(root: Path, error: OSError) -> UserError:
-    if error.errno == errno.ENOSPC:
-        return UserError(f"--out {root}: the disk is full; make room and give the same command again: pieces are kept")
-    where = error.filename or root
-    return UserError(f"--out {where}: cannot be written ({error.strerror or error}); give a directory you may write to")
