@@ -1,10 +1,16 @@
 import math
 import os
+import signal
+import subprocess
+import sys
+from contextlib import ExitStack
+from types import SimpleNamespace
 
 import pytest
 
+from rubgen.dataset import workers
 from rubgen.dataset.workers import ONE_THREAD, unordered, usable_cores, worker_pool
-from rubgen.errors import RubgenError
+from rubgen.errors import RubgenError, RubgenWarning
 
 
 def test_every_job_is_done_once():
@@ -24,6 +30,58 @@ def test_a_worker_that_dies_is_reported_in_one_line():
     said = r"a worker process ended with exit code 9; what is finished is kept: .+ --workers 1 it starts no worker"
     with pytest.raises(RubgenError, match=said), worker_pool(2) as pool:
         list(unordered(pool, 1, os._exit, [(9,)]))
+
+
+def _kill_this_process():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def test_a_worker_that_is_killed_is_told_by_its_signal():
+    said = "a worker process was ended by SIGKILL; what is finished is kept"
+    with pytest.raises(RubgenError, match=said), worker_pool(2) as pool:
+        list(unordered(pool, 1, _kill_this_process, [()]))
+
+
+def test_workers_start_where_signals_cannot_be_masked(monkeypatch):
+    there = {name: value for name, value in vars(signal).items() if name != "pthread_sigmask"}
+    monkeypatch.setattr(workers, "signal", SimpleNamespace(**there))
+    with worker_pool(2) as pool:
+        assert list(unordered(pool, 1, abs, [(-1,), (-2,)])) == [1, 2]
+
+
+@pytest.mark.parametrize(
+    "problem",
+    [
+        OSError(38, "Function not implemented"),
+        BlockingIOError(11, "Resource temporarily unavailable"),
+        ImportError("This platform lacks a functioning sem_open implementation"),
+        RuntimeError("can't start new thread"),
+    ],
+)
+def test_where_no_process_can_be_started_one_goes_on(monkeypatch, problem):
+    def refuse(*_, **__):
+        raise problem
+
+    monkeypatch.setattr(workers, "ProcessPoolExecutor", refuse)
+    reason = problem.strerror if isinstance(problem, OSError) else str(problem)
+    with ExitStack() as stack:
+        with pytest.warns(RubgenWarning, match=rf"cannot be started \({reason}\)"):
+            pool = stack.enter_context(worker_pool(2))
+        assert pool is None
+        assert list(unordered(pool, 2, os.getpid, [()])) == [os.getpid()]
+
+
+@pytest.mark.parametrize("how", ["script", "pipe", "text"])
+def test_workers_leave_the_users_main_module_alone(tmp_path, how):
+    code = (
+        "import os\nfrom rubgen.dataset.workers import unordered, worker_pool\nprint('main', flush=True)\n"
+        "with worker_pool(2) as pool:\n    print(sum(unordered(pool, 2, abs, [(-1,), (-2,), (-3,)])))\n"
+    )
+    (tmp_path / "main.py").write_text(code)
+    arguments = {"script": ["main.py"], "pipe": ["-"], "text": ["-c", code]}[how]
+    given = code if how == "pipe" else None
+    done = subprocess.run([sys.executable, *arguments], input=given, capture_output=True, text=True, cwd=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "main\n6\n", "")
 
 
 def test_what_a_worker_raises_reaches_the_caller():
