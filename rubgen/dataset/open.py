@@ -181,7 +181,10 @@ class DataSet:
                 raise UserError(
                     f"{self.layout.root}: has no files with signals; generate it with formats parquet or mcap"
                 )
-            run = read_mcap(self.layout.export("mcap", run_id), channels=names)
+            path = self.layout.export("mcap", run_id)
+            run = read_mcap(path, channels=names)
+            if run_id != f"run-{run.scenario.get('index'):06d}":
+                raise UserError(f"{path}: holds the run of index {run.scenario.get('index')}; run rubgen verify")
             found = run.signals | {f"{name}_clean": values for name, values in run.clean.items()}
             yield run_id, pa.table({name: [found[name]] for name in names} | {PULSES: [run.once_per_rev]})
 

@@ -129,6 +129,8 @@ def _from_data_set(directory: Path, run_id: str | None, where: str | None) -> Fo
     path = Layout(directory).export("mcap", chosen)
     if path.exists():
         found = replay_of_mcap(path)
+        if found.replay.scenario.run_id != chosen:
+            raise UserError(f"{path}: holds {found.replay.scenario.run_id}; see `rubgen verify {directory}`")
         return Found(replay=found.replay, remarks=(*remarks, *found.remarks))
     from rubgen.pipeline import simulate
     from rubgen.viz.replay import replay_of

@@ -111,7 +111,7 @@ def _row_problems(
 
 def _difference(seen: set[str], good: set[str], has: str, lacks: str, *, whole: bool) -> Iterator[str]:
     """Runs that have something and are not good, and good ones that lack it; only of files read to the end."""
-    for name in sorted(seen ^ good if whole else set()):
+    for name in sorted(seen ^ good if whole else set(), key=str):
         yield f"{name}: {f'has {has}, but is not ok' if name in seen else f'is ok, but has {lacks}'}"
 
 

@@ -30,7 +30,7 @@ def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
         return _machine_from(PRESETS / f"{name_or_path}.toml")
     if not names_toml(name_or_path):
         hint = nearest(name_or_path, preset_names())
-        raise UserError(f"machine = {name_or_path!r}: no such preset; {hint}, or the path of a machine .toml")
+        raise UserError(f"machine = {name_or_path!r:.200}: no such preset; {hint}, or the path of a machine .toml")
     return _machine_from(named_toml("machine", name_or_path, folder))
 
 

@@ -27,6 +27,8 @@ SIGNED = re.compile(r"at least -")
 """Times and angles may be negative."""
 LONGEST = 120
 """Longer values are not shown."""
+MOST_ERRORS = 500
+"""More need not be told apart: who compares each with each would take minutes over twenty thousand."""
 OTHER_NAMES = {
     "channels": "set",
     "channel": "set",
@@ -69,7 +71,8 @@ def first_problem(
     path = place(first.path)
     words = first.text(data, schema)
     text = _of(source, f"{key_name(path) or 'the file'}{words}" if path or not first.own else words)
-    others = f" ({len(problems)} problems in all)" if len(problems) > 1 else ""
+    count = f"more than {MOST_ERRORS}" if error.error_count() > MOST_ERRORS else len(problems)
+    others = f" ({count} problems in all)" if len(problems) > 1 else ""
     return UserError(f"{text}{others}")
 
 
@@ -141,7 +144,7 @@ class _Problem:
 
 def _problems(error: ValidationError, data: object) -> list[_Problem]:
     found: dict[tuple[Path, bool], _Problem] = {}
-    for each in error.errors(include_url=False):
+    for each in error.errors(include_url=False)[:MOST_ERRORS]:
         lacking = each["type"] == "missing"
         path = _path_in(data, each["loc"], missing=lacking)
         if lacking and isinstance(path[-1], int):  # too few values of a pair
@@ -153,11 +156,13 @@ def _problems(error: ValidationError, data: object) -> list[_Problem]:
 
 def _follows(problem: _Problem, problems: list[_Problem]) -> bool:
     """Whether a problem goes with another: a misspelt key is also a missing one, and a list lacks its bad value."""
+    if problem.kind not in ("too_short", "missing"):
+        return False
     path, others = problem.path, [each for each in problems if each is not problem]
     if problem.kind == "too_short":
         return any(each.path[: len(path)] == path for each in others)
     unknown = [each.path for each in others if each.kind in UNKNOWN and each.path[:-1] == path[:-1]]
-    return problem.kind == "missing" and any(_closest(str(each[-1]), [str(path[-1])]) for each in unknown)
+    return any(_closest(str(each[-1]), [str(path[-1])]) for each in unknown)
 
 
 def _instead(path: Path, data: object, schema: SchemaNodes | None) -> str:

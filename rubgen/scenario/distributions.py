@@ -150,7 +150,8 @@ def _unknown(value: object) -> str:
         case [low, high] if _are_numbers(low, high):
             return f"a range is written {{ uniform = [{low}, {high}] }}; {allowed}"
         case list() | tuple():
-            return f"values to choose from are written {{ choice = {list(value)} }}; {allowed}"
+            shown = ", ".join([f"{each!r:.60}" for each in value[:5]] + ["..."] * (len(value) > 5))
+            return f"values to choose from are written {{ choice = [{shown}] }}; {allowed}"
         case dict() if len(value) == 2 and _are_numbers(*value.values()) and "mean" not in value:
             low, high = value.values()
             return f"a range is written {{ uniform = [{low}, {high}] }}; {allowed}"

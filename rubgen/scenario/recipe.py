@@ -67,7 +67,7 @@ class Output(BaseModel):
     """`[output]`: files that are written, and the length of the signals: the end of the record."""
 
     model_config = _STRICT
-    formats: Annotated[tuple[Format, ...], Field(min_length=1)] = ("parquet", "mcap", "rrd")
+    formats: Annotated[tuple[Format, ...], Field(min_length=1, max_length=3)] = ("parquet", "mcap", "rrd")
     signal_seconds: Duration = 1.0
 
 

@@ -40,7 +40,7 @@ def load_sensor_set(name_or_path: str, folder: Path | None = None) -> SensorSet:
         return parse_sensor_set(SETS / f"{name_or_path}.toml")
     if not names_toml(name_or_path):
         hint = nearest(name_or_path, sensor_set_names())
-        raise UserError(f"sensors.set = {name_or_path!r}: no such set; {hint}, or the path of a sensor set .toml")
+        raise UserError(f"sensors.set = {name_or_path!r:.200}: no such set; {hint}, or the path of a sensor set .toml")
     return parse_sensor_set(named_toml("sensors.set", name_or_path, folder))
 
 

@@ -1,6 +1,8 @@
 """Runs of a data set to look at: by name, by condition, from MCAP or simulated again."""
 
 import dataclasses
+import hashlib
+import json
 import shutil
 
 import numpy as np
@@ -52,6 +54,22 @@ def test_without_mcap_the_run_is_simulated_again(copied_set, short_records):
     for field in dataclasses.fields(before.touches):
         np.testing.assert_array_equal(getattr(again.touches, field.name), getattr(before.touches, field.name))
     np.testing.assert_allclose(again.frames.tips, before.frames.tips, rtol=1e-6)
+
+
+def test_a_recording_under_the_name_of_another_run_is_refused(copied_set):
+    shutil.copy(copied_set / "mcap/run-000000.mcap", copied_set / "mcap/run-000001.mcap")
+    with pytest.raises(UserError, match=r"run-000001\.mcap: holds run-000000"):
+        find_replay(copied_set, "run-000001")
+    path = copied_set / "manifest.json"
+    manifest = json.loads(path.read_text())  # of a set that has no data files
+    manifest["files"] = [entry for entry in manifest["files"] if not entry["path"].startswith("data/")]
+    path.write_text(json.dumps(manifest))
+    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    (copied_set / "manifest.json.sha256").write_text(f"{digest}  manifest.json\n")
+    data = rubgen.open(copied_set)
+    assert data.signals("run-000000")["proximity_x"].size
+    with pytest.raises(UserError, match=r"run-000001\.mcap: holds the run of index 0"):
+        data.signals("run-000001")
 
 
 @pytest.mark.parametrize(

@@ -156,6 +156,29 @@ def test_a_misspelt_key_is_one_problem_not_two():
     assert "problems in all" not in text
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"machine": "a" * 5000},
+        {"sensors": {"set": "b" * 5000}},
+        {"output": {"formats": ["mcap"] * 5000}},
+        {"vary": {"friction": [0.1] * 5000}},
+        {"vary": {"friction": [["c" * 5000]] * 3}},
+        {"operation": {"forbidden_speed_rpm": ["x"] * 5000}},
+    ],
+)
+def test_a_message_about_a_long_value_is_short(change):
+    assert len(problem(MINIMAL | change)) < 1000
+
+
+@pytest.mark.parametrize("pair", [[], ["x", "y"], [{}, {}, {}]])
+def test_twenty_thousand_problems_are_said_as_the_first(pair):
+    """Comparing each with each took minutes."""
+    text = problem(MINIMAL | {"operation": {"forbidden_speed_rpm": [pair] * 20_000}})
+    assert text.startswith("r.toml: operation.forbidden_speed_rpm.0")
+    assert text.endswith("(more than 500 problems in all)")
+
+
 def test_tables_in_one_another_without_end():
     deep = {}
     for _ in range(3000):

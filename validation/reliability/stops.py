@@ -55,11 +55,11 @@ def _fail(number: int, out: Path) -> None:
 
 
 def _chosen(count: int, most: int) -> list[int]:
-    """All operations, or the first eight, where the directory is claimed, and others evenly spread."""
+    """All operations, or for one half the first, where the directory is claimed, and others evenly spread."""
     if count <= most:
         return list(range(1, count + 1))
-    spread = np.linspace(9, count, most - 8).round().astype(int)
-    return [*range(1, 9), *spread.tolist()]
+    first = most // 2
+    return [*range(1, first + 1), *np.linspace(first + 1, count, most - first).round().astype(int).tolist()]
 
 
 def _count(truth: Truth) -> int:
