@@ -147,9 +147,6 @@ def _rigid_nodes(x: FloatArray, y: FloatArray) -> FloatArray:
 
 def _elements_per_blade(disk: Disk, blades: BladeRow) -> int:
     elements, count = disk.circumferential_elements, blades.count
-    if disk.bore_radius_m >= disk.rim_radius_m:
-        bore, rim = disk.bore_radius_m, disk.rim_radius_m
-        raise UserError(f"disk.bore_radius_m = {bore}: must be below disk.rim_radius_m = {rim}; lower it")
     if count < 2:
         raise UserError(f"blades.count = {count}: a blisk needs at least 2 equal blades; raise it")
     if elements % count:

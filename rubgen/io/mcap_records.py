@@ -28,9 +28,9 @@ MOST_CHUNK_BYTES = 64 * 1024**2
 """rubgen writes chunks of 0.5 MiB; other writers some MiB."""
 MOST_BYTES = 256 * 1024**2
 """All chunks together may always unpack to this: eighty seconds and 30 channels take as much."""
-MOST_TIMES = 1000
+MOST_TIMES = 400
 """A larger file may unpack to so many times its size. Each message has an index entry of 16 bytes that is not packed:
-blocks of 4 kB that are all zero reach 250 times, previews of 1,000 such channels more."""
+blocks of 4 kB that are all zero reach 250 times."""
 MAGIC = b"\x89MCAP0\r\n"
 _HEAD = struct.Struct("<BQ")  # opcode, length
 _MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
