@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import os
-import signal
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from shutil import which
-from types import FrameType
 
+from rubgen.cli.interrupts import terminable
 from rubgen.cli.printing import print_json, say
 from rubgen.dataset.generate import Generated, finished_runs, generate
 
@@ -29,21 +27,6 @@ def generate_command(recipe: Path | None, out: Path, runs: int | None, workers: 
         return 130
     _report(made, as_json=as_json)
     return 0
-
-
-@contextmanager
-def terminable() -> Iterator[None]:
-    """A polite kill ends like Ctrl-C, and so does Ctrl-C where the shell has switched it off."""
-
-    def interrupt(_signal: int, _frame: FrameType | None) -> None:
-        raise KeyboardInterrupt
-
-    saved = {name: signal.signal(name, interrupt) for name in (signal.SIGTERM, signal.SIGINT)}
-    try:
-        yield
-    finally:
-        for name, handler in saved.items():
-            signal.signal(name, handler)
 
 
 def _report(made: Generated, *, as_json: bool) -> None:

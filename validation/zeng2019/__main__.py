@@ -10,7 +10,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from rubgen.cli.generating import terminable
+from rubgen.cli.interrupts import terminable
 from rubgen.cli.printing import print_json, print_pairs
 from rubgen.errors import UserError
 from rubgen.progress import count, shown, step
