@@ -71,7 +71,7 @@ def _replace(node: Any, key: Any, generator: np.random.Generator) -> None:
 def _scale(node: Any, key: Any, generator: np.random.Generator) -> None:
     """A number of another unit, sign or size; anything else is replaced."""
     value = node[key]
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) > 1e300:
         _replace(node, key, generator)
         return
     factor = [-1, 0, 2, 0.5, 1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9, 60 / (2 * math.pi), 1.0000001][generator.integers(12)]
