@@ -23,7 +23,7 @@ from rubgen.errors import UserError, warn, write_problems
 from rubgen.io.columns import signal_columns
 from rubgen.progress import Report, count, shown, step
 from rubgen.scenario import Recipe, load_recipe, parse_recipe
-from rubgen.scenario.recipe import check_recipe
+from rubgen.scenario.recipe import check_recipe, checked_runs
 
 KEPT = "finished runs are kept"
 LOOKED_AT = 16
@@ -89,7 +89,7 @@ def _recipe(recipe: Recipe | Mapping[str, object] | Path | str | None, runs: int
         return parse_recipe(dict(recipe), runs=runs)
     if not isinstance(recipe, Recipe):
         return load_recipe(recipe, runs=runs)
-    chosen = recipe if runs is None else recipe.model_copy(update={"runs": runs})
+    chosen = recipe if runs is None else recipe.model_copy(update={"runs": checked_runs(runs)})
     check_recipe(chosen)
     return chosen
 

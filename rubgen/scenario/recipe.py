@@ -38,6 +38,7 @@ from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, vary
 
 DEFAULT_RECIPE = Path(__file__).parent / "zeng2019-mini.toml"
 Format = Literal["parquet", "mcap", "rrd"]
+MOST_RUNS = 1_000_000
 _STRICT = ConfigDict(extra="forbid", frozen=True)
 
 
@@ -100,7 +101,7 @@ class Recipe(BaseModel):
     model_config = _STRICT
     name: Annotated[str, Field(pattern=FILE_NAME)]
     seed: Seed = 0
-    runs: Annotated[int, Field(ge=1, le=1_000_000), NUMBER]
+    runs: Annotated[int, Field(ge=1, le=MOST_RUNS), NUMBER]
     machine: Annotated[str, Field(min_length=1)]
     license: Annotated[str, Field(min_length=1)] = "CC-BY-4.0"
     vary: Vary = Vary()
@@ -187,14 +188,19 @@ def parse_recipe(
 ) -> Recipe:
     """The recipe of these TOML values; paths in it start from `folder`, errors begin with `source`."""
     if runs is not None:
-        if not isinstance(runs, int) or runs < 1:
-            raise UserError(f"--runs {runs}: must be at least 1; give a whole number of runs")
-        data = {**data, "runs": runs}
+        data = {**data, "runs": checked_runs(runs)}
     recipe = validated(source, data, TypeAdapter(Recipe))
     recipe._folder = folder or Path()
     check_recipe(recipe, source)
     warn_of(recipe.corners(), f"{source}: ")
     return recipe
+
+
+def checked_runs(runs: int) -> int:
+    """A number of runs that is given beside a recipe; UserError where a recipe could not say it."""
+    if isinstance(runs, bool) or not isinstance(runs, int) or not 1 <= runs <= MOST_RUNS:
+        raise UserError(f"--runs {runs}: must be at least 1 and at most {MOST_RUNS:,}; give a whole number of runs")
+    return runs
 
 
 def recorded_recipe(data: object, machine: object, sensors: object, source: str = "manifest") -> Recipe:

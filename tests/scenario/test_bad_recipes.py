@@ -4,6 +4,7 @@ import warnings
 
 import pytest
 
+import rubgen
 from rubgen.errors import RubgenWarning, UserError
 from rubgen.scenario import load_recipe, make_scenario, parse_recipe
 from rubgen.scenario.vary import KEYS
@@ -177,9 +178,16 @@ def test_machine_file_of_the_recipe_is_named(tmp_path):
         parse_recipe({"name": "a", "runs": 1, "machine": "gone.toml"}, folder=tmp_path)
 
 
-def test_runs_option():
-    with pytest.raises(UserError, match="--runs 0: must be at least 1"):
-        load_recipe(runs=0)
+@pytest.mark.parametrize("runs", [0, -1, 1_000_001, 2**70, True, 2.0])
+def test_runs_option(tmp_path, runs):
+    for refused in (
+        lambda: load_recipe(runs=runs),
+        lambda: rubgen.generate(load_recipe(), tmp_path / "set", runs=runs),
+        lambda: rubgen.generate({"name": "a", "runs": 1, "machine": "zeng2019"}, tmp_path / "set", runs=runs),
+    ):
+        with pytest.raises(UserError, match=rf"--runs {runs}: must be at least 1 and at most 1,000,000; give a whole"):
+            refused()
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_scenario_keys():
