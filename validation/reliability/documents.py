@@ -54,14 +54,14 @@ def mutated(document: Any, generator: np.random.Generator) -> Any:
 
 def _somewhere(document: Any, generator: np.random.Generator) -> tuple[Any, Any]:
     """A place in the tree: any depth, whatever the number of values below; (None, None) in an empty one."""
-    node, place = document, (None, None)
+    node, holder, key = document, None, None
     while isinstance(node, dict | list) and node:
-        keys = list(node) if isinstance(node, dict) else list(range(len(node)))
-        place = node, keys[generator.integers(len(keys))]
-        node = node[place[1]]
+        keys: list[Any] = list(node) if isinstance(node, dict) else list(range(len(node)))
+        holder, key = node, keys[generator.integers(len(keys))]
+        node = holder[key]
         if generator.random() < 0.2:
             break
-    return place
+    return holder, key
 
 
 def _replace(node: Any, key: Any, generator: np.random.Generator) -> None:

@@ -14,6 +14,7 @@ import traceback
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import TextIO
 
 from rubgen.errors import UserError
 
@@ -52,10 +53,10 @@ def _some_outcomes(work: Callable[[int], str], remaining: list[int], memory: int
         yield remaining.pop(0), known.get(code, f"died with {code}")
 
 
-def _next_line(lines: object, pid: int) -> str:
+def _next_line(lines: TextIO, pid: int) -> str:
     if not select.select([lines], [], [], PATIENCE_S)[0]:
         os.kill(pid, signal.SIGKILL)
-    return lines.readline()  # type: ignore[attr-defined, no-any-return]
+    return lines.readline()
 
 
 def _child(work: Callable[[int], str], cases: Sequence[int], sink: int, memory: int) -> None:

@@ -168,7 +168,7 @@ def _channel(content: Content, generator: np.random.Generator) -> None:
     number = int(generator.choice(list(content.channels)))
     old = content.channels[number]
     topics = [each.topic for each in content.channels.values()]
-    wrong = {
+    wrong: dict[str, Any] = {
         "topic": str(
             generator.choice([*topics, "", "/raw/", "/raw/../x", "/blade_tip_timing/x", "/raw/é", "/motion/frames"])
         ),

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import rubgen
 from rubgen.machine.load import PRESETS
@@ -72,12 +73,12 @@ class Truth:
         self.made += 1
         return self.folder / f"set-{self.made:04d}"
 
-    def generate(self, out: Path, *, workers: int = 1, log: str = "command", **how: object) -> Process:
+    def generate(self, out: Path, *, workers: int = 1, log: str = "command", **how: Any) -> Process:
         """Begin or complete the set in `out`, in a process of its own."""
         arguments = ["generate", str(self.recipe), "--out", str(out), "--workers", str(workers), "--json"]
-        return start(arguments, self.folder / f"{log}.log", **how)  # type: ignore[arg-type]
+        return start(arguments, self.folder / f"{log}.log", **how)
 
-    def complete(self, out: Path, row: Row, what: str, **how: object) -> None:
+    def complete(self, out: Path, row: Row, what: str, **how: Any) -> None:
         """Give the same command again; count a set that is not completed, or differs. Then remove it."""
         process = self.generate(out, **how)
         if process.end() != 0:

@@ -125,7 +125,7 @@ def _resolved(row: Row, signals: dict[str, Float32Array], sensing: Sensing) -> b
     if weights is None:
         return False
     limit = resolved_impulse(row, weights, sensing.noise * sensor.noise_rms, (high - low) / 2**sensing.adc_bits)
-    return limit < (OFF - 1) / 2 * row["contact_impulse_per_turn_n_s"]
+    return bool(limit < (OFF - 1) / 2 * row["contact_impulse_per_turn_n_s"])
 
 
 if __name__ == "__main__":
