@@ -3,8 +3,9 @@
 The runs are those of the embedded recipe, from its first on: without rub, light, irregular, hard rub together. Each is
 integrated as for a data set, from the start to the end of its record. The measure is the step of the plain numpy
 reference in the light rub of `bench_solver`, the cheapest one with contact; beside it stands the same in the runs' own
-states. Then: whether a run has the same bits alone and among others in another process, and how far two of its kind
-are from the reference.
+states. The reference is timed over whole turns, each from the same state at a section, so that it rubs as the run does.
+Then: whether a run has the same bits alone and among others in another process, and how far two of its kind are from
+the reference.
 
 Last, the free step of eight runs side by side in vector registers, each with its own matrices, against that of one run:
 what a solver in lanes over scenarios would take for the largest part of a step.
@@ -19,7 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from benchmarks.bench_solver import CASES, STEPS, deviation, settled
+from benchmarks.bench_solver import CASES, STEPS, deviation, settled, turn_time
+from benchmarks.cpu_time import median_time
 from benchmarks.free_step_kernels import run_free
 from rubgen.dataset.workers import unordered, worker_pool
 from rubgen.reduction import reduce
@@ -36,10 +38,9 @@ from rubgen.vector_kernels import LANES
 from validation.reference_step import ReferenceStepper
 
 RUNS, PROCESSES = 16, 2
-ROUNDS = 2
+ROUNDS = 3
 LIGHT = 0.05
 """Below this share of steps with contact a run counts as light."""
-NUMPY_STEPS = 256
 
 
 @dataclass(frozen=True)
@@ -101,17 +102,9 @@ def timed(scenario: Scenario) -> Timed:
 
 
 def step_time(runs: list[list[Timed]]) -> float:
-    """Mean CPU time of a step in us over runs that were each made several times."""
-    every = [each for run in runs for each in run]
-    return 1e6 * sum(each.seconds for each in every) / sum(each.steps for each in every)
-
-
-def numpy_step(reference: ReferenceStepper) -> float:
-    """Mean CPU time of a step of the reference in us, over part of a turn."""
-    start = time.process_time()
-    for index in range(NUMPY_STEPS):
-        reference.step(index)
-    return 1e6 * (time.process_time() - start) / NUMPY_STEPS
+    """CPU time of a step in us, mean over the steps of all runs; of a run that was made several times the median."""
+    seconds = sum(float(np.median([each.seconds for each in run])) for run in runs)
+    return 1e6 * seconds / sum(run[0].steps for run in runs)
 
 
 def reference_of(scenario: Scenario) -> ReferenceStepper:
@@ -125,38 +118,40 @@ def reference_of(scenario: Scenario) -> ReferenceStepper:
 
 
 def on_one_core(runs: list[Scenario], light: ReferenceStepper) -> tuple[list[list[Timed]], float, float]:
-    """All runs one after the other, several times; between them steps of the reference, whose mean times it gives.
+    """All runs one after the other, several times, with whole turns of the reference between them.
 
-    First those of the light rub, then those in the runs' own states, in us.
+    Return the runs and two CPU times of a step of the reference in us: the median in the light rub, and the mean over
+    the runs of the median in the run's own state.
     """
     timed(runs[0])  # kernels are compiled
     own = [reference_of(scenario) for scenario in runs]
     found: list[list[Timed]] = [[] for _ in runs]
-    plain: list[tuple[float, float]] = []
+    plain: list[list[float]] = [[] for _ in runs]
+    beside: list[float] = []
     for _ in range(ROUNDS):
-        for run, scenario, reference in zip(found, runs, own, strict=True):
+        for run, times, scenario, reference in zip(found, plain, runs, own, strict=True):
             run.append(timed(scenario))
-            plain.append((numpy_step(light), numpy_step(reference)))
-    mean = np.mean(plain, axis=0)
-    return found, float(mean[0]), float(mean[1])
+            beside.append(turn_time(light))
+            times.append(turn_time(reference))
+    return found, float(np.median(beside)), float(np.mean([np.median(times) for times in plain]))
 
 
 def on_processes(runs: list[Scenario]) -> tuple[float, float, set[str]]:
-    """Least time in us of a step of all runs on two processes, the same from CPU time, the digests of the runs there.
+    """Median time in us of a step of all runs on two processes, the same from CPU time, the digests of the runs there.
 
-    Where both have a core of their own, one is the other but for the last run, beside which one process may wait.
+    The two times are equal where each process has a core of its own and neither waits for the last run.
     """
-    best, busy, digests = np.inf, np.inf, set[str]()
+    wall, busy, digests = list[float](), list[float](), set[str]()
     with worker_pool(PROCESSES) as pool:
         list(unordered(pool, PROCESSES, timed, [(runs[0],)] * PROCESSES))  # the processes have loaded their kernels
         for _ in range(ROUNDS):
             start = time.perf_counter()
             found = list(unordered(pool, PROCESSES, timed, [(scenario,) for scenario in runs]))
             steps = sum(run.steps for run in found)
-            best = min(best, (time.perf_counter() - start) / steps)
-            busy = min(busy, sum(run.seconds for run in found) / steps / PROCESSES)
+            wall.append((time.perf_counter() - start) / steps)
+            busy.append(sum(run.seconds for run in found) / steps / PROCESSES)
             digests |= {run.digest for run in found}
-    return 1e6 * best, 1e6 * busy, digests
+    return 1e6 * float(np.median(wall)), 1e6 * float(np.median(busy)), digests
 
 
 def in_lanes(stepper: Stepper) -> Scheme:
@@ -178,14 +173,9 @@ def in_lanes(stepper: Stepper) -> Scheme:
 
 
 def free_step_time(scheme: Scheme) -> float:
-    """Time of one call in us, mean over a turn's steps, the least of many turns."""
+    """CPU time of one call in us, mean over a turn's steps, median of many turns."""
     states = [aligned(np.zeros(len(scheme.constant))) for _ in range(3)]
-    best = np.inf
-    for _ in range(200):
-        start = time.perf_counter()
-        run_free(scheme, *states, STEPS)
-        best = min(best, (time.perf_counter() - start) / STEPS)
-    return 1e6 * best
+    return 1e6 * median_time(lambda: run_free(scheme, *states, STEPS), rounds=200) / STEPS
 
 
 def measure() -> list[dict[str, object]]:

@@ -4,8 +4,8 @@ Both take the reduced preset (125 coordinates, 36 tips that may touch) on from t
 a heavy rub. The script: explicit right-hand side in numpy with M^-1 K and M^-1 C made beforehand, contact by each tip's
 radial gap to the oval and the casing's own radial displacement there, stiffness PENALTY on what enters, Coulomb
 friction along the circle; RK45 at RTOL and an absolute tolerance of ATOL_M in metres (times the spin speed for
-velocities). It comes in two hands: all tips at once in whole arrays, and one after the other in a loop, as equations
-are written down. That it rubs as ours does is shown by the impulse a turn of both.
+velocities). It comes in three forms: all tips at once in whole arrays; one after the other in a loop, as equations are
+written down; and that loop compiled with numba. The impulse a turn of both shows that it rubs as ours does.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from scipy.integrate import solve_ivp
 from threadpoolctl import threadpool_limits
 
 from benchmarks.bench_solver import CASES, STEPS, Case, settled
+from benchmarks.penalty_kernels import Penalty, slope_of
 from rubgen.arrays import FloatArray
 from rubgen.reduction.model import SpinningSystem
 from rubgen.solver.stepper import Stepper
@@ -115,6 +116,30 @@ class LoopedModel(PenaltyModel):
         return normal, blades, radials, arounds
 
 
+class CompiledModel(PenaltyModel):
+    """The loop compiled with numba."""
+
+    def __init__(self, system: SpinningSystem, friction: float) -> None:
+        super().__init__(system, friction)
+        surface = system.surface
+        self.constants = Penalty(
+            rates=np.ascontiguousarray(self.rates),
+            constant=self.constant,
+            columns=np.ascontiguousarray(self.inverse.T),
+            radial=np.ascontiguousarray(self.radial),
+            around=np.ascontiguousarray(self.around),
+            tip_static=np.ascontiguousarray(system.tip_static),
+            blade_angles=np.ascontiguousarray(system.blade_angles),
+            curve=np.column_stack([surface.amplitude, surface.order, surface.phase]).astype(float),
+            numbers=np.array([system.tip_radius, surface.mean_radius, system.speed, friction, PENALTY], dtype=float),
+        )
+
+    def __call__(self, t: float, y: FloatArray) -> FloatArray:
+        slope = np.empty_like(y)
+        slope_of(self.constants, t, y, slope)
+        return slope
+
+
 def start_of(stepper: Stepper, model: PenaltyModel) -> FloatArray:
     """[q, q', 0] of the stepper: q' = (q_n - q_n-1) / dt + dt q'' / 2."""
     before, now = stepper.state.before, stepper.state.now
@@ -153,17 +178,23 @@ def run_ours(stepper: Stepper) -> tuple[float, float]:
 def measure_case(case: Case) -> list[dict[str, object]]:
     """Rows of one run."""
     stepper, _ = settled(case)
-    model, looped = (kind(stepper.system, case.friction) for kind in (PenaltyModel, LoopedModel))
+    model, looped, compiled = (
+        kind(stepper.system, case.friction) for kind in (PenaltyModel, LoopedModel, CompiledModel)
+    )
     start = start_of(stepper, model)
     ours, impulse = run_ours(stepper)
     script, pushed, evaluations = run_script(model, start, TURNS)
     loop, _, _ = run_script(looped, start, LOOPED_TURNS)
+    compiled(0.0, start)  # compiles
+    fast, _, _ = run_script(compiled, start, TURNS)
     rows = (
         ("ours, CPU s a simulated s", ours, "s", "recorded"),
         ("RK45, whole arrays, CPU s a simulated s", script, "s", "recorded"),
         ("RK45, loop over blades, CPU s a simulated s", loop, "s", "recorded"),
+        ("RK45, loop compiled with numba, CPU s a simulated s", fast, "s", "recorded"),
         ("RK45, whole arrays, over ours", script / ours, "ratio", ">= 500"),
         ("RK45, loop over blades, over ours", loop / ours, "ratio", ">= 500"),
+        ("RK45, loop compiled with numba, over ours", fast / ours, "ratio", "recorded"),
         ("right-hand sides of RK45 a turn", evaluations, "1", "recorded"),
         ("impulse a turn, ours", impulse, "N s", "> 0"),
         ("impulse a turn, RK45", pushed, "N s", "> 0"),

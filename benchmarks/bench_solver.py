@@ -7,12 +7,12 @@ number of steps in contact.
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from benchmarks.cpu_time import cpu_time
 from rubgen import make_scenario
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
@@ -22,7 +22,8 @@ from validation.reference_step import ReferenceStepper
 STEPS = 1024
 CLOSING_TURNS, SETTLE_TURNS = 40, 120
 RESTARTS = 50
-ROUNDS, NUMPY_STEPS = 80, 16
+ROUNDS, TURNS = 9, 10
+"""Turns of the reference that are timed, and turns of ours beside each."""
 
 
 @dataclass(frozen=True)
@@ -73,22 +74,31 @@ def settled(case: Case) -> tuple[Stepper, ReferenceStepper]:
     return stepper, reference
 
 
-def step_times(stepper: Stepper, reference: ReferenceStepper) -> tuple[float, float, float]:
-    """Least time of a step over a turn, of a numpy step over 16, in us, and the share of steps in contact.
+def turn_time(reference: ReferenceStepper) -> float:
+    """CPU time in us of a step of the reference over one turn; its state is the same afterwards."""
+    before, now = reference.before, reference.now
 
-    Taken in short turns, so that both meet the same neighbours on the machine, and some rounds meet none.
+    def turn() -> None:
+        for index in range(reference.steps):
+            reference.step(index)
+
+    spent = cpu_time(turn)
+    reference.set_state(before, now)
+    return 1e6 * spent / reference.steps
+
+
+def step_times(stepper: Stepper, reference: ReferenceStepper) -> tuple[float, float, float]:
+    """Median CPU times of our step and of the reference's in us, over whole turns; the share of our steps in contact.
+
+    Both take turns, so that they meet the same neighbours on the machine.
     """
-    ours, plain, touched = np.inf, np.inf, 0.0
-    for index in range(ROUNDS):
-        start = time.perf_counter()
-        stepper.run_turn()
-        ours = min(ours, (time.perf_counter() - start) / STEPS)
-        touched += stepper.result.summary[1]
-        start = time.perf_counter()
-        for s in range(NUMPY_STEPS):
-            reference.step((index * NUMPY_STEPS + s) % STEPS)
-        plain = min(plain, (time.perf_counter() - start) / NUMPY_STEPS)
-    return 1e6 * ours, 1e6 * plain, touched / ROUNDS / STEPS
+    ours, plain, touched = list[float](), list[float](), 0.0
+    for _ in range(ROUNDS):
+        for _ in range(TURNS):
+            ours.append(cpu_time(stepper.run_turn) / STEPS)
+            touched += stepper.result.summary[1]
+        plain.append(turn_time(reference))
+    return 1e6 * float(np.median(ours)), float(np.median(plain)), touched / len(ours) / STEPS
 
 
 def deviation(stepper: Stepper, reference: ReferenceStepper) -> tuple[float, int]:

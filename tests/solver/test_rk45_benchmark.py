@@ -1,4 +1,4 @@
-"""The script that the benchmark times: both hands of it are one model, and it pushes as a contact must."""
+"""The script that the benchmark times: its three forms are one model, and it pushes as a contact must."""
 
 import numpy as np
 import pytest
@@ -6,10 +6,10 @@ import pytest
 
 @pytest.fixture
 def models(small_system, monkeypatch):
-    from benchmarks.bench_rk45 import LoopedModel, PenaltyModel
+    from benchmarks.bench_rk45 import CompiledModel, LoopedModel, PenaltyModel
 
     system = small_system(clearance=2e-3)
-    return system, PenaltyModel(system, 0.1), LoopedModel(system, 0.1)
+    return system, PenaltyModel(system, 0.1), (LoopedModel(system, 0.1), CompiledModel(system, 0.1))
 
 
 def state(system, lean):
@@ -21,11 +21,12 @@ def state(system, lean):
 
 
 @pytest.mark.parametrize("lean", [0.0, 4e-3])
-def test_whole_arrays_and_loop_are_one_model(models, lean):
-    system, whole, looped = models
+def test_whole_arrays_and_loops_are_one_model(models, lean):
+    system, whole, loops = models
     y = state(system, lean)
     for t in (0.0, 1.234e-3):
-        np.testing.assert_allclose(looped(t, y), whole(t, y), rtol=1e-9, atol=1e-9 * np.abs(whole(t, y)).max())
+        for loop in loops:
+            np.testing.assert_allclose(loop(t, y), whole(t, y), rtol=1e-9, atol=1e-9 * np.abs(whole(t, y)).max())
 
 
 def test_what_enters_is_pushed_back_and_pushes_the_casing(models):
