@@ -11,10 +11,11 @@ import pytest
 
 import rubgen
 from rubgen.cli.app import app
-from rubgen.io.columns import CHANNELS, ORDER_SUFFIXES, SCALARS
+from rubgen.io.columns import ORDER_SUFFIXES
 from rubgen.labels.plain import labels_dict
 from rubgen.scenario import load_recipe, parse_recipe
 from rubgen.solver import Status
+from tests.default_columns import CHANNELS, SCALARS
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

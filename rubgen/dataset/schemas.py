@@ -11,13 +11,14 @@ from pydantic import TypeAdapter
 
 from rubgen.dataset.files import write_json, write_text
 from rubgen.dataset.manifest import Manifest
-from rubgen.io.columns import ORDER_SUFFIXES, SCALARS, Column
+from rubgen.io.columns import ORDER_SUFFIXES, Column, scalar_columns
 from rubgen.io.mcap_messages import proto_text
 from rubgen.labels.contact_amounts import RubExtent
 from rubgen.labels.labels import Motion
 from rubgen.labels.whirl import WhirlDirection
 from rubgen.machine import Machine
 from rubgen.scenario import Recipe
+from rubgen.scenario.sensor_set import default_sensor_set
 from rubgen.scenario.sensors import KINDS, SensorSet
 
 TEXTS: dict[str, type[StrEnum]] = {"motion": Motion, "rub": RubExtent, "whirl": WhirlDirection}
@@ -54,12 +55,13 @@ def write_schemas(directory: Path) -> None:
 
 
 def _run_schema() -> dict[str, Any]:
+    columns = scalar_columns(default_sensor_set())
     return {
         "title": "Run",
         "description": "One row of runs.parquet. Labels are null where a run failed or has no such value.",
         "type": "object",
-        "properties": {column.name: _property(column) for column in SCALARS},
-        "required": [column.name for column in SCALARS],
+        "properties": {column.name: _property(column) for column in columns},
+        "required": [column.name for column in columns],
         "patternProperties": {
             f"^[A-Za-z]\\w*({'|'.join(ORDER_SUFFIXES)})$": {"description": "of a further true signal"}
         },

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from rubgen.errors import UserError
 from rubgen.labels.harmonics import FRACTIONS
 from rubgen.labels.labels import Motion
-from rubgen.scenario.sensor_set import default_sensor_set
 from rubgen.scenario.sensors import OncePerRev, SampledSensor, SensorSet, TimingProbe
 from rubgen.scenario.taps import CasingAcceleration, Tap, TipTiming
 from rubgen.scenario.vary import PARAMETERS
@@ -230,11 +229,3 @@ def _check_names(sensors: SensorSet, columns: list[Column]) -> None:
 
 ORDER_SUFFIXES = tuple(column.name.removeprefix("tap") for column in _orders(Tap(name="tap")))
 """Ends of the names of the columns that each true signal has."""
-SCALARS = scalar_columns(default_sensor_set())
-"""Columns of `runs.parquet` for the sensors of a recipe that names none."""
-SIGNALS = signal_columns(default_sensor_set(), clean=False)
-"""Columns that the data files then have beside those."""
-CLEAN_SIGNALS = signal_columns(default_sensor_set(), clean=True)
-"""The same where the recipe keeps the clean channels."""
-CHANNELS = tuple(column.name for column in SIGNALS if column.kind == "signal")
-"""Their recorded signals."""

@@ -168,7 +168,7 @@ class Scenario:
     operation: Operation
     contact: ContactLaw = ContactLaw()
     reduction: Reduction = Reduction()
-    sensing: Sensing = Sensing()
+    sensing: Sensing = Field(default_factory=Sensing)
     labelling: Labelling = Labelling()
     signal_seconds: Duration = 1.0
     seed: Seed = 0

@@ -13,10 +13,10 @@ import rubgen
 from rubgen.dataset.runs_frame import runs_frame
 from rubgen.dataset.stored_run import StoredRun
 from rubgen.errors import UserError
-from rubgen.io.columns import CHANNELS, SCALARS
 from rubgen.io.mcap import read_mcap
 from rubgen.io.parquet import read_table, schema
 from rubgen.scenario.sensor_set import default_sensor_set
+from tests.default_columns import CHANNELS, SCALARS
 
 DATA = "data/train-00000-of-00001.parquet"
 

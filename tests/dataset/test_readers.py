@@ -15,10 +15,10 @@ import rubgen
 from rubgen.dataset.card import card
 from rubgen.dataset.manifest import identity_of, read_manifest
 from rubgen.errors import UserError
-from rubgen.io.columns import CHANNELS, SCALARS, SIGNALS
 from rubgen.io.mcap import read_mcap
 from rubgen.io.sections import KINDS
 from rubgen.scenario import load_recipe, parse_recipe
+from tests.default_columns import CHANNELS, SCALARS, SIGNALS
 
 DATA = "data/train-00000-of-00001.parquet"
 

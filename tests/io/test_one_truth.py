@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from rerun.chunk import RrdReader
 
-from rubgen.io.columns import SCALARS
 from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
 from rubgen.io.parquet import read_table, write_parquet
 from rubgen.labels.course import Change, CourseLabels
@@ -15,6 +14,7 @@ from rubgen.labels.plain import labels_dict
 from rubgen.viz.replay import replay_of
 from rubgen.viz.rerun import write_rrd
 from rubgen.viz.signal_entities import detail_window
+from tests.default_columns import SCALARS
 
 
 @pytest.fixture(scope="module", params=["rub_run", "rig_run"])

@@ -8,9 +8,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from rubgen.errors import UserError
-from rubgen.io.columns import CHANNELS, CLEAN_SIGNALS, SCALARS, SIGNALS
 from rubgen.io.parquet import read_table, row_groups, run_table, schema, write_parquet, write_table
 from rubgen.solver.response import Status
+from tests.default_columns import CHANNELS, CLEAN_SIGNALS, SCALARS, SIGNALS
 
 PROMISED = {
     "run_id",
