@@ -1,21 +1,19 @@
 """Labelled blade-rub data from a finite-element blisk in a flexible oval casing.
 
 `make_scenario` and `simulate` make one run in memory, `generate` a whole data set, `open` reads one. Importing rubgen
-is fast: what a function needs is imported when it is called.
+imports no other module, so that a command handles Ctrl-C from its first moment: functions import what they need.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from pathlib import Path
-from typing import TYPE_CHECKING
-
-from rubgen.errors import RubgenError, UserError
-from rubgen.progress import shown
-
+TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from pathlib import Path
+
     from rubgen.dataset.generate import Generated
     from rubgen.dataset.open import DataSet
+    from rubgen.errors import RubgenError, UserError
     from rubgen.pipeline import Run
     from rubgen.scenario import Recipe, Scenario, make_scenario
 
@@ -34,11 +32,15 @@ __version__ = "0.1.0"
 
 
 def __getattr__(name: str) -> object:
-    """`make_scenario`, imported when it is asked for: its many keys have one home."""
+    """`make_scenario` and the errors, imported when they are asked for."""
     if name == "make_scenario":
         from rubgen.scenario import make_scenario
 
         return make_scenario
+    if name in ("RubgenError", "UserError"):
+        from rubgen import errors
+
+        return getattr(errors, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
@@ -53,6 +55,7 @@ def simulate(scenario: Scenario) -> Run:
     machine that cannot be modelled or reduced as asked, or a record too short for its signals.
     """
     from rubgen.pipeline import simulate
+    from rubgen.progress import shown
 
     with shown():
         return simulate(scenario)
@@ -93,6 +96,8 @@ def open(directory: Path | str) -> DataSet:  # noqa: A001
 
     Raises UserError where the directory holds no finished data set.
     """
+    from pathlib import Path
+
     from rubgen.dataset.open import DataSet
 
     return DataSet(Path(directory))
@@ -103,6 +108,8 @@ def verify(directory: Path | str) -> list[str]:
 
     Raises UserError where the directory holds no finished data set.
     """
+    from pathlib import Path
+
     from rubgen.dataset.verify import verify
 
     return verify(Path(directory))

@@ -1,7 +1,12 @@
 """The command line: `rubgen generate`, `simulate`, `modes`, `info`, `verify`; imports wait for them."""
 
+from __future__ import annotations
+
 import sys
-from typing import NoReturn
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import NoReturn
 
 __all__ = ["main"]
 

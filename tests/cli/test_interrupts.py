@@ -5,9 +5,11 @@ import signal
 import subprocess
 import sys
 import threading
+from pathlib import Path
 
 import pytest
 
+import rubgen
 from rubgen.cli.interrupts import terminable
 
 
@@ -62,3 +64,12 @@ def test_an_interrupt_that_is_swallowed_ends_the_command_in_one_line(where):
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (130, "rubgen: interrupted\n")
+
+
+def test_a_command_imports_no_other_module_before_it_handles_an_interrupt():
+    # -S: what Python's own start imports differs from place to place
+    code = "import sys; sys.path.insert(0, sys.argv[1]); before = {*sys.modules}; import rubgen.cli; "
+    code += "print(*sorted({*sys.modules} - before))"
+    root = str(Path(rubgen.__file__).parent.parent)
+    done = subprocess.run([sys.executable, "-S", "-c", code, root], capture_output=True, text=True, check=True)
+    assert set(done.stdout.split()) <= {"__future__", "rubgen", "rubgen.cli"}

@@ -13,7 +13,8 @@ from pathlib import Path
 
 PATIENCE_S = 600.0
 """Whoever takes longer hangs."""
-COMMAND = "from rubgen.cli import main\nmain()"
+COMMAND = "import os, sys\nfrom rubgen.cli import main\nos.close(int(sys.argv.pop(1)))\nmain()"
+"""Its first word is a descriptor. Closing it says that Python has started: no program can handle Ctrl-C before."""
 
 
 @dataclass
@@ -71,10 +72,15 @@ def start(
     """`rubgen ARGUMENTS` in a new process; `before` runs in it first.
 
     A `fresh` one is a new interpreter, started by the command `wrapper`, if any. Any other is a fork of this one, with
-    rubgen imported and its kernels loaded: the same command line at a tenth of the cost.
+    rubgen imported and its kernels loaded: the same command line at a tenth of the cost. Either has started rubgen
+    when this returns.
     """
+    started, starting = os.pipe()
     pid = os.fork()
     if pid:
+        os.close(starting)
+        with os.fdopen(started, "rb") as end:
+            end.read()
         return Process(pid, log)
     code = 1
     try:
@@ -82,8 +88,10 @@ def start(
         if before is not None:
             before()
         if fresh:
-            command = [*wrapper, sys.executable, "-c", COMMAND, *arguments]
+            os.set_inheritable(starting, True)
+            command = [*wrapper, sys.executable, "-c", COMMAND, str(starting), *arguments]
             os.execvp(command[0], command)  # noqa: S606 - our own interpreter
+        os.close(starting)
         code = _run(arguments)
     except BaseException:  # noqa: BLE001 - the child of a fork must not return
         traceback.print_exc()
