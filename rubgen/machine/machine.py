@@ -8,51 +8,44 @@ from __future__ import annotations
 from typing import Annotated, Self
 
 import numpy as np
-from pydantic import BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 from pydantic.dataclasses import dataclass
-from pydantic_core import PydanticCustomError
 
 from rubgen.brief import brief
-
-
-def _no_text(value: object) -> object:
-    """A number as it is; pydantic would read "0.3" as 0.3 and true as 1."""
-    if isinstance(value, str | bytes | bool | np.bool_):
-        raise PydanticCustomError("number", "must be a number")
-    return value
-
-
-LEAST_LENGTH = 1e-7
-LEAST_STIFFNESS = 1e-3
-NUMBER = BeforeValidator(_no_text)
-"""Stands last in the annotation of every number."""
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), NUMBER]
-NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False), NUMBER]
-Finite = Annotated[float, Field(allow_inf_nan=False), NUMBER]
-Ratio = Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False), NUMBER]
-Deviation = Annotated[float, Field(gt=-1, allow_inf_nan=False), NUMBER]
-Anisotropy = Annotated[float, Field(gt=-1, lt=1, allow_inf_nan=False), NUMBER]
-Length = Annotated[float, Field(ge=LEAST_LENGTH, le=100, allow_inf_nan=False), NUMBER]
-Stiffness = Annotated[float, Field(ge=LEAST_STIFFNESS, le=1e16, allow_inf_nan=False), NUMBER]
-UnbalanceSize = Annotated[float, Field(ge=0, le=1e7, allow_inf_nan=False), NUMBER]
-Switch = Annotated[bool, Field(strict=True)]
-Seed = Annotated[int, Field(ge=0, le=2**63 - 1), NUMBER]
-STRICT = ConfigDict(extra="forbid")
-MOST_BLADES = 1000
-MOST_BLADE_ELEMENTS = 200
-MOST_RADIAL_ELEMENTS = 200
-MOST_CIRCUMFERENTIAL_ELEMENTS = 3600
-MOST_CASING_NODES = 1440
-MOST_LOBES = 100
+from rubgen.machine.quantities import (
+    STRICT,
+    Angle,
+    Anisotropy,
+    BladeCount,
+    BladeElements,
+    BladeNumber,
+    CasingNodes,
+    CircumferentialElements,
+    DampingRatio,
+    Density,
+    DeviationSpread,
+    Gravity,
+    Height,
+    Length,
+    Lobes,
+    Modulus,
+    PoissonRatio,
+    RadialElements,
+    Seed,
+    Stiffness,
+    StiffnessDeviation,
+    UnbalanceSize,
+    Viscosity,
+)
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Material:
     """Linear isotropic elastic material."""
 
-    youngs_modulus_pa: Annotated[float, Field(ge=1, le=1e15, allow_inf_nan=False), NUMBER]
-    poisson_ratio: Annotated[float, Field(gt=-1, lt=0.5, allow_inf_nan=False), NUMBER]
-    density_kg_per_m3: Annotated[float, Field(ge=1e-3, le=1e6, allow_inf_nan=False), NUMBER]
+    youngs_modulus_pa: Modulus
+    poisson_ratio: PoissonRatio
+    density_kg_per_m3: Density
 
     @property
     def shear_modulus_pa(self) -> float:
@@ -69,8 +62,8 @@ class Disk:
     rim_radius_m: Length
     bore_thickness_m: Length
     rim_thickness_m: Length
-    radial_elements: Annotated[int, Field(ge=1, le=MOST_RADIAL_ELEMENTS), NUMBER] = 7
-    circumferential_elements: Annotated[int, Field(ge=3, le=MOST_CIRCUMFERENTIAL_ELEMENTS), NUMBER] = 72
+    radial_elements: RadialElements = 7
+    circumferential_elements: CircumferentialElements = 72
 
     @model_validator(mode="after")
     def _bore_is_inside(self) -> Self:
@@ -89,8 +82,8 @@ class Mistuning:
     independent and normal with mean 0, so the mean of one draw is not exactly 0.
     """
 
-    pattern: Annotated[tuple[Deviation, ...], Field(min_length=1)] | None = None
-    relative_std: Ratio | None = None
+    pattern: Annotated[tuple[StiffnessDeviation, ...], Field(min_length=1)] | None = None
+    relative_std: DeviationSpread | None = None
     seed: Seed | None = None
 
     @model_validator(mode="after")
@@ -117,15 +110,15 @@ class BladeRow:
     """
 
     material: Material
-    count: Annotated[int, Field(ge=1, le=MOST_BLADES), NUMBER]
+    count: BladeCount
     length_m: Length
     root_chord_m: Length
     tip_chord_m: Length
     root_thickness_m: Length
     tip_thickness_m: Length
-    root_angle_deg: Finite
-    tip_angle_deg: Finite
-    elements: Annotated[int, Field(ge=1, le=MOST_BLADE_ELEMENTS), NUMBER] = 20
+    root_angle_deg: Angle
+    tip_angle_deg: Angle
+    elements: BladeElements = 20
     mistuning: Mistuning | None = None
 
     @model_validator(mode="after")
@@ -155,12 +148,12 @@ class Casing:
     thickness_m: Length
     width_m: Length
     clearance_m: Length
-    ovality_m: Annotated[float, Field(ge=0, le=100, allow_inf_nan=False), NUMBER]
-    lobes: Annotated[int, Field(ge=2, le=MOST_LOBES), NUMBER] = 2
-    lobe_angle_deg: Finite = 0.0
+    ovality_m: Height
+    lobes: Lobes = 2
+    lobe_angle_deg: Angle = 0.0
     radial_support_stiffness_n_per_m: Stiffness
     circumferential_support_stiffness_n_per_m: Stiffness
-    nodes: Annotated[int, Field(ge=12, le=MOST_CASING_NODES), NUMBER] = 180
+    nodes: CasingNodes = 180
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -180,7 +173,7 @@ class SqueezeFilm:
     radius_m: Length
     length_m: Length
     clearance_m: Length
-    viscosity_pa_s: Positive
+    viscosity_pa_s: Viscosity
 
     @property
     def centred_damping_n_s_per_m(self) -> float:
@@ -215,12 +208,12 @@ class Damping:
     the first mode of a blade clamped at its root. casing: the same ratio for every casing mode.
     """
 
-    lateral: Ratio
-    tilt: Ratio
-    axial: Ratio
-    torsion: Ratio
-    blade: Ratio
-    casing: Ratio
+    lateral: DampingRatio
+    tilt: DampingRatio
+    axial: DampingRatio
+    torsion: DampingRatio
+    blade: DampingRatio
+    casing: DampingRatio
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -232,8 +225,8 @@ class Unbalance:
     """
 
     kg_m: UnbalanceSize
-    angle_deg: Finite | None = None
-    blade: Annotated[int, Field(ge=0), NUMBER] | None = None
+    angle_deg: Angle | None = None
+    blade: BladeNumber | None = None
 
     @model_validator(mode="after")
     def _one_place(self) -> Self:
@@ -258,9 +251,9 @@ class Machine:
     disk_support: DiskSupport
     damping: Damping
     unbalance_kg_m: UnbalanceSize
-    unbalance_angle_deg: Finite = 0.0
+    unbalance_angle_deg: Angle = 0.0
     unbalances: tuple[Unbalance, ...] = ()
-    gravity_m_per_s2: Annotated[float, Field(ge=0, le=1e4, allow_inf_nan=False), NUMBER] = 0.0
+    gravity_m_per_s2: Gravity = 0.0
 
     __repr__ = brief
 

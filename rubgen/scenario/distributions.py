@@ -15,8 +15,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Fiel
 from pydantic_core import PydanticCustomError
 from scipy.special import ndtr, ndtri
 
-from rubgen.machine import Finite, Positive
 from rubgen.machine.problems import nearest
+from rubgen.machine.quantities import Finite, Positive
 
 T = TypeVar("T")
 _FROZEN = ConfigDict(extra="forbid", frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from rubgen.errors import UserError
+from rubgen.machine.quantities import MOST_STEPS
 from rubgen.scenario.costs import STEPS_PER_SAMPLE, reduction_problem, run_problem
 from rubgen.scenario.plausible import (
     MOST_CLEARANCE,
@@ -20,8 +21,6 @@ from rubgen.scenario.sensors import BladeStrain, TimingProbe
 
 MIN_RECORD_TURNS = 500
 """Fewer strobed turns call quasi-periodic motion chaotic (49 do), so labels ask for these."""
-MAX_STEPS_PER_TURN = 16384
-"""The steps of a turn are doubled until they feed the sensors, up to here."""
 QUARTERS = 4
 
 
@@ -63,8 +62,8 @@ def _tail_problem(scenario: Scenario) -> str | None:
 
 
 def _highest_hz(scenario: Scenario) -> float:
-    """The highest sample rate that the most steps can feed."""
-    return MAX_STEPS_PER_TURN * _highest_speed_rpm(scenario) / 60 / STEPS_PER_SAMPLE
+    """The highest sample rate that the most steps of a turn feed; they are doubled up to there."""
+    return MOST_STEPS * _highest_speed_rpm(scenario) / 60 / STEPS_PER_SAMPLE
 
 
 def _highest_speed_rpm(scenario: Scenario) -> float:
@@ -82,13 +81,6 @@ def _rate_problem(scenario: Scenario) -> str | None:
         f"sensors.sample_rate_hz = {rate:g}: at {operation.speed_rpm:g} rev/min the step feeds at most "
         f"{highest:.6g} Hz; lower it or raise the lowest speed"
     )
-
-
-def _steps_problem(scenario: Scenario) -> str | None:
-    steps = scenario.operation.steps_per_turn
-    if steps <= MAX_STEPS_PER_TURN:
-        return None
-    return f"simulation.steps_per_turn = {steps}: must be at most {MAX_STEPS_PER_TURN}; lower it"
 
 
 def _lobe_problem(scenario: Scenario) -> str | None:
@@ -175,7 +167,6 @@ PROBLEMS = (
     _record_problem,
     _tail_problem,
     _rate_problem,
-    _steps_problem,
     _lobe_problem,
     _node_problem,
     _size_problem,

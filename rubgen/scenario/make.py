@@ -7,12 +7,11 @@ from collections.abc import Callable
 from functools import wraps
 from inspect import signature
 from pathlib import Path
-from typing import Annotated, Any, ParamSpec
+from typing import Any, ParamSpec
 
 from pydantic import TypeAdapter
 
 from rubgen.errors import UserError
-from rubgen.machine import NUMBER
 from rubgen.machine.problems import nearest, validated
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import warn_of
@@ -38,7 +37,6 @@ TABLES = {
     "labels": ("lyapunov",),
 }
 """The tables of a recipe in which the keys stand that are not drawn."""
-_NUMBERS: TypeAdapter[dict[str, float]] = TypeAdapter(dict[str, Annotated[float, NUMBER]])
 _RECIPE = TypeAdapter(Recipe)
 
 
@@ -99,8 +97,8 @@ def make_scenario(
     - `lobes`: number of lobes of the casing's inner surface, whole, >= 2
     - `unbalance_kg_m`: mass unbalance of the blisk in kg m, >= 0
     - `casing_thickness_m`: radial thickness of the casing ring in m, > 0
-    - `lateral_damping`: damping ratio of the blisk moving laterally as a rigid body, 0 to 0.99
-    - `support_anisotropy`: (k_X - k_Y) / (k_X + k_Y) of the disk support, -0.9 to 0.9
+    - `lateral_damping`: damping ratio of the blisk moving laterally as a rigid body, 0 to below 1
+    - `support_anisotropy`: (k_X - k_Y) / (k_X + k_Y) of the disk support, above -1 and below 1
     - `gravity_m_per_s2`: gravity along -Y on the blisk in m/s2, >= 0; 0 for a vertical axis
     - `unbalance_angle_deg`: angle of the unbalance from blade 0 in degrees, -360 to 360
     - `profile`: how the speed goes: "steady", "run-up", "coast-down" or "fluctuating"
@@ -124,8 +122,7 @@ def make_scenario(
     given = {key: value for key, value in locals().items() if value is not None}
     recipe = validated("", _recipe_values(given), _RECIPE, _key_alone)
     _check_profile(recipe.operation.profile, given)
-    numbers = validated("", {key: given[key] for key in KEYS if key in given}, _NUMBERS)
-    scenario = vary(recipe.base, numbers)
+    scenario = vary(recipe.base, {key: given[key] for key in KEYS if key in given})
     check_feasible(scenario)
     warn_of([scenario])
     return scenario

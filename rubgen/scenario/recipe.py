@@ -11,34 +11,36 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, TypeAdapter, ValidationError, create_model
 
 from rubgen.errors import UserError
-from rubgen.machine import NUMBER, Machine, NonNegative, Positive, Seed, Switch, load_machine
+from rubgen.machine import Machine, load_machine
 from rubgen.machine.load import machine_id
 from rubgen.machine.problems import first_problem, validated
+from rubgen.machine.quantities import (
+    MOST_RUNS,
+    AdcBits,
+    Duration,
+    NoiseScale,
+    Rate,
+    RunCount,
+    Seed,
+    Speed,
+    SpeedSwing,
+    StepCount,
+    Switch,
+    TurnCount,
+)
 from rubgen.machine.sentences import FILE_NAME
 from rubgen.machine.toml_file import check_kind, read_toml, toml_path
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.sampling import sobol_point
-from rubgen.scenario.scenario import (
-    ContactLaw,
-    Duration,
-    Labelling,
-    Operation,
-    ProfileName,
-    Reduction,
-    Scenario,
-    Sensing,
-    Speed,
-    TurnCount,
-)
+from rubgen.scenario.scenario import ContactLaw, Labelling, Operation, ProfileName, Reduction, Scenario, Sensing
 from rubgen.scenario.sensor_set import DEFAULT_SET, load_sensor_set
 from rubgen.scenario.sensors import SensorSet
 from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, vary
 
 DEFAULT_RECIPE = Path(__file__).parent / "zeng2019-mini.toml"
 Format = Literal["parquet", "mcap", "rrd"]
-MOST_RUNS = 1_000_000
 _STRICT = ConfigDict(extra="forbid", frozen=True)
 
 
@@ -48,7 +50,7 @@ class Simulation(BaseModel):
     model_config = _STRICT
     settle_turns: TurnCount | Literal["auto"] = "auto"
     record_turns: TurnCount = 500
-    steps_per_turn: TurnCount = 1024
+    steps_per_turn: StepCount = 1024
     closing_turns: TurnCount = 40
 
 
@@ -59,7 +61,7 @@ class Profile(BaseModel):
     profile: ProfileName = "steady"
     end_speed_rpm: Speed | None = None
     duration_s: Duration | None = None
-    fluctuation_rpm: NonNegative = 0.0
+    fluctuation_rpm: SpeedSwing = 0.0
     fluctuation_period_s: Duration = 1.0
     forbidden_speed_rpm: tuple[tuple[Speed, Speed], ...] = ()
 
@@ -77,9 +79,9 @@ class Sensors(BaseModel):
 
     model_config = _STRICT
     set: Annotated[str, Field(min_length=1)] = DEFAULT_SET
-    sample_rate_hz: Positive = 25600.0
-    noise: NonNegative = 1.0
-    adc_bits: Annotated[int, Field(ge=8, le=32), NUMBER] = 16
+    sample_rate_hz: Rate = 25600.0
+    noise: NoiseScale = 1.0
+    adc_bits: AdcBits = 16
     keep_clean: Switch = False
 
 
@@ -101,7 +103,7 @@ class Recipe(BaseModel):
     model_config = _STRICT
     name: Annotated[str, Field(pattern=FILE_NAME)]
     seed: Seed = 0
-    runs: Annotated[int, Field(ge=1, le=MOST_RUNS), NUMBER]
+    runs: RunCount
     machine: Annotated[str, Field(min_length=1)]
     license: Annotated[str, Field(min_length=1)] = "CC-BY-4.0"
     vary: Vary = Vary()
@@ -165,11 +167,11 @@ class Recipe(BaseModel):
         Raises UserError, beginning with `source`, where an extreme value is not allowed.
         """
         extremes = {entry.key: distribution.extremes() for entry, distribution in self.distributions()}
-        first = vary(self.base, {key: values[0] for key, values in extremes.items()}, f"{source}vary.")
+        first = vary(self.base, {key: values[0] for key, values in extremes.items()}, source, ("vary",))
         yield first
         for key, values in extremes.items():
             for value in values[1:]:
-                yield vary(first, {key: value}, f"{source}vary.")
+                yield vary(first, {key: value}, source, ("vary",))
 
 
 def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> Recipe:
@@ -232,7 +234,7 @@ def check_recipe(recipe: Recipe, source: str = "recipe") -> None:
     except UserError as error:
         text = str(error)
         raise UserError(f"{source}: {text}" if text.startswith(("machine = ", "sensors.set = ")) else text) from None
-    for scenario in recipe.corners(f"{source}: "):
+    for scenario in recipe.corners(source):
         check_feasible(scenario, f"{source}: ")
 
 

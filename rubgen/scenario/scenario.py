@@ -6,22 +6,38 @@ Frozen and validated on creation, like the machine.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from rubgen.brief import brief
-from rubgen.machine import NUMBER, STRICT, Machine, NonNegative, Positive, Seed, Switch
+from rubgen.machine import Machine
+from rubgen.machine.quantities import (
+    STRICT,
+    AdcBits,
+    CasingModeCount,
+    Duration,
+    Friction,
+    Length,
+    LinerBins,
+    ModeCount,
+    NoiseScale,
+    Rate,
+    Restitution,
+    Seed,
+    Speed,
+    SpeedSwing,
+    StepCount,
+    Switch,
+    TurnCount,
+    WearRate,
+)
 from rubgen.scenario.rotation import Rotation
 from rubgen.scenario.sensor_set import default_sensor_set
 from rubgen.scenario.sensors import SensorSet
 
-TurnCount = Annotated[int, Field(ge=1, le=1_000_000), NUMBER]
-LEAST_RPM = 1e-3
-Speed = Annotated[float, Field(ge=LEAST_RPM, le=1e6, allow_inf_nan=False), NUMBER]
-Duration = Annotated[float, Field(gt=0, le=1e5, allow_inf_nan=False), NUMBER]
 RPM = 0.10471975511965977
 """One rev/min in rad/s, 2 pi / 60."""
 ProfileName = Literal["steady", "run-up", "coast-down", "fluctuating"]
@@ -31,10 +47,10 @@ ProfileName = Literal["steady", "run-up", "coast-down", "fluctuating"]
 class Reduction:
     """Numbers of Craig-Bampton modes kept: per blade, of the disk, of the coupled blisk, of the casing."""
 
-    blade_modes: Annotated[int, Field(ge=0, le=500), NUMBER] = 4
-    disk_modes: Annotated[int, Field(ge=0, le=500), NUMBER] = 4
-    blisk_modes: Annotated[int, Field(ge=0, le=500), NUMBER] = 4
-    casing_modes: Annotated[int, Field(ge=1, le=500), NUMBER] = 11
+    blade_modes: ModeCount = 4
+    disk_modes: ModeCount = 4
+    blisk_modes: ModeCount = 4
+    casing_modes: CasingModeCount = 11
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -54,12 +70,12 @@ class Operation:
     speed_rpm: Speed
     settle_turns: TurnCount | Literal["auto"] = "auto"
     record_turns: TurnCount = 500
-    steps_per_turn: TurnCount = 1024
+    steps_per_turn: StepCount = 1024
     closing_turns: TurnCount = 40
     profile: ProfileName = "steady"
     end_speed_rpm: Speed | None = None
     duration_s: Duration | None = None
-    fluctuation_rpm: NonNegative = 0.0
+    fluctuation_rpm: SpeedSwing = 0.0
     fluctuation_period_s: Duration = 1.0
     forbidden_speed_rpm: tuple[tuple[Speed, Speed], ...] = ()
 
@@ -109,10 +125,10 @@ class Liner:
     `thickness_m` the casing does not wear.
     """
 
-    thickness_m: Positive
-    wear_m2_per_n: Positive
-    width_m: Positive
-    bins: Annotated[int, Field(ge=36, le=3600), NUMBER] = 360
+    thickness_m: Length
+    wear_m2_per_n: WearRate
+    width_m: Length
+    bins: LinerBins = 360
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -124,8 +140,8 @@ class ContactLaw:
     the casing's nodes by straight lines instead of the smooth curve through them. A `liner` wears where blades touch.
     """
 
-    friction: Annotated[float, Field(ge=0, le=0.3, allow_inf_nan=False), NUMBER] = 0.0
-    restitution: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False), NUMBER] = 0.0
+    friction: Friction = 0.0
+    restitution: Restitution = 0.0
     half_thickness: Switch = False
     surface: Literal["smooth", "chords"] = "smooth"
     liner: Liner | None = None
@@ -139,9 +155,9 @@ class Sensing:
     each channel what an ideal sensor would give.
     """
 
-    sample_rate_hz: Positive = 25600.0
-    noise: NonNegative = 1.0
-    adc_bits: Annotated[int, Field(ge=8, le=32), NUMBER] = 16
+    sample_rate_hz: Rate = 25600.0
+    noise: NoiseScale = 1.0
+    adc_bits: AdcBits = 16
     keep_clean: Switch = False
     set: SensorSet = Field(default_factory=default_sensor_set)
 

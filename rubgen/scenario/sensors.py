@@ -9,12 +9,33 @@ from pydantic import Field, model_validator
 from pydantic.dataclasses import dataclass
 
 from rubgen.brief import brief
-from rubgen.machine import NUMBER, STRICT, Finite, NonNegative, Positive
 from rubgen.machine.problems import nearest
+from rubgen.machine.quantities import (
+    STRICT,
+    AdcBits,
+    Angle,
+    Bias,
+    BladeNumber,
+    ClockDrift,
+    ClockOffset,
+    Direction,
+    Duration,
+    GainError,
+    Height,
+    Jitter,
+    Level,
+    MissedShare,
+    Place,
+    Rate,
+    RateOrNone,
+    Reading,
+    ResonanceDamping,
+    RunoutHarmonic,
+    Sensitivity,
+)
 from rubgen.machine.sentences import CHANNEL_NAME
-from rubgen.scenario.taps import Angle
 
-Interval = tuple[Finite, Finite]
+Interval = tuple[Reading, Reading]
 GRAVITY = 9.80665
 """Standard gravity in m/s2 (ISO 80000-3)."""
 
@@ -41,22 +62,22 @@ class SampledSensor(Sensor):
     UNITS: ClassVar[dict[str, float]] = {}
 
     unit: str = ""
-    bandwidth_hz: Positive | None = None
-    resonance_hz: Positive | None = None
-    resonance_damping: Annotated[float, Field(gt=0, lt=1, allow_inf_nan=False), NUMBER] = 0.02
+    bandwidth_hz: Rate | None = None
+    resonance_hz: Rate | None = None
+    resonance_damping: ResonanceDamping = 0.02
     saturation: Interval | None = None
-    gain_error: Annotated[float, Field(gt=-1, allow_inf_nan=False), NUMBER] = 0.0
-    offset: Finite = 0.0
-    drift_per_s: Finite = 0.0
-    noise_rms: NonNegative = 0.0
-    noise_density: NonNegative = 0.0
-    noise_corner_hz: NonNegative = 0.0
+    gain_error: GainError = 0.0
+    offset: Reading = 0.0
+    drift_per_s: Reading = 0.0
+    noise_rms: Level = 0.0
+    noise_density: Level = 0.0
+    noise_corner_hz: RateOrNone = 0.0
     range: Interval | None = None
-    adc_bits: Annotated[int, Field(ge=8, le=32), NUMBER] | None = None
-    dropouts_per_s: NonNegative = 0.0
-    dropout_s: Positive = 1e-3
-    clock_offset_s: Annotated[float, Field(ge=-1, le=1, allow_inf_nan=False), NUMBER] = 0.0
-    clock_ppm: Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False), NUMBER] = 0.0
+    adc_bits: AdcBits | None = None
+    dropouts_per_s: RateOrNone = 0.0
+    dropout_s: Duration = 1e-3
+    clock_offset_s: ClockOffset = 0.0
+    clock_ppm: ClockDrift = 0.0
 
     @model_validator(mode="after")
     def _has_a_unit(self) -> Self:
@@ -82,9 +103,9 @@ class Proximity(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"m": 1.0, "mm": 1e3, "um": 1e6, "V": 0.0}
     kind: Literal["proximity"] = "proximity"
-    angle_deg: Angle
-    sensitivity_v_per_m: Positive = 7874.0
-    bias_v: Finite = -10.0
+    angle_deg: Direction
+    sensitivity_v_per_m: Sensitivity = 7874.0
+    bias_v: Bias = -10.0
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -93,7 +114,7 @@ class Accelerometer(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"m/s2": 1.0, "g": 1 / GRAVITY}
     kind: Literal["accelerometer"] = "accelerometer"
-    angle_deg: Angle
+    angle_deg: Direction
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -102,7 +123,7 @@ class BladeStrain(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"1": 1.0, "um/m": 1e6}
     kind: Literal["blade_strain"] = "blade_strain"
-    blade: Annotated[int, Field(ge=0), NUMBER]
+    blade: BladeNumber
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -111,7 +132,7 @@ class CasingStrain(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"1": 1.0, "um/m": 1e6}
     kind: Literal["casing_strain"] = "casing_strain"
-    angle_deg: Angle
+    angle_deg: Direction
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -120,7 +141,7 @@ class SupportForceSensor(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"N": 1.0, "kN": 1e-3}
     kind: Literal["support_force"] = "support_force"
-    angle_deg: Angle
+    angle_deg: Direction
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -146,7 +167,7 @@ class ClearanceProbe(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"m": 1.0, "mm": 1e3, "um": 1e6}
     kind: Literal["tip_clearance"] = "tip_clearance"
-    angle_deg: Angle
+    angle_deg: Direction
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -158,12 +179,12 @@ class TimingProbe(Sensor):
     """
 
     kind: Literal["blade_tip_timing"] = "blade_tip_timing"
-    angle_deg: Angle
-    axial_m: Finite = 0.0
-    jitter_s: NonNegative = 0.0
-    clock_hz: NonNegative = 0.0
-    clock_offset_s: Finite = 0.0
-    missed: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False), NUMBER] = 0.0
+    angle_deg: Direction
+    axial_m: Place = 0.0
+    jitter_s: Jitter = 0.0
+    clock_hz: RateOrNone = 0.0
+    clock_offset_s: ClockOffset = 0.0
+    missed: MissedShare = 0.0
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -171,8 +192,8 @@ class OncePerRev(Sensor):
     """The pulse of a notch on the shaft that passes at theta = 0, and its arrival times, blurred as those of blades."""
 
     kind: Literal["once_per_rev"] = "once_per_rev"
-    jitter_s: NonNegative = 0.0
-    clock_hz: NonNegative = 0.0
+    jitter_s: Jitter = 0.0
+    clock_hz: RateOrNone = 0.0
 
 
 AnySensor = Annotated[
@@ -198,9 +219,9 @@ KINDS = (
 class RunoutOrder:
     """One order of the shaft's profile under the proximity probes: `amplitude_m` cos(order (angle - phase))."""
 
-    order: Annotated[int, Field(ge=1), NUMBER]
-    amplitude_m: NonNegative
-    phase_deg: Finite = 0.0
+    order: RunoutHarmonic
+    amplitude_m: Height
+    phase_deg: Angle = 0.0
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)

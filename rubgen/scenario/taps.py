@@ -7,11 +7,8 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine import NUMBER, STRICT, Finite
+from rubgen.machine.quantities import STRICT, BladeNumber, Direction, Place
 from rubgen.machine.sentences import CHANNEL_NAME
-
-Angle = Annotated[float, Field(ge=0, lt=360, allow_inf_nan=False), NUMBER]
-"""Polar angle in the inertial frame, in degrees."""
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -28,7 +25,7 @@ class CentreDisplacement(Tap):
     """Displacement of O_d along a direction of the inertial frame, in m."""
 
     UNIT: ClassVar[str] = "m"
-    angle_deg: Angle
+    angle_deg: Direction
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -36,7 +33,7 @@ class CasingAcceleration(Tap):
     """Radial acceleration of the casing at an angle, outward, in m/s2."""
 
     UNIT: ClassVar[str] = "m/s2"
-    angle_deg: Angle
+    angle_deg: Direction
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -44,7 +41,7 @@ class RingStrain(Tap):
     """Hoop strain at the outer face of the casing at an angle, positive in tension."""
 
     UNIT: ClassVar[str] = "1"
-    angle_deg: Angle
+    angle_deg: Direction
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -52,7 +49,7 @@ class SupportForce(Tap):
     """Force of the disk on its lateral support along a direction of the inertial frame, in N."""
 
     UNIT: ClassVar[str] = "N"
-    angle_deg: Angle
+    angle_deg: Direction
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -81,7 +78,7 @@ class TipClearance(Tap):
     """Gap on the ray at an angle between the tips, interpolated between two blades, and the deformed casing, in m."""
 
     UNIT: ClassVar[str] = "m"
-    angle_deg: Angle
+    angle_deg: Direction
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -89,7 +86,7 @@ class RootStrain(Tap):
     """Spanwise strain at the root of a blade, mid-chord on the face of the thickness normal, vibration alone."""
 
     UNIT: ClassVar[str] = "1"
-    blade: Annotated[int, Field(ge=0), NUMBER]
+    blade: BladeNumber
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -100,8 +97,8 @@ class TipTiming(Tap):
     """
 
     UNIT: ClassVar[str] = "s"
-    angle_deg: Angle
-    axial_m: Finite = 0.0
+    angle_deg: Direction
+    axial_m: Place = 0.0
 
 
 DEFAULT_TAPS: tuple[Tap, ...] = (

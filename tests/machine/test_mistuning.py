@@ -19,7 +19,10 @@ BAD = {
     "no seed": ("relative_std = 0.02", f"blades.mistuning = {{ relative_std = 0.02 }}: {TWO}"),
     "seed of a pattern": (f"pattern = [{PATTERN}]\nseed = 3", f"blades.mistuning: {TWO}"),
     "too short": ("pattern = [0.01, 0.02]", "blades: mistuning.pattern has 2 values for count = 36; give one a blade"),
-    "no stiffness": ("pattern = [-1.0]", "blades.mistuning.pattern.0 = -1: must be above -1; change the value"),
+    "no stiffness": (
+        "pattern = [-1.0]",
+        "blades.mistuning.pattern.0 = -1: must be above -1 and at most 1; change the value",
+    ),
     "nan": ("pattern = [nan]", "blades.mistuning.pattern.0 = nan: must be a finite number"),
     "empty": ("pattern = []", "blades.mistuning.pattern = []: "),
     "negative": ("relative_std = -0.1\nseed = 3", "blades.mistuning.relative_std = -0.1: must be at least 0"),

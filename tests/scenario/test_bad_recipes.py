@@ -101,7 +101,7 @@ CASES = {
         GOOD + "[contact]\nrestitution = 1.2",
         "contact.restitution = 1.2: must be at least 0 and at most 1; 1.2 % is written 0.012",
     ),
-    "half a lobe": (VARY + "lobes = 2.5", "vary.lobes = 2.5: must be a whole number of at least 2"),
+    "half a lobe": (VARY + "lobes = 2.5", "vary.lobes = 2.5: must be a whole number; change the value"),
     "lobes from a range": (VARY + "lobes = { uniform = [2, 4] }", "vary.lobes: takes whole numbers only"),
     "lobes beyond the modes": (
         VARY + "lobes = { choice = [2, 6] }",
@@ -123,7 +123,7 @@ CASES = {
     ),
     "steps": (
         GOOD + "[simulation]\nsteps_per_turn = 20000",
-        "simulation.steps_per_turn = 20000: must be at most 16384",
+        "simulation.steps_per_turn = 20000: must be at least 32 and at most 16,384; change the value",
     ),
     "settle": (GOOD + "[simulation]\nsettle_turns = 0", "simulation.settle_turns"),
     "no runs": (

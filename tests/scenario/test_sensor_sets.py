@@ -87,7 +87,11 @@ WRONG = [
     ('name = "q"', 'name = "q q"', "sensors.1.name = 'q q': "),
     ("noise_rms = 2.0", "range = [5, 5]", "range = [5.0, 5.0] of q: must ascend; give the lower limit first"),
     ("noise_rms = 2.0", "resonance_hz = 2e6", "resonance_hz = 2e+06 of q: at 10000 rev/min the step feeds at most"),
-    ("noise_rms = 2.0", "noise_rms = -2.0", "sensors.1.noise_rms = -2: must be at least 0; change the value"),
+    (
+        "noise_rms = 2.0",
+        "noise_rms = -2.0",
+        "sensors.1.noise_rms = -2: must be at least 0 and at most 1,000,000,000; change the value",
+    ),
     (
         '"blade_tip_timing"\nangle_deg = 0',
         '"blade_strain"\nblade = 36',

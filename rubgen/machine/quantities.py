@@ -1,0 +1,183 @@
+"""The kinds of quantities that a user gives: every number of a machine, recipe or sensor set is of one of them.
+
+A value beyond its bounds is an error. A value outside of its `Usual` range is allowed and surely not meant:
+`rubgen.scenario.plausible` warns of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from pydantic import BeforeValidator, ConfigDict, Field
+from pydantic_core import PydanticCustomError
+
+
+@dataclass(frozen=True)
+class Usual:
+    """The range in which a value is meant, what is known of it, and the units that people give by mistake."""
+
+    low: float
+    high: float
+    fact: str
+    units: tuple[tuple[str, float], ...] = ()
+    """Each unit with its size in ours."""
+    ours: str = ""
+
+    def doubt(self, value: float) -> str | None:
+        """What speaks against the value, with the first unit in which it would be usual; None where nothing does."""
+        if self.low <= value <= self.high:
+            return None
+        for unit, size in self.units:
+            if self.low <= value * size <= self.high:
+                return f"{self.fact}; were {unit} meant, {value * size:g} {self.ours}".rstrip() + "?"
+        return self.fact
+
+
+def _no_text(value: object) -> object:
+    """A number as it is; pydantic would read "0.3" as 0.3 and true as 1."""
+    if isinstance(value, str | bytes | bool | np.bool_):
+        raise PydanticCustomError("number", "must be a number")
+    return value
+
+
+STRICT = ConfigDict(extra="forbid")
+NUMBER = BeforeValidator(_no_text)
+"""Stands in the annotation of every number, behind its bounds."""
+MOST_RUNS = 1_000_000
+MOST_STEPS = 16_384
+PERCENT = (("%", 0.01),)
+Switch = Annotated[bool, Field(strict=True)]
+Seed = Annotated[int, Field(ge=0, le=2**63 - 1), NUMBER]
+Finite = Annotated[float, Field(allow_inf_nan=False), NUMBER]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), NUMBER]
+"""These two are parts of a distribution: the key that is drawn has the bounds."""
+
+# Lengths, places and angles.
+Length = Annotated[float, Field(ge=1e-7, le=100, allow_inf_nan=False), NUMBER]
+Height = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False), NUMBER]
+Place = Annotated[float, Field(ge=-100, le=100, allow_inf_nan=False), NUMBER]
+Angle = Annotated[float, Field(ge=-360, le=360, allow_inf_nan=False), NUMBER]
+Direction = Annotated[float, Field(ge=0, lt=360, allow_inf_nan=False), NUMBER]
+"""Polar angle in the inertial frame, in degrees."""
+
+# Materials, springs, dampers, masses.
+Modulus = Annotated[
+    float,
+    Field(ge=1, le=1e15, allow_inf_nan=False),
+    NUMBER,
+    Usual(1e9, 1.3e12, "no solid of a machine has it", (("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3)), "Pa"),
+]
+"""Usual from plastics to diamond."""
+PoissonRatio = Annotated[
+    float, Field(gt=-1, lt=0.5, allow_inf_nan=False), NUMBER, Usual(0, 0.5, "metals have 0.25 to 0.35")
+]
+Density = Annotated[
+    float,
+    Field(ge=1e-3, le=1e6, allow_inf_nan=False),
+    NUMBER,
+    Usual(500, 23_000, "no solid of a machine has it", (("g/cm3", 1e3), ("t/mm3", 1e12)), "kg/m3"),
+]
+"""Usual from foam to osmium."""
+Stiffness = Annotated[float, Field(ge=1e-3, le=1e16, allow_inf_nan=False), NUMBER]
+Anisotropy = Annotated[
+    float,
+    Field(gt=-1, lt=1, allow_inf_nan=False),
+    NUMBER,
+    Usual(-0.9, 0.9, "one direction has less than a 19th of the other", PERCENT),
+]
+DampingRatio = Annotated[
+    float, Field(ge=0, lt=1, allow_inf_nan=False), NUMBER, Usual(0, 0.6, "machines have 0.001 to 0.3", PERCENT)
+]
+Viscosity = Annotated[
+    float,
+    Field(gt=0, le=1e4, allow_inf_nan=False),
+    NUMBER,
+    Usual(1e-5, 10, "oils have 0.001 to 1", (("mPa s", 1e-3),), "Pa s"),
+]
+StiffnessDeviation = Annotated[
+    float,
+    Field(gt=-1, le=1, allow_inf_nan=False),
+    NUMBER,
+    Usual(-0.5, 0.5, "blades of a row differ by a few percent", PERCENT),
+]
+DeviationSpread = Annotated[
+    float,
+    Field(ge=0, lt=1, allow_inf_nan=False),
+    NUMBER,
+    Usual(0, 0.2, "blades of a row differ by a few percent", PERCENT),
+]
+UnbalanceSize = Annotated[float, Field(ge=0, le=1e7, allow_inf_nan=False), NUMBER]
+Gravity = Annotated[
+    float,
+    Field(ge=0, le=1e4, allow_inf_nan=False),
+    NUMBER,
+    Usual(0, 20, "the earth has 9.81", (("mm/s2", 1e-3),), "m/s2"),
+]
+Friction = Annotated[float, Field(ge=0, le=0.3, allow_inf_nan=False), NUMBER]
+Restitution = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False), NUMBER]
+WearRate = Annotated[
+    float,
+    Field(gt=0, le=1, allow_inf_nan=False),
+    NUMBER,
+    Usual(1e-18, 1e-7, "linings wear 1e-14 to 1e-9", (("mm3/(N m)", 1e-9),), "m2/N"),
+]
+
+# Numbers of parts, of the mesh and of modes.
+BladeCount = Annotated[int, Field(ge=1, le=1000), NUMBER]
+BladeElements = Annotated[int, Field(ge=1, le=200), NUMBER]
+RadialElements = Annotated[int, Field(ge=1, le=200), NUMBER]
+CircumferentialElements = Annotated[int, Field(ge=3, le=3600), NUMBER]
+CasingNodes = Annotated[int, Field(ge=12, le=1440), NUMBER]
+Lobes = Annotated[int, Field(ge=2, le=100), NUMBER]
+LinerBins = Annotated[int, Field(ge=36, le=3600), NUMBER]
+BladeNumber = Annotated[int, Field(ge=0, lt=1000), NUMBER]
+ModeCount = Annotated[int, Field(ge=0, le=500), NUMBER]
+CasingModeCount = Annotated[int, Field(ge=1, le=500), NUMBER]
+RunCount = Annotated[int, Field(ge=1, le=MOST_RUNS), NUMBER]
+
+# Speeds, turns and times.
+Speed = Annotated[float, Field(ge=1e-3, le=1e6, allow_inf_nan=False), NUMBER]
+SpeedSwing = Annotated[float, Field(ge=0, le=1e6, allow_inf_nan=False), NUMBER]
+TurnCount = Annotated[
+    int, Field(ge=1, le=1_000_000), NUMBER, Usual(1, 50_000, "a run of so many turns takes from minutes to hours")
+]
+StepCount = Annotated[int, Field(ge=32, le=MOST_STEPS), NUMBER]
+Duration = Annotated[float, Field(gt=0, le=1e5, allow_inf_nan=False), NUMBER]
+ClockOffset = Annotated[float, Field(ge=-1, le=1, allow_inf_nan=False), NUMBER]
+ClockDrift = Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False), NUMBER]
+Jitter = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False), NUMBER]
+
+# Measuring chains. A reading stands in the sensor's unit.
+Rate = Annotated[float, Field(gt=0, le=1e9, allow_inf_nan=False), NUMBER]
+RateOrNone = Annotated[float, Field(ge=0, le=1e9, allow_inf_nan=False), NUMBER]
+Reading = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False), NUMBER]
+Level = Annotated[float, Field(ge=0, le=1e9, allow_inf_nan=False), NUMBER]
+NoiseScale = Annotated[
+    float, Field(ge=0, le=1e6, allow_inf_nan=False), NUMBER, Usual(0, 100, "1 is the noise that each sensor has")
+]
+GainError = Annotated[
+    float,
+    Field(gt=-1, le=10, allow_inf_nan=False),
+    NUMBER,
+    Usual(-0.5, 0.5, "sensors err by a few percent", PERCENT),
+]
+ResonanceDamping = Annotated[float, Field(gt=0, lt=1, allow_inf_nan=False), NUMBER]
+Sensitivity = Annotated[
+    float,
+    Field(gt=0, le=1e9, allow_inf_nan=False),
+    NUMBER,
+    Usual(100, 1e6, "proximity probes have 4000 to 20000", (("mV/um or V/mm", 1e3), ("mV/mil", 1 / 0.0254)), "V/m"),
+]
+Bias = Annotated[
+    float,
+    Field(ge=-1000, le=1000, allow_inf_nan=False),
+    NUMBER,
+    Usual(-30, 30, "drivers are supplied with 24 V", (("mV", 1e-3),), "V"),
+]
+MissedShare = Annotated[
+    float, Field(ge=0, lt=1, allow_inf_nan=False), NUMBER, Usual(0, 0.9, "hardly a blade is seen", PERCENT)
+]
+RunoutHarmonic = Annotated[int, Field(ge=1, le=1000), NUMBER]
+AdcBits = Annotated[int, Field(ge=8, le=32), NUMBER]
