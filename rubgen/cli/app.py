@@ -259,12 +259,25 @@ def doctor(*, json: Json = False) -> int:
     return doctor_command(as_json=json)
 
 
+_ZSH_END = """
+if [[ "${funcstack[1]}" == "_rubgen" ]]; then
+  _cyclopts_rubgen "$@"
+else
+  (( $+functions[compdef] )) || { autoload -Uz compinit && compinit; }
+  compdef _cyclopts_rubgen rubgen
+fi
+"""
+"""Lets the script be read in ~/.zshrc too; as the file _rubgen in $fpath it completes as well."""
+
+
 @app.command
 def completion(
     shell: Annotated[Literal["bash", "zsh", "fish", "powershell"], _option("The shell that is to complete.")], /
 ) -> int:
     """Print what makes a shell complete commands and options: eval "$(rubgen completion bash)" in ~/.bashrc."""
     sys.stdout.write(app.generate_completion(shell=shell))
+    if shell == "zsh":  # what is printed so far works only from a file in $fpath
+        sys.stdout.write(_ZSH_END)
     return 0
 
 

@@ -10,6 +10,8 @@ from contextlib import suppress
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 
+from packaging.requirements import Requirement
+
 from rubgen import __version__
 from rubgen.cache_root import FOLDERS, problem_of, wanted_root
 from rubgen.cli.printing import print_json, print_pairs, say
@@ -21,10 +23,11 @@ _SOFTWARE_DRIVER = "lvp_icd"
 
 
 def doctor_command(*, as_json: bool) -> int:
-    """Print what is found; 1 where a package is missing or cannot be imported, else 0."""
+    """Print what is found; 1 where a package is missing or outside of the versions that rubgen declares, else 0."""
     root = wanted_root()
     problem = problem_of(root)
-    packages = _packages()
+    needed = _needed()
+    packages = {requirement.name: _version(requirement) for requirement in needed}
     found: dict[str, object] = {
         "rubgen": __version__,
         "python": f"{platform.python_version()} ({sys.executable})",
@@ -39,25 +42,35 @@ def doctor_command(*, as_json: bool) -> int:
         "vulkan": _vulkan(),
         "screen": _has_screen(),
     }
-    problems = [f"{name}: not installed; install rubgen again" for name, what in packages.items() if what is None]
+    problems = [text for requirement in needed if (text := _problem(requirement, packages[requirement.name]))]
     (print_json if as_json else print_pairs)(found | {"ok": not problems, "problems": problems})
     if problem and not as_json:
         say(f"the cache cannot be used ({problem}): a temporary folder takes its place; RUBGEN_CACHE_DIR names another")
     return 1 if problems else 0
 
 
-def _packages() -> dict[str, str | None]:
-    """Versions of what rubgen needs; None for what is not there."""
-    found: dict[str, str | None] = {}
-    for requirement in requires("rubgen") or []:
-        name, _, condition = requirement.partition(";")
-        if "extra" not in condition:
-            name = name.split("[")[0].split(">")[0].split("<")[0].split("=")[0].strip()
-            try:
-                found[name] = version(name)
-            except PackageNotFoundError:
-                found[name] = None
-    return found
+def _needed() -> list[Requirement]:
+    """What rubgen declares to need to run, extras left out."""
+    declared = map(Requirement, requires("rubgen") or [])
+    return [each for each in declared if each.marker is None or each.marker.evaluate({"extra": ""})]
+
+
+def _version(requirement: Requirement) -> str | None:
+    """The installed version; None where there is none."""
+    try:
+        return version(requirement.name)
+    except PackageNotFoundError:
+        return None
+
+
+def _problem(requirement: Requirement, found: str | None) -> str:
+    """What is wrong with a package; empty where nothing is."""
+    name, allowed = requirement.name, requirement.specifier
+    if found is None:
+        return f"{name}: not installed; install rubgen again"
+    if allowed.contains(found, prereleases=True):
+        return ""
+    return f"{name}: version {found} is installed, rubgen needs {allowed}; install rubgen again"
 
 
 def _folder(folder: Path) -> dict[str, object]:

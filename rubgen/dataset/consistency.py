@@ -23,6 +23,7 @@ from rubgen.labels.labels import Motion
 from rubgen.scenario import Sensing
 from rubgen.scenario.sensors import OncePerRev, Proximity, SampledSensor
 from rubgen.sensors.channel import Float32Array
+from rubgen.sensors.once_per_rev import NOTCH_ANGLE
 from rubgen.sensors.registry import tap_of, usual_range
 
 REGULARITY = [motion.value for motion in Motion]
@@ -120,7 +121,9 @@ def _pulse_problems(row: Row, sensor: OncePerRev, pulses: Float32Array) -> Itera
     if exact and not np.allclose(np.diff(times), turn, rtol=0, atol=PULSE_TOLERANCE * max(1.0, turn)):
         yield "once_per_rev_s is not spaced by one turn"
     rises = int(np.count_nonzero((pulses[1:] > 0) & (pulses[:-1] == 0)))
-    if abs(rises - times.size) > 1:
+    shortest = np.diff(times).min(initial=turn)
+    shows_each = shortest * row["sample_rate_hz"] * NOTCH_ANGLE / (2 * np.pi) >= 1
+    if shows_each and abs(rises - times.size) > 1:
         yield f"{sensor.name} has {rises} pulses, once_per_rev_s has {times.size}"
 
 

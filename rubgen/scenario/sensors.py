@@ -241,6 +241,8 @@ class SensorSet:
             raise ValueError(f"name = {name!r} of {count} sensors: must differ; rename all but one")
         if sum(isinstance(sensor, OncePerRev) for sensor in self.sensors) > 1:
             raise ValueError("two sensors of kind once_per_rev: there is one pulse a turn; keep one of them")
+        if not self.sampled:
+            raise ValueError("sensors: none records a signal (kinds once_per_rev and blade_tip_timing only); add one")
         return self
 
     @property

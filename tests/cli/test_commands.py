@@ -1,5 +1,6 @@
 import json
 import os
+import shutil
 import subprocess
 import sys
 from inspect import signature
@@ -305,3 +306,39 @@ def test_bash_takes_the_completion(run, tmp_path):
         ["bash", "-c", f". {script} && complete -p rubgen"], capture_output=True, text=True, check=True
     )
     assert done.stdout.strip().endswith("rubgen")
+
+
+_TAB = """zmodload zsh/zpty
+zpty shell zsh -f -i
+zpty -w shell "{setup}; PS1=; LISTMAX=0; unsetopt zle_bracketed_paste; print rea''dy"
+zpty -r shell seen "*ready*"
+zpty -w -n shell "rubgen verif\t"
+zpty -r shell seen "*verify*" && print -r -- completed
+zpty -d shell
+"""
+
+
+@pytest.mark.skipif(shutil.which("zsh") is None, reason="zsh is not installed")
+@pytest.mark.parametrize("way", ["read", "fpath"])
+def test_zsh_completes_from_its_start_file_and_from_its_path(run, tmp_path, way):
+    script = tmp_path / "_rubgen"
+    script.write_text(run("completion", "zsh")[1])
+    setup = {
+        "read": f". {script}",
+        "fpath": f"fpath=({tmp_path} \\$fpath); autoload -Uz compinit; compinit -u -d {tmp_path}/dump",
+    }[way]
+    done = subprocess.run(
+        ["zsh", "-f", "-c", _TAB.format(setup=setup)], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert "completed" in done.stdout, done
+
+
+@pytest.mark.skipif(shutil.which("fish") is None, reason="fish is not installed")
+def test_fish_takes_the_completion(run, tmp_path):
+    script = tmp_path / "rubgen.fish"
+    script.write_text(run("completion", "fish")[1])
+    done = subprocess.run(
+        ["fish", "--no-config", "-c", f"source {script}; complete -C 'rubgen verif'"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert done.stdout.startswith("verify\t")

@@ -133,6 +133,15 @@ def test_a_second_pulse_is_refused(tmp_path):
         parse_sensor_set(path)
 
 
+@pytest.mark.parametrize(
+    "sensor", ['kind = "once_per_rev"', 'kind = "blade_tip_timing"\nangle_deg = 10'], ids=["pulse", "timing"]
+)
+def test_a_set_that_records_no_signal_is_refused(tmp_path, sensor):
+    recipe = written(tmp_path, f'name = "none"\n[[sensors]]\nname = "a"\n{sensor}\n')
+    with pytest.raises(UserError, match=r"mine\.toml: sensors: none records a signal \(kinds .+ only\); add one"):
+        load_recipe(recipe)
+
+
 def test_the_command_line_ends_with_2_and_one_line(tmp_path):
     recipe = written(tmp_path, GOOD.replace("proximity", "proximty", 1).replace("kinds.proximty", "kinds.proxi"))
     command = [sys.executable, "-m", "rubgen.cli.app", "generate", str(recipe), "--out", str(tmp_path / "out")]
