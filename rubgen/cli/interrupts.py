@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any
@@ -15,8 +15,9 @@ from typing import Any
 def terminable() -> Iterator[None]:
     """A polite kill raises KeyboardInterrupt, and so does Ctrl-C where the shell has switched it off.
 
-    Compiled code of other libraries may swallow the exception and fail later with one of its own: what is raised after
-    an interrupt is that interrupt. Signals can be handled in the main thread alone; elsewhere nothing changes.
+    Compiled code of other libraries may swallow the exception or print it, and fail later with one of its own: nothing
+    is printed after an interrupt, and what is raised is that interrupt. Signals can be handled in the main thread
+    alone; elsewhere nothing changes.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -28,12 +29,16 @@ def terminable() -> Iterator[None]:
         came = True
         raise KeyboardInterrupt
 
-    def swallowed(problem: Any) -> None:
-        if not came:
-            said(problem)
+    def unless_it_came(hook: Callable[..., object]) -> Callable[..., None]:
+        def said(*problem: Any) -> None:
+            if not came:
+                hook(*problem)
+
+        return said
 
     saved = {name: signal.signal(name, interrupt) for name in (signal.SIGTERM, signal.SIGINT)}
-    said, sys.unraisablehook = sys.unraisablehook, swallowed
+    hooks = sys.unraisablehook, sys.excepthook
+    sys.unraisablehook, sys.excepthook = unless_it_came(sys.unraisablehook), unless_it_came(sys.excepthook)
     try:
         yield
     except Exception:
@@ -41,6 +46,6 @@ def terminable() -> Iterator[None]:
             raise KeyboardInterrupt from None
         raise
     finally:
-        sys.unraisablehook = said
+        sys.unraisablehook, sys.excepthook = hooks
         for name, handler in saved.items():
             signal.signal(name, handler)

@@ -49,13 +49,16 @@ def test_in_another_thread_signals_are_left_alone():
     assert done == [signal.getsignal(signal.SIGTERM)]
 
 
-@pytest.mark.parametrize("where", ["an import", "a callback"])
+@pytest.mark.parametrize("where", ["an import", "a callback", "a print"])
 def test_an_interrupt_that_is_swallowed_ends_the_command_in_one_line(where):
     # The module that the command imports first swallows the signal, as pandas and llvmlite do.
     fails = "raise AttributeError('partially initialized module')"
     calls = {
         "an import": f"os.kill(os.getpid(), signal.SIGINT)\n    except KeyboardInterrupt:\n        {fails}",
         "a callback": f"ctypes.CFUNCTYPE(None)(lambda: os.kill(os.getpid(), signal.SIGINT))()\n        {fails}\n"
+        "    finally: pass",
+        # as numpy's import_array does
+        "a print": f"ctypes.pythonapi.PyRun_SimpleString(b'os.kill(os.getpid(), signal.SIGINT)')\n        {fails}\n"
         "    finally: pass",
     }[where]
     code = (
