@@ -23,7 +23,7 @@ from threadpoolctl import threadpool_limits
 from benchmarks.bench_solver import CASES, STEPS, deviation, settled, turn_time
 from benchmarks.cpu_time import median_time
 from benchmarks.free_step_kernels import run_free
-from rubgen.dataset.workers import unordered, worker_pool
+from rubgen.dataset.making.workers import unordered, worker_pool
 from rubgen.reduction import reduce
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Scenario, load_recipe

@@ -11,7 +11,7 @@ import time
 from dataclasses import replace
 
 from rubgen import make_scenario
-from rubgen.dataset.workers import unordered, worker_pool
+from rubgen.dataset.making.workers import unordered, worker_pool
 from validation.sensitivity.halving import SPEEDS_RPM
 
 SETTLE_TURNS, RECORD_TURNS, WORKERS = 100, 50, 2

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
-    from rubgen.dataset.generate import Generated
-    from rubgen.dataset.open import DataSet
+    from rubgen.dataset.making.generate import Generated
+    from rubgen.dataset.reading.open import DataSet
     from rubgen.errors import RubgenError, UserError
     from rubgen.pipeline import Run
     from rubgen.scenario import Recipe, Scenario, make_scenario
@@ -82,11 +82,11 @@ def generate(
     """The data set of a recipe in the directory `out`, completed where it was begun.
 
     Progress is shown on a terminal and in a notebook, with True everywhere, with False nowhere; a function is called
-    with the numbers of finished and of all runs instead. See `rubgen.dataset.generate`. Raises UserError for bad
+    with the numbers of finished and of all runs instead. See `rubgen.dataset.making.generate`. Raises UserError for bad
     input, a directory that holds something else or cannot be written, and a full disk; RubgenError where a worker
     process dies.
     """
-    from rubgen.dataset.generate import generate
+    from rubgen.dataset.making.generate import generate
 
     return generate(recipe, out, runs=runs, workers=workers, progress=progress)
 
@@ -98,7 +98,7 @@ def open(directory: Path | str) -> DataSet:  # noqa: A001
     """
     from pathlib import Path
 
-    from rubgen.dataset.open import DataSet
+    from rubgen.dataset.reading.open import DataSet
 
     return DataSet(Path(directory))
 
@@ -110,6 +110,6 @@ def verify(directory: Path | str) -> list[str]:
     """
     from pathlib import Path
 
-    from rubgen.dataset.verify import verify
+    from rubgen.dataset.checking.verify import verify
 
     return verify(Path(directory))

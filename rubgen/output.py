@@ -38,7 +38,7 @@ def writer_of(path: Path, named: str) -> Write:
 
         return write_mcap
     if path.suffix == ".parquet":
-        from rubgen.io.parquet import write_parquet
+        from rubgen.io.parquet.write import write_parquet
 
         return write_parquet
     if path.suffix == ".rrd":

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rubgen.labels.contact_amounts import ContactAmounts, RubExtent
+from rubgen.labels.contact.amounts import ContactAmounts, RubExtent
 from rubgen.labels.harmonics import FRACTIONS, HIGHEST_ORDER, TapOrders
 from rubgen.labels.labels import Labels, Motion
 from rubgen.machine import load_machine

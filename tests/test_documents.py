@@ -12,7 +12,7 @@ import pytest
 import rubgen
 from rubgen.cli.app import app
 from rubgen.io.columns import ORDER_SUFFIXES
-from rubgen.labels.plain import labels_dict
+from rubgen.labels.to_json import labels_dict
 from rubgen.scenario import load_recipe, parse_recipe
 from rubgen.solver import Status
 from tests.default_columns import CHANNELS, SCALARS

@@ -4,15 +4,15 @@ import subprocess
 import sys
 
 READERS = [
-    "rubgen.dataset.open",
-    "rubgen.dataset.verify",
-    "rubgen.dataset.relabel",
-    "rubgen.dataset.replaying",
+    "rubgen.dataset.reading.open",
+    "rubgen.dataset.checking.verify",
+    "rubgen.dataset.checking.relabel",
+    "rubgen.dataset.reading.replaying",
     "rubgen.cli.inspecting",
     "rubgen.cli.drawing",
     "rubgen.report.page",
     "rubgen.viz.rerun",
-    "rubgen.dataset.generate",  # the parent of workers: they compile
+    "rubgen.dataset.making.generate",  # the parent of workers: they compile
 ]
 LOOK = """
 import importlib, sys

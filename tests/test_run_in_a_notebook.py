@@ -13,7 +13,7 @@ from rubgen import make_scenario
 from rubgen.brief import brief
 from rubgen.errors import UserError
 from rubgen.io.mcap import read_mcap
-from rubgen.io.parquet import read_table
+from rubgen.io.parquet.read import read_table
 from rubgen.scenario import load_recipe
 from rubgen.solver import Status
 

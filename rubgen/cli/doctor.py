@@ -15,7 +15,7 @@ from packaging.requirements import Requirement
 from rubgen import __version__
 from rubgen.cache_root import FOLDERS, problem_of, wanted_root
 from rubgen.cli.printing import print_json, print_pairs, say
-from rubgen.dataset.workers import usable_cores
+from rubgen.dataset.making.workers import usable_cores
 
 _VULKAN_DRIVERS = ("/usr/share/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/etc/vulkan/icd.d")
 _SOFTWARE_DRIVER = "lvp_icd"

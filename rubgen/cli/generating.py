@@ -11,7 +11,7 @@ from shutil import which
 
 from rubgen.cli.interrupts import terminable
 from rubgen.cli.printing import print_json, say
-from rubgen.dataset.generate import Generated, finished_runs, generate
+from rubgen.dataset.making.generate import Generated, finished_runs, generate
 
 
 def generate_command(recipe: Path | None, out: Path, runs: int | None, workers: int | None, *, as_json: bool) -> int:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import rubgen
 from rubgen.cli.printing import print_json, print_pairs, say
-from rubgen.dataset.inventory import Finding
-from rubgen.dataset.relabel import relabel
-from rubgen.dataset.unfinished import Unfinished, unfinished
-from rubgen.dataset.verify import advice, findings
+from rubgen.dataset.checking.inventory import Finding
+from rubgen.dataset.checking.relabel import relabel
+from rubgen.dataset.checking.verify import advice, findings
+from rubgen.dataset.making.unfinished import Unfinished, unfinished
 from rubgen.labels import Motion
 from rubgen.progress import step
 
@@ -61,7 +61,7 @@ def verify_command(directory: Path, *, as_json: bool) -> int:
 
 def repair_command(directory: Path, *, as_json: bool) -> int:
     """Make again what is derived, say what was made and what is still wrong; 1 where anything is."""
-    from rubgen.dataset.repair import repair
+    from rubgen.dataset.checking.repair import repair
 
     with step("repair"):
         done = repair(directory)

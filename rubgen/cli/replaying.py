@@ -47,7 +47,7 @@ class Showing:
 def replay_command(source: Path, run_id: str | None, where: str | None, showing: Showing) -> int:
     """Find the run, say what there is to know of it, and show it."""
     showing.check()
-    from rubgen.dataset.replaying import find_replay
+    from rubgen.dataset.reading.replaying import find_replay
 
     found = find_replay(source, run_id, where)
     for remark in found.remarks:

@@ -11,7 +11,7 @@ from rubgen.cli.printing import print_json, print_pairs, say
 from rubgen.cli.replaying import Showing, show
 from rubgen.cli.run_summary import run_summary
 from rubgen.errors import warn
-from rubgen.labels.plain import labels_dict
+from rubgen.labels.to_json import labels_dict
 from rubgen.output import save
 from rubgen.pipeline import Run, simulate
 from rubgen.progress import step

@@ -9,7 +9,7 @@ from rubgen.dataset.files import write_text
 from rubgen.dataset.layout import SPLIT, Layout
 from rubgen.dataset.manifest import Identity
 from rubgen.io.columns import Column, scalar_columns, signal_columns
-from rubgen.io.sections import KINDS
+from rubgen.io.parquet.sections import KINDS
 
 LOADING = {
     "parquet": """\

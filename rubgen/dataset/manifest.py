@@ -15,7 +15,7 @@ from rubgen.dataset.files import json_text, sha256_of, write_text
 from rubgen.dataset.layout import Layout
 from rubgen.errors import UserError
 from rubgen.io.json_read import read_json
-from rubgen.io.parquet_read import read_table
+from rubgen.io.parquet.read import read_table
 from rubgen.io.regular_file import check_regular
 from rubgen.machine import Machine
 from rubgen.machine.problems import first_problem

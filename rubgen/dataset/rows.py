@@ -12,8 +12,7 @@ import pyarrow as pa
 
 from rubgen.dataset.layout import RUNS_PER_ROW_GROUP
 from rubgen.errors import UserError
-from rubgen.io.parquet import open_parquet
-from rubgen.io.parquet_read import damage_named
+from rubgen.io.parquet.read import damage_named, open_parquet
 from rubgen.scenario import Recipe
 from rubgen.scenario.costs import stored_bytes
 

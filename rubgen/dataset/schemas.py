@@ -12,10 +12,10 @@ from pydantic import TypeAdapter
 from rubgen.dataset.files import write_json, write_text
 from rubgen.dataset.manifest import Manifest
 from rubgen.io.columns import ORDER_SUFFIXES, Column, scalar_columns
-from rubgen.io.mcap_messages import proto_text
-from rubgen.labels.contact_amounts import RubExtent
+from rubgen.io.mcap.messages import proto_text
+from rubgen.labels.contact.amounts import RubExtent
 from rubgen.labels.labels import Motion
-from rubgen.labels.whirl import WhirlDirection
+from rubgen.labels.motion.whirl import WhirlDirection
 from rubgen.machine import Machine
 from rubgen.scenario import Recipe
 from rubgen.scenario.sensor_set import default_sensor_set

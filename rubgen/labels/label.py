@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from rubgen.labels.contact_amounts import contact_amounts
-from rubgen.labels.contact_zones import contact_zones
-from rubgen.labels.course import by_angle, course_labels, course_motion, course_orders
+from rubgen.labels.compact_record import as_kept
+from rubgen.labels.contact.amounts import contact_amounts
+from rubgen.labels.contact.zones import contact_zones
 from rubgen.labels.harmonics import MARKED_TAP, harmonics
-from rubgen.labels.kept import as_kept
 from rubgen.labels.labels import Labels
-from rubgen.labels.lyapunov import lyapunov_of
-from rubgen.labels.motion import motion
-from rubgen.labels.whirl import whirl
+from rubgen.labels.motion.classify import motion
+from rubgen.labels.motion.lyapunov import lyapunov_of
+from rubgen.labels.motion.whirl import whirl
+from rubgen.labels.speed_history import by_angle, course_labels, course_motion, course_orders
 from rubgen.labels.windows import windows
 from rubgen.solver.response import Response
 

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 from rubgen.arrays import FloatArray
 from rubgen.brief import number
 from rubgen.labels.harmonics import TapOrders
-from rubgen.labels.lyapunov import Exponent
+from rubgen.labels.motion.lyapunov import Exponent
 
 if TYPE_CHECKING:
-    from rubgen.labels.contact_amounts import ContactAmounts
-    from rubgen.labels.course import CourseLabels
-    from rubgen.labels.whirl import Whirl
+    from rubgen.labels.contact.amounts import ContactAmounts
+    from rubgen.labels.motion.whirl import Whirl
+    from rubgen.labels.speed_history import CourseLabels
     from rubgen.labels.windows import Windows
 
 

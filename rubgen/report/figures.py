@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from rubgen.dataset.open import DataSet
-from rubgen.dataset.replaying import find_replay
+from rubgen.dataset.reading.open import DataSet
+from rubgen.dataset.reading.replaying import find_replay
 from rubgen.errors import UserError
 from rubgen.machine import load_machine
 from rubgen.machine.problems import nearest

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from rubgen.dataset.open import DataSet
-from rubgen.dataset.replaying import find_replay
-from rubgen.dataset.verify import verify
+from rubgen.dataset.checking.verify import verify
+from rubgen.dataset.reading.open import DataSet
+from rubgen.dataset.reading.replaying import find_replay
 from rubgen.errors import UserError, write_problems
 from rubgen.io.durable import write_durably
 from rubgen.labels.labels import Motion

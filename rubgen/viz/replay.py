@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.labels.plain import labels_dict
+from rubgen.labels.to_json import labels_dict
 from rubgen.scenario import Scenario
 from rubgen.sensors.channel import Recording
 from rubgen.sensors.contact_window import ContactIntervals, contact_intervals

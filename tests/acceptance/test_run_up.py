@@ -6,7 +6,8 @@ from mcap.reader import make_reader
 
 from rubgen import make_scenario, simulate
 from rubgen.io.mcap import check_mcap, write_mcap
-from rubgen.io.parquet import read_table, write_parquet
+from rubgen.io.parquet.read import read_table
+from rubgen.io.parquet.write import write_parquet
 
 ONSET_RPM = 6720.0
 

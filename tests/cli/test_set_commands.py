@@ -7,15 +7,15 @@ from pathlib import Path
 import pytest
 
 from rubgen.cli.generating import _what_was_made
-from rubgen.dataset.generate import Generated
-from rubgen.dataset.outcome import Outcome
+from rubgen.dataset.making.generate import Generated
+from rubgen.dataset.making.outcome import Outcome
 from rubgen.solver.response import Status
 
 
 @pytest.fixture
 def generate(run, make_synthetic_run, tmp_path, monkeypatch):
     """Runs `rubgen generate` for three runs without contact, the last of which diverges."""
-    monkeypatch.setattr("rubgen.dataset.generate.warm_up", lambda *_: [])
+    monkeypatch.setattr("rubgen.dataset.making.generate.warm_up", lambda *_: [])
     template = make_synthetic_run(contact=False, seconds=0.1)
 
     def simulate(scenario):
@@ -107,7 +107,7 @@ def test_verify_ends_with_1_where_something_is_wrong(generate, run, tmp_path):
 
 
 def test_ctrl_c_says_how_to_go_on(generate, run, tmp_path, monkeypatch):
-    from rubgen.dataset import generate as generating
+    from rubgen.dataset.making import generate as generating
 
     stage = generating.stage_run
 

@@ -11,9 +11,9 @@ import pytest
 from filelock import FileLock
 
 import rubgen
-from rubgen.dataset import generate as generating
-from rubgen.dataset.inventory import strangers
+from rubgen.dataset.checking.inventory import strangers
 from rubgen.dataset.layout import Layout
+from rubgen.dataset.making import generate as generating
 from rubgen.dataset.manifest import read_manifest
 from rubgen.errors import RubgenWarning, UserError
 

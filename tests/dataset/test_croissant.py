@@ -37,7 +37,7 @@ def test_valid_and_loaded_to_the_bit(mlcroissant, small_set):
 def test_failed_runs_have_empty_labels(mlcroissant, make_synthetic_run, short_records, tmp_path, monkeypatch):
     run = make_synthetic_run(seconds=0.1)
     response = replace(run.response, status=Status.DIVERGED, reason="at once")
-    monkeypatch.setattr("rubgen.dataset.generate.warm_up", lambda *_: [])
+    monkeypatch.setattr("rubgen.dataset.making.generate.warm_up", lambda *_: [])
     monkeypatch.setattr(
         "rubgen.pipeline.simulate",
         lambda scenario: replace(run, scenario=scenario, response=response, recording=None, labels=None),

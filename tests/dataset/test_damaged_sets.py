@@ -6,10 +6,10 @@ import pyarrow.parquet as pq
 import pytest
 
 import rubgen
-from rubgen.dataset.relabel import relabel
-from rubgen.dataset.replaying import find_replay, find_runs
+from rubgen.dataset.checking.relabel import relabel
+from rubgen.dataset.reading.replaying import find_replay, find_runs
 from rubgen.errors import UserError
-from rubgen.io.parquet import write_table
+from rubgen.io.parquet.write import write_table
 from rubgen.report.figures import Choice, make_figure
 from rubgen.report.page import render_report
 

@@ -8,10 +8,10 @@ import pyarrow.parquet as pq
 import pytest
 
 import rubgen
-from rubgen.dataset import generate as generating
 from rubgen.dataset.files import sha256_of
 from rubgen.dataset.layout import Layout
-from rubgen.dataset.stage import stage_run
+from rubgen.dataset.making import generate as generating
+from rubgen.dataset.making.stage import stage_run
 from rubgen.errors import RubgenWarning, UserError
 from rubgen.solver.response import Status
 
@@ -155,7 +155,7 @@ def test_a_set_without_one_valid_run_is_still_whole(fake_simulate, tmp_path, mak
 def test_many_runs_go_into_several_files_and_groups(fake_simulate, tmp_path, monkeypatch):
     for module in ("assemble", "layout", "table_check"):
         monkeypatch.setattr(f"rubgen.dataset.{module}.RUNS_PER_SHARD", 5)
-    monkeypatch.setattr("rubgen.dataset.assemble.RUNS_PER_ROW_GROUP", 2)
+    monkeypatch.setattr("rubgen.dataset.making.assemble.RUNS_PER_ROW_GROUP", 2)
     rubgen.generate(recipe(runs=7, output={"signal_seconds": 0.1, "formats": ["parquet"]}), tmp_path / "set", workers=1)
     shards = Layout(tmp_path / "set").shards()
     assert [path.name for path in shards] == ["train-00000-of-00002.parquet", "train-00001-of-00002.parquet"]

@@ -3,7 +3,7 @@
 import pytest
 
 import rubgen
-from rubgen.dataset.consistency import label_problems
+from rubgen.dataset.checking.consistency import label_problems
 
 FOUND = {
     "contact_duty": "contact_duty and its windows",

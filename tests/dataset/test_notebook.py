@@ -10,11 +10,12 @@ import pyarrow as pa
 import pytest
 
 import rubgen
-from rubgen.dataset.runs_frame import runs_frame
-from rubgen.dataset.stored_run import StoredRun
+from rubgen.dataset.reading.runs_frame import runs_frame
+from rubgen.dataset.reading.stored_run import StoredRun
 from rubgen.errors import UserError
 from rubgen.io.mcap import read_mcap
-from rubgen.io.parquet import read_table, schema
+from rubgen.io.parquet.read import read_table
+from rubgen.io.parquet.write import schema
 from rubgen.scenario.sensor_set import default_sensor_set
 from tests.default_columns import CHANNELS, SCALARS
 
@@ -78,7 +79,7 @@ def test_units_and_meanings_go_with_the_frame(data, tmp_path):
 
 def test_ok_are_the_good_runs(small_set, with_a_failed_run, monkeypatch):
     data = rubgen.open(small_set.directory)
-    monkeypatch.setattr("rubgen.dataset.open.DataSet.runs", with_a_failed_run)
+    monkeypatch.setattr("rubgen.dataset.reading.open.DataSet.runs", with_a_failed_run)
     assert data.ok.index.tolist() == ["run-000000", "run-000001", "run-000003"]
 
 
@@ -104,7 +105,7 @@ def test_a_run_of_a_set_holds_plain_values(data, small_set):
 
 def test_only_what_is_asked_is_decoded(data, monkeypatch):
     asked = []
-    monkeypatch.setattr("rubgen.io.parquet_read.ParquetSource.read_row_group", spy(asked))
+    monkeypatch.setattr("rubgen.io.parquet.read.ParquetSource.read_row_group", spy(asked))
     signals = data.signals("run-000002", ["casing_acc_90", "proximity_x"])
     assert list(signals) == ["casing_acc_90", "proximity_x"]
     assert [set(columns) for columns in asked if columns != ["run_id"]] == [
@@ -113,7 +114,7 @@ def test_only_what_is_asked_is_decoded(data, monkeypatch):
 
 
 def spy(asked):
-    from rubgen.io.parquet_read import ParquetSource
+    from rubgen.io.parquet.read import ParquetSource
 
     read = ParquetSource.read_row_group
 
@@ -126,7 +127,7 @@ def spy(asked):
 
 def test_only_what_is_asked_is_decoded_from_mcap(without_parquet, data, monkeypatch):
     seen = []
-    from rubgen.io import mcap_read
+    from rubgen.io.mcap import read as mcap_read
 
     decode = mcap_read.read_sample_block
     monkeypatch.setattr(mcap_read, "read_sample_block", lambda block: seen.append(decode(block)) or seen[-1])

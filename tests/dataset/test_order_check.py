@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rubgen.dataset.consistency import signal_problems
-from rubgen.dataset.order_check import ORDER_TOLERANCE, order_amplitudes, order_problems
+from rubgen.dataset.checking.consistency import signal_problems
+from rubgen.dataset.checking.order_check import ORDER_TOLERANCE, order_amplitudes, order_problems
 from rubgen.scenario import Sensing
 from rubgen.scenario.sensors import OncePerRev, SensorSet, Torque
 from rubgen.sensors.once_per_rev import arrival_times, pulse_channel

@@ -2,9 +2,9 @@
 
 import pytest
 
-from rubgen.dataset import outcome
 from rubgen.dataset.layout import Layout
-from rubgen.dataset.outcome import Failure, outcome_of
+from rubgen.dataset.making import outcome
+from rubgen.dataset.making.outcome import Failure, outcome_of
 
 
 class Table:

@@ -7,12 +7,13 @@ import pyarrow as pa
 import pytest
 
 import rubgen
-from rubgen.dataset.relabel import relabel
+from rubgen.dataset.checking.relabel import relabel
+from rubgen.dataset.checking.verify import verify
 from rubgen.dataset.rows import asked_bytes
-from rubgen.dataset.verify import verify
 from rubgen.errors import UserError
-from rubgen.io import parquet_read
-from rubgen.io.parquet import read_table, run_table, write_table
+from rubgen.io.parquet import read as parquet_read
+from rubgen.io.parquet.read import read_table
+from rubgen.io.parquet.write import run_table, write_table
 from rubgen.scenario.costs import stored_bytes
 from tests.synthetic import make_run
 

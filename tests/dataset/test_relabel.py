@@ -9,12 +9,12 @@ from test_verify import reseal
 
 import rubgen
 from rubgen.cli import main
-from rubgen.dataset.relabel import equal, relabel
+from rubgen.dataset.checking.relabel import equal, relabel
 from rubgen.errors import UserError
 from rubgen.io.columns import scalar_columns
-from rubgen.io.parquet import write_table
-from rubgen.io.sections import SCHEMA
-from rubgen.labels.plain import ORDER_LABELS
+from rubgen.io.parquet.sections import SCHEMA
+from rubgen.io.parquet.write import write_table
+from rubgen.labels.to_json import ORDER_LABELS
 from rubgen.scenario.sensor_set import default_sensor_set
 
 SECTIONS = "sections/train-00000-of-00001.parquet"

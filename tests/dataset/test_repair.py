@@ -7,7 +7,7 @@ import pytest
 
 import rubgen
 from rubgen.cli import main
-from rubgen.dataset.repair import repair
+from rubgen.dataset.checking.repair import repair
 
 DATA = "data/train-00000-of-00001.parquet"
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import rubgen
-from rubgen.dataset.replaying import find_replay, find_runs, scenario_of
+from rubgen.dataset.reading.replaying import find_replay, find_runs, scenario_of
 from rubgen.errors import UserError
 
 

@@ -47,7 +47,7 @@ def test_the_page_stands_alone_and_is_small(page):
 
 
 def test_the_ways_to_load_work(small_set):
-    from rubgen.dataset.replaying import find_replay
+    from rubgen.dataset.reading.replaying import find_replay
 
     data = rubgen.open(small_set.directory)
     ways = loading(data, find_replay(small_set.directory, "run-000000").replay)
@@ -88,7 +88,7 @@ def test_examples_show_each_class_and_a_run_without_contact():
 def test_a_failed_run_is_listed_with_its_reason(small_set, tmp_path, monkeypatch):
     runs = rubgen.open(small_set.directory).runs.copy()
     runs.loc["run-000003", ["status", "reason"]] = "diverged", "blade 3 <bent> in turn 7"
-    monkeypatch.setattr("rubgen.dataset.open.DataSet.runs", runs)
+    monkeypatch.setattr("rubgen.dataset.reading.open.DataSet.runs", runs)
     monkeypatch.setattr("rubgen.report.page.verify", lambda _directory: ["data: broken"])
     write_report(small_set.directory, tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text(encoding="utf-8")

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 import rubgen
-from rubgen.io.parquet import read_table
+from rubgen.io.parquet.read import read_table
 from rubgen.scenario import load_recipe
 
 RECIPE = Path(__file__).parents[2] / "datasets/rig.toml"

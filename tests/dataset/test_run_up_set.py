@@ -4,8 +4,8 @@ import tomllib
 from pathlib import Path
 
 import rubgen
-from rubgen.dataset.relabel import relabel
-from rubgen.io.parquet import read_table
+from rubgen.dataset.checking.relabel import relabel
+from rubgen.io.parquet.read import read_table
 
 RECIPE = Path(__file__).parents[2] / "datasets" / "run-up.toml"
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import rubgen
-from rubgen.dataset.replaying import find_runs
+from rubgen.dataset.reading.replaying import find_runs
 from rubgen.errors import UserError
 
 PACKAGE = Path(rubgen.__file__).parent

@@ -15,10 +15,10 @@ import pytest
 from test_verify import reseal
 
 import rubgen
-from rubgen.dataset.inventory import Kind
-from rubgen.dataset.verify import findings
+from rubgen.dataset.checking.inventory import Kind
+from rubgen.dataset.checking.verify import findings
 from rubgen.errors import UserError
-from rubgen.io.parquet import write_table
+from rubgen.io.parquet.write import write_table
 
 DATA = "data/train-00000-of-00001.parquet"
 RUNS = ["run-000000", "run-000001"]

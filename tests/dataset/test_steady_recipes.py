@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import rubgen
-from rubgen.dataset.relabel import relabel
-from rubgen.io.parquet import read_table
+from rubgen.dataset.checking.relabel import relabel
+from rubgen.io.parquet.read import read_table
 
 DATASETS = Path(__file__).parents[2] / "datasets"
 

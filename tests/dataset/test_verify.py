@@ -9,12 +9,12 @@ import pyarrow.parquet as pq
 import pytest
 
 import rubgen
-from rubgen.dataset.consistency import label_problems, signal_problems
+from rubgen.dataset.checking.consistency import label_problems, signal_problems
+from rubgen.dataset.checking.order_check import order_amplitudes
 from rubgen.dataset.files import sha256_of
-from rubgen.dataset.open import row_signals
-from rubgen.dataset.order_check import order_amplitudes
+from rubgen.dataset.reading.open import row_signals
 from rubgen.errors import UserError
-from rubgen.io.parquet import write_table
+from rubgen.io.parquet.write import write_table
 from rubgen.scenario import Sensing
 
 DATA = "data/train-00000-of-00001.parquet"
@@ -188,7 +188,7 @@ def test_recordings_are_listed_by_name_and_their_digests_are_in_a_file_of_their_
 ):
     template = make_synthetic_run(seconds=0.1)
     monkeypatch.setattr("rubgen.pipeline.simulate", lambda scenario: replace(template, scenario=scenario))
-    monkeypatch.setattr("rubgen.dataset.generate.warm_up", lambda *_: [])
+    monkeypatch.setattr("rubgen.dataset.making.generate.warm_up", lambda *_: [])
     output = {"formats": ["rrd"], "signal_seconds": 0.1}
     rubgen.generate({"name": "a", "runs": 1, "machine": "zeng2019", "output": output}, tmp_path / "set", workers=1)
     manifest = json.loads((tmp_path / "set/manifest.json").read_text())

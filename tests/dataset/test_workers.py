@@ -8,8 +8,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from rubgen.dataset import workers
-from rubgen.dataset.workers import ONE_THREAD, unordered, usable_cores, worker_pool
+from rubgen.dataset.making import workers
+from rubgen.dataset.making.workers import ONE_THREAD, unordered, usable_cores, worker_pool
 from rubgen.errors import RubgenError, RubgenWarning
 
 
@@ -74,7 +74,7 @@ def test_where_no_process_can_be_started_one_goes_on(monkeypatch, problem):
 @pytest.mark.parametrize("how", ["script", "pipe", "text"])
 def test_workers_leave_the_users_main_module_alone(tmp_path, how):
     code = (
-        "import os\nfrom rubgen.dataset.workers import unordered, worker_pool\nprint('main', flush=True)\n"
+        "import os\nfrom rubgen.dataset.making.workers import unordered, worker_pool\nprint('main', flush=True)\n"
         "with worker_pool(2) as pool:\n    print(sum(unordered(pool, 2, abs, [(-1,), (-2,), (-3,)])))\n"
     )
     (tmp_path / "main.py").write_text(code)

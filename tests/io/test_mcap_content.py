@@ -11,10 +11,10 @@ from foreign import Parts, parts_of, write_parts
 from mcap.writer import CompressionType, IndexType
 from mutations import mutated
 
-from rubgen.dataset.replaying import replay_of_mcap
+from rubgen.dataset.reading.replaying import replay_of_mcap
 from rubgen.errors import UserError
 from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
-from rubgen.io.mcap_messages import message_class, read_sample_block, sample_block
+from rubgen.io.mcap.messages import message_class, read_sample_block, sample_block
 
 FORCE = "/raw/contact_force"
 
@@ -282,7 +282,7 @@ def test_a_small_file_that_unpacks_to_gigabytes_is_refused(chunk_size, message, 
 
 
 def test_a_small_file_of_countless_messages_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("rubgen.io.mcap_content.MOST_MESSAGES", 20_000)
+    monkeypatch.setattr("rubgen.io.mcap.content.MOST_MESSAGES", 20_000)
     parts = Parts(schemas={1: ("Pose", "jsonschema", b"{}")}, channels=[["/pose", "json", 1, {}]])
     parts.messages = [[0, 0, b""]] * 21_000
     write_parts(parts, tmp_path / "bomb.mcap", index_types=IndexType.NONE)

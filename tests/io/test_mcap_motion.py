@@ -7,9 +7,9 @@ import pytest
 from mcap.reader import make_reader
 
 from rubgen.errors import UserError
-from rubgen.io.foxglove import transform_descriptor_set
 from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
-from rubgen.io.mcap_salvage import salvage_mcap
+from rubgen.io.mcap.foxglove import transform_descriptor_set
+from rubgen.io.mcap.salvage import salvage_mcap
 from rubgen.sensors.motion_frames import MotionFrames, motion_frames
 
 

@@ -7,10 +7,11 @@ import pytest
 from rerun.chunk import RrdReader
 
 from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
-from rubgen.io.parquet import read_table, write_parquet
-from rubgen.labels.course import Change, CourseLabels
+from rubgen.io.parquet.read import read_table
+from rubgen.io.parquet.write import write_parquet
 from rubgen.labels.labels import Motion
-from rubgen.labels.plain import labels_dict
+from rubgen.labels.speed_history import Change, CourseLabels
+from rubgen.labels.to_json import labels_dict
 from rubgen.viz.replay import replay_of
 from rubgen.viz.rerun import write_rrd
 from rubgen.viz.signal_entities import detail_window

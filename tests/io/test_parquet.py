@@ -8,7 +8,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from rubgen.errors import UserError
-from rubgen.io.parquet import read_table, row_groups, run_table, schema, write_parquet, write_table
+from rubgen.io.parquet.read import read_table, row_groups
+from rubgen.io.parquet.write import run_table, schema, write_parquet, write_table
 from rubgen.solver.response import Status
 from tests.default_columns import CHANNELS, CLEAN_SIGNALS, SCALARS, SIGNALS
 

@@ -9,7 +9,8 @@ import pytest
 from mutations import mutated
 
 from rubgen.errors import UserError
-from rubgen.io.parquet import open_parquet, read_table, row_groups, run_table, write_table
+from rubgen.io.parquet.read import open_parquet, read_table, row_groups
+from rubgen.io.parquet.write import run_table, write_table
 
 WORD, MANY = "x" * 1_000_000, 40_000_000
 

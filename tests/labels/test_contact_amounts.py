@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from rubgen.labels import label
-from rubgen.labels.contact_amounts import STANDARD_GRAVITY, RubExtent, contact_amounts, rub_extent
-from rubgen.labels.contact_zones import contact_zones
-from rubgen.labels.plain import labels_dict
-from rubgen.labels.whirl import Whirl, WhirlDirection, whirl
+from rubgen.labels.contact.amounts import STANDARD_GRAVITY, RubExtent, contact_amounts, rub_extent
+from rubgen.labels.contact.zones import contact_zones
+from rubgen.labels.motion.whirl import Whirl, WhirlDirection, whirl
+from rubgen.labels.to_json import labels_dict
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver.integrate import integrate
 from validation.verification.jeffcott import CLEARANCE, FRICTION, ROTOR_MASS, SPEED, annular_rub, jeffcott_system

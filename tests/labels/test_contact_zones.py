@@ -3,7 +3,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from rubgen.labels.contact_zones import contact_zones, impulse_histogram
+from rubgen.labels.contact.zones import contact_zones, impulse_histogram
 from rubgen.solver.response import ContactEvents
 
 Events = Callable[..., ContactEvents]

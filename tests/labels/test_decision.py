@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from rubgen.labels import Motion
-from rubgen.labels.decision import Indicators, MotionClass, combined, decide
-from rubgen.labels.lyapunov import Exponent
+from rubgen.labels.motion.decision import Indicators, MotionClass, combined, decide
+from rubgen.labels.motion.lyapunov import Exponent
 
 GROWING, NEUTRAL, DYING = (
     Exponent(per_turn=size, error=0.01, convergence=np.full(10, size)) for size in (0.2, 0.001, -0.2)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from rubgen.labels.intermittency import is_intermittent, segments
+from rubgen.labels.motion.intermittency import is_intermittent, segments
 
 TURNS = 500
 

@@ -6,7 +6,7 @@ import pytest
 from threadpoolctl import threadpool_limits
 
 from rubgen.labels import Motion, label
-from rubgen.labels.plain import labels_dict
+from rubgen.labels.to_json import labels_dict
 from rubgen.solver.response import ContactEvents, Response
 
 Respond = Callable[..., Response]

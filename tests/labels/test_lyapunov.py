@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from rubgen.labels.decision import Indicators, decide
 from rubgen.labels.labels import Motion
-from rubgen.labels.lyapunov import BLOCKS, Exponent, lyapunov
+from rubgen.labels.motion.decision import Indicators, decide
+from rubgen.labels.motion.lyapunov import BLOCKS, Exponent, lyapunov
 
 SETTLING = 200
 """Periods before an oscillator is on its attractor."""

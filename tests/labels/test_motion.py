@@ -5,10 +5,10 @@ import pytest
 
 from rubgen.errors import UserError
 from rubgen.labels import Motion
-from rubgen.labels.chaos import chaos_indicator
-from rubgen.labels.clusters import cluster_distances, cluster_period, stray
-from rubgen.labels.decision import Indicators, MotionClass, combined, decide
-from rubgen.labels.motion import motion
+from rubgen.labels.motion.chaos import chaos_indicator
+from rubgen.labels.motion.classify import motion
+from rubgen.labels.motion.clusters import cluster_distances, cluster_period, stray
+from rubgen.labels.motion.decision import Indicators, MotionClass, combined, decide
 from rubgen.solver.response import Response
 
 Respond = Callable[..., Response]

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from rubgen.labels import Motion
-from rubgen.labels.motion import motion
-from rubgen.labels.symmetry import asymmetry, is_symmetric
+from rubgen.labels.motion.classify import motion
+from rubgen.labels.motion.symmetry import asymmetry, is_symmetric
 from rubgen.solver.response import Response
 
 Respond = Callable[..., Response]

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from rubgen.dataset.generate import generate
-from rubgen.dataset.open import DataSet
+from rubgen.dataset.making.generate import generate
+from rubgen.dataset.reading.open import DataSet
 from rubgen.errors import RubgenWarning
 from rubgen.pipeline import simulate
 from rubgen.scenario import Labelling, load_recipe, make_scenario, parse_recipe

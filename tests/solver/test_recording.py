@@ -3,7 +3,7 @@
 import numpy as np
 
 from rubgen.labels import label
-from rubgen.labels.plain import labels_dict
+from rubgen.labels.to_json import labels_dict
 from rubgen.scenario import ContactLaw
 from rubgen.scenario.taps import DEFAULT_TAPS, TipTiming
 from rubgen.solver.integrate import integrate

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rubgen.contact.geometry import blade_tips, casing_surface, node_radii
-from rubgen.labels.whirl import WhirlDirection, whirl
+from rubgen.labels.motion.whirl import WhirlDirection, whirl
 from rubgen.machine import load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from rubgen.errors import UserError
-from rubgen.labels.lyapunov import lyapunov
+from rubgen.labels.motion.lyapunov import lyapunov
 from rubgen.scenario import ContactLaw
 from rubgen.solver.fractions import turned_back
 from rubgen.solver.integrate import integrate

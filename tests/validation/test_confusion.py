@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rubgen.labels.labels import Motion
-from rubgen.labels.lyapunov import Exponent
+from rubgen.labels.motion.lyapunov import Exponent
 from rubgen.scenario import make_scenario
 from validation.confusion.__main__ import main
 from validation.confusion.runs import SERIES, SPEEDS_RPM, run_name, scenarios

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from rerun.chunk import RrdReader
 
-from rubgen.labels.plain import labels_dict
+from rubgen.labels.to_json import labels_dict
 from rubgen.machine import Unbalance
 from rubgen.sensors.contact_window import contact_intervals
 from rubgen.viz.machine_shape import blade_leanings, blade_placements, drawing_factor

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rubgen.labels.clusters import CLUSTER_RADIUS
+from rubgen.labels.motion.clusters import CLUSTER_RADIUS
 from rubgen.viz.colors import BLUE, GREEN, GREY, ORANGE, VERMILION
 from validation.confusion.runs import SERIES, run_name
 from validation.confusion.verdicts import AGREE, Case, ZeroOne

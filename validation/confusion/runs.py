@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rubgen.dataset.workers import unordered, worker_pool
-from rubgen.labels.kept import Kept, keep
+from rubgen.dataset.making.workers import unordered, worker_pool
+from rubgen.labels.compact_record import Kept, keep
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario, make_scenario
 from rubgen.scenario.vary import vary

@@ -8,8 +8,11 @@ from enum import StrEnum
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.labels.chaos import CHAOTIC_FROM, ROUNDING, principal_components
-from rubgen.labels.clusters import (
+from rubgen.labels.compact_record import Kept, response_of
+from rubgen.labels.labels import Motion
+from rubgen.labels.motion.chaos import CHAOTIC_FROM, ROUNDING, principal_components
+from rubgen.labels.motion.classify import Motions, blisk_points, casing_points, motion
+from rubgen.labels.motion.clusters import (
     CLUSTER_RADIUS,
     EXCURSION,
     LONGEST_PERIOD,
@@ -18,10 +21,7 @@ from rubgen.labels.clusters import (
     rms,
     without_periodic_part,
 )
-from rubgen.labels.kept import Kept, response_of
-from rubgen.labels.labels import Motion
-from rubgen.labels.lyapunov import Exponent, lyapunov_of
-from rubgen.labels.motion import Motions, blisk_points, casing_points, motion
+from rubgen.labels.motion.lyapunov import Exponent, lyapunov_of
 from rubgen.solver.response import Response
 
 LONG_PERIODS = range(LONGEST_PERIOD + 1, 65)

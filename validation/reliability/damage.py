@@ -160,7 +160,7 @@ def _signals(directory: Path, run_id: str) -> object:
 
 
 def _replay(directory: Path, run_id: str) -> object:
-    from rubgen.dataset.replaying import find_replay
+    from rubgen.dataset.reading.replaying import find_replay
 
     found = find_replay(directory, run_id)
     channels = found.replay.recording.channels.items()
@@ -168,7 +168,7 @@ def _replay(directory: Path, run_id: str) -> object:
 
 
 def _labels(directory: Path) -> object:
-    from rubgen.dataset.relabel import relabel
+    from rubgen.dataset.checking.relabel import relabel
 
     return None if relabel(directory).differences else True
 

@@ -128,7 +128,7 @@ class Inputs:
         (self._copy / "manifest.json.sha256").write_text(f"{hashlib.sha256(content).hexdigest()}  manifest.json\n")
 
     def _mcap(self, generator: np.random.Generator) -> None:
-        from rubgen.dataset.replaying import find_replay
+        from rubgen.dataset.reading.replaying import find_replay
         from rubgen.io.mcap import check_mcap
 
         path = self.folder / "run.mcap"
@@ -165,8 +165,8 @@ class Inputs:
 
 def read_all(directory: Path) -> None:
     """Every way to read a set that needs no simulation; each may refuse in one line."""
-    from rubgen.dataset.relabel import relabel
-    from rubgen.dataset.replaying import find_runs, scenario_of
+    from rubgen.dataset.checking.relabel import relabel
+    from rubgen.dataset.reading.replaying import find_runs, scenario_of
 
     data = rubgen.open(directory)
     ways: tuple[Callable[[], object], ...] = (

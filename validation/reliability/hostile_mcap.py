@@ -14,7 +14,7 @@ from mcap.records import Attachment, Channel, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
 
-from rubgen.io.mcap_messages import message_class
+from rubgen.io.mcap.messages import message_class
 from validation.reliability.documents import json_bytes, mutated
 
 FLOATS = (float("nan"), float("inf"), -1.0, 0.0, 1e300, 1e-300, 2.0**53)

@@ -14,10 +14,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import rubgen
-from rubgen.dataset.consistency import label_problems, signal_problems
-from rubgen.dataset.impulse_check import Row, resolved_impulse, samples_per_turn, whole_turn_weights
-from rubgen.dataset.open import row_signals
-from rubgen.io.parquet import row_groups
+from rubgen.dataset.checking.consistency import label_problems, signal_problems
+from rubgen.dataset.checking.impulse_check import Row, resolved_impulse, samples_per_turn, whole_turn_weights
+from rubgen.dataset.reading.open import row_signals
+from rubgen.io.parquet.read import row_groups
 from rubgen.labels.labels import Motion
 from rubgen.scenario import Sensing
 from rubgen.scenario.sensor_set import load_sensor_set

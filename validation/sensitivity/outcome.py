@@ -9,7 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from rubgen.arrays import FloatArray
 from rubgen.labels import Labels, label
-from rubgen.labels.motion import blisk_points, casing_points, chaos_indicator, cluster_distances
+from rubgen.labels.motion.classify import blisk_points, casing_points, chaos_indicator, cluster_distances
 from rubgen.reduction import reduce
 from rubgen.reduction.reduced import ReducedModel
 from rubgen.scenario import Scenario

@@ -20,7 +20,7 @@ import numpy as np
 import scipy.linalg as la
 
 from rubgen.arrays import FloatArray
-from rubgen.labels.lyapunov import Exponent, lyapunov
+from rubgen.labels.motion.lyapunov import Exponent, lyapunov
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver.integrate import integrate
 from rubgen.solver.twin_kernels import bring_back

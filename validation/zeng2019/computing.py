@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 from threadpoolctl import threadpool_limits
 
-from rubgen.dataset.workers import unordered, worker_pool
+from rubgen.dataset.making.workers import unordered, worker_pool
 from rubgen.scenario import Scenario
 from validation.zeng2019.piece import Arrays, Piece
 from validation.zeng2019.store import Store

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.labels.contact_zones import BINS, impulse_histogram
+from rubgen.labels.contact.zones import BINS, impulse_histogram
 from rubgen.solver.response import ContactEvents, Response
 
 SECTORS = 120

@@ -6,7 +6,7 @@ import json
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-from rubgen.dataset.workers import usable_cores
+from rubgen.dataset.making.workers import usable_cores
 from rubgen.io.durable import write_durably
 from validation.zeng2019 import figure10, figure16, figure17, figure18, figures12to15
 from validation.zeng2019.computing import Progress, compute

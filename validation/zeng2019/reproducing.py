@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from rubgen.dataset.workers import usable_cores
+from rubgen.dataset.making.workers import usable_cores
 from rubgen.errors import UserError
 from rubgen.io.durable import write_durably
 from validation.zeng2019.computing import Progress, compute

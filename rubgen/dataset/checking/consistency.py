@@ -1,0 +1,167 @@
+"""Whether labels, parameters and recorded signals of a run fit each other."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from rubgen.dataset.checking.impulse_check import (
+    Row,
+    duty_fits,
+    exponents_fit,
+    impulse_problems,
+    window_times_fit,
+    windows_fit,
+)
+from rubgen.dataset.checking.order_check import NOISE_PEAK, order_problems
+from rubgen.labels.contact.amounts import RubExtent
+from rubgen.labels.harmonics import FLOOR, MARKED_TAP, RATIO
+from rubgen.labels.labels import Motion
+from rubgen.scenario import Sensing
+from rubgen.scenario.sensors import OncePerRev, Proximity, SampledSensor
+from rubgen.sensors.channel import Float32Array
+from rubgen.sensors.once_per_rev import NOTCH_ANGLE
+from rubgen.sensors.registry import tap_of, usual_range
+
+REGULARITY = [motion.value for motion in Motion]
+SHARE_TOLERANCE = 1e-9
+PULSE_TOLERANCE = 1e-9
+IMPULSE_TOLERANCE = 1e-5
+"""Touches are kept in single precision."""
+ENERGY_TOLERANCE = 1e-8
+
+
+def label_problems(row: Row) -> Iterator[str]:
+    """What contradicts itself in the labels of a valid run."""
+    rules = {
+        "contact_duty outside [0, 1]": 0 <= row["contact_duty"] <= 1,
+        "rub and contact_duty": row["rub"] == (row["contact_duty"] > 0),
+        "rub and contact_impulse_per_turn_n_s": row["rub"] == (row["contact_impulse_per_turn_n_s"] > 0),
+        "rub and blades_touched": row["rub"] == (row["blades_touched"] > 0),
+        "rub and contact_zones": row["rub"] == (row["contact_zones"] > 0),
+        "contact_zones and its centres": row["contact_zones"] == len(row["contact_zone_centres_rad"]),
+        "contact_zones and its widths": row["contact_zones"] == len(row["contact_zone_widths_rad"]),
+        "rub and rub_extent": row["rub"] == (row["rub_extent"] != RubExtent.NONE.value),
+        "contact_touches and blade_touches": row["contact_touches"] == sum(row["blade_touches"]),
+        "blades_touched and blade_touches": row["blades_touched"] == sum(count > 0 for count in row["blade_touches"]),
+        "blade_impulses_per_turn_n_s and contact_impulse_per_turn_n_s": math.isclose(
+            sum(row["blade_impulses_per_turn_n_s"]),
+            row["contact_impulse_per_turn_n_s"],
+            rel_tol=IMPULSE_TOLERANCE,
+            abs_tol=IMPULSE_TOLERANCE,
+        ),
+        "contact_impulse_per_turn_n_s and its windows": windows_fit(row),
+        "contact_duty and its windows": duty_fits(row),
+        "windows and speed_rpm": window_times_fit(row),
+        "lyapunov_per_second and lyapunov_per_turn": exponents_fit(row),
+        "has_2fr without rub": row["rub"] or not row["has_2fr"],
+        "motion is not the less regular of the two": _rank(row["motion"])
+        == max(_rank(row["motion_blisk"]), _rank(row["motion_casing"])),
+        "has_2fr and orders_present": row["has_2fr"] == (2 in row["orders_present"]),
+        "energy_residual": row["energy_residual"] <= ENERGY_TOLERANCE,
+    }
+    rules |= {f"{which} and its period": _period_fits(row, which) for which in ("", "_blisk", "_casing")}
+    rules["period is not the least common multiple"] = _common_period(row)
+    rules["orders_present and the orders of casing_acc_0"] = _present_fit(row)
+    for tap in (name.removesuffix("_orders") for name in row if name.endswith("_orders")):
+        rules[f"shares or dominant order of {tap}"] = _shares_fit(row, tap)
+    yield from (name for name, holds in rules.items() if not holds)
+
+
+def signal_problems(row: Row, signals: dict[str, Float32Array], sensing: Sensing) -> Iterator[str]:
+    """What contradicts itself between the labels of a valid run and its channels, recorded as `sensing` says.
+
+    Compared with the labels are channels that did not reach their range, of sensors without faults but noise.
+    """
+    lengths = {values.size for values in signals.values()}
+    if len(lengths) > 1:
+        yield f"channels of different lengths {sorted(lengths)}"
+    for sensor in sensing.set.sensors:
+        if isinstance(sensor, OncePerRev):
+            yield from _pulse_problems(row, sensor, signals[sensor.name])
+        if isinstance(sensor, SampledSensor):
+            values = signals[sensor.name]
+            if not np.isfinite(values).all():
+                yield f"{sensor.name} is not finite"
+            elif is_faultless(sensor, sensing) and _within_range(values, *usual_range(sensor)):
+                yield from _sensor_problems(row, sensor, values, sensing)
+
+
+def is_faultless(sensor: SampledSensor, sensing: Sensing) -> bool:
+    """Whether a sensor, in SI units, gives the truth but for noise, range and ADC."""
+    usual = dataclasses.asdict(dataclasses.replace(sensor, range=None, noise_rms=0.0, adc_bits=None))
+    plain = {field.name: field.default for field in dataclasses.fields(SampledSensor) if field.name in usual}
+    differs = [key for key, value in plain.items() if key not in ("name", "unit") and usual[key] != value]
+    disturbed = isinstance(sensor, Proximity) and bool(sensing.set.shaft_runout)
+    return not differs and not disturbed and sensor.UNITS[sensor.unit] == 1.0
+
+
+def _sensor_problems(row: Row, sensor: SampledSensor, values: Float32Array, sensing: Sensing) -> Iterator[str]:
+    low, high = usual_range(sensor)
+    step = (high - low) / 2 ** (sensor.adc_bits or sensing.adc_bits)
+    noise_rms, tap = sensing.noise * sensor.noise_rms, tap_of(sensor).name
+    if tap == "contact_force" and not row["rub"]:
+        limit = NOISE_PEAK * noise_rms + step
+        if np.abs(values).max() > limit:
+            yield f"rub is false, but {sensor.name} reaches {np.abs(values).max():.4g} N (noise allows {limit:.4g})"
+    repeats = row["motion"] == Motion.PERIOD_1.value and not row["change_times_s"]
+    if tap == "contact_force" and repeats and row["rub"]:
+        yield from impulse_problems(row, values, noise_rms, step)
+    if not row["change_times_s"]:  # of a changing speed
+        yield from order_problems(row, tap, values, noise_rms, step)
+
+
+def _pulse_problems(row: Row, sensor: OncePerRev, pulses: Float32Array) -> Iterator[str]:
+    times = np.asarray(row["once_per_rev_s"])
+    turn = 60 / row["speed_rpm"]
+    exact = sensor.jitter_s == 0 and sensor.clock_hz == 0 and not row["change_times_s"]
+    if exact and not np.allclose(np.diff(times), turn, rtol=0, atol=PULSE_TOLERANCE * max(1.0, turn)):
+        yield "once_per_rev_s is not spaced by one turn"
+    rises = int(np.count_nonzero((pulses[1:] > 0) & (pulses[:-1] == 0)))
+    shortest = np.diff(times).min(initial=turn)
+    shows_each = shortest * row["sample_rate_hz"] * NOTCH_ANGLE / (2 * np.pi) >= 1
+    if shows_each and abs(rises - times.size) > 1:
+        yield f"{sensor.name} has {rises} pulses, once_per_rev_s has {times.size}"
+
+
+def _within_range(values: Float32Array, low: float, high: float) -> bool:
+    margin = (high - low) * 1e-3
+    least = low + margin if low < 0 else -math.inf
+    return bool(values.min() > least and values.max() < high - margin)
+
+
+def _rank(motion: str) -> int:
+    return REGULARITY.index(motion)
+
+
+def _period_fits(row: Row, which: str) -> bool:
+    motion, period = row[f"motion{which}"], row[f"period{which}"]
+    if motion == Motion.PERIOD_1.value:
+        return bool(period == 1)
+    if motion == Motion.PERIOD_K.value:
+        return period is not None and period > 1
+    return period is None
+
+
+def _common_period(row: Row) -> bool:
+    if row["motion"] not in (Motion.PERIOD_1.value, Motion.PERIOD_K.value):
+        return row["period"] is None
+    return bool(row["period"] == math.lcm(row["period_blisk"] or 1, row["period_casing"] or 1))
+
+
+def _present_fit(row: Row) -> bool:
+    orders, floors = (np.asarray(row[f"{MARKED_TAP}_{kind}"]) for kind in ("orders", "order_floors"))
+    stands = np.flatnonzero((orders > FLOOR) & (orders >= RATIO * floors)) + 1
+    return bool(row["orders_present"] == (stands.tolist() if row["rub"] else []))
+
+
+def _shares_fit(row: Row, tap: str) -> bool:
+    orders = np.asarray(row[f"{tap}_orders"])
+    even, odd = row[f"{tap}_even_share"], row[f"{tap}_odd_share"]
+    if not orders.any():
+        return even is None and odd is None and row[f"{tap}_dominant_order"] == 0
+    total = math.nan if even is None or odd is None else even + odd
+    return bool(abs(total - 1) < SHARE_TOLERANCE and row[f"{tap}_dominant_order"] == int(orders.argmax()) + 1)

@@ -1,0 +1,105 @@
+"""Labels of a data set made again from what is kept with each run, and how they differ from those that it holds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.manifest import read_manifest
+from rubgen.dataset.rows import asked_bytes
+from rubgen.errors import UserError
+from rubgen.io.columns import ORDER_SUFFIXES
+from rubgen.io.parquet.read import row_groups
+from rubgen.io.parquet.sections import SCHEMA, kept_of
+from rubgen.labels.to_json import remade_labels
+
+RELATIVE, ABSOLUTE = 1e-9, 1e-12
+"""Numbers within this of each other are equal: another machine's BLAS rounds differently."""
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A label of a run: as it stands in `runs.parquet`, and made again."""
+
+    run_id: str
+    label: str
+    stands: object
+    again: object
+
+
+@dataclass(frozen=True, kw_only=True)
+class Relabelled:
+    """How many runs and labels were made again, and where they differ."""
+
+    runs: int
+    labels: int
+    differences: tuple[Difference, ...]
+
+
+def relabel(directory: Path) -> Relabelled:
+    """Make the labels of every good run again, all but those of orders, which need the signals at every step.
+
+    The data set is only read. Raises UserError where `directory` holds no finished data set, or one without sections.
+    """
+    layout = Layout(directory)
+    manifest = read_manifest(layout)
+    sections, asked = manifest.listed("sections"), asked_bytes(manifest.identity.recorded(str(layout.manifest)))
+    runs = labels = 0
+    found: list[Difference] = []
+    for row, section in zip_longest(_good_rows(layout), _remade(layout, sections, asked)):
+        run_id, again = section or ("", {})
+        if row is None or row["run_id"] != run_id:
+            name = row["run_id"] if row else run_id
+            raise UserError(f"{layout.root}: sections/ and runs.parquet differ at {name}; check it: rubgen verify")
+        runs, labels = runs + 1, labels + len(again)
+        found += [
+            Difference(run_id, name, row.get(name), value)
+            for name, value in again.items()
+            if name not in row or not equal(row[name], value)
+        ]
+    return Relabelled(runs=runs, labels=labels, differences=tuple(found))
+
+
+def _good_rows(layout: Layout) -> Iterator[dict[str, Any]]:
+    """The runs that ended well, in order, without the columns of orders."""
+    for table in row_groups(layout.runs):
+        names = [name for name in table.schema.names if not name.endswith(ORDER_SUFFIXES)]
+        yield from (row for row in table.select(names).to_pylist() if row["status"] == "ok")
+
+
+def _remade(layout: Layout, names: list[str], asked: float) -> Iterator[tuple[str, dict[str, object]]]:
+    """Name and labels of each run with a section."""
+    if not names:
+        raise UserError(f"{layout.root}: no sections/ to make labels from; generate the set again with this rubgen")
+    for path in (layout.root / name for name in names):
+        for table in row_groups(path, asked):
+            if not table.schema.equals(SCHEMA):
+                raise UserError(f"{path}: its columns are not those of this rubgen; generate the set again")
+            for row, run_id in enumerate(table["run_id"].to_pylist()):
+                yield run_id, _labels_of(table, row, path)
+
+
+def _labels_of(table: pa.Table, row: int, path: Path) -> dict[str, object]:
+    kept = kept_of(table, row, path)
+    try:
+        return remade_labels(kept)
+    except (ValueError, LookupError, ArithmeticError) as error:
+        reason = " ".join(f"{type(error).__name__} {error}".split())[:200]
+        run_id = table["run_id"][row].as_py()
+        raise UserError(f"{path}: {run_id}: labels cannot be made ({reason}); generate the set again") from None
+
+
+def equal(one: object, other: object) -> bool:
+    """Whether two labels are the same, numbers but for rounding."""
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(equal, one, other))
+    if isinstance(one, float) and isinstance(other, float):
+        return math.isclose(one, other, rel_tol=RELATIVE, abs_tol=ABSOLUTE)
+    return one == other

@@ -1,0 +1,95 @@
+"""What is made from the data files of a set, made again where it is lost or damaged."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from rubgen.dataset.card import card
+from rubgen.dataset.checking.inventory import Finding
+from rubgen.dataset.checking.verify import findings
+from rubgen.dataset.croissant import croissant
+from rubgen.dataset.files import json_text, write_text
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.manifest import Manifest, identity_of, read_manifest, write_derived
+from rubgen.dataset.reading.open import DataSet
+from rubgen.dataset.reading.replaying import replay_of_mcap, scenario_of
+from rubgen.errors import UserError, write_problems
+from rubgen.io.durable import write_durably
+
+
+@dataclass(frozen=True, kw_only=True)
+class Repaired:
+    """Paths of the files that were made again, and what is still wrong."""
+
+    made: tuple[str, ...]
+    left: tuple[Finding, ...]
+
+
+def repair(directory: Path) -> Repaired:
+    """Make README.md, croissant.json, .rrd files and their digests again where they are not as they were written.
+
+    README.md and croissant.json come out with the bytes that the manifest lists, or stay as they are. An .rrd file is
+    made from its MCAP file where that is whole, else the run is simulated again, which takes the versions that made the
+    set. No other file is changed and none is deleted.
+    Raises UserError where `directory` holds no finished data set, its manifest is damaged, or it cannot be written.
+    """
+    layout = Layout(directory)
+    manifest = read_manifest(layout)
+    before = findings(directory)
+    wrong = {finding.path for finding in before if finding.path}
+    with write_problems(directory, advice="make it writable"):
+        made = list(_texts(layout, manifest, wrong))
+        made += _recordings(layout, manifest, wrong)
+    return Repaired(made=tuple(made), left=tuple(findings(directory) if made else before))
+
+
+def _texts(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[str]:
+    """README.md and croissant.json, each only where it comes out as the manifest lists it."""
+    listed = {entry.path: entry.sha256 for entry in manifest.files}
+    texts = {}
+    if layout.card.name in wrong:
+        texts[layout.card] = card(manifest.identity, manifest.status)
+    if layout.croissant.name in wrong and layout.runs.name not in wrong:
+        texts[layout.croissant] = json_text(croissant(layout, manifest.identity))
+    for path, text in texts.items():
+        if hashlib.sha256(text.encode()).hexdigest() == listed[path.name]:
+            write_text(path, text)
+            yield path.name
+
+
+def _recordings(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[str]:
+    """The .rrd files that are not proven whole, and then their digests."""
+    data, left = DataSet(layout.root), False
+    for name in manifest.derived:
+        if name in wrong or layout.derived.name in wrong:
+            done = _make_recording(data, name, wrong)
+            left |= not done
+            yield from [name] if done else []
+    if not left and write_derived(layout, manifest.derived):
+        yield layout.derived.name
+
+
+def _make_recording(data: DataSet, name: str, wrong: set[str]) -> bool:
+    """Make one .rrd file again; whether that could be done."""
+    from rubgen.viz.replay import replay_of
+    from rubgen.viz.rerun import write_replay
+
+    path = data.layout.root / name
+    mcap = data.layout.export("mcap", path.stem)
+    source = mcap.relative_to(data.layout.root).as_posix()
+    if source in data.manifest.listed("mcap") and source not in wrong:
+        replay = replay_of_mcap(mcap).replay
+    elif identity_of(data.manifest.identity.recorded()).packages == data.manifest.identity.packages:
+        from rubgen.pipeline import simulate
+
+        replay = replay_of(simulate(scenario_of(data, path.stem)))
+    else:
+        return False
+    path.parent.mkdir(exist_ok=True)
+    if not path.parent.resolve().is_relative_to(data.layout.root.resolve()):
+        raise UserError(f"{path.parent}: is a link out of the set; remove the link")
+    write_durably(path, lambda part: write_replay(replay, part))
+    return True

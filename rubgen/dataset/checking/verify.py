@@ -1,0 +1,86 @@
+"""Whether a data set is what its manifest says, readable to the last page, and consistent in itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from rubgen.dataset.checking.inventory import Finding, Kind, derived_digests, file_findings, strangers
+from rubgen.dataset.checking.table_check import table_problems
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.manifest import Manifest, read_manifest
+from rubgen.errors import UserError
+
+
+def verify(directory: Path) -> list[str]:
+    """Every problem of the data set in `directory`, one line each; empty when there is none.
+
+    Checked: format and digest of the manifest; presence, size and sha256 of every file that it lists, the .rrd files
+    by derived.json; that nothing else lies there and no link leads out; pages of every Parquet file, with the runs of
+    a damaged row group; CRCs of every MCAP file; that MCAP and .rrd files are of the run in their name; schemas and
+    row counts; labels against each other; labels against the recorded channels. Only regular files are opened.
+    Raises UserError where `directory` holds no finished data set, or its manifest is damaged.
+    """
+    return [finding.text for finding in findings(directory)]
+
+
+def findings(directory: Path) -> list[Finding]:
+    """The problems of `verify`, each with what it asks for."""
+    layout = Layout(directory)
+    manifest = read_manifest(layout)
+    found = list(file_findings(layout, manifest))
+    found += strangers(layout, manifest)
+    closed = {finding.path for finding in found if finding.closed}
+    found += (Finding(text=text) for text in table_problems(layout, manifest, closed))
+    for name in manifest.listed("mcap"):
+        if name not in closed:
+            found += (Finding(text=f"{name}: {problem}") for problem in _mcap_problems(layout.root / name))
+    return [*found, *_recording_findings(layout, manifest, {finding.path for finding in found})]
+
+
+def advice(directory: Path, found: list[Finding]) -> str:
+    """What to do about these findings; nothing whole is to be deleted."""
+    kinds = {finding.kind for finding in found}
+    sentences = {
+        Kind.DATA: (
+            f"data are damaged: make this set again in a new directory (rubgen generate RECIPE --out NEW; its recipe "
+            f"stands in {directory / 'manifest.json'} at identity.recipe); with the same versions each file there has "
+            "the bytes that the manifest here lists"
+        ),
+        Kind.DERIVED: f"what is made from the data files is made again by: rubgen repair {directory}",
+        Kind.STRANGE: "files that are not listed are no part of the set: move them elsewhere",
+    }
+    whole = [] if Kind.DATA in kinds else ["the data files are whole"]
+    return "; ".join([*whole, *(text for kind, text in sentences.items() if kind in kinds)])
+
+
+def _mcap_problems(path: Path) -> Iterator[str]:
+    from rubgen.io.mcap import check_mcap
+    from rubgen.io.mcap.read import read_mcap
+
+    problems = check_mcap(path)
+    yield from problems
+    if problems:
+        return
+    try:
+        index = read_mcap(path).scenario.get("index")
+    except UserError as error:
+        yield str(error)
+        return
+    held = f"run-{index:06d}" if isinstance(index, int) else "no run that rubgen numbers"
+    if path.stem != held:
+        yield f"holds {held}"
+
+
+def _recording_findings(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[Finding]:
+    """What is wrong in .rrd files; one that has its digest is as rubgen wrote it, and is safe to read here."""
+    if not manifest.derived:
+        return
+    from rubgen.viz.rerun import check_rrd, content_problems
+
+    digests, _ = derived_digests(layout, manifest)
+    for name in manifest.derived:
+        if name not in wrong:
+            path = layout.root / name
+            problems = content_problems(path, path.stem) if name in digests else check_rrd(path, path.stem)
+            yield from (Finding(text=f"{name}: {each}", kind=Kind.DERIVED, path=name) for each in problems)

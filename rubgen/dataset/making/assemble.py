@@ -1,0 +1,87 @@
+"""From finished runs to the files of the set, a few runs in memory at a time."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+import pyarrow as pa
+
+from rubgen.dataset.layout import RUNS_PER_ROW_GROUP, RUNS_PER_SHARD, Layout
+from rubgen.dataset.rows import asked_bytes
+from rubgen.errors import RubgenError, UserError
+from rubgen.io.durable import sync_directory
+from rubgen.io.parquet.read import read_table
+from rubgen.io.parquet.sections import SCHEMA
+from rubgen.io.parquet.write import schema, write_table
+from rubgen.scenario import Recipe
+
+T = TypeVar("T")
+ROWS_PER_TABLE_GROUP = 4096
+
+
+def assemble(recipe: Recipe, layout: Layout) -> Counter[str]:
+    """Write `runs.parquet`, data files and sections from the staged runs; gives how many ended with which status."""
+    staged = [layout.staged(f"run-{index:06d}") for index in range(recipe.runs)]
+    sensors, asked = recipe.sensing.set, asked_bytes(recipe)
+    status = _write_runs(staged, layout, schema(signals=False, sensors=sensors), asked)
+    valid = _valid(staged, asked)
+    if "parquet" in recipe.output.formats:
+        types = schema(signals=True, clean=recipe.sensors.keep_clean, sensors=sensors)
+        _write_shards(valid, valid, layout.shard, types, asked)
+        sync_directory(layout.data)
+    _write_shards([layout.staged_section(path.stem) for path in valid], valid, layout.section_shard, SCHEMA, asked)
+    sync_directory(layout.sections)
+    sync_directory(layout.root)
+    return status
+
+
+def _write_runs(staged: Sequence[Path], layout: Layout, types: pa.Schema, asked: float) -> Counter[str]:
+    status: Counter[str] = Counter()
+
+    def tables() -> Iterator[pa.Table]:
+        for paths in _batches(staged, ROWS_PER_TABLE_GROUP):
+            table = pa.concat_tables([_read(path, path, types.names, asked) for path in paths]).combine_chunks()
+            status.update(table["status"].to_pylist())
+            yield table.cast(types)
+
+    write_table(tables(), types, layout.runs)
+    return status
+
+
+def _valid(staged: Sequence[Path], asked: float) -> list[Path]:
+    return [path for path in staged if read_table(path, ["status"], asked)["status"][0].as_py() == "ok"]
+
+
+def _write_shards(
+    staged: Sequence[Path],
+    rows: Sequence[Path],
+    name_of: Callable[[int, int], Path],
+    types: pa.Schema,
+    asked: float,
+) -> None:
+    """Files of staged tables of one row; `rows` are the staged runs that they belong to."""
+    shards = list(_batches(list(zip(staged, rows, strict=True)), RUNS_PER_SHARD)) or [[]]
+    for number, shard in enumerate(shards):
+        groups = (_joined(group, types, asked) for group in _batches(shard, RUNS_PER_ROW_GROUP))
+        write_table(groups, types, name_of(number, len(shards)))
+
+
+def _joined(group: Sequence[tuple[Path, Path]], types: pa.Schema, asked: float) -> pa.Table:
+    return pa.concat_tables([_read(path, row, types.names, asked) for path, row in group]).combine_chunks()
+
+
+def _read(path: Path, row: Path, names: list[str], asked: float) -> pa.Table:
+    """A staged table; where it is damaged its run counts no more as finished, and the next call makes it again."""
+    try:
+        return read_table(path, names, asked)
+    except UserError as error:
+        row.unlink(missing_ok=True)
+        raise RubgenError(f"{error}: give the same command again, it makes this run anew") from None
+
+
+def _batches(items: Sequence[T], size: int) -> Iterator[Sequence[T]]:
+    for start in range(0, len(items), size):
+        yield items[start : start + size]

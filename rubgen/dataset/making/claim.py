@@ -1,0 +1,174 @@
+"""Whose an output directory is: empty, ours and unfinished, ours and finished, or not ours."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from rubgen.dataset.files import is_system_file, remove_parts, write_json
+from rubgen.dataset.layout import FOLDERS, Layout
+from rubgen.dataset.making.claim_lock import acquired
+from rubgen.dataset.making.difference import check_same
+from rubgen.dataset.manifest import Identity, read_manifest
+from rubgen.errors import UserError
+from rubgen.io.durable import PART, sync_directory
+
+_STAGED = ("runs", "sections")
+"""Folders of `.staging`."""
+
+
+def finished(layout: Layout, identity: Identity) -> bool:
+    """Whether the directory already holds this very data set; UserError where it is the one of another recipe."""
+    if layout.manifest.exists() and layout.digest.exists():
+        check_same(layout, read_manifest(layout).identity, identity)
+        return True
+    return False
+
+
+@contextmanager
+def claimed(layout: Layout, identity: Identity) -> Iterator[None]:
+    """Hold the directory for this process alone; what was seen before may have changed.
+
+    Raises UserError where the directory is not ours, cannot be made, or another process holds it.
+    """
+    root = layout.root
+    _check_place(layout)
+    new = not root.exists()
+    root.mkdir(parents=True, exist_ok=True)
+    lock = acquired(_lock(layout))
+    if lock is None:
+        _check_begun(layout, identity)
+        raise UserError(f"--out {root}: another rubgen is writing there; wait for it or choose another")
+    try:
+        yield
+    finally:
+        try:
+            if not layout.staging.exists():  # all is done, or nothing was begun
+                with suppress(OSError):
+                    _lock(layout).unlink()
+        finally:
+            lock.release()
+        if new:
+            with suppress(OSError):  # it holds the set
+                root.rmdir()
+
+
+@contextmanager
+def begun(layout: Layout, identity: Identity) -> Iterator[None]:
+    """The folders of the set, made or found, within `claimed`. What was left half-written is removed.
+
+    `.staging` appears in one step with the identity in it: whenever the work stops, the same recipe goes on. What the
+    user must mend before the first run is finished leaves nothing behind.
+    """
+    if not layout.identity.exists():
+        _begin(layout, identity)
+    _check_begun(layout, identity)
+    kinds = [FOLDERS.get(kind, layout.data.name) for kind in identity.recipe["output"]["formats"]]
+    folders = [layout.sections, *(layout.root / kind for kind in kinds)]
+    for folder in folders:
+        folder.mkdir(exist_ok=True)
+    for folder in (layout.root, *folders, *(layout.staging / name for name in _STAGED)):
+        remove_parts(folder)
+    sync_directory(layout.root)
+    try:
+        yield
+    except UserError:
+        if not any((layout.staging / "runs").iterdir()):
+            _give_up(layout, folders)
+        raise
+
+
+def has_remains(layout: Layout) -> bool:
+    """Whether a stop at the very end left something beside the finished set."""
+    return any(layout.root.glob(f"{layout.staging.name}*"))
+
+
+def remove_staging(layout: Layout) -> None:
+    """Remove the finished runs of a set that is complete, and what a stop left of their folder."""
+    for folder in (layout.staging, _unborn(layout)):
+        if folder.exists():
+            shutil.rmtree(folder)
+
+
+def _begin(layout: Layout, identity: Identity) -> None:
+    if not _holds_nothing(layout):
+        raise _not_ours(layout)
+    remove_staging(layout)
+    for name in _STAGED:
+        (_unborn(layout) / name).mkdir(parents=True)
+    write_json(_unborn(layout) / layout.identity.name, identity.model_dump(mode="json"))
+    _unborn(layout).rename(layout.staging)
+    sync_directory(layout.root)
+
+
+def _give_up(layout: Layout, folders: Sequence[Path]) -> None:
+    shutil.rmtree(layout.staging)
+    for folder in folders:
+        with suppress(OSError):  # it holds what is not ours
+            folder.rmdir()
+
+
+def _unborn(layout: Layout) -> Path:
+    return layout.staging.with_name(f"{layout.staging.name}{PART}")
+
+
+def _lock(layout: Layout) -> Path:
+    return layout.staging.with_name(f"{layout.staging.name}.lock")
+
+
+def _check_place(layout: Layout) -> None:
+    """Raise UserError, before anything is written, where the directory is surely not ours."""
+    root = layout.root
+    if "\0" in str(root):
+        raise UserError(f"--out {str(root)!r}: has a NUL character in it; give another directory")
+    if root.is_symlink() and not root.exists():
+        raise UserError(f"--out {root}: is a link to {root.readlink()}, which is not there; give another directory")
+    if root.exists() and not root.is_dir():
+        raise UserError(f"--out {root}: is a file; give a new or empty directory")
+    if not (_is_ours(layout) or not root.exists() or _holds_nothing(layout) or _is_ours(layout)):
+        raise _not_ours(layout)
+
+
+def _is_ours(layout: Layout) -> bool:
+    # In this order: who finishes a set writes the digest before the identity goes.
+    return layout.identity.exists() or layout.digest.exists()
+
+
+def _not_ours(layout: Layout) -> UserError:
+    return UserError(f"--out {layout.root}: not empty and no data set of rubgen; give a new or empty directory")
+
+
+def _holds_nothing(layout: Layout) -> bool:
+    """Whether there is nothing but what systems leave anywhere, and what a stop in the first moments leaves."""
+    try:
+        return all(_is_nothing(layout, path) for path in layout.root.iterdir())
+    except FileNotFoundError:  # it vanished meanwhile: another rubgen is at work, the lock will tell
+        return True
+
+
+def _is_nothing(layout: Layout, path: Path) -> bool:
+    if is_system_file(path.name) or path == _unborn(layout) or path.name.startswith(_lock(layout).name):
+        return True
+    folders = {layout.staging.name, layout.sections.name, layout.data.name, *FOLDERS.values(), *_STAGED}
+    if path.name not in folders or path.is_symlink() or not path.is_dir():
+        return False
+    files = (below for below in path.rglob("*") if not (below.name in folders and below.is_dir()))
+    return all(is_system_file(file.name) or file.name == "lock" or PART in file.name for file in files)
+
+
+def _check_begun(layout: Layout, asked: Identity) -> None:
+    with suppress(FileNotFoundError):  # not begun yet, or just finished
+        check_same(layout, _read_identity(layout), asked, versions=True)
+
+
+def _read_identity(layout: Layout) -> Identity:
+    try:
+        return Identity.model_validate(json.loads(layout.identity.read_text(encoding="utf-8")))
+    except ValueError as error:
+        reason = " ".join(str(error).split())[:100]
+        raise UserError(
+            f"{layout.identity}: damaged ({reason}), so nothing tells what the runs there are; give another directory"
+        ) from None

@@ -1,0 +1,1 @@
+"""A finished data set is read: runs, signals, touches, replays."""

@@ -1,0 +1,228 @@
+"""A finished data set, read when it is asked for."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from html import escape
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyarrow as pa
+
+from rubgen.arrays import FloatArray
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.manifest import Manifest, read_manifest
+from rubgen.dataset.reading.runs_frame import runs_frame
+from rubgen.dataset.reading.runs_table import check_runs
+from rubgen.dataset.reading.stored_run import StoredRun, stored_run
+from rubgen.dataset.reading.touches import COLUMNS, touches_frame
+from rubgen.dataset.rows import RunRows, asked_bytes
+from rubgen.errors import UserError
+from rubgen.io.columns import signal_columns
+from rubgen.io.parquet.read import damage_named, read_table
+from rubgen.io.parquet.sections import SCHEMA
+from rubgen.io.parquet.write import schema
+from rubgen.machine.problems import nearest
+from rubgen.scenario import Recipe, Sensing
+from rubgen.sensors.channel import Float32Array
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+MOST_SHOWN = 5
+"""Runs that a notebook shows of a set."""
+PULSES = "once_per_rev_s"
+
+
+class DataSet:
+    """The data set in a directory; what is not asked for is not read.
+
+    `len(data)` counts its runs, failed ones too, `data[run_id]` is one of them, and iteration gives their names.
+    The set is what its manifest lists, whatever else lies in the directory.
+    """
+
+    def __init__(self, directory: Path) -> None:
+        """Raise UserError where `directory` holds no finished data set; read the manifest alone."""
+        self.layout = Layout(directory)
+        self.manifest: Manifest = read_manifest(self.layout)
+
+    def __len__(self) -> int:
+        return self.manifest.runs
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._numbers)
+
+    def __contains__(self, run_id: object) -> bool:
+        return run_id in self._numbers
+
+    def __getitem__(self, run_id: str) -> StoredRun:
+        """The run of that name; UserError where there is none."""
+        return stored_run(self, self.row(run_id))
+
+    @cached_property
+    def runs(self) -> pd.DataFrame:
+        """One row a run, failed ones too: parameters and labels. `run_id` is the index. See `runs_frame`."""
+        return runs_frame(self._table, self._sensing.set)
+
+    @property
+    def ok(self) -> pd.DataFrame:
+        """The good runs among `runs`: they have labels, signals and touches."""
+        return self.runs[self.runs["status"] == "ok"]
+
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """The unit of each recorded channel by its name, of the clean ones too where the set keeps them."""
+        columns = signal_columns(self._sensing.set, clean=self._sensing.keep_clean)
+        return {column.name: column.unit for column in columns if column.kind == "signal"}
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the recorded channels, of the clean ones too where the set keeps them."""
+        return tuple(self.units)
+
+    @property
+    def sample_rate_hz(self) -> float:
+        """Samples a second of every channel."""
+        return self._sensing.sample_rate_hz
+
+    def row(self, run_id: str) -> dict[str, Any]:
+        """One run's parameters and labels by column, as plain values; UserError where there is no such run."""
+        if run_id not in self:
+            raise UserError(f"{self.layout.root}: {self._no_such_run(run_id)}")
+        row: dict[str, Any] = self._table.slice(self._numbers[run_id], 1).to_pylist()[0]
+        return row
+
+    def signals(self, run_id: str, channels: Sequence[str] | None = None) -> dict[str, Float32Array]:
+        """The recorded channels of a run, each (n_samples,) in its unit of `units`, sample i at i / sample_rate_hz.
+
+        `channels` names those that are wanted; no other is decoded. Raises UserError where there is no such run or
+        channel, the run failed, a file is damaged, or the set has neither Parquet data nor MCAP files.
+        """
+        names = self._known(channels)
+        self.check_has_signals(run_id)
+        ((_, table),) = self._tables([run_id], names)
+        return row_signals(table, 0)
+
+    def touches(self, run_id: str) -> pd.DataFrame:
+        """One row a touch of a blade within the whole record, in order of its start. See `touches_frame`.
+
+        Raises UserError where there is no such run, it failed, or the file is damaged.
+        """
+        self.check_has_signals(run_id)
+        ((_, table),) = self._sections.each([run_id], COLUMNS)
+        with damage_named(self._sections.places[run_id].file):
+            return touches_frame(table, self._sensing, self._recipe.output.signal_seconds)
+
+    def each_channel(self, name: str) -> Iterator[tuple[str, Float32Array, FloatArray]]:
+        """Name of the run, samples of one channel and arrival times (s) of the pulses, run by run.
+
+        Only what is asked for is read. Raises UserError where that channel was not recorded.
+        """
+        names = self._known([name])
+        for run_id, table in self._tables(list(self.ok.index), names):
+            yield run_id, row_signals(table, 0)[name], np.asarray(table[PULSES][0].values, dtype=np.float64)
+
+    def check_has_signals(self, run_id: str) -> None:
+        """Raise UserError where there is no such run, or it failed."""
+        row = self.row(run_id)
+        if row["status"] != "ok":
+            failed = f"{run_id} failed ({row['status']}: {row['reason']}) and has no signals"
+            raise UserError(f"{self.layout.root}: {failed}; choose a run with status ok")
+
+    @cached_property
+    def _recipe(self) -> Recipe:
+        return self.manifest.identity.recorded()
+
+    @property
+    def _sensing(self) -> Sensing:
+        return self._recipe.sensing
+
+    @cached_property
+    def _table(self) -> pa.Table:
+        types = schema(signals=False, sensors=self._sensing.set)
+        table = read_table(self.layout.runs, types.names)
+        with damage_named(self.layout.runs):
+            table = table.cast(types)
+        check_runs(table, self.manifest, self.layout.runs)
+        return table
+
+    @cached_property
+    def _numbers(self) -> dict[str, int]:
+        """The row of each run."""
+        return {run_id: number for number, run_id in enumerate(self._table["run_id"].to_pylist())}
+
+    @cached_property
+    def _data(self) -> RunRows:
+        types = schema(signals=True, clean=self._sensing.keep_clean, sensors=self._sensing.set)
+        return RunRows(
+            [self.layout.root / name for name in self.manifest.listed("data")], types, asked_bytes(self._recipe)
+        )
+
+    @cached_property
+    def _sections(self) -> RunRows:
+        return RunRows(
+            [self.layout.root / name for name in self.manifest.listed("sections")], SCHEMA, asked_bytes(self._recipe)
+        )
+
+    def _tables(self, run_ids: Sequence[str], names: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
+        """Channels and pulses of each run, from Parquet where the set has it, else from MCAP."""
+        if self._data.files:
+            yield from self._data.each(run_ids, [*names, PULSES])
+            return
+        from rubgen.io.mcap import read_mcap
+
+        listed = self.manifest.listed("mcap")
+        for run_id in run_ids:
+            if f"mcap/{run_id}.mcap" not in listed:
+                raise UserError(
+                    f"{self.layout.root}: has no files with signals; generate it with formats parquet or mcap"
+                )
+            path = self.layout.export("mcap", run_id)
+            run = read_mcap(path, channels=names)
+            if run_id != f"run-{run.scenario.get('index'):06d}":
+                raise UserError(f"{path}: holds the run of index {run.scenario.get('index')}; run rubgen verify")
+            found = run.signals | {f"{name}_clean": values for name, values in run.clean.items()}
+            yield run_id, pa.table({name: [found[name]] for name in names} | {PULSES: [run.once_per_rev]})
+
+    def _known(self, channels: Sequence[str] | None) -> tuple[str, ...]:
+        if isinstance(channels, str):
+            raise UserError(f"channels = {channels!r}: give a list of names, [{channels!r}]")
+        for name in channels or ():
+            if name not in self.units:
+                raise UserError(f"{self.layout.root}: no channel {name!r}; {nearest(name, list(self.channels))}")
+        return self.channels if channels is None else tuple(channels)
+
+    def _no_such_run(self, run_id: object) -> str:
+        digits = re.sub(r"[^0-9]", "", str(run_id))[:9]
+        meant = f"run-{int(digits or -1):06d}"
+        hint = f"did you mean {meant}? " if meant in self else ""
+        return f"no run {run_id!r}; {hint}give one of {', '.join(islice(self, 3))}{', ...' if len(self) > 3 else ''}"
+
+    def __repr__(self) -> str:
+        status = ", ".join(f"{count} {name}" for name, count in self.manifest.status.items())
+        return (
+            f"Data set {self.manifest.name!r} in {self.layout.root}: {len(self)} runs ({status}), "
+            f"{len(self.channels)} channels at {self.sample_rate_hz:g} Hz"
+        )
+
+    def _repr_html_(self) -> str:
+        from rubgen.viz.figures.data_set import varied_keys
+
+        shown = [*(varied_keys(self.runs) or ["speed_rpm"]), "rub", "motion", "contact_impulse_per_turn_n_s", "status"]
+        table: str = self.runs[shown].head(MOST_SHOWN).to_html()
+        return f"<p>{escape(repr(self))}</p>{table}"
+
+
+def is_signal(field: Any) -> bool:
+    """Whether this Arrow field holds a recorded channel."""
+    return bool(pa.types.is_list(field.type) and field.type.value_type == pa.float32())
+
+
+def row_signals(table: pa.Table, row: int) -> dict[str, Float32Array]:
+    """The channels of one row of a data table."""
+    names = [field.name for field in table.schema if is_signal(field)]
+    return {name: np.asarray(table[name][row].values, dtype=np.float32) for name in names}

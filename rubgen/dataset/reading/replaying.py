@@ -1,0 +1,193 @@
+"""Runs to look at: out of a data set, an MCAP file, or made again from their scenario."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+
+from rubgen.arrays import FloatArray
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.reading.open import DataSet
+from rubgen.errors import UserError
+from rubgen.io.mcap.read import McapRun
+from rubgen.io.parquet.read import read_table
+from rubgen.scenario import Scenario
+from rubgen.scenario.recipe import check_recipe
+from rubgen.sensors.blade_tip_timing import TipTimes
+from rubgen.sensors.channel import Channel, Recording
+from rubgen.sensors.contact_window import ContactIntervals
+from rubgen.viz.replay import Replay, sorted_touches
+
+ONLY_READ: dict[str, bool | int | float | str | list[str]] = {
+    "enable_external_access": False,
+    "lock_configuration": True,
+}
+"""A condition sees the table of runs alone: no file, no setting."""
+MOST_MEANT = 5
+"""Columns that a mistaken condition is answered with."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Found:
+    """A replay, and what its reader should know: where it comes from, what of it is lost."""
+
+    replay: Replay
+    remarks: tuple[str, ...] = ()
+
+
+def find_replay(source: Path, run_id: str | None = None, where: str | None = None) -> Found:
+    """The run of an MCAP file, or of a data set: the named one, the first that meets `where`, else the first good one.
+
+    `where` is a condition in duckdb's SQL on the columns of `runs.parquet`. Raises UserError where there is no such
+    source or run, no run meets the condition, or it cannot be understood.
+    """
+    if source.is_dir():
+        return _from_data_set(source, run_id, where)
+    if run_id is not None or where is not None:
+        raise UserError(f"{source}: is one run, not a data set; leave out {run_id or '--where'}")
+    if source.suffix == ".rrd":
+        raise UserError(f"{source}: is a finished replay; open it with: rerun {source}")
+    return replay_of_mcap(source)
+
+
+def replay_of_mcap(path: Path) -> Found:
+    """The run in an MCAP file, as far as it can be read."""
+    from rubgen.io.mcap.salvage import salvage_mcap
+
+    run, lost = salvage_mcap(path)
+    remarks = tuple(f"{path} is damaged; lost: {piece}" for piece in lost)
+    return Found(replay=replay_of_recorded(run, source=str(path)), remarks=remarks)
+
+
+def replay_of_recorded(run: McapRun, *, source: str = "the file") -> Replay:
+    """A run read from an MCAP file as a replay; UserError where its scenario is not one of this rubgen."""
+    try:
+        scenario = TypeAdapter(Scenario).validate_python(run.scenario)
+    except ValidationError as error:
+        where = ".".join(str(part) for part in error.errors()[0]["loc"])
+        raise UserError(f"{source}: its scenario is of another rubgen ({where}); generate it again") from None
+    channels = {name: _channel(name, values, run) for name, values in run.signals.items()}
+    recording = Recording(
+        sample_rate_hz=run.sample_rate_hz,
+        rotation_angle=float(np.mod(-run.once_per_rev[:1].sum() * scenario.operation.speed_rad_per_s, 2 * np.pi)),
+        channels=channels,
+        once_per_rev=run.once_per_rev,
+        tip_timing={name: _timing(columns) for name, columns in run.tip_timing.items()},
+    )
+    return Replay(
+        scenario=scenario,
+        labels=run.labels,
+        recording=recording,
+        touches=_touches(run.contacts),
+        frames=run.frames,
+        motion_classes=run.motion_classes,
+    )
+
+
+def find_runs(data: DataSet, where: str) -> list[str]:
+    """Names of the good runs that meet a condition on the columns of `runs.parquet`, in order.
+
+    Raises UserError, with columns of like names, for a condition that duckdb does not understand.
+    """
+    import duckdb
+
+    runs = read_table(data.layout.runs)
+    query = f"SELECT run_id FROM runs WHERE status = 'ok' AND ({where}\n) ORDER BY run_id"  # noqa: S608
+    try:
+        with duckdb.connect(config=ONLY_READ) as connection:
+            connection.register("runs", runs)
+            return [str(row[0]) for row in connection.execute(query).fetchall()]
+    except duckdb.Error as error:
+        reason = str(error).splitlines()[0]
+        told = f"columns are those of {data.layout.card}{_meant(where, data.runs.columns)}"
+        raise UserError(f"--where {where!r}: {reason}; {told}") from None
+
+
+def _meant(where: str, columns: Iterable[str]) -> str:
+    """Names of columns near the words of a condition that are none, to say: a set has hundreds."""
+    known = set(columns)
+    words = [word for word in re.findall(r"[A-Za-z_]\w+", where) if word not in known]
+    near = [name for word in words for name in get_close_matches(word, known, n=3)]
+    return f", such as {', '.join(near[:MOST_MEANT])}" if near else ""
+
+
+def scenario_of(data: DataSet, run_id: str) -> Scenario:
+    """The scenario of a run, from the manifest's recipe and machine."""
+    return data.manifest.identity.recorded().scenario(int(run_id.removeprefix("run-")))
+
+
+def _from_data_set(directory: Path, run_id: str | None, where: str | None) -> Found:
+    data = DataSet(directory)
+    chosen, remarks = _choose(data, run_id, where)
+    path = Layout(directory).export("mcap", chosen)
+    if path.exists():
+        found = replay_of_mcap(path)
+        if found.replay.scenario.run_id != chosen:
+            raise UserError(f"{path}: holds {found.replay.scenario.run_id}; see `rubgen verify {directory}`")
+        return Found(replay=found.replay, remarks=(*remarks, *found.remarks))
+    from rubgen.pipeline import simulate
+    from rubgen.viz.replay import replay_of
+
+    check_recipe(data.manifest.identity.recorded(), str(data.layout.manifest))
+    run = simulate(scenario_of(data, chosen))
+    return Found(replay=replay_of(run), remarks=(*remarks, f"{chosen} has no MCAP file and was simulated again"))
+
+
+def _choose(data: DataSet, run_id: str | None, where: str | None) -> tuple[str, tuple[str, ...]]:
+    if run_id is not None and where is not None:
+        raise UserError(f"{run_id} and --where: give a run or a condition, not both")
+    if run_id is not None:
+        data.check_has_signals(run_id)
+        return run_id, ()
+    found = find_runs(data, where) if where else [str(run_id) for run_id in data.ok.index]
+    if not found:
+        what = f"meets {where!r}" if where else "is good"
+        raise UserError(f"{data.layout.root}: no run {what}; see `rubgen info {data.layout.root}`")
+    more = f"{len(found)} runs meet the condition, {found[0]} is shown" if where and len(found) > 1 else ""
+    return found[0], (more,) if more else ()
+
+
+def _channel(name: str, values: Any, run: McapRun) -> Channel:
+    facts = run.channels[name]
+    return Channel(
+        name=name,
+        unit=facts["unit"],
+        quantity=facts["quantity"],
+        axis=facts["axis"],
+        location=facts["location"],
+        range_min=float(facts["range_min"]),
+        range_max=float(facts["range_max"]),
+        resolution=float(facts["resolution"]),
+        noise_rms=float(facts.get("noise_rms", "0")),
+        values=values,
+        clean=run.clean.get(name),
+    )
+
+
+def _timing(columns: dict[str, FloatArray]) -> TipTimes:
+    return TipTimes(
+        time=columns["time_s"],
+        blade=columns["blade"].astype(np.int64),
+        true_displacement=columns["true_displacement_m"],
+    )
+
+
+def _touches(contacts: dict[str, FloatArray]) -> ContactIntervals:
+    return sorted_touches(
+        ContactIntervals(
+            blade=contacts["blade"].astype(np.int64),
+            start=contacts["start_s"],
+            duration=contacts["duration_s"],
+            angle=contacts["angle_rad"],
+            impulse=contacts["impulse_n_s"],
+            friction_loss=contacts["friction_loss_j"],
+            normal_loss=contacts["normal_loss_j"],
+        )
+    )

@@ -1,0 +1,66 @@
+"""One run of a data set, as it stands in the files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from rubgen.brief import html_table, number, table
+from rubgen.scenario.vary import KEYS
+from rubgen.sensors.channel import Float32Array
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rubgen.dataset.reading.open import DataSet
+
+SHOWN = ("rub", "motion", "contact_duty", "contact_impulse_per_turn_n_s", "blades_touched", "contact_zones", "whirl")
+"""Labels that a run is shown with."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class StoredRun:
+    """A run of a data set: parameters and labels as plain values; signals and touches are read when asked for."""
+
+    run_id: str
+    status: str
+    reason: str
+    parameters: dict[str, Any]
+    """The keys of `[vary]`."""
+    labels: dict[str, Any]
+    """What else `runs.parquet` says of the run; None where the run failed or a label is undefined."""
+    data: DataSet = field(repr=False)
+
+    def signals(self, channels: Sequence[str] | None = None) -> dict[str, Float32Array]:
+        """The recorded channels, or those named. See `DataSet.signals`."""
+        return self.data.signals(self.run_id, channels)
+
+    def touches(self) -> pd.DataFrame:
+        """One row a touch of a blade. See `DataSet.touches`."""
+        return self.data.touches(self.run_id)
+
+    def __repr__(self) -> str:
+        return table(f"{self.run_id} of {self.data.layout.root}", self._shown())
+
+    def _repr_html_(self) -> str:
+        return html_table(self.run_id, self._shown())
+
+    def _shown(self) -> dict[str, str]:
+        if self.status != "ok":
+            return {"status": f"{self.status}: {self.reason}"}
+        speed = self.parameters["speed_rpm"]
+        return {"speed_rpm": f"{speed:,.6g}", **{name: number(self.labels.get(name)) for name in SHOWN}}
+
+
+def stored_run(data: DataSet, row: dict[str, Any]) -> StoredRun:
+    """The run of that row of `runs.parquet`."""
+    own = ("run_id", "status", "reason", *KEYS)
+    return StoredRun(
+        run_id=row["run_id"],
+        status=row["status"],
+        reason=row["reason"],
+        parameters={key: row[key] for key in KEYS},
+        labels={name: value for name, value in row.items() if name not in own},
+        data=data,
+    )

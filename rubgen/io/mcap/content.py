@@ -1,0 +1,186 @@
+"""What an MCAP file holds, by name; what a file of rubgen must hold, as types."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mcap.records import Attachment, Channel, Message, Metadata, Schema
+
+from rubgen.arrays import FloatArray
+from rubgen.io.json_read import read_json
+from rubgen.io.mcap.foxglove import TRANSFORM, read_transform
+from rubgen.io.mcap.messages import PACKAGE, message_class
+from rubgen.io.mcap.multi_array import SCHEMA_NAME, read_multi_array
+from rubgen.io.mcap.records import DamageError, damage_found, read_records
+from rubgen.scenario import Scenario
+
+TIMING = "/blade_tip_timing/"
+"""Topics of timing probes begin so."""
+KINDS = {
+    "/raw/": "SampleBlock",
+    "/clean/": "SampleBlock",
+    TIMING: "BladePassage",
+    "/contact": "Contact",
+    "/once_per_rev": "OncePerRev",
+    "/labels/motion": "MotionLabel",
+    "/motion/frames": "MotionFrame",
+    "/motion/casing_modes": "CasingModes",
+}
+"""Message of each topic, or of all topics that begin so where the name ends with a stroke."""
+MOST_MESSAGES = 500_000
+"""A file may always hold so many; a larger one, one for every byte."""
+SLACK_S = 1.0
+"""Events may lie so far outside the recording."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class McapContent:
+    """All records of a file by name: messages by topic in file order, metadata, attachments, schema names by id."""
+
+    channels: dict[str, Channel] = field(default_factory=dict)
+    messages: dict[str, list[Message]] = field(default_factory=lambda: defaultdict(list))
+    metadata: dict[str, dict[str, str]] = field(default_factory=dict)
+    attachments: dict[str, bytes] = field(default_factory=dict)
+    schemas: dict[int, str] = field(default_factory=dict)
+
+    def topics(self, prefix: str) -> list[str]:
+        """The topics that begin so."""
+        return [topic for topic in self.channels if topic.startswith(prefix)]
+
+    def document(self, name: str) -> dict[str, Any]:
+        """The attachment of that name as a table of JSON; DamageError where it is missing or none."""
+        if name not in self.attachments:
+            raise DamageError(f"attachment {name} is missing: this is no run of rubgen")
+        with damage_found(f"attachment {name}"):
+            values = read_json(self.attachments[name])
+        if not isinstance(values, dict):
+            raise DamageError(f"attachment {name} is no table of names and values")
+        return values
+
+
+def read_content(path: Path, lost: list[str] | None = None) -> McapContent:
+    """Every record of the file, as `read_records` gives them; DamageError where names are not unique or unknown."""
+    content = McapContent()
+    topics: dict[int, str] = {}
+    messages: list[Message] = []
+    most = max(MOST_MESSAGES, path.stat().st_size)
+    for record in read_records(path, lost):
+        if isinstance(record, Schema):
+            content.schemas[record.id] = record.name
+        elif isinstance(record, Channel):
+            _add_channel(content, topics, record)
+        elif isinstance(record, Message):
+            messages.append(record)
+            if len(messages) > most:
+                raise DamageError(f"has more than {most:,} messages; that is no file of rubgen")
+        elif isinstance(record, Metadata):
+            _add("metadata", content.metadata, record.name, record.metadata)
+        elif isinstance(record, Attachment):
+            _add("attachment", content.attachments, record.name, record.data)
+    for message in messages:  # a channel may be described only in the summary, where its first chunk is lost
+        if message.channel_id in topics:
+            content.messages[topics[message.channel_id]].append(message)
+        elif lost is None:
+            raise DamageError(f"has messages of a channel {message.channel_id} that is not described")
+    return content
+
+
+def _add_channel(content: McapContent, topics: dict[int, str], record: Channel) -> None:
+    there = content.channels.get(record.topic)
+    if topics.get(record.id, record.topic) != record.topic or there not in (None, record):
+        raise DamageError(f"channel {record.topic!r:.80} or its number is described twice and differently")
+    topics[record.id], content.channels[record.topic] = record.topic, record
+
+
+def _add(kind: str, there: dict[str, Any], name: str, value: object) -> None:
+    if name in there:
+        raise DamageError(f"{kind} {name!r:.80} stands there twice")
+    there[name] = value
+
+
+def message_name(topic: str) -> str | None:
+    """The message that this topic carries; None for a topic that rubgen does not know."""
+    names = (name for key, name in KINDS.items() if topic == key or (key.endswith("/") and topic.startswith(key)))
+    return next(names, None)
+
+
+def rows(content: McapContent, topic: str) -> list[Any]:
+    """The decoded messages of a topic, none where it is missing; DamageError where schema or bytes do not fit."""
+    name = message_name(topic)
+    if name is None or topic not in content.channels:
+        return []
+    check_kind(content, topic, name)
+    kind = message_class(name)
+    with damage_found(f"{topic}: a message"):
+        return [kind.FromString(message.data) for message in content.messages.get(topic, [])]
+
+
+def check_kind(content: McapContent, topic: str, name: str) -> None:
+    """Raise DamageError where the topic does not carry messages rubgen.v1.`name`."""
+    _check_schema(content, content.channels[topic], f"{PACKAGE}.{name}", "protobuf")
+
+
+def check_other(content: McapContent, topic: str) -> None:
+    """Decode a topic that is there for other programs; DamageError where its bytes do not fit, or it is unknown."""
+    channel = content.channels[topic]
+    if topic == "/tf":
+        _check_schema(content, channel, TRANSFORM, "protobuf")
+        with damage_found(f"{topic}: a message"):
+            for message in content.messages.get(topic, []):
+                read_transform(message.data)
+    elif topic.startswith("/preview/"):
+        _check_schema(content, channel, SCHEMA_NAME, "cdr")
+        with damage_found(f"{topic}: a message"):
+            for message in content.messages.get(topic, []):
+                names, values = read_multi_array(message.data)
+                if ", ".join(names) != channel.metadata.get("names") or not np.isfinite(values).all():
+                    raise DamageError(
+                        f"{topic}: a message has other names than the channel, or values that are not finite"
+                    )
+    else:
+        raise DamageError(f"topic {topic!r:.80} is none of rubgen")
+
+
+def _check_schema(content: McapContent, channel: Channel, name: str, encoding: str) -> None:
+    found = content.schemas.get(channel.schema_id, name)
+    if (found, channel.message_encoding) != (name, encoding):
+        raise DamageError(
+            f"{channel.topic} carries {found!r:.80} in {channel.message_encoding!r:.20}, not {name} in {encoding}"
+        )
+
+
+def columns(content: McapContent, topic: str, scenario: Scenario) -> dict[str, FloatArray]:
+    """Fields of a topic's events, each (n_events,): finite, with blades that exist, within the recording, in order."""
+    found = rows(content, topic)
+    names = [each.name for each in message_class(message_name(topic) or "").DESCRIPTOR.fields]
+    values = {
+        name: np.array([getattr(row, name) for row in found], dtype=np.float64) for name in names if name != "timestamp"
+    }
+    check_order(content, topic)
+    for name, each in values.items():
+        if not np.isfinite(each).all():
+            raise DamageError(f"{topic}: {name} is not finite")
+    blades = scenario.machine.blades.count
+    if "blade" in values and (values["blade"] >= blades).any():
+        raise DamageError(f"{topic}: there is no blade {values['blade'].max():.0f}; the machine has {blades}")
+    start = values.get("start_s", values.get("time_s"))
+    if start is not None:
+        _check_times(topic, start, start + values.get("duration_s", 0.0), scenario.signal_seconds)
+    return values
+
+
+def _check_times(topic: str, start: FloatArray, end: FloatArray, seconds: float) -> None:
+    if (end < start).any() or (end < -SLACK_S).any() or (start > seconds + SLACK_S).any() or (end - start > 1e6).any():
+        raise DamageError(f"{topic}: an event lies outside the recording of {seconds:g} s, or ends before it begins")
+
+
+def check_order(content: McapContent, topic: str) -> None:
+    """Raise DamageError where times of a topic's messages run backwards."""
+    times = [message.log_time for message in content.messages.get(topic, [])]
+    if any(later < earlier for earlier, later in pairwise(times)):
+        raise DamageError(f"{topic}: messages are not in order of time")

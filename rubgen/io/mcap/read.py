@@ -1,0 +1,161 @@
+"""Runs back from MCAP files, with every checksum checked."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.errors import UserError
+from rubgen.io.mcap.content import (
+    TIMING,
+    McapContent,
+    check_kind,
+    check_order,
+    columns,
+    read_content,
+    rows,
+)
+from rubgen.io.mcap.documents import check_facts, checked_labels, checked_scenario
+from rubgen.io.mcap.frames import read_frames
+from rubgen.io.mcap.messages import read_sample_block
+from rubgen.io.mcap.records import DamageError, damage_found
+from rubgen.labels.labels import Motion
+from rubgen.scenario import Scenario
+from rubgen.sensors.channel import Float32Array
+from rubgen.sensors.motion_frames import MotionFrames
+
+MOTION_LABELS = ("motion", "motion_blisk", "motion_casing")
+
+
+@dataclass(frozen=True, kw_only=True)
+class McapRun:
+    """One run from an MCAP file.
+
+    `signals` and `clean` map a channel's name to its samples (n,), float32, in the unit that `channels[name]` names
+    beside quantity, axis, location and range. `contacts` maps a field of rubgen.v1.Contact to its values (n_events,);
+    `once_per_rev` (n_pulses,) in s. `tip_timing` maps a timing probe's name to fields of rubgen.v1.BladePassage.
+    `frames` is the motion, None where the file has none. `motion_classes` maps each of the labels `motion`,
+    `motion_blisk`, `motion_casing` to its classes with the times in s from which on they hold.
+    """
+
+    scenario: dict[str, Any]
+    labels: dict[str, Any]
+    sample_rate_hz: float
+    signals: dict[str, Float32Array]
+    clean: dict[str, Float32Array]
+    channels: dict[str, dict[str, str]]
+    contacts: dict[str, FloatArray]
+    once_per_rev: FloatArray
+    tip_timing: dict[str, dict[str, FloatArray]]
+    frames: MotionFrames | None
+    motion_classes: dict[str, list[tuple[float, str]]]
+
+
+def read_mcap(path: Path, *, channels: Collection[str] | None = None) -> McapRun:
+    """The run in the file at `path`; chunk, data and summary CRCs are validated, and that the content is a run's.
+
+    With `channels` (`<name>_clean` for a clean one) these alone are decoded, and the pulses, of all that was recorded.
+    Raises UserError, one line, when there is no such file, it is damaged, or no run of rubgen is in it.
+    """
+    try:
+        return run_of(read_content(path), channels=channels)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror}); give an existing .mcap file") from None
+    except DamageError as damage:
+        raise UserError(f"{path}: damaged or no run of rubgen ({damage}); generate it again") from None
+
+
+def run_of(content: McapContent, *, gaps: bool = False, channels: Collection[str] | None = None) -> McapRun:
+    """The run in these records, or `channels` of it; with `gaps` samples may be missing and are NaN.
+
+    Raises DamageError where it is none.
+    """
+    plain, scenario = checked_scenario(content)
+    if not content.topics("/raw/"):
+        raise DamageError("no channel under /raw")
+    if channels is not None:
+        content = _only(content, channels)
+    for topic in (*content.topics("/raw/"), *content.topics("/clean/")):
+        check_facts(content.channels[topic])
+    return McapRun(
+        scenario=plain,
+        labels=checked_labels(content),
+        sample_rate_hz=scenario.sensing.sample_rate_hz,
+        signals=_signals(content, "/raw/", scenario, gaps=gaps),
+        clean=_signals(content, "/clean/", scenario, gaps=gaps),
+        channels={topic.removeprefix("/raw/"): content.channels[topic].metadata for topic in content.topics("/raw/")},
+        contacts=columns(content, "/contact", scenario),
+        once_per_rev=columns(content, "/once_per_rev", scenario)["time_s"],
+        tip_timing={topic.removeprefix(TIMING): columns(content, topic, scenario) for topic in content.topics(TIMING)},
+        frames=read_frames(content, scenario),
+        motion_classes=_motion_classes(content),
+    )
+
+
+def _only(content: McapContent, channels: Collection[str]) -> McapContent:
+    """The content without the messages of all other channels and of what is no signal but a pulse."""
+    clean = {f"/clean/{name.removesuffix('_clean')}" for name in channels if name.endswith("_clean")}
+    topics = {"/once_per_rev", *(f"/raw/{name}" for name in channels), *clean}
+    return replace(
+        content,
+        channels={topic: channel for topic, channel in content.channels.items() if topic in topics},
+        messages={topic: messages for topic, messages in content.messages.items() if topic in topics},
+    )
+
+
+def _signals(content: McapContent, prefix: str, scenario: Scenario, *, gaps: bool) -> dict[str, Float32Array]:
+    """Samples of every channel under `prefix`, all of one length."""
+    topics = content.topics(prefix)
+    length = round(scenario.signal_seconds * scenario.sensing.sample_rate_hz) if gaps else None
+    signals = {
+        topic.removeprefix(prefix): _samples(content, topic, scenario.sensing.sample_rate_hz, length)
+        for topic in topics
+    }
+    if len({values.size for values in signals.values()}) > 1:
+        raise DamageError(f"channels under {prefix} differ in length")
+    return signals
+
+
+def _samples(content: McapContent, topic: str, rate: float, length: int | None) -> Float32Array:
+    """The blocks one after another; with a `length` each at its place in it, NaN between them."""
+    check_kind(content, topic, "SampleBlock")
+    check_order(content, topic)
+    parts = [np.empty(0, np.float32)]
+    end = 0
+    for message in content.messages.get(topic, []):
+        with damage_found(f"{topic}: a block"):
+            _, found, first, values = read_sample_block(message.data)
+        if found != rate:
+            raise DamageError(f"{topic}: sample rate {found:g} is not the scenario's {rate:g}")
+        if first < end or (length is None and first > end):
+            raise DamageError(f"{topic}: the block at sample {first} does not follow sample {end - 1}")
+        if length is not None and first + values.size > length:
+            raise DamageError(f"{topic}: a block ends at sample {first + values.size}, the scenario asks {length}")
+        if not np.isfinite(values).all():
+            raise DamageError(f"{topic}: samples are not finite")
+        parts += [np.full(first - end, np.nan, np.float32), values]
+        end = first + values.size
+    if length is not None:
+        parts.append(np.full(length - end, np.nan, np.float32))
+    if not end:
+        raise DamageError(f"{topic}: no sample can be read")
+    return np.concatenate(parts)
+
+
+def _motion_classes(content: McapContent) -> dict[str, list[tuple[float, str]]]:
+    found = rows(content, "/labels/motion")
+    check_order(content, "/labels/motion")
+    known = {motion.value for motion in Motion}
+    for row in found:
+        unknown = {getattr(row, name) for name in MOTION_LABELS} - known
+        if unknown:
+            raise DamageError(f"/labels/motion: no class of motion is called {min(unknown)!r:.40}")
+    times = [1e-9 * message.log_time for message in content.messages.get("/labels/motion", [])]
+    return {
+        name: [(time, getattr(row, name)) for time, row in zip(times, found, strict=True)] for name in MOTION_LABELS
+    }

@@ -1,0 +1,233 @@
+"""One run as one MCAP file: every sample, a preview that plots by itself, contacts, labels and scenario."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from operator import itemgetter
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from mcap.writer import Writer
+
+from rubgen.io.durable import write_durably
+from rubgen.io.mcap.check import check_mcap
+from rubgen.io.mcap.content import TIMING
+from rubgen.io.mcap.foxglove import TRANSFORM, transform, transform_descriptor_set
+from rubgen.io.mcap.messages import MESSAGES, PACKAGE, file_descriptor_set, message_class, sample_block, timestamp
+from rubgen.io.mcap.multi_array import SCHEMA, SCHEMA_NAME, multi_arrays
+from rubgen.io.mcap.read import McapRun, read_mcap
+from rubgen.labels.to_json import labels_dict
+from rubgen.scenario.plain import scenario_dict
+from rubgen.sensors.blade_tip_timing import TipTimes
+from rubgen.sensors.channel import Channel, Float32Array, Recording
+from rubgen.sensors.contact_window import contact_intervals
+from rubgen.sensors.envelope import Preview, preview
+from rubgen.sensors.motion_frames import MotionFrames, motion_frames
+
+if TYPE_CHECKING:  # Run carries the solver's imports; who reads or checks a file needs none of them
+    from rubgen.labels.labels import Labels
+    from rubgen.pipeline import Run
+
+__all__ = ["McapRun", "check_mcap", "read_mcap", "write_mcap"]
+
+LIBRARY = "rubgen"  # no version: the same run gives the same bytes
+BLOCK_SAMPLES = 1024
+CHUNK_BYTES = 512 * 1024
+Stamped = tuple[int, bytes]
+
+
+def write_mcap(run: Run, path: Path) -> None:
+    """Write `run` to `path`, complete or not at all; the same run gives the same bytes.
+
+    Topics: `/raw/<channel>` (`/clean/<channel>` where kept) blocks of 1024 float32 samples, `/preview/<quantity>`
+    minimum and maximum at about 1 kHz, `/contact`, `/once_per_rev`, `/blade_tip_timing/<probe>`, `/labels/motion`, and
+    where the run kept its motion `/motion/frames`, `/motion/casing_modes` and `/tf`. Times are integer ns from the
+    first sample. Scenario and labels stand in metadata records (`rubgen.scenario`, `rubgen.labels`; each value JSON)
+    and as attachments. Raises ValueError for a run without a recording, OSError when the file cannot be written.
+    """
+    if run.recording is None or run.labels is None:
+        raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to record")
+    recording, labels = run.recording, run.labels
+    write_durably(path, lambda part: _write_file(part, run, recording, labels))
+
+
+def nanoseconds(seconds: float) -> int:
+    """Time as the integer ns that files carry."""
+    return round(seconds * 1e9)
+
+
+def _write_file(path: Path, run: Run, recording: Recording, labels: Labels) -> None:
+    with path.open("wb") as stream:
+        writer = Writer(stream, chunk_size=CHUNK_BYTES, enable_data_crcs=True)
+        writer.start(profile="", library=LIBRARY)
+        _write_records(writer, "scenario", scenario_dict(run.scenario))
+        _write_records(writer, "labels", labels_dict(labels))
+        _write_messages(writer, run, recording, labels)
+        writer.finish()  # type: ignore[no-untyped-call]  # the mcap package annotates no return type
+
+
+def _write_records(writer: Writer, name: str, values: dict[str, object]) -> None:
+    writer.add_metadata(f"rubgen.{name}", {key: json.dumps(value) for key, value in values.items()})
+    content = json.dumps(values, indent=2).encode()
+    writer.add_attachment(0, 0, f"{name}.json", "application/json", content)
+
+
+def _write_messages(writer: Writer, run: Run, recording: Recording, labels: Labels) -> None:
+    """Every channel's messages, merged by time; at equal times in the order in which channels were registered."""
+    schemas = {
+        name: writer.register_schema(f"{PACKAGE}.{name}", "protobuf", file_descriptor_set()) for name in MESSAGES
+    }
+    multi_array = writer.register_schema(SCHEMA_NAME, "ros2msg", SCHEMA)
+    merged: list[tuple[int, int, int, bytes]] = []
+
+    def add(topic: str, schema: int, messages: Iterator[Stamped], metadata: dict[str, str] | None = None) -> None:
+        encoding = "cdr" if schema == multi_array else "protobuf"
+        channel = writer.register_channel(topic, encoding, schema, metadata or {})
+        merged.extend((time, channel, sequence, data) for sequence, (time, data) in enumerate(messages))
+
+    for name, channel in recording.channels.items():
+        metadata = _describe(channel)
+        add(f"/raw/{name}", schemas["SampleBlock"], _blocks(channel.values, recording.sample_rate_hz), metadata)
+        if channel.clean is not None:
+            add(f"/clean/{name}", schemas["SampleBlock"], _blocks(channel.clean, recording.sample_rate_hz), metadata)
+    for quantity, group in recording.by_quantity().items():
+        shown = preview(group, recording.sample_rate_hz)
+        metadata = {"unit": group[0].unit, "names": ", ".join(shown.names)}
+        add(f"/preview/{quantity}", multi_array, _arrays(shown, recording.sample_rate_hz), metadata)
+    add("/contact", schemas["Contact"], _contacts(run, recording))
+    add("/once_per_rev", schemas["OncePerRev"], _pulses(recording))
+    for name, seen in recording.tip_timing.items():
+        add(f"{TIMING}{name}", schemas["BladePassage"], _passages(seen), _describe_probe(run, name))
+    add("/labels/motion", schemas["MotionLabel"], _motions(labels, recording))
+    frames = motion_frames(run.response, recording)
+    if frames is not None:
+        add("/motion/frames", schemas["MotionFrame"], _frames(frames))
+        add("/motion/casing_modes", schemas["CasingModes"], iter([_casing_modes(frames)]))
+        add("/tf", writer.register_schema(TRANSFORM, "protobuf", transform_descriptor_set()), _transforms(frames))
+    for time, channel_id, sequence, data in sorted(merged, key=itemgetter(0, 1, 2)):
+        writer.add_message(channel_id, time, data, publish_time=time, sequence=sequence)
+
+
+def _describe(channel: Channel) -> dict[str, str]:
+    """What the channel's numbers mean; samples are in `unit` already, so that their sensitivity is 1."""
+    return {
+        "unit": channel.unit,
+        "quantity": channel.quantity,
+        "axis": channel.axis,
+        "location": channel.location,
+        "range_min": repr(float(channel.range_min)),
+        "range_max": repr(float(channel.range_max)),
+        "resolution": repr(float(channel.resolution)),
+        "noise_rms": repr(float(channel.noise_rms)),
+        "sensitivity": "1.0",
+    }
+
+
+def _blocks(values: Float32Array, sample_rate_hz: float) -> Iterator[Stamped]:
+    for first in range(0, values.size, BLOCK_SAMPLES):
+        time = nanoseconds(first / sample_rate_hz)
+        yield time, sample_block(values[first : first + BLOCK_SAMPLES], sample_rate_hz, first, time)
+
+
+def _arrays(shown: Preview, sample_rate_hz: float) -> Iterator[Stamped]:
+    times = [nanoseconds(first / sample_rate_hz) for first in shown.first.tolist()]
+    return zip(times, multi_arrays(shown.names, shown.values), strict=True)
+
+
+def _contacts(run: Run, recording: Recording) -> Iterator[Stamped]:
+    touches = contact_intervals(run.response, recording)
+    message = message_class("Contact")
+    for row in range(touches.blade.size):
+        time = max(0, nanoseconds(touches.start[row]))
+        contact = message(
+            timestamp=timestamp(time),
+            start_s=touches.start[row],
+            duration_s=touches.duration[row],
+            blade=int(touches.blade[row]),
+            angle_rad=touches.angle[row],
+            impulse_n_s=touches.impulse[row],
+            friction_loss_j=touches.friction_loss[row],
+            normal_loss_j=touches.normal_loss[row],
+        )
+        yield time, contact.SerializeToString(deterministic=True)
+
+
+def _pulses(recording: Recording) -> Iterator[Stamped]:
+    message = message_class("OncePerRev")
+    for turn, time_s in enumerate(recording.once_per_rev.tolist()):
+        time = nanoseconds(time_s)
+        pulse = message(timestamp=timestamp(time), time_s=time_s, turn=turn)
+        yield time, pulse.SerializeToString(deterministic=True)
+
+
+def _describe_probe(run: Run, name: str) -> dict[str, str]:
+    """Where a timing probe stands."""
+    (probe,) = [each for each in run.scenario.sensing.set.sensors if each.name == name]
+    values = {key: value for key, value in vars(probe).items() if key.endswith(("_deg", "_m", "_s", "_hz"))}
+    return {"unit": "s", "quantity": "arrival time", **{key: repr(float(value)) for key, value in values.items()}}
+
+
+def _passages(seen: TipTimes) -> Iterator[Stamped]:
+    message = message_class("BladePassage")
+    for time_s, blade, true in zip(
+        seen.time.tolist(), seen.blade.tolist(), seen.true_displacement.tolist(), strict=True
+    ):
+        time = max(0, nanoseconds(time_s))
+        passage = message(timestamp=timestamp(time), time_s=time_s, blade=blade, true_displacement_m=true)
+        yield time, passage.SerializeToString(deterministic=True)
+
+
+def _motions(labels: Labels, recording: Recording) -> Iterator[Stamped]:
+    """The class from the first sample on, and where the speed changes each later one within the recording."""
+    message = message_class("MotionLabel")
+    if labels.course is None:
+        stretches = [(0, labels.motion, labels.motion_blisk, labels.motion_casing, labels.period or 0)]
+    else:
+        last = recording.samples / recording.sample_rate_hz
+        times = [change.time - recording.start_seconds for change in labels.course.changes]
+        stretches = [
+            (max(0, nanoseconds(time)), change.motion, change.blisk, change.casing, 0)
+            for time, after, change in zip(times, [*times[1:], np.inf], labels.course.changes, strict=True)
+            if after > 0 and time < last
+        ]
+    for time, system, blisk, casing, period in stretches:
+        label = message(
+            timestamp=timestamp(time),
+            motion=system.value,
+            motion_blisk=blisk.value,
+            motion_casing=casing.value,
+            period=period,
+        )
+        yield time, label.SerializeToString(deterministic=True)
+
+
+def _frames(frames: MotionFrames) -> Iterator[Stamped]:
+    message = message_class("MotionFrame")
+    for row, time_s in enumerate(frames.time.tolist()):
+        time = nanoseconds(time_s)
+        frame = message(
+            timestamp=timestamp(time),
+            time_s=time_s,
+            angle_rad=frames.angle[row],
+            centre_m=frames.centre[row].tolist(),
+            tips_m=frames.tips[row].ravel().tolist(),
+            casing=frames.casing[row].tolist(),
+            dense=int(frames.dense[row]),
+        )
+        yield time, frame.SerializeToString(deterministic=True)
+
+
+def _casing_modes(frames: MotionFrames) -> Stamped:
+    nodes, _, modes = frames.casing_modes.shape
+    values = frames.casing_modes.ravel().tolist()
+    shapes = message_class("CasingModes")(timestamp=timestamp(0), nodes=nodes, modes=modes, values=values)
+    return 0, shapes.SerializeToString(deterministic=True)
+
+
+def _transforms(frames: MotionFrames) -> Iterator[Stamped]:
+    """The turning blisk in the ground's frame, for every frame."""
+    for row, time_s in enumerate(frames.time.tolist()):
+        time = nanoseconds(time_s)
+        yield time, transform(time, float(frames.angle[row]), frames.centre[row].tolist())

@@ -1,0 +1,89 @@
+"""What is kept of a run beside its signals, as Parquet, so that its labels can be made again.
+
+One row a run; arrays stand as flat lists, row after row.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from rubgen.errors import UserError
+from rubgen.io.parquet.write import write_table
+from rubgen.labels.compact_record import SCALARS, TOUCHES, Kept, keep
+from rubgen.solver.response import Response
+
+KINDS: dict[str, tuple[pa.DataType, str]] = {
+    "scalars": (pa.float64(), ", ".join(SCALARS)),
+    "section": (
+        pa.float32(),
+        "once a turn: tips, x, y, v_x, v_y of the disk centre, casing modes and their velocities",
+    ),
+    "fractions": (pa.float32(), "the same after each Nth of the last turn, N lobes"),
+    "growth": (pa.float32(), "ln of the twin's growth in each turn"),
+    "turn_impulse": (pa.float64(), "normal impulse of each turn, N s"),
+    "contact_steps": (pa.int32(), "steps with contact in each turn"),
+    "orbit": (pa.float32(), "last 100 turns, or all: means of X, Y, X^2 + Y^2, V_X^2 + V_Y^2, X V_Y - Y V_X"),
+    "rotation": (pa.float64(), "start, end (rad/s), seconds, swing (rad/s), period (s) of a changing speed"),
+    "turn_steps": (pa.int32(), "first step of each turn of a changing speed"),
+    "blade": (pa.int16(), "blade of each touch"),
+    "start_step": (pa.int32(), "first step of each touch, from the record's start"),
+    "steps": (pa.int32(), "its number of steps"),
+    "angle": (pa.float32(), "its polar angle on the casing, rad"),
+    "impulse": (pa.float32(), "its normal impulse, N s"),
+    "friction_loss": (pa.float32(), "its work of friction, J"),
+    "normal_loss": (pa.float32(), "its work lost along the normal, J"),
+}
+"""Element and meaning of each list. Lists that hold rows are cut by the number of turns in `scalars`."""
+SCHEMA = pa.schema(
+    [pa.field("run_id", pa.string())]
+    + [pa.field(name, pa.list_(kind), metadata={"meaning": meaning}) for name, (kind, meaning) in KINDS.items()]
+)
+
+
+def section_table(run_id: str, response: Response) -> pa.Table:
+    """One row: what is kept of a run that ended well."""
+    kept = keep(response)
+    columns = {name: pa.array([kept[name].ravel()], pa.list_(kind)) for name, (kind, _) in KINDS.items()}
+    return pa.table({"run_id": pa.array([run_id])} | columns, schema=SCHEMA)
+
+
+def write_section(run_id: str, response: Response, path: Path) -> None:
+    """That row as a file of its own, complete or not at all."""
+    write_table([section_table(run_id, response)], SCHEMA, path)
+
+
+def kept_of(table: pa.Table, row: int, path: Path) -> Kept:
+    """What was kept of the run in that row of the file at `path`; UserError where its lists do not fit each other."""
+    kept: dict[str, np.ndarray[Any, Any]] = {}
+    try:
+        for name in KINDS:
+            kept[name] = np.asarray(table[name][row].values)
+        scalars = dict(zip(SCALARS, kept["scalars"].tolist(), strict=True))
+        width = 3 * int(scalars["n_blades"]) + 4 + 2 * int(scalars["n_casing"])
+        for name, columns in (("section", width), ("fractions", width), ("orbit", 5)):
+            kept[name] = kept[name].reshape(-1, columns)
+        _check_lengths(kept, int(scalars["record_turns"]), int(scalars["n_blades"]))
+    except (ValueError, OverflowError) as error:
+        run_id = table["run_id"][row].as_py()
+        raise UserError(f"{path}: {run_id}: {' '.join(str(error).split())[:200]}; generate the set again") from None
+    return kept
+
+
+def _check_lengths(kept: Kept, turns: int, blades: int) -> None:
+    """Raise ValueError where lists of turns or of touches differ in length, or a number of theirs is none."""
+    for name in (*TOUCHES, "turn_impulse", "contact_steps"):
+        if not np.isfinite(kept[name]).all():
+            raise ValueError(f"{name} is not finite")
+    for name in ("section", "turn_impulse", "contact_steps"):
+        if len(kept[name]) != turns:
+            raise ValueError(f"{name} has {len(kept[name])} of {turns} turns")
+    if len({kept[name].size for name in TOUCHES}) > 1:
+        raise ValueError("lists of touches differ in length")
+    if kept["blade"].size and not 0 <= kept["blade"].min() <= kept["blade"].max() < blades:
+        raise ValueError(f"a touch is of a blade that is none of {blades}")
+    if kept["rotation"].size not in (0, 5) or (kept["rotation"].size and kept["turn_steps"].size != turns + 1):
+        raise ValueError("the course of the speed does not fit the turns")

@@ -1,0 +1,169 @@
+"""Runs as Parquet: one row a run, scalars and labels as columns, each recorded channel one list<float32> column.
+
+zstd, BYTE_STREAM_SPLIT on every floating leaf, dictionaries on text alone, a checksum on every page. The bytes follow
+from the rows alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from rubgen.arrays import FloatArray
+from rubgen.io.columns import Column, scalar_columns, signal_columns
+from rubgen.io.durable import write_durably
+from rubgen.io.parquet.read import open_parquet, read_table, row_groups
+from rubgen.labels.to_json import labels_dict, window_amplitudes
+from rubgen.scenario.sensor_set import default_sensor_set
+from rubgen.scenario.sensors import SensorSet
+from rubgen.scenario.vary import varied_values
+from rubgen.sensors.channel import Recording
+from rubgen.sensors.contact_window import contact_intervals
+
+if TYPE_CHECKING:  # Run carries the solver's imports; who reads a file needs none of them
+    from rubgen.pipeline import Run
+
+__all__ = ["open_parquet", "read_table", "row_groups", "run_table", "schema", "write_parquet", "write_table"]
+
+TYPES = {
+    "text": pa.string(),
+    "flag": pa.bool_(),
+    "integer": pa.int64(),
+    "number": pa.float64(),
+    "integers": pa.list_(pa.int64()),
+    "numbers": pa.list_(pa.float64()),
+    "signal": pa.list_(pa.float32()),
+}
+COMPRESSION_LEVEL = 3
+
+
+def schema(*, signals: bool, clean: bool = False, sensors: SensorSet | None = None) -> pa.Schema:
+    """The Arrow schema of `runs.parquet`, or with `signals` of the data files; unit and meaning stand at each field.
+
+    `sensors` are those of the runs, the default set where none is given.
+    """
+    used = sensors or default_sensor_set()
+    columns = scalar_columns(used) + (signal_columns(used, clean=clean) if signals else ())
+    return pa.schema([_field(column) for column in columns])
+
+
+def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Table:
+    """One row: the run's identity, parameters and labels, and with `signals` its channels.
+
+    A failed run has null labels, energies and signals. Raises ValueError where a label has no column.
+    """
+    row = _identity(run, split) | varied_values(run.scenario) | _operation(run)
+    if run.labels is not None:
+        row |= labels_dict(run.labels)
+        energy = run.response.energy
+        row |= {"energy_residual": energy.residual, "normal_loss_j": energy.normal_loss}
+        row |= {"friction_loss_j": energy.friction_loss}
+    if signals and run.recording is not None and run.labels is not None:
+        row |= _signals(run.recording) | _touches(run, run.recording) | window_amplitudes(run.labels)
+    sensing = run.scenario.sensing
+    types = schema(signals=signals, clean=sensing.keep_clean, sensors=sensing.set)
+    unknown = sorted(set(row) - set(types.names))
+    if unknown:
+        raise ValueError(f"no column for {', '.join(unknown)}")
+    return pa.table({field.name: pa.array([row.get(field.name)], field.type) for field in types}, schema=types)
+
+
+def write_table(tables: Iterable[pa.Table], types: pa.Schema, path: Path) -> int:
+    """Write tables of that schema to `path`, each as one row group, complete or not at all; gives the rows written."""
+    rows = 0
+
+    def write(part: Path) -> None:
+        nonlocal rows
+        with part.open("wb") as stream, pq.ParquetWriter(stream, types, **_settings(types)) as writer:
+            for table in tables:
+                writer.write_table(table, row_group_size=max(table.num_rows, 1))
+                rows += table.num_rows
+
+    write_durably(path, write)
+    return rows
+
+
+def write_parquet(run: Run, path: Path) -> None:
+    """One run as a Parquet file of one row, with its signals; raises OSError when it cannot be written."""
+    table = run_table(run)
+    write_table([table], table.schema, path)
+
+
+def _field(column: Column) -> pa.Field:
+    return pa.field(column.name, TYPES[column.kind], metadata={"unit": column.unit, "meaning": column.meaning})
+
+
+def _settings(types: pa.Schema) -> dict[str, Any]:
+    # The leaf of a list must be named: the plain column's name is silently ignored.
+    leaves = {
+        field.name: f"{field.name}.list.element" if pa.types.is_list(field.type) else field.name for field in types
+    }
+    floats = [
+        leaves[f.name] for f in types if pa.types.is_floating(f.type.value_type if pa.types.is_list(f.type) else f.type)
+    ]
+    return {
+        "compression": "zstd",
+        "compression_level": COMPRESSION_LEVEL,
+        "use_dictionary": [field.name for field in types if pa.types.is_string(field.type)],
+        "use_byte_stream_split": floats,
+        "write_page_checksum": True,
+    }
+
+
+def _identity(run: Run, split: str) -> dict[str, object]:
+    return {
+        "run_id": run.scenario.run_id,
+        "machine_id": run.scenario.machine_id,
+        "split": split,
+        "seed": run.scenario.seed,
+        "status": run.response.status.code,
+        "reason": run.response.reason,
+    }
+
+
+def _operation(run: Run) -> dict[str, object]:
+    return {
+        "steps_per_turn": run.response.steps_per_turn,
+        "settle_turns": run.response.settle_turns,
+        "record_turns": run.response.record_turns,
+        "sample_rate_hz": run.scenario.sensing.sample_rate_hz,
+    }
+
+
+def _signals(recording: Recording) -> dict[str, object]:
+    values: dict[str, object] = {
+        "signal_start_s": recording.start_seconds,
+        "rotation_angle_rad": recording.rotation_angle,
+        "once_per_rev_s": recording.once_per_rev,
+    }
+    for name, channel in recording.channels.items():
+        values[name] = channel.values
+        if channel.clean is not None:
+            values[f"{name}_clean"] = channel.clean
+    for name, seen in recording.tip_timing.items():
+        values |= {f"{name}_s": seen.time, f"{name}_blade": seen.blade, f"{name}_true_m": seen.true_displacement}
+    return values
+
+
+def _touches(run: Run, recording: Recording) -> dict[str, object]:
+    """The touches that overlap the recording, by their beginning."""
+    touches = contact_intervals(run.response, recording)
+    order = np.argsort(touches.start, kind="stable")
+    return {
+        "touch_start_s": touches.start[order],
+        "touch_end_s": (touches.start + touches.duration)[order],
+        "touch_blade": touches.blade[order],
+        "touch_angle_rad": _single(touches.angle[order]),
+        "touch_impulse_n_s": _single(touches.impulse[order]),
+        "touch_friction_work_j": _single(touches.friction_loss[order]),
+    }
+
+
+def _single(values: FloatArray) -> FloatArray:
+    """Rounded to single precision, in which they compress."""
+    return np.asarray(values.astype(np.float32), dtype=np.float64)

@@ -1,0 +1,74 @@
+"""How much the blades touch: counts, friction work, each blade's share, severity, partial or full annular."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from rubgen.arrays import FloatArray, IntArray
+from rubgen.brief import brief
+from rubgen.labels.contact.zones import ContactZones
+from rubgen.solver.response import Response
+
+STANDARD_GRAVITY = 9.80665
+"""m/s2, by which the severity turns the blisk's mass into weight, whether or not gravity acts in the run."""
+LASTING = 0.95
+"""Contact in this share of the time is lasting."""
+
+
+class RubExtent(StrEnum):
+    """How far round the casing a rub goes, and whether it ever stops."""
+
+    NONE = "none"
+    PARTIAL = "partial"
+    FULL_ANNULAR = "full-annular"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactAmounts:
+    """Counts and works over the record.
+
+    `touches` of all blades; `friction_work` of the blisk's and the casing's contact, J a turn, <= 0; `blade_touches`
+    (n_blades,), and `blade_impulses` (n_blades,) in N s a turn; `severity`, the mean normal force over the blisk's
+    weight; `free_penetration` in m. The last two are None where they are not known.
+    """
+
+    touches: int
+    friction_work: float
+    blade_touches: IntArray
+    blade_impulses: FloatArray
+    severity: float | None
+    free_penetration: float | None
+    extent: RubExtent
+    __repr__ = brief
+
+
+def contact_amounts(response: Response, zones: ContactZones, *, record_steps: int) -> ContactAmounts:
+    """The amounts of a record of so many steps.
+
+    severity = impulse of all blades / (m g T), T the record's time: what acts on the casing on average, in weights of
+    the blisk. By turns that is (impulse a turn) / (m g turn).
+    """
+    events, turns, blades = response.events, response.record_turns, response.n_blades
+    weight_time = response.blisk_mass * STANDARD_GRAVITY * record_steps * response.dt
+    severity = float(response.impulse_per_turn.sum()) / weight_time
+    impulses = np.bincount(events.blade, weights=events.impulse, minlength=blades) / turns
+    return ContactAmounts(
+        touches=int(events.blade.size),
+        friction_work=float(events.friction_loss.sum()) / turns,
+        blade_touches=np.bincount(events.blade, minlength=blades).astype(np.int64),
+        blade_impulses=np.asarray(impulses, dtype=np.float64),
+        severity=severity if np.isfinite(severity) else None,
+        free_penetration=response.free_penetration if np.isfinite(response.free_penetration) else None,
+        extent=rub_extent(int(response.contact_steps_per_turn.sum()) / record_steps, zones),
+    )
+
+
+def rub_extent(duty: float, zones: ContactZones) -> RubExtent:
+    """Full annular: contact that lasts, all the way round the casing (Muszynska 2005, Rotordynamics, ch. 5)."""
+    if duty == 0:
+        return RubExtent.NONE
+    round_about = len(zones.widths) == 1 and zones.widths[0] >= 2 * np.pi - 1e-9
+    return RubExtent.FULL_ANNULAR if duty >= LASTING and round_about else RubExtent.PARTIAL

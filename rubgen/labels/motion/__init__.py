@@ -1,0 +1,1 @@
+"""The class of the motion, and what decides it."""

@@ -1,0 +1,95 @@
+"""Class of the steady motion of blisk, casing and both, and what else its section shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rubgen.arrays import FloatArray
+from rubgen.errors import UserError
+from rubgen.labels.labels import Motion
+from rubgen.labels.motion.chaos import chaos_indicator
+from rubgen.labels.motion.clusters import cluster_distances, cluster_period, stray
+from rubgen.labels.motion.decision import AT_REST, FORCED, Indicators, MotionClass, combined, decide
+from rubgen.labels.motion.intermittency import Segment, is_intermittent, segments
+from rubgen.labels.motion.lyapunov import Exponent
+from rubgen.labels.motion.section import blisk_points, casing_points, casing_rests
+from rubgen.labels.motion.symmetry import is_symmetric
+from rubgen.solver.response import Response
+
+__all__ = ["Motions", "blisk_points", "casing_points", "chaos_indicator", "cluster_distances", "motion"]
+
+LEAST_TURNS = 32
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motions:
+    """Classes of the blisk, of the casing, and of both together, and what speaks for them.
+
+    `indicators` are those of the blisk and, where it moves, of the casing; none without contact. `symmetric` is None
+    unless the motion is period-1 in contact. `segments` is empty unless the motion is `intermittent`.
+    """
+
+    blisk: MotionClass
+    casing: MotionClass
+    system: MotionClass
+    indicators: tuple[Indicators, ...] = ()
+    symmetric: bool | None = None
+    tip_chatter: bool = False
+    segments: tuple[Segment, ...] = ()
+
+    @property
+    def intermittent(self) -> bool:
+        """Whether the motion switches between regular and irregular."""
+        return bool(self.segments)
+
+
+def motion(response: Response, exponent: Exponent | None = None) -> Motions:
+    """The motion classes of a run from its section and its exponent; raises UserError below 32 turns.
+
+    Each part is periodic or not by its own clusters. The 0-1 test looks at the disk centre, the tips and the casing,
+    and the largest K counts for all: contact couples them into one system, which is chaotic as a whole. A lightly
+    damped blade that is shaken at random looks regular for longer than the record lasts; the disk centre shows it.
+    """
+    turns = response.section_q.shape[0]
+    if turns < LEAST_TURNS:
+        raise UserError(f"record_turns = {turns}: a motion needs at least {LEAST_TURNS} turns, reliably 500; raise it")
+    if response.contact_steps_per_turn.sum() == 0:
+        return Motions(blisk=FORCED, casing=AT_REST, system=FORCED)
+    parts = [blisk_points(response)] if casing_rests(response) else [blisk_points(response), casing_points(response)]
+    seen = indicators(parts, exponent)
+    classes = [*(decide(part) for part in seen), AT_REST][:2]
+    system = combined(classes[0], classes[1])
+    return Motions(
+        blisk=classes[0],
+        casing=classes[1],
+        system=system,
+        indicators=seen,
+        symmetric=is_symmetric(response) if system.motion is Motion.PERIOD_1 else None,
+        tip_chatter=_tips_alone_stray(parts, seen),
+        segments=_switching(parts, system.motion),
+    )
+
+
+def indicators(parts: list[FloatArray], exponent: Exponent | None) -> tuple[Indicators, ...]:
+    """What clusters, 0-1 test and exponent say of each part."""
+    periods = [cluster_period(part) for part in parts]
+    strays = [stray(part, period) for part, period in zip(parts, periods, strict=True)]
+    growth = max(chaos_indicator(part) for part in parts)
+    return tuple(
+        Indicators(period=period, stray=size, growth=growth, exponent=exponent)
+        for period, size in zip(periods, strays, strict=True)
+    )
+
+
+def _tips_alone_stray(parts: list[FloatArray], seen: tuple[Indicators, ...]) -> bool:
+    """Whether the blisk does not repeat, but the disk centre and the casing by themselves do."""
+    blisk, *casing = (part.period for part in seen)
+    return blisk is None and None not in casing and cluster_period(parts[0][:, :1]) is not None
+
+
+def _switching(parts: list[FloatArray], whole: Motion) -> tuple[Segment, ...]:
+    """The segments of a motion that is not regular as a whole, where it switches."""
+    if whole not in (Motion.CHAOTIC, Motion.UNDECIDED):
+        return ()
+    found = segments(parts)
+    return tuple(found) if is_intermittent(found) else ()

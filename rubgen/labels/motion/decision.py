@@ -1,0 +1,124 @@
+"""The class of a motion from three indicators: clusters of the section, the 0-1 test, the Lyapunov exponent."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import erf, exp, lcm, sqrt
+
+from rubgen.labels.labels import Motion
+from rubgen.labels.motion.chaos import CHAOTIC_FROM
+from rubgen.labels.motion.clusters import CLUSTER_RADIUS
+from rubgen.labels.motion.lyapunov import LEAST, Exponent
+
+CLOSE = 0.5
+"""A part that repeats, but strays by more than this share of the cluster radius (6 dB below it), is near the bound."""
+GROWTH_WIDTH = 0.1
+"""K within this of its bound says little."""
+
+_REGULARITY = list(Motion)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Indicators:
+    """What is known of one part: its period by clusters, how far it strays from them over its motion, K, exponent.
+
+    K is the largest of all parts and the exponent that of the whole system: contact couples the parts.
+    """
+
+    period: int | None
+    stray: float
+    growth: float
+    exponent: Exponent | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionClass:
+    """A class, after how many turns the motion repeats (None for what does not), and how sure it is, 0 to 1."""
+
+    motion: Motion
+    period: int | None
+    confidence: float = field(default=1.0, compare=False)
+
+
+AT_REST = MotionClass(motion=Motion.STATIC, period=None)
+FORCED = MotionClass(motion=Motion.PERIOD_1, period=1)
+
+
+def decide(seen: Indicators) -> MotionClass:
+    """The class that the indicators agree on, else undecided.
+
+    - Clusters: periodic at the scale of the motion. What is left may be chaotic in itself, far below; where it is not
+      far below (CLOSE) and the two others find it chaotic, the part is undecided.
+    - No clusters, K says chaos, exponent positive: chaotic. K says regular, exponent zero within its error:
+      quasi-periodic. Anything else is undecided: a negative exponent belongs to a periodic motion that is not there
+      yet, or comes back after more than 16 turns.
+    - Without an exponent clusters decide, then K.
+    """
+    motion = _class_of(seen)
+    if motion is Motion.UNDECIDED:
+        return MotionClass(motion=motion, period=None, confidence=0.0)
+    period = seen.period if motion in (Motion.PERIOD_1, Motion.PERIOD_K) else None
+    return MotionClass(motion=motion, period=period, confidence=_confidence(seen, motion))
+
+
+def _class_of(seen: Indicators) -> Motion:
+    chaotic = seen.growth >= CHAOTIC_FROM
+    exponent = seen.exponent
+    if seen.period is not None:
+        near = seen.stray > CLOSE * CLUSTER_RADIUS
+        if near and chaotic and exponent is not None and exponent.is_positive:
+            return Motion.UNDECIDED
+        return Motion.PERIOD_1 if seen.period == 1 else Motion.PERIOD_K
+    if exponent is None:
+        return Motion.CHAOTIC if chaotic else Motion.QUASI_PERIODIC
+    if chaotic and exponent.is_positive:
+        return Motion.CHAOTIC
+    if not chaotic and not exponent.is_positive and not exponent.is_negative:
+        return Motion.QUASI_PERIODIC
+    return Motion.UNDECIDED
+
+
+def _confidence(seen: Indicators, motion: Motion) -> float:
+    """Share of the class in the weights of all three kinds.
+
+    Each indicator has a degree in [0, 1]: periodic c = 1 / (1 + (stray / radius)^2), chaotic by K a logistic function
+    of K about its bound, chaotic by the exponent the probability that it is positive, given its error. Periodic weighs
+    c, halved where both others find chaos in what is left; chaotic (1 - c) times the geometric mean of the others;
+    quasi-periodic the same of their complements, the exponent's being that of zero.
+    """
+    c = 1 / (1 + (seen.stray / CLUSTER_RADIUS) ** 2)
+    k = 1 / (1 + exp(-(seen.growth - CHAOTIC_FROM) / GROWTH_WIDTH))
+    positive, zero = _positive(seen.exponent), _zero(seen.exponent)
+    weights = {
+        "periodic": c * (1 - k * positive / 2),
+        "chaotic": (1 - c) * sqrt(k * positive),
+        "quasi-periodic": (1 - c) * sqrt((1 - k) * zero),
+    }
+    kind = "periodic" if motion in (Motion.PERIOD_1, Motion.PERIOD_K) else motion.value
+    return weights[kind] / sum(weights.values())
+
+
+def _positive(exponent: Exponent | None) -> float:
+    if exponent is None:
+        return 0.5
+    return 0.5 * (1 + erf(exponent.per_turn / (sqrt(2) * max(exponent.error, LEAST))))
+
+
+def _zero(exponent: Exponent | None) -> float:
+    if exponent is None:
+        return 0.5
+    return 1 - erf(abs(exponent.per_turn) / (3 * sqrt(2) * max(exponent.error, LEAST)))
+
+
+def combined(blisk: MotionClass, casing: MotionClass) -> MotionClass:
+    """The less regular of the two; undecided where either is and neither is chaotic.
+
+    The period is the least common multiple of theirs, a part at rest counting as 1; the confidence that of the part
+    which decides, of two alike the greater for what does not repeat, the lesser for what does.
+    """
+    worst = max(blisk, casing, key=lambda part: _REGULARITY.index(part.motion))
+    alike = [part.confidence for part in (blisk, casing) if part.motion is worst.motion]
+    if worst.motion in (Motion.QUASI_PERIODIC, Motion.UNDECIDED, Motion.CHAOTIC):
+        return MotionClass(motion=worst.motion, period=None, confidence=max(alike))
+    confidence = min(blisk.confidence, casing.confidence)
+    return MotionClass(motion=worst.motion, period=lcm(blisk.period or 1, casing.period or 1), confidence=confidence)

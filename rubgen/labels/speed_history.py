@@ -1,0 +1,196 @@
+"""Labels of a run whose speed changes: what holds of the whole record, and how it goes from window to window."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from rubgen.arrays import BoolArray, FloatArray, IntArray
+from rubgen.labels.harmonics import FRACTIONS, HIGHEST_ORDER, SIDEBANDS, TapOrders
+from rubgen.labels.labels import Motion
+from rubgen.labels.motion.classify import LEAST_TURNS, Motions, motion
+from rubgen.labels.motion.decision import AT_REST, FORCED, MotionClass
+from rubgen.labels.motion.section import casing_rests
+from rubgen.labels.windows import Windows, turn_times, window_edges
+from rubgen.solver.response import ContactEvents, Course, Response
+from rubgen.solver.turn_orders import WINDOW_TURNS
+
+MOTION_TURNS = 64
+"""A window is long enough for a motion class where the speed of so many turns about it hardly changes."""
+HARDLY = 0.002
+"""By this share: the drift of the orbit then stays within what clusters allow."""
+UNDECIDED = MotionClass(motion=Motion.UNDECIDED, period=None, confidence=0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """From `time` (s from the record's start) on: rub, mean impulse a turn (N s), motion; `speed` (rad/s) there.
+
+    A rub begins with its first touch and ends with the end of its last one, when none follows within WINDOW_TURNS
+    turns; other changes come with a window.
+    """
+
+    time: float
+    speed: float
+    rub: bool
+    impulse: float
+    blisk: Motion
+    casing: Motion
+    motion: Motion
+
+
+@dataclass(frozen=True, kw_only=True)
+class CourseLabels:
+    """How a run went: `changes` with time; speeds in rad/s at the first and after the last touch or None."""
+
+    changes: tuple[Change, ...]
+    onset_speed: float | None
+    end_of_rub_speed: float | None
+
+
+def course_labels(response: Response) -> CourseLabels:
+    """The labels over time of a response with a course; see docs/labels.md."""
+    course = response.course
+    if course is None:
+        raise ValueError("a steady speed has no course")
+    touched = response.events.start_step.size > 0
+    ends = response.events.start_step + response.events.steps
+    return CourseLabels(
+        changes=_changes(response, course, window_edges(response)),
+        onset_speed=_speed_at(course, response.events.start_step.min() * response.dt) if touched else None,
+        end_of_rub_speed=_speed_at(course, ends.max() * response.dt) if touched else None,
+    )
+
+
+def course_motion(rub: bool) -> Motions:
+    """The motion of a whole record whose speed changes: the forced whirl without rub, else undecided."""
+    return (
+        Motions(blisk=UNDECIDED, casing=UNDECIDED, system=UNDECIDED)
+        if rub
+        else Motions(blisk=FORCED, casing=AT_REST, system=FORCED)
+    )
+
+
+def course_orders(windows: Windows) -> dict[str, TapOrders]:
+    """Orders of a whole record: root mean squares over windows of amplitude and, as floor, of its standard error.
+
+    Phases, fractions and blade passing are not told: NaN.
+    """
+    unknown = {
+        "phases": np.full(HIGHEST_ORDER, np.nan),
+        "fractional": np.full(len(FRACTIONS), np.nan),
+        "blade_passing": np.full(2 * SIDEBANDS + 1, np.nan),
+    }
+    return {
+        tap: TapOrders(amplitudes=_rms(windows.orders[tap]), floors=_rms(windows.scatter[tap]), **unknown)
+        for tap in windows.orders
+    }
+
+
+def _rms(values: FloatArray) -> FloatArray:
+    return np.asarray(np.sqrt(np.mean(values**2, axis=0)))
+
+
+def by_angle(response: Response) -> ContactEvents:
+    """Touches with steps of equal angle, `steps_per_turn` a turn, in place of those of equal time."""
+    course, events = response.course, response.events
+    if course is None:
+        return events
+    scale = response.steps_per_turn / (2 * np.pi)
+    start = scale * course.rotation.angle(events.start_step * response.dt)
+    end = scale * course.rotation.angle((events.start_step + events.steps) * response.dt)
+    first = np.rint(start).astype(np.int64)
+    return replace(events, start_step=first, steps=np.maximum(1, np.rint(end).astype(np.int64) - first))
+
+
+def _speed_at(course: Course, time: float) -> float:
+    return float(course.rotation.speed(time))
+
+
+def _changes(response: Response, course: Course, edges: IntArray) -> tuple[Change, ...]:
+    """One change where rub or motion differs from what was before, and the first turn."""
+    times, rubs = turn_times(response, course), _rubbing(response)
+    edges = np.union1d(edges, np.flatnonzero(np.diff(rubs)) + 1)
+    states = [_state(response, a, b, rub=bool(rubs[a])) for a, b in pairwise(edges.tolist())]
+    begins = [0, *(i for i in range(1, len(states)) if states[i] != states[i - 1])]
+    changes = []
+    for first, last in pairwise([*begins, len(states)]):
+        turns = slice(edges[first], edges[last])
+        time = _start_of(response, times, int(edges[first]), states[first][0], states[first - 1][0] if first else None)
+        rub, blisk, casing, system = states[first]
+        changes.append(
+            Change(
+                time=time,
+                speed=_speed_at(course, time),
+                rub=rub,
+                impulse=float(response.impulse_per_turn[turns].mean()),
+                blisk=blisk,
+                casing=casing,
+                motion=system,
+            )
+        )
+    return tuple(changes)
+
+
+def _start_of(response: Response, times: FloatArray, turn: int, rub: bool, rubbed: bool | None) -> float:
+    """When a stretch begins: with the first touch, after the last touch, or with its first turn."""
+    start, dt = float(times[turn]), response.dt
+    begun = response.events.start_step * dt
+    if rub and rubbed is False:
+        return float(begun[begun >= start - dt].min(initial=np.inf)) if (begun >= start - dt).any() else start
+    if rubbed and not rub:
+        ends = (response.events.start_step + response.events.steps) * dt
+        return min(float(ends[begun < start].max(initial=0.0)), start)
+    return start
+
+
+def _rubbing(response: Response) -> BoolArray:
+    """Whether there is rub (turns,): touches that are fewer than WINDOW_TURNS turns apart belong to one."""
+    touched = np.flatnonzero(response.contact_steps_per_turn)
+    rubs = np.zeros(response.record_turns, dtype=bool)
+    rubs[touched] = True
+    for before, after in pairwise(touched.tolist()):
+        if after - before < WINDOW_TURNS:
+            rubs[before:after] = True
+    return rubs
+
+
+def _state(response: Response, first: int, last: int, *, rub: bool) -> tuple[bool, Motion, Motion, Motion]:
+    """Rub, and motion of blisk, casing and both, of the turns first .. last - 1."""
+    if not rub:
+        window = _cut(response, first, last)
+        casing = AT_REST if casing_rests(window) else UNDECIDED
+        return rub, FORCED.motion, casing.motion, FORCED.motion if casing is AT_REST else UNDECIDED.motion
+    middle = (first + last) // 2
+    start = max(0, min(middle - MOTION_TURNS // 2, response.record_turns - MOTION_TURNS))
+    wide = _cut(response, start, min(start + MOTION_TURNS, response.record_turns))
+    if wide.record_turns < LEAST_TURNS or _drift(response, start, start + wide.record_turns) > HARDLY:
+        return rub, UNDECIDED.motion, UNDECIDED.motion, UNDECIDED.motion
+    found = motion(wide)
+    return rub, found.blisk.motion, found.casing.motion, found.system.motion
+
+
+def _drift(response: Response, first: int, last: int) -> float:
+    """Range of the speed over these turns, as a share of it."""
+    course = response.course
+    if course is None:
+        return 0.0
+    speeds = course.rotation.speed(course.turn_steps[first : last + 1] * response.dt)
+    return float(np.ptp(speeds) / speeds.mean())
+
+
+def _cut(response: Response, first: int, last: int) -> Response:
+    """What the motion of some turns is told from."""
+    turns = slice(first, last)
+    return replace(
+        response,
+        record_turns=last - first,
+        section_q=response.section_q[turns],
+        section_v=response.section_v[turns],
+        impulse_per_turn=response.impulse_per_turn[turns],
+        contact_steps_per_turn=response.contact_steps_per_turn[turns],
+        twin_growth=np.zeros(0),
+        fractions=np.zeros((0, 2, response.section_q.shape[1])),
+    )

@@ -1,0 +1,128 @@
+"""Labels over time, from made-up signals and touches whose answer is known."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from rubgen.labels import label
+from rubgen.labels.compact_record import keep
+from rubgen.labels.labels import Motion
+from rubgen.labels.speed_history import by_angle, course_labels
+from rubgen.labels.to_json import labels_dict, remade_labels, window_amplitudes
+from rubgen.labels.windows import windows
+from rubgen.scenario.rotation import Rotation
+from rubgen.solver.response import Course
+from rubgen.solver.turn_orders import turn_orders
+
+TURNS, STEPS = 80, 256
+ROTATION = Rotation(start=800.0, end=1200.0, seconds=0.502)
+
+
+@pytest.fixture
+def ramp(respond, events):
+    """Touches from turn 30 to 49, one a turn at theta = 1 rad; order 2 of 5 m/s2 in the casing's acceleration."""
+    dt = 2 * np.pi / 1200 / STEPS
+    edges = [round(ROTATION.time_of(2 * np.pi * k) / dt) for k in range(TURNS + 1)]
+    times = np.array([ROTATION.time_of(2 * np.pi * k + 1.0) for k in range(30, 50)])
+    touches = events(np.full(20, 1.0), np.full(20, 0.5), np.full(20, 3), np.rint(times / dt), blades=1)
+    orders = []
+    for first, last in pairwise(edges):
+        theta = ROTATION.angle(np.arange(first, last + 1) * dt)
+        orders.append(turn_orders(np.stack([5 * np.cos(2 * theta[:-1] + 0.3)]), theta))
+    impulse, contact = np.zeros(TURNS), np.zeros(TURNS, np.int64)
+    impulse[30:50], contact[30:50] = 0.5, 3
+    response = respond(turns=TURNS, steps=STEPS, touches=touches)
+    return replace(
+        response,
+        dt=dt,
+        impulse_per_turn=impulse,
+        contact_steps_per_turn=contact,
+        course=Course(rotation=ROTATION, turn_steps=np.array(edges), orders=np.array(orders)),
+    )
+
+
+def test_rub_begins_with_its_first_touch_and_ends_after_its_last(ramp):
+    found = course_labels(ramp)
+    assert [change.rub for change in found.changes] == [False, True, False]
+    on, off = found.changes[1:]
+    assert on.time == pytest.approx(ROTATION.time_of(2 * np.pi * 30 + 1), abs=ramp.dt)
+    assert off.time == pytest.approx(ROTATION.time_of(2 * np.pi * 49 + 1) + 3 * ramp.dt, abs=2 * ramp.dt)
+    assert found.onset_speed == pytest.approx(float(ROTATION.speed(on.time)), rel=1e-9)
+    assert found.end_of_rub_speed == pytest.approx(float(ROTATION.speed(off.time)), rel=1e-6)
+    assert on.motion is Motion.UNDECIDED
+    assert found.changes[0].motion is Motion.PERIOD_1
+
+
+def test_a_rub_within_the_first_window_does_not_begin_before_its_first_touch(ramp):
+    shifted = replace(
+        ramp.events, start_step=ramp.events.start_step - ramp.course.turn_steps[30] + ramp.course.turn_steps[5]
+    )
+    contact = np.roll(ramp.contact_steps_per_turn, -25)
+    found = course_labels(replace(ramp, events=shifted, contact_steps_per_turn=contact)).changes
+    assert [change.rub for change in found] == [False, True, False]
+    assert found[1].time == pytest.approx(shifted.start_step[0] * ramp.dt)
+
+
+def test_windows_tell_speed_impulse_and_orders(ramp):
+    found = label(ramp).windows
+    assert len(found.start) == 5
+    assert found.start[1] == pytest.approx(ROTATION.time_of(2 * np.pi * 16))
+    assert np.all(np.diff(found.speed) > 0)
+    # Turns 30 and 31 of the second window rub, all of the third, 48 and 49 of the fourth.
+    np.testing.assert_allclose(found.impulse, [0, 2 * 0.5 / 16, 0.5, 2 * 0.5 / 16, 0])
+    counts = np.diff(ramp.course.turn_steps[[0, 16, 32, 48, 64, 80]])
+    np.testing.assert_allclose(found.duty, [0, 6, 48, 6, 0] / counts)
+    np.testing.assert_allclose(found.orders["casing_acc_0"][:, 1], 5.0, rtol=0.02)
+    assert found.orders["casing_acc_0"][:, [0, 2, 3]].max() < 0.1
+
+
+def test_the_scatter_of_a_window_is_the_standard_error_of_its_mean(ramp):
+    """Of noise whose |x|^2 has the mean 2 about a steady 5: sqrt(2 / 16), whatever the 5 is."""
+    rng = np.random.default_rng(3)
+    noise = rng.normal(size=(TURNS, 1, 20)) + 1j * rng.normal(size=(TURNS, 1, 20))
+    found = windows(replace(ramp, course=replace(ramp.course, orders=5.0 + noise)))
+    rms = np.sqrt(np.mean(found.scatter["casing_acc_0"] ** 2))
+    assert rms == pytest.approx(np.sqrt(2 / 16), rel=0.06)
+    away = found.orders["casing_acc_0"] - 5.0  # of a mean far from zero: the error along it, half of both
+    assert np.sqrt(2) * np.sqrt(np.mean(away**2)) == pytest.approx(rms, rel=0.2)
+
+
+def test_touches_by_angle_have_one_spacing_a_turn(ramp):
+    events = by_angle(ramp)
+    np.testing.assert_allclose(np.diff(events.start_step), STEPS, atol=1.5)
+
+
+def test_the_labels_of_the_record_hold_its_course(ramp):
+    labels = label(ramp)
+    assert labels.motion is Motion.UNDECIDED
+    assert labels.contact_duty == pytest.approx(60 / ramp.course.turn_steps[-1])
+    assert 2 in labels.orders_present
+    plain = labels_dict(labels)
+    assert plain["change_rub"] == [0, 1, 0]
+    assert plain["onset_speed_rpm"] == pytest.approx(labels.course.onset_speed * 30 / np.pi)
+    assert plain["window_rub"] == [0, 1, 1, 1, 0]
+    amplitudes = np.reshape(window_amplitudes(labels)["casing_acc_0_window_amplitudes"], (5, 20))
+    np.testing.assert_allclose(amplitudes, labels.windows.orders["casing_acc_0"], rtol=1e-7)
+
+
+def test_labels_over_time_are_made_again_from_what_is_kept(ramp):
+    plain, again = labels_dict(label(ramp)), remade_labels(keep(ramp))
+    assert again["change_rub"] == [0, 1, 0]
+    assert len(again["window_starts_s"]) == 5
+    assert {name: plain[name] for name in again} == again
+
+
+def test_a_slow_fluctuation_in_contact_is_told_its_motion_where_the_speed_hardly_changes(respond):
+    """A rub that repeats each turn, the speed swinging by 0.05 %: period-1; by 5 %: undecided."""
+    for swing, expected in ((0.2, Motion.PERIOD_1), (20.0, Motion.UNDECIDED)):
+        rotation = Rotation(start=400.0, end=400.0, swing=swing, period=0.5)
+        response = respond(turns=128, steps=STEPS)
+        course = Course(
+            rotation=rotation,
+            turn_steps=np.array([round(rotation.time_of(2 * np.pi * k) / response.dt) for k in range(129)]),
+            orders=np.zeros((128, 1, 20), complex),
+        )
+        found = course_labels(replace(response, course=course))
+        assert {change.motion for change in found.changes} == {expected}
