@@ -1,7 +1,8 @@
 """Every fault, tried by command: `python -m validation.reliability [--quick] [--only NAME] [--out FILE]`.
 
 Writes out/faults.json and the table of docs/reliability.md; ends with 1 where anything was lost, differed, was missed
-or ended in a traceback. `--seed N` repeats one hostile input. --quick is what CI runs.
+or ended in a traceback. Rows of before stay where they are not made again: NAME is a row of generation, such as kill-1,
+`damage`, `fuzz` or one kind of it, such as fuzz-recipe. `--seed N` repeats one hostile input. --quick is what CI runs.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from pathlib import Path
 from validation.reliability.damage import damage_rows
 from validation.reliability.disks import full_disk_row, read_only_row, shut_out_row
 from validation.reliability.fuzz import fuzz_rows, repeat
-from validation.reliability.hostile import kind_of
+from validation.reliability.hostile import SHARES, kind_of
 from validation.reliability.kills import signal_row
 from validation.reliability.rows import Row, write_page, write_rows
 from validation.reliability.sets import Truth, undisturbed
@@ -70,8 +71,9 @@ def rows(*, quick: bool, only: list[str]) -> Iterator[Row]:
                 yield make()
     if not only or "damage" in only:
         yield from damage_rows(11 if quick else 1000)
-    if not only or "fuzz" in only:
-        yield from fuzz_rows(300 if quick else 100_000)
+    kinds = [kind for kind in SHARES if not only or "fuzz" in only or f"fuzz-{kind}" in only]
+    if kinds:
+        yield from fuzz_rows(300 if quick else 100_000, kinds)
 
 
 if __name__ == "__main__":
