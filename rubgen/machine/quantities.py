@@ -6,8 +6,10 @@ A value beyond its bounds is an error. A value outside of its `Usual` range is a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Annotated
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, is_dataclass
+from functools import cache
+from typing import Annotated, Any, get_args, get_type_hints
 
 import numpy as np
 from pydantic import BeforeValidator, ConfigDict, Field
@@ -35,6 +37,40 @@ class Usual:
         return self.fact
 
 
+Place = tuple[int | str, ...]
+"""Names of fields, and numbers of elements of a list."""
+
+
+def usual_values(record: Any, place: Place = ()) -> Iterator[tuple[Place, float, Usual]]:
+    """Every number of a record, and of the records in it, that has a usual range: with its place and that range."""
+    for name, usual in _usual_ranges(record.__class__).items():
+        yield from _values(getattr(record, name), usual, (*place, name))
+
+
+def _values(value: Any, usual: Usual | None, place: Place) -> Iterator[tuple[Place, float, Usual]]:
+    if is_dataclass(value):
+        yield from usual_values(value, place)
+    elif isinstance(value, tuple):
+        for number, each in enumerate(value):
+            yield from _values(each, usual, (*place, number))
+    elif usual and isinstance(value, int | float):
+        yield place, value, usual
+
+
+@cache
+def _usual_ranges(kind: type) -> dict[str, Usual | None]:
+    hints = get_type_hints(kind, include_extras=True)
+    return {field.name: _usual_range(hints[field.name]) for field in fields(kind)}
+
+
+def _usual_range(hint: Any) -> Usual | None:
+    """The usual range that a type, or one of those that it is made of, is annotated with."""
+    if isinstance(hint, Usual):
+        return hint
+    parts = (*getattr(hint, "__metadata__", ()), *get_args(hint))
+    return next(filter(None, map(_usual_range, parts)), None)
+
+
 def _no_text(value: object) -> object:
     """A number as it is; pydantic would read "0.3" as 0.3 and true as 1."""
     if isinstance(value, str | bytes | bool | np.bool_):
@@ -57,7 +93,7 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), NUMBER]
 # Lengths, places and angles.
 Length = Annotated[float, Field(ge=1e-7, le=100, allow_inf_nan=False), NUMBER]
 Height = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False), NUMBER]
-Place = Annotated[float, Field(ge=-100, le=100, allow_inf_nan=False), NUMBER]
+AxialPlace = Annotated[float, Field(ge=-100, le=100, allow_inf_nan=False), NUMBER]
 Angle = Annotated[float, Field(ge=-360, le=360, allow_inf_nan=False), NUMBER]
 Direction = Annotated[float, Field(ge=0, lt=360, allow_inf_nan=False), NUMBER]
 """Polar angle in the inertial frame, in degrees."""

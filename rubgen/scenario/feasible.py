@@ -7,14 +7,7 @@ import math
 from rubgen.errors import UserError
 from rubgen.machine.quantities import MOST_STEPS
 from rubgen.scenario.costs import STEPS_PER_SAMPLE, reduction_problem, run_problem
-from rubgen.scenario.plausible import (
-    MOST_CLEARANCE,
-    MOST_OVALITY,
-    MOST_THICKNESS,
-    eccentricity,
-    gram,
-    millimetres,
-)
+from rubgen.scenario.plausible import eccentricity, gram, shares, unbalances
 from rubgen.scenario.profiles import profile_problem
 from rubgen.scenario.scenario import Scenario
 from rubgen.scenario.sensors import BladeStrain, TimingProbe
@@ -141,20 +134,15 @@ def _axial_problem(scenario: Scenario) -> str | None:
 
 def _size_problem(scenario: Scenario) -> str | None:
     """What cannot be meant: an oval larger than the radius, a ring without a bore, a blisk beside its axis."""
-    machine, casing = scenario.machine, scenario.machine.casing
-    tip, mean = machine.tip_radius_m, machine.casing_mean_radius_m
-    for key, value, limit, share, what in (
-        ("clearance_m", casing.clearance_m, tip, MOST_CLEARANCE, "the radius of the blade tips"),
-        ("ovality_m", casing.ovality_m, tip, MOST_OVALITY, "the radius of the blade tips"),
-        ("casing_thickness_m", casing.thickness_m, mean, MOST_THICKNESS, "the radius of the casing"),
-    ):
-        if value >= limit:
-            remedy = millimetres(value, share * tip) or "; lower it"
-            return f"{key} = {value:g}: must be below {what}, {limit:g} m{remedy}"
-    unbalance = machine.unbalance_kg_m
-    if eccentricity(machine, unbalance) >= tip:
-        away = f"would move the centre of mass {eccentricity(machine, unbalance):.3g} m off the axis"
-        return f"unbalance_kg_m = {unbalance:g}: {away}, outside of the blisk{gram(unbalance)}"
+    for each in shares(scenario):
+        if each.value >= each.whole:
+            remedy = each.question or "; lower it"
+            return f"{each.key} = {each.value:g}: must be below {each.of}, {each.whole:g} m{remedy}"
+    for key, value in unbalances(scenario.machine):
+        away = eccentricity(scenario.machine, value)
+        if away >= scenario.machine.tip_radius_m:
+            moved = f"would move the centre of mass {away:.3g} m off the axis"
+            return f"{key} = {value:g}: {moved}, outside of the blisk{gram(value)}"
     return None
 
 

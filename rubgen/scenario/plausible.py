@@ -8,33 +8,38 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 from rubgen.errors import warn
 from rubgen.machine import Machine
 from rubgen.machine.mass import blisk_mass
+from rubgen.machine.quantities import Place, usual_values
 from rubgen.scenario.costs import steps_per_turn
 from rubgen.scenario.scenario import Scenario
+from rubgen.scenario.sensors import OncePerRev, TimingProbe
+from rubgen.scenario.vary import KEYS_AT
 
-MOST_CLEARANCE = 0.02
-MOST_OVALITY = 0.05
-MOST_THICKNESS = 0.1
-"""Shares of the radius: clearance and ovality of the tips', thickness of the casing's."""
 MOST_ECCENTRICITY = 0.01
 """Share of the tip radius by which an unbalance moves the centre of mass."""
-MODULI_PA = (1e9, 1.3e12)
-"""From plastics to diamond."""
-DENSITIES = (500.0, 23_000.0)
-"""From foam to osmium, in kg/m3."""
 MOST_TIP_SPEED = 1000.0
 """Twice what turbomachines reach, in m/s."""
 LEAST_ORDERS = 2.56
 """Samples a turn below which a channel does not show the rotation."""
 MOST_STEP_FACTOR = 16
 LEAST_SHARE = 5e-3
-"""A value is asked about in mm where it would be no smaller than this share of the largest plausible one."""
+"""A value is asked about in mm or um where it would be no smaller than this share of the largest plausible one."""
+LENGTHS = (("mm", 1e-3), ("um", 1e-6))
+LEAST_HZ = 1.0
+"""Softer supports carry no machine."""
+STIFFNESSES = (("N/mm", 1e3), ("N/um", 1e6), ("GN/m", 1e9))
+SUPPORTED_HZ = (10.0, 10_000.0)
+"""A stiffness is asked about in the first unit in which the supported body would have such a frequency."""
+COUNTS_A_PASSAGE = 20
+"""A clock that counts fewer between two blades does not show their vibration."""
+MOST_DROPPED = 0.5
 LEAST_GRAM_MILLIMETRES = 10
-MOST_GRAVITY = 20.0
 RADIANS = math.pi / 2
+_QUARTERS = ("", "pi / 2", "pi", "3 pi / 2", "2 pi")
 
 
 def warn_of(scenarios: Iterable[Scenario], source: str = "") -> None:
@@ -53,21 +58,67 @@ def implausible(scenario: Scenario) -> Iterator[str]:
         yield from check(scenario)
 
 
-def _casing(scenario: Scenario) -> Iterator[str]:
-    machine, casing = scenario.machine, scenario.machine.casing
-    radius, mean = machine.tip_radius_m, machine.casing_mean_radius_m
-    for key, value, most, whole, of in (
-        ("clearance_m", casing.clearance_m, MOST_CLEARANCE, radius, "the radius of the blade tips"),
-        ("ovality_m", casing.ovality_m, MOST_OVALITY, radius, "the radius of the blade tips"),
-        ("casing_thickness_m", casing.thickness_m, MOST_THICKNESS, mean, "the casing's radius, a thin ring has less"),
-    ):
-        if value > most * whole:
-            yield f"{key} = {value:g}: {100 * value / whole:.3g} % of {of}{millimetres(value, most * whole)}"
+def _usual(scenario: Scenario) -> Iterator[str]:
+    for place, value, usual in usual_values(scenario):
+        doubt = usual.doubt(value)
+        if doubt:
+            yield f"{_key(scenario, place)} = {value:g}: {doubt}"
+
+
+def _key(scenario: Scenario, place: Place) -> str:
+    """The key at a place of the scenario, as a recipe, a machine or a sensor set names it."""
+    match place:
+        case ("sensing", "set", "sensors", int(number), key, *_):
+            return f"{key} of {scenario.sensing.set.sensors[number].name}"
+        case ("sensing", "set", *rest) | ("machine" | "operation" | "sensing", *rest):
+            return KEYS_AT.get(".".join(map(str, place)), ".".join(map(str, rest)))
+    return KEYS_AT.get(".".join(map(str, place)), ".".join(map(str, place)))
+
+
+class Share(NamedTuple):
+    """A length that is part of another, the `whole`: at most `most` of it is plausible, all of it cannot be meant."""
+
+    key: str
+    value: float
+    most: float
+    whole: float
+    of: str
+
+    @property
+    def question(self) -> str:
+        """The question whether the value was given in another unit."""
+        return length_question(self.value, self.most * self.whole)
+
+
+def shares(scenario: Scenario) -> Iterator[Share]:
+    """Every length that is part of another."""
+    machine, casing, film = scenario.machine, scenario.machine.casing, scenario.machine.disk_support.squeeze_film
+    tip, tips = machine.tip_radius_m, "the radius of the blade tips"
+    mean, ring = machine.casing_mean_radius_m, "the radius of the casing"
+    yield Share("clearance_m", casing.clearance_m, 0.02, tip, tips)
+    yield Share("ovality_m", casing.ovality_m, 0.05, tip, tips)
+    yield Share("casing_thickness_m", casing.thickness_m, 0.1, mean, ring)
+    if scenario.contact.liner:
+        yield Share("contact.liner.thickness_m", scenario.contact.liner.thickness_m, 0.1, mean, ring)
+    if film:
+        key = "disk_support.squeeze_film.clearance_m"
+        yield Share(key, film.clearance_m, 0.05, film.radius_m, "the radius of the journal")
+    for number, part in enumerate(scenario.sensing.set.shaft_runout):
+        key = f"shaft_runout.{number}.amplitude_m"
+        yield Share(key, part.amplitude_m, 0.02, machine.disk.bore_radius_m, "the radius of the disk's bore")
+
+
+def _shares(scenario: Scenario) -> Iterator[str]:
+    for each in shares(scenario):
+        if each.value > each.most * each.whole:
+            percent = 100 * each.value / each.whole
+            yield f"{each.key} = {each.value:g}: {percent:.3g} % of {each.of}{each.question}"
 
 
 def _sizes(scenario: Scenario) -> Iterator[str]:
     disk, blades, casing = scenario.machine.disk, scenario.machine.blades, scenario.machine.casing
     rim, tip = disk.rim_radius_m, scenario.machine.tip_radius_m
+    liner, film = scenario.contact.liner, scenario.machine.disk_support.squeeze_film
     for key, value, limit, what in (
         ("disk.bore_thickness_m", disk.bore_thickness_m, 2 * rim, "the disk's diameter"),
         ("disk.rim_thickness_m", disk.rim_thickness_m, 2 * rim, "the disk's diameter"),
@@ -77,34 +128,41 @@ def _sizes(scenario: Scenario) -> Iterator[str]:
         ("blades.root_thickness_m", blades.root_thickness_m, blades.root_chord_m, "the chord there"),
         ("blades.tip_thickness_m", blades.tip_thickness_m, blades.tip_chord_m, "the chord there"),
         ("casing.width_m", casing.width_m, 10 * tip, "ten times the radius of the tips"),
+        ("contact.liner.width_m", liner.width_m if liner else 0.0, casing.width_m, "the width of the casing"),
+        ("disk_support.squeeze_film.radius_m", film.radius_m if film else 0.0, rim, "the rim's radius"),
+        ("disk_support.squeeze_film.length_m", film.length_m if film else 0.0, 2 * rim, "the disk's diameter"),
     ):
         if value > limit:
-            yield f"{key} = {value:g}: larger than {what}, {limit:g} m{millimetres(value, limit)}"
+            yield f"{key} = {value:g}: larger than {what}, {limit:g} m{length_question(value, limit)}"
 
 
-def _materials(scenario: Scenario) -> Iterator[str]:
-    machine = scenario.machine
-    for part, material in (
-        ("disk", machine.disk.material),
-        ("blades", machine.blades.material),
-        ("casing", machine.casing.material),
+def _supports(scenario: Scenario) -> Iterator[str]:
+    machine, support, casing = scenario.machine, scenario.machine.disk_support, scenario.machine.casing
+    mass = blisk_mass(machine)
+    polar = mass * machine.disk.rim_radius_m**2 / 2
+    ring = 2 * math.pi * machine.casing_mean_radius_m * casing.thickness_m * casing.width_m
+    node = ring * casing.material.density_kg_per_m3 / casing.nodes
+    softest = min(casing.radial_support_stiffness_n_per_m, casing.circumferential_support_stiffness_n_per_m)
+    for key, value, inertia, what in (
+        ("disk_support_stiffness_n_per_m", support.lateral_stiffness_n_per_m, mass, "blisk"),
+        ("disk_support.axial_stiffness_n_per_m", support.axial_stiffness_n_per_m, mass, "blisk"),
+        ("disk_support.tilt_stiffness_nm_per_rad", support.tilt_stiffness_nm_per_rad, polar / 2, "blisk"),
+        ("disk_support.torsion_stiffness_nm_per_rad", support.torsion_stiffness_nm_per_rad, polar, "blisk"),
+        ("casing_support_stiffness_n_per_m", softest, node, "casing"),
     ):
-        modulus, density = material.youngs_modulus_pa, material.density_kg_per_m3
-        if not MODULI_PA[0] <= modulus <= MODULI_PA[1]:
-            question = _question(modulus, MODULI_PA, {"GPa": 1e9, "MPa": 1e6, "kPa": 1e3}, "Pa")
-            yield f"{part}.material.youngs_modulus_pa = {modulus:g}: no solid of a machine has it{question}"
-        if not DENSITIES[0] <= density <= DENSITIES[1]:
-            question = _question(density, DENSITIES, {"g/cm3": 1e3, "t/mm3": 1e12}, "kg/m3")
-            yield f"{part}.material.density_kg_per_m3 = {density:g}: no solid of a machine has it{question}"
-        if material.poisson_ratio < 0:
-            yield f"{part}.material.poisson_ratio = {material.poisson_ratio:g}: metals have 0.25 to 0.35"
+        if _hz(value, inertia) < LEAST_HZ:
+            unit = next((each for each in STIFFNESSES if _hz(value * each[1], inertia) >= SUPPORTED_HZ[0]), None)
+            asked = f"; were {unit[0]} meant, {value * unit[1]:g} N/m?" if unit and key.endswith("n_per_m") else ""
+            yield f"{key} = {value:g}: on it the {what} has a frequency of {_hz(value, inertia):.2g} Hz{asked}"
+
+
+def _hz(stiffness: float, inertia: float) -> float:
+    return math.sqrt(stiffness / inertia) / (2 * math.pi)
 
 
 def _unbalance(scenario: Scenario) -> Iterator[str]:
     machine = scenario.machine
-    every = [("unbalance_kg_m", machine.unbalance_kg_m)]
-    every += [(f"unbalances.{number}.kg_m", each.kg_m) for number, each in enumerate(machine.unbalances)]
-    for key, value in every:
+    for key, value in unbalances(machine):
         away = eccentricity(machine, value)
         if away > MOST_ECCENTRICITY * machine.tip_radius_m:
             yield f"{key} = {value:g}: moves the centre of mass of the blisk {away:.3g} m off the axis{gram(value)}"
@@ -136,13 +194,6 @@ def _rate(scenario: Scenario) -> Iterator[str]:
         yield f"{which} = {fed:g}: needs {steps}, a run takes up to {factor} times as long"
 
 
-def _gravity(scenario: Scenario) -> Iterator[str]:
-    g = scenario.machine.gravity_m_per_s2
-    if g > MOST_GRAVITY:
-        question = f"; were mm/s2 meant, {g / 1000:g} m/s2?" if g / 1000 <= MOST_GRAVITY else ""
-        yield f"gravity_m_per_s2 = {g:g}: the earth has 9.81{question}"
-
-
 def _angles(scenario: Scenario) -> Iterator[str]:
     blades = scenario.machine.blades
     root, tip = blades.root_angle_deg, blades.tip_angle_deg
@@ -156,10 +207,53 @@ def _angles(scenario: Scenario) -> Iterator[str]:
     for key, angle in places:
         quarters = round(angle / RADIANS)
         if 1 <= quarters <= 4 and abs(angle - quarters * RADIANS) < 0.004 * quarters:
-            yield f"{key} = {angle:g}: {quarters} pi / 2; were rad meant, {90 * quarters} degrees?"
+            yield f"{key} = {angle:g}: {_QUARTERS[quarters]}; were rad meant, {90 * quarters} degrees?"
 
 
-CHECKS = (_casing, _sizes, _materials, _unbalance, _speed, _rate, _gravity, _angles)
+def _arrivals(scenario: Scenario) -> Iterator[str]:
+    turn = scenario.operation.rotation.fastest / (2 * math.pi)
+    for sensor in scenario.sensing.set.sensors:
+        if not isinstance(sensor, TimingProbe | OncePerRev):
+            continue
+        passages = turn * (scenario.machine.blades.count if isinstance(sensor, TimingProbe) else 1)
+        if 0 < sensor.clock_hz < COUNTS_A_PASSAGE * passages:
+            asked = f"; were MHz meant, {1e6 * sensor.clock_hz:g} Hz?" if sensor.clock_hz <= 1000 else ""
+            counts = f"it counts {sensor.clock_hz / passages:.3g} times between two passages"
+            yield f"clock_hz of {sensor.name} = {sensor.clock_hz:g}: {counts}{asked}"
+        if sensor.jitter_s * passages * COUNTS_A_PASSAGE > 1:
+            asked = f"; were us meant, {1e-6 * sensor.jitter_s:g} s?" if sensor.jitter_s > 1e-3 else ""
+            share = f"{100 * sensor.jitter_s * passages:.3g} % of the time between two passages"
+            yield f"jitter_s of {sensor.name} = {sensor.jitter_s:g}: {share}{asked}"
+
+
+def _chains(scenario: Scenario) -> Iterator[str]:
+    """What leaves nothing of the signal: noise, offset or drift as large as the range, gaps without end."""
+    for sensor in scenario.sensing.set.sampled:
+        low, high = sensor.full_range
+        seconds, rate = scenario.signal_seconds, scenario.sensing.sample_rate_hz
+        for key, value, size in (
+            ("noise_rms", sensor.noise_rms, sensor.noise_rms),
+            ("noise_density", sensor.noise_density, sensor.noise_density * math.sqrt(rate / 2)),
+            ("offset", sensor.offset, abs(sensor.offset)),
+            ("drift_per_s", sensor.drift_per_s, abs(sensor.drift_per_s) * seconds),
+        ):
+            if size > high - low:
+                shown = f"[{low:g}, {high:g}] {sensor.unit}".removesuffix(" 1")
+                yield f"{key} of {sensor.name} = {value:g}: more than its whole range, {shown}"
+        dropped = sensor.dropouts_per_s * sensor.dropout_s
+        if dropped > MOST_DROPPED:
+            lost = f"{100 * dropped:.3g} % of the signal is lost"
+            yield f"dropouts_per_s of {sensor.name} = {sensor.dropouts_per_s:g}: {lost}"
+
+
+CHECKS = (_usual, _shares, _sizes, _supports, _unbalance, _speed, _rate, _angles, _arrivals, _chains)
+
+
+def unbalances(machine: Machine) -> Iterator[tuple[str, float]]:
+    """Every unbalance of a machine in kg m, with its key."""
+    yield "unbalance_kg_m", machine.unbalance_kg_m
+    for number, each in enumerate(machine.unbalances):
+        yield f"unbalances.{number}.kg_m", each.kg_m
 
 
 def eccentricity(machine: Machine, unbalance: float) -> float:
@@ -172,15 +266,9 @@ def gram(unbalance: float) -> str:
     return f"; were g mm meant, {unbalance * 1e-6:g} kg m?" if unbalance >= LEAST_GRAM_MILLIMETRES else ""
 
 
-def millimetres(value: float, most: float) -> str:
-    """The question whether a length was given in mm, where it would fit."""
-    fits = LEAST_SHARE * most <= value / 1000 <= most
-    return f"; were mm meant, {value / 1000:g} m?" if fits else ""
-
-
-def _question(value: float, allowed: tuple[float, float], units: dict[str, float], ours: str) -> str:
-    """The first unit in which the value would be allowed, as a question."""
-    for unit, factor in units.items():
-        if allowed[0] <= value * factor <= allowed[1]:
-            return f"; were {unit} meant, {value * factor:g} {ours}?"
+def length_question(value: float, most: float) -> str:
+    """The question whether a length was given in mm or um, where it would fit."""
+    for unit, size in LENGTHS:
+        if LEAST_SHARE * most <= value * size <= most:
+            return f"; were {unit} meant, {value * size:g} m?"
     return ""

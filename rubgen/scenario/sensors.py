@@ -14,6 +14,7 @@ from rubgen.machine.quantities import (
     STRICT,
     AdcBits,
     Angle,
+    AxialPlace,
     Bias,
     BladeNumber,
     ClockDrift,
@@ -25,7 +26,6 @@ from rubgen.machine.quantities import (
     Jitter,
     Level,
     MissedShare,
-    Place,
     Rate,
     RateOrNone,
     Reading,
@@ -60,6 +60,9 @@ class SampledSensor(Sensor):
     """
 
     UNITS: ClassVar[dict[str, float]] = {}
+    """Each unit with the factor from the SI unit."""
+    RANGE: ClassVar[tuple[float, float]] = (0.0, 0.0)
+    """The kind's range, in the SI unit."""
 
     unit: str = ""
     bandwidth_hz: Rate | None = None
@@ -92,6 +95,18 @@ class SampledSensor(Sensor):
         return self
 
     @property
+    def scale(self) -> tuple[float, float]:
+        """Factor and zero from the SI unit to the sensor's."""
+        return self.UNITS[self.unit], 0.0
+
+    @property
+    def full_range(self) -> tuple[float, float]:
+        """The range in the sensor's unit: its own, or the kind's."""
+        factor, zero = self.scale
+        low, high = self.RANGE
+        return self.range or (zero + factor * low, zero + factor * high)
+
+    @property
     def front_end_hz(self) -> float:
         """The highest frequency that the sensor's own dynamics name, 0 without any."""
         return max(self.bandwidth_hz or 0.0, self.resonance_hz or 0.0)
@@ -102,10 +117,16 @@ class Proximity(SampledSensor):
     """Displacement of the disk centre along a direction; in V the gap voltage, `bias_v` at rest, rising with it."""
 
     UNITS: ClassVar[dict[str, float]] = {"m": 1.0, "mm": 1e3, "um": 1e6, "V": 0.0}
+    RANGE: ClassVar[tuple[float, float]] = (-2e-3, 2e-3)
     kind: Literal["proximity"] = "proximity"
     angle_deg: Direction
     sensitivity_v_per_m: Sensitivity = 7874.0
     bias_v: Bias = -10.0
+
+    @property
+    def scale(self) -> tuple[float, float]:
+        """Gap voltage = bias + sensitivity x: the gap closes as the shaft comes nearer, the negative voltage rises."""
+        return (self.sensitivity_v_per_m, self.bias_v) if self.unit == "V" else super().scale
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -113,6 +134,7 @@ class Accelerometer(SampledSensor):
     """Radial acceleration of the casing, positive outward."""
 
     UNITS: ClassVar[dict[str, float]] = {"m/s2": 1.0, "g": 1 / GRAVITY}
+    RANGE: ClassVar[tuple[float, float]] = (-5e4, 5e4)
     kind: Literal["accelerometer"] = "accelerometer"
     angle_deg: Direction
 
@@ -122,6 +144,7 @@ class BladeStrain(SampledSensor):
     """Spanwise strain at a blade's root."""
 
     UNITS: ClassVar[dict[str, float]] = {"1": 1.0, "um/m": 1e6}
+    RANGE: ClassVar[tuple[float, float]] = (-5e-3, 5e-3)
     kind: Literal["blade_strain"] = "blade_strain"
     blade: BladeNumber
 
@@ -131,6 +154,7 @@ class CasingStrain(SampledSensor):
     """Hoop strain at the outer face of the casing."""
 
     UNITS: ClassVar[dict[str, float]] = {"1": 1.0, "um/m": 1e6}
+    RANGE: ClassVar[tuple[float, float]] = (-5e-3, 5e-3)
     kind: Literal["casing_strain"] = "casing_strain"
     angle_deg: Direction
 
@@ -140,6 +164,7 @@ class SupportForceSensor(SampledSensor):
     """Dynamic force of the disk on its support along a direction."""
 
     UNITS: ClassVar[dict[str, float]] = {"N": 1.0, "kN": 1e-3}
+    RANGE: ClassVar[tuple[float, float]] = (-2.5e5, 2.5e5)
     kind: Literal["support_force"] = "support_force"
     angle_deg: Direction
 
@@ -149,6 +174,7 @@ class ContactForceSensor(SampledSensor):
     """The sum of the normal contact forces: no probe measures it."""
 
     UNITS: ClassVar[dict[str, float]] = {"N": 1.0, "kN": 1e-3}
+    RANGE: ClassVar[tuple[float, float]] = (-1e5, 1e5)
     kind: Literal["contact_force"] = "contact_force"
 
 
@@ -157,6 +183,7 @@ class Torque(SampledSensor):
     """Torque on the blisk about the axis: of the drive, or (what no sensor measures) of the contact."""
 
     UNITS: ClassVar[dict[str, float]] = {"N m": 1.0, "kN m": 1e-3}
+    RANGE: ClassVar[tuple[float, float]] = (-2e4, 2e4)
     kind: Literal["torque"] = "torque"
     of: Literal["drive", "contact"] = "drive"
 
@@ -166,6 +193,7 @@ class ClearanceProbe(SampledSensor):
     """Gap between the blade tips and the casing."""
 
     UNITS: ClassVar[dict[str, float]] = {"m": 1.0, "mm": 1e3, "um": 1e6}
+    RANGE: ClassVar[tuple[float, float]] = (-1e-3, 1.2e-2)
     kind: Literal["tip_clearance"] = "tip_clearance"
     angle_deg: Direction
 
@@ -180,7 +208,7 @@ class TimingProbe(Sensor):
 
     kind: Literal["blade_tip_timing"] = "blade_tip_timing"
     angle_deg: Direction
-    axial_m: Place = 0.0
+    axial_m: AxialPlace = 0.0
     jitter_s: Jitter = 0.0
     clock_hz: RateOrNone = 0.0
     clock_offset_s: ClockOffset = 0.0

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine.quantities import STRICT, BladeNumber, Direction, Place
+from rubgen.machine.quantities import STRICT, AxialPlace, BladeNumber, Direction
 from rubgen.machine.sentences import CHANNEL_NAME
 
 
@@ -98,7 +98,7 @@ class TipTiming(Tap):
 
     UNIT: ClassVar[str] = "s"
     angle_deg: Direction
-    axial_m: Place = 0.0
+    axial_m: AxialPlace = 0.0
 
 
 DEFAULT_TAPS: tuple[Tap, ...] = (

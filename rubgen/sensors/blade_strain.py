@@ -5,10 +5,7 @@ from rubgen.sensors.kind import Description, Kind
 
 KIND = Kind(
     describe=lambda sensor: Description(
-        quantity="blade strain",
-        axis="spanwise",
-        location=f"root of blade {sensor.blade}",
-        usual_range=(-5e-3, 5e-3),
+        quantity="blade strain", axis="spanwise", location=f"root of blade {sensor.blade}"
     ),
     tap=lambda sensor: RootStrain(name=f"root_strain_{sensor.blade}", blade=sensor.blade),
 )

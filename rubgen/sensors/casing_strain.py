@@ -5,10 +5,7 @@ from rubgen.sensors.kind import Description, Kind, label
 
 KIND = Kind(
     describe=lambda sensor: Description(
-        quantity="casing strain",
-        axis="hoop",
-        location=f"casing at {sensor.angle_deg:g} deg, outer face",
-        usual_range=(-5e-3, 5e-3),
+        quantity="casing strain", axis="hoop", location=f"casing at {sensor.angle_deg:g} deg, outer face"
     ),
     tap=lambda sensor: RingStrain(name=f"ring_strain_{label(sensor.angle_deg)}", angle_deg=sensor.angle_deg),
 )

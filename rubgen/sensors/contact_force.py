@@ -4,8 +4,6 @@ from rubgen.scenario.taps import ContactForce
 from rubgen.sensors.kind import Description, Kind
 
 KIND = Kind(
-    describe=lambda _sensor: Description(
-        quantity="contact force", axis="normal", location="all blade tips", usual_range=(-1e5, 1e5)
-    ),
+    describe=lambda _sensor: Description(quantity="contact force", axis="normal", location="all blade tips"),
     tap=lambda _sensor: ContactForce(name="contact_force"),
 )

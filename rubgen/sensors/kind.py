@@ -10,23 +10,17 @@ import numpy as np
 import numpy.typing as npt
 
 from rubgen.arrays import FloatArray
-from rubgen.scenario.sensors import SampledSensor, SensorSet
+from rubgen.scenario.sensors import SensorSet
 from rubgen.scenario.taps import Tap
 
 
 @dataclass(frozen=True, kw_only=True)
 class Description:
-    """What a channel measures, along which axis, where, and its usual range in the SI unit."""
+    """What a channel measures, along which axis, and where."""
 
     quantity: str
     axis: str
     location: str
-    usual_range: tuple[float, float]
-
-
-def by_unit(sensor: SampledSensor) -> tuple[float, float]:
-    """Factor and zero from the SI unit to the sensor's."""
-    return sensor.UNITS[sensor.unit], 0.0
 
 
 def undisturbed(_sensor: Any, signal: FloatArray, _angle: FloatArray, _sensors: SensorSet) -> FloatArray:
@@ -38,13 +32,12 @@ def undisturbed(_sensor: Any, signal: FloatArray, _angle: FloatArray, _sensors: 
 class Kind:
     """A kind of sampled sensor; each function takes the sensor first.
 
-    `tap` gives the true signal it sees, `scale` factor and zero to its unit, `disturb` what else it sees: the signal in
+    `tap` gives the true signal it sees, `disturb` what else it sees: the signal in
     its SI unit (steps,), the shaft's angle theta at each (steps,), the set.
     """
 
     describe: Callable[[Any], Description]
     tap: Callable[[Any], Tap]
-    scale: Callable[[Any], tuple[float, float]] = by_unit
     disturb: Callable[[Any, FloatArray, FloatArray, SensorSet], FloatArray] = undisturbed
 
 

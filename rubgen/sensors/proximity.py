@@ -7,20 +7,13 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.scenario.sensors import Proximity, SensorSet
 from rubgen.scenario.taps import CentreDisplacement
-from rubgen.sensors.kind import Description, Kind, along, by_unit, label
+from rubgen.sensors.kind import Description, Kind, along, label
 
 
 def describe(sensor: Proximity) -> Description:
     """In V it is the gap voltage, which is no displacement to whoever reads the channel."""
     quantity = "gap voltage" if sensor.unit == "V" else "displacement"
-    return Description(
-        quantity=quantity, axis=along(sensor.angle_deg), location="disk centre", usual_range=(-2e-3, 2e-3)
-    )
-
-
-def scale(sensor: Proximity) -> tuple[float, float]:
-    """Gap voltage = bias + sensitivity x: the gap closes as the shaft comes nearer, and the negative voltage rises."""
-    return (sensor.sensitivity_v_per_m, sensor.bias_v) if sensor.unit == "V" else by_unit(sensor)
+    return Description(quantity=quantity, axis=along(sensor.angle_deg), location="disk centre")
 
 
 def runout(angle: FloatArray, sensors: SensorSet) -> FloatArray:
@@ -41,6 +34,5 @@ def disturb(sensor: Proximity, signal: FloatArray, angle: FloatArray, sensors: S
 KIND = Kind(
     describe=describe,
     tap=lambda sensor: CentreDisplacement(name=f"blisk_{label(sensor.angle_deg)}", angle_deg=sensor.angle_deg),
-    scale=scale,
     disturb=disturb,
 )

@@ -67,12 +67,3 @@ def taps_of(sensors: SensorSet) -> tuple[Tap, ...]:
         if isinstance(probe, TimingProbe)
     ]
     return (*taps, *probes)
-
-
-def usual_range(sensor: SampledSensor) -> tuple[float, float]:
-    """The sensor's range in its unit: its own, or the kind's."""
-    if sensor.range is not None:
-        return sensor.range
-    factor, zero = kind_of(sensor).scale(sensor)
-    low, high = describe(sensor).usual_range
-    return zero + factor * low, zero + factor * high

@@ -14,7 +14,7 @@ from rubgen.sensors.chain import adc_step, band_limit, digitise
 from rubgen.sensors.channel import Channel
 from rubgen.sensors.faults import drop_out, miscalibrate, noise, noise_level
 from rubgen.sensors.front_end import front_end
-from rubgen.sensors.registry import describe, kind_of, tap_of, usual_range
+from rubgen.sensors.registry import describe, kind_of, tap_of
 from rubgen.solver.response import Response
 
 
@@ -43,7 +43,7 @@ class Samples:
 def feed_of(sensor: SampledSensor, response: Response, angle: FloatArray, sensors: SensorSet) -> Feed:
     """The true signal in the sensor's unit, and what the sensor makes of it; `angle` (steps,) is theta at each step."""
     kind, tap = kind_of(sensor), response.taps[tap_of(sensor).name]
-    factor, zero = kind.scale(sensor)
+    factor, zero = sensor.scale
 
     def in_unit(signal: FloatArray) -> FloatArray:
         return signal if (factor, zero) == (1.0, 0.0) else zero + factor * signal
@@ -78,9 +78,9 @@ def filtered(feeds: Sequence[Feed], positions: FloatArray, *, dt: float, sensing
 def recorded(sensor: SampledSensor, samples: Samples, sensing: Sensing, rng: np.random.Generator) -> Channel:
     """The channel of a sensor: calibration errors, noise, range, ADC and dropouts on its samples."""
     about, rate = describe(sensor), sensing.sample_rate_hz
-    low, high = usual_range(sensor)
+    low, high = sensor.full_range
     bits = sensor.adc_bits or sensing.adc_bits
-    seen = miscalibrate(sensor, samples.real, zero=kind_of(sensor).scale(sensor)[1], sample_rate_hz=rate)
+    seen = miscalibrate(sensor, samples.real, zero=sensor.scale[1], sample_rate_hz=rate)
     noisy = seen + noise(sensor, seen.size, rate, sensing.noise, rng)
     values = digitise(noisy, range_min=low, range_max=high, bits=bits)
     return Channel(

@@ -4,8 +4,6 @@ from rubgen.scenario.taps import SupportForce
 from rubgen.sensors.kind import Description, Kind, along, label
 
 KIND = Kind(
-    describe=lambda sensor: Description(
-        quantity="force", axis=along(sensor.angle_deg), location="disk support", usual_range=(-2.5e5, 2.5e5)
-    ),
+    describe=lambda sensor: Description(quantity="force", axis=along(sensor.angle_deg), location="disk support"),
     tap=lambda sensor: SupportForce(name=f"support_force_{label(sensor.angle_deg)}", angle_deg=sensor.angle_deg),
 )

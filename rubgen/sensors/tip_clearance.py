@@ -4,11 +4,6 @@ from rubgen.scenario.taps import TipClearance
 from rubgen.sensors.kind import Description, Kind, label
 
 KIND = Kind(
-    describe=lambda sensor: Description(
-        quantity="gap",
-        axis="radial",
-        location=f"casing at {sensor.angle_deg:g} deg",
-        usual_range=(-1e-3, 1.2e-2),
-    ),
+    describe=lambda sensor: Description(quantity="gap", axis="radial", location=f"casing at {sensor.angle_deg:g} deg"),
     tap=lambda sensor: TipClearance(name=f"tip_clearance_{label(sensor.angle_deg)}", angle_deg=sensor.angle_deg),
 )

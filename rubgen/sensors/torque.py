@@ -15,7 +15,6 @@ KIND = Kind(
         quantity=f"{sensor.of} torque",
         axis="rotation",
         location="drive shaft" if sensor.of == "drive" else "all blade tips",
-        usual_range=(-2e4, 2e4),
     ),
     tap=tap,
 )

@@ -7,7 +7,6 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.scenario.sensors import Proximity
 from rubgen.sensors.channel import Float32Array
-from rubgen.sensors.proximity import scale
 from rubgen.viz.replay import Replay
 
 LEAST_SINE = 0.5
@@ -43,5 +42,5 @@ def section(replay: Replay) -> FloatArray | None:
 
 
 def _micrometres(probe: Proximity, values: Float32Array) -> FloatArray:
-    factor, zero = scale(probe)
+    factor, zero = probe.scale
     return np.asarray(1e6 * (np.asarray(values, dtype=np.float64) - zero) / factor)

@@ -10,7 +10,7 @@ from rubgen.scenario.sensor_set import load_sensor_set
 from rubgen.scenario.sensors import GRAVITY, Accelerometer, ClearanceProbe, Proximity, RunoutOrder, SensorSet, Torque
 from rubgen.scenario.taps import DEFAULT_TAPS, CentreDisplacement
 from rubgen.sensors import margin_seconds, measure, taps_of
-from rubgen.sensors.registry import KINDS, tap_of, usual_range
+from rubgen.sensors.registry import KINDS, tap_of
 
 
 def record(rub_run, *sensors, noise=0.0, runout=(), **taps):
@@ -104,7 +104,7 @@ def test_margins_hold_clocks_and_what_filters_remember():
 def test_each_sensor_of_a_rig_records_its_fault_beside_the_truth(rig_run):
     recording = rig_run.recording
     for sensor in rig_run.scenario.sensing.set.sampled:
-        channel, (low, high) = recording.channels[sensor.name], usual_range(sensor)
+        channel, (low, high) = recording.channels[sensor.name], sensor.full_range
         assert type(sensor) in KINDS
         assert channel.unit == sensor.unit
         assert low < channel.clean.min() < channel.clean.max() < high

@@ -24,7 +24,7 @@ from rubgen.scenario import Sensing
 from rubgen.scenario.sensors import OncePerRev, Proximity, SampledSensor
 from rubgen.sensors.channel import Float32Array
 from rubgen.sensors.once_per_rev import NOTCH_ANGLE
-from rubgen.sensors.registry import tap_of, usual_range
+from rubgen.sensors.registry import tap_of
 
 REGULARITY = [motion.value for motion in Motion]
 SHARE_TOLERANCE = 1e-9
@@ -86,7 +86,7 @@ def signal_problems(row: Row, signals: dict[str, Float32Array], sensing: Sensing
             values = signals[sensor.name]
             if not np.isfinite(values).all():
                 yield f"{sensor.name} is not finite"
-            elif is_faultless(sensor, sensing) and _within_range(values, *usual_range(sensor)):
+            elif is_faultless(sensor, sensing) and _within_range(values, *sensor.full_range):
                 yield from _sensor_problems(row, sensor, values, sensing)
 
 
@@ -100,7 +100,7 @@ def is_faultless(sensor: SampledSensor, sensing: Sensing) -> bool:
 
 
 def _sensor_problems(row: Row, sensor: SampledSensor, values: Float32Array, sensing: Sensing) -> Iterator[str]:
-    low, high = usual_range(sensor)
+    low, high = sensor.full_range
     step = (high - low) / 2 ** (sensor.adc_bits or sensing.adc_bits)
     noise_rms, tap = sensing.noise * sensor.noise_rms, tap_of(sensor).name
     if tap == "contact_force" and not row["rub"]:
