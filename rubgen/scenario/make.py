@@ -15,20 +15,12 @@ from rubgen.errors import UserError
 from rubgen.machine.problems import nearest, validated
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import warn_of
+from rubgen.scenario.profiles import check_used
 from rubgen.scenario.recipe import Recipe
 from rubgen.scenario.scenario import ProfileName, Scenario
 from rubgen.scenario.vary import KEYS, vary
 
 P = ParamSpec("P")
-PROFILES_OF: dict[str, tuple[ProfileName, ...]] = {
-    "end_speed_rpm": ("run-up", "coast-down"),
-    "duration_s": ("run-up", "coast-down", "fluctuating"),
-    "fluctuation_rpm": ("fluctuating",),
-    "fluctuation_period_s": ("fluctuating",),
-    "record_turns": ("steady",),
-    "lyapunov": ("steady",),
-}
-"""The profiles that use a key; every other key goes with all."""
 TABLES = {
     "operation": ("profile",),
     "simulation": ("settle_turns", "record_turns", "steps_per_turn"),
@@ -120,9 +112,10 @@ def make_scenario(
     together.
     """
     given = {key: value for key, value in locals().items() if value is not None}
-    recipe = validated("", _recipe_values(given), _RECIPE, _key_alone)
-    _check_profile(recipe.operation.profile, given)
-    scenario = vary(recipe.base, {key: given[key] for key in KEYS if key in given})
+    values, varied = _recipe_values(given), {key: given[key] for key in KEYS if key in given}
+    recipe = validated("", values, _RECIPE, _key_alone)
+    check_used("", {**values, "vary": varied}, _key_alone)
+    scenario = vary(recipe.base, varied)
     check_feasible(scenario)
     warn_of([scenario])
     return scenario
@@ -147,12 +140,3 @@ def _text(value: Any) -> Any:
 def _key_alone(path: tuple[int | str, ...]) -> tuple[int | str, ...]:
     """The key of `make_scenario` that stands at this place of the recipe."""
     return ("sensors",) if path == ("sensors", "set") else path[-1:]
-
-
-def _check_profile(profile: ProfileName, given: dict[str, Any]) -> None:
-    """Raise UserError for a key that this profile would ignore; `profile_problem` says what it lacks."""
-    for key, profiles in PROFILES_OF.items():
-        if key in given and profile not in profiles and given[key] is not False:
-            allowed = " or ".join(f'"{each}"' for each in profiles)
-            value = "true" if given[key] is True else f"{given[key]:g}"
-            raise UserError(f'{key} = {value}: the profile "{profile}" has none; leave it out or give {allowed}')

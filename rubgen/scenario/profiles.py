@@ -2,17 +2,41 @@
 
 from __future__ import annotations
 
-from rubgen.scenario.scenario import RPM, Operation
+from collections.abc import Callable, Mapping
+from typing import Any
 
-PROFILE_KEYS: dict[str, tuple[str, ...]] = {
-    "steady": (),
-    "run-up": ("end_speed_rpm", "duration_s"),
-    "coast-down": ("end_speed_rpm", "duration_s"),
-    "fluctuating": ("duration_s", "fluctuation_rpm"),
+from rubgen.errors import UserError
+from rubgen.machine.problems import key_name
+from rubgen.machine.quantities import Place
+from rubgen.machine.toml_text import toml_text
+from rubgen.scenario.scenario import RPM, Operation, ProfileName
+
+PROFILES_OF: dict[str, tuple[ProfileName, ...]] = {
+    "end_speed_rpm": ("run-up", "coast-down"),
+    "duration_s": ("run-up", "coast-down", "fluctuating"),
+    "fluctuation_rpm": ("fluctuating",),
+    "fluctuation_period_s": ("fluctuating",),
+    "record_turns": ("steady",),
+    "lyapunov": ("steady",),
 }
-"""The keys that each profile needs; it takes no others of these."""
+"""The profiles that use a key; every other key goes with all."""
+NEEDED = ("end_speed_rpm", "duration_s", "fluctuation_rpm")
+"""Keys without which their profiles cannot be; the others have a default."""
 LEAST_PERIOD_TURNS = 0.1
 """Shorter fluctuations are not resolved by the steps."""
+
+
+def check_used(source: str, recipe: Mapping[str, Any], place: Callable[[Place], Place] = lambda path: path) -> None:
+    """Raise UserError for a key in the data of a recipe that its profile would ignore.
+
+    `place` says by which name the user gave what stands at a path of the recipe.
+    """
+    profile = recipe.get("operation", {}).get("profile", "steady")
+    for table, keys in recipe.items():
+        for key, value in keys.items() if isinstance(keys, Mapping) else ():
+            if profile not in PROFILES_OF.get(key, (profile,)) and value is not False:
+                name = key_name(place((table, key)))
+                raise UserError(f"{source}{name} = {toml_text(value)}: {_has_none(profile, key)}")
 
 
 def profile_problem(operation: Operation) -> str | None:
@@ -21,19 +45,18 @@ def profile_problem(operation: Operation) -> str | None:
 
 
 def _key_problem(operation: Operation) -> str | None:
-    given = {
-        "end_speed_rpm": operation.end_speed_rpm is not None,
-        "duration_s": operation.duration_s is not None,
-        "fluctuation_rpm": operation.fluctuation_rpm > 0,
-    }
-    for key, is_given in given.items():
-        needed = key in PROFILE_KEYS[operation.profile]
-        if needed and not is_given:
+    for key in NEEDED:
+        value, uses = getattr(operation, key), operation.profile in PROFILES_OF[key]
+        if uses and not value:
             return f'{key}: the profile "{operation.profile}" needs it; add it'
-        if is_given and not needed:
-            value = getattr(operation, key)
-            return f'{key} = {value:g}: the profile "{operation.profile}" has none; remove it or choose another profile'
+        if value and not uses:
+            return f"{key} = {value:g}: {_has_none(operation.profile, key)}"
     return None
+
+
+def _has_none(profile: str, key: str) -> str:
+    users = " or ".join(f'"{each}"' for each in PROFILES_OF[key])
+    return f'the profile "{profile}" has none; leave it out or give the profile {users}'
 
 
 def _value_problem(operation: Operation) -> str | None:

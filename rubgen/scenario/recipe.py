@@ -33,6 +33,7 @@ from rubgen.machine.toml_file import check_kind, read_toml, toml_path
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import warn_of
+from rubgen.scenario.profiles import check_used
 from rubgen.scenario.sampling import sobol_point
 from rubgen.scenario.scenario import ContactLaw, Labelling, Operation, ProfileName, Reduction, Scenario, Sensing
 from rubgen.scenario.sensor_set import DEFAULT_SET, load_sensor_set
@@ -192,6 +193,7 @@ def parse_recipe(
     if runs is not None:
         data = {**data, "runs": checked_runs(runs)}
     recipe = validated(source, data, TypeAdapter(Recipe))
+    check_used(f"{source}: ", data)
     recipe._folder = folder or Path()
     check_recipe(recipe, source)
     warn_of(recipe.corners(), f"{source}: ")

@@ -27,7 +27,23 @@ CASES = {
     ),
     "key of another profile": (
         VARY + "fluctuation_rpm = 3",
-        'operation.fluctuation_rpm = 3: the profile "steady" has none; remove it or choose another profile',
+        'vary.fluctuation_rpm = 3: the profile "steady" has none; leave it out or give the profile "fluctuating"',
+    ),
+    "period of another profile": (
+        GOOD + "[operation]\nfluctuation_period_s = 0.5",
+        'operation.fluctuation_period_s = 0.5: the profile "steady" has none; leave it out or give the profile "fluc',
+    ),
+    "period of another profile, drawn": (
+        RUN_UP + "duration_s = 2\nend_speed_rpm = 12000\n[vary]\nfluctuation_period_s = { uniform = [1, 2] }",
+        'vary.fluctuation_period_s = { uniform = [1, 2] }: the profile "run-up" has none; leave it out or give the pr',
+    ),
+    "turns of a steady record": (
+        RUN_UP + "duration_s = 2\nend_speed_rpm = 12000\n[simulation]\nrecord_turns = 600",
+        'simulation.record_turns = 600: the profile "run-up" has none; leave it out or give the profile "steady"',
+    ),
+    "exponent of a run-up": (
+        RUN_UP + "duration_s = 2\nend_speed_rpm = 12000\n[labels]\nlyapunov = true",
+        'labels.lyapunov = true: the profile "run-up" has none; leave it out or give the profile "steady"',
     ),
     "run-up through a forbidden band": (
         RUN_UP + "duration_s = 2\nend_speed_rpm = 12000\nforbidden_speed_rpm = [[10500, 10600]]",

@@ -75,16 +75,19 @@ def test_numbers_of_numpy_are_numbers():
 
 RUN_UP = {"profile": "run-up", "end_speed_rpm": 12000, "duration_s": 2}
 BAD = [
-    ({"end_speed_rpm": 9000}, 'end_speed_rpm = 9000: the profile "steady" has none; leave it out or give "run-up" or'),
+    (
+        {"end_speed_rpm": 9000},
+        'end_speed_rpm = 9000: the profile "steady" has none; leave it out or give the profile "run',
+    ),
     ({"duration_s": 2}, 'duration_s = 2: the profile "steady" has none'),
     (
         {"fluctuation_rpm": 0.0},
-        'fluctuation_rpm = 0: the profile "steady" has none; leave it out or give "fluctuating"',
+        'fluctuation_rpm = 0: the profile "steady" has none; leave it out or give the profile "fluctuating"',
     ),
     (RUN_UP | {"fluctuation_period_s": 0.5}, 'fluctuation_period_s = 0.5: the profile "run-up" has none'),
     (
         RUN_UP | {"record_turns": 600},
-        'record_turns = 600: the profile "run-up" has none; leave it out or give "steady"',
+        'record_turns = 600: the profile "run-up" has none; leave it out or give the profile "steady"',
     ),
     (RUN_UP | {"lyapunov": True}, 'lyapunov = true: the profile "run-up" has none'),
     ({"profile": "run-up", "duration_s": 2}, 'end_speed_rpm: the profile "run-up" needs it; add it'),

@@ -13,6 +13,7 @@ ROTATIONS = [
     Rotation(start=600.0, end=900.0, seconds=0.4, swing=-50.0, period=0.07),
     steady_rotation(500.0),
 ]
+STEADY_HAS_NONE = 'the profile "steady" has none; leave it out or give the profile "run-up" or "coast-down"'
 
 
 @pytest.mark.parametrize("rotation", ROTATIONS)
@@ -49,7 +50,7 @@ BAD = [
     ({"profile": "coast-down", "end_speed_rpm": 1e3}, 'duration_s: the profile "coast-down" needs it; add it'),
     (
         {"end_speed_rpm": 1e3},
-        'end_speed_rpm = 1000: the profile "steady" has none; remove it or choose another profile',
+        f"end_speed_rpm = 1000: {STEADY_HAS_NONE}",
     ),
     (
         {"profile": "run-up", "end_speed_rpm": 5e3, "duration_s": 1.0},
