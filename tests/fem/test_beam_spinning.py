@@ -11,8 +11,8 @@ from test_beam_statics import rigid_motion, volume
 
 from rubgen.fem.beam import blade_matrices
 from rubgen.machine.machine import Material
-from validation.verification.beams import FLAP, THICK, TIMOSHENKO, cantilever_frequencies
-from validation.verification.twisted_blades import RADIUS, TWISTED
+from validation.verification.elements.beams import FLAP, THICK, TIMOSHENKO, cantilever_frequencies
+from validation.verification.elements.twisted_blades import RADIUS, TWISTED
 
 
 def test_rotary_spin_softening_is_seen() -> None:

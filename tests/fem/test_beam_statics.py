@@ -8,8 +8,8 @@ import pytest
 from rubgen.fem.beam import BeamMatrices, blade_matrices
 from rubgen.fem.beam_sections import rectangle_torsion_constant
 from rubgen.machine.machine import BladeRow
-from validation.verification.blade_oracles import section
-from validation.verification.twisted_blades import RADIUS, TWISTED
+from validation.verification.elements.blade_oracles import section
+from validation.verification.elements.twisted_blades import RADIUS, TWISTED
 
 
 def rigid_motion(blades: BladeRow, translation: np.ndarray, rotation: np.ndarray) -> np.ndarray:

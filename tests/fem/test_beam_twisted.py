@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 
-from validation.verification.twisted_blades import TWISTED, element_frequencies, shooting_frequency
+from validation.verification.elements.twisted_blades import TWISTED, element_frequencies, shooting_frequency
 
 
 def test_frequencies_come_from_above_with_the_second_order() -> None:

@@ -12,7 +12,7 @@ from rubgen.errors import UserError
 from rubgen.fem.casing import CasingModel, assemble_casing
 from rubgen.machine.load import load_machine
 from rubgen.machine.machine import Machine
-from validation.verification.rings import by_order, order_three, ring, ring_theory
+from validation.verification.elements.rings import by_order, order_three, ring, ring_theory
 
 
 @pytest.fixture(autouse=True, scope="module")

@@ -5,8 +5,8 @@ import pytest
 
 from rubgen.fem.disk import assemble_disk
 from rubgen.machine import load_machine
-from validation.verification.plates import annulus, lowest, out_of_plane
-from validation.verification.spinning_disks import growth_constants, membrane_squares, rotating_displacement
+from validation.verification.elements.plates import annulus, lowest, out_of_plane
+from validation.verification.elements.spinning_disks import growth_constants, membrane_squares, rotating_displacement
 
 U, V, W, TH_X, TH_Y, TH_Z = range(6)
 

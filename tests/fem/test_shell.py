@@ -8,7 +8,7 @@ from scipy.sparse.linalg import spsolve
 from rubgen.fem.shell import shell_stiffness, shell_stress_stiffness
 from rubgen.fem.shell_strains import ShellMesh, serendipity
 from rubgen.machine import Material
-from validation.verification.plates import clamped_centre_deflection, navier_frequency, supported_frequency
+from validation.verification.elements.plates import clamped_centre_deflection, navier_frequency, supported_frequency
 
 STEEL = Material(youngs_modulus_pa=2.06e11, poisson_ratio=0.3, density_kg_per_m3=7850.0)
 NU = STEEL.poisson_ratio

@@ -10,7 +10,7 @@ from rubgen.labels.to_json import labels_dict
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver.integrate import integrate
 from rubgen.solver.response import Response
-from validation.verification.jeffcott import jeffcott_system
+from validation.verification.rotors.jeffcott import jeffcott_system
 
 Respond = Callable[..., Response]
 

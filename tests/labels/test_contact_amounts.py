@@ -12,7 +12,7 @@ from rubgen.labels.motion.whirl import Whirl, WhirlDirection, whirl
 from rubgen.labels.to_json import labels_dict
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver.integrate import integrate
-from validation.verification.jeffcott import CLEARANCE, FRICTION, ROTOR_MASS, SPEED, annular_rub, jeffcott_system
+from validation.verification.rotors.jeffcott import CLEARANCE, FRICTION, ROTOR_MASS, SPEED, annular_rub, jeffcott_system
 
 
 def amounts(response):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rubgen.labels.motion.zero_one_test import FREQUENCIES, growth_correlation
-from validation.verification.chaos_indicators import henon
+from validation.verification.chaos.chaos_indicators import henon
 
 GOLDEN = (np.sqrt(5) - 1) / 2
 

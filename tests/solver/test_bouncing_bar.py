@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from validation.verification.bouncing_bar import bounce
+from validation.verification.contact.bouncing_bar import bounce
 
 
 def test_impulse_and_rebound_converge_with_the_order_of_a_dispersed_front() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from rubgen.scenario import ContactLaw
 from rubgen.solver.stepper import Stepper
-from validation.verification.jeffcott import ROTOR_STIFFNESS, jeffcott_system
+from validation.verification.rotors.jeffcott import ROTOR_STIFFNESS, jeffcott_system
 
 SMOOTH = ContactLaw()
 

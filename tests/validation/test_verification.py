@@ -58,7 +58,7 @@ def test_a_value_beyond_its_tolerance_or_not_a_number_is_flagged():
 
 
 def test_a_wrong_element_is_flagged(monkeypatch):
-    from validation.verification import beams
+    from validation.verification.elements import beams
 
     true = beams.blade_matrices
 

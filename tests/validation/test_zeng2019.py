@@ -9,16 +9,16 @@ from scipy.sparse.linalg import spsolve
 from rubgen.errors import UserError
 from rubgen.fem.statics import on_springs, support_stiffness
 from rubgen.machine.published import CASING_HZ
+from validation.computing import compute
+from validation.piece import Piece
+from validation.store import Store
 from validation.zeng2019 import reproduce
-from validation.zeng2019.computing import compute
-from validation.zeng2019.full_model import _around, critical_speed, full_blisk
-from validation.zeng2019.mode_shapes import nodal_diameters
-from validation.zeng2019.piece import Piece
-from validation.zeng2019.reduced_model import seen_frequencies, whirl
+from validation.zeng2019.models.full import _around, critical_speed, full_blisk
+from validation.zeng2019.models.mode_shapes import nodal_diameters
+from validation.zeng2019.models.reduced import seen_frequencies, whirl
 from validation.zeng2019.reproducing import sections_of
 from validation.zeng2019.sections import SECTIONS
 from validation.zeng2019.statement import Statement, by_deviation, by_share, power
-from validation.zeng2019.store import Store
 
 FIELDS = {"figure", "statement", "verdict", "found", "why", "used_for_fitting", "experiment", "command"}
 VERDICTS = ("agrees", "agrees within ", "differs", "unknowable")

@@ -8,10 +8,12 @@ from rubgen.errors import UserError
 from rubgen.machine import load_machine
 from rubgen.machine.load import PRESETS
 from validation.onset import ONSET_RPM, tip_growth
-from validation.zeng2019 import figure09, fitting, search
-from validation.zeng2019 import score as scoring
-from validation.zeng2019.score import Score, always, best, score
-from validation.zeng2019.search import (
+from validation.zeng2019.figures import figure09
+from validation.zeng2019.fitting import fit as fitting
+from validation.zeng2019.fitting import score as scoring
+from validation.zeng2019.fitting import search
+from validation.zeng2019.fitting.score import Score, always, best, score
+from validation.zeng2019.fitting.search import (
     FITTED,
     FRICTION,
     MASS,

@@ -10,7 +10,14 @@ from rubgen.scenario import make_scenario
 from rubgen.solver.integrate import integrate
 from rubgen.solver.response import ContactEvents
 from validation.zeng2019 import reproduce
-from validation.zeng2019.cases import (
+from validation.zeng2019.conclusions.causes import _by_modes
+from validation.zeng2019.conclusions.conclusion3 import indices
+from validation.zeng2019.figures.figure10 import _onset
+from validation.zeng2019.figures.figure16 import unevenness, zones_and_motion
+from validation.zeng2019.figures.figure17 import _end, jump
+from validation.zeng2019.figures.figure19 import crossings
+from validation.zeng2019.fitting.search import Candidate, toml_of
+from validation.zeng2019.runs.cases import (
     CASING_SUPPORTS,
     DISK_SUPPORTS,
     NAMED_CASING_SUPPORTS,
@@ -24,17 +31,10 @@ from validation.zeng2019.cases import (
     swept_speeds,
     within,
 )
-from validation.zeng2019.causes import _by_modes
-from validation.zeng2019.conclusion3 import indices
-from validation.zeng2019.contact_pattern import contact_pattern
-from validation.zeng2019.figure10 import _onset
-from validation.zeng2019.figure16 import unevenness, zones_and_motion
-from validation.zeng2019.figure17 import _end, jump
-from validation.zeng2019.figure19 import crossings
-from validation.zeng2019.measures import fractional, harmonics, looks_regular, segments, strongest
-from validation.zeng2019.outcome import POINTS, Outcome, outcome, outcome_of, run, run_piece
-from validation.zeng2019.region import one_class, switching
-from validation.zeng2019.search import Candidate, toml_of
+from validation.zeng2019.runs.contact_pattern import contact_pattern
+from validation.zeng2019.runs.measures import fractional, harmonics, looks_regular, segments, strongest
+from validation.zeng2019.runs.outcome import POINTS, Outcome, outcome, outcome_of, run, run_piece
+from validation.zeng2019.runs.region import one_class, switching
 from validation.zeng2019.size import FULL, QUICK
 
 TINY = replace(QUICK, settle_turns=50, record_turns=100, thin=30, speed_thin=100)

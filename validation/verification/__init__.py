@@ -10,33 +10,37 @@ import inspect
 
 from validation.verification.report import Group
 
-GROUPS = (
-    "beams",
-    "twisted_blades",
-    "plates",
-    "spinning_disks",
-    "rings",
-    "rotors",
-    "reduction",
-    "uneven_supports",
-    "squeeze_film",
-    "turning_frame",
-    "integrator",
-    "bouncing_bar",
-    "impact_oscillator",
-    "annular_rub",
-    "misaligned_rub",
-    "surface_options",
-    "chaos_indicators",
-    "lyapunov_exponents",
-    "exponent_errors",
+_MODULES = (
+    "elements.beams",
+    "elements.twisted_blades",
+    "elements.plates",
+    "elements.spinning_disks",
+    "elements.rings",
+    "rotors.rotors",
+    "rotors.reduction",
+    "rotors.uneven_supports",
+    "rotors.squeeze_film",
+    "rotors.turning_frame",
+    "contact.integrator",
+    "contact.bouncing_bar",
+    "contact.impact_oscillator",
+    "contact.annular_rub",
+    "contact.misaligned_rub",
+    "contact.surface_options",
+    "chaos.chaos_indicators",
+    "chaos.lyapunov_exponents",
+    "chaos.exponent_errors",
     "preset",
 )
 
 
+GROUPS = {path.rpartition(".")[2]: path for path in _MODULES}
+"""Module of each group by its name."""
+
+
 def check(name: str) -> Group:
     """The rows of the group of that name, computed now."""
-    module = importlib.import_module(f"{__name__}.{name}")
+    module = importlib.import_module(f"{__name__}.{GROUPS[name]}")
     return Group(module.TITLE, _body(inspect.getdoc(module) or ""), list(module.rows()))
 
 

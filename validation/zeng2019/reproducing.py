@@ -10,13 +10,13 @@ from pathlib import Path
 from rubgen.dataset.making.workers import usable_cores
 from rubgen.errors import UserError
 from rubgen.io.durable import write_durably
-from validation.zeng2019.computing import Progress, compute
-from validation.zeng2019.drawing import png
+from validation.computing import Progress, compute
+from validation.store import Store
+from validation.zeng2019.drawing.style import png
 from validation.zeng2019.page import Drawn, Judged, html, markdown
 from validation.zeng2019.section import Section
 from validation.zeng2019.sections import SECTIONS
 from validation.zeng2019.size import FULL, MACHINE, MACHINES, QUICK, Size
-from validation.zeng2019.store import Store
 
 PAGE = "zeng2019"
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from validation.zeng2019.piece import Found, Piece
+from validation.piece import Found, Piece
 from validation.zeng2019.size import Size
 from validation.zeng2019.statement import Statement
 

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from validation.zeng2019 import (
-    causes,
-    conclusion1,
-    conclusion2,
-    conclusion3,
+from validation.zeng2019.conclusions import causes, conclusion1, conclusion2, conclusion3, friction
+from validation.zeng2019.figures import (
     figure06,
     figure07,
     figure08,
@@ -20,7 +17,6 @@ from validation.zeng2019 import (
     figure20,
     figure21,
     figures12to15,
-    friction,
 )
 from validation.zeng2019.section import Section
 

@@ -1,0 +1,1 @@
+"""Indicators of chaos on maps, flows and oscillators that are known."""

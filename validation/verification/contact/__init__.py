@@ -1,0 +1,1 @@
+"""The integrator and contact against exact solutions."""

@@ -1,0 +1,1 @@
+"""Elements and structures against closed forms and the literature."""

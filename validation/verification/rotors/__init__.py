@@ -1,0 +1,1 @@
+"""Rotors, supports and reduction without contact."""

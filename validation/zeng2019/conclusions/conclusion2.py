@@ -1,0 +1,85 @@
+"""Conclusion (2): the fundamental frequency is that of rotation times the number of contact zones."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from validation.piece import Found, Piece
+from validation.zeng2019.drawing.contact_figure import contact_figure
+from validation.zeng2019.runs.cases import case
+from validation.zeng2019.runs.measures import harmonics, strongest
+from validation.zeng2019.runs.outcome import Outcome, outcome_of, run_piece
+from validation.zeng2019.section import Section
+from validation.zeng2019.size import Size
+from validation.zeng2019.statement import Statement, by_share, counted
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+LOBES = (2, 3, 4, 5)
+SPEEDS = (9500.0, 10500.0, 11500.0, 13000.0)
+
+
+def _pieces(size: Size) -> dict[tuple[int, float], Piece]:
+    return {(lobes, rpm): run_piece(case(size, speed_rpm=rpm, lobes=float(lobes))) for lobes in LOBES for rpm in SPEEDS}
+
+
+def pieces(size: Size) -> Sequence[Piece]:
+    """Each number of lobes at each speed."""
+    return list(_pieces(size).values())
+
+
+def statements(size: Size, found: Found) -> Sequence[Statement]:
+    """Zones by lobes, the force's fundamental, the point's."""
+    runs = {key: outcome_of(found(piece)) for key, piece in _pieces(size).items()}
+    rub = {key: run for key, run in runs.items() if run.ok and run.rub}
+    failed = f"; {len(runs) - len(rub)} runs diverged or did not rub" if len(rub) < len(runs) else ""
+    zones = sum(run.zones == lobes for (lobes, _), run in rub.items())
+    force = sum(strongest(run.force_orders) == run.zones for run in rub.values())
+    regular = [run for run in rub.values() if run.regular]
+    calm = sum(strongest(run.force_orders) == run.zones for run in regular)
+    point = sum(strongest(harmonics(run.spectrum_casing)) == run.zones for run in rub.values())
+    by_lobes = ", ".join(f"{lobes}: {_orders(rub, lobes)}" for lobes in LOBES)
+    return [
+        Statement(
+            statement="A casing of N lobes has N contact zones.",
+            verdict=by_share(zones, len(rub)),
+            found=counted(zones, len(rub), "runs with 2, 3, 4, 5 lobes") + failed,
+        ),
+        Statement(
+            statement="The fundamental frequency of the contact load is f_r times the number of zones.",
+            verdict=by_share(force, len(rub)),
+            found=f"strongest order equals the zones in {counted(force, len(rub))}, of the period-1 runs in "
+            f"{counted(calm, len(regular))}; strongest orders by number of lobes {by_lobes}",
+        ),
+        Statement(
+            statement="The fundamental frequency of the casing's vibration is f_r times the number of zones.",
+            verdict=by_share(point, len(rub)),
+            found=f"at the point of the minor axis {counted(point, len(rub))}",
+            why="Whatever the load's fundamental, a point moves with shapes of all orders; those near the casing's own "
+            "181 Hz, which is f_r at 10,860 rev/min, ring most.",
+        ),
+    ]
+
+
+def _orders(runs: dict[tuple[int, float], Outcome], lobes: int) -> str:
+    return " ".join(str(strongest(run.force_orders)) for (n, _), run in runs.items() if n == lobes) or "none"
+
+
+def figures(size: Size, found: Found) -> dict[str, Figure]:
+    """Contact with each number of lobes at one speed."""
+    runs = {key: outcome_of(found(piece)) for key, piece in _pieces(size).items()}
+    shown = {f"{lobes} lobes": runs[lobes, SPEEDS[1]] for lobes in LOBES if runs[lobes, SPEEDS[1]].ok}
+    return {f"Contact with 2 to 5 lobes at {SPEEDS[1]:,.0f} rev/min": contact_figure(shown)} if shown else {}
+
+
+SECTION = Section(
+    name="c2",
+    title="Conclusion (2): fundamental frequency and zones",
+    text="Tested with the paper's two lobes and with three, four and five. That period-1 goes with equal and symmetric "
+    "zones is counted under the figures 16, 18 and 21.",
+    pieces=pieces,
+    statements=statements,
+    figures=figures,
+)

@@ -1,0 +1,1 @@
+"""What several figures draw in the same way."""

@@ -1,0 +1,157 @@
+"""Figure 16: contact on casing and blades at six speeds, and what contact and motion have to do with each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.stats import spearmanr
+
+from validation.piece import Found, Piece
+from validation.zeng2019.drawing.contact_figure import contact_figure
+from validation.zeng2019.runs.cases import NAMED_SPEEDS, at_speed, outcomes, speed_sweep
+from validation.zeng2019.runs.measures import PROMINENT, harmonics, rubbing, strongest
+from validation.zeng2019.runs.outcome import Outcome
+from validation.zeng2019.runs.region import SEEN
+from validation.zeng2019.section import Section
+from validation.zeng2019.size import Size
+from validation.zeng2019.statement import Statement, by_share, counted, yes_or_no
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+NEAR_DEG = 30.0
+RANK = 0.5
+"""Least rank correlation that is called a dependence."""
+
+
+def pieces(size: Size) -> Sequence[Piece]:
+    """The sweep and the six named speeds."""
+    return [*speed_sweep(size).values(), *(at_speed(size, rpm) for rpm in NAMED_SPEEDS)]
+
+
+def statements(size: Size, found: Found) -> Sequence[Statement]:
+    """Zones, harmonics of contact, area and blades, symmetry and motion."""
+    rub = list(rubbing(outcomes(speed_sweep(size), found)).values())
+    return [*_places(rub), *_impacts(rub), *_blades(rub), *zones_and_motion(rub)]
+
+
+def _places(rub: list[Outcome]) -> Sequence[Statement]:
+    two = sum(run.zones == 2 for run in rub)
+    near = sum(bool(run.zones) and float(_from_minor_axis(run).max()) <= NEAR_DEG for run in rub)
+    return [
+        Statement(
+            statement="Contact lies around the semi-minor axis of the oval.",
+            verdict=by_share(near, len(rub)),
+            found=f"all zones centred within {NEAR_DEG:.0f} degrees of it in {counted(near, len(rub), 'rubbing runs')}",
+        ),
+        Statement(
+            statement="There are two contact zones on the casing.",
+            verdict=by_share(two, len(rub)),
+            found=counted(two, len(rub), "rubbing runs"),
+        ),
+    ]
+
+
+def _impacts(rub: list[Outcome]) -> Sequence[Statement]:
+    double = sum(strongest(run.force_orders) == 2 for run in rub)
+    many = sum(bool(np.all(harmonics(run.spectrum_casing)[[3, 5, 7]] >= _visible(run))) for run in rub)
+    return [
+        Statement(
+            statement="Each turn brings two impacts: the contact load has the fundamental 2 f_r.",
+            verdict=by_share(double, len(rub)),
+            found=f"2 f_r is the strongest order of the contact force in {counted(double, len(rub), 'rubbing runs')}",
+        ),
+        Statement(
+            statement="The casing shows 4 f_r, 6 f_r and 8 f_r as well.",
+            verdict=by_share(many, len(rub)),
+            found=f"all three above {100 * PROMINENT:.0f} % of the strongest in "
+            + counted(many, len(rub), "rubbing runs"),
+        ),
+    ]
+
+
+def _blades(rub: list[Outcome]) -> Sequence[Statement]:
+    area, blades = np.array([r.area_deg for r in rub]), np.array([np.count_nonzero(r.on_blades) for r in rub])
+    rank = float(spearmanr(area, blades).statistic) if np.ptp(blades) and np.ptp(area) else float("nan")
+    several = sum(run.at_once >= 2 for run in rub)
+    beside = sum(run.neighbours > 0 for run in rub)
+    return [
+        Statement(
+            statement="The larger the contact area, the more blades take part.",
+            verdict=yes_or_no(rank >= RANK),
+            found=f"rank correlation of touched arc and blades that touch {rank:.2f} over {len(rub)} rubbing runs "
+            f"(arc {area.min():.0f} to {area.max():.0f} degrees, {blades.min()} to {blades.max()} blades)",
+        ),
+        Statement(
+            statement="Several blades touch at the same time.",
+            verdict=by_share(several, len(rub)),
+            found=counted(several, len(rub), "rubbing runs"),
+        ),
+        Statement(
+            statement="The neighbour of a rubbing blade may touch at the same time.",
+            verdict=yes_or_no(beside >= SEEN * len(rub)),
+            found=f"at some time in {counted(beside, len(rub), 'rubbing runs')}",
+            why="Elsewhere blades that touch at once are not neighbours.",
+        ),
+    ]
+
+
+def zones_and_motion(rub: Sequence[Outcome]) -> Sequence[Statement]:
+    """Whether period-1 goes with equal, symmetric zones, and the rest with unequal ones: counted both ways."""
+    regular = [run for run in rub if run.motion_blisk == "period-1"]
+    chaotic = [run for run in rub if run.motion_blisk == "chaotic"]
+    equal, unequal = sum(run.symmetric == 1 for run in regular), sum(run.symmetric == 0 for run in chaotic)
+    uneven = f"{100 * float(np.median([unevenness(run) for run in chaotic])):.1f} %" if chaotic else "nothing"
+    why = (
+        "Zones are called symmetric by the impulse of each turn. Summed over 49 turns, as the paper draws them, the "
+        f"two halves of the casing are apart by {uneven} of the whole (median of these runs)."
+    )
+    return [
+        Statement(
+            statement="Period-1 motion of the blisk goes with equal and symmetric contact zones.",
+            verdict=by_share(equal, len(regular)),
+            found=f"symmetric in {counted(equal, len(regular), 'period-1 runs')}",
+            why="Period-1 with broken symmetry exists and is legitimate.",
+        ),
+        Statement(
+            statement="Chaotic motion of the blisk goes with unequal contact zones.",
+            verdict=by_share(unequal, len(chaotic)),
+            found=f"not symmetric in {counted(unequal, len(chaotic), 'chaotic runs')}",
+            why=why,
+        ),
+    ]
+
+
+def unevenness(run: Outcome) -> float:
+    """Difference of the impulses of the last 49 turns on the halves right and left of the centre, over their sum."""
+    quarter = len(run.on_casing) // 4
+    right = float(run.on_casing[:quarter].sum() + run.on_casing[-quarter:].sum())
+    whole = float(run.on_casing.sum())
+    return abs(2 * right - whole) / whole if whole > 0 else 0.0
+
+
+def _from_minor_axis(run: Outcome) -> np.ndarray:
+    return np.asarray(np.abs((run.centres_deg + 90) % 180 - 90))
+
+
+def _visible(run: Outcome) -> float:
+    return PROMINENT * float(run.spectrum_casing.max())
+
+
+def figures(size: Size, found: Found) -> dict[str, Figure]:
+    """The six named speeds."""
+    named = outcomes({rpm: at_speed(size, rpm) for rpm in NAMED_SPEEDS}, found)
+    caption = "Impulse of the last 49 turns by place on the casing (blue) and by blade (red), each over its largest"
+    return {caption: contact_figure({f"{rpm:,.0f} rev/min": run for rpm, run in named.items()})}
+
+
+SECTION = Section(
+    name="16",
+    title="Figure 16: where the casing is touched",
+    text="Statements are counted over every rubbing run of the speed sweep; pictured are the paper's six speeds.",
+    pieces=pieces,
+    statements=statements,
+    figures=figures,
+)

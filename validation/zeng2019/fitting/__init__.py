@@ -1,0 +1,1 @@
+"""The search for what the paper does not publish."""

@@ -1,0 +1,1 @@
+"""The linear models that the figures compare."""

@@ -1,0 +1,1 @@
+"""The runs, and what is read from them."""
