@@ -6,26 +6,24 @@ A row without a value has a note that says why. What runs alone takes the place 
 from __future__ import annotations
 
 import importlib
-import json
 import sys
 import time
 from pathlib import Path
+
+from validation.rows import replace_rows
 
 NAMES = tuple(sorted(path.stem.removeprefix("bench_") for path in Path(__file__).parent.glob("bench_*.py")))
 
 
 def main(names: tuple[str, ...]) -> None:
     out = Path("out/bench.json")
-    out.parent.mkdir(exist_ok=True)
-    kept = [row for row in _before(out) if row.get("benchmark") in set(NAMES) - set(names)]
     for name in names:
         start = time.perf_counter()
         rows = [{"benchmark": name, **row} for row in importlib.import_module(f"benchmarks.bench_{name}").measure()]
-        kept += rows
+        replace_rows(out, rows, by="benchmark")
         for row in rows:
             print(text(row), flush=True)
         print(f"    ({name}: {time.perf_counter() - start:.0f} s)", flush=True)
-    out.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
 
 
 def text(row: dict) -> str:
@@ -33,13 +31,6 @@ def text(row: dict) -> str:
     if row["value"] is None:
         return f"{row['name']:<62}{'-':>12} {row['unit']:<8}{row['target']}: {row['note']}"
     return f"{row['name']:<62}{row['value']:>12.4g} {row['unit']:<8}{row['target']}"
-
-
-def _before(out: Path) -> list[dict]:
-    try:
-        return json.loads(out.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return []
 
 
 if __name__ == "__main__":

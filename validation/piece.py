@@ -1,4 +1,4 @@
-"""A piece of computation that is worth keeping: a function, its arguments, the arrays that it gives."""
+"""A piece of computation that is worth keeping: a function, its arguments, the arrays that it returns."""
 
 from __future__ import annotations
 
@@ -9,16 +9,20 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
+import rubgen
 from rubgen.scenario import Scenario
 from rubgen.scenario.plain import scenario_dict
-from validation.sensitivity.kept import code_digest
 
 Arrays = dict[str, np.ndarray[Any, Any]]
+PACKAGE = Path(rubgen.__file__).parent
+APART = ("cli", "report", "dataset", "output.py", "io", "viz", "sensors", "progress.py", "brief.py", "errors.py")
+"""What of the package changes no label: all else lies between a machine and its labels."""
 
 
 @dataclass(frozen=True)
@@ -35,17 +39,22 @@ class Piece:
         Comments and layout of the code do not count.
         """
         given = [scenario_dict(a) if isinstance(a, Scenario) else a for a in self.arguments]
-        what = [_physics(), _source(self.make), self.make.__qualname__, given]
+        what = [physics(PACKAGE), _source(self.make), self.make.__qualname__, given]
         return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()[:24]
 
 
 Found = Callable[[Piece], Arrays]
-"""Gives the arrays of a piece that has been made."""
+"""Returns the arrays of a piece that has been made."""
 
 
 @cache
-def _physics() -> str:
-    return code_digest()
+def physics(package: Path) -> str:
+    """Hash of the syntax trees of everything between a machine and its labels."""
+    digest = hashlib.sha256()
+    for source in sorted(package.rglob("*.py")):
+        if source.relative_to(package).parts[0] not in APART:
+            digest.update(_tree(source.read_text(encoding="utf-8")))
+    return digest.hexdigest()
 
 
 @cache
@@ -53,4 +62,8 @@ def _source(make: Callable[..., Arrays]) -> str:
     module = inspect.getmodule(make)
     if not isinstance(module, ModuleType):
         raise TypeError(f"{make!r}: a piece needs a function of a module")
-    return hashlib.sha256(ast.dump(ast.parse(inspect.getsource(module))).encode()).hexdigest()
+    return hashlib.sha256(_tree(inspect.getsource(module))).hexdigest()
+
+
+def _tree(source: str) -> bytes:
+    return ast.dump(ast.parse(source)).encode()

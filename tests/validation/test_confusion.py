@@ -79,9 +79,9 @@ def test_the_command_makes_judges_and_goes_on(tmp_path, monkeypatch, capsys):
     asked = {name: replace(each, operation=replace(each.operation, **short)) for name, each in asked.items()}
     monkeypatch.setattr("validation.confusion.__main__.scenarios", lambda **_: asked)
     assert main(["--every", "9", "--workers", "1"], tmp_path) == 0
-    made = {path: path.stat().st_mtime_ns for path in (tmp_path / "out/confusion").glob("*.npz")}
+    made = {path: path.stat().st_mtime_ns for path in (tmp_path / "out/confusion/pieces").glob("*.npz")}
     assert len(made) == 3
-    assert not list((tmp_path / "out/confusion").glob("*.part"))
+    assert not list((tmp_path / "out/confusion/pieces").glob("*.part*"))
     assert "2 runs that rub" in capsys.readouterr().out  # at 6,540 rev/min nothing touches
     page = (tmp_path / "out/confusion/confusion.md").read_text(encoding="utf-8")
     table = page.split("## The table")[1].split("##")[0]

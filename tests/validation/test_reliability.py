@@ -12,7 +12,7 @@ from rubgen.errors import UserError
 from validation.reliability import hostile
 from validation.reliability.documents import json_bytes, mutated, toml_text
 from validation.reliability.guarded import one_outcome, outcomes
-from validation.reliability.rows import Row, table
+from validation.reliability.rows import Row, table_of
 from validation.reliability.sets import Truth
 
 HARM = ("lost", "differing", "missed", "tracebacks")
@@ -45,7 +45,7 @@ def test_only_who_may_not_mount_a_disk_skips(rows):
 
 
 def test_the_table_has_a_line_for_each_fault(rows):
-    assert table(rows).count("\n") == len(rows) + 2
+    assert table_of(rows).count("\n") == len(rows) + 2
 
 
 def _case(number):

@@ -8,15 +8,16 @@ import pytest
 from rubgen.labels import label
 from rubgen.reduction import reduce
 from rubgen.solver.integrate import integrate
+from validation.rows import read_rows
 from validation.sensitivity import __main__ as command
-from validation.sensitivity import kept as kept_module
+from validation.sensitivity import outcome as outcome_module
 from validation.sensitivity.cases import AUTO, CASES, STUDIES, case, with_operation
 from validation.sensitivity.figures import halving_figure, study_figure
-from validation.sensitivity.halving import SPEEDS_RPM, Pair, equal_share, halve
-from validation.sensitivity.kept import KeptRuns
-from validation.sensitivity.outcome import Outcome, run
+from validation.sensitivity.halving import SPEEDS_RPM, Pair, equal_share, halve, scenario
+from validation.sensitivity.outcome import Outcome, outcome_of, run, run_piece
 from validation.sensitivity.page import page
-from validation.sensitivity.results import Result, change, read_pairs, read_results, write_pairs, write_results
+from validation.sensitivity.results import Result, change
+from validation.store import Store
 
 STUDY = {study.name: study for study in STUDIES}
 SHORT = {"settle_turns": 40, "record_turns": 40, "steps_per_turn": 512}
@@ -100,46 +101,11 @@ def test_speeds_are_those_of_the_paper():
     assert (SPEEDS_RPM[0], SPEEDS_RPM[-1]) == (2460, 14940)
 
 
-def test_finished_runs_are_not_made_again(tmp_path, short, rub, monkeypatch):
-    made = []
-    monkeypatch.setattr(kept_module, "run", lambda scenario: made.append(scenario) or rub)
-    path = tmp_path / "runs.jsonl"
-    other = with_operation(short, record_turns=41)
-    assert KeptRuns(path).outcome(short) == rub
-    assert not KeptRuns(path).holds(other)
-    again = KeptRuns(path)
-    assert [again.outcome(short), again.outcome(other)] == [rub, rub]
-    assert made == [short, other]
-
-
-def test_a_line_cut_by_a_kill_is_made_again(tmp_path, short, rub, monkeypatch):
-    monkeypatch.setattr(kept_module, "run", lambda _: rub)
-    path = tmp_path / "runs.jsonl"
-    KeptRuns(path).outcome(short)
-    path.write_text(path.read_text(encoding="utf-8")[:-20], encoding="utf-8")
-    cut = KeptRuns(path)
-    assert not cut.holds(short)
-    cut.outcome(short)
-    assert KeptRuns(path).holds(short)
-
-
-def test_runs_of_other_code_are_made_again(tmp_path, short, rub, monkeypatch):
-    monkeypatch.setattr(kept_module, "run", lambda _: rub)
-    path = tmp_path / "runs.jsonl"
-    KeptRuns(path).outcome(short)
-    monkeypatch.setattr(kept_module, "code_digest", lambda: "other")
-    assert not KeptRuns(path).holds(short)
-
-
-def test_comments_are_no_other_code(tmp_path, monkeypatch):
-    monkeypatch.setattr(kept_module, "_PACKAGE", tmp_path)
-    source = tmp_path / "solver" / "step.py"
-    source.parent.mkdir()
-    digests = []
-    for text in ("a = 1\n", "a  =  1  # one\n", "a = 2\n"):
-        source.write_text(text, encoding="utf-8")
-        digests.append(kept_module.code_digest())
-    assert digests[0] == digests[1] != digests[2]
+def test_an_outcome_comes_back_from_its_arrays(rub, monkeypatch):
+    for asked in (rub, failed(rub), replace(rub, period=None, symmetric=None)):
+        monkeypatch.setattr(outcome_module, "run", lambda _, asked=asked: asked)
+        again = outcome_of(outcome_module.run_arrays(case("light")))
+        assert repr(again) == repr(asked)  # NaN is not equal to itself
 
 
 def test_pairs_compare_labels_and_impulses(rub):
@@ -184,16 +150,8 @@ def test_changes_are_relative_and_undefined_for_failed_runs(rub):
     assert math.isnan(change(rub, replace(rub, impulse=0.0), lambda o: o.impulse))
 
 
-def test_results_come_back_from_json(tmp_path, rub):
-    results = [Result(case="light", value=4, outcome=rub)]
-    write_results(results, tmp_path / "a.json")
-    assert read_results(tmp_path / "a.json") == results
-    write_pairs([Pair(speed_rpm=5.0, whole=failed(rub), half=rub, later=rub)], tmp_path / "b.json")
-    (pair,) = read_pairs(tmp_path / "b.json")
-    assert pair.half == pair.later == rub
-    assert math.isnan(pair.whole.impulse)
-    assert pair.whole.period == rub.period
-    assert "NaN" not in (tmp_path / "b.json").read_text(encoding="utf-8")
+def test_pairs_without_both_runs_are_left_out(rub):
+    assert halve(lambda scenario: rub if scenario.operation.steps_per_turn == 1024 else None, [6780], lambda s: s) == []
 
 
 def made_up_results(rub: Outcome) -> list[Result]:
@@ -252,14 +210,20 @@ def test_page_names_other_labels(rub):
     assert "9 have the motion of the same case at the default. Others: light at 9: diverged" in text
 
 
-def test_a_quick_study_writes_everything_and_goes_on(tmp_path, rub, monkeypatch):
-    made = []
-    monkeypatch.setattr(kept_module, "run", lambda scenario: made.append(scenario) or rub)
-    arguments = ["casing_modes", "halving", "--quick"]
+@pytest.fixture
+def made(rub, monkeypatch):
+    """The scenarios that are run; each gives the same made-up outcome."""
+    scenarios = []
+    monkeypatch.setattr(outcome_module, "run", lambda scenario: scenarios.append(scenario) or rub)
+    return scenarios
+
+
+def test_a_quick_study_writes_everything_and_goes_on(tmp_path, made):
+    arguments = ["casing_modes", "halving", "--quick", "--workers", "1"]
     assert command.main(arguments, tmp_path) == 0
     out = tmp_path / "out" / "sensitivity-quick"
-    names = ["casing_modes.json", "halving.json", "runs.jsonl", "sensitivity-casing_modes.png"]
-    assert [path.name for path in sorted(out.iterdir())] == [*names, "sensitivity-halving.png", "sensitivity.md"]
+    names = {"casing_modes.json", "halving.json", "sensitivity-casing_modes.png", "sensitivity-halving.png"}
+    assert {path.name for path in out.iterdir()} - {"pieces", ".results", ".results.lock"} == names | {"sensitivity.md"}
     count = 5 * 3 + 2 * len(command.QUICK_SPEEDS)
     assert len(made) == count
     assert len(json.loads((out / "casing_modes.json").read_text(encoding="utf-8"))) == 15
@@ -267,14 +231,16 @@ def test_a_quick_study_writes_everything_and_goes_on(tmp_path, rub, monkeypatch)
     assert len(made) == count
 
 
-def test_finished_runs_alone(tmp_path, rub, monkeypatch):
-    monkeypatch.setattr(kept_module, "run", lambda _: rub)
-    out = tmp_path / "out" / "sensitivity-quick"
-    kept = KeptRuns(out / "runs.jsonl")
-    halve(kept.outcome, command.QUICK_SPEEDS[:1], lambda s: with_operation(s, settle_turns=60, record_turns=64))
-    monkeypatch.setattr(kept_module, "run", lambda _: pytest.fail("nothing more may run"))
-    command.main(["halving", "--quick", "--finished"], tmp_path)
-    assert [pair.speed_rpm for pair in read_pairs(out / "halving.json")] == [command.QUICK_SPEEDS[0]]
+def test_finished_runs_alone(tmp_path, made):
+    store = Store(tmp_path / "out" / "sensitivity-quick")
+    speed = command.QUICK_SPEEDS[1]
+    quick = command.Finished(store, quick=True)
+    with store.claimed():
+        store.compute([run_piece(quick.shorten(scenario(speed, steps))) for steps in (1024, 2048)], 1)
+    assert command.main(["--quick", "--finished"], tmp_path) == 0
+    assert len(made) == 2
+    assert [row["speed_rpm"] for row in read_rows(store.root / "halving.json")] == [speed]
+    assert not (store.root / "steps.json").exists()
 
 
 def test_an_unknown_study_is_refused(tmp_path, capsys):

@@ -9,9 +9,6 @@ from scipy.sparse.linalg import spsolve
 from rubgen.errors import UserError
 from rubgen.fem.statics import on_springs, support_stiffness
 from rubgen.machine.published import CASING_HZ
-from validation.computing import compute
-from validation.piece import Piece
-from validation.store import Store
 from validation.zeng2019 import reproduce
 from validation.zeng2019.models.full import _around, critical_speed, full_blisk
 from validation.zeng2019.models.mode_shapes import nodal_diameters
@@ -22,10 +19,6 @@ from validation.zeng2019.statement import Statement, by_deviation, by_share, pow
 
 FIELDS = {"figure", "statement", "verdict", "found", "why", "used_for_fitting", "experiment", "command"}
 VERDICTS = ("agrees", "agrees within ", "differs", "unknowable")
-
-
-def squares(n):
-    return {"squares": np.arange(n) ** 2}
 
 
 def test_a_number_agrees_within_its_deviation():
@@ -51,32 +44,6 @@ def test_no_other_verdict_is_possible():
         Statement(statement="x", verdict="looks good", found="y")
 
 
-def test_pieces_are_made_once_and_again_after_a_cut(tmp_path):
-    store, pieces, told = Store(tmp_path), [Piece(squares, (n,)) for n in (3, 4)], []
-    with store.claimed():
-        assert compute(pieces, store, 1, lambda *done: told.append(done)) == 2
-    assert told == [(0, 2), (1, 2), (2, 2)]
-    again = Store(tmp_path)
-    with again.claimed():
-        assert compute([*pieces, Piece(squares, (5,))], again, 1, lambda *_: None) == 1
-    np.testing.assert_array_equal(again(pieces[1])["squares"], [0, 1, 4, 9])
-    path = tmp_path / "pieces" / f"{pieces[0].key}.npz"
-    path.write_bytes(path.read_bytes()[:50])
-    cut = Store(tmp_path)
-    assert [cut.holds(piece) for piece in pieces] == [False, True]
-
-
-def test_an_interruption_keeps_what_is_finished(tmp_path):
-    def stop(done, _every):
-        if done == 1:
-            raise KeyboardInterrupt
-
-    pieces, store = [Piece(squares, (n,)) for n in (3, 4)], Store(tmp_path)
-    with pytest.raises(KeyboardInterrupt), store.claimed():
-        compute(pieces, store, 1, stop)
-    assert sum(Store(tmp_path).holds(piece) for piece in pieces) == 1
-
-
 def test_a_wrong_directory_is_refused(tmp_path):
     file = tmp_path / "file"
     file.write_text("x")
@@ -87,15 +54,6 @@ def test_a_wrong_directory_is_refused(tmp_path):
     assert file.read_text() == "x"
     with pytest.raises(UserError, match=r"--out .*file.*: cannot be written .*; give a directory you may write to"):
         reproduce(file / "below", figure="9")
-
-
-def test_two_at_once_are_refused(tmp_path):
-    with (
-        Store(tmp_path).claimed(),
-        pytest.raises(UserError, match="another rubgen works there"),
-        Store(tmp_path).claimed(),
-    ):
-        pass
 
 
 def test_an_unknown_figure_is_refused(tmp_path):

@@ -55,7 +55,7 @@ def test_an_interruption_says_how_to_go_on(run, tmp_path, monkeypatch):
     def stop(*_args, **_options):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("validation.zeng2019.reproducing.compute", stop)
+    monkeypatch.setattr("validation.store.Store.compute", stop)
     code, _, error = run("--figure", "9", "--out", str(tmp_path / "out"))
     assert code == 130
     assert error.strip().endswith("the same command makes the rest")

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from rubgen.labels.labels import Motion
 from validation.confusion.runs import SERIES, SPEEDS_RPM
 from validation.confusion.verdicts import AGREE, Case, Cause, Clusters, Sign, ZeroOne
+from validation.markdown import table
 
 COMMAND = "python -m validation.confusion"
 
@@ -50,7 +51,7 @@ def _confusion(cases: Sequence[Case]) -> str:
 
 Numbers of runs; bold where all three say the same.
 
-{_table(header, rows)}
+{table(header, rows)}
 """
 
 
@@ -68,7 +69,7 @@ def _classes(cases: Sequence[Case]) -> str:
     return f"""
 ## What the label makes of it
 
-{_table(["`motion`", "indicators agree", "disagree"], rows)}
+{table(["`motion`", "indicators agree", "disagree"], rows)}
 """
 
 
@@ -78,7 +79,7 @@ def _causes(cases: Sequence[Case]) -> str:
     return f"""
 ## Causes
 
-{_table(["runs", "name", "what it is"], rows)}
+{table(["runs", "name", "what it is"], rows)}
 
 Clusters ask at the scale of the motion, the others at any: nearly every disagreement is a motion that repeats at one
 scale and does not at a smaller one. The decision takes the scale of the motion, says so in its confidence, and is
@@ -105,7 +106,7 @@ def _disagreements(cases: Sequence[Case]) -> str:
     return f"""
 ## Every disagreement
 
-{_table(header, rows)}
+{table(header, rows)}
 """
 
 
@@ -115,8 +116,3 @@ def _name(cause: Cause) -> str:
 
 def _keys(keys: dict[str, float]) -> str:
     return ", ".join(f"`{key}` = {value:g}" for key, value in keys.items()) or "as it is"
-
-
-def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = [header, ["---"] * len(header), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)

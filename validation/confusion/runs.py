@@ -1,21 +1,14 @@
-"""The runs that the three indicators are compared on, each made once and kept as its labels need it."""
+"""The runs that the three indicators are compared on, each kept as its labels need it."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
-from pathlib import Path
-
-import numpy as np
-from threadpoolctl import threadpool_limits
-
-from rubgen.dataset.making.workers import unordered, worker_pool
-from rubgen.labels.compact_record import Kept, keep
+from rubgen.labels.compact_record import keep
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario, make_scenario
 from rubgen.scenario.vary import vary
 from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
+from validation.piece import Arrays, Piece
 
 SERIES: dict[str, dict[str, float]] = {
     "preset": {},
@@ -42,42 +35,19 @@ def scenarios(*, every: int = 1) -> dict[str, Scenario]:
     }
 
 
-def make_missing(folder: Path, asked: dict[str, Scenario], workers: int) -> Iterator[int]:
-    """Make the runs that `folder` lacks, in `workers` processes; gives how many are there after each."""
-    folder.mkdir(parents=True, exist_ok=True)
-    missing = [(name, scenario) for name, scenario in asked.items() if not _path(folder, name).exists()]
-    done = len(asked) - len(missing)
-    yield done
-    jobs = ((scenario, _path(folder, name)) for name, scenario in missing)
-    if workers == 1 or len(missing) < 2:
-        for job in jobs:
-            _make(*job)
-            yield (done := done + 1)
-        return
-    with worker_pool(workers) as pool:
-        for _ in unordered(pool, workers, _make, jobs):
-            yield (done := done + 1)
+def run_piece(scenario: Scenario) -> Piece:
+    """The piece that runs the scenario."""
+    return Piece(run, (scenario,))
 
 
-def kept_runs(folder: Path, asked: dict[str, Scenario]) -> Iterator[tuple[str, Kept]]:
-    """The runs in `folder` that ended well and rubbed, one after the other."""
-    for name in asked:
-        with np.load(_path(folder, name)) as file:
-            kept = dict(file)
-        if kept and kept["contact_steps"].sum():
-            yield name, kept
-
-
-def _path(folder: Path, name: str) -> Path:
-    return folder / f"{name.replace(', ', '-').replace('/', '-').replace(' ', '-')}.npz"
-
-
-def _make(scenario: Scenario, path: Path) -> None:
+def run(scenario: Scenario) -> Arrays:
+    """What is kept of the response, with its twin; nothing of a run that failed."""
     operation = scenario.operation
-    with threadpool_limits(1, user_api="blas"):
-        model = reduce(scenario.machine, scenario.reduction)
-        response = integrate(model.at_speed(operation.speed_rad_per_s), operation, scenario.contact, twin=True)
-    part = path.with_suffix(f".{os.getpid()}.part")
-    with part.open("wb") as stream:
-        np.savez_compressed(stream, **(keep(response) if response.status is Status.OK else {}))  # type: ignore[arg-type]
-    part.replace(path)
+    model = reduce(scenario.machine, scenario.reduction)
+    response = integrate(model.at_speed(operation.speed_rad_per_s), operation, scenario.contact, twin=True)
+    return keep(response) if response.status is Status.OK else {}
+
+
+def rubs(kept: Arrays) -> bool:
+    """Whether the run ended well and rubbed."""
+    return bool(kept) and bool(kept["contact_steps"].sum())

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from validation.contact_options.chords import Artefact
 from validation.contact_options.runs import HEAVY_FRICTION, LINER, Found
+from validation.markdown import table
 
 COMMAND = "python -m validation.contact_options"
 
@@ -34,7 +35,7 @@ def _options(found: Sequence[Found]) -> str:
     return f"""
 ## What the options do
 
-{_table(header, rows)}
+{table(header, rows)}
 
 Impulses are mean and standard deviation over the record's turns. The half thickness of the preset's casing, 0.65 mm,
 moves friction's line of action by 0.16 % of the radius and no class of these runs, but where motion is chaotic every
@@ -85,7 +86,7 @@ def _liner(found: Sequence[Found]) -> str:
 Wear {LINER.wear_m2_per_n:g} m2/N (0.01 mm3 for each N m) and ten times that, on a track {1e3 * LINER.width_m:g} mm
 wide.
 
-{_table(header, rows)}
+{table(header, rows)}
 
 Impulses a turn in N s are means of the record's first and last turns. The volume is the one in the profile and, to
 rounding, the sum of what the contacts took. The liner opens the two narrow places; how far, and what motion remains
@@ -111,7 +112,7 @@ def _heavy(found: Sequence[Found]) -> str:
 
 The preset with friction {HEAVY_FRICTION:g}, all else as it is; its critical speed is 8,776 rev/min.
 
-{_table(header, rows)}
+{table(header, rows)}
 
 Runs here settle into irregular motion in which the blades chatter by millimetres, or leave the range of the model,
 10 mm, and are recorded as `diverged` with the branch that left first, the turn, the rates of growth over the last ten
@@ -129,7 +130,7 @@ A linear beam that bends keeps its tip's radius; a real one draws it back by 1/2
 shape of the preset's tapered, twisted blade under a force at its tip, where it is softest, that is {factor:.2f} 1/m
 times the square of the tip's deflection (a uniform beam of that length has 4.00):
 
-{_table(["deflection, mm", "draw-in, um"], rows)}
+{table(["deflection, mm", "draw-in, um"], rows)}
 
 The clearance is 272 um. The tables above give the deflection that each run reached (sections and the eight turns about
 the hardest touch, the disk's motion taken off) and what the tip would have drawn back. With the default recipe's
@@ -140,8 +141,3 @@ and more, opens the gap just when a blade swings widest, and labels of such runs
 
 def _impulse(found: Found) -> str:
     return f"{found.impulse.mean():.4g} +- {found.impulse.std():.2g}" if found.impulse.size else "-"
-
-
-def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = [header, ["---"] * len(header), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)

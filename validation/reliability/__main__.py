@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable, Iterator
+from dataclasses import asdict
 from pathlib import Path
 
 from validation.reliability.damage import damage_rows
@@ -17,10 +18,11 @@ from validation.reliability.disks import full_disk_row, read_only_row, shut_out_
 from validation.reliability.fuzz import fuzz_rows, repeat
 from validation.reliability.hostile import SHARES, kind_of
 from validation.reliability.kills import signal_row
-from validation.reliability.rows import Row, write_page, write_rows
+from validation.reliability.rows import Row, write_page
 from validation.reliability.sets import Truth, undisturbed
 from validation.reliability.stops import error_row, stop_row
 from validation.reliability.together import together_row
+from validation.rows import replace_rows
 
 OUT = Path("out/faults.json")
 
@@ -56,7 +58,7 @@ def main() -> int:
     good = True
     for row in rows(quick=given.quick, only=given.only):
         print(f"{'ok  ' if row.good else 'FAIL'} {row.fault}: {row.skipped or row.tries}, {row.seconds} s", flush=True)
-        write_rows([row], given.out)
+        replace_rows(given.out, [asdict(row)], by="fault")
         good = good and row.good
     if given.out == OUT and not given.quick:
         write_page(OUT)

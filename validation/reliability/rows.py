@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-import json
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
+
+from validation.markdown import table
+from validation.rows import read_rows
 
 PAGE = Path("docs/reliability.md")
 COLUMNS = ("fault", "tries", "lost", "differing", "missed", "tracebacks", "seconds")
@@ -55,30 +58,20 @@ def timed(row: Row) -> Iterator[Row]:
     row.seconds = round(row.seconds + time.perf_counter() - start, 1)
 
 
-def write_rows(rows: list[Row], out: Path) -> None:
-    """Write the rows to `out`, those from before under their own names kept, and the table into the page."""
-    kept = {row["fault"]: row for row in _before(out)}
-    kept |= {row.fault: asdict(row) for row in rows}
-    out.parent.mkdir(parents=True, exist_ok=True)
-    out.write_text(json.dumps(list(kept.values()), indent=1) + "\n", encoding="utf-8")
-
-
 def write_page(out: Path, page: Path = PAGE) -> None:
     """Put the table of `out` into the page; its other lines stay."""
     text = page.read_text(encoding="utf-8")
     before, _, rest = text.partition(BEGIN)
     _, _, after = rest.partition(END)
-    page.write_text(f"{before}{BEGIN}\n{table(_before(out))}{END}{after}", encoding="utf-8")
+    page.write_text(f"{before}{BEGIN}\n{table_of(read_rows(out))}{END}{after}", encoding="utf-8")
 
 
-def table(rows: list[dict[str, object]]) -> str:
+def table_of(rows: Sequence[dict[str, Any]]) -> str:
     """The rows in Markdown."""
-    lines = [f"| {' | '.join(COLUMNS)} |", f"|---|{'---:|' * (len(COLUMNS) - 1)}"]
-    for row in rows:
-        cells = [f"{row[name]:,.0f}" if name == "seconds" else f"{row[name]}" for name in COLUMNS]
-        lines.append(f"| {' | '.join(cells)} |" if not row["skipped"] else f"| {row['fault']} | {row['skipped']} |")
-    return "\n".join(lines) + "\n"
+    return table(COLUMNS, [_cells(row) for row in rows], numbers_from=1) + "\n"
 
 
-def _before(out: Path) -> list[dict[str, object]]:
-    return json.loads(out.read_text(encoding="utf-8")) if out.exists() else []
+def _cells(row: dict[str, Any]) -> list[str]:
+    if row["skipped"]:
+        return [row["fault"], row["skipped"]]
+    return [f"{row[name]:,.0f}" if name == "seconds" else f"{row[name]}" for name in COLUMNS]

@@ -1,66 +1,87 @@
-"""`python -m validation.sensitivity [NAME ...] [--quick] [--finished]`: studies, figures, `docs/sensitivity.md`.
+"""`python -m validation.sensitivity [NAME ...] [--quick] [--finished] [--workers N]`: studies, figures, the page.
 
-Names are those of the studies and `halving`; all by default. Results go to `out/sensitivity/`, figures and the page to
-`docs/`; with `--quick`, few values and turns, everything goes to `out/sensitivity-quick/`. A study that was stopped
-goes on where it stood. `--finished` shows what is finished of `halving` and runs nothing more of it.
+Names are those of the studies and `halving`; all by default. Runs and tables go to `out/sensitivity/`, figures and
+`sensitivity.md` to `docs/`; with `--quick`, few values and turns, everything goes to `out/sensitivity-quick/`. A study
+that was stopped goes on where it stood. The page shows every study that is finished, and of `halving` what is finished;
+with `--finished` nothing more is run.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from rubgen.dataset.making.workers import usable_cores
+from rubgen.progress import count
 from rubgen.scenario import Scenario
 from rubgen.viz.figures import save_png
+from validation.command import run_command
+from validation.rows import write_rows
 from validation.sensitivity.cases import STUDIES, Study, with_operation
 from validation.sensitivity.figures import halving_figure, study_figure
-from validation.sensitivity.halving import SPEEDS_RPM, STEPS, halve, scenario
-from validation.sensitivity.kept import KeptRuns
-from validation.sensitivity.outcome import Outcome
+from validation.sensitivity.halving import SPEEDS_RPM, STEPS, Pair, halve, next_record, scenario
+from validation.sensitivity.outcome import Outcome, outcome_of, run_piece
 from validation.sensitivity.page import page
-from validation.sensitivity.results import (
-    read_pairs,
-    read_results,
-    vary_number,
-    write_pairs,
-    write_results,
-)
+from validation.sensitivity.results import Result, Results, varied
+from validation.store import Store
 
 HALVING = "halving"
 QUICK_SETTLE, QUICK_RECORD = 60, 64
 QUICK_SPEEDS = SPEEDS_RPM[36::20]
 
 
+@dataclass(frozen=True)
+class Finished:
+    """What of the studies, at their full or their quick size, a store holds."""
+
+    store: Store
+    quick: bool
+
+    def shorten(self, asked: Scenario) -> Scenario:
+        """The scenario with the turns of this size."""
+        return with_operation(asked, settle_turns=QUICK_SETTLE, record_turns=QUICK_RECORD) if self.quick else asked
+
+    def outcome(self, asked: Scenario) -> Outcome | None:
+        """The outcome of a run; None where it is not finished."""
+        piece = run_piece(asked)
+        return outcome_of(self.store(piece)) if self.store.holds(piece) else None
+
+    def scenarios(self, study: Study) -> dict[tuple[str, int], Scenario]:
+        """The runs of a study by case and value."""
+        return varied(study, study.quick if self.quick else study.values, self.shorten)
+
+    @property
+    def speeds(self) -> Sequence[float]:
+        """Speeds at which the step is halved, rev/min."""
+        return QUICK_SPEEDS if self.quick else SPEEDS_RPM
+
+    def results(self, study: Study) -> Results:
+        """The results of a study; none unless all of its runs are finished."""
+        found = {key: self.outcome(asked) for key, asked in self.scenarios(study).items()}
+        results = [Result(case=name, value=value, outcome=one) for (name, value), one in found.items() if one]
+        return results if len(results) == len(found) else []
+
+    def pairs(self) -> list[Pair]:
+        """The pairs at the speeds that are finished."""
+        return halve(self.outcome, self.speeds, self.shorten)
+
+
 def main(arguments: Sequence[str], folder: Path) -> int:
     """Run the studies that are named, all by default; paths start from `folder`."""
     asked = _parse(arguments)
     out = folder / "out" / ("sensitivity-quick" if asked.quick else "sensitivity")
-    pictures = out if asked.quick else folder / "docs"
-    kept, shorter = KeptRuns(out / "runs.jsonl"), _quick if asked.quick else _whole
-    told = _told(kept)
-    for study in STUDIES:
-        if study.name in asked.names:
-            _study(study, told, out, pictures, quick=asked.quick)
-    if HALVING in asked.names:
-        speeds = QUICK_SPEEDS if asked.quick else SPEEDS_RPM
-        if asked.finished:
-            speeds = tuple(speed for speed in speeds if _is_finished(kept, shorter, speed))
-        pairs = halve(told, speeds, shorter)
-        write_pairs(pairs, out / f"{HALVING}.json")
-        save_png(halving_figure(pairs), pictures / f"sensitivity-{HALVING}.png")
-    text = write_page(out)
-    (pictures / "sensitivity.md").write_text(text, encoding="utf-8")
-    return 0
+    finished = Finished(Store(out), asked.quick)
 
+    def work() -> None:
+        with finished.store.claimed():
+            if not asked.finished:
+                _compute(finished, asked.names, asked.workers)
+            _write(finished, out, out if asked.quick else folder / "docs")
 
-def write_page(out: Path) -> str:
-    """The page from the results of all studies that are there."""
-    found = {study.name: out / f"{study.name}.json" for study in STUDIES}
-    results = {name: read_results(path) for name, path in found.items() if path.exists()}
-    pairs = out / f"{HALVING}.json"
-    return page(results, read_pairs(pairs) if pairs.exists() else [])
+    return run_command("validation.sensitivity", out, work)
 
 
 def _parse(arguments: Sequence[str]) -> argparse.Namespace:
@@ -68,7 +89,8 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
     names = [study.name for study in STUDIES] + [HALVING]
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(names))
     parser.add_argument("--quick", action="store_true", help="few values and turns, into out/sensitivity-quick")
-    parser.add_argument("--finished", action="store_true", help="of halving, only what is finished already")
+    parser.add_argument("--finished", action="store_true", help="show what is finished already, run nothing more")
+    parser.add_argument("--workers", type=int, default=usable_cores(), help="number of processes")
     asked = parser.parse_args(arguments)
     unknown = [name for name in asked.names if name not in names]
     if unknown:
@@ -77,37 +99,34 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
     return asked
 
 
-def _study(study: Study, outcome: Callable[[Scenario], Outcome], out: Path, pictures: Path, *, quick: bool) -> None:
-    sys.stdout.write(f"\n{study.quantity}\n")
-    results = vary_number(study, study.quick if quick else study.values, outcome, _quick if quick else _whole)
-    write_results(results, out / f"{study.name}.json")
-    save_png(study_figure(study, results), pictures / f"sensitivity-{study.name}.png")
+def _compute(finished: Finished, names: Sequence[str], workers: int) -> None:
+    runs = [run for study in STUDIES if study.name in names for run in finished.scenarios(study).values()]
+    if HALVING in names:
+        runs += [finished.shorten(scenario(rpm, steps)) for rpm in finished.speeds for steps in (STEPS, 2 * STEPS)]
+    finished.store.compute(map(run_piece, runs), workers, count)
+    if HALVING in names:
+        later = [next_record(pair, finished.shorten) for pair in finished.pairs() if not pair.equal]
+        finished.store.compute(map(run_piece, later), workers, count)
 
 
-def _told(kept: KeptRuns) -> Callable[[Scenario], Outcome]:
-    """Runs a scenario and tells of it in a line."""
-
-    def outcome(asked: Scenario) -> Outcome:
-        found = kept.outcome(asked)
-        where = f"{asked.operation.speed_rpm:6.0f} rev/min, {found.steps_per_turn:5d} steps, {found.dof} DoF"
-        zones = f"{found.zones} zones, impulse {found.impulse:.4g} N s a turn"
-        sys.stdout.write(f"  {where}, friction {asked.contact.friction:g}: {found.label}, {zones}\n")
-        sys.stdout.flush()
-        return found
-
-    return outcome
-
-
-def _is_finished(kept: KeptRuns, shorter: Callable[[Scenario], Scenario], speed_rpm: float) -> bool:
-    return all(kept.holds(shorter(scenario(speed_rpm, steps))) for steps in (STEPS, 2 * STEPS))
+def _write(finished: Finished, out: Path, pictures: Path) -> None:
+    results = dict(_studies(finished))
+    for study in STUDIES:
+        if study.name in results:
+            write_rows(out / f"{study.name}.json", [result.as_dict() for result in results[study.name]])
+            save_png(study_figure(study, results[study.name]), pictures / f"sensitivity-{study.name}.png")
+    pairs = finished.pairs()
+    if pairs:
+        write_rows(out / f"{HALVING}.json", [asdict(pair) for pair in pairs])
+        save_png(halving_figure(pairs), pictures / f"sensitivity-{HALVING}.png")
+    (pictures / "sensitivity.md").write_text(page(results, pairs), encoding="utf-8")
 
 
-def _whole(asked: Scenario) -> Scenario:
-    return asked
-
-
-def _quick(asked: Scenario) -> Scenario:
-    return with_operation(asked, settle_turns=QUICK_SETTLE, record_turns=QUICK_RECORD)
+def _studies(finished: Finished) -> Iterator[tuple[str, Results]]:
+    for study in STUDIES:
+        results = finished.results(study)
+        if results:
+            yield study.name, results
 
 
 if __name__ == "__main__":

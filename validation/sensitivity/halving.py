@@ -9,6 +9,7 @@ from rubgen.labels import Motion
 from rubgen.scenario import Scenario, make_scenario
 from validation.sensitivity.cases import with_operation
 from validation.sensitivity.outcome import Outcome
+from validation.sensitivity.results import Shorten
 
 SPEEDS_RPM = tuple(range(2460, 14941, 120))
 STEPS = 1024
@@ -20,7 +21,8 @@ EQUAL_LABELS = 0.9
 class Pair:
     """The outcomes at one speed with the step and with half of it.
 
-    `later` is the record that follows that of the whole step, where labels differ: they may do so without a new step.
+    `later` is the outcome of the record that follows the whole step's, where labels differ: they may do so without a
+    new step.
     """
 
     speed_rpm: float
@@ -61,20 +63,21 @@ def scenario(speed_rpm: float, steps_per_turn: int) -> Scenario:
     return with_operation(make_scenario("zeng2019", speed_rpm=speed_rpm), steps_per_turn=steps_per_turn)
 
 
-def halve(
-    outcome: Callable[[Scenario], Outcome], speeds_rpm: Sequence[float], shorter: Callable[[Scenario], Scenario]
-) -> list[Pair]:
-    """The pairs at these speeds; `outcome` runs a scenario, `shorter` may cut its turns."""
-    return [_pair(outcome, speed, shorter) for speed in speeds_rpm]
+def halve(outcome: Callable[[Scenario], Outcome | None], speeds_rpm: Sequence[float], shorten: Shorten) -> list[Pair]:
+    """The pairs at those of the speeds where both runs are finished; `outcome` returns None for a run that is not."""
+    pairs = []
+    for speed in speeds_rpm:
+        whole, half = (outcome(shorten(scenario(speed, steps))) for steps in (STEPS, 2 * STEPS))
+        if whole and half:
+            pair = Pair(speed_rpm=speed, whole=whole, half=half)
+            pairs.append(pair if pair.equal else replace(pair, later=outcome(next_record(pair, shorten))))
+    return pairs
 
 
-def _pair(outcome: Callable[[Scenario], Outcome], speed: float, shorter: Callable[[Scenario], Scenario]) -> Pair:
-    asked = shorter(scenario(speed, STEPS))
-    pair = Pair(speed_rpm=speed, whole=outcome(asked), half=outcome(shorter(scenario(speed, 2 * STEPS))))
-    if pair.equal:
-        return pair
+def next_record(pair: Pair, shorten: Shorten) -> Scenario:
+    """The scenario of the whole step, with the record that follows the one that it has."""
     turns = pair.whole.settle_turns + pair.whole.record_turns
-    return replace(pair, later=outcome(with_operation(asked, settle_turns=turns)))
+    return with_operation(shorten(scenario(pair.speed_rpm, STEPS)), settle_turns=turns)
 
 
 def equal_share(pairs: Sequence[Pair]) -> float:

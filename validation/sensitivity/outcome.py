@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -16,6 +17,7 @@ from rubgen.scenario import Scenario
 from rubgen.solver import Response, Status
 from rubgen.solver.integrate import integrate
 from rubgen.solver.twin import LEAST_TURNS
+from validation.piece import Arrays, Piece
 
 BLOCKS = 10
 """Parts of the record whose mean impulses give the error of the mean: longer than what a chaotic rub remembers."""
@@ -71,8 +73,25 @@ class Outcome:
         return f"period-{self.period}" if self.motion == "period-k" else name
 
     def as_dict(self) -> dict[str, object]:
-        """The values as JSON can hold them; `Outcome(**values)` gives it back."""
+        """The values by name, numbers, texts and lists of numbers."""
         return asdict(self)
+
+
+def run_piece(scenario: Scenario) -> Piece:
+    """The piece that runs the scenario."""
+    return Piece(run_arrays, (scenario,))
+
+
+def run_arrays(scenario: Scenario) -> Arrays:
+    """The outcome of `scenario` as arrays; a value that is None has none."""
+    values = run(scenario).as_dict()
+    return {name: np.asarray(value) for name, value in values.items() if value is not None}
+
+
+def outcome_of(found: Arrays) -> Outcome:
+    """The outcome from the arrays of its piece."""
+    absent: dict[str, Any] = {"period": None, "symmetric": None}
+    return Outcome(**(absent | {name: value.tolist() for name, value in found.items()}))
 
 
 def run(scenario: Scenario) -> Outcome:

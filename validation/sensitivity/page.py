@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from textwrap import fill
 
+from validation.markdown import table
 from validation.sensitivity.cases import CASES, STUDIES, Study
 from validation.sensitivity.figures import QUANTITIES
 from validation.sensitivity.halving import (
@@ -38,7 +39,7 @@ def page(results: Mapping[str, Results], pairs: Sequence[Pair]) -> str:
 def _section(study: Study, results: Results) -> str:
     lines = [f"## {study.quantity}", f"![{study.quantity}](sensitivity-{study.name}.png)", REMARKS[study.name].strip()]
     lines.append(_wrapped(_equal_labels(study, results)))
-    lines.append(_table(_COLUMNS, [_row(study, results, value, name) for value in _values(results) for name in CASES]))
+    lines.append(table(_COLUMNS, [_row(study, results, value, name) for value in _values(results) for name in CASES]))
     if study.model:
         header = [
             "value",
@@ -48,7 +49,7 @@ def _section(study: Study, results: Results) -> str:
             "blisk, first 42",
             "last casing mode, Hz",
         ]
-        lines.append(_table(header, [_model_row(study, results, value) for value in _values(results)]))
+        lines.append(table(header, [_model_row(study, results, value) for value in _values(results)]))
     return "\n\n".join(lines)
 
 
@@ -182,7 +183,7 @@ def _others(pairs: Sequence[Pair]) -> str:
             " / ".join(_zones(run) for run in both),
             " / ".join(f"{run.impulse:.4f}" for run in both),
         ])  # fmt: skip
-    return _table(header, rows)
+    return table(header, rows)
 
 
 def _zones(outcome: Outcome) -> str:
@@ -204,8 +205,3 @@ def _percent(value: float) -> str:
 
 def _wrapped(sentence: str) -> str:
     return fill(sentence, 120, break_on_hyphens=False, break_long_words=False)
-
-
-def _table(header: list[str], rows: list[list[str]]) -> str:
-    lines = [header, ["---"] * len(header), *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)

@@ -5,7 +5,6 @@ With groups named, the table alone. Ends with 1 when a row is not ok.
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 import tempfile
@@ -15,6 +14,7 @@ from pathlib import Path
 from threadpoolctl import threadpool_limits
 
 from rubgen.cache_root import CACHE_VARIABLE
+from validation.rows import write_rows
 from validation.verification import GROUPS, check
 from validation.verification.report import Group, line, page, summary
 
@@ -32,9 +32,7 @@ def main(names: list[str], folder: Path) -> int:
     sys.stdout.write(f"\n{summary(groups, seconds)}\n")
     rows = [row for group in groups.values() for row in group.rows]
     if not names:
-        (folder / "out").mkdir(exist_ok=True)
-        table = json.dumps([row.as_dict() for row in rows], indent=1)
-        (folder / "out" / "verification.json").write_text(table + "\n", encoding="utf-8")
+        write_rows(folder / "out" / "verification.json", [row.as_dict() for row in rows])
         (folder / "docs" / "verification.md").write_text(page(list(groups.values())), encoding="utf-8")
     return 0 if all(row.ok for row in rows) else 1
 

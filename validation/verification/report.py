@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from validation.markdown import table
 from validation.verification.row import Row
 
 HEAD = """# Verification
@@ -56,24 +57,19 @@ def page(groups: Sequence[Group]) -> str:
 
 
 def _section(group: Group) -> str:
-    head = "| quantity | source | expected | found | tolerance | ok |\n|---|---|---|---|---|---|\n"
-    return f"## {group.title}\n\n{group.text}\n\n{head}{''.join(_cells(row) for row in group.rows)}"
+    header = ("quantity", "source", "expected", "found", "tolerance", "ok")
+    return f"## {group.title}\n\n{group.text}\n\n{table(header, [_cells(row) for row in group.rows])}\n"
 
 
-def _cells(row: Row) -> str:
-    cells = (
-        _escaped(row.quantity),
-        _escaped(row.source),
+def _cells(row: Row) -> tuple[str, ...]:
+    return (
+        row.quantity,
+        row.source,
         f"{row.expected:.9g}",
         shown(row.found, row.tolerance),
         f"{row.tolerance:.2g}",
         "yes" if row.ok else "**no**",
     )
-    return f"| {' | '.join(cells)} |\n"
-
-
-def _escaped(text: str) -> str:
-    return text.replace("|", "\\|")
 
 
 def summary(groups: Mapping[str, Group], seconds: Mapping[str, float]) -> str:

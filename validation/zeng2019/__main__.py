@@ -10,34 +10,25 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from rubgen.cli.interrupts import terminable
 from rubgen.cli.printing import print_json, print_pairs
 from rubgen.errors import UserError
-from rubgen.progress import count, shown, step
+from rubgen.progress import count
+from validation.command import run_command
 from validation.zeng2019 import fit, reproduce
 from validation.zeng2019.size import MACHINE
-
-MISTAKE, INTERRUPTED = 2, 130
 
 
 def main(arguments: Sequence[str]) -> int:
     """Compute, judge, write, or search; say in one line what is wrong or how to go on."""
     given = _parser().parse_args(arguments)
     folder = given.out or Path("out") / (f"{given.machine}-quick" if given.quick else given.machine)
-    try:
+
+    def work() -> None:
         _check(given)
-        with terminable(), shown(not given.json), step("simulate", "pieces"):
-            result = _fit(given, folder) if given.fit else _reproduce(given, folder)
-    except UserError as error:
-        sys.stderr.write(f"validation.zeng2019: {error}\n")
-        return MISTAKE
-    except KeyboardInterrupt:
-        sys.stderr.write(
-            f"validation.zeng2019: interrupted; finished pieces are kept in {folder}: the same command makes the rest\n"
-        )
-        return INTERRUPTED
-    (print_json if given.json else print_pairs)(result)
-    return 0
+        result = _fit(given, folder) if given.fit else _reproduce(given, folder)
+        (print_json if given.json else print_pairs)(result)
+
+    return run_command("validation.zeng2019", folder, work, show=not given.json)
 
 
 def _parser() -> argparse.ArgumentParser:

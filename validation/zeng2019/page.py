@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
+from validation.markdown import table
 from validation.zeng2019.remarks import EVERY_REMARK, INTRODUCTION, MACHINES, QUICK_REMARK, TITLE, rules
 from validation.zeng2019.section import Section
 from validation.zeng2019.size import QUICK, Size
@@ -44,13 +45,12 @@ class Judged:
 
 def markdown(judged: Sequence[Judged], size: Size) -> str:
     """The page as Markdown; pictures are named as they stand beside it."""
-    parts = [f"# {TITLE}", *_introduction(size), markdown_table(COUNT_HEADER, _by_kind(judged))]
-    parts.append(markdown_table((HEADER_BY_FIGURE, *COUNT_HEADER[1:]), _by_figure(judged)))
+    parts = [f"# {TITLE}", *_introduction(size), table(COUNT_HEADER, _by_kind(judged))]
+    parts.append(table((HEADER_BY_FIGURE, *COUNT_HEADER[1:]), _by_figure(judged)))
     for each in judged:
         parts += [f"## {each.section.title}", each.section.text, f"    {each.section.command}{size.option}"]
         parts += [f"![{picture.caption}]({picture.name})\n\n*{picture.caption}.*" for picture in each.drawn]
-        rows = [[_plain(cell) for cell in _cells(one)] for one in each.statements]
-        parts.append(markdown_table(HEADER, rows))
+        parts.append(table(HEADER, [_cells(one) for one in each.statements]))
     return "\n\n".join(parts) + "\n"
 
 
@@ -99,16 +99,6 @@ def _counts(name: str, chosen: Sequence[Statement]) -> list[str]:
 
 def _kind(one: Statement) -> str:
     return "agrees within" if one.verdict.startswith("agrees within") else one.verdict
-
-
-def markdown_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A table in Markdown."""
-    lines = [header, ["---"] * len(header), *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
-
-
-def _plain(cell: str) -> str:
-    return cell.replace("|", "\\|")
 
 
 def _figure(picture: Drawn) -> str:

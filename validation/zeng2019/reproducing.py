@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from rubgen.dataset.files import write_text
 from rubgen.dataset.making.workers import usable_cores
 from rubgen.errors import UserError
 from rubgen.io.durable import write_durably
-from validation.computing import Progress, compute
-from validation.store import Store
+from validation.rows import Row, write_rows
+from validation.store import Progress, Store
 from validation.zeng2019.drawing.style import png
 from validation.zeng2019.page import Drawn, Judged, html, markdown
 from validation.zeng2019.section import Section
@@ -55,9 +55,8 @@ def reproduce(
     size = replace(size, machine=machine)
     store = Store(Path(out))
     with store.claimed():
-        made = compute(
-            (p for section in chosen for p in section.pieces(size)), store, workers or usable_cores(), progress
-        )
+        pieces = [piece for section in chosen for piece in section.pieces(size)]
+        made = store.compute(pieces, workers or usable_cores(), progress)
         judged = [judge(section, size, store) for section in chosen]
         folder = Path(out) if figure is None else Path(out) / f"figure-{chosen[0].name}"
         folder.mkdir(exist_ok=True)
@@ -88,16 +87,16 @@ def judge(section: Section, size: Size, store: Store) -> Judged:
 def write(judged: Sequence[Judged], size: Size, folder: Path) -> Path:
     """Write page, pictures and statements into `folder`; gives the Markdown's path."""
     for picture in (picture for each in judged for picture in each.drawn):
-        _write(folder / picture.name, picture.png)
-    _write(folder / "statements.json", statements_json(judged, size).encode())
-    _write(folder / f"{PAGE}.html", html(judged, size).encode())
-    _write(folder / f"{PAGE}.md", markdown(judged, size).encode())
+        _write_png(folder / picture.name, picture.png)
+    write_rows(folder / "statements.json", statement_rows(judged, size))
+    write_text(folder / f"{PAGE}.html", html(judged, size))
+    write_text(folder / f"{PAGE}.md", markdown(judged, size))
     return folder / f"{PAGE}.md"
 
 
-def statements_json(judged: Sequence[Judged], size: Size) -> str:
-    """A JSON list of `figure`, `statement`, `verdict`, `found`, `why`, `used_for_fitting`, `experiment`, `command`."""
-    rows = [
+def statement_rows(judged: Sequence[Judged], size: Size) -> list[Row]:
+    """Rows of `figure`, `statement`, `verdict`, `found`, `why`, `used_for_fitting`, `experiment` and `command`."""
+    return [
         {
             "figure": each.section.name,
             "statement": one.statement,
@@ -111,11 +110,10 @@ def statements_json(judged: Sequence[Judged], size: Size) -> str:
         for each in judged
         for one in each.statements
     ]
-    return json.dumps(rows, indent=1, ensure_ascii=False) + "\n"
 
 
-def _write(path: Path, data: bytes) -> None:
-    write_durably(path, lambda part: part.write_bytes(data))
+def _write_png(path: Path, png: bytes) -> None:
+    write_durably(path, lambda part: part.write_bytes(png))
 
 
 def _count(judged: Sequence[Judged]) -> dict[str, int]:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
+from rubgen.dataset.files import write_text
 from rubgen.dataset.making.workers import usable_cores
-from rubgen.io.durable import write_durably
-from validation.computing import Progress, compute
 from validation.piece import Piece
-from validation.store import Store
+from validation.rows import write_rows
+from validation.store import Progress, Store
 from validation.zeng2019.figures import figure10, figure16, figure17, figure18, figures12to15
 from validation.zeng2019.fitting.page import page
 from validation.zeng2019.fitting.score import Score, best, frictionless, score
@@ -56,26 +55,22 @@ def fit(
     tried, store = candidates(QUICK_THIN if quick else 1), Store(Path(out))
     rooms = {damping: Piece(room, (damping,)) for damping in DAMPING}
     with store.claimed():
-        made = compute([*(one.piece for one in tried), *rooms.values()], store, workers or usable_cores(), progress)
+        made = store.compute([*(one.piece for one in tried), *rooms.values()], workers or usable_cores(), progress)
         scores = [score(one, store) for one in tried]
         folder = Path(out) / FOLDER
         folder.mkdir(exist_ok=True)
         found = best(frictionless(scores))
-        _write(folder / MACHINE_FILE, toml_of(found.candidate))
+        write_text(folder / MACHINE_FILE, toml_of(found.candidate))
         size = QUICK if quick else COARSE
         sizes = [replace(size, machine=name) for name in (MACHINE, str(folder / MACHINE_FILE))]
         asked = [piece for one in sizes for section in COMPARED for piece in section.pieces(one)]
-        made += compute(asked, store, workers or usable_cores(), progress)
+        made += store.compute(asked, workers or usable_cores(), progress)
         judged = [_judged(one, store) for one in sizes]
-        _write(folder / "fit.json", json.dumps([asdict(one) for one in scores], indent=1) + "\n")
+        write_rows(folder / "fit.json", [asdict(one) for one in scores])
         spans = {damping: store(piece) for damping, piece in rooms.items()}
-        _write(folder / PAGE, page(scores, spans, judged, size))
+        write_text(folder / PAGE, page(scores, spans, judged, size))
     return Fitted(page=folder / PAGE, machine=folder / MACHINE_FILE, made=made, best=found)
 
 
 def _judged(size: Size, store: Store) -> list[tuple[str, Statement]]:
     return [(section.title, one) for section in COMPARED for one in section.statements(size, store)]
-
-
-def _write(path: Path, text: str) -> None:
-    write_durably(path, lambda part: part.write_text(text, encoding="utf-8"))

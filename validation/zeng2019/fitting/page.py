@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from validation.markdown import table
 from validation.piece import Arrays
 from validation.zeng2019.fitting.score import Score, always, best, frictionless, words
 from validation.zeng2019.fitting.search import FITTED, PREDICTED, PRESET, RECORD, SETTLE, Candidate, Target
-from validation.zeng2019.page import markdown_table
 from validation.zeng2019.size import Size
 from validation.zeng2019.statement import Statement, power
 
@@ -61,10 +61,10 @@ def page(
         TITLE,
         INTRODUCTION,
         SCORE,
-        markdown_table(("run", "blisk", "casing", ""), [_target_row(one) for one in FITTED + PREDICTED]),
+        table(("run", "blisk", "casing", ""), [_target_row(one) for one in FITTED + PREDICTED]),
         "## What was found",
         runs,
-        markdown_table(
+        table(
             CANDIDATES,
             [
                 _row("best of all", found),
@@ -81,13 +81,13 @@ def page(
         CHANCE.format(words=words(FITTED), margin=margin),
         *(_profile(name, read, scores, margin) for name, read in READ.items()),
         ROOM,
-        markdown_table(("damping", "unbalance, kg m", "clearance, um"), [_room_row(*one) for one in rooms.items()]),
+        table(("damping", "unbalance, kg m", "clearance, um"), [_room_row(*one) for one in rooms.items()]),
         "## All candidates",
-        markdown_table(CANDIDATES, [_row(str(i), one) for i, one in enumerate(ranked, start=1)]),
+        table(CANDIDATES, [_row(str(i), one) for i, one in enumerate(ranked, start=1)]),
         "## Statements with both machines",
         JUDGED,
         _counts(judged),
-        markdown_table(("figure", "statement", "zeng2019", "zeng2019-fitted"), _side_by_side(*judged)),
+        table(("figure", "statement", "zeng2019", "zeng2019-fitted"), _side_by_side(*judged)),
     ]
     return "\n\n".join(parts) + ("" if size.name == "full" else "\n\nThis is the quick version.") + "\n"
 
@@ -130,7 +130,7 @@ def _profile(name: str, read: Callable[[Candidate], float], scores: Sequence[Sco
         top = best([one for one in scores if read(one.candidate) == value])
         told = "within chance" if near(top, found, margin) else "scores less"
         rows.append([f"{value:g}", str(top.fitted), str(top.predicted), told])
-    return markdown_table((name, "most words fitted", "predicted by it", ""), rows)
+    return table((name, "most words fitted", "predicted by it", ""), rows)
 
 
 def _room_row(damping: float, found: Arrays) -> list[str]:
@@ -145,7 +145,7 @@ def _counts(judged: Sequence[Sequence[tuple[str, Statement]]]) -> str:
         other = [one for _, one in statements if not one.used_for_fitting]
         told = [f"{sum(one.verdict.startswith('agrees') for one in kind)} of {len(kind)}" for kind in (other, used)]
         rows.append([name, *told])
-    return markdown_table(("agrees, or agrees within X", "predictions", "used for fitting"), rows)
+    return table(("agrees, or agrees within X", "predictions", "used for fitting"), rows)
 
 
 def _side_by_side(plain: Sequence[tuple[str, Statement]], fitted: Sequence[tuple[str, Statement]]) -> list[list[str]]:

@@ -1,0 +1,15 @@
+"""The one writer of Markdown tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+
+def table(header: Sequence[str], rows: Sequence[Sequence[str]], *, numbers_from: int | None = None) -> str:
+    """A table in Markdown, without a line end after its last row; a `|` in a cell is escaped.
+
+    Columns from `numbers_from` on are aligned to the right. A row may have fewer cells than the header.
+    """
+    rules = ["---:" if numbers_from is not None and column >= numbers_from else "---" for column in range(len(header))]
+    lines = ([cell.replace("|", r"\|") for cell in line] for line in (header, rules, *rows))
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
