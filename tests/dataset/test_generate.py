@@ -153,7 +153,7 @@ def test_a_set_without_one_valid_run_is_still_whole(fake_simulate, tmp_path, mak
 
 
 def test_many_runs_go_into_several_files_and_groups(fake_simulate, tmp_path, monkeypatch):
-    for module in ("assemble", "layout", "table_check"):
+    for module in ("making.assemble", "layout", "checking.table_check"):
         monkeypatch.setattr(f"rubgen.dataset.{module}.RUNS_PER_SHARD", 5)
     monkeypatch.setattr("rubgen.dataset.making.assemble.RUNS_PER_ROW_GROUP", 2)
     rubgen.generate(recipe(runs=7, output={"signal_seconds": 0.1, "formats": ["parquet"]}), tmp_path / "set", workers=1)

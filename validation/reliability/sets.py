@@ -53,7 +53,7 @@ SMALLER = {"count = 36": "count = 8", "circumferential_elements = 72": "circumfe
 """What makes the preset a machine of eight blades, on which a run takes a third of the time."""
 
 
-LOADED = ("cli.generating", "dataset.verify", "io.mcap", "io.parquet", "io.sections", "viz.rerun")
+LOADED = ("cli.generating", "dataset.checking.verify", "io.mcap", "io.parquet.sections", "viz.rerun")
 """Modules that commands import late, and that forks of this process need not import again."""
 
 
