@@ -20,7 +20,7 @@ from rubgen.machine import Machine, load_machine
 from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import ContactLaw, Operation, Reduction, Sensing
 from rubgen.scenario.sensor_set import load_sensor_set
-from rubgen.scenario.sensors import SensorSet, TimingProbe
+from rubgen.scenario.sensors import ContactForceSensor, SensorSet, TimingProbe
 from rubgen.sensors import Recording, margin_seconds, measure, taps_of
 from rubgen.sensors.blade_tip_timing import tip_deflections
 from rubgen.sensors.chain import PASS_BAND_SHARE, band_limit, half_width_seconds
@@ -90,10 +90,10 @@ def recoveries(recording: Recording, tip_radius: float) -> list[Recovery]:
 
 
 def without_faults(sensors: SensorSet) -> SensorSet:
-    """Ideal timing probes at the places of a set's, and the pulse."""
+    """Ideal timing probes at the places of those of a set, and the one sampled sensor that every set needs."""
     probes = [each for each in sensors.sensors if isinstance(each, TimingProbe)]
     ideal = tuple(TimingProbe(name=p.name, angle_deg=p.angle_deg, axial_m=p.axial_m) for p in probes)
-    return SensorSet(name="ideal", sensors=ideal)
+    return SensorSet(name="ideal", sensors=(*ideal, ContactForceSensor(name="contact_force")))
 
 
 def held_load(model: ReducedModel, speed: float) -> dict[str, tuple[float, float]]:
