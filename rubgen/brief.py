@@ -24,6 +24,11 @@ def brief(value: object) -> str:
     return f"{type(value).__name__}({text if len(text) <= MOST else text[:MOST] + '...'})"
 
 
+def counted(count: int, noun: str) -> str:
+    """A number of things: 1 run, 2 runs."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
 def table(title: str, rows: Mapping[str, str]) -> str:
     """A title and pairs of name and value, one a line."""
     width = max(map(len, rows), default=0)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rubgen.brief import html_table, number, table
+from rubgen.brief import counted, html_table, number, table
 from rubgen.jit import kernels_are_compiled
 from rubgen.labels import Labels, label
 from rubgen.progress import COMPILING, step
@@ -50,7 +50,7 @@ class Run:
             "rub": number(labels.rub),
             "motion": f"{labels.motion.value}, period {number(labels.period)}",
             "contact": f"{number(labels.contact_duty)} of the time, "
-            f"{labels.blades_touched} blades, {labels.contact_zones} zones",
+            f"{counted(labels.blades_touched, 'blade')}, {counted(labels.contact_zones, 'zone')}",
             "impulse": f"{number(labels.impulse_per_turn)} N s a turn",
             "record": f"{response.record_turns} turns after {response.settle_turns}",
             "recording": f"{len(recording.channels)} channels of {recording.samples} samples at "

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from shutil import which
 
+from rubgen.brief import counted
 from rubgen.cli.interrupts import terminable
 from rubgen.cli.printing import print_json, say
 from rubgen.dataset.making.generate import Generated, finished_runs, generate
@@ -41,8 +42,8 @@ def _what_was_made(made: Generated) -> Iterator[str]:
     """Counts of runs, rub and classes, then each way in which runs failed with its shortest reason."""
     outcome = made.outcome
     status = ", ".join(f"{made.status[name]} {name}" for name in sorted(made.status, key=lambda name: name != "ok"))
-    done = "nothing to do, verified" if made.verified else f"{made.made} of them new"
-    yield f"{made.directory}: {made.runs} runs, {done}: {status}; {outcome.rub} rub, {outcome.no_rub} do not"
+    done = "nothing to do, verified" if made.verified else f"{made.made} new"
+    yield f"{made.directory}: {counted(made.runs, 'run')}, {done}: {status}; {outcome.rub} rub, {outcome.no_rub} do not"
     if outcome.motion:
         yield f"  motion: {', '.join(f'{count} {name}' for name, count in outcome.motion.items())}"
     for failure in outcome.failures:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from rubgen.brief import counted
 from rubgen.labels import Labels
 from rubgen.labels.labels import Motion
 from rubgen.pipeline import Run
@@ -45,7 +46,7 @@ def _contact(labels: Labels) -> Iterator[tuple[str, str]]:
             yield "smallest gap", f"{-penetration * 1e6:.4g} µm without contact"
         return
     extent = f", {amounts.extent.value}" if amounts else ""
-    yield "rub", f"yes{extent}: {labels.blades_touched} blades, {labels.contact_zones} {_zones_word(labels)}"
+    yield "rub", f"yes{extent}: {counted(labels.blades_touched, 'blade')}, {labels.contact_zones} {_zones_word(labels)}"
     yield "contact zones", _zones(labels)
     yield "contact duty", f"{100 * labels.contact_duty:.3g} % of the time"
     yield "impulse", f"{labels.impulse_per_turn:.4g} N s a turn"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from rubgen.brief import counted
 from rubgen.dataset.files import write_text
 from rubgen.dataset.layout import SPLIT, Layout
 from rubgen.dataset.manifest import Identity
@@ -47,11 +48,11 @@ def card(identity: Identity, status: dict[str, int]) -> str:
     channel = next((column.name for column in signals if column.kind == "signal"), "rotation_angle_rad")
     loading = "\n\n".join(LOADING[kind] for kind in LOADING if kind in formats).replace("CHANNEL", channel)
     ended = ", ".join(f"{count} {name}" for name, count in status.items())
-    record, limits = _record(recipe), _limits(recipe)
+    record, limits, runs = _record(recipe), _limits(recipe), counted(recipe["runs"], "run")
     return f"""{_head(recipe)}
 # {recipe["name"]}
 
-{recipe["runs"]} runs of a bladed disk that may rub its flexible oval casing: machine `{recipe["machine"]}`, seed
+{runs} of a bladed disk that may rub its flexible oval casing: machine `{recipe["machine"]}`, seed
 {recipe["seed"]}. Simulated with rubgen {identity.packages["rubgen"]}: a finite-element blisk and casing, reduced,
 integrated through unilateral contact with friction; virtual sensors with noise, range and ADC; labels from the true
 motion, never from the noisy channels. Runs by status: {ended}.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -73,6 +74,17 @@ def bounds_in_words(nodes: list[Node]) -> str:
 def limit(value: float) -> str:
     """A bound as people write it."""
     return f"{value:,}" if isinstance(value, int) else f"{value:,.12g}"
+
+
+def digits(value: float) -> str:
+    """The first three digits of a value, without an exponent where people write none."""
+    return limit(float(f"{value:.3g}"))
+
+
+def below(value: float) -> str:
+    """Three digits of a value that are not above it, to be copied into a file."""
+    unit = 10.0 ** (math.floor(math.log10(value)) - 2)
+    return f"{math.floor(value / unit) * unit:.12g}"
 
 
 def _chosen(node: Node, data: object) -> Node | None:

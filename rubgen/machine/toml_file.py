@@ -14,7 +14,13 @@ from rubgen.machine.toml_syntax import remedy
 
 MOST_BYTES = 2**20
 """A recipe has one or two thousand bytes; a pattern for 1,000 blades 20,000."""
-UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+MARKS = {
+    codecs.BOM_UTF32_LE: "UTF-32",
+    codecs.BOM_UTF32_BE: "UTF-32",
+    codecs.BOM_UTF16_LE: "UTF-16",
+    codecs.BOM_UTF16_BE: "UTF-16",
+}
+"""Byte order marks; one of UTF-32 begins like one of UTF-16 and stands before it."""
 LINE = re.compile(r"at line (\d+)")
 SHOWN = 80
 """Letters of a bad line that are shown."""
@@ -103,10 +109,11 @@ def _content(path: Path) -> bytes:
 
 
 def _text(path: Path, content: bytes) -> str:
-    if content.startswith(UTF_16):
-        raise UserError(f"{path}: a text file in UTF-16; save it in UTF-8")
+    for mark, name in MARKS.items():
+        if content.startswith(mark):
+            raise UserError(f"{path}: a text file in {name}; save it in UTF-8")
     if b"\0" in content:
-        raise UserError(f"{path}: holds bytes that are zero, as texts in UTF-16 do; save it in UTF-8")
+        raise UserError(f"{path}: holds bytes that are zero, as texts in UTF-16 or UTF-32 do; save it in UTF-8")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 from rubgen.machine import Disk, Machine
+from rubgen.machine.schema_nodes import below, digits
 from rubgen.scenario.scenario import Reduction, Scenario
 
 MOST_REDUCTION_BYTES = 4e9
@@ -38,19 +39,29 @@ def reduction_bytes(machine: Machine, reduction: Reduction) -> float:
 
 def reduction_problem(machine: Machine, reduction: Reduction) -> str | None:
     """Why the reduction of a machine takes too much memory, with what to change; None where it does not."""
-    needed, disk, blades = reduction_bytes(machine, reduction), machine.disk, machine.blades
-    if needed <= MOST_REDUCTION_BYTES:
+    disk, blades, most = machine.disk, machine.blades, f"at most {MOST_REDUCTION_BYTES / GIGA:g} GB"
+    if _fits(machine, reduction):
         return None
+    takes = f"takes about {digits(reduction_bytes(machine, reduction) / GIGA)} GB of memory"
+    for key in ("blade_modes", "disk_modes"):
+        fewer = (replace(reduction, **{key: modes}) for modes in range(getattr(reduction, key)))
+        fitting = [getattr(each, key) for each in fewer if _fits(machine, each)]
+        if fitting and fitting[-1] >= getattr(Reduction(), key):
+            return (
+                f"reduction.{key} = {getattr(reduction, key)}: the reduction {takes}, {most}; lower it to {fitting[-1]}"
+            )
     size = (
-        f"machine {machine.name}: its reduction takes about {needed / GIGA:.3g} GB of memory, with {blades.count} "
-        f"blades and {disk.radial_elements} x {disk.circumferential_elements} elements of the disk; at most "
-        f"{MOST_REDUCTION_BYTES / GIGA:g} GB:"
+        f"machine {machine.name}: its reduction {takes}, with {blades.count} blades and {disk.radial_elements} x "
+        f"{disk.circumferential_elements} elements of the disk; {most}:"
     )
     for radial in range(disk.radial_elements - 1, 0, -1):
-        smaller = replace(machine, disk=replace(disk, radial_elements=radial))
-        if reduction_bytes(smaller, reduction) <= MOST_REDUCTION_BYTES:
+        if _fits(replace(machine, disk=replace(disk, radial_elements=radial)), reduction):
             return f"{size} lower disk.radial_elements to {radial}"
     return f"{size} lower disk.circumferential_elements, or the number of blades"
+
+
+def _fits(machine: Machine, reduction: Reduction) -> bool:
+    return reduction_bytes(machine, reduction) <= MOST_REDUCTION_BYTES
 
 
 def steps_per_turn(scenario: Scenario) -> int:
@@ -100,9 +111,9 @@ def run_problem(scenario: Scenario) -> str | None:
     tail = max(scenario.signal_seconds, LEAST_TAIL_TURNS / operation.rotation_frequency_hz)
     if tail * second <= MOST_RUN_BYTES:
         return None
-    needed = f"takes about {tail * second / GIGA:.3g} GB of memory, at most {MOST_RUN_BYTES / GIGA:g} GB"
+    needed = f"takes about {digits(tail * second / GIGA)} GB of memory, at most {MOST_RUN_BYTES / GIGA:g} GB"
     seconds = MOST_RUN_BYTES / second
-    return f"output.signal_seconds = {scenario.signal_seconds:g}: {needed}; lower it to {seconds:.3g}, or the rate"
+    return f"output.signal_seconds = {scenario.signal_seconds:g}: {needed}; lower it to {below(seconds)}, or the rate"
 
 
 def _too_long(scenario: Scenario, most: int) -> str:
@@ -111,7 +122,7 @@ def _too_long(scenario: Scenario, most: int) -> str:
     if operation.duration_s is None:
         return f"simulation.record_turns = {operation.record_turns}: {needed}; lower it to {most}"
     seconds = most / operation.recorded_turns * operation.duration_s
-    return f"operation.duration_s = {operation.duration_s:g}: {needed}; lower it to {seconds:.3g}"
+    return f"operation.duration_s = {operation.duration_s:g}: {needed}; lower it to {below(seconds)}"
 
 
 def _taps(scenario: Scenario) -> int:

@@ -19,6 +19,8 @@ from rubgen.machine.problems import nearest
 from rubgen.machine.quantities import Finite, Positive
 
 T = TypeVar("T")
+LEAST_PROBABILITY = 1e-4
+"""The share of a normal density between its ends below which all values crowd at one of them, or are uniform."""
 _FROZEN = ConfigDict(extra="forbid", frozen=True)
 
 
@@ -98,16 +100,33 @@ class Normal(BaseModel):
     model_config = _FROZEN
     normal: NormalShape
 
+    @model_validator(mode="after")
+    def _reaches_its_ends(self) -> Self:
+        shape = self.normal
+        low, high = self._shares()
+        if high - low < LEAST_PROBABILITY:
+            raise ValueError(
+                f"mean = {shape.mean:g} and std = {shape.std:g} give hardly a value from min = {shape.min:g} to "
+                f"max = {shape.max:g}; change mean or std, or write {{ uniform = [{shape.min:g}, {shape.max:g}] }}"
+            )
+        return self
+
     def quantile(self, u: float) -> float:
         """The value mean + std Phi^-1(Phi(a) + u (Phi(b) - Phi(a))), a and b the standardised min and max."""
         shape = self.normal
-        low, high = (float(ndtr((end - shape.mean) / shape.std)) for end in (shape.min, shape.max))
+        low, high = self._shares()
         value = shape.mean + shape.std * float(ndtri(low + u * (high - low)))
         return min(max(value, shape.min), shape.max)
 
     def extremes(self) -> tuple[float, ...]:
         """The values that bound what can be drawn."""
         return (self.normal.min, self.normal.max)
+
+    def _shares(self) -> tuple[float, float]:
+        """Shares of the whole density that lie below min and below max."""
+        shape = self.normal
+        low, high = (float(ndtr((end - shape.mean) / shape.std)) for end in (shape.min, shape.max))
+        return low, high
 
 
 class Choice(BaseModel):

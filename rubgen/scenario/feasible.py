@@ -6,6 +6,7 @@ import math
 
 from rubgen.errors import UserError
 from rubgen.machine.quantities import MOST_STEPS
+from rubgen.machine.schema_nodes import digits
 from rubgen.scenario.costs import STEPS_PER_SAMPLE, reduction_problem, run_problem
 from rubgen.scenario.plausible import eccentricity, gram, shares, unbalances
 from rubgen.scenario.profiles import profile_problem
@@ -51,6 +52,16 @@ def _tail_problem(scenario: Scenario) -> str | None:
     return (
         f"output.signal_seconds = {scenario.signal_seconds:g}: the record lasts {longest:.4g} s "
         f"({operation.record_turns} turns at {operation.speed_rpm:g} rev/min); lower it or raise record_turns"
+    )
+
+
+def _sample_problem(scenario: Scenario) -> str | None:
+    seconds, rate = scenario.signal_seconds, scenario.sensing.sample_rate_hz
+    if round(seconds * rate) >= 1:
+        return None
+    return (
+        f"output.signal_seconds = {seconds:g}: holds no sample at sensors.sample_rate_hz = {rate:g}, one takes "
+        f"{1 / rate:.3g} s; raise one of them"
     )
 
 
@@ -141,7 +152,7 @@ def _size_problem(scenario: Scenario) -> str | None:
     for key, value in unbalances(scenario.machine):
         away = eccentricity(scenario.machine, value)
         if away >= scenario.machine.tip_radius_m:
-            moved = f"would move the centre of mass {away:.3g} m off the axis"
+            moved = f"would move the centre of mass {digits(away)} m off the axis"
             return f"{key} = {value:g}: {moved}, outside of the blisk{gram(value)}"
     return None
 
@@ -154,6 +165,7 @@ PROBLEMS = (
     _profile_problem,
     _record_problem,
     _tail_problem,
+    _sample_problem,
     _rate_problem,
     _lobe_problem,
     _node_problem,

@@ -14,6 +14,7 @@ from rubgen.errors import warn
 from rubgen.machine import Machine
 from rubgen.machine.mass import blisk_mass
 from rubgen.machine.quantities import Place, usual_values
+from rubgen.machine.schema_nodes import digits
 from rubgen.scenario.costs import steps_per_turn
 from rubgen.scenario.scenario import Scenario
 from rubgen.scenario.sensors import OncePerRev, TimingProbe
@@ -112,7 +113,7 @@ def _shares(scenario: Scenario) -> Iterator[str]:
     for each in shares(scenario):
         if each.value > each.most * each.whole:
             percent = 100 * each.value / each.whole
-            yield f"{each.key} = {each.value:g}: {percent:.3g} % of {each.of}{each.question}"
+            yield f"{each.key} = {each.value:g}: {digits(percent)} % of {each.of}{each.question}"
 
 
 def _sizes(scenario: Scenario) -> Iterator[str]:
@@ -165,7 +166,7 @@ def _unbalance(scenario: Scenario) -> Iterator[str]:
     for key, value in unbalances(machine):
         away = eccentricity(machine, value)
         if away > MOST_ECCENTRICITY * machine.tip_radius_m:
-            yield f"{key} = {value:g}: moves the centre of mass of the blisk {away:.3g} m off the axis{gram(value)}"
+            yield f"{key} = {value:g}: moves the centre of mass of the blisk {digits(away)} m off the axis{gram(value)}"
 
 
 def _speed(scenario: Scenario) -> Iterator[str]:
@@ -174,7 +175,7 @@ def _speed(scenario: Scenario) -> Iterator[str]:
     tips = operation.rotation.fastest * scenario.machine.tip_radius_m
     if tips > MOST_TIP_SPEED:
         key = "speed_rpm" if fastest == operation.speed_rpm else "end_speed_rpm"
-        yield f"{key} = {fastest:g}: the blade tips move at {tips:.3g} m/s, more than {MOST_TIP_SPEED:g}"
+        yield f"{key} = {fastest:g}: the blade tips move at {digits(tips)} m/s, more than {MOST_TIP_SPEED:,g}"
 
 
 def _rate(scenario: Scenario) -> Iterator[str]:
@@ -184,6 +185,9 @@ def _rate(scenario: Scenario) -> Iterator[str]:
         fits = LEAST_ORDERS * turn <= 1e3 * rate <= 1e6
         question = f"; were kHz meant, {1e3 * rate:g} Hz?" if fits else ""
         yield f"sample_rate_hz = {rate:g}: no channel shows the rotation, which has up to {turn:.4g} Hz{question}"
+    slowest = scenario.operation.rotation.slowest / (2 * math.pi)
+    if scenario.signal_seconds * slowest < 1:
+        yield f"signal_seconds = {scenario.signal_seconds:g}: less than one turn, which takes {1 / slowest:.3g} s"
     least = scenario.operation.steps_per_turn
     factor = steps_per_turn(scenario) // least
     if factor >= MOST_STEP_FACTOR:
@@ -218,11 +222,11 @@ def _arrivals(scenario: Scenario) -> Iterator[str]:
         passages = turn * (scenario.machine.blades.count if isinstance(sensor, TimingProbe) else 1)
         if 0 < sensor.clock_hz < COUNTS_A_PASSAGE * passages:
             asked = f"; were MHz meant, {1e6 * sensor.clock_hz:g} Hz?" if sensor.clock_hz <= 1000 else ""
-            counts = f"it counts {sensor.clock_hz / passages:.3g} times between two passages"
+            counts = f"it counts {digits(sensor.clock_hz / passages)} times between two passages"
             yield f"clock_hz of {sensor.name} = {sensor.clock_hz:g}: {counts}{asked}"
         if sensor.jitter_s * passages * COUNTS_A_PASSAGE > 1:
             asked = f"; were us meant, {1e-6 * sensor.jitter_s:g} s?" if sensor.jitter_s > 1e-3 else ""
-            share = f"{100 * sensor.jitter_s * passages:.3g} % of the time between two passages"
+            share = f"{digits(100 * sensor.jitter_s * passages)} % of the time between two passages"
             yield f"jitter_s of {sensor.name} = {sensor.jitter_s:g}: {share}{asked}"
 
 
@@ -242,7 +246,7 @@ def _chains(scenario: Scenario) -> Iterator[str]:
                 yield f"{key} of {sensor.name} = {value:g}: more than its whole range, {shown}"
         dropped = sensor.dropouts_per_s * sensor.dropout_s
         if dropped > MOST_DROPPED:
-            lost = f"{100 * dropped:.3g} % of the signal is lost"
+            lost = f"{digits(100 * dropped)} % of the signal is lost"
             yield f"dropouts_per_s of {sensor.name} = {sensor.dropouts_per_s:g}: {lost}"
 
 

@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, TypeAdapter, ValidationError, create_model
 
+from rubgen.brief import counted
 from rubgen.errors import UserError
 from rubgen.machine import Machine, load_machine
 from rubgen.machine.load import machine_id
@@ -121,7 +122,8 @@ class Recipe(BaseModel):
 
     def __repr__(self) -> str:
         varied = ", ".join(entry.key for entry, _ in self.distributions()) or "nothing"
-        return f"Recipe({self.name!r}: {self.runs} runs of {self.machine}, seed {self.seed}; [vary] has {varied})"
+        runs = counted(self.runs, "run")
+        return f"Recipe({self.name!r}: {runs} of {self.machine}, seed {self.seed}; [vary] has {varied})"
 
     __str__ = __repr__
 

@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from rubgen.brief import brief
+from rubgen.brief import brief, counted
 from rubgen.machine import Machine
 from rubgen.machine.quantities import (
     STRICT,
@@ -193,7 +193,7 @@ class Scenario:
 
     def __repr__(self) -> str:
         friction, sensing = self.contact.friction, self.sensing
-        sensors = f"{len(sensing.set.sensors)} sensors {sensing.set.name!r} at {sensing.sample_rate_hz:g} Hz"
+        sensors = f"{counted(len(sensing.set.sensors), 'sensor')} {sensing.set.name!r} at {sensing.sample_rate_hz:g} Hz"
         facts = f"{self.operation.title}, friction {friction:g}, {sensors} for {self.signal_seconds:g} s"
         return f"Scenario({self.run_id}: {self.machine.name}, {facts}, seed {self.seed})"
 

@@ -17,6 +17,8 @@ from rubgen.scenario.sensors import KINDS, SensorSet
 
 SETS = Path(__file__).parents[1] / "sensors" / "sets"
 DEFAULT_SET = "default"
+OF_ONE = ("name", "kind")
+"""Keys that no sensor has from its kind."""
 
 
 def sensor_set_names() -> list[str]:
@@ -74,6 +76,9 @@ def _kinds(path: Path, kinds: Any) -> dict[str, dict[str, Any]]:
         _check_kind(path, kind, "kinds.")
         if not isinstance(table, dict):
             raise UserError(f"{path}: kinds.{kind} = {toml_text(table):.60}: must be a table; write [kinds.{kind}]")
+        for key in OF_ONE:
+            if key in table:
+                raise UserError(f"{path}: kinds.{kind}.{key}: each sensor has its own; give it in [[sensors]]")
     return kinds
 
 

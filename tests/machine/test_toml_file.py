@@ -41,7 +41,12 @@ def test_the_home_stands_for_its_sign(tmp_path, monkeypatch):
 
 BAD_BYTES = {
     "UTF-16": (GOOD.encode("utf-16"), "a text file in UTF-16; save it in UTF-8"),
-    "UTF-16 without mark": (GOOD.encode("utf-16-be"), "holds bytes that are zero, as texts in UTF-16 do; save it in"),
+    "UTF-16 without mark": (
+        GOOD.encode("utf-16-be"),
+        "holds bytes that are zero, as texts in UTF-16 or UTF-32 do",
+    ),
+    "UTF-32": (GOOD.encode("utf-32"), "a text file in UTF-32; save it in UTF-8"),
+    "UTF-32, big end first": (b"\0\0\xfe\xff" + GOOD.encode("utf-32-be"), "a text file in UTF-32; save it in UTF-8"),
     "Latin 1": (GOOD.encode() + 'c = "é"'.encode("latin-1"), "not a text file in UTF-8 (line 3); save it in UTF-8"),
     "too large": (b"#" * (MOST_BYTES + 1), "has 1,048,577 bytes; give a TOML file of at most 1,048,576"),
     "deep lists": (b"a = " + b"[" * 2000 + b"]" * 2000, "tables or lists in one another without end"),

@@ -131,6 +131,18 @@ CASES = {
         VARY + "speed_rpm = { uniform = [6000, 12000] }\n[output]\nsignal_seconds = 2.6",
         "output.signal_seconds = 2.6: the record lasts 2.5 s (500 turns at 12000 rev/min)",
     ),
+    "no sample": (
+        GOOD + "[output]\nsignal_seconds = 1e-9",
+        "output.signal_seconds = 1e-09: holds no sample at sensors.sample_rate_hz = 25600, one takes 3.91e-05 s; ra",
+    ),
+    "no sample at a low rate": (
+        GOOD + "[sensors]\nsample_rate_hz = 1e-3",
+        "output.signal_seconds = 1: holds no sample at sensors.sample_rate_hz = 0.001, one takes 1e+03 s; raise one",
+    ),
+    "one step a turn": (
+        GOOD + "[simulation]\nsteps_per_turn = 1",
+        "simulation.steps_per_turn = 1: must be at least 32 and at most 16,384; change the value",
+    ),
     "few turns": (GOOD + "[simulation]\nrecord_turns = 499", "simulation.record_turns = 499: labels need at least 500"),
     "sample rate": (
         VARY

@@ -159,7 +159,7 @@ WRONG = [
     (
         "machine__unbalances",
         [Unbalance(kg_m=1e6, angle_deg=0.0)],
-        "unbalances.0.kg_m = 1e+06: would move the centre of mass 8.46e+03 m off the axis, outside of the blisk; were",
+        "unbalances.0.kg_m = 1e+06: would move the centre of mass 8,460 m off the axis, outside of the blisk; were",
     ),
 ]
 
@@ -175,13 +175,13 @@ def test_what_no_machine_has_is_told_in_one_line(place, value, message):
 SENSORS = [
     ('kind = "blade_tip_timing"\nangle_deg = 0\nclock_hz = 1', "clock_hz of s = 1: it counts 0.000167 times between"),
     ('kind = "once_per_rev"\nclock_hz = 1', "clock_hz of s = 1: it counts 0.006 times between two passages; were MHz"),
-    ('kind = "once_per_rev"\njitter_s = 0.5', "jitter_s of s = 0.5: 8.33e+03 % of the time between two passages"),
+    ('kind = "once_per_rev"\njitter_s = 0.5', "jitter_s of s = 0.5: 8,330 % of the time between two passages"),
     ('kind = "blade_tip_timing"\nangle_deg = 0\nmissed = 0.99', "missed of s = 0.99: hardly a blade is seen; were % m"),
     ('kind = "proximity"\nangle_deg = 0\nnoise_rms = 1', "noise_rms of s = 1: more than its whole range, [-0.002, 0.0"),
     ('kind = "proximity"\nangle_deg = 0\nnoise_density = 1', "noise_density of s = 1: more than its whole range"),
     ('kind = "accelerometer"\nangle_deg = 0\noffset = 1e9', "offset of s = 1e+09: more than its whole range, [-50000"),
     ('kind = "torque"\ndrift_per_s = -1e8', "drift_per_s of s = -1e+08: more than its whole range, [-20000, 20000] N"),
-    ('kind = "torque"\ndropouts_per_s = 1e6', "dropouts_per_s of s = 1e+06: 1e+05 % of the signal is lost"),
+    ('kind = "torque"\ndropouts_per_s = 1e6', "dropouts_per_s of s = 1e+06: 100,000 % of the signal is lost"),
     ('kind = "torque"\ngain_error = 5', "gain_error of s = 5: sensors err by a few percent; were % meant, 0.05?"),
     (
         'kind = "proximity"\nangle_deg = 0\nunit = "V"\nsensitivity_v_per_m = 7.874',
@@ -197,7 +197,8 @@ SENSORS = [
 
 @pytest.mark.parametrize(("text", "message"), SENSORS)
 def test_a_sensor_that_shows_nothing_is_told_in_one_line(text, message, tmp_path):
-    (tmp_path / "s.toml").write_text(f'name = "s"\n[[sensors]]\nname = "s"\n{text}\n')
+    other = '[[sensors]]\nname = "t"\nkind = "torque"\n'
+    (tmp_path / "s.toml").write_text(f'name = "s"\n{other}[[sensors]]\nname = "s"\n{text}\n')
     found = complaints(sensing__set=load_sensor_set("s.toml", tmp_path))
     assert len(found) == 1
     assert found[0].startswith(message)

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 from scipy import stats
 
 from rubgen.scenario.distributions import Distribution
@@ -35,10 +35,15 @@ def test_choice_draws_each_value_equally_often():
     assert counts.tolist() == [1000] * 4
 
 
-@pytest.mark.parametrize("table", [{"normal": {"mean": 9.0, "std": 0.1, "min": 0.0, "max": 1.0}}])
-def test_normal_far_outside_its_range_stays_within_it(table):
-    assert drawn(table).min() >= 0.0
-    assert drawn(table).max() <= 1.0
+def test_normal_outside_its_range_stays_within_it():
+    values = drawn({"normal": {"mean": 1.3, "std": 0.1, "min": 0.0, "max": 1.0}})
+    assert 0.0 <= values.min() < values.max() <= 1.0
+
+
+@pytest.mark.parametrize(("mean", "std"), [(9.0, 0.1), (1e300, 1.0), (-1e300, 1.0), (0.5, 1e300), (0.5, 1e5)])
+def test_normal_that_hardly_reaches_its_range_is_refused(mean, std):
+    with pytest.raises(ValidationError, match="hardly a value from min = 0 to max = 1; change mean or std, or write"):
+        ADAPTER.validate_python({"normal": {"mean": mean, "std": std, "min": 0.0, "max": 1.0}})
 
 
 @pytest.mark.parametrize(

@@ -68,6 +68,8 @@ WRONG = [
         "sensors.0.kind = proximty: unknown kind of sensor; did you mean proximi",
     ),
     ("[kinds.proximity]", "[kinds.proxy]", "kinds.proxy: unknown kind of sensor; did you mean proximity?"),
+    ('unit = "um"', 'name = "x"', "kinds.proximity.name: each sensor has its own; give it in [[sensors]]"),
+    ('unit = "um"', 'kind = "torque"', "kinds.proximity.kind: each sensor has its own; give it in [[sensors]]"),
     ('kind = "proximity"\n', "", "sensors.0.kind: this key is missing; add it, one of proximity, "),
     ('unit = "um"', 'unit = "micron"', "sensors.0: unit = 'micron' of p: unknown unit; allowed: m, mm, um, V"),
     ('unit = "um"', 'unit = "umm"', "unit = 'umm' of p: unknown unit; did you mean um? allowed: m, mm, um, V"),

@@ -14,6 +14,7 @@ import numpy as np
 import pyarrow as pa
 
 from rubgen.arrays import FloatArray
+from rubgen.brief import counted
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, read_manifest
 from rubgen.dataset.reading.runs_frame import runs_frame
@@ -205,8 +206,8 @@ class DataSet:
     def __repr__(self) -> str:
         status = ", ".join(f"{count} {name}" for name, count in self.manifest.status.items())
         return (
-            f"Data set {self.manifest.name!r} in {self.layout.root}: {len(self)} runs ({status}), "
-            f"{len(self.channels)} channels at {self.sample_rate_hz:g} Hz"
+            f"Data set {self.manifest.name!r} in {self.layout.root}: {counted(len(self), 'run')} ({status}), "
+            f"{counted(len(self.channels), 'channel')} at {self.sample_rate_hz:g} Hz"
         )
 
     def _repr_html_(self) -> str:
