@@ -73,8 +73,8 @@ def show(replay: Replay, showing: Showing) -> None:
 def _write_pictures(replay: Replay, showing: Showing) -> None:
     if not (showing.gif or showing.png):
         return
+    from rubgen.viz.figures.snapshot import picture, write_gif
     from rubgen.viz.figures.style import save_png
-    from rubgen.viz.snapshot import picture, write_gif
 
     def attempt(option: str, path: Path, make: Callable[[Path], None]) -> None:
         try:

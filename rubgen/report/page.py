@@ -20,8 +20,8 @@ from rubgen.scenario.vary import PARAMETERS
 from rubgen.viz.colors import MOTION_COLORS
 from rubgen.viz.figures.data_set import dataset_overview, varied_keys
 from rubgen.viz.figures.replay import waveform_orders
+from rubgen.viz.figures.snapshot import picture
 from rubgen.viz.replay import Replay
-from rubgen.viz.snapshot import picture
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -56,13 +56,13 @@ def _recorded(replay: Replay, *, full: bool) -> bytes:
     """The content of the .rrd file."""
     import rerun as rr  # here, for importing it takes 0.6 s
 
-    from rubgen.viz.contact_entities import send_touches
-    from rubgen.viz.label_entities import send_labels
-    from rubgen.viz.machine_entities import send_machine
-    from rubgen.viz.orbit_entities import send_orbit
-    from rubgen.viz.order_entities import send_orders
-    from rubgen.viz.signal_entities import send_signals
-    from rubgen.viz.timing_entities import send_tip_timing
+    from rubgen.viz.entities.contact import send_touches
+    from rubgen.viz.entities.labels import send_labels
+    from rubgen.viz.entities.machine import send_machine
+    from rubgen.viz.entities.orbit import send_orbit
+    from rubgen.viz.entities.orders import send_orders
+    from rubgen.viz.entities.signals import send_signals
+    from rubgen.viz.entities.timing import send_tip_timing
     from rubgen.viz.views import arrangement
 
     stream = rr.RecordingStream(APPLICATION, recording_id=recording_id(replay.scenario), send_properties=False)

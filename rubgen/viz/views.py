@@ -7,11 +7,11 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from rubgen.sensors.channel import Channel
-from rubgen.viz.machine_shape import drawing_factor
-from rubgen.viz.orbit_entities import Bounds, orbit_bounds, section_bounds
-from rubgen.viz.order_entities import spectrum_channels
+from rubgen.viz.entities.machine_shape import drawing_factor
+from rubgen.viz.entities.orbit import Bounds, orbit_bounds, section_bounds
+from rubgen.viz.entities.orders import spectrum_channels
+from rubgen.viz.entities.signals import TIMELINE, UNSHOWN
 from rubgen.viz.replay import Replay
-from rubgen.viz.signal_entities import TIMELINE, UNSHOWN
 
 NEAR_TURNS, ORBIT_TURNS = 4.0, 10.0
 SHADE = np.uint32(0x80808066)

@@ -40,7 +40,7 @@ def test_an_mcap_file_is_saved_as_a_replay(run, mcap_file, tmp_path):
 
 def test_pictures_need_no_screen(run, mcap_file, tmp_path, monkeypatch):
     monkeypatch.delenv("DISPLAY", raising=False)
-    monkeypatch.setattr("rubgen.viz.snapshot.GIF_FRAMES", 3)
+    monkeypatch.setattr("rubgen.viz.figures.snapshot.GIF_FRAMES", 3)
     files = tmp_path / "run.png", tmp_path / "run.gif"
     code, _, _ = run("replay", str(mcap_file), "--png", str(files[0]), "--time", "0.1", "--gif", str(files[1]))
     assert code == 0

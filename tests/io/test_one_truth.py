@@ -12,9 +12,9 @@ from rubgen.io.parquet.write import write_parquet
 from rubgen.labels.labels import Motion
 from rubgen.labels.speed_history import Change, CourseLabels
 from rubgen.labels.to_json import labels_dict
+from rubgen.viz.entities.signals import detail_window
 from rubgen.viz.replay import replay_of
 from rubgen.viz.rerun import write_rrd
-from rubgen.viz.signal_entities import detail_window
 from tests.default_columns import SCALARS
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rubgen.machine import load_machine
-from rubgen.viz.machine_shape import (
+from rubgen.viz.entities.machine_shape import (
     STATIONS,
     blade_leanings,
     blade_mesh,

@@ -10,10 +10,10 @@ from rerun.chunk import RrdReader
 from rubgen.labels.to_json import labels_dict
 from rubgen.machine import Unbalance
 from rubgen.sensors.contact_window import contact_intervals
-from rubgen.viz.machine_shape import blade_leanings, blade_placements, drawing_factor
+from rubgen.viz.entities.machine_shape import blade_leanings, blade_placements, drawing_factor
+from rubgen.viz.entities.signals import PREVIEW_VALUES, detail_window, preview_rate, shown_channels
 from rubgen.viz.replay import replay_of
 from rubgen.viz.rerun import check_rrd, recording_id, write_replay, write_rrd
-from rubgen.viz.signal_entities import PREVIEW_VALUES, detail_window, preview_rate, shown_channels
 
 
 @pytest.fixture(scope="module")
@@ -207,7 +207,7 @@ def test_a_file_stays_below_two_megabytes(make_synthetic_run, sensors, tmp_path)
 
 
 def test_of_many_passages_those_about_the_hardest_touch_stay_and_full_keeps_all(rig_run, monkeypatch, tmp_path):
-    monkeypatch.setattr("rubgen.viz.timing_entities.MOST_PASSAGES", 400)  # of four probes
+    monkeypatch.setattr("rubgen.viz.entities.timing.MOST_PASSAGES", 400)  # of four probes
     replay = replay_of(rig_run)
     for full in (False, True):
         write_replay(replay, tmp_path / "run.rrd", full=full)

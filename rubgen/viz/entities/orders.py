@@ -6,11 +6,11 @@ import numpy as np
 import rerun as rr
 
 from rubgen.sensors.channel import Channel
-from rubgen.viz.bar_columns import send_bars
 from rubgen.viz.colors import BLUE, rgba
+from rubgen.viz.entities.bar_columns import send_bars
+from rubgen.viz.entities.signals import UNSHOWN, time_column
 from rubgen.viz.orders import HIGHEST_ORDER, order_map
 from rubgen.viz.replay import Replay
-from rubgen.viz.signal_entities import UNSHOWN, time_column
 
 MOST_BLOCKS = 32
 FIRST = ("contact_force", "casing_acc_0", "proximity_x", "blisk_x")

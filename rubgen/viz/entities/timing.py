@@ -8,8 +8,8 @@ import rerun as rr
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.sensors.blade_tip_timing import tip_deflections
 from rubgen.viz.colors import BLUE, rgba
+from rubgen.viz.entities.signals import time_column
 from rubgen.viz.replay import Replay
-from rubgen.viz.signal_entities import time_column
 
 MOST_PASSAGES = 4000
 """Most passages of all probes together, 90 kB."""

@@ -18,8 +18,7 @@ from rubgen.machine import Unbalance
 from rubgen.progress import count
 from rubgen.sensors.motion_frames import MotionFrames
 from rubgen.viz.colors import BLUE, GREY, MOTION_COLORS, PAPER_GREY, UNBALANCE, VERMILION, impulse_color
-from rubgen.viz.figures.style import INK, label_axes, new_figure, note
-from rubgen.viz.machine_shape import (
+from rubgen.viz.entities.machine_shape import (
     blade_angles,
     casing_angles,
     casing_curve,
@@ -29,6 +28,7 @@ from rubgen.viz.machine_shape import (
     unbalances,
     undeformed_curve,
 )
+from rubgen.viz.figures.style import INK, label_axes, new_figure, note
 from rubgen.viz.replay import Replay
 from rubgen.viz.shaft_orbit import shaft_orbit
 

@@ -11,8 +11,8 @@ import rerun as rr
 from rubgen.labels.labels import Motion
 from rubgen.scenario.plain import scenario_dict
 from rubgen.viz.colors import MOTION_COLORS, rgba
+from rubgen.viz.entities.signals import time_column
 from rubgen.viz.replay import Replay
-from rubgen.viz.signal_entities import time_column
 
 MOST_SHOWN = 12
 """Longer lists are counted in the text; all values stand in the properties."""

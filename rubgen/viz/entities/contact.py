@@ -7,8 +7,8 @@ import rerun as rr
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.viz.colors import ORANGE, rgba
+from rubgen.viz.entities.signals import time_column
 from rubgen.viz.replay import Replay
-from rubgen.viz.signal_entities import time_column
 
 MOST_TOUCHES = 2000
 SECTORS = 72

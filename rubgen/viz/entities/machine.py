@@ -9,7 +9,7 @@ from rubgen.arrays import FloatArray, IntArray
 from rubgen.machine import Machine
 from rubgen.sensors.motion_frames import MotionFrames
 from rubgen.viz.colors import BLUE, GREY, UNBALANCE, impulse_color, rgba
-from rubgen.viz.machine_shape import (
+from rubgen.viz.entities.machine_shape import (
     Mesh,
     blade_leanings,
     blade_mesh,
@@ -27,8 +27,8 @@ from rubgen.viz.machine_shape import (
     unbalances,
     undeformed_curve,
 )
+from rubgen.viz.entities.signals import time_column
 from rubgen.viz.replay import Replay
-from rubgen.viz.signal_entities import time_column
 
 SHAFT_SHARE = 0.45
 """Half the length of the drawn shaft over the tip radius."""
