@@ -15,10 +15,10 @@ from threadpoolctl import threadpool_limits
 from benchmarks.cpu_time import median_time
 from rubgen import make_scenario
 from rubgen.labels import label
+from rubgen.measurement import margin_seconds
+from rubgen.measurement import measure as record
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario
-from rubgen.sensors import margin_seconds, taps_of
-from rubgen.sensors import measure as record
 from rubgen.solver import Response
 from rubgen.solver.integrate import integrate
 
@@ -39,7 +39,7 @@ def run(scenario: Scenario, *, twin: bool) -> Response:
         scenario.contact,
         tail_seconds=scenario.signal_seconds + margin_seconds(sensing, scenario.signal_seconds),
         sample_rate_hz=sensing.fastest_hz,
-        taps=taps_of(sensing.set),
+        taps=sensing.set.taps,
         twin=twin,
     )
 

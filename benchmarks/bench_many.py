@@ -24,10 +24,10 @@ from benchmarks.bench_solver import CASES, STEPS, deviation, settled, turn_time
 from benchmarks.cpu_time import median_time
 from benchmarks.free_step_kernels import run_free
 from rubgen.dataset.making.workers import unordered, worker_pool
+from rubgen.measurement import margin_seconds
 from rubgen.reduction import reduce
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Scenario, load_recipe
-from rubgen.sensors import margin_seconds, taps_of
 from rubgen.solver import Response, Status
 from rubgen.solver.block_kernels import Scheme
 from rubgen.solver.blocks import aligned, parts_of
@@ -76,7 +76,7 @@ def integrated(scenario: Scenario, system: SpinningSystem) -> Response:
         scenario.contact,
         tail_seconds=seconds + margin_seconds(sensing, seconds),
         sample_rate_hz=sensing.fastest_hz,
-        taps=taps_of(sensing.set),
+        taps=sensing.set.taps,
     )
 
 

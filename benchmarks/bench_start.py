@@ -18,7 +18,7 @@ ONE_THREAD = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
 WORKER = """
 from rubgen import make_scenario
 from rubgen.reduction import reduce
-from rubgen.sensors import measure
+from rubgen.measurement import measure
 from rubgen.labels import label
 from rubgen.solver.stepper import Stepper
 scenario = make_scenario("zeng2019")

@@ -13,10 +13,10 @@ from threadpoolctl import threadpool_limits
 from rubgen.brief import counted, html_table, number, table
 from rubgen.jit import kernels_are_compiled
 from rubgen.labels import Labels, label
+from rubgen.measurement import Recording, margin_seconds, measure
 from rubgen.progress import COMPILING, step
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario
-from rubgen.sensors import Recording, margin_seconds, measure, taps_of
 from rubgen.solver import Response, Status
 from rubgen.solver.integrate import integrate
 from rubgen.solver.refusal import no_response
@@ -94,7 +94,7 @@ def simulate(scenario: Scenario) -> Run:
                 scenario.contact,
                 tail_seconds=scenario.signal_seconds + margin_seconds(sensing, scenario.signal_seconds),
                 sample_rate_hz=sensing.fastest_hz,
-                taps=taps_of(sensing.set),
+                taps=sensing.set.taps,
                 twin=scenario.labelling.lyapunov and operation.profile == "steady",
                 system_at=model.at_speed,
             )

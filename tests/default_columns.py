@@ -1,7 +1,7 @@
 """The columns of a data set whose recipe names no sensors."""
 
 from rubgen.io.columns import scalar_columns, signal_columns
-from rubgen.scenario.sensor_set import default_sensor_set
+from rubgen.sensors.load import default_sensor_set
 
 SCALARS = scalar_columns(default_sensor_set())
 SIGNALS = signal_columns(default_sensor_set(), clean=False)

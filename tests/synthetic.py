@@ -6,11 +6,14 @@ from rubgen.labels.contact.amounts import ContactAmounts, RubExtent
 from rubgen.labels.harmonics import FRACTIONS, HIGHEST_ORDER, TapOrders
 from rubgen.labels.labels import Labels, Motion
 from rubgen.machine import load_machine
+from rubgen.measurement import measure
 from rubgen.pipeline import Run
 from rubgen.scenario import Operation, Scenario, Sensing
-from rubgen.scenario.sensor_set import load_sensor_set
-from rubgen.scenario.sensors import SensorSet, TimingProbe
-from rubgen.scenario.taps import (
+from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
+from rubgen.sensors.load import load_sensor_set
+from rubgen.sensors.sensor_set import SensorSet
+from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status, TipArrivals, Track
+from rubgen.taps import (
     CasingAcceleration,
     CentreDisplacement,
     ContactForce,
@@ -22,8 +25,6 @@ from rubgen.scenario.taps import (
     TipClearance,
     TipTiming,
 )
-from rubgen.sensors import measure, taps_of
-from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status, TipArrivals, Track
 
 TURNS, STEPS = 120, 512
 BLADES, STATES = 36, 125
@@ -41,7 +42,7 @@ def _taps(
     time = dt * np.arange(1 - TURNS * STEPS, 1)
     force = 4000.0 * np.maximum(0.0, np.cos(2 * speed * time)) ** 8 if contact else np.zeros_like(time)
     taps = {}
-    for tap in taps_of(sensors):
+    for tap in sensors.taps:
         if not isinstance(tap, TipTiming):
             first, second = generator.uniform(0, 2 * np.pi, 2)
             wave = np.cos(speed * time + first) + 0.3 * np.cos(3 * speed * time + second)

@@ -17,13 +17,15 @@ from rubgen.fem.blisk import assemble_blisk
 from rubgen.fem.root_strain import root_strain_row
 from rubgen.fem.statics import on_springs, support_stiffness
 from rubgen.machine import Machine, load_machine
+from rubgen.measurement import Recording, margin_seconds, measure
+from rubgen.measurement.blade_tip_timing import tip_deflections
+from rubgen.measurement.chain import PASS_BAND_SHARE, band_limit, half_width_seconds
 from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import ContactLaw, Operation, Reduction, Sensing
-from rubgen.scenario.sensor_set import load_sensor_set
-from rubgen.scenario.sensors import ContactForceSensor, SensorSet, TimingProbe
-from rubgen.sensors import Recording, margin_seconds, measure, taps_of
-from rubgen.sensors.blade_tip_timing import tip_deflections
-from rubgen.sensors.chain import PASS_BAND_SHARE, band_limit, half_width_seconds
+from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
+from rubgen.sensors.kinds.contact_force import ContactForceSensor
+from rubgen.sensors.load import load_sensor_set
+from rubgen.sensors.sensor_set import SensorSet
 from rubgen.solver import Response
 from rubgen.solver.integrate import integrate
 from rubgen.viz.colors import BLUE, VERMILION
@@ -72,7 +74,7 @@ def response_of(machine: Machine, sensing: Sensing) -> Response:
         ContactLaw(friction=FRICTION),
         tail_seconds=SECONDS + margin_seconds(sensing, SECONDS),
         sample_rate_hz=sensing.fastest_hz,
-        taps=taps_of(sensing.set),
+        taps=sensing.set.taps,
     )
 
 

@@ -21,7 +21,7 @@ from rubgen.machine import Machine
 from rubgen.machine.problems import first_problem
 from rubgen.scenario import Recipe
 from rubgen.scenario.recipe import recorded_recipe
-from rubgen.scenario.sensors import SensorSet
+from rubgen.sensors.sensor_set import SensorSet
 
 PACKAGES = ("rubgen", "numpy", "scipy", "numba", "llvmlite", "pyarrow", "mcap", "protobuf", "zstandard", "rerun-sdk")
 FORMAT: Literal["rubgen data set 1"] = "rubgen data set 1"

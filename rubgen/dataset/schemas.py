@@ -18,8 +18,9 @@ from rubgen.labels.labels import Motion
 from rubgen.labels.motion.whirl import WhirlDirection
 from rubgen.machine import Machine
 from rubgen.scenario import Recipe
-from rubgen.scenario.sensor_set import default_sensor_set
-from rubgen.scenario.sensors import KINDS, SensorSet
+from rubgen.sensors.load import default_sensor_set
+from rubgen.sensors.registry import SENSOR_KINDS
+from rubgen.sensors.sensor_set import SensorSet
 
 TEXTS: dict[str, type[StrEnum]] = {"motion": Motion, "rub": RubExtent, "whirl": WhirlDirection}
 """Values of text columns by the first word of their names."""
@@ -72,7 +73,11 @@ def _run_schema() -> dict[str, Any]:
 def _sensor_set_schema() -> dict[str, Any]:
     """A file's `[kinds.<kind>]` tables are merged into its sensors before anything is validated."""
     schema: dict[str, Any] = TypeAdapter(SensorSet).json_schema()
-    tables = {"type": "object", "additionalProperties": {"type": "object"}, "propertyNames": {"enum": list(KINDS)}}
+    tables = {
+        "type": "object",
+        "additionalProperties": {"type": "object"},
+        "propertyNames": {"enum": list(SENSOR_KINDS)},
+    }
     schema["properties"]["kinds"] = {"description": "values of every sensor of a kind", **tables}
     return schema
 

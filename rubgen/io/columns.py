@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from rubgen.errors import UserError
 from rubgen.labels.harmonics import FRACTIONS
 from rubgen.labels.labels import Motion
-from rubgen.scenario.sensors import OncePerRev, SampledSensor, SensorSet, TimingProbe
-from rubgen.scenario.taps import CasingAcceleration, Tap, TipTiming
 from rubgen.scenario.vary import PARAMETERS
-from rubgen.sensors import taps_of
-from rubgen.sensors.registry import describe
+from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
+from rubgen.sensors.kinds.once_per_rev import OncePerRev
+from rubgen.sensors.sensor import SampledSensor
+from rubgen.sensors.sensor_set import SensorSet
+from rubgen.taps import CasingAcceleration, Tap, TipTiming
 
 
 @dataclass(frozen=True)
@@ -156,7 +157,7 @@ def _channel(sensor: SampledSensor | OncePerRev) -> tuple[str, str]:
     """Unit and meaning of a channel."""
     if isinstance(sensor, OncePerRev):
         return "1", "one pulse a turn, from theta = 0"
-    about = describe(sensor)
+    about = sensor.description
     return sensor.unit, f"{about.quantity} {about.axis}, {about.location}"
 
 
@@ -182,7 +183,7 @@ def _touches() -> list[Column]:
 
 def _ordered_taps(sensors: SensorSet) -> tuple[Tap, ...]:
     """The true signals that have orders."""
-    return (*(tap for tap in taps_of(sensors) if not isinstance(tap, TipTiming)), *FIELDS)
+    return (*(tap for tap in sensors.taps if not isinstance(tap, TipTiming)), *FIELDS)
 
 
 def scalar_columns(sensors: SensorSet) -> tuple[Column, ...]:

@@ -11,7 +11,8 @@ from rubgen.scenario.costs import STEPS_PER_SAMPLE, reduction_problem, run_probl
 from rubgen.scenario.plausible import eccentricity, gram, shares, unbalances
 from rubgen.scenario.profiles import profile_problem
 from rubgen.scenario.scenario import Scenario
-from rubgen.scenario.sensors import BladeStrain, TimingProbe
+from rubgen.sensors.kinds.blade_strain import BladeStrain
+from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
 
 MIN_RECORD_TURNS = 500
 """Fewer strobed turns call quasi-periodic motion chaotic (49 do), so labels ask for these."""

@@ -17,8 +17,9 @@ from rubgen.machine.quantities import Place, usual_values
 from rubgen.machine.schema_nodes import digits
 from rubgen.scenario.costs import steps_per_turn
 from rubgen.scenario.scenario import Scenario
-from rubgen.scenario.sensors import OncePerRev, TimingProbe
 from rubgen.scenario.vary import KEYS_AT
+from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
+from rubgen.sensors.kinds.once_per_rev import OncePerRev
 
 MOST_ECCENTRICITY = 0.01
 """Share of the tip radius by which an unbalance moves the centre of mass."""

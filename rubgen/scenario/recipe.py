@@ -37,9 +37,9 @@ from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.profiles import check_used
 from rubgen.scenario.sampling import sobol_point
 from rubgen.scenario.scenario import ContactLaw, Labelling, Operation, ProfileName, Reduction, Scenario, Sensing
-from rubgen.scenario.sensor_set import DEFAULT_SET, load_sensor_set
-from rubgen.scenario.sensors import SensorSet
 from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, vary
+from rubgen.sensors.load import DEFAULT_SET, load_sensor_set
+from rubgen.sensors.sensor_set import SensorSet
 
 DEFAULT_RECIPE = Path(__file__).parent / "zeng2019-mini.toml"
 Format = Literal["parquet", "mcap", "rrd"]

@@ -35,8 +35,8 @@ from rubgen.machine.quantities import (
     WearRate,
 )
 from rubgen.scenario.rotation import Rotation
-from rubgen.scenario.sensor_set import default_sensor_set
-from rubgen.scenario.sensors import SensorSet
+from rubgen.sensors.load import default_sensor_set
+from rubgen.sensors.sensor_set import SensorSet
 
 RPM = 0.10471975511965977
 """One rev/min in rad/s, 2 pi / 60."""

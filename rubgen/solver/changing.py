@@ -7,12 +7,12 @@ import numpy as np
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.scenario.rotation import Rotation
-from rubgen.scenario.taps import DEFAULT_TAPS, Tap
 from rubgen.solver.following import Following, SystemAt, chebyshev_speeds
 from rubgen.solver.rub_free import rub_free_motion
 from rubgen.solver.spin import ChangingSpin
 from rubgen.solver.stability import STEP_SAFETY, settle_turns, slowest_decay, stable_step, steps_per_turn
 from rubgen.solver.stepper import Stepper
+from rubgen.taps import DEFAULT_TAPS, Tap
 
 
 class ChangingSystem:

@@ -16,7 +16,6 @@ from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.scenario.profiles import profile_problem
 from rubgen.scenario.rotation import Rotation
-from rubgen.scenario.taps import DEFAULT_TAPS, Tap
 from rubgen.solver.admissible import check_system
 from rubgen.solver.changing import ChangingSystem
 from rubgen.solver.divergence import ADVICE, Growth
@@ -48,6 +47,7 @@ from rubgen.solver.turn_kernels import STEPS, close_touches
 from rubgen.solver.turn_orders import WindowOrders, turn_orders
 from rubgen.solver.twin import Twin, check_turns, piece_ends
 from rubgen.solver.worn_liner import worn_liner
+from rubgen.taps import DEFAULT_TAPS, Tap
 
 LEAST_TAIL_TURNS = 100
 ENERGY_TOLERANCE = 1e-8
@@ -238,7 +238,7 @@ def integrate(
     `tail_seconds` is what the taps must cover (100 turns at least; they may reach back before the record, but not
     before the start); `sample_rate_hz` the sensors' rate that the steps must feed, 2.56 times. Taps stand at step n
     together: displacements q_n, velocities and accelerations from q_n-1, q_n, q_n+1, and the contact force lam_n that
-    acts at that time; the record's last step is the last value. `taps` says which there are (`scenario.taps`): the
+    acts at that time; the record's last step is the last value. `taps` says which there are (`rubgen.taps`): the
     response holds each by its name, and what timing probes saw among its arrivals. They change nothing in the motion.
 
     With `twin` a second trajectory runs beside the record for the Lyapunov exponent (`solver.twin`), which takes half

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from rubgen.scenario.taps import DEFAULT_TAPS
 from rubgen.solver.events import contact_events
 from rubgen.solver.response import EnergyBook, Response, Status
+from rubgen.taps import DEFAULT_TAPS
 
 NO_ENERGY = EnergyBook(**dict.fromkeys(EnergyBook.__dataclass_fields__, 0.0))
 

@@ -14,7 +14,6 @@ from rubgen.contact.geometry_kernels import Surface, Tips
 from rubgen.contact.wear_kernels import wear
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw
-from rubgen.scenario.taps import DEFAULT_TAPS, Tap
 from rubgen.solver.admissible import check_step
 from rubgen.solver.block_kernels import Motion, bilinear, recover
 from rubgen.solver.blocks import aligned, padded, share_width, system_harmonics
@@ -28,6 +27,7 @@ from rubgen.solver.step_kernels import advance, shift_held
 from rubgen.solver.supports import support_of
 from rubgen.solver.taps import build_taps, sampled_taps, turned_taps
 from rubgen.solver.turn_kernels import Touches, TurnResult, run_turn
+from rubgen.taps import DEFAULT_TAPS, Tap
 from rubgen.vector_kernels import LANES
 
 CANDIDATE_MARGIN_SHARE = 5e-5

@@ -11,19 +11,6 @@ import numpy as np
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.geometry_kernels import casing_rows, undeformed_radius
 from rubgen.reduction.model import Recovery, SpinningSystem
-from rubgen.scenario.taps import (
-    CasingAcceleration,
-    CentreDisplacement,
-    ContactForce,
-    ContactTorque,
-    DriveTorque,
-    RingStrain,
-    RootStrain,
-    SupportForce,
-    Tap,
-    TipClearance,
-    TipTiming,
-)
 from rubgen.solver.block_kernels import Product
 from rubgen.solver.blocks import aligned, padded
 from rubgen.solver.tap_kernels import (
@@ -36,6 +23,19 @@ from rubgen.solver.tap_kernels import (
     Timing,
     X,
     Y,
+)
+from rubgen.taps import (
+    CasingAcceleration,
+    CentreDisplacement,
+    ContactForce,
+    ContactTorque,
+    DriveTorque,
+    RingStrain,
+    RootStrain,
+    SupportForce,
+    Tap,
+    TipClearance,
+    TipTiming,
 )
 from rubgen.vector_kernels import LANES
 

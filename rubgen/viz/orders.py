@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.sensors.channel import Float32Array
+from rubgen.measurement.channel import Float32Array
 
 BLOCK_TURNS = 16
 SAMPLES_PER_TURN = 256

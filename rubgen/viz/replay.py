@@ -9,10 +9,10 @@ import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.labels.to_json import labels_dict
+from rubgen.measurement.channel import Recording
+from rubgen.measurement.contact_window import ContactIntervals, contact_intervals
+from rubgen.measurement.motion_frames import MotionFrames, motion_frames
 from rubgen.scenario import Scenario
-from rubgen.sensors.channel import Recording
-from rubgen.sensors.contact_window import ContactIntervals, contact_intervals
-from rubgen.sensors.motion_frames import MotionFrames, motion_frames
 
 if TYPE_CHECKING:
     from rubgen.labels.labels import Labels

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.scenario.sensors import Proximity
-from rubgen.sensors.channel import Float32Array
+from rubgen.measurement.channel import Float32Array
+from rubgen.sensors.kinds.proximity import Proximity
 from rubgen.viz.replay import Replay
 
 LEAST_SINE = 0.5

@@ -6,7 +6,7 @@ import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
-from rubgen.sensors.channel import Channel
+from rubgen.measurement.channel import Channel
 from rubgen.viz.entities.machine_shape import drawing_factor
 from rubgen.viz.entities.orbit import Bounds, orbit_bounds, section_bounds
 from rubgen.viz.entities.orders import spectrum_channels

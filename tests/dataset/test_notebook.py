@@ -16,7 +16,7 @@ from rubgen.errors import UserError
 from rubgen.io.mcap import read_mcap
 from rubgen.io.parquet.read import read_table
 from rubgen.io.parquet.write import schema
-from rubgen.scenario.sensor_set import default_sensor_set
+from rubgen.sensors.load import default_sensor_set
 from tests.default_columns import CHANNELS, SCALARS
 
 DATA = "data/train-00000-of-00001.parquet"

@@ -5,9 +5,11 @@ import pytest
 
 from rubgen.dataset.checking.consistency import signal_problems
 from rubgen.dataset.checking.order_check import ORDER_TOLERANCE, order_amplitudes, order_problems
+from rubgen.measurement.once_per_rev import arrival_times, pulse_channel
 from rubgen.scenario import Sensing
-from rubgen.scenario.sensors import OncePerRev, SensorSet, Torque
-from rubgen.sensors.once_per_rev import arrival_times, pulse_channel
+from rubgen.sensors.kinds.once_per_rev import OncePerRev
+from rubgen.sensors.kinds.torque import Torque
+from rubgen.sensors.sensor_set import SensorSet
 
 RATE, SPEED_RPM, TURNS, LATE = 25600.0, 6222.958874423057, 110, 26
 

@@ -15,7 +15,7 @@ from rubgen.io.columns import scalar_columns
 from rubgen.io.parquet.sections import SCHEMA
 from rubgen.io.parquet.write import write_table
 from rubgen.labels.to_json import ORDER_LABELS
-from rubgen.scenario.sensor_set import default_sensor_set
+from rubgen.sensors.load import default_sensor_set
 
 SECTIONS = "sections/train-00000-of-00001.parquet"
 

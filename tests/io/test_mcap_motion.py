@@ -10,7 +10,7 @@ from rubgen.errors import UserError
 from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
 from rubgen.io.mcap.foxglove import transform_descriptor_set
 from rubgen.io.mcap.salvage import salvage_mcap
-from rubgen.sensors.motion_frames import MotionFrames, motion_frames
+from rubgen.measurement.motion_frames import MotionFrames, motion_frames
 
 
 @pytest.fixture

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from rubgen.labels import label
-from rubgen.labels.contact.amounts import STANDARD_GRAVITY, RubExtent, contact_amounts, rub_extent
+from rubgen.labels.contact.amounts import RubExtent, contact_amounts, rub_extent
 from rubgen.labels.contact.zones import contact_zones
 from rubgen.labels.motion.whirl import Whirl, WhirlDirection, whirl
 from rubgen.labels.to_json import labels_dict
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver.integrate import integrate
+from rubgen.units import STANDARD_GRAVITY
 from validation.verification.rotors.jeffcott import CLEARANCE, FRICTION, ROTOR_MASS, SPEED, annular_rub, jeffcott_system
 
 

@@ -11,7 +11,7 @@ from rubgen.errors import UserError
 from rubgen.machine import Material, load_machine
 from rubgen.machine.load import PRESETS
 from rubgen.scenario import Recipe, parse_recipe
-from rubgen.scenario.sensor_set import parse_sensor_set
+from rubgen.sensors.load import parse_sensor_set
 
 MINIMAL = {"name": "a", "runs": 1, "machine": "zeng2019"}
 RAW = re.compile(r"Input should|pydantic|https?:|union_tag|valid (tuple|dictionary|integer|string)|Field required")

@@ -9,7 +9,7 @@ from rubgen.machine import load_machine
 from rubgen.machine.load import PRESETS
 from rubgen.machine.toml_file import MOST_BYTES, read_toml, toml_path
 from rubgen.scenario import load_recipe
-from rubgen.scenario.sensor_set import SETS, load_sensor_set
+from rubgen.sensors.load import SETS, load_sensor_set
 
 GOOD = 'a = 1\nb = "x"\n'
 

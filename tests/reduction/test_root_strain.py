@@ -13,8 +13,8 @@ from rubgen.fem.statics import on_springs, support_stiffness
 from rubgen.machine import load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
-from rubgen.scenario.taps import DriveTorque, RootStrain
 from rubgen.solver.stepper import Stepper
+from rubgen.taps import DriveTorque, RootStrain
 
 BLADE = 5
 

@@ -14,8 +14,9 @@ from rubgen.scenario import Liner, Scenario, make_scenario
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import implausible
 from rubgen.scenario.recipe import Output, Profile, Sensors, Simulation
-from rubgen.scenario.sensor_set import load_sensor_set
-from rubgen.scenario.sensors import AnySensor, SensorSet
+from rubgen.sensors.load import load_sensor_set
+from rubgen.sensors.registry import AnySensor
+from rubgen.sensors.sensor_set import SensorSet
 
 HUGE = (1e300, -1e300, math.inf, math.nan)
 

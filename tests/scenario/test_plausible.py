@@ -13,7 +13,7 @@ from rubgen.machine.load import PRESETS
 from rubgen.scenario import load_recipe, make_scenario, parse_recipe
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import implausible
-from rubgen.scenario.sensor_set import load_sensor_set, sensor_set_names
+from rubgen.sensors.load import load_sensor_set, sensor_set_names
 
 MINIMAL = {"name": "a", "runs": 1, "machine": "zeng2019"}
 DATASETS = Path(__file__).parents[2] / "datasets"

@@ -8,10 +8,10 @@ from scipy.integrate import solve_ivp
 from scipy.special import fresnel
 
 from rubgen.errors import UserError
+from rubgen.measurement.channel import Channel, Recording
+from rubgen.measurement.motion_frames import motion_frames
 from rubgen.reduction.model import CasingSurface, SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
-from rubgen.sensors.channel import Channel, Recording
-from rubgen.sensors.motion_frames import motion_frames
 from rubgen.solver import Status, spin
 from rubgen.solver.integrate import integrate
 

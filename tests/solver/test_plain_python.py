@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from rubgen.scenario import ContactLaw, Liner
-from rubgen.scenario.taps import DEFAULT_TAPS, ContactTorque, TipTiming
 from rubgen.solver.energy_kernels import WORKS
 from rubgen.solver.stepper import Stepper
+from rubgen.taps import DEFAULT_TAPS, ContactTorque, TipTiming
 
 SCRIPT = """
 import numpy as np

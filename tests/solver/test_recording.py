@@ -5,9 +5,9 @@ import numpy as np
 from rubgen.labels import label
 from rubgen.labels.to_json import labels_dict
 from rubgen.scenario import ContactLaw
-from rubgen.scenario.taps import DEFAULT_TAPS, TipTiming
 from rubgen.solver.integrate import integrate
 from rubgen.solver.stepper import Stepper, closing_ramp
+from rubgen.taps import DEFAULT_TAPS, TipTiming
 
 STEPS = 256
 TAPS = (*DEFAULT_TAPS, TipTiming(name="probe", angle_deg=40.0, axial_m=1e-3))

@@ -9,7 +9,11 @@ from scipy.optimize import brentq
 
 from rubgen.reduction.model import Recovery
 from rubgen.scenario import ContactLaw
-from rubgen.scenario.taps import (
+from rubgen.solver.energy_kernels import DRIVE_LIMIT
+from rubgen.solver.integrate import integrate
+from rubgen.solver.rub_free import steady_state
+from rubgen.solver.stepper import Stepper
+from rubgen.taps import (
     DEFAULT_TAPS,
     CasingAcceleration,
     CentreDisplacement,
@@ -19,10 +23,6 @@ from rubgen.scenario.taps import (
     SupportForce,
     TipTiming,
 )
-from rubgen.solver.energy_kernels import DRIVE_LIMIT
-from rubgen.solver.integrate import integrate
-from rubgen.solver.rub_free import steady_state
-from rubgen.solver.stepper import Stepper
 
 OPENING = np.linspace(4e-4, 0, 258)
 

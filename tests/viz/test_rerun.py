@@ -9,7 +9,7 @@ from rerun.chunk import RrdReader
 
 from rubgen.labels.to_json import labels_dict
 from rubgen.machine import Unbalance
-from rubgen.sensors.contact_window import contact_intervals
+from rubgen.measurement.contact_window import contact_intervals
 from rubgen.viz.entities.machine_shape import blade_leanings, blade_placements, drawing_factor
 from rubgen.viz.entities.signals import PREVIEW_VALUES, detail_window, preview_rate, shown_channels
 from rubgen.viz.replay import replay_of

@@ -19,7 +19,7 @@ import rubgen
 from rubgen.errors import UserError
 from rubgen.machine import load_machine
 from rubgen.scenario import load_recipe
-from rubgen.scenario.sensor_set import load_sensor_set
+from rubgen.sensors.load import load_sensor_set
 from validation.reliability.documents import json_bytes, mutated, toml_text
 from validation.reliability.hostile_mcap import hostile_mcap
 from validation.reliability.hostile_parquet import hostile_parquet

@@ -19,9 +19,9 @@ from rubgen.dataset.checking.impulse_check import Row, resolved_impulse, samples
 from rubgen.dataset.reading.open import row_signals
 from rubgen.io.parquet.read import row_groups
 from rubgen.labels.labels import Motion
+from rubgen.measurement.channel import Float32Array
 from rubgen.scenario import Sensing
-from rubgen.scenario.sensor_set import load_sensor_set
-from rubgen.sensors.channel import Float32Array
+from rubgen.sensors.load import load_sensor_set
 
 SECONDS = (0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7, 1.0, 2.0)
 SENSOR_SETS = ("default", "rig")

@@ -20,11 +20,12 @@ from rubgen.dataset.checking.order_check import NOISE_PEAK, order_problems
 from rubgen.labels.contact.amounts import RubExtent
 from rubgen.labels.harmonics import FLOOR, MARKED_TAP, RATIO
 from rubgen.labels.labels import Motion
+from rubgen.measurement.channel import Float32Array
+from rubgen.measurement.once_per_rev import NOTCH_ANGLE
 from rubgen.scenario import Sensing
-from rubgen.scenario.sensors import OncePerRev, Proximity, SampledSensor
-from rubgen.sensors.channel import Float32Array
-from rubgen.sensors.once_per_rev import NOTCH_ANGLE
-from rubgen.sensors.registry import tap_of
+from rubgen.sensors.kinds.once_per_rev import OncePerRev
+from rubgen.sensors.kinds.proximity import Proximity
+from rubgen.sensors.sensor import SampledSensor
 
 REGULARITY = [motion.value for motion in Motion]
 SHARE_TOLERANCE = 1e-9
@@ -102,7 +103,7 @@ def is_faultless(sensor: SampledSensor, sensing: Sensing) -> bool:
 def _sensor_problems(row: Row, sensor: SampledSensor, values: Float32Array, sensing: Sensing) -> Iterator[str]:
     low, high = sensor.full_range
     step = (high - low) / 2 ** (sensor.adc_bits or sensing.adc_bits)
-    noise_rms, tap = sensing.noise * sensor.noise_rms, tap_of(sensor).name
+    noise_rms, tap = sensing.noise * sensor.noise_rms, sensor.tap.name
     if tap == "contact_force" and not row["rub"]:
         limit = NOISE_PEAK * noise_rms + step
         if np.abs(values).max() > limit:

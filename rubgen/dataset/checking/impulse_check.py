@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.sensors.channel import Float32Array
+from rubgen.measurement.channel import Float32Array
 from rubgen.solver.turn_orders import WINDOW_TURNS
 
 Row = dict[str, Any]

@@ -10,8 +10,8 @@ import numpy as np
 from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.dataset.checking.impulse_check import Row
 from rubgen.labels.harmonics import SPECTRUM_TURNS
-from rubgen.sensors.chain import PASS_BAND_SHARE
-from rubgen.sensors.channel import Float32Array
+from rubgen.measurement.chain import PASS_BAND_SHARE
+from rubgen.measurement.channel import Float32Array
 
 COMPARED_ORDERS = 10
 """At most: those within the anti-alias filter's pass band."""

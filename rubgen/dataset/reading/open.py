@@ -28,8 +28,8 @@ from rubgen.io.parquet.read import damage_named, read_table
 from rubgen.io.parquet.sections import SCHEMA
 from rubgen.io.parquet.write import schema
 from rubgen.machine.problems import nearest
+from rubgen.measurement.channel import Float32Array
 from rubgen.scenario import Recipe, Sensing
-from rubgen.sensors.channel import Float32Array
 
 if TYPE_CHECKING:
     import pandas as pd

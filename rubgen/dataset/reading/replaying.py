@@ -18,11 +18,11 @@ from rubgen.dataset.reading.open import DataSet
 from rubgen.errors import UserError
 from rubgen.io.mcap.read import McapRun
 from rubgen.io.parquet.read import read_table
+from rubgen.measurement.blade_tip_timing import TipTimes
+from rubgen.measurement.channel import Channel, Recording
+from rubgen.measurement.contact_window import ContactIntervals
 from rubgen.scenario import Scenario
 from rubgen.scenario.recipe import check_recipe
-from rubgen.sensors.blade_tip_timing import TipTimes
-from rubgen.sensors.channel import Channel, Recording
-from rubgen.sensors.contact_window import ContactIntervals
 from rubgen.viz.replay import Replay, sorted_touches
 
 ONLY_READ: dict[str, bool | int | float | str | list[str]] = {

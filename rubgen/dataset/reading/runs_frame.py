@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pyarrow as pa
 
 from rubgen.io.columns import scalar_columns
-from rubgen.scenario.sensors import SensorSet
+from rubgen.sensors.sensor_set import SensorSet
 
 if TYPE_CHECKING:
     import pandas as pd

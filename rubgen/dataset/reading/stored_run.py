@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from rubgen.brief import html_table, number, table
+from rubgen.measurement.channel import Float32Array
 from rubgen.scenario.vary import KEYS
-from rubgen.sensors.channel import Float32Array
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -31,7 +31,7 @@ def touches_frame(table: pa.Table, sensing: Sensing, seconds: float) -> pd.DataF
     """
     import pandas as pd
 
-    from rubgen.sensors.chain import start_seconds
+    from rubgen.measurement.chain import start_seconds
 
     kept = {name: np.asarray(table[name][0].values) for name in COLUMNS}
     scalars = dict(zip(SCALARS, kept["scalars"].tolist(), strict=True))

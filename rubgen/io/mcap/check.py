@@ -19,8 +19,8 @@ from rubgen.io.mcap.documents import checked_scenario
 from rubgen.io.mcap.messages import read_sample_block
 from rubgen.io.mcap.read import run_of
 from rubgen.io.mcap.records import DamageError, damage_found
+from rubgen.measurement.channel import quantity_key
 from rubgen.scenario import Scenario
-from rubgen.sensors.channel import quantity_key
 
 TOPICS = ("/contact", "/once_per_rev", "/labels/motion")
 CHANNEL_KEYS = ("unit", "quantity", "axis", "location", "range_min", "range_max", "resolution", "sensitivity")

@@ -6,8 +6,8 @@ import numpy as np
 
 from rubgen.io.mcap.content import McapContent, check_order, rows
 from rubgen.io.mcap.records import DamageError
+from rubgen.measurement.motion_frames import MotionFrames
 from rubgen.scenario import Scenario
-from rubgen.sensors.motion_frames import MotionFrames
 
 FRAMES, MODES = "/motion/frames", "/motion/casing_modes"
 

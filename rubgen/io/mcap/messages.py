@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory, timestamp_pb2
 
-from rubgen.sensors.channel import Float32Array
+from rubgen.measurement.channel import Float32Array
 
 PACKAGE = "rubgen.v1"
 TIMESTAMP = "google.protobuf.Timestamp"

@@ -25,9 +25,9 @@ from rubgen.io.mcap.frames import read_frames
 from rubgen.io.mcap.messages import read_sample_block
 from rubgen.io.mcap.records import DamageError, damage_found
 from rubgen.labels.labels import Motion
+from rubgen.measurement.channel import Float32Array
+from rubgen.measurement.motion_frames import MotionFrames
 from rubgen.scenario import Scenario
-from rubgen.sensors.channel import Float32Array
-from rubgen.sensors.motion_frames import MotionFrames
 
 MOTION_LABELS = ("motion", "motion_blisk", "motion_casing")
 

@@ -19,12 +19,12 @@ from rubgen.io.mcap.messages import MESSAGES, PACKAGE, file_descriptor_set, mess
 from rubgen.io.mcap.multi_array import SCHEMA, SCHEMA_NAME, multi_arrays
 from rubgen.io.mcap.read import McapRun, read_mcap
 from rubgen.labels.to_json import labels_dict
+from rubgen.measurement.blade_tip_timing import TipTimes
+from rubgen.measurement.channel import Channel, Float32Array, Recording
+from rubgen.measurement.contact_window import contact_intervals
+from rubgen.measurement.envelope import Preview, preview
+from rubgen.measurement.motion_frames import MotionFrames, motion_frames
 from rubgen.scenario.plain import scenario_dict
-from rubgen.sensors.blade_tip_timing import TipTimes
-from rubgen.sensors.channel import Channel, Float32Array, Recording
-from rubgen.sensors.contact_window import contact_intervals
-from rubgen.sensors.envelope import Preview, preview
-from rubgen.sensors.motion_frames import MotionFrames, motion_frames
 
 if TYPE_CHECKING:  # Run carries the solver's imports; who reads or checks a file needs none of them
     from rubgen.labels.labels import Labels

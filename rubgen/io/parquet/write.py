@@ -19,11 +19,11 @@ from rubgen.io.columns import Column, scalar_columns, signal_columns
 from rubgen.io.durable import write_durably
 from rubgen.io.parquet.read import open_parquet, read_table, row_groups
 from rubgen.labels.to_json import labels_dict, window_amplitudes
-from rubgen.scenario.sensor_set import default_sensor_set
-from rubgen.scenario.sensors import SensorSet
+from rubgen.measurement.channel import Recording
+from rubgen.measurement.contact_window import contact_intervals
 from rubgen.scenario.vary import varied_values
-from rubgen.sensors.channel import Recording
-from rubgen.sensors.contact_window import contact_intervals
+from rubgen.sensors.load import default_sensor_set
+from rubgen.sensors.sensor_set import SensorSet
 
 if TYPE_CHECKING:  # Run carries the solver's imports; who reads a file needs none of them
     from rubgen.pipeline import Run

@@ -11,9 +11,8 @@ from rubgen.arrays import FloatArray, IntArray
 from rubgen.brief import brief
 from rubgen.labels.contact.zones import ContactZones
 from rubgen.solver.response import Response
+from rubgen.units import STANDARD_GRAVITY
 
-STANDARD_GRAVITY = 9.80665
-"""m/s2, by which the severity turns the blisk's mass into weight, whether or not gravity acts in the run."""
 LASTING = 0.95
 """Contact in this share of the time is lasting."""
 

@@ -7,7 +7,7 @@ import pyarrow as pa
 import rerun as rr
 
 from rubgen.arrays import FloatArray
-from rubgen.sensors.channel import Float32Array
+from rubgen.measurement.channel import Float32Array
 
 
 class _Spectra:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from rubgen.sensors.channel import Channel
+from rubgen.measurement.channel import Channel
 from rubgen.viz.colors import BLUE, rgba
 from rubgen.viz.entities.bar_columns import send_bars
 from rubgen.viz.entities.signals import UNSHOWN, time_column

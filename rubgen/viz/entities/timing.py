@@ -6,7 +6,7 @@ import numpy as np
 import rerun as rr
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.sensors.blade_tip_timing import tip_deflections
+from rubgen.measurement.blade_tip_timing import tip_deflections
 from rubgen.viz.colors import BLUE, rgba
 from rubgen.viz.entities.signals import time_column
 from rubgen.viz.replay import Replay

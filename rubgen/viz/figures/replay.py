@@ -10,7 +10,7 @@ from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
 from rubgen.machine.problems import nearest
-from rubgen.sensors.channel import Channel
+from rubgen.measurement.channel import Channel
 from rubgen.viz.colors import BLUE, GREY, PAPER_GREY, VERMILION
 from rubgen.viz.figures.style import INK, label_axes, new_figure, note
 from rubgen.viz.orders import HIGHEST_ORDER, order_map

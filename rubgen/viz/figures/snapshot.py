@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 from rubgen.arrays import FloatArray
 from rubgen.labels.labels import Motion
 from rubgen.machine import Unbalance
+from rubgen.measurement.motion_frames import MotionFrames
 from rubgen.progress import count
-from rubgen.sensors.motion_frames import MotionFrames
 from rubgen.viz.colors import BLUE, GREY, MOTION_COLORS, PAPER_GREY, UNBALANCE, VERMILION, impulse_color
 from rubgen.viz.entities.machine_shape import (
     blade_angles,

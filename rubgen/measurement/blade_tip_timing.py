@@ -1,0 +1,86 @@
+"""Blade tip timing: when each blade passes each probe, and the tip deflections that follow from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rubgen.arrays import FloatArray, IntArray
+from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
+from rubgen.sensors.kinds.once_per_rev import OncePerRev
+from rubgen.solver.response import TipArrivals
+
+
+@dataclass(frozen=True, kw_only=True)
+class TipTimes:
+    """What one probe recorded, in order of time; all arrays (n_arrivals,), times in s from the first sample.
+
+    `time` is what the probe gives; `blade` and `true_displacement` (m, of the tip's chord along the rotation) are known
+    because this is a simulation.
+    """
+
+    time: FloatArray
+    blade: IntArray
+    true_displacement: FloatArray
+
+
+def tick(time: FloatArray, clock_hz: float) -> FloatArray:
+    """Times as a counter of that frequency gives them; exact at 0."""
+    return np.asarray(np.floor(time * clock_hz) / clock_hz) if clock_hz else time
+
+
+def blurred(sensor: TimingProbe | OncePerRev, time: FloatArray, noise: float, rng: np.random.Generator) -> FloatArray:
+    """Times with the jitter, scaled by `noise`, and the counter of a sensor."""
+    jitter = noise * sensor.jitter_s
+    shaken = time + jitter * rng.standard_normal(time.size) if jitter else time
+    return tick(shaken, sensor.clock_hz)
+
+
+def tip_times(
+    probe: TimingProbe,
+    arrivals: TipArrivals,
+    *,
+    dt: float,
+    start: float,
+    seconds: float,
+    noise: float,
+    rng: np.random.Generator,
+) -> TipTimes:
+    """The passages within `seconds` from `start`, the time of the first sample from the start of the record.
+
+    Each is blurred by jitter and counter and shifted by the clock's offset; missed ones are left out.
+    """
+    true = arrivals.step * dt - start
+    seen = (true >= 0) & (true < seconds)
+    if probe.missed:
+        seen &= rng.uniform(size=seen.size) >= probe.missed
+    time = blurred(probe, true[seen] + probe.clock_offset_s, noise, rng)
+    order = np.argsort(time, kind="stable")
+    return TipTimes(
+        time=time[order],
+        blade=arrivals.blade[seen][order],
+        true_displacement=arrivals.displacement[seen][order],
+    )
+
+
+def tip_deflections(times: TipTimes, once_per_rev: FloatArray, tip_radius: float) -> FloatArray:
+    """Tip deflections (n_arrivals,) in m along the rotation, without each blade's mean, from arrival times alone.
+
+    Angle of arrival AoA = Omega (t - t_0) from the pulse t_0 before, Omega = 2 pi over the turn's time; deflection
+    x = R (mean AoA of that blade - AoA): early is positive (S. Heath, M. Imregun, Int. J. Mech. Sci. 38, 1996). Those
+    before the first pulse or after the last are NaN.
+    """
+    turn = np.searchsorted(once_per_rev, times.time, side="right") - 1
+    inside = (turn >= 0) & (turn < once_per_rev.size - 1)
+    first = once_per_rev[np.where(inside, turn, 0)]
+    length = np.diff(once_per_rev)[np.where(inside, turn, 0)]
+    angle = np.where(inside, 2 * np.pi * (times.time - first) / length, np.nan)
+    deflection = np.full(angle.size, np.nan)
+    for blade in np.unique(times.blade[inside]):
+        own = inside & (times.blade == blade)
+        # A blade that passes near angle 0 lies on both sides of it: its circle of angles is cut opposite to it.
+        centre = np.angle(np.exp(1j * angle[own]).mean())
+        about = np.angle(np.exp(1j * (angle[own] - centre)))
+        deflection[own] = tip_radius * (about.mean() - about)
+    return deflection

@@ -1,0 +1,117 @@
+"""The measuring chain that every channel passes: anti-alias filter and resampling, then noise, range and ADC."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.measurement.front_end import memory_seconds
+from rubgen.scenario import Sensing
+
+PASS_BAND_SHARE = 2 / 2.56
+"""End of the pass band as a share of the Nyquist frequency: sample rate / 2.56, as in dynamic signal analysers."""
+ATTENUATION_DB = 90.0
+"""Attenuation the Kaiser window is designed for; at least 85 dB is kept at the Nyquist frequency and beyond."""
+KAISER_BETA = 0.1102 * (ATTENUATION_DB - 8.7)
+"""Kaiser's formula for attenuations above 50 dB (Kaiser 1974)."""
+PHASES = 512
+"""Positions between two steps for which the weights are tabulated. Linear in between, they err by less than -109 dB,
+even where steps are fewest."""
+
+
+def half_width_seconds(sample_rate_hz: float) -> float:
+    """Half the length of the anti-alias filter, in s.
+
+    Kaiser's formula (Kaiser 1974): length = (A - 7.95) / (2.285 * 2 pi * transition width in Hz).
+    """
+    transition_hz = sample_rate_hz / 2 * (1 - PASS_BAND_SHARE)
+    return float((ATTENUATION_DB - 7.95) / (2.285 * 2 * np.pi * transition_hz) / 2)
+
+
+def late_seconds(sensing: Sensing, seconds: float, *, sign: int = 1) -> float:
+    """How late, in s, the latest clock of the set takes a sample within `seconds`; how early for sign = -1."""
+    clocks = [(each.clock_offset_s, 1e-6 * each.clock_ppm * seconds) for each in sensing.set.sampled]
+    return max([0.0, *(sign * (offset + share * slow) for offset, slow in clocks for share in (0, 1))])
+
+
+def start_seconds(sensing: Sensing, seconds: float, *, steps: int, dt: float) -> float:
+    """When the first sample of `seconds` is taken, in s from the start of a record of so many steps of `dt` s."""
+    rate = sensing.sample_rate_hz
+    end = (steps - 1) * dt - half_width_seconds(rate)
+    return float(end - (late_seconds(sensing, seconds) + (round(seconds * rate) - 1) / rate))
+
+
+def margin_seconds(sensing: Sensing, seconds: float = 0.0) -> float:
+    """Signal that a recording of `seconds` needs beyond itself, in s: half the filter's length on either side.
+
+    Clocks that run early or late need more, and sensors with dynamics what their filters remember. Two sample periods
+    are added, so that rounding to whole steps and samples never falls short.
+    """
+    margin = 2 * half_width_seconds(sensing.sample_rate_hz) + 2 / sensing.sample_rate_hz
+    margin += max((memory_seconds(each) for each in sensing.set.sampled), default=0.0)
+    return margin + late_seconds(sensing, seconds) + late_seconds(sensing, seconds, sign=-1)
+
+
+def impulse_response(time: FloatArray, sample_rate_hz: float) -> FloatArray:
+    """h(t) of the anti-alias filter in 1/s: sinc cut off midway in the transition band, under a Kaiser window.
+
+    h(t) = 2 f_c sinc(2 f_c t) I0(beta sqrt(1 - (t/W)^2)) / I0(beta) for |t| < W, else 0: even, hence without delay.
+    """
+    half_width = half_width_seconds(sample_rate_hz)
+    cut_off = sample_rate_hz / 4 * (1 + PASS_BAND_SHARE)
+    inside = 1 - (time / half_width) ** 2
+    window = np.i0(KAISER_BETA * np.sqrt(np.maximum(inside, 0.0))) / np.i0(KAISER_BETA)
+    return np.asarray(2 * cut_off * np.sinc(2 * cut_off * time) * window * (inside > 0), dtype=np.float64)
+
+
+@lru_cache(maxsize=4)
+def filter_bank(dt: float, sample_rate_hz: float) -> FloatArray:
+    """Weights (PHASES + 1, 2 half) of the filter for positions between two steps of length dt; every row sums to 1."""
+    half = int(np.ceil(half_width_seconds(sample_rate_hz) / dt))
+    phase = np.linspace(0.0, 1.0, PHASES + 1)[:, None]
+    steps = np.arange(-half + 1, half + 1)[None, :]
+    half_bank = impulse_response((phase[: PHASES // 2 + 1] - steps) * dt, sample_rate_hz)
+    bank = np.concatenate([half_bank, half_bank[-2::-1, ::-1]])  # h is even: the other half is the mirrored one
+    bank /= bank.sum(axis=1, keepdims=True)
+    bank.setflags(write=False)
+    return bank
+
+
+def band_limit(signals: FloatArray, positions: FloatArray, *, dt: float, sample_rate_hz: float) -> FloatArray:
+    """Band-limited signals (samples, channels) at fractional step positions of `signals` (steps, channels).
+
+    Filter and interpolation in one: y(t) = sum_j h(t - j dt) x_j dt, with the weights' sum set to 1. The gain is 1
+    within 1e-4 up to sample_rate / 2.56 and below 1e-4 from sample_rate / 2 on; there is no delay. The step rate must
+    be at least 2.56 sample rates, and all positions at least half a filter length inside.
+    """
+    from rubgen.measurement.resampling_kernels import (  # compiled: those who read data need no numba
+        ABREAST,
+        interpolate_rows,
+    )
+
+    channels, bank = signals.shape[1], filter_bank(dt, sample_rate_hz)
+    out = np.empty((positions.size, channels))
+    for start in range(0, channels, ABREAST):
+        part = signals[:, start : start + ABREAST]
+        padded, filtered = np.zeros((len(part), ABREAST)), np.zeros((positions.size, ABREAST))
+        padded[:, : part.shape[1]] = part
+        interpolate_rows(padded, bank, positions, filtered)
+        out[:, start : start + ABREAST] = filtered[:, : part.shape[1]]
+    return out
+
+
+def adc_step(range_min: float, range_max: float, bits: int) -> float:
+    """Size of one ADC step: the range divided by 2^bits."""
+    return float((range_max - range_min) / 2**bits)
+
+
+def digitise(signal: FloatArray, *, range_min: float, range_max: float, bits: int) -> FloatArray:
+    """The signal as the ADC gives it: clipped to its range, rounded to range_min + code * step, code 0 .. 2^bits - 1.
+
+    The highest value is thus one step below range_max. float32 holds at most 24 bits: finer steps are lost on storage.
+    """
+    step = adc_step(range_min, range_max, bits)
+    code = np.clip(np.rint((signal - range_min) / step), 0, 2**bits - 1)
+    return np.asarray(range_min + code * step, dtype=np.float64)

@@ -1,0 +1,73 @@
+"""What a virtual sensor records."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from rubgen.arrays import FloatArray
+from rubgen.brief import brief
+from rubgen.measurement.blade_tip_timing import TipTimes
+
+Float32Array = npt.NDArray[np.float32]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Channel:
+    """One recorded signal with its description; `values` (n_samples,) at the recording's sample rate, in `unit`."""
+
+    name: str
+    unit: str
+    quantity: str
+    axis: str
+    location: str
+    range_min: float
+    range_max: float
+    resolution: float
+    noise_rms: float
+    values: Float32Array
+    clean: Float32Array | None = None
+
+    __repr__ = brief
+
+
+def quantity_key(quantity: str) -> str:
+    """A quantity as a part of topics and entity paths, which take no blanks."""
+    return quantity.replace(" ", "_")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recording:
+    """All channels of one run over the last `signal_seconds` of its record.
+
+    Sample i stands at time i / sample_rate_hz. `rotation_angle` is the blisk's angle theta at the first sample, in
+    [0, 2 pi); `once_per_rev` (n_pulses,) are the arrival times in s at which theta passes 0 mod 2 pi, as the sensor of
+    that kind gives them (exact where there is none). `start_seconds` is the first sample's time from the start of the
+    record, `tip_timing` what each timing probe saw, by its name.
+    """
+
+    sample_rate_hz: float
+    rotation_angle: float
+    channels: dict[str, Channel]
+    once_per_rev: FloatArray
+    start_seconds: float = 0.0
+    tip_timing: dict[str, TipTimes] = field(default_factory=dict)
+
+    __repr__ = brief
+
+    @property
+    def samples(self) -> int:
+        """Number of samples of every channel."""
+        return next(iter(self.channels.values())).values.size
+
+    def by_quantity(self) -> dict[str, list[Channel]]:
+        """Channels by the key of what they measure, in one unit each, both in the order of the recording."""
+        groups: dict[str, list[Channel]] = {}
+        for channel in self.channels.values():
+            key = quantity_key(channel.quantity)
+            if key in groups and groups[key][0].unit != channel.unit:
+                key = quantity_key(f"{channel.quantity} in {channel.unit.replace('/', ' per ')}")
+            groups.setdefault(key, []).append(channel)
+        return groups

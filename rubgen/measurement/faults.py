@@ -1,0 +1,63 @@
+"""What real chains add to the samples: gain and offset errors, drift, noise, dropouts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.sensors.sensor import SampledSensor
+
+
+def miscalibrate(sensor: SampledSensor, signal: FloatArray, *, zero: float, sample_rate_hz: float) -> FloatArray:
+    """Zero + (1 + gain error) (x - zero) + offset + drift t: `zero` is what the sensor gives at rest."""
+    if not (sensor.gain_error or sensor.offset or sensor.drift_per_s):
+        return signal
+    time = np.arange(signal.size) / sample_rate_hz
+    scaled = zero + (1 + sensor.gain_error) * (signal - zero)
+    return np.asarray(scaled + sensor.offset + sensor.drift_per_s * time)
+
+
+def noise(
+    sensor: SampledSensor, samples: int, sample_rate_hz: float, scale: float, rng: np.random.Generator
+) -> FloatArray:
+    """Gaussian noise (samples,) times `scale`: white of `noise_rms`, and of the one-sided density D^2 (1 + f_c / f).
+
+    The second is white noise shaped in the frequency domain, its mean zero; it repeats after the recording's length,
+    as every spectrum of it does.
+    """
+    total = scale * sensor.noise_rms * rng.standard_normal(samples)
+    if sensor.noise_density > 0:
+        shaped = np.fft.rfft(rng.standard_normal(samples)) * _shape(sensor, samples, sample_rate_hz)
+        total = total + scale * np.fft.irfft(shaped, samples)
+    return np.asarray(total)
+
+
+def noise_level(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> float:
+    """Rms of the noise of a recording."""
+    if sensor.noise_density == 0:
+        return sensor.noise_rms
+    shape = _shape(sensor, samples, sample_rate_hz)
+    # Each frequency stands for two of the whole spectrum but for those at its ends.
+    whole = 2 * np.sum(shape**2) - shape[0] ** 2 - (shape[-1] ** 2 if samples % 2 == 0 else 0.0)
+    return float(np.hypot(sensor.noise_rms, np.sqrt(whole / samples)))
+
+
+def _shape(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> FloatArray:
+    """Gain at each frequency of a recording from white noise of rms 1 to that of the sensor's density."""
+    frequency = np.fft.rfftfreq(samples, 1 / sample_rate_hz)
+    shape = np.zeros_like(frequency)
+    shape[1:] = np.sqrt(1 + sensor.noise_corner_hz / frequency[1:])
+    return np.asarray(sensor.noise_density * np.sqrt(sample_rate_hz / 2) * shape)
+
+
+def drop_out(sensor: SampledSensor, values: FloatArray, sample_rate_hz: float, rng: np.random.Generator) -> FloatArray:
+    """The samples (n,) with gaps at random times, Poisson of `dropouts_per_s`, in which the last good value is held."""
+    if sensor.dropouts_per_s == 0:
+        return values
+    seconds = values.size / sample_rate_hz
+    starts = rng.uniform(0.0, seconds, rng.poisson(sensor.dropouts_per_s * seconds)) * sample_rate_hz
+    good = np.ones(values.size, dtype=bool)
+    for start in starts:
+        good[int(np.ceil(start)) : int(np.ceil(start + sensor.dropout_s * sample_rate_hz))] = False
+    good[0] = True
+    return np.asarray(values[np.maximum.accumulate(np.where(good, np.arange(values.size), 0))])

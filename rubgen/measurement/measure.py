@@ -1,0 +1,100 @@
+"""All channels and events of one run."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.errors import UserError
+from rubgen.measurement.blade_tip_timing import TipTimes, blurred, tip_times
+from rubgen.measurement.chain import half_width_seconds, late_seconds, start_seconds
+from rubgen.measurement.channel import Channel, Recording
+from rubgen.measurement.once_per_rev import pulse_channel
+from rubgen.measurement.sampled import feed_of, filtered, recorded
+from rubgen.measurement.shaft import pulse_times, record_steps, shaft_angle, tail_steps
+from rubgen.scenario import Sensing
+from rubgen.scenario.costs import STEPS_PER_SAMPLE
+from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
+from rubgen.sensors.kinds.once_per_rev import OncePerRev
+from rubgen.sensors.sensor import SampledSensor
+from rubgen.solver.response import Response
+
+
+def measure(response: Response, sensing: Sensing, *, seconds: float, rng: np.random.Generator) -> Recording:
+    """The channels and events of a run over `seconds` (> 0) at the end of its record, by the sensors of `sensing.set`.
+
+    The last sample stands half a filter length before the end of the tail, so that no sample sees an edge. The step
+    after the tail's last one would have theta = 0 mod 2 pi. Each sensor has its own child of `rng`, by its place in the
+    set: its noise depends on nothing but the state of `rng` and its own length.
+
+    Raises UserError where the tail is too short for `seconds` and the filter, or the step rate is below 2.56 sample
+    rates.
+    """
+    rate, sensors = sensing.sample_rate_hz, sensing.set.sensors
+    positions = sample_positions(response, sensing, seconds)
+    angle = shaft_angle(response, positions)
+    covered = positions.size / rate
+    start = start_seconds(sensing, seconds, steps=record_steps(response), dt=response.dt)
+    pulses = pulse_times(response, float(angle[0]), start, covered)
+    streams = dict(zip((sensor.name for sensor in sensors), rng.spawn(len(sensors)), strict=True))
+    channels = _channels(response, sensing, positions, angle, streams)
+    timing: dict[str, TipTimes] = {}
+    for sensor in sensors:
+        if isinstance(sensor, OncePerRev):
+            pulses = blurred(sensor, pulses, sensing.noise, streams[sensor.name])
+        if isinstance(sensor, TimingProbe):
+            timing[sensor.name] = tip_times(
+                sensor, response.arrivals[sensor.name], dt=response.dt, start=start, seconds=covered,
+                noise=sensing.noise, rng=streams[sensor.name],
+            )  # fmt: skip
+    return Recording(
+        sample_rate_hz=rate,
+        start_seconds=start,
+        rotation_angle=float(angle[0]),
+        channels=channels,
+        once_per_rev=pulses,
+        tip_timing=timing,
+    )
+
+
+def sample_positions(response: Response, sensing: Sensing, seconds: float) -> FloatArray:
+    """Times of the samples, counted in steps from the start of the tail; round(seconds * sample rate) of them."""
+    dt, rate = response.dt, sensing.sample_rate_hz
+    if dt * rate * STEPS_PER_SAMPLE > 1 + 1e-9:
+        highest = 1 / dt / STEPS_PER_SAMPLE
+        raise UserError(
+            f"sample_rate_hz = {rate:g}: at most {highest:.6g} Hz with {1 / dt:.6g} steps a second; "
+            "lower sample_rate_hz or raise steps_per_turn"
+        )
+    tail = tail_steps(response)
+    half_width, late = half_width_seconds(rate) / dt, late_seconds(sensing, seconds) / dt
+    count = round(seconds * rate)
+    positions = (tail - 1 - half_width - late) - np.arange(count - 1, -1, -1) / (rate * dt)
+    early = late_seconds(sensing, seconds, sign=-1) / dt
+    if count < 1 or np.floor(positions[0] - early) - np.ceil(half_width) + 1 < 0:
+        longest = max((tail - 1 - 2 * half_width - late - early) * dt, 0.0)
+        raise UserError(
+            f"signal_seconds = {seconds:g}: must be at least one sample and at most {longest:.6g} s for this record; "
+            "shorten signal_seconds or raise record_turns"
+        )
+    return np.asarray(positions, dtype=np.float64)
+
+
+def _channels(
+    response: Response,
+    sensing: Sensing,
+    positions: FloatArray,
+    angle: FloatArray,
+    streams: dict[str, np.random.Generator],
+) -> dict[str, Channel]:
+    """The sampled channels and the pulse, in the order of the set."""
+    shaft = shaft_angle(response, np.arange(tail_steps(response)))
+    feeds = [feed_of(sensor, response, shaft, sensing.set) for sensor in sensing.set.sampled]
+    samples = filtered(feeds, positions, dt=response.dt, sensing=sensing)
+    channels: dict[str, Channel] = {}
+    for sensor in sensing.set.sensors:
+        if isinstance(sensor, SampledSensor):
+            channels[sensor.name] = recorded(sensor, samples[sensor.name], sensing, streams[sensor.name])
+        if isinstance(sensor, OncePerRev):
+            channels[sensor.name] = pulse_channel(angle, sensor.name, keep_clean=sensing.keep_clean)
+    return channels

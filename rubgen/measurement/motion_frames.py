@@ -1,0 +1,93 @@
+"""The motion of the whole machine in the time of a recording: dense about the hardest touch, once a turn elsewhere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rubgen.arrays import FloatArray, IntArray
+from rubgen.measurement.channel import Recording
+from rubgen.solver.response import Response
+
+COARSE_FRAMES = 48
+"""Most frames outside the dense turns: what keeps a file small whatever its length."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionFrames:
+    """True positions at `time` (frames,) in s after the first sample, ascending.
+
+    `angle` (frames,) is the blisk's in [0, 2 pi); the disk centre `centre` (frames, 2) and the tips' displacements
+    `tips` (frames, n_blades, 3) (radial, tangential, axial, steady growth included) are in its turning frame, in m.
+    `casing` (frames, n_casing) are amplitudes of `casing_modes` (nodes, 2, n_casing), X and Y at equal steps of polar
+    angle from 0. `dense` marks the frames about the hardest touch; between the others lies a turn or more.
+    """
+
+    time: FloatArray
+    angle: FloatArray
+    centre: FloatArray
+    tips: FloatArray
+    casing: FloatArray
+    dense: IntArray
+    casing_modes: FloatArray
+
+
+def motion_frames(response: Response, recording: Recording) -> MotionFrames | None:
+    """The frames of a run that lie within its recording: its replay track, and sections once a turn or more rarely.
+
+    None where the response kept no track.
+    """
+    track, starts = response.track, _turn_steps(response)
+    if track is None:
+        return None
+    turns = _even_choice(starts, response, recording)
+    turns = turns[(starts[turns] < track.step[0]) | (starts[turns] > track.step[-1])]
+    step = np.concatenate([track.step, starts[turns]])
+    turn = np.concatenate([np.searchsorted(starts, track.step, side="right") - 1, turns])
+    q = np.concatenate([track.q, response.section_q[turns]])
+    angle = np.concatenate([_angle(track.step, response), np.zeros(turns.size)])  # sections lie at theta = 0
+    dense = np.concatenate([np.ones(track.step.size, np.int64), np.zeros(turns.size, np.int64)])
+    order = np.argsort(step, kind="stable")
+    order = order[_inside(step[order], response, recording)]
+    step, q, m = step[order], q[order], 3 * response.n_blades
+    growth = track.tip_growth[np.clip(turn[order], 0, len(track.tip_growth) - 1)]
+    return MotionFrames(
+        time=_seconds(step, response, recording),
+        angle=angle[order],
+        centre=q[:, m : m + 2],
+        tips=q[:, :m].reshape(len(q), -1, 3) + growth,
+        casing=q[:, q.shape[1] - response.n_casing :],
+        dense=dense[order],
+        casing_modes=track.casing_modes,
+    )
+
+
+def _turn_steps(response: Response) -> IntArray:
+    """The first step of each turn of the record."""
+    if response.course is not None:
+        return response.course.turn_steps[:-1]
+    return np.arange(response.record_turns) * response.steps_per_turn
+
+
+def _angle(step: IntArray, response: Response) -> FloatArray:
+    """Of the blisk at steps, in [0, 2 pi)."""
+    if response.course is not None:
+        return np.asarray(np.mod(response.course.rotation.angle(step * response.dt), 2 * np.pi))
+    steps = response.steps_per_turn
+    return 2 * np.pi * (step % steps) / steps
+
+
+def _seconds(step: IntArray, response: Response, recording: Recording) -> FloatArray:
+    return np.asarray(step * response.dt - recording.start_seconds, dtype=np.float64)
+
+
+def _inside(step: IntArray, response: Response, recording: Recording) -> IntArray:
+    time = _seconds(step, response, recording)
+    return np.flatnonzero((time >= 0) & (time < recording.samples / recording.sample_rate_hz))
+
+
+def _even_choice(starts: IntArray, response: Response, recording: Recording) -> IntArray:
+    """Numbers of the turns that begin inside, at most `COARSE_FRAMES`, equally far apart."""
+    inside = _inside(starts, response, recording)
+    return np.asarray(inside[:: max(1, -(-inside.size // COARSE_FRAMES))], dtype=np.int64)

@@ -1,0 +1,98 @@
+"""Sampled sensors: from the tap to the recorded channel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.measurement.chain import adc_step, band_limit, digitise
+from rubgen.measurement.channel import Channel
+from rubgen.measurement.faults import drop_out, miscalibrate, noise, noise_level
+from rubgen.measurement.front_end import front_end
+from rubgen.scenario import Sensing
+from rubgen.sensors.sensor import SampledSensor
+from rubgen.sensors.sensor_set import SensorSet
+from rubgen.solver.response import Response
+
+
+@dataclass(frozen=True)
+class Feed:
+    """What one sensor gives the filter, in its unit at every step (steps,): as an ideal one, and as it is."""
+
+    sensor: SampledSensor
+    ideal: FloatArray
+    real: FloatArray
+
+    @property
+    def clock(self) -> tuple[float, float]:
+        """Offset in s and slowness in ppm of its clock."""
+        return self.sensor.clock_offset_s, self.sensor.clock_ppm
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Band-limited samples (n,) of a sensor: of an ideal one (None where not asked for), and of the sensor as it is."""
+
+    ideal: FloatArray | None
+    real: FloatArray
+
+
+def feed_of(sensor: SampledSensor, response: Response, angle: FloatArray, sensors: SensorSet) -> Feed:
+    """The true signal in the sensor's unit, and what the sensor makes of it; `angle` (steps,) is theta at each step."""
+    true = response.taps[sensor.tap.name]
+    factor, zero = sensor.scale
+
+    def in_unit(signal: FloatArray) -> FloatArray:
+        return signal if (factor, zero) == (1.0, 0.0) else zero + factor * signal
+
+    ideal, seen = in_unit(true), sensor.disturbed(true, angle, sensors.shaft_runout)
+    return Feed(sensor, ideal, front_end(sensor, ideal if seen is true else in_unit(seen), response.dt))
+
+
+def filtered(feeds: Sequence[Feed], positions: FloatArray, *, dt: float, sensing: Sensing) -> dict[str, Samples]:
+    """Every feed through the anti-alias filter: one pass for all that share a clock.
+
+    Sample i of a sensor whose clock is late by o and slow by p ppm is taken at o + (1 + 1e-6 p) i / rate.
+    """
+    rate = sensing.sample_rate_hz
+    time = np.arange(positions.size) / rate
+    wanted = [((0.0, 0.0), feed.ideal) for feed in feeds if sensing.keep_clean]
+    wanted += [(feed.clock, feed.real) for feed in feeds]
+    done: dict[tuple[tuple[float, float], int], FloatArray] = {}
+    for clock in dict.fromkeys(clock for clock, _ in wanted):
+        signals = {id(signal): signal for own, signal in wanted if own == clock}
+        at = positions if clock == (0.0, 0.0) else positions + (clock[0] + 1e-6 * clock[1] * time) / dt
+        out = band_limit(np.stack([*signals.values()]).T, at, dt=dt, sample_rate_hz=rate)
+        done |= {(clock, name): out[:, i] for i, name in enumerate(signals)}
+    return {
+        feed.sensor.name: Samples(
+            done[(0.0, 0.0), id(feed.ideal)] if sensing.keep_clean else None, done[feed.clock, id(feed.real)]
+        )
+        for feed in feeds
+    }
+
+
+def recorded(sensor: SampledSensor, samples: Samples, sensing: Sensing, rng: np.random.Generator) -> Channel:
+    """The channel of a sensor: calibration errors, noise, range, ADC and dropouts on its samples."""
+    about, rate = sensor.description, sensing.sample_rate_hz
+    low, high = sensor.full_range
+    bits = sensor.adc_bits or sensing.adc_bits
+    seen = miscalibrate(sensor, samples.real, zero=sensor.scale[1], sample_rate_hz=rate)
+    noisy = seen + noise(sensor, seen.size, rate, sensing.noise, rng)
+    values = digitise(noisy, range_min=low, range_max=high, bits=bits)
+    return Channel(
+        name=sensor.name,
+        unit=sensor.unit,
+        quantity=about.quantity,
+        axis=about.axis,
+        location=about.location,
+        range_min=low,
+        range_max=high,
+        resolution=adc_step(low, high, bits),
+        noise_rms=sensing.noise * noise_level(sensor, seen.size, rate),
+        values=drop_out(sensor, values, rate, rng).astype(np.float32),
+        clean=None if samples.ideal is None else samples.ideal.astype(np.float32),
+    )

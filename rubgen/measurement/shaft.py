@@ -1,0 +1,53 @@
+"""Where the shaft stands: angle over the steps of a tail, and when theta passes 0."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from rubgen.arrays import FloatArray
+from rubgen.measurement.once_per_rev import arrival_times
+from rubgen.solver.response import Response
+
+
+def tail_steps(response: Response) -> int:
+    """Number of steps that the taps hold."""
+    return next(iter(response.taps.values())).size
+
+
+def record_steps(response: Response) -> int:
+    """Number of steps of the record."""
+    if response.course is not None:
+        return int(response.course.turn_steps[-1])
+    return response.record_turns * response.steps_per_turn
+
+
+def shaft_angle(response: Response, positions: npt.NDArray[np.floating] | npt.NDArray[np.integer]) -> FloatArray:
+    """Theta in [0, 2 pi) at positions, counted in steps from the start of the tail; exact at a changing speed too."""
+    back = positions - tail_steps(response)
+    if response.course is None:
+        return in_turn(back * (2 * np.pi / response.steps_per_turn))
+    return in_turn(response.course.rotation.angle((record_steps(response) + back) * response.dt))
+
+
+def pulse_times(response: Response, first_angle: float, start: float, seconds: float) -> FloatArray:
+    """Exact times (any,) in [0, seconds) at which theta passes 0 mod 2 pi, in s from `start` of the record.
+
+    `first_angle` is theta at time 0.
+    """
+    if response.course is None:
+        return arrival_times(first_angle, 2 * np.pi / response.turn_seconds, seconds)
+    rotation = response.course.rotation
+    turns = rotation.angle(np.array([start, start + seconds])) / (2 * np.pi)
+    each = [rotation.time_of(2 * np.pi * k) - start for k in range(math.floor(turns[0]), math.ceil(turns[1]) + 1)]
+    times = np.array(each)
+    return times[(times >= 0) & (times < seconds)]
+
+
+def in_turn(angle: npt.NDArray[np.floating[Any]]) -> FloatArray:
+    """The angle in [0, 2 pi)."""
+    turned = np.mod(angle, 2 * np.pi)
+    return np.asarray(np.where(turned < 2 * np.pi, turned, 0.0))

@@ -1,0 +1,26 @@
+"""The contact force, recorded as if a probe could: it is the cause of everything else."""
+
+from typing import ClassVar, Literal
+
+from pydantic.dataclasses import dataclass
+
+from rubgen.machine.quantities import STRICT
+from rubgen.sensors.sensor import Description, SampledSensor
+from rubgen.taps import ContactForce
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class ContactForceSensor(SampledSensor):
+    """The sum of the normal contact forces: no probe measures it."""
+
+    UNITS: ClassVar[dict[str, float]] = {"N": 1.0, "kN": 1e-3}
+    RANGE: ClassVar[tuple[float, float]] = (-1e5, 1e5)
+    kind: Literal["contact_force"] = "contact_force"
+
+    @property
+    def tap(self) -> ContactForce:
+        return ContactForce(name="contact_force")
+
+    @property
+    def description(self) -> Description:
+        return Description(quantity="contact force", axis="normal", location="all blade tips")

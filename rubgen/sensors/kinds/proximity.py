@@ -1,0 +1,43 @@
+"""Proximity probe: displacement of the disk centre, and the profile of the shaft that it cannot tell from it."""
+
+from typing import ClassVar, Literal
+
+import numpy as np
+from pydantic.dataclasses import dataclass
+
+from rubgen.arrays import FloatArray
+from rubgen.machine.quantities import STRICT, Bias, Direction, Sensitivity
+from rubgen.sensors.runout import RunoutOrder, runout
+from rubgen.sensors.sensor import Description, SampledSensor, axis_of
+from rubgen.taps import CentreDisplacement, name_of_direction
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Proximity(SampledSensor):
+    """Displacement of the disk centre along a direction; in V the gap voltage, `bias_v` at rest, rising with it."""
+
+    UNITS: ClassVar[dict[str, float]] = {"m": 1.0, "mm": 1e3, "um": 1e6, "V": 0.0}
+    RANGE: ClassVar[tuple[float, float]] = (-2e-3, 2e-3)
+    kind: Literal["proximity"] = "proximity"
+    angle_deg: Direction
+    sensitivity_v_per_m: Sensitivity = 7874.0
+    bias_v: Bias = -10.0
+
+    @property
+    def tap(self) -> CentreDisplacement:
+        return CentreDisplacement(name=f"blisk_{name_of_direction(self.angle_deg)}", angle_deg=self.angle_deg)
+
+    @property
+    def description(self) -> Description:
+        quantity = "gap voltage" if self.unit == "V" else "displacement"
+        axis = axis_of(self.angle_deg)
+        return Description(quantity=quantity, axis=axis, location="disk centre")
+
+    @property
+    def scale(self) -> tuple[float, float]:
+        """In V the gap voltage, bias + sensitivity x: the voltage is negative and rises as the shaft comes nearer."""
+        return (self.sensitivity_v_per_m, self.bias_v) if self.unit == "V" else super().scale
+
+    def disturbed(self, signal: FloatArray, angle: FloatArray, shaft: tuple[RunoutOrder, ...]) -> FloatArray:
+        """A probe at angle phi sees the shaft's profile at phi - theta: high spots come nearer."""
+        return signal + runout(np.deg2rad(self.angle_deg) - angle, shaft) if shaft else signal

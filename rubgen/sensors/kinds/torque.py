@@ -1,0 +1,28 @@
+"""Torque on the blisk: of its drive, as a torque flange measures it, or of the contact, which no sensor measures."""
+
+from typing import ClassVar, Literal
+
+from pydantic.dataclasses import dataclass
+
+from rubgen.machine.quantities import STRICT
+from rubgen.sensors.sensor import Description, SampledSensor
+from rubgen.taps import ContactTorque, DriveTorque
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Torque(SampledSensor):
+    """Torque on the blisk about the axis: of the drive, or (what no sensor measures) of the contact."""
+
+    UNITS: ClassVar[dict[str, float]] = {"N m": 1.0, "kN m": 1e-3}
+    RANGE: ClassVar[tuple[float, float]] = (-2e4, 2e4)
+    kind: Literal["torque"] = "torque"
+    of: Literal["drive", "contact"] = "drive"
+
+    @property
+    def tap(self) -> DriveTorque | ContactTorque:
+        return DriveTorque(name="drive_torque") if self.of == "drive" else ContactTorque(name="contact_torque")
+
+    @property
+    def description(self) -> Description:
+        place = "drive shaft" if self.of == "drive" else "all blade tips"
+        return Description(quantity=f"{self.of} torque", axis="rotation", location=place)

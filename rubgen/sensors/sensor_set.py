@@ -1,0 +1,56 @@
+"""All sensors of a machine."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+from pydantic.dataclasses import dataclass
+
+from rubgen.brief import brief
+from rubgen.machine.quantities import STRICT
+from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
+from rubgen.sensors.kinds.once_per_rev import OncePerRev
+from rubgen.sensors.registry import AnySensor
+from rubgen.sensors.runout import RunoutOrder
+from rubgen.sensors.sensor import SampledSensor
+from rubgen.taps import DEFAULT_TAPS, Tap
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class SensorSet:
+    """All sensors of a machine, and the profile of its shaft."""
+
+    name: Annotated[str, Field(min_length=1)]
+    sensors: Annotated[tuple[AnySensor, ...], Field(min_length=1)]
+    shaft_runout: tuple[RunoutOrder, ...] = ()
+
+    __repr__ = brief
+
+    @model_validator(mode="after")
+    def _names_differ(self) -> Self:
+        name, count = Counter(sensor.name for sensor in self.sensors).most_common(1)[0]
+        if count > 1:
+            raise ValueError(f"name = {name!r} of {count} sensors: must differ; rename all but one")
+        if sum(isinstance(sensor, OncePerRev) for sensor in self.sensors) > 1:
+            raise ValueError("two sensors of kind once_per_rev: there is one pulse a turn; keep one of them")
+        if not self.sampled:
+            raise ValueError("sensors: none records a signal (kinds once_per_rev and blade_tip_timing only); add one")
+        return self
+
+    @property
+    def sampled(self) -> tuple[SampledSensor, ...]:
+        """The sensors with a measuring chain."""
+        return tuple(sensor for sensor in self.sensors if isinstance(sensor, SampledSensor))
+
+    @property
+    def front_end_hz(self) -> float:
+        """The highest frequency that any sensor's own dynamics name, 0 without any."""
+        return max((sensor.front_end_hz for sensor in self.sampled), default=0.0)
+
+    @property
+    def taps(self) -> tuple[Tap, ...]:
+        """The true signals of a run, each once: first what every run has, then what further sensors take."""
+        sampled = dict.fromkeys([*DEFAULT_TAPS, *(sensor.tap for sensor in self.sampled)])
+        return (*sampled, *(sensor.tap for sensor in self.sensors if isinstance(sensor, TimingProbe)))
