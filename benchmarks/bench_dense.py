@@ -16,7 +16,7 @@ from benchmarks.bench_solver import CASES, STEPS, Case, settled
 from benchmarks.cpu_time import cpu_time
 from benchmarks.dense_kernels import Dense, run
 from rubgen.arrays import FloatArray
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.scheme.stepper import Stepper
 from validation.reference_step import ReferenceStepper
 
 RUNS = CASES[:3]

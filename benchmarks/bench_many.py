@@ -24,17 +24,17 @@ from benchmarks.bench_solver import CASES, STEPS, deviation, settled, turn_time
 from benchmarks.cpu_time import median_time
 from benchmarks.free_step_kernels import run_free
 from rubgen.dataset.making.workers import unordered, worker_pool
+from rubgen.linalg.blocks import aligned, parts_of
+from rubgen.linalg.lanes_kernels import line_kind
+from rubgen.linalg.vector_kernels import LANES
 from rubgen.measurement import margin_seconds
 from rubgen.reduction import reduce
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Scenario, load_recipe
 from rubgen.solver import Response, Status
-from rubgen.solver.block_kernels import Scheme
-from rubgen.solver.blocks import aligned, parts_of
 from rubgen.solver.integrate import integrate
-from rubgen.solver.lanes_kernels import line_kind
-from rubgen.solver.stepper import Stepper
-from rubgen.vector_kernels import LANES
+from rubgen.solver.scheme.free_step_kernels import Scheme
+from rubgen.solver.scheme.stepper import Stepper
 from validation.reference_step import ReferenceStepper
 
 RUNS, PROCESSES = 16, 2

@@ -24,7 +24,8 @@ from typing import Any
 from unittest.mock import patch
 
 import rubgen
-from rubgen.solver import stepper, twin
+from rubgen.solver.observers import companion
+from rubgen.solver.scheme import stepper
 
 RUBGEN = str(Path(sys.executable).with_name("rubgen"))
 RECIPE = """
@@ -100,7 +101,7 @@ def _counted(out: Path, runs: int) -> tuple[float, float]:
     recipe.write_text(RECIPE.format(runs=runs), encoding="utf-8")
     with (
         patch.object(stepper, "run_turn", timed(stepper.run_turn)),
-        patch.object(twin, "run_twin", timed(twin.run_twin)),
+        patch.object(companion, "run_twin", timed(companion.run_twin)),
     ):
         begun = time.process_time()
         rubgen.generate(recipe, out, workers=1)

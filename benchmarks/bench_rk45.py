@@ -21,7 +21,7 @@ from benchmarks.bench_solver import CASES, STEPS, Case, settled
 from benchmarks.penalty_kernels import Penalty, slope_of
 from rubgen.arrays import FloatArray
 from rubgen.reduction.model import SpinningSystem
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.scheme.stepper import Stepper
 
 PENALTY = 1e9
 """N/m: of 1e8, 1e9 and 1e10 the least whose impulse a turn is within 2 % of ours in both runs."""

@@ -16,7 +16,8 @@ from benchmarks.cpu_time import cpu_time
 from rubgen import make_scenario
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
-from rubgen.solver.stepper import Stepper, closing_ramp, start_opening
+from rubgen.solver.scheme.stepper import Stepper
+from rubgen.solver.speed.start import closing_ramp, rub_free_stepper, start_opening
 from validation.reference_step import ReferenceStepper
 
 STEPS = 1024
@@ -63,7 +64,7 @@ def settled(case: Case) -> tuple[Stepper, ReferenceStepper]:
         tangential, K = np.arange(1, 3 * system.n_blades, 3), system.K.copy()
         K[tangential, tangential] *= 1 + case.mistuning * np.random.default_rng(0).normal(size=system.n_blades)
         system = replace(system, K=K)
-    stepper, opening = Stepper(system, ContactLaw(friction=case.friction), STEPS), start_opening(system)
+    stepper, opening = rub_free_stepper(system, ContactLaw(friction=case.friction), STEPS), start_opening(system)
     for turn in range(CLOSING_TURNS + SETTLE_TURNS):
         ramp = closing_ramp((turn + np.arange(-1, STEPS + 1) / STEPS) / CLOSING_TURNS)
         code, step, _ = stepper.run_turn(opening * ramp)

@@ -20,10 +20,10 @@ from rubgen import make_scenario
 from rubgen.reduction import reduce
 from rubgen.measurement import measure
 from rubgen.labels import label
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.speed.start import rub_free_stepper
 scenario = make_scenario("zeng2019")
 system = reduce(scenario.machine, scenario.reduction).at_speed(scenario.operation.speed_rad_per_s)
-Stepper(system, scenario.contact, scenario.operation.steps_per_turn).run_turn()
+rub_free_stepper(system, scenario.contact, scenario.operation.steps_per_turn).run_turn()
 """
 HELP = [str(Path(sys.executable).with_name("rubgen")), "--help"]
 

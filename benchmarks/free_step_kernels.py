@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rubgen.arrays import FloatArray
 from rubgen.jit import allocation_free_kernel
-from rubgen.solver.block_kernels import Scheme, free_step
+from rubgen.solver.scheme.free_step_kernels import Scheme, free_step
 
 
 @allocation_free_kernel

@@ -18,7 +18,7 @@ from rubgen.progress import step
 from rubgen.scenario import Scenario, make_scenario
 from rubgen.scenario.vary import varied_values
 from rubgen.solver import Status
-from rubgen.solver.reach import no_rub
+from rubgen.solver.linear.reach import no_rub
 from rubgen.viz.replay import replay_of
 
 LABEL_NAMES = (

@@ -7,7 +7,7 @@ import math
 from rubgen.arrays import FloatArray
 from rubgen.contact.geometry_kernels import Surface, Tips, tip_position, undeformed_radius
 from rubgen.jit import allocation_free_kernel, inlined_kernel
-from rubgen.vector_kernels import LANES, blended_product, lowest_bit, not_above
+from rubgen.linalg.vector_kernels import LANES, blended_product, lowest_bit, not_above
 
 LARGEST_SPREAD = 0.25
 """The bounds hold for tips nearer than this share of their radius to their place at rest."""

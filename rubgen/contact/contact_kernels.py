@@ -14,7 +14,7 @@ from rubgen.contact.clearance_kernels import widened
 from rubgen.contact.friction_kernels import friction_direction, slip_velocity
 from rubgen.contact.geometry_kernels import Surface, Tips, casing_rows, foot_of, tip_position
 from rubgen.jit import allocation_free_kernel, inlined_kernel
-from rubgen.vector_kernels import LANES, lowest_bit, not_above, square_of_farthest
+from rubgen.linalg.vector_kernels import LANES, lowest_bit, not_above, square_of_farthest
 
 
 class ContactWork(NamedTuple):

@@ -15,8 +15,7 @@ import numpy.typing as npt
 
 from rubgen.arrays import FloatArray
 from rubgen.scenario.rotation import Rotation
-from rubgen.solver.response import ContactEvents, Course, EnergyBook, Response, Status
-from rubgen.solver.turn_orders import ORDERS
+from rubgen.solver.response import ORDERS, ContactEvents, Course, EnergyBook, Response, Status
 
 Kept = Mapping[str, npt.NDArray[Any]]
 

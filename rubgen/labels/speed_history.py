@@ -14,8 +14,7 @@ from rubgen.labels.motion.classify import LEAST_TURNS, Motions, motion
 from rubgen.labels.motion.decision import AT_REST, FORCED, MotionClass
 from rubgen.labels.motion.section import casing_rests
 from rubgen.labels.windows import Windows, turn_times, window_edges
-from rubgen.solver.response import ContactEvents, Course, Response
-from rubgen.solver.turn_orders import WINDOW_TURNS
+from rubgen.solver.response import WINDOW_TURNS, ContactEvents, Course, Response
 
 MOTION_TURNS = 64
 """A window is long enough for a motion class where the speed of so many turns about it hardly changes."""

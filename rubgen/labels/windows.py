@@ -9,8 +9,7 @@ import numpy as np
 
 from rubgen.arrays import ComplexArray, FloatArray, IntArray
 from rubgen.labels.harmonics import MARKED_TAP, OPPOSITE_TAP
-from rubgen.solver.response import Course, Response
-from rubgen.solver.turn_orders import WINDOW_TURNS
+from rubgen.solver.response import WINDOW_TURNS, Course, Response
 
 
 @dataclass(frozen=True, kw_only=True)

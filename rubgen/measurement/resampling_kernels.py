@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rubgen.jit import kernel
-from rubgen.solver.lanes_kernels import COUNT, FIRST, KIND, ROW, add_lines
-from rubgen.vector_kernels import LANES
+from rubgen.linalg.lanes_kernels import COUNT, FIRST, KIND, ROW, add_lines
+from rubgen.linalg.vector_kernels import LANES
 
 Array = npt.NDArray[np.float64]
 

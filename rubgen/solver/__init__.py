@@ -1,6 +1,8 @@
 """Integration of a spinning system in time, with contact.
 
-What compiles nothing is here; `rubgen.solver.integrate` and `rubgen.solver.stepper` bring the kernels with them.
+`integrate` makes a `Response` of a system through four rooms, each of which imports only those before it: `linear`
+(what the linear system says before a run), `scheme` (the steps), `speed` (the start, and how turns follow the speed),
+`observers` (what is kept of a run). This file compiles nothing; the rooms bring their kernels with them.
 """
 
 from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status

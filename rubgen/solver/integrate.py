@@ -16,10 +16,19 @@ from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.scenario.profiles import profile_problem
 from rubgen.scenario.rotation import Rotation
-from rubgen.solver.admissible import check_system
-from rubgen.solver.changing import ChangingSystem
-from rubgen.solver.divergence import ADVICE, Growth
-from rubgen.solver.energy_kernels import (
+from rubgen.solver.linear.admissible import check_system
+from rubgen.solver.linear.rub_free import free_penetration, rub_free_motion
+from rubgen.solver.linear.stability import settle_turns, slowest_decay, steps_per_turn
+from rubgen.solver.observers.companion import Twin, check_turns, piece_ends
+from rubgen.solver.observers.divergence import ADVICE, Growth
+from rubgen.solver.observers.orders import WindowOrders, turn_orders
+from rubgen.solver.observers.symmetry import Fractions
+from rubgen.solver.observers.touches import contact_events, tip_arrivals
+from rubgen.solver.observers.track import TrackKeeper
+from rubgen.solver.observers.worn_liner import worn_liner
+from rubgen.solver.refusal import no_response
+from rubgen.solver.response import Course, EnergyBook, Response, Status
+from rubgen.solver.scheme.energy_kernels import (
     ABSOLUTE,
     CIRCULATORY,
     CONTACT,
@@ -30,23 +39,15 @@ from rubgen.solver.energy_kernels import (
     SPEED_CHANGE,
     UNBALANCE,
 )
-from rubgen.solver.events import contact_events, tip_arrivals
-from rubgen.solver.following import SystemAt
-from rubgen.solver.fractions import Fractions
-from rubgen.solver.refusal import no_response
-from rubgen.solver.response import Course, EnergyBook, Response, Status
-from rubgen.solver.rub_free import free_penetration, rub_free_motion
-from rubgen.solver.spin import Spin, SteadySpin
-from rubgen.solver.stability import settle_turns, slowest_decay, steps_per_turn
-from rubgen.solver.step_kernels import CONTACT_UNSOLVED, DIVERGED, ENERGY, FILM_CLOSED, OK
-from rubgen.solver.stepper import Stepper, closing_ramp, start_opening
-from rubgen.solver.support_kernels import ANISOTROPY, FILM, FILM_LOSS, GRAVITY
-from rubgen.solver.taps import sampled_taps, timing_taps
-from rubgen.solver.track import TrackKeeper
-from rubgen.solver.turn_kernels import STEPS, close_touches
-from rubgen.solver.turn_orders import WindowOrders, turn_orders
-from rubgen.solver.twin import Twin, check_turns, piece_ends
-from rubgen.solver.worn_liner import worn_liner
+from rubgen.solver.scheme.step_kernels import CONTACT_UNSOLVED, DIVERGED, ENERGY, FILM_CLOSED, OK
+from rubgen.solver.scheme.stepper import Stepper
+from rubgen.solver.scheme.support_kernels import ANISOTROPY, FILM, FILM_LOSS, GRAVITY
+from rubgen.solver.scheme.taps import sampled_taps, timing_taps
+from rubgen.solver.scheme.turn_kernels import STEPS, close_touches
+from rubgen.solver.speed.changing import ChangingSystem
+from rubgen.solver.speed.driver import Spin, SteadySpin
+from rubgen.solver.speed.interpolation import SystemAt
+from rubgen.solver.speed.start import closing_ramp, rub_free_stepper, start_opening
 from rubgen.taps import DEFAULT_TAPS, Tap
 
 LEAST_TAIL_TURNS = 100
@@ -104,7 +105,9 @@ class Integration:
         self.orbit: deque[FloatArray] = deque(maxlen=LEAST_TAIL_TURNS if self.rotation.is_steady else None)
         self.free_penetration = float("nan")
         if self.rotation.is_steady:
-            self.free_penetration = free_penetration(stepper.rub_free, stepper.surface, stepper.tips)
+            self.free_penetration = free_penetration(
+                rub_free_motion(stepper.system, stepper.steps), stepper.surface, stepper.tips
+            )
         self.window_orders = WindowOrders(*stepper.result.taps.shape)
         self.touches: list[FloatArray] = []
         self.orders: list[ComplexArray] = []
@@ -272,7 +275,7 @@ def integrate(
         if refusal:
             return _not_integrated(system, operation, steps, *refusal)
         settle = settle_turns(system, operation, decay)
-        spin = SteadySpin(Stepper(system, contact, steps, taps=taps), settle)
+        spin = SteadySpin(rub_free_stepper(system, contact, steps, taps=taps), settle)
         return _run(spin, system, operation, tail_seconds, taps, twin=twin)
 
 

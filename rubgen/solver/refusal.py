@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rubgen.solver.events import contact_events
+from rubgen.solver.observers.touches import contact_events
 from rubgen.solver.response import EnergyBook, Response, Status
 from rubgen.taps import DEFAULT_TAPS
 

@@ -11,6 +11,11 @@ from rubgen.arrays import ComplexArray, FloatArray, IntArray
 from rubgen.brief import brief
 from rubgen.scenario.rotation import Rotation
 
+ORDERS = 20
+"""Orders of rotation of which a response holds the amplitudes: 1 to this number."""
+WINDOW_TURNS = 16
+"""Turns of a window of `Response.window_orders`."""
+
 
 class Status(StrEnum):
     """How an integration ended; each value is a sentence for the user."""

@@ -13,8 +13,8 @@ from rubgen.labels.speed_history import by_angle, course_labels
 from rubgen.labels.to_json import labels_dict, remade_labels, window_amplitudes
 from rubgen.labels.windows import windows
 from rubgen.scenario.rotation import Rotation
+from rubgen.solver.observers.orders import turn_orders
 from rubgen.solver.response import Course
-from rubgen.solver.turn_orders import turn_orders
 
 TURNS, STEPS = 80, 256
 ROTATION = Rotation(start=800.0, end=1200.0, seconds=0.502)

@@ -13,7 +13,7 @@ from rubgen.fem.statics import on_springs, support_stiffness
 from rubgen.machine import load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.speed.start import rub_free_stepper
 from rubgen.taps import DriveTorque, RootStrain
 
 BLADE = 5
@@ -61,7 +61,7 @@ def test_taps_give_strain_and_drive_torque_of_a_held_load(model):
     system = model.at_speed(900.0)
     system = replace(system, recovery=replace(system.recovery, torsion_damping=0.0))
     taps = (RootStrain(name="strain", blade=BLADE), DriveTorque(name="drive"))
-    stepper = Stepper(system, ContactLaw(), 1024, taps=taps)
+    stepper = rub_free_stepper(system, ContactLaw(), 1024, taps=taps)
     q = np.concatenate([np.linalg.solve(model.stiffness(0.0), load), np.zeros(system.n_casing)])
     stepper.set_state(q, q)
     stepper.run_turn(np.full(1026, 0.1))

@@ -10,8 +10,8 @@ from rubgen.machine import SqueezeFilm
 from rubgen.reduction import reduce
 from rubgen.reduction.reduced import rigid_shifts
 from rubgen.scenario import Reduction
-from rubgen.solver.rub_free import rub_free_motion
-from rubgen.solver.stability import stable_step
+from rubgen.solver.linear.rub_free import rub_free_motion
+from rubgen.solver.linear.stability import stable_step
 
 FILM = SqueezeFilm(radius_m=0.08, length_m=0.03, clearance_m=2e-3, viscosity_pa_s=0.02)
 

@@ -11,7 +11,7 @@ from rubgen.machine import load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import Reduction, load_recipe, make_scenario, parse_recipe
 from rubgen.scenario.costs import coordinates, reduction_bytes, reduction_problem, run_problem, steps_per_turn
-from rubgen.solver.stability import steps_per_turn as steps_of_model
+from rubgen.solver.linear.stability import steps_per_turn as steps_of_model
 
 MINIMAL = {"name": "a", "runs": 1, "machine": "zeng2019"}
 RUN_UP = {"profile": "run-up", "end_speed_rpm": 12000}

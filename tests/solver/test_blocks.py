@@ -5,14 +5,17 @@ import dataclasses
 import numpy as np
 import pytest
 
+from rubgen.linalg import blocks as block_module
+from rubgen.linalg.block_kernels import Product, multiply, quadratic
+from rubgen.linalg.blocks import aligned, blade_harmonics, find_blocks
+from rubgen.linalg.harmonic_kernels import recover_all
 from rubgen.machine import load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
-from rubgen.solver import blocks as block_module
-from rubgen.solver.block_kernels import Product, free_step, multiply, quadratic, recover_all
-from rubgen.solver.blocks import aligned, blade_harmonics, find_blocks
-from rubgen.solver.central_difference import scheme, system_blocks
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.linear.system_blocks import system_blocks
+from rubgen.solver.scheme.central_difference import scheme
+from rubgen.solver.scheme.free_step_kernels import free_step
+from rubgen.solver.speed.start import rub_free_stepper
 from validation.reference_step import ReferenceStepper
 
 
@@ -77,7 +80,7 @@ def test_products_are_those_of_the_dense_matrices(small_system, spread):
 def test_mistuned_blades_move_as_plain_numpy_says(small_system, lobes):
     system, steps = mistuned(small_system(lobes=lobes, speed=400.0)), 256
     assert max(sizes(system)) == 14  # all in the plane: twelve and O_d
-    stepper = Stepper(system, ContactLaw(friction=0.1), steps)
+    stepper = rub_free_stepper(system, ContactLaw(friction=0.1), steps)
     for turn in range(6):
         stepper.run_turn(np.full(steps + 2, 5e-4 * (1 - turn / 6)))
     reference, touched = ReferenceStepper(system, 0.1, steps), 0
@@ -99,7 +102,7 @@ def test_blocks_and_one_dense_block_give_one_motion(small_system, monkeypatch):
         if dense:
             monkeypatch.setattr(block_module, "coupled", lambda matrix: np.ones(matrix.shape, dtype=bool))
         system = small_system(speed=500.0)
-        stepper = Stepper(system, ContactLaw(friction=0.1), 256)
+        stepper = rub_free_stepper(system, ContactLaw(friction=0.1), 256)
         assert (len(stepper.blocks.single) == 1 and not stepper.blocks.lanes) is dense
         impulse = 0.0
         for turn in range(10):
@@ -130,7 +133,7 @@ def test_a_free_step_of_several_lanes_is_that_of_the_matrices():
 
 
 def check_recovery(system):
-    stepper = Stepper(system, ContactLaw(), 1024)
+    stepper = rub_free_stepper(system, ContactLaw(), 1024)
     q = np.random.default_rng(1).normal(size=len(system.M))
     found, scratch = np.zeros(len(q)), stepper.scratch
     recover_all(stepper.harmonics, stepper.blocks.to_z(q), scratch.share, scratch.tips, found)

@@ -7,9 +7,9 @@ from rubgen.contact import gap_and_foot
 from rubgen.contact.contact_kernels import build_rows
 from rubgen.contact.geometry_kernels import casing_rows
 from rubgen.scenario import ContactLaw
-from rubgen.solver.energy_kernels import CONTACT, DRIVE_LIMIT, FRICTION, NORMAL, book_contact
-from rubgen.solver.model_kernels import State
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.scheme.energy_kernels import CONTACT, DRIVE_LIMIT, FRICTION, NORMAL, book_contact
+from rubgen.solver.scheme.model_kernels import State
+from rubgen.solver.speed.start import rub_free_stepper
 
 MU, THETA, BLADE = 0.3, 0.7, 2
 
@@ -18,7 +18,7 @@ class Touch:
     """One blade at the casing in a random state, bent by millimetres and moving at tens of m/s in all directions."""
 
     def __init__(self, system, seed):
-        self.system, self.stepper = system, Stepper(system, ContactLaw(friction=MU), 256)
+        self.system, self.stepper = system, rub_free_stepper(system, ContactLaw(friction=MU), 256)
         rng = np.random.default_rng(seed)
         self.q, self.v = rng.normal(size=(2, len(system.M))) * [[2e-3], [40.0]]
         self.q[system.casing_start :] *= 0.1

@@ -7,9 +7,9 @@ import pytest
 from rubgen.contact import gap_and_foot
 from rubgen.scenario import ContactLaw
 from rubgen.solver import Status
-from rubgen.solver.divergence import ADVICE
 from rubgen.solver.integrate import integrate
-from rubgen.solver.stepper import Stepper, closing_ramp
+from rubgen.solver.observers.divergence import ADVICE
+from rubgen.solver.speed.start import closing_ramp, rub_free_stepper
 
 
 @pytest.fixture(scope="module")
@@ -113,7 +113,7 @@ def test_orders_of_two_and_three_lobes(small_system, operation):
 
 
 def complementary_steps(system, law, turns=4, steps=256):
-    stepper = Stepper(system, law, steps)
+    stepper = rub_free_stepper(system, law, steps)
     opening = np.concatenate([np.linspace(5e-4, 0, (turns - 2) * steps), np.zeros(2 * steps + 2)])
     for turn in range(turns):
         for s in range(steps):
@@ -159,7 +159,7 @@ def test_restitution_throws_back_with_the_same_share(small_system):
 def test_restitution_reaches_a_blade_that_leaves_by_itself(small_system):
     """From 100 um inside, a share of 0.6 throws it 60 um out, not the 30 um, beyond the margin, where it would be."""
     system = small_system()
-    stepper = Stepper(system, ContactLaw(restitution=0.6), 256)
+    stepper = rub_free_stepper(system, ContactLaw(restitution=0.6), 256)
     angle = 2 * np.pi / 256
     radial, tangential, _ = stepper.state.now[:3] + system.tip_static[0]
     tip = (system.tip_radius + radial + 1j * tangential) * np.exp(1j * angle)
@@ -178,7 +178,7 @@ def test_screening_changes_no_bit(small_system):
     system = small_system(speed=500.0)
     ends = []
     for screen in (True, False):
-        stepper = Stepper(system, ContactLaw(friction=0.15), 256, screen=screen)
+        stepper = rub_free_stepper(system, ContactLaw(friction=0.15), 256, screen=screen)
         impulse = 0.0
         for turn in range(12):
             stepper.run_turn(np.full(258, 5e-4 * max(0, 1 - turn / 6)))
@@ -192,7 +192,7 @@ def test_turning_casing_and_start_together_changes_nothing(small_system):
     ends = []
     for nodes in (0, 5, 16):
         system = small_system(speed=500.0, turned_nodes=nodes)
-        stepper = Stepper(system, ContactLaw(friction=0.1), 256, start_angle=2 * np.pi * nodes / 36)
+        stepper = rub_free_stepper(system, ContactLaw(friction=0.1), 256, start_angle=2 * np.pi * nodes / 36)
         impulse = 0.0
         for turn in range(8):
             stepper.run_turn(np.full(258, 5e-4 * max(0, 1 - turn / 5)))
@@ -208,7 +208,7 @@ def test_the_drive_pays_for_contact_and_impact_loss_does_not_vanish_with_the_ste
     """Contact work less its losses tends to -Omega integral of the contact torque, with the first power of the step."""
     apart, losses = [], []
     for steps in (512, 1024, 2048):
-        stepper = Stepper(small_system(casing_damping=0.4), ContactLaw(friction=friction), steps)
+        stepper = rub_free_stepper(small_system(casing_damping=0.4), ContactLaw(friction=friction), steps)
         for turn in range(40):
             if turn == 30:
                 stepper.book.works[:] = 0
@@ -261,7 +261,7 @@ def test_works_on_the_inner_surface_add_up_to_what_the_drive_pays(small_system):
     apart = []
     for steps in (512, 1024):
         law = ContactLaw(friction=0.2, half_thickness=True)
-        stepper = Stepper(small_system(casing_damping=0.4), law, steps)
+        stepper = rub_free_stepper(small_system(casing_damping=0.4), law, steps)
         for turn in range(30):
             if turn == 20:
                 stepper.book.works[:] = 0

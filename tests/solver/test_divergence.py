@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from rubgen.scenario import ContactLaw
-from rubgen.solver.divergence import ADVICE, Growth, trend
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.observers.divergence import ADVICE, Growth, trend
+from rubgen.solver.speed.start import rub_free_stepper
 
 
 @pytest.fixture
 def stepper(small_system):
-    return Stepper(small_system(), ContactLaw(), 256)
+    return rub_free_stepper(small_system(), ContactLaw(), 256)
 
 
 def add(growth, casing, tip, steps=256):

@@ -6,15 +6,15 @@ import pytest
 from rubgen.scenario import ContactLaw
 from rubgen.solver import Status
 from rubgen.solver.integrate import Integration, integrate
-from rubgen.solver.spin import SteadySpin
-from rubgen.solver.step_kernels import has_diverged
-from rubgen.solver.stepper import Stepper, closing_ramp
+from rubgen.solver.scheme.step_kernels import has_diverged
+from rubgen.solver.speed.driver import SteadySpin
+from rubgen.solver.speed.start import closing_ramp, rub_free_stepper
 
 
 @pytest.fixture
 def integration(small_system, operation):
     system = small_system(speed=500.0)
-    spin = SteadySpin(Stepper(system, ContactLaw(friction=0.1), 256), 40)
+    spin = SteadySpin(rub_free_stepper(system, ContactLaw(friction=0.1), 256), 40)
     return Integration(spin, system, operation(system, record_turns=5), 100)
 
 
@@ -50,7 +50,7 @@ def test_a_state_that_is_not_a_number_ends_the_run(integration):
 @pytest.mark.parametrize(("share", "beyond"), [(0.0249, False), (-0.0249, False), (0.0251, True), (-0.0251, True)])
 def test_a_fortieth_of_the_tip_radius_is_the_limit_of_tips_and_of_the_casings_nodes(small_system, share, beyond):
     system = small_system()
-    stepper = Stepper(system, ContactLaw(), 256)
+    stepper = rub_free_stepper(system, ContactLaw(), 256)
     start, size = system.casing_start, share * system.tip_radius
 
     def diverged(q):
@@ -78,7 +78,7 @@ def test_coupling_of_blisk_and_casing_by_a_matrix_is_refused(small_system, opera
 def test_the_margin_of_candidates_changes_no_result(small_system):
     ends = []
     for margin in (1e-5, 1e-12, 5e-4):
-        stepper = Stepper(small_system(speed=500.0), ContactLaw(friction=0.1), 256)
+        stepper = rub_free_stepper(small_system(speed=500.0), ContactLaw(friction=0.1), 256)
         stepper.laws = stepper.laws._replace(margin=margin)
         impulse = 0.0
         for turn in range(10):

@@ -4,8 +4,8 @@ import pytest
 from rubgen.machine import load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
-from rubgen.solver.following import Following, chebyshev_speeds, lagrange_weights
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.scheme.stepper import Stepper
+from rubgen.solver.speed.interpolation import Following, chebyshev_speeds, lagrange_weights
 
 RPM = np.pi / 30
 

@@ -5,9 +5,9 @@ import scipy.linalg as la
 from rubgen.scenario import ContactLaw
 from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
-from rubgen.solver.rub_free import steady_state
-from rubgen.solver.stability import automatic_settle_turns, eigenvalues, stable_step, steps_per_turn
-from rubgen.solver.stepper import Stepper, closing_ramp, start_opening
+from rubgen.solver.linear.rub_free import steady_state
+from rubgen.solver.linear.stability import automatic_settle_turns, eigenvalues, stable_step, steps_per_turn
+from rubgen.solver.speed.start import closing_ramp, rub_free_stepper, start_opening
 
 
 def exact_flow(system, seconds):
@@ -20,7 +20,7 @@ def exact_flow(system, seconds):
 
 
 def free_vibration_error(system, steps):
-    stepper = Stepper(system, ContactLaw(), steps)
+    stepper = rub_free_stepper(system, ContactLaw(), steps)
     n = system.M.shape[0]
     rng = np.random.default_rng(3)
     deviation = np.concatenate([rng.normal(size=n) * 1e-5, rng.normal(size=n) * 1e-3])
@@ -77,7 +77,7 @@ def test_taps_of_a_run_without_rub_are_those_of_a_circular_whirl(small_system, o
 def test_the_clearance_on_a_ray_is_that_of_the_blade_which_passes_it(small_system):
     """In an unbalanced whirl every blade is another distance away; 384 steps put each of the six on both rays."""
     system = small_system(clearance=2e-3, ovality=2e-3)
-    stepper = Stepper(system, ContactLaw(), 384)
+    stepper = rub_free_stepper(system, ContactLaw(), 384)
     q = steady_state(system)[: 3 * system.n_blades].reshape(-1, 3) + system.tip_static
     radius = np.hypot(system.tip_radius + q[:, 0], q[:, 1])
     assert np.ptp(radius) > 1e-4
@@ -91,7 +91,7 @@ def test_the_clearance_on_a_ray_is_that_of_the_blade_which_passes_it(small_syste
 @pytest.mark.parametrize("direction", [0.4, 2.5])
 def test_the_clearance_of_a_shifted_round_casing_is_that_of_the_shifted_circle(small_system, direction):
     system = small_system(ovality=0.0, clearance=8e-3, unbalance=0.0)
-    stepper, start = Stepper(system, ContactLaw(), 256), system.casing_start
+    stepper, start = rub_free_stepper(system, ContactLaw(), 256), system.casing_start
     shift = 4e-3 * np.array([np.cos(direction), np.sin(direction)])
     q = steady_state(system)
     q[start : start + 2] = shift / system.casing_modes[0, 0, 0]  # cos t and sin t move the ring along X and Y
@@ -107,7 +107,7 @@ def test_the_clearance_of_a_shifted_round_casing_is_that_of_the_shifted_circle(s
 def test_the_clearance_of_a_bent_casing_is_to_where_the_ray_meets_the_curve(small_system):
     """The casing turned by 50 degrees, shifted and ovalised: the point of the exact curve that lies on the ray."""
     system = small_system(ovality=6e-3, clearance=8e-3, unbalance=0.0, turned_nodes=5)
-    stepper, start = Stepper(system, ContactLaw(), 256), system.casing_start
+    stepper, start = rub_free_stepper(system, ContactLaw(), 256), system.casing_start
     q = steady_state(system)
     q[start : start + 4] = np.array([1.5e-3, -1e-3, 1e-3, 1.5e-3]) / np.hypot(*system.casing_modes[0, :, 0])
     stepper.set_state(q, q)

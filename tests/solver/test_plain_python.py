@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from rubgen.scenario import ContactLaw, Liner
-from rubgen.solver.energy_kernels import WORKS
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.scheme.energy_kernels import WORKS
+from rubgen.solver.speed.start import rub_free_stepper
 from rubgen.taps import DEFAULT_TAPS, ContactTorque, TipTiming
 
 SCRIPT = """
@@ -28,7 +28,7 @@ def short_run(build, options):
     law = ContactLaw(friction=0.2, **(OPTIONS if options else {}))
     system = build(speed=500.0, clearance=-2e-4)
     taps = (*DEFAULT_TAPS, ContactTorque(name="torque"), TipTiming(name="probe", angle_deg=40, axial_m=1e-3))
-    stepper = Stepper(system, law, 128, taps=taps)
+    stepper = rub_free_stepper(system, law, 128, taps=taps)
     stepper.run_turn(np.linspace(4e-4, 0, 130))
     arrivals = stepper.taps.timing.arrivals
     parts = stepper.state.now, stepper.book.works, stepper.result.summary, stepper.result.taps.ravel()

@@ -11,7 +11,7 @@ from rubgen.dataset.reading.open import DataSet
 from rubgen.errors import RubgenWarning
 from rubgen.pipeline import simulate
 from rubgen.scenario import Labelling, load_recipe, make_scenario, parse_recipe
-from rubgen.solver.reach import deepest, no_rub
+from rubgen.solver.linear.reach import deepest, no_rub
 
 DATASETS = Path(__file__).parents[2] / "datasets"
 SLOW = {

@@ -6,7 +6,7 @@ from rubgen.labels import label
 from rubgen.labels.to_json import labels_dict
 from rubgen.scenario import ContactLaw
 from rubgen.solver.integrate import integrate
-from rubgen.solver.stepper import Stepper, closing_ramp
+from rubgen.solver.speed.start import closing_ramp, rub_free_stepper
 from rubgen.taps import DEFAULT_TAPS, TipTiming
 
 STEPS = 256
@@ -14,7 +14,7 @@ TAPS = (*DEFAULT_TAPS, TipTiming(name="probe", angle_deg=40.0, axial_m=1e-3))
 
 
 def run_turns(system, recording):
-    stepper, ends = Stepper(system, ContactLaw(friction=0.1), STEPS, taps=TAPS), []
+    stepper, ends = rub_free_stepper(system, ContactLaw(friction=0.1), STEPS, taps=TAPS), []
     for turn, recorded in enumerate(recording):
         opening = 5e-4 * closing_ramp((turn + np.arange(-1, STEPS + 1) / STEPS) / 6)
         _, _, ended = stepper.run_turn(opening, turn * STEPS, recording=recorded)

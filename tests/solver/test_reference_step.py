@@ -5,13 +5,13 @@ from threadpoolctl import threadpool_limits
 from rubgen import make_scenario
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.speed.start import rub_free_stepper
 from validation.reference_step import ReferenceStepper, differentiation_matrix
 
 
 def compare_turns(system, friction, steps, turns, opening, settle=6, restitution=0.0):
     """Largest relative differences over one turn each, restarted from the reference, and touching steps."""
-    stepper = Stepper(system, ContactLaw(friction=friction, restitution=restitution), steps)
+    stepper = rub_free_stepper(system, ContactLaw(friction=friction, restitution=restitution), steps)
     reference = ReferenceStepper(system, friction, steps, restitution=restitution)
     for turn in range(settle):
         stepper.run_turn(np.full(steps + 2, opening * (1 - turn / settle)))

@@ -10,8 +10,8 @@ from rubgen.errors import UserError
 from rubgen.scenario import ContactLaw
 from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
-from rubgen.solver.stability import stable_step
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.linear.stability import stable_step
+from rubgen.solver.speed.start import rub_free_stepper
 
 
 def changed(system, name, number, value):
@@ -69,8 +69,8 @@ def test_a_step_above_the_stability_limit_is_refused_with_the_number_that_will_d
     system = small_system()
     enough = int(2 * np.pi / system.speed / stable_step(system)) + 1
     with pytest.raises(UserError, match=rf"steps = {enough - 1}: .* take at least {enough} steps a turn"):
-        Stepper(system, ContactLaw(), enough - 1)
-    Stepper(system, ContactLaw(), enough)
+        rub_free_stepper(system, ContactLaw(), enough - 1)
+    rub_free_stepper(system, ContactLaw(), enough)
 
 
 def test_an_undamped_machine_at_its_critical_speed_is_refused(small_system, operation):

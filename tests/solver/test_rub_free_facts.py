@@ -9,7 +9,7 @@ from rubgen.machine import load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
 from rubgen.solver.integrate import integrate
-from rubgen.solver.rub_free import free_penetration, rub_free_motion
+from rubgen.solver.linear.rub_free import free_penetration, rub_free_motion
 from validation.run_up import predicted_onset, reach
 
 RPM = np.pi / 30

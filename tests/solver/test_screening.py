@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rubgen.scenario import ContactLaw
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.speed.start import rub_free_stepper
 from validation.verification.rotors.jeffcott import ROTOR_STIFFNESS, jeffcott_system
 
 SMOOTH = ContactLaw()
@@ -15,7 +15,7 @@ SMOOTH = ContactLaw()
 def runs(system):
     """The state after a few turns of a start from rest, and the impulse of each, screened and not."""
     for screen in (True, False):
-        stepper, impulses = Stepper(system, ContactLaw(friction=0.1), 512, screen=screen), []
+        stepper, impulses = rub_free_stepper(system, ContactLaw(friction=0.1), 512, screen=screen), []
         stepper.set_state(*np.zeros((2, len(system.M))))
         for turn in range(8):
             stepper.run_turn(clock=turn * 512)
@@ -40,8 +40,8 @@ def test_only_where_the_bounds_hold_is_screened(small_system):
     wide, narrow = (
         replace(system.surface, mean_radius=r, amplitude=np.array([a])) for r, a in ((0.2, -1e-3), (0.2, 0.02))
     )
-    assert Stepper(replace(system, surface=wide), SMOOTH, 256).laws.screen
-    assert not Stepper(replace(system, surface=wide), SMOOTH, 256, screen=False).laws.screen
-    assert not Stepper(replace(system, surface=narrow), SMOOTH, 256).laws.screen
+    assert rub_free_stepper(replace(system, surface=wide), SMOOTH, 256).laws.screen
+    assert not rub_free_stepper(replace(system, surface=wide), SMOOTH, 256, screen=False).laws.screen
+    assert not rub_free_stepper(replace(system, surface=narrow), SMOOTH, 256).laws.screen
     away = system.tip_static + np.array([0.0, 0.25 * system.tip_radius, 0.0])
-    assert not Stepper(replace(system, tip_static=away), SMOOTH, 256).laws.screen
+    assert not rub_free_stepper(replace(system, tip_static=away), SMOOTH, 256).laws.screen

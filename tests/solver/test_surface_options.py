@@ -8,7 +8,7 @@ from rubgen.errors import UserError
 from rubgen.scenario import ContactLaw, Liner, parse_recipe
 from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
-from rubgen.solver.stepper import Stepper, closing_ramp, start_opening
+from rubgen.solver.speed.start import closing_ramp, rub_free_stepper, start_opening
 
 LINER = Liner(thickness_m=1e-3, wear_m2_per_n=4e-12, width_m=0.02, bins=240)
 LAWS = {
@@ -19,7 +19,7 @@ LAWS = {
 
 
 def run_turns(system, law, steps=256, turns=12, screen=True):
-    stepper = Stepper(system, law, steps, screen=screen)
+    stepper = rub_free_stepper(system, law, steps, screen=screen)
     opening, impulse = start_opening(system, stepper.surface.inset), []
     for turn in range(turns):
         assert stepper.run_turn(opening * closing_ramp((turn + np.arange(-1, steps + 1) / steps) / 6))[0] == 0
@@ -50,7 +50,7 @@ def test_the_energy_identity_holds_and_nothing_is_gained(small_system, operation
 
 
 def test_the_start_opens_chords_until_nothing_touches(small_system):
-    stepper = Stepper(small_system(), LAWS["chords"], 256)
+    stepper = rub_free_stepper(small_system(), LAWS["chords"], 256)
     opening = start_opening(stepper.system, stepper.surface.inset)
     assert opening > start_opening(stepper.system) + 0.9 * 0.2 * (1 - np.cos(np.pi / 36))
     stepper.run_turn(np.full(258, opening))
@@ -112,7 +112,7 @@ def test_the_drive_pays_for_wear_as_for_other_losses(small_system):
 
 def test_a_worn_liner_is_seen_by_the_clearance_on_a_ray(small_system):
     system = small_system(clearance=2e-3, unbalance=0.0)
-    new, worn = (Stepper(system, ContactLaw(liner=LINER), 256) for _ in range(2))
+    new, worn = (rub_free_stepper(system, ContactLaw(liner=LINER), 256) for _ in range(2))
     worn.surface.liner.depth[:] = 3e-4
     for stepper in (new, worn):
         stepper.run_turn()

@@ -9,10 +9,10 @@ from scipy.optimize import brentq
 
 from rubgen.reduction.model import Recovery
 from rubgen.scenario import ContactLaw
-from rubgen.solver.energy_kernels import DRIVE_LIMIT
 from rubgen.solver.integrate import integrate
-from rubgen.solver.rub_free import steady_state
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.linear.rub_free import steady_state
+from rubgen.solver.scheme.energy_kernels import DRIVE_LIMIT
+from rubgen.solver.speed.start import rub_free_stepper
 from rubgen.taps import (
     DEFAULT_TAPS,
     CasingAcceleration,
@@ -29,7 +29,7 @@ OPENING = np.linspace(4e-4, 0, 258)
 
 def rubbing(system, **options):
     """One turn with contact: the stepper after it, and its taps by row."""
-    stepper = Stepper(system, ContactLaw(friction=0.2), 256, **options)
+    stepper = rub_free_stepper(system, ContactLaw(friction=0.2), 256, **options)
     stepper.run_turn(OPENING)
     assert stepper.result.summary[0] > 0.01
     return stepper, stepper.result.taps
@@ -90,7 +90,7 @@ def test_ring_strain_of_inextensible_modes(small_system, order):
     system = small_system(ovality=0.0, clearance=8e-3, unbalance=0.0)
     angle = 25.0
     system = replace(system, recovery=recovery(system))
-    stepper = Stepper(system, ContactLaw(), 256, taps=(RingStrain(name="strain", angle_deg=angle),))
+    stepper = rub_free_stepper(system, ContactLaw(), 256, taps=(RingStrain(name="strain", angle_deg=angle),))
     q = steady_state(system)
     q[system.casing_start + 2 * (order - 1)] = 1e-3 / system.casing_modes[0, 0, 2 * (order - 1)]
     stepper.set_state(q, q)
@@ -101,7 +101,7 @@ def test_ring_strain_of_inextensible_modes(small_system, order):
 
 def test_what_a_system_without_recovery_cannot_give(small_system):
     with pytest.raises(ValueError, match="not reduced from a machine"):
-        Stepper(small_system(), ContactLaw(), 256, taps=(RootStrain(name="s", blade=0),))
+        rub_free_stepper(small_system(), ContactLaw(), 256, taps=(RootStrain(name="s", blade=0),))
 
 
 @pytest.mark.parametrize("chord_slope", [0.0, 0.3])
@@ -132,7 +132,7 @@ def test_arrivals_of_vibrating_blades(small_system):
     start = steady_state(system)
     start[: 3 * system.n_blades] += 1e-3 * np.random.default_rng(4).standard_normal(3 * system.n_blades)
     probe, turns, steps = np.deg2rad(77.0), 3, 512
-    runs = [Stepper(system, ContactLaw(), steps, taps=(TipTiming(name="p", angle_deg=77),)) for _ in range(2)]
+    runs = [rub_free_stepper(system, ContactLaw(), steps, taps=(TipTiming(name="p", angle_deg=77),)) for _ in range(2)]
     wide = np.full(steps + 2, 0.1)
     for stepper in runs:
         stepper.set_state(start, start)

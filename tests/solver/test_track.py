@@ -7,8 +7,8 @@ import pytest
 
 from rubgen.scenario import ContactLaw
 from rubgen.solver.integrate import integrate
-from rubgen.solver.stepper import FRAMES
-from rubgen.solver.track import TRACK_TURNS
+from rubgen.solver.observers.track import TRACK_TURNS
+from rubgen.solver.scheme.stepper import FRAMES
 
 SECONDS = 60.5 * 2 * np.pi / 500.0  # 60 turns
 

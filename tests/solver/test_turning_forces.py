@@ -12,10 +12,10 @@ from rubgen.reduction.model import TurningForces
 from rubgen.scenario import ContactLaw
 from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
-from rubgen.solver.rub_free import rub_free_motion
-from rubgen.solver.stability import eigenvalues, slowest_decay, stable_step
-from rubgen.solver.stepper import Stepper, start_opening
-from rubgen.solver.supports import turning_force
+from rubgen.solver.linear.rub_free import rub_free_motion
+from rubgen.solver.linear.stability import eigenvalues, slowest_decay, stable_step
+from rubgen.solver.linear.turning_forces import turning_force
+from rubgen.solver.speed.start import rub_free_stepper, start_opening
 
 CASES = ("gravity", "springs", "dampers", "film", "all")
 
@@ -49,11 +49,12 @@ def test_the_rub_happens_and_every_work_is_booked(rub):
 @pytest.mark.parametrize("uneven", [0.0, 0.05])
 def test_a_run_keeps_the_rub_free_motion_from_which_it_starts(small_system, turning, case, uneven):
     system = turning(small_system(clearance=5e-3, uneven_blade=uneven), case)
-    stepper = Stepper(system, ContactLaw(), 256, start_angle=0.3)
-    assert stepper.rub_free.residual < 1e-11
+    stepper = rub_free_stepper(system, ContactLaw(), 256, start_angle=0.3)
+    motion = rub_free_motion(system, 256)
+    assert motion.residual < 1e-11
     for _ in range(5):
         assert stepper.run_turn()[0] == 0
-    q = stepper.rub_free.at(0.3)
+    q = motion.at(0.3)
     np.testing.assert_allclose(stepper.state.now, q, rtol=0, atol=1e-11 * np.abs(q).max())
     assert stepper.result.summary[0] == 0
 
@@ -69,7 +70,7 @@ def test_no_forces_is_what_forces_of_zero_are(small_system, turning):
     system = small_system(speed=500.0)
     ends = []
     for each in (system, turning(system, "springs", stiffness=0.0)):
-        stepper = Stepper(each, ContactLaw(friction=0.1), 256)
+        stepper = rub_free_stepper(each, ContactLaw(friction=0.1), 256)
         for turn in range(5):
             stepper.run_turn(np.full(258, 4e-4 * (1 - turn / 5)))
         assert stepper.result.summary[0] > 0
@@ -88,7 +89,7 @@ def test_the_opening_of_the_start_regards_the_whole_turn(small_system, turning):
 def test_the_support_force_taps_hold_all_that_the_support_bears(small_system, turning):
     """Without rub and drag of blades, what the support bears is the weight and the unbalance's inertia."""
     system = turning(small_system(clearance=5e-3), "all")
-    stepper = Stepper(system, ContactLaw(), 512)
+    stepper = rub_free_stepper(system, ContactLaw(), 512)
     stepper.run_turn()
     fx, fy = stepper.result.taps[6:8]
     mass = 8.0 + 6 * 0.05

@@ -4,18 +4,22 @@ import pytest
 from rubgen.errors import UserError
 from rubgen.labels.motion.lyapunov import lyapunov
 from rubgen.scenario import ContactLaw
-from rubgen.solver.fractions import turned_back
 from rubgen.solver.integrate import integrate
-from rubgen.solver.stability import slowest_decay
-from rubgen.solver.stepper import Stepper
-from rubgen.solver.twin import Twin, piece_ends
+from rubgen.solver.linear.stability import slowest_decay
+from rubgen.solver.observers.companion import Twin, piece_ends
+from rubgen.solver.observers.symmetry import turned_back
+from rubgen.solver.scheme.stepper import Stepper
+from rubgen.solver.speed.start import rub_free_stepper
 
 STEPS = 256
 
 
 def in_contact(system, restitution: float = 0.0, marks: list[int] | None = None) -> tuple[Stepper, np.ndarray]:
     """A stepper that has settled into a rub, and an opening of zero."""
-    stepper, closed = Stepper(system, ContactLaw(friction=0.1, restitution=restitution), STEPS), np.zeros(STEPS + 2)
+    stepper, closed = (
+        rub_free_stepper(system, ContactLaw(friction=0.1, restitution=restitution), STEPS),
+        np.zeros(STEPS + 2),
+    )
     stepper.marks = stepper.marks_at(marks or piece_ends(STEPS))
     stepper.run_turn(np.linspace(6e-4, 0, STEPS + 2))
     for _ in range(12):
@@ -51,7 +55,7 @@ def test_pieces_multiply_to_the_growth_of_a_second_run(small_system, restitution
     system = small_system(speed=500.0)
     stepper, closed = in_contact(system, restitution)
     twin = Twin(stepper)
-    second = Stepper(system, ContactLaw(friction=0.1, restitution=restitution), STEPS)
+    second = rub_free_stepper(system, ContactLaw(friction=0.1, restitution=restitution), STEPS)
     rows = stepper.blocks.to_q(twin.motions[0].z), stepper.blocks.to_q(twin.motions[1].z)
     second.set_state(*rows)
     second.work.held[:] = stepper.work.held

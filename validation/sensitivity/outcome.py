@@ -16,7 +16,7 @@ from rubgen.reduction.reduced import ReducedModel
 from rubgen.scenario import Scenario
 from rubgen.solver import Response, Status
 from rubgen.solver.integrate import integrate
-from rubgen.solver.twin import LEAST_TURNS
+from rubgen.solver.observers.companion import LEAST_TURNS
 from validation.piece import Arrays, Piece
 
 BLOCKS = 10

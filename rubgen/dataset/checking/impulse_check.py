@@ -10,7 +10,7 @@ import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.measurement.channel import Float32Array
-from rubgen.solver.turn_orders import WINDOW_TURNS
+from rubgen.solver.response import WINDOW_TURNS
 
 Row = dict[str, Any]
 LEAST_TURNS = 2

@@ -69,7 +69,7 @@ def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple
     """
     from rubgen.pipeline import simulate
     from rubgen.reduction import reduce
-    from rubgen.solver.reach import no_rub
+    from rubgen.solver.linear.reach import no_rub
 
     for corner in corners:
         reduce(corner.machine, corner.reduction)

@@ -23,7 +23,7 @@ from rubgen.arrays import FloatArray
 from rubgen.labels.motion.lyapunov import Exponent, lyapunov
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver.integrate import integrate
-from rubgen.solver.twin_kernels import bring_back
+from rubgen.solver.observers.companion_kernels import bring_back
 from validation.verification.chaos.flow_kernels import lorenz_steps
 from validation.verification.contact.impact_oscillator import REGULAR, RESTITUTION, free_flight, orbit_in_closed_form
 from validation.verification.contact.wall import Wall

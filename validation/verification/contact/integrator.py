@@ -18,8 +18,8 @@ from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.machine import load_machine
 from rubgen.reduction import SpinningSystem, reduce
 from rubgen.scenario import ContactLaw, Reduction
-from rubgen.solver.rub_free import steady_state
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.linear.rub_free import steady_state
+from rubgen.solver.speed.start import rub_free_stepper
 from validation.verification.rotors.jeffcott import jeffcott_system
 from validation.verification.row import Row, within
 
@@ -38,7 +38,7 @@ def first_order_form(system: SpinningSystem) -> FloatArray:
 def free_motion_error(steps: int) -> float:
     """Error after one turn of a free motion, over its size, against the matrix exponential."""
     system = jeffcott_system()
-    stepper, A, n = Stepper(system, ContactLaw(), steps), first_order_form(system), len(system.M)
+    stepper, A, n = rub_free_stepper(system, ContactLaw(), steps), first_order_form(system), len(system.M)
     rng = np.random.default_rng(3)
     start = np.concatenate([1e-5 * rng.normal(size=n), 1e-2 * rng.normal(size=n)])
     rest = steady_state(system)
@@ -61,7 +61,7 @@ def turn_multiplier(system: SpinningSystem, value: complex, vector: ComplexArray
     z_k+2 - 2 Re(m) z_k+1 + |m|^2 z_k = 0 in the least-squares sense (Prony); of the two roots the one nearer to
     the linear one.
     """
-    stepper, rest = Stepper(system, ContactLaw(), STEPS), steady_state(system)
+    stepper, rest = rub_free_stepper(system, ContactLaw(), STEPS), steady_state(system)
     shape = 1e-5 * vector / np.abs(vector).max()
     before = (shape * np.exp(-value * stepper.dt)).real
     stepper.set_state(rest + before, rest + shape.real)

@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 
 from rubgen.arrays import FloatArray
 from rubgen.scenario import ContactLaw
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.speed.start import rub_free_stepper
 from validation.verification.rotors.jeffcott import (
     CLEARANCE,
     FRICTION,
@@ -42,7 +42,7 @@ PENALTY, DAMPING_RATIO = 1e11, 5.0
 def by_scheme(unbalance: float, side_force: float, steps: int) -> FloatArray:
     """Impulse, rotor x and y, ring x and y at the end of each turn (turns, 5), from the solver."""
     system = jeffcott_system(unbalance, side_force)
-    stepper = Stepper(system, ContactLaw(friction=FRICTION), steps, screen=False)
+    stepper = rub_free_stepper(system, ContactLaw(friction=FRICTION), steps, screen=False)
     acceleration = np.linalg.solve(system.M, system.force)
     stepper.set_state(acceleration * stepper.dt**2 / 2, np.zeros(len(system.M)))
     turns = []

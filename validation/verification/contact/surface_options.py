@@ -23,7 +23,7 @@ from rubgen.fem.casing import assemble_casing
 from rubgen.machine import Machine, load_machine
 from rubgen.reduction.casing import reduce_casing
 from rubgen.scenario import ContactLaw, Liner
-from rubgen.solver.stepper import Stepper, closing_ramp, start_opening
+from rubgen.solver.speed.start import closing_ramp, rub_free_stepper, start_opening
 from validation.verification.rotors.jeffcott import CLEARANCE, FRICTION, SPEED, annular_rub, jeffcott_system
 from validation.verification.row import Row, relative
 
@@ -106,7 +106,7 @@ class _Worn:
 
 def _worn(steps: int) -> _Worn:
     system = jeffcott_system()
-    stepper = Stepper(system, ContactLaw(friction=FRICTION, liner=LINER), steps, screen=False)
+    stepper = rub_free_stepper(system, ContactLaw(friction=FRICTION, liner=LINER), steps, screen=False)
     opening, liner = start_opening(system), stepper.surface.liner
     for turn in range(SETTLED):
         stepper.run_turn(opening * closing_ramp((turn + np.arange(-1, steps + 1) / steps) / CLOSING))

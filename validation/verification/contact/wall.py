@@ -6,8 +6,8 @@ import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.contact import LcpUnsolvedError
-from rubgen.solver.blocks import aligned, find_blocks
-from rubgen.solver.central_difference import scheme
+from rubgen.linalg.blocks import aligned, find_blocks
+from rubgen.solver.scheme.central_difference import scheme
 from validation.verification.contact.wall_kernels import WallWork, steps_against_wall
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.lcp_kernels import SOLVED, solve_lcp
 from rubgen.jit import allocation_free_kernel
-from rubgen.solver.block_kernels import Scheme, free_step
+from rubgen.solver.scheme.free_step_kernels import Scheme, free_step
 
 
 class WallWork(NamedTuple):

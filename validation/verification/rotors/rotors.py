@@ -19,7 +19,7 @@ from rubgen.fem.blisk import assemble_blisk, rigid_motions
 from rubgen.machine import Damping, Disk, DiskSupport, Machine, load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import Reduction
-from rubgen.solver.stability import eigenvalues
+from rubgen.solver.linear.stability import eigenvalues
 from validation.verification.row import Row, relative, within
 
 TITLE = "Rigid rotors"

@@ -21,9 +21,9 @@ from rubgen.machine import SqueezeFilm
 from rubgen.reduction import SpinningSystem, TurningForces, reduce
 from rubgen.scenario import ContactLaw, Operation, Reduction
 from rubgen.solver.integrate import integrate
-from rubgen.solver.rub_free import rub_free_motion
-from rubgen.solver.stability import eigenvalues
-from rubgen.solver.supports import turning_force
+from rubgen.solver.linear.rub_free import rub_free_motion
+from rubgen.solver.linear.stability import eigenvalues
+from rubgen.solver.linear.turning_forces import turning_force
 from validation.verification.rotors.rigid_rotor import rigid_rotor
 from validation.verification.rotors.rotors import NO_DAMPING, STIFF, UNBALANCE, annulus_inertia, plain_rotor
 from validation.verification.row import Row, relative

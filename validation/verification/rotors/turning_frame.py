@@ -22,7 +22,7 @@ from rubgen.arrays import FloatArray
 from rubgen.machine import SqueezeFilm
 from rubgen.reduction import SpinningSystem, TurningForces
 from rubgen.scenario import ContactLaw
-from rubgen.solver.stepper import Stepper
+from rubgen.solver.speed.start import rub_free_stepper
 from validation.verification.rotors.jeffcott import (
     CLEARANCE,
     FRICTION,
@@ -95,7 +95,7 @@ def system_of(case: Case, clearance: float) -> SpinningSystem:
 def by_scheme(case: Case, clearance: float, steps: int) -> FloatArray:
     """Impulse, x and y of disk, link's mass and ring at the end of each turn (turns, 7), from the solver at rest."""
     system = system_of(case, clearance)
-    stepper = Stepper(system, ContactLaw(friction=FRICTION), steps, screen=False)
+    stepper = rub_free_stepper(system, ContactLaw(friction=FRICTION), steps, screen=False)
     # At rest in inertial axes at the origin: q = 0 and q' = 0 there, so the first step backward is a dt^2 / 2.
     weight = np.zeros(7) if system.turning is None or system.turning.weight is None else system.turning.weight[:, 1]
     stepper.set_state(np.linalg.solve(system.M, system.force - weight) * stepper.dt**2 / 2, np.zeros(7))

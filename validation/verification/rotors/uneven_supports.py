@@ -20,8 +20,8 @@ from scipy.optimize import brentq
 from rubgen.reduction import ReducedModel, SpinningSystem, TurningForces, reduce
 from rubgen.scenario import ContactLaw, Operation, Reduction
 from rubgen.solver.integrate import integrate
-from rubgen.solver.rub_free import rub_free_motion
-from rubgen.solver.stability import eigenvalues
+from rubgen.solver.linear.rub_free import rub_free_motion
+from rubgen.solver.linear.stability import eigenvalues
 from validation.verification.rotors.rigid_rotor import rigid_rotor, weight_of
 from validation.verification.rotors.rotors import NO_DAMPING, STIFF, UNBALANCE, annulus_inertia, plain_rotor
 from validation.verification.row import Row, relative, within

@@ -1,0 +1,39 @@
+"""Matrices that fall into blocks, stored so that they are read in rows of eight numbers.
+
+They act on z: the blade tips as harmonics over the blades (nodal diameters), the other coordinates as they are,
+arranged block by block (`linalg.blocks`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from rubgen.arrays import FloatArray, IntArray
+from rubgen.jit import allocation_free_kernel, inlined_kernel
+from rubgen.linalg.lanes_kernels import add_lines, dot_lines
+
+
+class Product(NamedTuple):
+    """A matrix in blocks: `lines` (any, 5), one for each row of eight results (`lanes_kernels`), `entries` (any, 8)."""
+
+    lines: IntArray
+    entries: FloatArray
+
+
+@inlined_kernel
+def multiply(product: Product, z: FloatArray, out: FloatArray) -> None:
+    """Out += matrix z."""
+    add_lines(product.lines, product.entries, z, out)
+
+
+@inlined_kernel
+def quadratic(product: Product, left: FloatArray, right: FloatArray) -> float:
+    """left^T matrix right."""
+    total: float = dot_lines(product.lines, product.entries, right, left)
+    return total
+
+
+@allocation_free_kernel
+def bilinear(product: Product, left: FloatArray, right: FloatArray) -> float:
+    """`quadratic`, for callers outside of kernels."""
+    return quadratic(product, left, right)

@@ -1,0 +1,280 @@
+"""The blocks into which a system's matrices fall, found from the matrices themselves.
+
+Blades that are all alike couple only within one nodal diameter, so harmonics over the blades split the blisk into small
+blocks. Nothing is assumed: the blocks are the connected sets of coordinates that no matrix couples. With mistuned
+blades one large block is left, and everything works as before.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.sparse.csgraph import connected_components
+
+from rubgen.arrays import BoolArray, FloatArray, IntArray
+from rubgen.linalg.block_kernels import Product
+from rubgen.linalg.harmonic_kernels import Harmonics
+from rubgen.linalg.lanes_kernels import MOST_ROWS, line_kind
+from rubgen.linalg.vector_kernels import LANES
+
+COUPLING_TOLERANCE = 1e-9
+"""An entry couples when it exceeds this share of the geometric mean of its row's and its column's largest entry.
+Rounding of the reduction leaves 1e-12 to 1e-10 between nodal diameters; a mistuned blade couples far above."""
+
+ROUNDING = 1e-14
+"""What is less than this share of that mean is rounding in a matrix of differences, as K - K^T is."""
+
+
+def aligned(array: FloatArray) -> FloatArray:
+    """A C-contiguous copy that begins at a cache line: rows of eight that straddle two lines load half as fast."""
+    buffer = np.zeros(array.size + LANES)
+    start = (-buffer.ctypes.data // 8) % LANES
+    out = buffer[start : start + array.size].reshape(array.shape)
+    out[...] = array
+    return out
+
+
+def padded(size: int) -> int:
+    """The next multiple of eight."""
+    return -(-size // LANES) * LANES
+
+
+def blade_harmonics(blades: int) -> FloatArray:
+    """Orthonormal real harmonics (blades, blades) over the number of the blade: 1, cos, sin, cos 2, ..., (-1)^k."""
+    k = np.arange(blades)
+    columns = [np.ones(blades) / np.sqrt(blades)]
+    for d in range(1, (blades + 1) // 2):
+        columns += [np.sqrt(2 / blades) * wave(2 * np.pi * ((d * k) % blades) / blades) for wave in (np.cos, np.sin)]
+    if blades % 2 == 0:
+        columns.append((-1.0) ** k / np.sqrt(blades))
+    return np.stack(columns, axis=1)
+
+
+def coupled(matrix: FloatArray) -> BoolArray:
+    """Which entries couple two coordinates."""
+    return np.asarray(np.abs(matrix) > COUPLING_TOLERANCE * scale_of(matrix))
+
+
+def scale_of(matrix: FloatArray) -> FloatArray:
+    """For each entry the geometric mean of its row's and its column's largest."""
+    size = np.abs(matrix)
+    scale = np.sqrt(np.maximum(size.max(axis=0), size.max(axis=1)))
+    return np.asarray(np.multiply.outer(scale, scale))
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """Blocks of coordinates and where they stand in z.
+
+    `transform` T (n, n) is orthonormal, q = T y. `lanes` are arrays (8, m) of the coordinates of up to eight blocks of
+    one size, -1 where there is none: coordinate i of all eight is one row of z. `single` are arrays (m,): one block,
+    whose coordinates follow one another. `place` (n,) is the number of z of each y.
+    """
+
+    transform: FloatArray
+    lanes: list[IntArray]
+    single: list[IntArray]
+    place: IntArray
+    rows: int
+
+    def product(self, matrix: FloatArray) -> Product:
+        """A physical matrix (n, n) in blocks; what couples different blocks is dropped."""
+        return self._packed(self.transform.T @ matrix @ self.transform, triangle=False)
+
+    def without_zeros(self, matrix: FloatArray, like: FloatArray) -> Product:
+        """The same without what is rounding beside the matrix `like` (n, n), and without lines of zeros."""
+        Y = self.transform.T @ matrix @ self.transform
+        size = ROUNDING * scale_of(self.transform.T @ like @ self.transform)
+        product = self._packed(np.where(np.abs(Y) > size, Y, 0.0), triangle=False)
+        kind, _, first, _, count = product.lines.T
+        used = count * (kind // 2 + 1)
+        kept = [bool(product.entries[f : f + u].any()) for f, u in zip(first, used, strict=True)]
+        return Product(np.ascontiguousarray(product.lines[kept]), product.entries)
+
+    def damping(self, matrix: FloatArray, *, whole: bool = False) -> Product:
+        """The lower triangle of the symmetric part with half its diagonal: d^T C d = 2 d^T (triangle d).
+
+        Within a block, Coriolis forces couple what dampers do not: what the symmetric part leaves uncoupled is left
+        out, unless the `whole` triangle is asked for.
+        """
+        Y = self.transform.T @ matrix @ self.transform
+        Y = (Y + Y.T) / 2
+        order = np.argsort(self.place)
+        lower = np.zeros_like(Y)
+        ordered = Y[np.ix_(order, order)]
+        lower[np.ix_(order, order)] = np.tril(ordered, -1) + np.diag(np.diag(ordered)) / 2
+        return self._packed(lower, triangle=True, coupling=np.ones_like(Y, dtype=bool) if whole else coupled(Y))
+
+    def connected(self, coordinates: IntArray) -> IntArray:
+        """All coordinates of y in the blocks of these, sorted."""
+        blocks = [block for bundle in self.lanes for block in bundle] + self.single
+        found = [block[block >= 0] for block in blocks if np.isin(block, coordinates).any()]
+        return np.sort(np.concatenate(found))
+
+    def vector(self, y: FloatArray) -> FloatArray:
+        """Numbers y (n,) as z."""
+        z = np.zeros(self.rows * LANES)
+        z[self.place] = y
+        return aligned(z)
+
+    def to_z(self, q: FloatArray) -> FloatArray:
+        """Z of physical coordinates."""
+        return self.vector(self.transform.T @ q)
+
+    def to_q(self, z: FloatArray) -> FloatArray:
+        """Physical coordinates (n,) of z."""
+        return np.asarray(self.transform @ z[self.place])
+
+    def _packed(self, Y: FloatArray, *, triangle: bool, coupling: BoolArray | None = None) -> Product:
+        """Lines and entries of a matrix in y; of a triangle, no more columns than its rows of results have.
+
+        Of blocks side by side only the entries of a triangle that `coupling` (n, n) connects.
+        """
+        lines: list[tuple[int, int, int, int, int]] = []
+        entries: list[FloatArray] = []
+        row = 0
+        for bundle in self.lanes:
+            size = bundle.shape[1]
+            parts = [(part, slice(0, size)) for part in parts_of(size)]
+            if coupling is not None:
+                parts = _triangle_parts(_coupling_of(bundle, coupling))
+            for part, columns in parts:
+                left, right = bundle[:, None, part], bundle[:, columns, None]
+                block = np.where(left >= 0, Y[left, right], 0.0)
+                _append(lines, entries, (0, row + part.start, row + columns.start), block.transpose(1, 2, 0))
+            row += size
+        for block_of in self.single:
+            size = len(block_of)
+            rows = padded(size) // LANES
+            Z = np.zeros((rows * LANES, size))
+            Z[:size] = Y[np.ix_(block_of, block_of)]
+            for part in parts_of(rows):
+                count = min(part.stop * LANES, size) if triangle else size
+                block = Z[part.start * LANES : part.stop * LANES, :count]
+                _append(lines, entries, (1, row + part.start, row * LANES), block.T.reshape(count, -1, LANES))
+            row += rows
+        table = np.array(lines, dtype=np.int64).reshape(-1, 5)
+        return Product(table, aligned(np.concatenate([np.zeros((0, LANES)), *entries])))
+
+
+def parts_of(rows: int) -> list[slice]:
+    """Rows of results in parts of nearly one size, none more than a line may give."""
+    count = -(-rows // MOST_ROWS)
+    ends = [part * (rows // count) + min(part, rows % count) for part in range(count + 1)]
+    return [slice(start, end) for start, end in pairwise(ends)]
+
+
+def _coupling_of(bundle: IntArray, coupling: BoolArray) -> BoolArray:
+    """Which coordinates (m, m) of a bundle any of its blocks couples."""
+    used = bundle[bundle[:, 0] >= 0]
+    return np.asarray(np.any([coupling[np.ix_(block, block)] for block in used], axis=0))
+
+
+def _triangle_parts(coupling: BoolArray) -> list[tuple[slice, slice]]:
+    """Rows and columns of the lower triangle (m, m) in blocks that cover what is connected.
+
+    A connected set falls into runs of neighbours; every run is a block with itself and with each of the set before it.
+    """
+    label = connected_components(coupling | coupling.T, directed=False)[1]
+    ends = [*(np.flatnonzero(np.diff(label)) + 1).tolist(), len(label)]
+    runs = [slice(start, end) for start, end in zip([0, *ends], ends, strict=False)]
+    blocks = []
+    for i, run in enumerate(runs):
+        for part in parts_of(run.stop - run.start):
+            rows = slice(run.start + part.start, run.start + part.stop)
+            before = [other for other in runs[:i] if label[other.start] == label[run.start]]
+            blocks += [(rows, columns) for columns in [*before, slice(run.start, rows.stop)]]
+    return blocks
+
+
+def _append(
+    lines: list[tuple[int, int, int, int, int]],
+    entries: list[FloatArray],
+    place: tuple[int, int, int],
+    part: FloatArray,
+) -> None:
+    """Add a line with entries (count, rows, 8); `place` tells whether it is scaled, its ROW and its START."""
+    (scaled, row, start), (count, rows, _) = place, part.shape
+    lines.append((line_kind(rows, scaled=bool(scaled)), row, sum(map(len, entries)), start, count))
+    entries.append(part.reshape(-1, LANES))
+
+
+def find_blocks(matrices: list[FloatArray], blades: int) -> Blocks:
+    """Blocks of all `matrices` (n, n), whose first 3 blades coordinates are tips, three to a blade."""
+    n = len(matrices[0])
+    T = np.eye(n)
+    for a in range(3):
+        tips = np.arange(a, 3 * blades, 3)
+        T[np.ix_(tips, tips)] = blade_harmonics(blades) if blades else 0
+    adjacent = np.any([coupled(T.T @ matrix @ T) for matrix in matrices], axis=0)
+    count, label = connected_components(adjacent, directed=False)
+    parts = [np.flatnonzero(label == i) for i in range(count)]
+    lanes, single = _arranged(parts)
+    place, row = np.zeros(n, dtype=np.int64), 0
+    for bundle in lanes:
+        lane, i = np.nonzero(bundle >= 0)
+        place[bundle[lane, i]] = (row + i) * LANES + lane
+        row += bundle.shape[1]
+    for block in single:
+        place[block] = row * LANES + np.arange(len(block))
+        row += padded(len(block)) // LANES
+    return Blocks(T, lanes, single, place, row)
+
+
+def _arranged(parts: list[IntArray]) -> tuple[list[IntArray], list[IntArray]]:
+    """Blocks of one size side by side in lanes where that is less work than one by one."""
+    lanes: list[IntArray] = []
+    single: list[IntArray] = []
+    for size in sorted({len(part) for part in parts}, reverse=True):
+        alike = [part for part in parts if len(part) == size]
+        bundles = -(-len(alike) // LANES)
+        if bundles * size > len(alike) * -(-size // LANES):
+            single += alike
+            continue
+        for first in range(0, len(alike), LANES):
+            bundle = np.full((LANES, size), -1, dtype=np.int64)
+            for lane, part in enumerate(alike[first : first + LANES]):
+                bundle[lane] = part
+            lanes.append(bundle)
+    return lanes, single
+
+
+def half_turn(blades: int) -> int:
+    """How many blades stand for all: half of an even number, as harmonics keep or change their sign by half a turn."""
+    return blades // 2 if blades % 2 == 0 else blades
+
+
+def share_width(blades: int) -> int:
+    """Numbers that the recovery of tips needs for each of three coordinates: the sums over the harmonics by halves."""
+    half = half_turn(blades)
+    return blades // half * padded(half)
+
+
+def system_harmonics(blocks: Blocks, blades: int) -> Harmonics:
+    """The harmonics of a system's blades, and where they stand in z."""
+    width, n, half = padded(blades), len(blocks.place), half_turn(blades)
+    order = np.arange(blades)
+    if half < blades:  # those of even nodal diameters first
+        order = np.argsort((order + 1) // 2 % 2, kind="stable")
+    basis = np.zeros((blades, width))
+    basis[:, :blades] = blade_harmonics(blades)[:, order]
+    places = np.zeros((3, width), dtype=np.int64)
+    places[:, :blades] = blocks.place[: 3 * blades].reshape(blades, 3)[order].T
+    rows = padded(half) // LANES
+    lines: list[tuple[int, int, int, int, int]] = []
+    entries: list[FloatArray] = []
+    for part in parts_of(rows):
+        for first in range(0, blades, half):
+            block = np.zeros((rows * LANES, half))
+            block[:half] = basis[:half, first : first + half]
+            block = block[part.start * LANES : part.stop * LANES]
+            _append(lines, entries, (1, first // half * rows + part.start, first), block.T.reshape(half, -1, LANES))
+    return Harmonics(
+        aligned(basis),
+        aligned(np.concatenate(entries)),
+        np.array(lines, dtype=np.int64),
+        places,
+        blocks.place[3 * blades : n].copy(),
+    )

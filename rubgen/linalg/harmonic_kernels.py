@@ -1,0 +1,78 @@
+"""The way between z and the physical coordinates: blade tips as harmonics over the blades, the others as they are."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from rubgen.arrays import FloatArray, IntArray
+from rubgen.jit import allocation_free_kernel, inlined_kernel
+from rubgen.linalg.lanes_kernels import gather_lines
+from rubgen.linalg.vector_kernels import LANES
+
+
+class Harmonics(NamedTuple):
+    """Where the coordinates stand in z, and the harmonics over the blades.
+
+    `basis` (blades, width) holds the harmonics, orthonormal, one row for each blade, padded to a multiple of eight.
+    Of an even number of blades, the first half of the harmonics keep their sign by half a turn and the others change
+    it; so the sums of both halves over half of the blades tell all. `columns` (any, 8) and `lines` (any, 5) are those
+    sums. `places` (3, width) are the numbers of z of the harmonics
+    of the radial, tangential and axial tip coordinate, `rest` (n - 3 blades,) those of the other coordinates.
+    """
+
+    basis: FloatArray
+    columns: FloatArray
+    lines: IntArray
+    places: IntArray
+    rest: IntArray
+
+
+@inlined_kernel
+def recover_tips(harmonics: Harmonics, z: FloatArray, share_work: FloatArray, tips_out: FloatArray) -> None:
+    """The first `tips_out.shape[0]`, two or three, of radial, tangential, axial coordinate of all tips.
+
+    `share_work` (3, any) is scratch: the sums over the harmonics of each coordinate.
+    """
+    blades, many, sums = harmonics.basis.shape[0], tips_out.shape[0], share_work
+    half = blades // 2 if blades % 2 == 0 else blades
+    gather_lines(harmonics.lines, harmonics.columns, z, harmonics.places, 0, 1, sums)
+    if many == 3:
+        gather_lines(harmonics.lines, harmonics.columns, z, harmonics.places, 2, 2, sums)
+    other = (half + LANES - 1) // LANES * LANES
+    for a in range(many):
+        if half == blades:
+            for k in range(half):
+                tips_out[a, k] = sums[a, k]
+        else:
+            for k in range(half):
+                tips_out[a, k] = sums[a, k] + sums[a, other + k]
+                tips_out[a, half + k] = sums[a, k] - sums[a, other + k]
+
+
+@inlined_kernel
+def recover_rest(harmonics: Harmonics, z: FloatArray, q_out: FloatArray) -> None:
+    """The coordinates behind the tips."""
+    start = 3 * harmonics.basis.shape[0]
+    for i in range(harmonics.rest.shape[0]):
+        q_out[start + i] = z[harmonics.rest[i]]
+
+
+@allocation_free_kernel
+def recover_all(
+    harmonics: Harmonics, z: FloatArray, share_work: FloatArray, tips_work: FloatArray, q: FloatArray
+) -> None:
+    """All of q (n,) from z; `tips_work` (3, width) is scratch."""
+    recover_tips(harmonics, z, share_work, tips_work)
+    for k in range(harmonics.basis.shape[0]):
+        for a in range(3):
+            q[3 * k + a] = tips_work[a, k]
+    recover_rest(harmonics, z, q)
+
+
+@inlined_kernel
+def spread_tip_force(harmonics: Harmonics, blade: int, force: FloatArray, scale: float, z_force: FloatArray) -> None:
+    """Add a force (3,) on one tip, times `scale`, to the force in z."""
+    for a in range(3):
+        size = scale * force[a]
+        for j in range(harmonics.basis.shape[0]):
+            z_force[harmonics.places[a, j]] += size * harmonics.basis[blade, j]

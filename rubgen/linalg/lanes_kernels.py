@@ -1,0 +1,260 @@
+"""Sums of products over rows of eight numbers, the solver's inner loops, written for vector registers.
+
+Each function stands twice, as plain Python and in vector code (`vector_kernels`). Both take C-contiguous arrays of
+float64 of any shape, read as rows of eight or as single numbers. Products are fused with the sums.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba import types
+from numba.core import cgutils
+
+from rubgen.arrays import FloatArray, IntArray
+from rubgen.linalg.vector_kernels import LANES, Emitter, compile_as
+
+MOST_ROWS = 6
+"""Rows of results that one line may give: they share each load of x."""
+CHAINS = 4
+"""Least number of independent partial sums: a fused product takes about four cycles, and two may start in each."""
+KIND, ROW, FIRST, START, COUNT = range(5)
+"""A line: its kind; the first row of results; the first of its rows of entries; the first row or number of x; how
+many. See `line_kind`."""
+
+
+def line_kind(rows: int, *, scaled: bool) -> int:
+    """What stands at KIND: how many rows of results, 1 to `MOST_ROWS`, and whether single numbers of x are meant."""
+    return 2 * (rows - 1) + int(scaled)
+
+
+def line_sum(line: IntArray, a: FloatArray, x: FloatArray) -> FloatArray:
+    """The rows of results (rows, 8) of one line.
+
+    Row r is the sum over j < COUNT of a[FIRST + j rows + r] times row or number START + j of x.
+    """
+    rows, scaled = line[KIND] // 2 + 1, line[KIND] % 2
+    entries = a.reshape(-1, LANES)[line[FIRST] : line[FIRST] + rows * line[COUNT]].reshape(-1, rows, LANES)
+    part = slice(line[START], line[START] + line[COUNT])
+    factors = x.reshape(-1)[part, None] if scaled else x.reshape(-1, LANES)[part]
+    return np.asarray((entries * factors[:, None]).sum(axis=0))
+
+
+def _results(line: IntArray) -> slice:
+    return slice(line[ROW], line[ROW] + line[KIND] // 2 + 1)
+
+
+def add_lines(lines: IntArray, a: FloatArray, x: FloatArray, out: FloatArray) -> None:
+    """Add each line's sums to its rows of `out`. `lines` (any, 5), `a` (any, 8) entries."""
+    for line in lines:
+        out.reshape(-1, LANES)[_results(line)] += line_sum(line, a, x)
+
+
+def set_two_lines(
+    lines: IntArray, a: FloatArray, b: FloatArray, x: FloatArray, y: FloatArray, base: FloatArray, out: FloatArray
+) -> None:
+    """Each row of `out` is that of `base` and the sums of a, x and of b, y; the lines give every row once."""
+    for line in lines:
+        row = _results(line)
+        out.reshape(-1, LANES)[row] = base.reshape(-1, LANES)[row] + (line_sum(line, a, x) + line_sum(line, b, y))
+
+
+def gather_lines(
+    lines: IntArray, a: FloatArray, z: FloatArray, places: IntArray, first: int, second: int, out: FloatArray
+) -> None:
+    """Each line's sums with the numbers of z at `places[c]`, into its rows of `out[c]`; c is `first`, then `second`.
+
+    The lines are scaled ones; `places` (any, any), `out` (any, any). Both share each load of a.
+    """
+    for line in lines:
+        for c in (first, second):
+            out[c].reshape(-1, LANES)[_results(line)] = line_sum(line, a, z[places[c]])
+
+
+def dot_lines(lines: IntArray, a: FloatArray, x: FloatArray, left: FloatArray) -> float:
+    """The products of each line's sums with its rows of `left`, summed."""
+    return sum(float((line_sum(line, a, x) * left.reshape(-1, LANES)[_results(line)]).sum()) for line in lines)
+
+
+def dot_rows(a: FloatArray, b: FloatArray, count: int) -> float:
+    """Sum of the products of the first `count` rows of a and b."""
+    return float(a.reshape(-1)[: LANES * count] @ b.reshape(-1)[: LANES * count])
+
+
+Source = tuple[Any, Any]
+"""Entries a and x."""
+
+
+class _Emitter(Emitter):
+    """Writes sums of products along lines."""
+
+    def sum_products(
+        self, sources: list[Source], first: Any, start: Any, count: Any, *, rows: int, spread: bool
+    ) -> list[Any]:
+        """For each row the sum over sources and j < count of a[first + j rows + row] x[start + j].
+
+        Each row has as many partial sums as fill `CHAINS`, the sources' apart.
+        """
+        builder = self.builder
+        together = max(1, CHAINS // (rows * len(sources)))
+        sums = [
+            [cgutils.alloca_once_value(builder, self.zero) for _ in range(together * len(sources))]  # type: ignore[no-untyped-call]
+            for _ in range(rows)
+        ]
+        for total in [total for row in sums for total in row]:
+            builder.store(self.zero, total)
+        step = self.index(together)
+        whole = builder.mul(builder.udiv(count, step), step)
+        with cgutils.for_range_slice(builder, self.index(0), whole, step) as (j, _):
+            for u in range(together):
+                place = builder.add(j, self.index(u))
+                self._add(sources, first, start, place, [row[u * len(sources) :] for row in sums], spread=spread)
+        if together > 1:
+            with cgutils.for_range_slice(builder, whole, count, self.index(1)) as (j, _):
+                self._add(sources, first, start, j, sums, spread=spread)
+        return [self._halves([builder.load(each) for each in row]) for row in sums]
+
+    def _add(
+        self, sources: list[Source], first: Any, start: Any, j: Any, sums: list[list[Any]], *, spread: bool
+    ) -> None:
+        builder, rows = self.builder, len(sums)
+        base, place = builder.add(first, builder.mul(j, self.index(rows))), builder.add(start, j)
+        for i, (a, x) in enumerate(sources):
+            right = self.spread(x, place) if spread else self.load(x, place)
+            for row in range(rows):
+                left = self.load(a, builder.add(base, self.index(row)))
+                total = sums[row][i]
+                builder.store(builder.call(self.fma, [left, right, builder.load(total)]), total)
+
+    def _halves(self, parts: list[Any]) -> Any:
+        """The sum of one, two or four parts."""
+        while len(parts) > 1:
+            parts = [self.builder.fadd(*parts[i : i + 2]) for i in range(0, len(parts), 2)]
+        return parts[0]
+
+    def sum_gathered(self, a: Any, z: Any, places: list[Any], line: list[Any], rows: int) -> list[list[Any]]:
+        """For each of the places and each row sum over j < COUNT of a[FIRST + j rows + row] z[places[START + j]]."""
+        builder = self.builder
+        sums = [[cgutils.alloca_once_value(builder, self.zero) for _ in range(rows)] for _ in places]  # type: ignore[no-untyped-call]
+        for total in [total for each in sums for total in each]:
+            builder.store(self.zero, total)
+        with cgutils.for_range(builder, line[COUNT]) as loop:
+            base = builder.add(line[FIRST], builder.mul(loop.index, self.index(rows)))
+            place = builder.add(line[START], loop.index)
+            right = [self.spread(z, builder.load(builder.gep(each, [place]))) for each in places]
+            for row in range(rows):
+                left = self.load(a, builder.add(base, self.index(row)))
+                for number, each in zip(right, sums, strict=True):
+                    total = builder.call(self.fma, [left, number, builder.load(each[row])])
+                    builder.store(total, each[row])
+        return [[builder.load(total) for total in each] for each in sums]
+
+
+Visit = Callable[[list[Any], int, bool], None]
+"""Takes the five numbers of a line, how many rows of results it has, and whether it is scaled."""
+
+
+def _summed(emit: _Emitter, sources: list[Source], use: Callable[[Any, Any], None]) -> Visit:
+    """Give each row of results of a line and the sum over the sources there to `use`."""
+
+    def visit(line: list[Any], rows: int, spread: bool) -> None:
+        totals = emit.sum_products(sources, line[FIRST], line[START], line[COUNT], rows=rows, spread=spread)
+        for row, total in enumerate(totals):
+            use(emit.builder.add(line[ROW], emit.index(row)), total)
+
+    return visit
+
+
+def _each_line(emit: _Emitter, array: Any, visit: Visit) -> None:
+    """Loop over lines, with code of its own for each kind."""
+    builder, index = emit.builder, emit.index
+    lines, count = array.data, emit.shape(array, 0)
+    with cgutils.for_range(builder, count) as loop:
+        line = [
+            builder.load(builder.gep(lines, [builder.add(builder.mul(loop.index, index(5)), index(i))]))
+            for i in range(5)
+        ]
+        done = builder.append_basic_block("line.done")
+        switch = builder.switch(line[KIND], done)
+        for rows in range(1, MOST_ROWS + 1):
+            for spread in (False, True):
+                case = builder.append_basic_block("line.kind")
+                switch.add_case(index(line_kind(rows, scaled=spread)), case)
+                builder.position_at_end(case)
+                visit(line, rows, spread)
+                builder.branch(done)
+        builder.position_at_end(done)
+
+
+def _add_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """The vector code of `add_lines`."""
+    emit = _Emitter(context, builder)
+    lines, a, x, out = (emit.array(kind, array) for kind, array in zip(signature.args, args, strict=True))
+
+    def add(row: Any, total: Any) -> None:
+        emit.store(builder.fadd(emit.load(out.data, row), total), out.data, row)
+
+    _each_line(emit, lines, _summed(emit, [(a.data, x.data)], add))
+    return context.get_dummy_value()
+
+
+def _set_two_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """The vector code of `set_two_lines`."""
+    emit = _Emitter(context, builder)
+    lines, a, b, x, y, base, out = (emit.array(kind, array) for kind, array in zip(signature.args, args, strict=True))
+
+    def place(row: Any, total: Any) -> None:
+        emit.store(builder.fadd(emit.load(base.data, row), total), out.data, row)
+
+    _each_line(emit, lines, _summed(emit, [(a.data, x.data), (b.data, y.data)], place))
+    return context.get_dummy_value()
+
+
+def _gather_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """The vector code of `gather_lines`."""
+    emit, chosen = _Emitter(context, builder), args[4:6]
+    arrays = [(kind, array) for kind, array in zip(signature.args, args, strict=True) if isinstance(kind, types.Array)]
+    lines, a, z, places, out = (emit.array(kind, array) for kind, array in arrays)
+    numbers = [emit.line_of(places, c) for c in chosen]
+    outputs = [emit.line_of(out, c) for c in chosen]
+
+    def visit(line: list[Any], rows: int, spread: bool) -> None:
+        if spread:
+            for output, totals in zip(outputs, emit.sum_gathered(a.data, z.data, numbers, line, rows), strict=True):
+                for row, total in enumerate(totals):
+                    emit.store(total, output, builder.add(line[ROW], emit.index(row)))
+
+    _each_line(emit, lines, visit)
+    return context.get_dummy_value()
+
+
+def _dot_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """The vector code of `dot_lines`."""
+    emit = _Emitter(context, builder)
+    lines, a, x, left = (emit.array(kind, array) for kind, array in zip(signature.args, args, strict=True))
+    sums = cgutils.alloca_once(builder, emit.vector)  # type: ignore[no-untyped-call]
+    builder.store(emit.zero, sums)
+
+    def add(row: Any, total: Any) -> None:
+        builder.store(builder.call(emit.fma, [emit.load(left.data, row), total, builder.load(sums)]), sums)
+
+    _each_line(emit, lines, _summed(emit, [(a.data, x.data)], add))
+    return emit.lane_sum(builder.load(sums))
+
+
+def _dot_rows(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """The vector code of `dot_rows`."""
+    emit = _Emitter(context, builder)
+    a, b = (emit.array(kind, array).data for kind, array in zip(signature.args[:2], args[:2], strict=True))
+    none = emit.index(0)
+    (total,) = emit.sum_products([(a, b)], none, none, args[2], rows=1, spread=False)
+    return emit.lane_sum(total)
+
+
+compile_as(add_lines, types.void, _add_lines)
+compile_as(set_two_lines, types.void, _set_two_lines)
+compile_as(gather_lines, types.void, _gather_lines)
+compile_as(dot_lines, types.float64, _dot_lines)
+compile_as(dot_rows, types.float64, _dot_rows)

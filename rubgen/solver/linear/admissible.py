@@ -1,0 +1,97 @@
+"""What a system must be before it is integrated: checked first, told in one line."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from rubgen.errors import UserError
+from rubgen.reduction.model import SpinningSystem
+from rubgen.solver.linear.stability import stable_step
+
+LEAST_MASS_SHARE = 1e-13
+"""A mass eigenvalue below this share of the largest is zero but for rounding."""
+
+
+def check_system(system: SpinningSystem) -> None:
+    """Raise UserError, one line, for a system that no run can be made of.
+
+    It must turn, have blades, finite matrices, a positive definite mass of blisk and of casing, tips inside the
+    casing's narrowest radius at rest, and, grown at speed, inside its widest: blades that grow into the narrow places
+    rub there, which is a run like others; blades that nowhere have room cannot turn.
+    """
+    for problem in (_speed_problem, _blade_problem, _number_problem, _mass_problem, _rest_problem, _growth_problem):
+        text = problem(system)
+        if text:
+            raise UserError(text)
+
+
+def check_step(system: SpinningSystem, steps: int) -> None:
+    """Raise UserError where so many steps a turn are above the stability limit, dt < 2 / omega_max."""
+    turn, longest = 2 * math.pi / system.speed, stable_step(system)
+    if turn / steps >= longest:
+        raise UserError(
+            f"steps = {steps}: a step of {turn / steps:.4g} s is above the stability limit, {longest:.4g} s; "
+            f"take at least {math.floor(turn / longest) + 1} steps a turn"
+        )
+
+
+def _speed_problem(system: SpinningSystem) -> str | None:
+    if math.isfinite(system.speed) and system.speed > 0:
+        return None
+    return f"speed = {system.speed:g} rad/s: must be above 0; change the speed"
+
+
+def _blade_problem(system: SpinningSystem) -> str | None:
+    if system.n_blades >= 1:
+        return None
+    return f"n_blades = {system.n_blades}: contact needs at least one blade; add blades"
+
+
+def _number_problem(system: SpinningSystem) -> str | None:
+    for name in ("M", "C", "K", "force", "tip_static", "casing_modes"):
+        if not np.all(np.isfinite(getattr(system, name))):
+            return f"{name}: holds a value that is not a finite number; correct the machine or the matrix"
+    return None
+
+
+def _mass_problem(system: SpinningSystem) -> str | None:
+    start = system.casing_start
+    for name, part in (("blisk", slice(0, start)), ("casing", slice(start, None))):
+        masses = np.linalg.eigvalsh((system.M[part, part] + system.M[part, part].T) / 2)
+        if not masses[0] > LEAST_MASS_SHARE * masses[-1]:
+            kind = "negative" if masses[0] < -LEAST_MASS_SHARE * abs(masses[-1]) else "singular"
+            return (
+                f"M of the {name} is {kind}, smallest eigenvalue {masses[0]:.3g}: every motion must have a mass above "
+                f"0; correct the densities or the matrix"
+            )
+    return None
+
+
+def _rest_problem(system: SpinningSystem) -> str | None:
+    narrowest = system.surface.mean_radius - float(np.abs(system.surface.amplitude).sum())
+    shrunk = float((system.tip_radius + system.tip_static[:, 0]).max())
+    if min(system.tip_radius, shrunk) < narrowest:
+        return None
+    return (
+        f"clearance = {narrowest - system.tip_radius:.4g} m: blade tips of radius {system.tip_radius:g} m pass the "
+        f"casing at rest, whose narrowest radius is {narrowest:g} m; shorten the blades or widen the casing"
+    )
+
+
+def _growth_problem(system: SpinningSystem) -> str | None:
+    grown = _grown_radius(system)
+    widest = system.surface.mean_radius + float(np.abs(system.surface.amplitude).sum())
+    if grown < widest:
+        return None
+    return (
+        f"speed_rpm = {system.speed * 30 / math.pi:.6g}: blade tips grow by {grown - system.tip_radius:.3g} m and pass "
+        f"the casing everywhere, its widest gap at rest is {widest - system.tip_radius:.3g} m; lower the speed or "
+        f"raise the clearance"
+    )
+
+
+def _grown_radius(system: SpinningSystem) -> float:
+    """The largest radius of a tip at speed, in m."""
+    return float(np.hypot(system.tip_radius + system.tip_static[:, 0], system.tip_static[:, 1]).max())

@@ -1,0 +1,83 @@
+"""Whether a blade can reach the casing at all: the rub-free motion of runs, before any of them is made."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from rubgen.contact.geometry import blade_tips, casing_surface
+from rubgen.errors import UserError
+from rubgen.reduction import ReducedModel, reduce
+from rubgen.scenario import Scenario
+from rubgen.scenario.plausible import MOST_TIP_SPEED
+from rubgen.scenario.scenario import RPM
+from rubgen.solver.linear.admissible import check_system
+from rubgen.solver.linear.rub_free import free_penetration, rub_free_motion
+
+SPEEDS = 9
+"""Speeds that stand for a changing one, its ends among them."""
+
+
+def no_rub(scenarios: Sequence[Scenario]) -> str | None:
+    """One line where no blade reaches the casing in the rub-free motion of any of these runs; None where one does.
+
+    A run starts from that motion, and keeps it where nothing touches. It looks no farther than the first run that
+    rubs. Runs that are refused say so themselves and are left out; where all are, nothing is said. A single run without
+    rub may be meant: it is told only where its speed in rad/s would rub.
+    """
+    largest, at, looked_at = -math.inf, 0.0, 0
+    for scenario in scenarios:
+        try:
+            depth, speed = deepest(scenario)
+        except (UserError, np.linalg.LinAlgError):
+            continue
+        if depth >= 0:
+            return None
+        looked_at += 1
+        if depth > largest:
+            largest, at = depth, speed
+    if not looked_at:
+        return None
+    question = _question(scenarios)
+    if len(scenarios) == 1 and not question:
+        return None
+    which = "this run" if len(scenarios) == 1 else f"any of the {looked_at} runs looked at"
+    return (
+        f"no blade can reach the casing in {which}: the largest free penetration is {1e3 * largest:.3g} mm, at "
+        f"{at:.6g} rev/min{question}"
+    )
+
+
+def deepest(scenario: Scenario) -> tuple[float, float]:
+    """Largest free penetration in m, negative where a gap is left, and its speed in rev/min.
+
+    At a changing speed of nine speeds from the slowest to the fastest: a run through a critical speed swings less.
+    Raises UserError where a speed makes no run.
+    """
+    model, rotation = reduce(scenario.machine, scenario.reduction), scenario.operation.rotation
+    speeds = [rotation.start] if rotation.is_steady else np.linspace(rotation.slowest, rotation.fastest, SPEEDS)
+    return max((_penetration(model, scenario, float(speed)), float(speed) / RPM) for speed in speeds)
+
+
+def _penetration(model: ReducedModel, scenario: Scenario, speed: float) -> float:
+    system = model.at_speed(speed)
+    check_system(system)
+    surface, tips = casing_surface(system, scenario.contact), blade_tips(system)
+    return free_penetration(rub_free_motion(system), surface, tips)
+
+
+def _question(scenarios: Sequence[Scenario]) -> str:
+    """Whether speeds were given in rad/s, where a blade would reach the casing then."""
+    fastest = max(scenarios, key=lambda each: each.operation.speed_rpm)
+    rpm = fastest.operation.speed_rpm / RPM
+    if fastest.operation.speed_rpm * fastest.machine.tip_radius_m > MOST_TIP_SPEED:
+        return ""
+    try:
+        model = reduce(fastest.machine, fastest.reduction)
+        reaches = _penetration(model, fastest, rpm * RPM) >= 0
+    except (UserError, np.linalg.LinAlgError):
+        return ""
+    given = f"{fastest.operation.speed_rpm:.6g} rad/s are {rpm:.6g} rev/min"
+    return f"; were rad/s meant? A blade would: {given}" if reaches else ""

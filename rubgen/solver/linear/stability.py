@@ -1,0 +1,100 @@
+"""What the linear system says before a run: its eigenvalues, the step, the turns that transients need."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import scipy.linalg as la
+
+from rubgen.arrays import ComplexArray
+from rubgen.errors import UserError
+from rubgen.reduction.model import SpinningSystem
+from rubgen.scenario import Operation
+from rubgen.scenario.costs import STEPS_PER_SAMPLE
+from rubgen.solver.linear.floquet import floquet_exponents, linearised, quadratic_eigenvalues
+
+STEP_SAFETY = 0.95
+"""The step stays below this share of the stability limit 2 / omega_max."""
+TRANSIENT_DECAY = 100.0
+"""Transients have died when they have fallen by this factor."""
+MOST_STEPS_PER_TURN = 2**22
+FLOQUET_STEPS = 1024
+"""Steps a turn, at least, of the transition over one period of a system whose supports are uneven."""
+
+
+def eigenvalues(system: SpinningSystem) -> ComplexArray:
+    """All 2 n eigenvalues s in 1/s of M q'' + C q' + K q = 0, blisk and casing apart.
+
+    A squeeze film enters as its linearisation at the rub-free motion. Uneven supports turn against the blisk: then
+    these are Floquet exponents, with imaginary parts known but for a multiple of 2 Omega (Omega with a film).
+    """
+    forces = system.turning
+    if forces and (forces.stiffness or forces.damping or (forces.film and forces.weight is not None)):
+        return floquet_exponents(system, steps_per_turn(system, FLOQUET_STEPS))
+    constant = linearised(system) if forces and forces.film else system
+    parts = (slice(0, system.casing_start), slice(system.casing_start, None))
+    return np.concatenate(
+        [quadratic_eigenvalues(*(X[part, part] for X in (constant.M, constant.C, constant.K))) for part in parts]
+    )
+
+
+def slowest_decay(system: SpinningSystem) -> float:
+    """min(-Re s) in 1/s, which is 2 pi min(zeta f); negative for a linear system that grows by itself."""
+    return float(-eigenvalues(system).real.max())
+
+
+def stable_step(system: SpinningSystem) -> float:
+    """The largest stable step 2 / omega_max in s, omega_max of (K, M) without gyroscopic terms.
+
+    Uneven supports count with their stiffer direction on both axes.
+    """
+    start, largest = system.casing_start, 0.0
+    stiffness = system.K
+    if system.turning and system.turning.stiffness:
+        stiffness = system.K.copy()
+        for i in (system.centre, system.centre + 1):
+            stiffness[i, i] += abs(system.turning.stiffness)
+    for part in (slice(0, start), slice(start, None)):
+        K, M = ((matrix[part, part] + matrix[part, part].T) / 2 for matrix in (stiffness, system.M))
+        largest = max(largest, float(la.eigh(K, M, eigvals_only=True)[-1]))
+    return 2 / math.sqrt(largest)
+
+
+def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0.0) -> int:
+    """`least`, doubled until the step is below 0.95 * 2 / omega_max and feeds the sensors at 2.56 their rate.
+
+    A turn is a whole number of steps, so the section falls on steps exactly. Raises UserError for a system that would
+    need more than 4,194,304 steps.
+    """
+    turn = 2 * math.pi / system.speed
+    sampled = 1 / (STEPS_PER_SAMPLE * sample_rate_hz) if sample_rate_hz else turn
+    longest = min(STEP_SAFETY * stable_step(system), sampled)
+    steps = least
+    while turn / steps > longest:
+        steps *= 2
+        if steps > MOST_STEPS_PER_TURN:
+            raise UserError(
+                f"speed_rpm = {system.speed * 30 / math.pi:.6g}: a stable step of {longest:.3g} s needs more than "
+                f"{MOST_STEPS_PER_TURN} steps a turn; raise the speed"
+            )
+    return steps
+
+
+def automatic_settle_turns(system: SpinningSystem, closing_turns: int, decay: float | None = None) -> int:
+    """Turns until the clearance is closed and transients have fallen to a hundredth.
+
+    closing_turns + ln(100) f_r / (2 pi min(zeta f)) with the eigenvalues at speed, rounded up. `decay` is the slowest
+    one, where it is known already. Raises ValueError for an unstable system.
+    """
+    decay = slowest_decay(system) if decay is None else decay
+    if decay <= 0:
+        raise ValueError(f"the linear system grows by itself: largest real part {-decay:g} 1/s")
+    return closing_turns + math.ceil(math.log(TRANSIENT_DECAY) * system.speed / (2 * math.pi) / decay)
+
+
+def settle_turns(system: SpinningSystem, operation: Operation, decay: float | None = None) -> int:
+    """The operation's settle turns, or the automatic ones, as `automatic_settle_turns`."""
+    if operation.settle_turns == "auto":
+        return automatic_settle_turns(system, operation.closing_turns, decay)
+    return operation.settle_turns

@@ -1,0 +1,18 @@
+"""The blocks into which the matrices of systems fall."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubgen.linalg.blocks import Blocks, find_blocks
+from rubgen.reduction.model import SpinningSystem
+
+
+def system_blocks(*systems: SpinningSystem) -> Blocks:
+    """Blocks that all systems share. Raises ValueError when anything but contact couples blisk and casing."""
+    start = systems[0].casing_start
+    matrices = [matrix for system in systems for matrix in (system.M, system.C, system.K)]
+    for matrix in matrices:
+        if np.any(matrix[:start, start:]) or np.any(matrix[start:, :start]):
+            raise ValueError("M, C and K must not couple blisk and casing: contact alone does")
+    return find_blocks(matrices, systems[0].n_blades)

@@ -1,0 +1,50 @@
+"""Forces that no constant matrix holds: uneven supports, a squeeze film damper, gravity. The law in plain numpy.
+
+`scheme.support_kernels` applies the same law in the steps of a run.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubgen.arrays import AnyArray, FloatArray
+from rubgen.reduction.model import TurningForces
+
+
+def turning_force(forces: TurningForces, speed: float, theta: AnyArray, u: AnyArray, v: AnyArray) -> AnyArray:
+    """Force (..., 2) in N on O_d in the turning frame, of its displacement u and velocity v (..., 2) at `theta` (...).
+
+    -k_a Q u - c_a Q v_abs - C(u) v_abs, C = C_0 (1 - eps^2)^(-3/2) [1 + 3 u u^T / (c^2 (1 - eps^2))], whose
+    values along and across u are the C_rr and C_tt of `machine.SqueezeFilm`. Analytic: complex steps give derivatives.
+    """
+    absolute = v + speed * np.stack([-u[..., 1], u[..., 0]], axis=-1)
+    f = -_uneven(theta, forces.stiffness * u + forces.damping * absolute)
+    if forces.film is not None:
+        square = forces.film.clearance_m**2
+        rest = 1 - np.sum(u * u, axis=-1, keepdims=True) / square
+        along = 3 * u * np.sum(u * absolute, axis=-1, keepdims=True) / (square * rest)
+        f = f - forces.film.centred_damping_n_s_per_m * rest**-1.5 * (absolute + along)
+    return np.asarray(f)
+
+
+def force_derivatives(
+    forces: TurningForces, speed: float, theta: FloatArray, u: FloatArray, v: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Derivatives by u and by v (..., 2, 2) of `turning_force`, by a complex step."""
+    by_u, by_v = [], []
+    for i in range(2):
+        step = 1e-30j * np.eye(2)[i]
+        by_u.append(turning_force(forces, speed, theta, u + step, v + 0j).imag / 1e-30)
+        by_v.append(turning_force(forces, speed, theta, u + 0j, v + step).imag / 1e-30)
+    return np.stack(by_u, axis=-1), np.stack(by_v, axis=-1)
+
+
+def gravity_force(forces: TurningForces, theta: float) -> FloatArray | float:
+    """Weight (n,) in N in the turning frame, along -Y: -g M T (sin theta, cos theta); 0 without gravity."""
+    return 0.0 if forces.weight is None else -forces.weight @ np.array([np.sin(theta), np.cos(theta)])
+
+
+def _uneven(theta: AnyArray, w: AnyArray) -> AnyArray:
+    """Q(theta) w of (..., 2)."""
+    c, s = np.cos(2 * theta), np.sin(2 * theta)
+    return np.stack([c * w[..., 0] - s * w[..., 1], -s * w[..., 0] - c * w[..., 1]], axis=-1)

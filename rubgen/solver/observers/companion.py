@@ -1,0 +1,82 @@
+"""A trajectory beside that of a stepper, whose distance from it tells the largest Lyapunov exponent."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.errors import UserError
+from rubgen.solver.observers.companion_kernels import distance, run_twin
+from rubgen.solver.scheme.motion_kernels import recover
+from rubgen.solver.scheme.step_kernels import OK
+from rubgen.solver.scheme.stepper import Stepper
+
+PIECES = 16
+"""Renormalisations in a turn."""
+CLOSENESS = 1e-8
+"""Distance of the twin over the size of the motion: a thousandth of what a tip enters in one step of a touch, and a
+million times the rounding of a step."""
+LEAST_TURNS = 32
+"""An exponent of fewer turns says nothing."""
+
+
+def check_turns(record_turns: int) -> None:
+    """Raise UserError where a record is too short for an exponent."""
+    if record_turns < LEAST_TURNS:
+        raise UserError(
+            f"record_turns = {record_turns}: a Lyapunov exponent needs at least {LEAST_TURNS} turns, reliably 500; "
+            "raise it, or switch the exponent off (labels.lyapunov = false)"
+        )
+
+
+def piece_ends(steps: int) -> list[int]:
+    """The steps of a turn that end its pieces, as even as whole steps can be."""
+    pieces = min(PIECES, steps)
+    return [round(steps * piece / pieces) for piece in range(1, pieces + 1)]
+
+
+class Twin:
+    """A twin that starts beside the present state of `stepper`, all coordinates moved.
+
+    Call `run_turn` after each turn of the stepper, whose marks must be set; the stepper's own bits do not change.
+    The distance is that of an energy norm, sqrt(d_v^T M d_v + Omega^2 d_q^T M d_q), which no choice of coordinates
+    changes; any other norm gives the same exponent in the long run.
+    """
+
+    def __init__(self, stepper: Stepper) -> None:
+        self.stepper = stepper
+        self.motions = stepper.new_motions()
+        self.work, self.scratch = stepper.new_work()
+        self.work.held[:] = stepper.work.held
+        before, now, _ = stepper.motions
+        main, still = np.stack([before.z, now.z]), np.zeros((2, now.z.size))
+        self.closeness = CLOSENESS * (self._distance(main, still) or 1.0)
+        start = main + self._away(stepper)
+        start = main + (start - main) * (self.closeness / self._distance(main, start))
+        for motion, z in zip(self.motions, start, strict=False):
+            motion.z[:] = z
+            recover(stepper.harmonics, motion, self.scratch.share)
+
+    def run_turn(self, opening: FloatArray) -> FloatArray:
+        """Ln of the twin's growth between the marks of the stepper's last turn; NaN where it could not follow."""
+        stepper, growth = self.stepper, np.full(len(self.stepper.marks.steps), np.nan)
+        code = run_twin(
+            stepper.model, stepper.book.M, opening, stepper.marks, self.closeness, self.motions, self.work,
+            self.scratch, growth,
+        )  # fmt: skip
+        first = stepper.steps % 3
+        self.motions = (self.motions * 2)[first : first + 3]  # type: ignore[assignment]  # three of six
+        return growth if code == OK else np.full(growth.size, np.nan)
+
+    def _distance(self, main: FloatArray, twin: FloatArray) -> float:
+        stepper = self.stepper
+        for motion, z in zip(self.motions, twin, strict=False):
+            motion.z[:] = z
+        return float(distance(stepper.model, stepper.book.M, main, self.motions[:2], self.scratch))
+
+    @staticmethod
+    def _away(stepper: Stepper) -> FloatArray:
+        """A direction with a share of every mode: displacements and Omega times as large velocities."""
+        phase = 1.0 + np.arange(stepper.system.M.shape[0]) ** 2
+        now, speed = np.cos(phase), stepper.system.speed * np.sin(phase)
+        return 1e-9 * np.stack([stepper.blocks.to_z(now - stepper.dt * speed), stepper.blocks.to_z(now)])

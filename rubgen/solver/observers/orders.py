@@ -1,0 +1,56 @@
+"""Orders of rotation of one turn, over its angle."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubgen.arrays import ComplexArray, FloatArray
+from rubgen.solver.response import ORDERS, WINDOW_TURNS
+
+
+class WindowOrders:
+    """Complex amplitudes of a steady run's taps window by window: of the mean of its turns, which is their mean.
+
+    `add` turns of the record up to its end, taps (taps, steps) with the first step at theta = 0. What precedes the
+    first whole window is left out; the last window may be shorter.
+    """
+
+    def __init__(self, taps: int, steps: int) -> None:
+        self.sum, self.turns = np.zeros((taps, steps)), 0
+        angle = 2 * np.pi / steps * np.multiply.outer(np.arange(steps), np.arange(1, ORDERS + 1))
+        self.wave = 2 / steps * np.concatenate([np.cos(angle), -np.sin(angle)], axis=1)
+        self.windows: list[ComplexArray] = []
+
+    def add(self, turn: int, taps: FloatArray) -> None:
+        """Take the next turn, of this number in the record."""
+        if self.turns == 0 and turn % WINDOW_TURNS:
+            return
+        self.sum += taps
+        self.turns += 1
+        if self.turns == WINDOW_TURNS:
+            self._close()
+
+    def all(self) -> ComplexArray:
+        """Amplitudes (windows, taps, 20) of all turns so far."""
+        if self.turns:
+            self._close()
+        return np.array(self.windows, dtype=np.complex128).reshape(len(self.windows), len(self.sum), ORDERS)
+
+    def _close(self) -> None:
+        parts = self.sum @ self.wave / self.turns
+        self.windows.append(parts[:, :ORDERS] + 1j * parts[:, ORDERS:])
+        self.sum[:], self.turns = 0.0, 0
+
+
+def turn_orders(taps: FloatArray, theta: FloatArray) -> ComplexArray:
+    """Complex amplitudes (taps, 20) at k = 1 .. 20 of `taps` (taps, steps), the steps at angles `theta` (steps + 1,).
+
+    2 / (2 pi) sum x exp(-i k theta) dtheta by the trapezoidal rule on the steps' own angles, taken from the first to
+    the last as if they were one turn: the ends miss it by half a step at most, which leaves a share of 1 / steps.
+    """
+    weight = np.zeros(taps.shape[1])
+    weight += 0.5 * np.diff(theta)
+    weight[1:] += 0.5 * np.diff(theta)[:-1]
+    weight[0] += 0.5 * (theta[-1] - theta[-2])
+    wave = np.exp(-1j * np.multiply.outer(theta[:-1], np.arange(1, ORDERS + 1)))
+    return np.asarray(2 / weight.sum() * ((taps - taps.mean(axis=1, keepdims=True)) @ (weight[:, None] * wave)))

@@ -1,0 +1,55 @@
+"""The state after each Nth of a turn, seen so that a motion with the symmetry of the casing has N equal ones."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.reduction.model import SpinningSystem
+from rubgen.solver.scheme.stepper import Stepper
+
+
+def lobes_of(system: SpinningSystem) -> int:
+    """N of a casing that looks alike after each Nth of a turn; 1 where its nodes do not."""
+    orders = [round(order) for order, a in zip(system.surface.order, system.surface.amplitude, strict=True) if a]
+    lobes = math.gcd(*orders)
+    return lobes if lobes and len(system.casing_modes) % lobes == 0 else 1
+
+
+def turned_back(modes: FloatArray, share: float) -> FloatArray:
+    """The matrix (n_casing, n_casing) that turns the casing's displacement back by a share of a turn.
+
+    With u(theta) the displacement in X and Y, R(-a) u(theta + a) on the casing's own modes (nodes, 2, n_casing), by
+    least squares over the nodes: exact where the modes of each order come in pairs.
+    """
+    angle, nodes = 2 * np.pi * share, len(modes)
+    R = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    turned = np.einsum("ab,nbm->nam", R, np.roll(modes, -round(share * nodes), axis=0))
+    flat = modes.reshape(2 * nodes, -1)
+    return np.asarray(np.linalg.lstsq(flat, turned.reshape(2 * nodes, -1))[0])
+
+
+class Fractions:
+    """After 1/N, 2/N, ... 1 of a turn; `steps` are the marks that a turn needs for them."""
+
+    def __init__(self, system: SpinningSystem, steps: int) -> None:
+        lobes = lobes_of(system) if steps >= 2 else 1
+        self.shares = [part / lobes for part in range(1, lobes + 1)]
+        self.places = [part * steps / lobes for part in range(1, lobes + 1)]
+        self.steps = sorted({min(math.ceil(place), steps) for place in self.places})
+
+    def of(self, stepper: Stepper) -> FloatArray:
+        """The states (N, 2, n), q and v, in the stepper's last turn: linear between two steps, v their difference."""
+        out = []
+        for share, place in zip(self.shares, self.places, strict=True):
+            step = min(math.ceil(place), stepper.steps)
+            mark = int(np.searchsorted(stepper.marks.steps, step))
+            before, now = (stepper.blocks.to_q(z) for z in stepper.marks.z[mark])
+            back = np.eye(len(now))
+            start = stepper.system.casing_start
+            back[start:, start:] = turned_back(stepper.system.casing_modes, share)
+            v = (now - before) / stepper.dt
+            out.append(np.stack([back @ (now - (step - place) * stepper.dt * v), back @ v]))
+        return np.array(out)

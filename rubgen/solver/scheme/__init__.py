@@ -1,0 +1,1 @@
+"""The scheme: one system, its state, and the kernels that advance it through a turn."""

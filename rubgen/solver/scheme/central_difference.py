@@ -1,0 +1,56 @@
+"""Matrices of the central difference scheme with Lagrange multipliers, for the kernels."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg as la
+
+from rubgen.arrays import FloatArray
+from rubgen.linalg.blocks import Blocks, aligned
+from rubgen.reduction.model import SpinningSystem
+from rubgen.solver.scheme.energy_kernels import WORKS, Book
+from rubgen.solver.scheme.free_step_kernels import Scheme
+
+
+def scheme(M: FloatArray, C: FloatArray, K: FloatArray, force: FloatArray, dt: float, blocks: Blocks) -> Scheme:
+    """The free step q* = P1 q_n + P2 q_n-1 + p0 and A^-1, in blocks.
+
+    A = M / dt^2 + C / (2 dt), P1 = A^-1 (2 M / dt^2 - K), P2 = -A^-1 (M / dt^2 - C / (2 dt)), p0 = A^-1 force, with
+    C and K unsymmetric as they are (Carpenter, Taylor, Katona 1991).
+    """
+    inertia, drag = M / dt**2, C / (2 * dt)
+    inverse = la.inv(inertia + drag)
+    now, before = inverse @ (2 * inertia - K), -inverse @ (inertia - drag)
+    products = [blocks.product(matrix) for matrix in (now, before, inverse)]
+    return Scheme(
+        lines=products[0].lines,
+        now=products[0].entries,
+        before=products[1].entries,
+        constant=blocks.to_z(inverse @ force),
+        inverse=products[2].entries,
+    )
+
+
+def compliances(system: SpinningSystem, dt: float) -> tuple[FloatArray, FloatArray]:
+    """A^-1 between tip coordinates (3 blades, 3 blades) and of the casing modes (n_casing, n_casing)."""
+    A = system.M / dt**2 + system.C / (2 * dt)
+    inverse = la.inv(A)
+    tips, start = 3 * system.n_blades, system.casing_start
+    # Transposed: the kernels walk along the columns of A^-1.
+    return aligned(inverse[:tips, :tips].T), aligned(inverse[start:, start:].T)
+
+
+def energy_book(system: SpinningSystem, blocks: Blocks, *, zeros: bool = False) -> Book:
+    """Matrices of the energy terms in blocks, and works of zero; with `zeros` what is zero is kept in its place."""
+    force = blocks.to_z(system.force)
+    places = np.arange(force.size) if zeros else np.flatnonzero(force)
+    circulatory = (system.K - system.K.T) / 2
+    return Book(
+        damping=blocks.damping(system.C, whole=zeros),
+        circulatory=blocks.product(circulatory) if zeros else blocks.without_zeros(circulatory, system.K),
+        M=blocks.product((system.M + system.M.T) / 2),
+        K=blocks.product((system.K + system.K.T) / 2),
+        force=force[places],
+        force_places=places,
+        works=np.zeros(WORKS),
+    )

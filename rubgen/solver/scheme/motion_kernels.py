@@ -1,0 +1,50 @@
+"""The coordinates of one step, in blocks and as far as contact needs them in physical ones."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from rubgen.arrays import FloatArray
+from rubgen.jit import inlined_kernel
+from rubgen.linalg.harmonic_kernels import Harmonics, recover_rest, recover_tips
+
+
+class Motion(NamedTuple):
+    """One state: z; radial and tangential tip coordinates (2, width), one column for each blade; q (n,).
+
+    Of q, the coordinates behind the tips always hold, those of a tip only where a contact has asked for them.
+    """
+
+    z: FloatArray
+    tips: FloatArray
+    q: FloatArray
+
+
+@inlined_kernel
+def recover(harmonics: Harmonics, motion: Motion, share_work: FloatArray) -> None:
+    """Tips and the other coordinates of a motion from its z."""
+    recover_tips(harmonics, motion.z, share_work, motion.tips)
+    recover_rest(harmonics, motion.z, motion.q)
+
+
+@inlined_kernel
+def recover_blade(harmonics: Harmonics, motion: Motion, blade: int) -> None:
+    """The three coordinates of one tip in q."""
+    axial = 0.0
+    for j in range(harmonics.basis.shape[0]):
+        axial += harmonics.basis[blade, j] * motion.z[harmonics.places[2, j]]
+    motion.q[3 * blade] = motion.tips[0, blade]
+    motion.q[3 * blade + 1] = motion.tips[1, blade]
+    motion.q[3 * blade + 2] = axial
+
+
+@inlined_kernel
+def copy_motion(source: Motion, target: Motion) -> None:
+    """Copy what always holds of a motion: z, tips, and q."""
+    for i in range(source.z.shape[0]):
+        target.z[i] = source.z[i]
+    for a in range(2):
+        for k in range(source.tips.shape[1]):
+            target.tips[a, k] = source.tips[a, k]
+    for i in range(source.q.shape[0]):
+        target.q[i] = source.q[i]

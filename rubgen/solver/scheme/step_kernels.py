@@ -1,0 +1,286 @@
+"""One step of the central difference scheme with Lagrange multipliers, in forward increments.
+
+    A     = M / dt^2 + C / (2 dt)
+    q*    = A^-1 [f - K q_n + 2 M / dt^2 q_n - (M / dt^2 - C / (2 dt)) q_n-1]
+    q_n+1 = q* + A^-1 B lam,   0 <= lam  _|_  g(q*) + e g_n-1 + W lam >= 0
+
+(Carpenter, Taylor, Katona 1991; restitution e of Paoli and Schatzman.) The matrices are held in blocks
+(`block_kernels`); contact is solved in physical coordinates.
+"""
+
+from __future__ import annotations
+
+import math
+
+from rubgen.arrays import FloatArray
+from rubgen.contact.clearance_kernels import (
+    casing_reach,
+    clearance_bounds,
+    deformation_bounds,
+    largest_nodal_displacement,
+    tighten,
+    widened,
+)
+from rubgen.contact.contact_kernels import (
+    ContactWork,
+    build_casing_response,
+    build_compliance,
+    build_rows,
+    find_near,
+    gap_at,
+    largest_approach,
+)
+from rubgen.contact.geometry_kernels import Surface, Tips
+from rubgen.contact.lcp_kernels import SOLVED, solve_lcp
+from rubgen.jit import allocation_free_kernel, inlined_kernel
+from rubgen.linalg.block_kernels import Product, multiply
+from rubgen.linalg.harmonic_kernels import recover_all, spread_tip_force
+from rubgen.linalg.lanes_kernels import dot_rows
+from rubgen.linalg.vector_kernels import LANES
+from rubgen.solver.scheme.free_step_kernels import free_step
+from rubgen.solver.scheme.model_kernels import Laws, Model, Scratch, State
+from rubgen.solver.scheme.motion_kernels import Motion, copy_motion, recover, recover_blade
+from rubgen.solver.scheme.support_kernels import push_supports, resist_contacts, yield_to_contacts
+
+OK, CONTACT_UNSOLVED, DIVERGED, ENERGY, FILM_CLOSED = 0, 1, 2, 3, 4
+MARGIN_TRIES = 6
+
+
+@allocation_free_kernel
+def previous_gap(
+    surface: Surface,
+    tips: Tips,
+    blade: int,
+    state: State,
+    opening: float,
+    cosine: float,
+    sine: float,
+    work: ContactWork,
+) -> float:
+    """The gap of a blade at step n - 1: the scheme's own value where it was near, else from the geometry."""
+    held: float = work.held[0, blade]
+    if math.isnan(held):
+        start = state.now.shape[0] - work.rows.shape[1]
+        held = gap_at(surface, tips, blade, state.before, start, opening, cosine, sine, work.ends)
+        work.held[0, blade] = held
+    return held
+
+
+@inlined_kernel
+def starting_margin(laws: Laws, held: FloatArray) -> float:
+    """The least margin, widened by restitution times the deepest gap held at step n - 1."""
+    deepest = 0.0
+    if laws.restitution > 0.0:
+        for k in range(held.shape[1]):
+            if held[0, k] < deepest:
+                deepest = held[0, k]
+    return laws.margin - laws.restitution * deepest
+
+
+@inlined_kernel
+def recover_contacts(count: int, model: Model, motion: Motion, work: ContactWork) -> None:
+    """The q of the contacts' blades."""
+    for m in range(count):
+        recover_blade(model.harmonics, motion, work.blade[m])
+
+
+@inlined_kernel
+def change_contacts(
+    count: int, before: Motion, after: Motion, scale: float, work: ContactWork, change_out: FloatArray
+) -> None:
+    """(q_after - q_before) scale on the contacts' blades and on the casing."""
+    for m in range(count):
+        k = work.blade[m]
+        for i in range(3 * k, 3 * k + 3):
+            change_out[i] = scale * (after.q[i] - before.q[i])
+    for i in range(change_out.shape[0] - work.rows.shape[1], change_out.shape[0]):
+        change_out[i] = scale * (after.q[i] - before.q[i])
+
+
+@inlined_kernel
+def solve_contacts(count: int, model: Model, step: int, opening: FloatArray, state: State, work: ContactWork) -> int:
+    """The multipliers of the near blades at q* (in `state.after`), solved together; SOLVED or UNSOLVED."""
+    surface, tips, laws, angles = model.surface, model.tips, model.laws, model.angles
+    back = step - 1 if step > 0 else angles.cosine.shape[0] - 1
+    for m in range(count):
+        k = work.blade[m]
+        build_rows(
+            surface, tips, m, state.after, state.change, laws.speed, laws.friction,
+            angles.cosine[step + 1], angles.sine[step + 1], work,
+        )  # fmt: skip
+        build_casing_response(m, model.casing_compliance, work)
+        work.b[m] = work.gap[k]
+        if laws.restitution > 0.0:
+            held = previous_gap(surface, tips, k, state, opening[step], angles.cosine[back], angles.sine[back], work)
+            work.b[m] += laws.restitution * held
+    build_compliance(count, model.tip_compliance, work)
+    if model.support.active:
+        yield_to_contacts(count, model.support, work)
+    return solve_lcp(work.W, work.b, count, work.lam, work.square, work.tableau, work.basis)
+
+
+@inlined_kernel
+def apply_contacts(count: int, model: Model, after: Motion, work: ContactWork, scratch: Scratch) -> None:
+    """Q += A^-1 B lam."""
+    force, harmonics = scratch.z_force, model.harmonics
+    start = harmonics.rest.shape[0] - work.rows.shape[1]
+    force[:] = 0.0
+    for m in range(count):
+        lam = work.lam[m]
+        if lam > 0.0:
+            spread_tip_force(harmonics, work.blade[m], work.full_tip[m], lam, force)
+            for j in range(work.rows.shape[1]):
+                force[harmonics.rest[start + j]] += lam * work.full_casing[m, j]
+    if model.support.active:
+        resist_contacts(model.support, force)
+    multiply(Product(model.scheme.lines, model.scheme.inverse), force, after.z)
+    recover(harmonics, after, scratch.share)
+
+
+@inlined_kernel
+def bound_clearances(
+    model: Model,
+    inside: int,
+    opening: float,
+    after: Motion,
+    margin: float,
+    reach: float,
+    limits: tuple[float, float],
+    work: ContactWork,
+) -> bool:
+    """Bounds of how far each tip is inside of the deformed surface, as `tighten`; whether certainly none touches it.
+
+    `inside` is the row of the angles. Without screening nothing is known of any tip.
+    """
+    n_blades, n_casing = work.gap.shape[0], work.rows.shape[1]
+    if not model.laws.screen:
+        for k in range(n_blades):
+            work.bounds[k] = -math.inf
+        return False
+    angles, start = model.angles, after.q.shape[0] - n_casing
+    clearance_bounds(
+        model.surface, model.tips, after.tips, opening, model.laws.spread, angles.cos_orders[inside],
+        angles.sin_orders[inside], work.bounds,
+    )  # fmt: skip
+    for j in range(n_casing):
+        work.casing[j] = after.q[start + j]
+    # The linear interpolation of u_r lies within the reach.
+    far = (reach + limits[0]) + widened(margin, limits)
+    return tighten(model.surface, model.tips, work.casing, after.tips, angles.theta[inside], far, limits, work.bounds)
+
+
+@inlined_kernel
+def contact_step(
+    model: Model,
+    step: int,
+    opening: FloatArray,
+    before: Motion,
+    now: Motion,
+    after: Motion,
+    reach: float,
+    work: ContactWork,
+    scratch: Scratch,
+) -> tuple[int, int]:
+    """Turn q* in `after` into q_n+1; OK or CONTACT_UNSOLVED, and the number of contacts that were solved.
+
+    Only blades whose free gap is below the margin enter, if any is in the surface at all. What the forces then close is
+    bounded; where it exceeds the margin, the margin is widened and the step solved again, so no blade can be missed.
+    `reach` is the casing's in q*.
+    """
+    n_blades = work.gap.shape[0]
+    start = after.q.shape[0] - work.rows.shape[1]
+    surface, laws, angles = model.surface, model.laws, model.angles
+    state = State(before.q, now.q, after.q, scratch.change)
+    new, inside = opening[step + 2], step + 1
+    limits = deformation_bounds(surface, after.q[start:], laws.spread)
+    margin = starting_margin(laws, work.held)
+    for _ in range(MARGIN_TRIES):
+        apart = bound_clearances(model, inside, new, after, margin, reach, limits, work)
+        if apart and not laws.lasting:
+            for k in range(n_blades):
+                work.held[2, k] = math.nan
+            return OK, 0
+        count, penetrates = find_near(
+            surface, model.tips, after.q, after.tips, start, new, angles.cosine[inside], angles.sine[inside], margin,
+            limits, work,
+        )  # fmt: skip
+        for k in range(n_blades):
+            work.held[2, k] = work.gap[k]
+        if count == 0 or not (penetrates or laws.restitution > 0.0):
+            return OK, 0
+        recover_contacts(count, model, before, work)
+        recover_contacts(count, model, after, work)
+        change_contacts(count, before, after, 0.5 / laws.dt, work, scratch.change)
+        if solve_contacts(count, model, step, opening, state, work) != SOLVED:
+            return CONTACT_UNSOLVED, count
+        copy_motion(after, scratch.free)
+        apply_contacts(count, model, after, work, scratch)
+        approach = largest_approach(surface, after.tips, scratch.free.tips, after.q, scratch.free.q, start)
+        if approach <= margin or count == n_blades:
+            break
+        margin = 2 * approach
+        copy_motion(scratch.free, after)
+    else:
+        return CONTACT_UNSOLVED, count
+    for m in range(count):
+        gap = work.gap[work.blade[m]]
+        for column in range(count):
+            gap += work.W[m, column] * work.lam[column]
+        work.held[2, work.blade[m]] = gap
+    return OK, count
+
+
+@allocation_free_kernel
+def has_diverged(surface: Surface, laws: Laws, q: FloatArray, casing_start: int, n_blades: int) -> bool:
+    """Whether a casing node or a blade tip has moved beyond its limit, or is not a number."""
+    for k in range(3 * n_blades):
+        if not abs(q[k]) <= laws.tip_limit:
+            return True
+    q_casing = q[casing_start:]
+    if casing_reach(surface, q_casing) <= laws.casing_limit:
+        return False
+    return not largest_nodal_displacement(surface, q_casing) <= laws.casing_limit
+
+
+@inlined_kernel
+def leaves_range(model: Model, motion: Motion, reach: float, scratch: Scratch) -> bool:
+    """`has_diverged`, decided by bounds where they suffice: no tip coordinate is beyond the norm of z."""
+    norm = dot_rows(motion.z, motion.z, motion.z.shape[0] // LANES)
+    if norm <= model.laws.tip_limit**2 and reach <= model.laws.casing_limit:
+        return False
+    recover_all(model.harmonics, motion.z, scratch.share, scratch.tips, motion.q)
+    start = motion.q.shape[0] - model.surface.reach.shape[0]
+    return has_diverged(model.surface, model.laws, motion.q, start, model.harmonics.basis.shape[0])
+
+
+@inlined_kernel
+def advance(
+    model: Model,
+    step: int,
+    opening: FloatArray,
+    before: Motion,
+    now: Motion,
+    after: Motion,
+    work: ContactWork,
+    scratch: Scratch,
+) -> tuple[int, int]:
+    """One step: q_n+1 into `after`; OK or why it failed, and the number of contacts that were solved."""
+    free_step(model.scheme, before.z, now.z, after.z)
+    if model.support.active and not push_supports(
+        model.support, model.laws.speed, model.laws.dt,
+        model.angles.cosine[step], model.angles.sine[step], before.z, now.z, after.z,
+    ):  # fmt: skip
+        return FILM_CLOSED, 0
+    recover(model.harmonics, after, scratch.share)
+    reach = casing_reach(model.surface, after.q[after.q.shape[0] - work.rows.shape[1] :])
+    if leaves_range(model, after, reach, scratch):
+        return DIVERGED, 0
+    return contact_step(model, step, opening, before, now, after, reach, work, scratch)
+
+
+@inlined_kernel
+def shift_held(work: ContactWork) -> None:
+    """The gaps held at steps n and n + 1 become those at n - 1 and n."""
+    for k in range(work.held.shape[1]):
+        work.held[0, k] = work.held[1, k]
+        work.held[1, k] = work.held[2, k]

@@ -1,0 +1,66 @@
+"""Turning forces as the kernels of the scheme take them."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg as la
+
+from rubgen.arrays import AnyArray, FloatArray
+from rubgen.linalg.blocks import Blocks, aligned
+from rubgen.reduction.model import SpinningSystem, TurningForces
+from rubgen.solver.scheme.support_kernels import Support
+
+
+def support_of(system: SpinningSystem, blocks: Blocks, dt: float) -> Support:
+    """The system's turning forces for a step of dt; not active where it has none."""
+    forces = system.turning
+    if forces is None:
+        return _support(TurningForces(), active=False)
+    n, tips = len(system.M), 3 * system.n_blades
+    centre = np.array([system.centre, system.centre + 1])
+    weight = np.zeros((n, 2)) if forces.weight is None else forces.weight
+    loads = np.column_stack([np.eye(n)[:, centre], -weight])
+    A = system.M / dt**2 + system.C / (2 * dt)
+    columns, rows = la.solve(A, loads), la.solve(A.T, loads[:, :2])
+    moved = blocks.connected(centre)
+    return _support(
+        forces,
+        active=True,
+        centre=blocks.place[centre],
+        places=blocks.place[moved],
+        columns=(blocks.transform.T @ columns)[moved],
+        weight=(blocks.transform.T @ weight)[moved],
+        compliance=columns[centre, :2],
+        rows=np.stack([blocks.to_z(row) for row in rows.T]),
+        tip_columns=columns[:tips, :2],
+        tip_rows=rows[:tips],
+    )
+
+
+def _support(
+    forces: TurningForces,
+    *,
+    active: bool,
+    centre: AnyArray | None = None,
+    places: AnyArray | None = None,
+    **arrays: FloatArray,
+) -> Support:
+    """The kernels' record; arrays that are not given are empty."""
+    film, none = forces.film, np.zeros(0, dtype=np.int64)
+    empty = np.zeros((0, 2))
+    names = ("columns", "weight", "compliance", "rows", "tip_columns", "tip_rows")
+    given = {name: aligned(arrays.get(name, empty)) for name in names}
+    return Support(
+        active=active,
+        stiffness=forces.stiffness,
+        damping=forces.damping,
+        film=film.centred_damping_n_s_per_m if film else 0.0,
+        clearance=film.clearance_m if film else np.inf,
+        centre=none if centre is None else centre,
+        places=none if places is None else places,
+        **given,
+        drag=np.zeros((2, 2)),
+        yielding=np.zeros((2, 2)),
+        force=np.zeros((2, 2)),
+        works=np.zeros(4),
+    )

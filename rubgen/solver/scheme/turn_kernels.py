@@ -1,0 +1,225 @@
+"""One turn of the blisk in one call: steps, energy book, taps, touches."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from rubgen.arrays import FloatArray, IntArray
+from rubgen.contact.clearance_kernels import casing_reach
+from rubgen.contact.contact_kernels import ContactWork
+from rubgen.contact.wear_kernels import wear
+from rubgen.jit import allocation_free_kernel, inlined_kernel
+from rubgen.linalg.harmonic_kernels import recover_all
+from rubgen.solver.scheme.energy_kernels import ABSOLUTE, Book, book_contact, book_linear
+from rubgen.solver.scheme.model_kernels import Model, Scratch, State
+from rubgen.solver.scheme.motion_kernels import Motion
+from rubgen.solver.scheme.snapshot_kernels import Marks, keep_mark
+from rubgen.solver.scheme.step_kernels import OK, advance, change_contacts, recover_contacts, shift_held
+from rubgen.solver.scheme.support_kernels import book_supports
+from rubgen.solver.scheme.tap_kernels import SPEED_X, SPEED_Y, Taps, X, Y, record_arrivals, record_taps
+
+BLADE, START, STEPS, COSINE, SINE, IMPULSE, FRICTION_LOSS, NORMAL_LOSS = range(8)
+
+
+class Touches(NamedTuple):
+    """Touches under way: `open` (n_blades, 8), `last` (n_blades,) last step with force; `ended` (many, 8)."""
+
+    open: FloatArray
+    last: IntArray
+    ended: FloatArray
+
+
+class TurnResult(NamedTuple):
+    """Outputs of a turn or a part: `taps` (taps, steps), `section` (2, n), `summary` (4,), `orbit` (5,), `frames`.
+
+    `section`: q and v at the section beside the start. `summary`: impulse in N s, steps with contact, largest bound of
+    the casing's displacement in m, number of arrivals. `orbit` are sums over steps, see `add_orbit`. `frames` (any,
+    any) hold z at equal steps from the first on; at most one a step.
+    """
+
+    taps: FloatArray
+    section: FloatArray
+    summary: FloatArray
+    orbit: FloatArray
+    frames: FloatArray
+
+
+@allocation_free_kernel
+def close_touch(touches: Touches, blade: int, ended: int) -> int:
+    """Move a blade's touch to the ended ones."""
+    for c in range(touches.open.shape[1]):
+        touches.ended[ended, c] = touches.open[blade, c]
+    touches.open[blade, STEPS] = 0.0
+    return ended + 1
+
+
+@allocation_free_kernel
+def add_touch(
+    touches: Touches, blade: int, now: int, psi: float, impulse: float, friction: float, normal: float, ended: int
+) -> int:
+    """Add one step of contact to the blade's touch; an older touch that was interrupted ends first."""
+    row = touches.open[blade]
+    if row[STEPS] > 0.0 and touches.last[blade] != now - 1:
+        ended = close_touch(touches, blade, ended)
+    if row[STEPS] == 0.0:
+        row[:] = 0.0
+        row[BLADE], row[START] = blade, now
+    touches.last[blade] = now
+    row[STEPS] += 1
+    row[COSINE] += impulse * math.cos(psi)
+    row[SINE] += impulse * math.sin(psi)
+    row[IMPULSE] += impulse
+    row[FRICTION_LOSS] += friction
+    row[NORMAL_LOSS] += normal
+    return ended
+
+
+@allocation_free_kernel
+def close_touches(touches: Touches, now: int, ended: int) -> int:
+    """End all touches without force at step `now`; their number in `touches.ended`."""
+    for k in range(touches.last.shape[0]):
+        if touches.open[k, STEPS] > 0.0 and touches.last[k] < now:
+            ended = close_touch(touches, k, ended)
+    return ended
+
+
+@allocation_free_kernel
+def record_section(model: Model, before: Motion, now: Motion, after: Motion, scratch: Scratch, out: FloatArray) -> None:
+    """The q and v (2, n) at the section, by the parabola through steps -1, 0 and 1.
+
+    With tau = `Angles.section` in steps: q_0 + tau d + tau^2 / 2 (q_1 - 2 q_0 + q_-1), and v its derivative. The error
+    is of third order in dt for q, of second order for v as that of the central difference; tau is 0 at a steady speed.
+    """
+    tau = model.angles.section
+    if tau == 0.0:
+        recover_all(model.harmonics, now.z, scratch.share, scratch.tips, out[0])
+        recover_all(model.harmonics, scratch.z_change, scratch.share, scratch.tips, out[1])
+    else:
+        for i in range(scratch.z_force.shape[0]):
+            bend = after.z[i] - 2 * now.z[i] + before.z[i]
+            scratch.z_force[i] = now.z[i] + tau * (scratch.z_change[i] + 0.5 * tau * bend)
+            scratch.z_change[i] += tau * bend
+        recover_all(model.harmonics, scratch.z_force, scratch.share, scratch.tips, out[0])
+        recover_all(model.harmonics, scratch.z_change, scratch.share, scratch.tips, out[1])
+    for i in range(out.shape[1]):
+        out[1, i] /= model.laws.dt
+
+
+@inlined_kernel
+def add_orbit(signals: FloatArray, out: FloatArray) -> None:
+    """Add X, Y, X^2 + Y^2, V_X^2 + V_Y^2 and X V_Y - Y V_X of the disk centre, inertial, to `out` (5,)."""
+    x, y, vx, vy = signals[X], signals[Y], signals[SPEED_X], signals[SPEED_Y]
+    out[0] += x
+    out[1] += y
+    out[2] += x * x + y * y
+    out[3] += vx * vx + vy * vy
+    out[4] += x * vy - y * vx
+
+
+@inlined_kernel
+def record_frame(frames: FloatArray, frame: int, step: int, steps: int, z: FloatArray) -> int:
+    """Copy z where the next frame is due; the number of frames so far."""
+    if step * frames.shape[0] < frame * steps:
+        return frame
+    for i in range(z.shape[0]):
+        frames[frame, i] = z[i]
+    return frame + 1
+
+
+@inlined_kernel
+def add_contacts(
+    count: int,
+    model: Model,
+    step: int,
+    clock: int,
+    opening: FloatArray,
+    state: State,
+    work: ContactWork,
+    book: Book,
+    touches: Touches,
+    summary: FloatArray,
+    ended: int,
+) -> tuple[float, float, int]:
+    """Book the contacts of one step and add them to their touches; their force, torque, and the ended touches."""
+    force, torque, dt = 0.0, 0.0, model.laws.dt
+    for m in range(count):
+        lam, k = work.lam[m], work.blade[m]
+        if lam > 0.0:
+            normal, friction, brake = book_contact(
+                m, model.surface, model.tips, model.laws, model.angles, step, opening, state, work, book
+            )
+            ended = add_touch(touches, k, clock + step, work.psi[k], lam * dt, friction, normal, ended)
+            force, torque = force + lam, torque + brake
+    if force > 0.0:
+        summary[0] += force * dt
+        summary[1] += 1
+    return force, torque, ended
+
+
+@allocation_free_kernel
+def run_turn(
+    model: Model,
+    opening: FloatArray,
+    clock: int,
+    recording: bool,
+    motions: tuple[Motion, Motion, Motion],
+    work: ContactWork,
+    scratch: Scratch,
+    book: Book,
+    taps: Taps,
+    touches: Touches,
+    marks: Marks,
+    result: TurnResult,
+) -> tuple[int, int, int]:
+    """Integrate one turn, or a part of it; a code, the step where it ended, and the number of ended touches.
+
+    Its steps are those of `model.angles`. `opening` (steps + 2,) widens the surface at steps -1, 0, ..., steps. `clock`
+    is the number of the first step. `motions` are those at step -1, at step 0 and one to write; they change places with
+    every step. Taps of step n carry the force lam_n that acts at that time; without `recording` there are none, no
+    orbit and no arrivals, and all else is the same. The last of `marks` is the end or later.
+    """
+    laws, steps = model.laws, model.angles.cosine.shape[0] - 2
+    before, now, after = motions
+    ended = arrivals = frame = mark = 0
+    result.summary[:] = 0.0
+    result.orbit[:] = 0.0
+    for s in range(steps):
+        if marks.steps[mark] == s:
+            mark = keep_mark(marks, mark, before, now, work)
+        code, count = advance(model, s, opening, before, now, after, work, scratch)
+        if code != OK:
+            return code, s, ended
+        state = State(before.q, now.q, after.q, scratch.change)
+        for i in range(scratch.z_change.shape[0]):
+            scratch.z_change[i] = 0.5 * (after.z[i] - before.z[i])
+        book_linear(book, now.z, scratch.z_change, laws.dt)
+        if model.support.active:
+            cosine, sine = model.angles.cosine[s], model.angles.sine[s]
+            book.works[ABSOLUTE] += book_supports(
+                model.support, laws.speed, laws.dt, cosine, sine, now.z, scratch.z_change
+            )
+        force, torque = 0.0, 0.0
+        if count > 0:
+            recover_contacts(count, model, after, work)  # they moved; those before stand since the contact step
+            change_contacts(count, before, after, 0.5, work, scratch.change)
+            force, torque, ended = add_contacts(
+                count, model, s, clock, opening, state, work, book, touches, result.summary, ended
+            )
+        if recording:
+            record_taps(model, taps, state, now, scratch.z_change, s, opening[s + 1], force, torque, result.taps)
+            add_orbit(taps.signals, result.orbit)
+            if taps.timing.angle.shape[0] > 0:
+                arrivals = record_arrivals(model, taps.timing, (before, now, after), s, clock, arrivals)
+        frame = record_frame(result.frames, frame, s, steps, now.z)
+        if s == 0:
+            record_section(model, before, now, after, scratch, result.section)
+        reach = casing_reach(model.surface, after.q[after.q.shape[0] - taps.bend.shape[0] :])
+        result.summary[2] = max(result.summary[2], reach)
+        before, now, after = now, after, before
+        wear(count, model.surface.liner, laws.dt, work)
+        shift_held(work)
+    keep_mark(marks, mark, before, now, work)
+    ended = close_touches(touches, clock + steps - 1, ended)
+    result.summary[3] = arrivals
+    return OK, steps, ended

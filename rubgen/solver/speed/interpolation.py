@@ -1,0 +1,148 @@
+"""A stepper's matrices as functions of a changing speed, cheap to have at any speed.
+
+Every number that the kernels take is a smooth function of the speed Omega and linear in its acceleration Omega'. It is
+made exactly at a few Chebyshev speeds, by the same code as for a steady speed, and interpolated between them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+
+from rubgen.arrays import FloatArray
+from rubgen.linalg.block_kernels import Product
+from rubgen.linalg.blocks import aligned, padded
+from rubgen.reduction.model import SpinningSystem
+from rubgen.solver.scheme.free_step_kernels import Scheme
+from rubgen.solver.scheme.speed_part import SpeedPart
+
+SystemAt = Callable[[float, float], SpinningSystem]
+"""The system at a speed in rad/s and an acceleration in rad/s2."""
+NODES = 12
+"""Chebyshev speeds. C and K are polynomials in Omega, and Omega dt is small in A = M / dt^2 + C / (2 dt): from 3,000 to
+12,000 rev/min the preset's matrices come out right to rounding (tests/solver/test_following.py)."""
+
+
+SUPPORT = ("columns", "compliance", "rows", "tip_columns", "tip_rows")
+"""What of turning forces follows the speed: all that A^-1 makes of them."""
+
+
+def chebyshev_speeds(slowest: float, fastest: float) -> FloatArray:
+    """NODES speeds in rad/s from the slowest to the fastest, both among them, densest at the ends."""
+    nodes = -np.cos(np.pi * np.arange(NODES) / (NODES - 1))
+    speeds = 0.5 * (slowest + fastest) + 0.5 * (fastest - slowest) * nodes
+    speeds[0], speeds[-1] = slowest, fastest
+    return np.asarray(speeds)
+
+
+def lagrange_weights(nodes: FloatArray, at: FloatArray) -> FloatArray:
+    """Weights (at, nodes) of the polynomial through values at `nodes`, for the points `at`."""
+    others = np.array([np.delete(nodes, j) for j in range(len(nodes))])
+    return np.asarray(np.prod((at[:, None, None] - others) / (nodes[:, None] - others), axis=2))
+
+
+class Following:
+    """The parts of a stepper between `speeds` (NODES,), made by `part_at(speed, acceleration)`.
+
+    `acceleration` in rad/s2 is the largest one that comes, of either sign. Only what changes is interpolated.
+    """
+
+    def __init__(self, part_at: Callable[[float, float], SpeedPart], speeds: FloatArray, acceleration: float) -> None:
+        self.speeds = speeds
+        parts = [part_at(speed, 0.0) for speed in speeds.tolist()]
+        pushed = [part_at(speed, acceleration) for speed in speeds.tolist()] if acceleration else parts
+        self.template = _keep_lines([*parts, *pushed])
+        self.layout = _layout([*parts, *pushed])
+        self.values = np.array([_packed(part, self.layout) for part in parts])
+        self.slopes = np.array([_packed(part, self.layout) for part in pushed]) - self.values
+        self.slopes /= acceleration or 1.0
+        growth = np.array([part.tips.static[0].mean() for part in parts])
+        self.growth = Chebyshev.fit(speeds, growth, deg=NODES - 1, domain=[speeds[0], speeds[-1]])
+
+    def at(self, speeds: FloatArray, accelerations: FloatArray) -> Iterator[SpeedPart]:
+        """The part at each speed and acceleration (any number,)."""
+        weights = lagrange_weights(self.speeds, speeds)
+        rows = aligned(weights @ self.values + (accelerations[:, None] * weights) @ self.slopes)
+        for row in rows:
+            yield _unpacked(self.template, row, self.layout)
+
+    def mean_growth(self, speeds: FloatArray) -> FloatArray:
+        """The tips' mean steady radial growth in m at each speed (any number,)."""
+        return np.asarray(self.growth(speeds))
+
+
+Layout = dict[str, tuple[slice, tuple[int, ...]]]
+
+
+def _arrays(part: SpeedPart) -> dict[str, FloatArray]:
+    """All that may change with the speed, by name."""
+    scheme, book = part.scheme, part.book
+    return {
+        "static": part.tips.static,
+        "now": scheme.now,
+        "before": scheme.before,
+        "constant": scheme.constant,
+        "inverse": scheme.inverse,
+        "tips": part.compliances[0],
+        "casing": part.compliances[1],
+        "damping": book.damping.entries,
+        "circulatory": book.circulatory.entries,
+        "stiffness": book.K.entries,
+        "force": book.force,
+    } | {name: getattr(part.support, name) for name in SUPPORT}
+
+
+def _layout(parts: list[SpeedPart]) -> Layout:
+    """Place and shape of what differs between parts, each array from a multiple of eight on."""
+    arrays, start = [_arrays(part) for part in parts], 0
+    layout: Layout = {}
+    for name, first in arrays[0].items():
+        if any(not np.array_equal(first, other[name]) for other in arrays):
+            layout[name] = slice(start, start + first.size), first.shape
+            start += padded(first.size)
+    return layout
+
+
+def _packed(part: SpeedPart, layout: Layout) -> FloatArray:
+    row = np.zeros(padded(max((place.stop for place, _ in layout.values()), default=0)))
+    arrays = _arrays(part)
+    for name, (place, _) in layout.items():
+        row[place] = arrays[name].ravel()
+    return row
+
+
+def _unpacked(template: SpeedPart, row: FloatArray, layout: Layout) -> SpeedPart:
+    new = _arrays(template) | {name: row[place].reshape(shape) for name, (place, shape) in layout.items()}
+    scheme, book = template.scheme, template.book
+    return SpeedPart(
+        template.tips._replace(static=new["static"]),
+        Scheme(scheme.lines, new["now"], new["before"], new["constant"], new["inverse"]),
+        (new["tips"], new["casing"]),
+        book._replace(
+            damping=Product(book.damping.lines, new["damping"]),
+            circulatory=Product(book.circulatory.lines, new["circulatory"]),
+            K=Product(book.K.lines, new["stiffness"]),
+            force=new["force"],
+        ),
+        template.support._replace(
+            columns=new["columns"],
+            compliance=new["compliance"],
+            rows=new["rows"],
+            tip_columns=new["tip_columns"],
+            tip_rows=new["tip_rows"],
+        ),
+    )
+
+
+def _keep_lines(parts: list[SpeedPart]) -> SpeedPart:
+    """The first part, its circulatory stiffness without the lines that are zero in all parts."""
+    book = parts[0].book
+    kind, _, first, _, count = book.circulatory.lines.T
+    used = count * (kind // 2 + 1)
+    kept = [
+        any(part.book.circulatory.entries[f : f + u].any() for part in parts) for f, u in zip(first, used, strict=True)
+    ]
+    lines = np.ascontiguousarray(book.circulatory.lines[np.array(kept, dtype=bool)])
+    return parts[0]._replace(book=book._replace(circulatory=Product(lines, book.circulatory.entries)))

@@ -1,0 +1,53 @@
+"""How a run starts: in the rub-free motion, with the surface opened so that nothing touches."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.reduction.model import SpinningSystem
+from rubgen.scenario import ContactLaw
+from rubgen.solver.linear.rub_free import RubFreeMotion, rub_free_motion
+from rubgen.solver.scheme.stepper import Stepper
+from rubgen.taps import DEFAULT_TAPS, Tap
+
+START_CLEARANCE_SHARE = 2.5e-4
+"""The start leaves at least this share of the tip radius between tips and casing."""
+
+
+def rub_free_stepper(
+    system: SpinningSystem,
+    contact: ContactLaw,
+    steps: int,
+    *,
+    start_angle: float = 0.0,
+    screen: bool = True,
+    taps: tuple[Tap, ...] = DEFAULT_TAPS,
+) -> Stepper:
+    """A stepper at the beginning of a turn of the scheme's own rub-free motion; parameters and errors of `Stepper`."""
+    stepper = Stepper(system, contact, steps, start_angle=start_angle, screen=screen, taps=taps)
+    set_motion(stepper, rub_free_motion(system, steps), start_angle)
+    return stepper
+
+
+def set_motion(stepper: Stepper, motion: RubFreeMotion, start_angle: float = 0.0) -> None:
+    """Put a stepper of equal steps into a rub-free motion, at the angle of its turn's first step in rad."""
+    stepper.set_state(*(motion.at(start_angle + 2 * np.pi * s / stepper.steps) for s in (-1, 0)))
+
+
+def start_opening(system: SpinningSystem, inset: float = 0.0) -> float:
+    """How far the surface must be opened, m, to keep every tip of the rub-free motion the start clearance away.
+
+    `inset` (m) is how far the surface may lie inside the smooth curve.
+    """
+    motion = rub_free_motion(system)
+    tips = motion.over_turn()[:, : 3 * system.n_blades].reshape(-1, system.n_blades, 3) + system.tip_static
+    farthest = float(np.hypot(system.tip_radius + tips[..., 0], tips[..., 1]).max())
+    narrowest = system.surface.mean_radius - float(np.abs(system.surface.amplitude).sum()) - inset
+    return max(0.0, START_CLEARANCE_SHARE * system.tip_radius - (narrowest - farthest))
+
+
+def closing_ramp(share: FloatArray) -> FloatArray:
+    """1 - (10 x^3 - 15 x^4 + 6 x^5) for x clipped to [0, 1]: from one to zero with continuous second derivative."""
+    x = np.clip(share, 0.0, 1.0)
+    return np.asarray(1 - x**3 * (10 - 15 * x + 6 * x**2))
