@@ -9,7 +9,6 @@ from rubgen.dataset.checking.inventory import Finding, Kind, derived_digests, fi
 from rubgen.dataset.checking.table_check import table_problems
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, read_manifest
-from rubgen.errors import UserError
 
 
 def verify(directory: Path) -> list[str]:
@@ -26,15 +25,16 @@ def verify(directory: Path) -> list[str]:
 
 def findings(directory: Path) -> list[Finding]:
     """The problems of `verify`, each with what it asks for."""
+    from rubgen.io.mcap import check_mcap
+
     layout = Layout(directory)
     manifest = read_manifest(layout)
     found = list(file_findings(layout, manifest))
     found += strangers(layout, manifest)
     closed = {finding.path for finding in found if finding.closed}
     found += (Finding(text=text) for text in table_problems(layout, manifest, closed))
-    for name in manifest.listed("mcap"):
-        if name not in closed:
-            found += (Finding(text=f"{name}: {problem}") for problem in _mcap_problems(layout.root / name))
+    for name in (name for name in manifest.listed("mcap") if name not in closed):
+        found += (Finding(text=f"{name}: {problem}") for problem in check_mcap(layout.root / name, Path(name).stem))
     return [*found, *_recording_findings(layout, manifest, {finding.path for finding in found})]
 
 
@@ -52,24 +52,6 @@ def advice(directory: Path, found: list[Finding]) -> str:
     }
     whole = [] if Kind.DATA in kinds else ["the data files are whole"]
     return "; ".join([*whole, *(text for kind, text in sentences.items() if kind in kinds)])
-
-
-def _mcap_problems(path: Path) -> Iterator[str]:
-    from rubgen.io.mcap import check_mcap
-    from rubgen.io.mcap.read import read_mcap
-
-    problems = check_mcap(path)
-    yield from problems
-    if problems:
-        return
-    try:
-        index = read_mcap(path).scenario.get("index")
-    except UserError as error:
-        yield str(error)
-        return
-    held = f"run-{index:06d}" if isinstance(index, int) else "no run that rubgen numbers"
-    if path.stem != held:
-        yield f"holds {held}"
 
 
 def _recording_findings(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[Finding]:

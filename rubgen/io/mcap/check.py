@@ -26,8 +26,8 @@ TOPICS = ("/contact", "/once_per_rev", "/labels/motion")
 CHANNEL_KEYS = ("unit", "quantity", "axis", "location", "range_min", "range_max", "resolution", "sensitivity")
 
 
-def check_mcap(path: Path) -> list[str]:
-    """Problems of the file at `path`, none for a good one.
+def check_mcap(path: Path, run_id: str = "") -> list[str]:
+    """Problems of the file at `path`, none for a good one; with `run_id` also where it holds another run.
 
     Checked: CRCs of chunks, data and summary; scenario and labels present and equal in metadata and attachments;
     every message of every topic decoded, at the time of its record, in order of time; channels described; blocks
@@ -44,7 +44,7 @@ def check_mcap(path: Path) -> list[str]:
     except DamageError as damage:
         return [f"damaged ({damage})"]
     problems = [*_document_problems(content), *_topic_problems(content), *_sample_problems(content)]
-    return problems or _raised(lambda: run_of(content))
+    return problems or _raised(lambda: _check_run(content, run_id))
 
 
 def _raised(check: Callable[[], object]) -> list[str]:
@@ -54,6 +54,13 @@ def _raised(check: Callable[[], object]) -> list[str]:
     except DamageError as damage:
         return [str(damage)]
     return []
+
+
+def _check_run(content: McapContent, run_id: str) -> None:
+    index = run_of(content).scenario.get("index")
+    held = f"run-{index:06d}" if isinstance(index, int) else "no run that rubgen numbers"
+    if run_id and run_id != held:
+        raise DamageError(f"holds {held}")
 
 
 def _document_problems(content: McapContent) -> Iterator[str]:
