@@ -66,6 +66,8 @@ def simulate_command(
             save(run, out, named=f"--out {out}")
         if not as_json:
             say(f"written        {out}: {out.stat().st_size / 1e6:.2g} MB, {WRITERS[out.suffix]}")
+    if out and not good and not as_json:
+        say(f"not written    {out}: a run that failed has no signals")
     if replay and good:
         show(replay_of(run), Showing())
     return 0 if good else 1

@@ -27,6 +27,8 @@ SIGNED = re.compile(r"at least -")
 """Times and angles may be negative."""
 LONGEST = 120
 """Longer values are not shown."""
+MOST_LISTED = 40
+"""Allowed names that a line lists."""
 MOST_ERRORS = 500
 """More need not be told apart: who compares each with each would take minutes over twenty thousand."""
 OTHER_NAMES = {
@@ -96,10 +98,11 @@ def _of(source: object, text: str) -> str:
 
 
 def nearest(name: str, known: list[str]) -> str:
-    """What to do about an unknown `name`: the known one that is nearest, and all of them."""
+    """What to do about an unknown `name`: the known one that is nearest, and the allowed ones."""
     close = _closest(name, known)
     hint = f"did you mean {close}? " if close else ""
-    return f"{hint}allowed: {', '.join(known)}" if known else "remove it"
+    more = f" and {len(known) - MOST_LISTED} more" if len(known) > MOST_LISTED else ""
+    return f"{hint}allowed: {', '.join(known[:MOST_LISTED])}{more}" if known else "remove it"
 
 
 def key_name(path: Path) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -82,12 +82,18 @@ def _needed(source: Path | None) -> Path:
 
 
 def _waveform(replay: Replay, choice: Choice) -> Figure:
-    return figures.waveform_orders(replay, choice.channel or "casing_acc_0")
+    return figures.waveform_orders(replay, _channel(choice, "casing_acc_0", replay.recording.channels))
+
+
+def _channel(choice: Choice, usual: str, recorded: Iterable[str]) -> str:
+    """The channel that is asked for; else the usual one, or the first of a sensor set that has no such channel."""
+    names = list(recorded)
+    return choice.channel or (usual if usual in names else names[0])
 
 
 def _bifurcation(data: DataSet, choice: Choice) -> Figure:
     """The channel at each pulse about the mean of each run: k points for period k, whatever the orbit's size."""
-    key, name = _parameter(data, choice), choice.channel or _without_noise(data, CHANNEL)
+    key, name = _parameter(data, choice), choice.channel or _without_noise(data, _channel(choice, CHANNEL, data.units))
     unit = data.units.get(name, "")
     scale, unit = SHOWN_UNIT.get(unit, (1.0, unit))
     values, sections, motions = [], [], []
@@ -104,7 +110,7 @@ def _bifurcation(data: DataSet, choice: Choice) -> Figure:
 
 def _cascade(data: DataSet, choice: Choice) -> Figure:
     """Order spectra of the channel over the parameter."""
-    key, name = _parameter(data, choice), choice.channel or "casing_acc_0"
+    key, name = _parameter(data, choice), _channel(choice, "casing_acc_0", data.units)
     values, spectra, orders = [], [], np.zeros(0)
     for run_id, samples, pulses in data.each_channel(name):
         row = data.row(run_id)

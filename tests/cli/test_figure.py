@@ -107,6 +107,17 @@ def test_the_bifurcation_takes_the_clean_channel_and_names_its_unit(made_set, mo
     assert asked == ["proximity_x_clean", "proximity_45"]
 
 
+@pytest.mark.parametrize(("name", "expected"), [("bifurcation", "acc_17 once a turn"), ("cascade", "g")])
+def test_a_set_without_the_usual_channel_shows_its_first(name, expected, made_set, monkeypatch, tmp_path):
+    asked = []
+    each = MadeSet.each_channel
+    monkeypatch.setattr(MadeSet, "each_channel", lambda data, name: asked.append(name) or each(data, name))
+    monkeypatch.setattr(MadeSet, "units", {"acc_17": "g", "acc_18": "g"})
+    figure = make_figure(name, tmp_path, Choice())
+    assert asked == ["acc_17"]
+    assert any(expected in axes.get_ylabel() for axes in figure.axes)
+
+
 def test_the_exponent_leaves_out_runs_without_one(made_set, tmp_path):
     axes = make_figure("exponent", tmp_path, Choice()).axes[0]
     drawn = [(float(c[0].get_xdata()[0]), float(c[0].get_ydata()[0])) for c in axes.containers]

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from rubgen.errors import UserError
 from rubgen.machine import Material, load_machine
 from rubgen.machine.load import PRESETS
+from rubgen.machine.problems import nearest
 from rubgen.scenario import Recipe, parse_recipe
 from rubgen.sensors.load import parse_sensor_set
 
@@ -275,3 +276,11 @@ def test_a_modulus_with_which_nothing_can_be_factorised_is_refused(value, tmp_pa
     (tmp_path / "m.toml").write_text(text)
     with pytest.raises(UserError, match=r"disk.material.youngs_modulus_pa = \S+: must be (at least 1 and|a finite)"):
         load_machine("m.toml", tmp_path)
+
+
+def test_of_a_thousand_names_forty_are_listed():
+    names = [f"acc_{number}" for number in range(1000)]
+    text = nearest("acc_99x", names)
+    assert text.startswith("did you mean acc_99")
+    assert text.endswith("acc_39 and 960 more")
+    assert nearest("b", names[:40]).endswith("acc_38, acc_39")

@@ -136,12 +136,10 @@ def check_other(content: McapContent, topic: str) -> None:
     elif topic.startswith("/preview/"):
         _check_schema(content, channel, SCHEMA_NAME, "cdr")
         with damage_found(f"{topic}: a message"):
-            for message in content.messages.get(topic, []):
-                names, values = read_multi_array(message.data)
-                if ", ".join(names) != channel.metadata.get("names") or not np.isfinite(values).all():
-                    raise DamageError(
-                        f"{topic}: a message has other names than the channel, or values that are not finite"
-                    )
+            found = [read_multi_array(message.data) for message in content.messages.get(topic, [])]
+        named = all(", ".join(names) == channel.metadata.get("names") for names, _ in found)
+        if not named or not np.isfinite(np.concatenate([np.zeros(0), *(values for _, values in found)])).all():
+            raise DamageError(f"{topic}: a message has other names than the channel, or values that are not finite")
     else:
         raise DamageError(f"topic {topic!r:.80} is none of rubgen")
 
