@@ -195,7 +195,8 @@ def parse_recipe(
     if runs is not None:
         data = {**data, "runs": checked_runs(runs)}
     recipe = validated(source, data, TypeAdapter(Recipe))
-    check_used(f"{source}: ", data)
+    if data != recipe.model_dump(mode="json"):  # a manifest has every key of every profile
+        check_used(f"{source}: ", data)
     recipe._folder = folder or Path()
     check_recipe(recipe, source)
     warn_of(recipe.corners(), f"{source}: ")

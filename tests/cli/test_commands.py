@@ -160,7 +160,7 @@ def test_a_failed_run_ends_with_1(run, short, monkeypatch, rub_run, tmp_path):
     assert (code, values["status"], values["reason"]) == (1, "diverged", "in turn 3")
     assert (values["rub"], values["motion"], values["contact_force_orders"]) == (None, None, None)
     code, output, _ = run("simulate", *short, "--out", str(tmp_path / "a.mcap"))
-    assert (code, os.listdir(tmp_path)) == (1, [])
+    assert (code, list(tmp_path.iterdir())) == (1, [])
     assert output.endswith(f"not written    {tmp_path / 'a.mcap'}: a run that failed has no signals\n")
 
 

@@ -1,3 +1,4 @@
+import json
 import re
 import warnings
 from dataclasses import asdict
@@ -172,3 +173,11 @@ def test_whatever_stands_in_vary_either_works_or_is_refused_in_one_line(table):
     else:
         given = {k: v for k, v in table.items() if v is not None}
         assert {key: varied_values(recipe.scenario(0))[key] for key in given} == given
+
+
+@pytest.mark.parametrize("operation", [{}, {"profile": "run-up", "end_speed_rpm": 12000, "duration_s": 2}])
+def test_the_recipe_of_a_manifest_is_a_recipe(operation):
+    """It has the keys of every profile."""
+    data = {"name": "a", "runs": 1, "machine": "zeng2019", "operation": operation}
+    recorded = json.loads(json.dumps(parse_recipe(data).model_dump(mode="json")))
+    assert parse_recipe(recorded).model_dump(mode="json") == recorded
