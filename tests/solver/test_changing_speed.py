@@ -12,8 +12,9 @@ from rubgen.measurement.channel import Channel, Recording
 from rubgen.measurement.motion_frames import motion_frames
 from rubgen.reduction.model import CasingSurface, SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
-from rubgen.solver import Status, spin
+from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
+from rubgen.solver.speed import driver
 
 RPM = np.pi / 30
 MASS, STIFFNESS, UNBALANCE = 10.0, 1e7, 2e-4
@@ -208,7 +209,7 @@ def test_the_error_of_parts_falls_with_the_square_of_their_length(monkeypatch):
     )
     ends = []
     for share in (2e-4, 4e-4, 8e-4):
-        monkeypatch.setattr(spin, "SPEED_SHARE", share)
+        monkeypatch.setattr(driver, "SPEED_SHARE", share)
         ends.append(record_taps(run_jeffcott(operation, 0.05))[-8000:-2000])
     fine, coarse = (np.abs(ends[i + 1] - ends[i]).max() for i in (0, 1))
     assert fine < 1e-4 * np.abs(ends[0]).max()
