@@ -207,7 +207,7 @@ def test_page_names_other_labels(rub):
     results = made_up_results(rub)
     results[0] = replace(results[0], outcome=failed(rub))
     text = " ".join(page({"casing_modes": results}, []).split())
-    assert "9 have the motion of the same case at the default. Others: light at 9: diverged" in text
+    assert "runs have the same class of motion as at the default. Others: light at 9: diverged" in text
 
 
 @pytest.fixture

@@ -23,16 +23,17 @@ def _introduction(cases: Sequence[Case]) -> str:
     series = "\n".join(f"- {name}: {_keys(keys)}" for name, keys in SERIES.items())
     agree = sum(case.agree for case in cases)
     return f"""
-# Three indicators of motion, and where they contradict each other
+# Three indicators of motion, and where they disagree
 
-Made by `{COMMAND}`: {len(cases)} runs of the preset `zeng2019` that rub, of 500 turns each, {SPEEDS_RPM[0]:,.0f} to
-{SPEEDS_RPM[-1]:,.0f} rev/min, in {len(SERIES)} series:
+`{COMMAND}` makes this page from {len(cases)} runs of the preset `zeng2019` with rub, of 500 turns each, at
+{SPEEDS_RPM[0]:,.0f} to {SPEEDS_RPM[-1]:,.0f} rev/min, in {len(SERIES)} series:
 
 {series}
 
-The indicators are those of [the labels](labels.md#motion): clusters of the section, the 0-1 test, the exponent. They
-agree in {agree} runs. Each of the other {len(cases) - agree} was looked into: what of the machine strays (disk centre,
-tips, casing), by how much, whether it settles, comes back after 17 to 64 turns, switches, or is one spectral line.
+[The labels](labels.md#motion) use three indicators: clusters of the Poincare section, the 0-1 test, and the Lyapunov
+exponent. They agree in {agree} runs. Each of the other {len(cases) - agree} was examined: which part strays most (disk
+centre, tips, casing), by how much, and whether the motion still settles, repeats after 17 to 64 turns, is intermittent,
+or is one spectral line.
 
 ![Exponent over stray](confusion.png)
 """
@@ -49,7 +50,7 @@ def _confusion(cases: Sequence[Case]) -> str:
     return f"""
 ## The table
 
-Numbers of runs; bold where all three say the same.
+Numbers of runs. Bold: all three indicators agree.
 
 {table(header, rows)}
 """
@@ -67,7 +68,7 @@ def _classes(cases: Sequence[Case]) -> str:
         if count[motion, True] + count[motion, False]
     ]
     return f"""
-## What the label makes of it
+## The label of these runs
 
 {table(["`motion`", "indicators agree", "disagree"], rows)}
 """
@@ -79,11 +80,12 @@ def _causes(cases: Sequence[Case]) -> str:
     return f"""
 ## Causes
 
-{table(["runs", "name", "what it is"], rows)}
+{table(["runs", "name", "explanation"], rows)}
 
-Clusters ask at the scale of the motion, the others at any: nearly every disagreement is a motion that repeats at one
-scale and does not at a smaller one. The decision takes the scale of the motion, says so in its confidence, and is
-`undecided` near the bound; `stray_*`, `zero_one_k` and `lyapunov_per_turn` hold what it passes over.
+Clusters test whether the motion repeats at the scale of the motion. The other indicators have no scale. So in nearly
+every disagreement the motion repeats at the scale of the motion and not at a smaller scale. The label uses the scale of
+the motion. Its confidence is lower in such runs, and near the bound it is `undecided`. `stray_*`, `zero_one_k` and
+`lyapunov_per_turn` describe the motion below this scale.
 """
 
 
@@ -102,7 +104,16 @@ def _disagreements(cases: Sequence[Case]) -> str:
         for case in cases
         if case.cause
     ]
-    header = ["run", "section / 0-1 / exponent", "strays, %", "most", "K", "exponent, 1/turn", "`motion`", "cause"]
+    header = [
+        "run",
+        "section / 0-1 / exponent",
+        "strays, %",
+        "strays most",
+        "K",
+        "exponent, 1/turn",
+        "`motion`",
+        "cause",
+    ]
     return f"""
 ## Every disagreement
 
@@ -115,4 +126,4 @@ def _name(cause: Cause) -> str:
 
 
 def _keys(keys: dict[str, float]) -> str:
-    return ", ".join(f"`{key}` = {value:g}" for key, value in keys.items()) or "as it is"
+    return ", ".join(f"`{key}` = {value:g}" for key, value in keys.items()) or "no change"

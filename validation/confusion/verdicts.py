@@ -66,34 +66,33 @@ class Cause(StrEnum):
     """Why indicators disagree; each value is its explanation."""
 
     SMALL_CHAOS = (
-        "chaos below the scale of the motion: all parts repeat within 1 %, and what is left within that is chaotic by "
-        "both other indicators"
+        "chaos below the scale of the motion: all parts repeat within 1 %, and both other indicators say that the "
+        "rest is chaotic"
     )
-    NEAR_BOUND = (
-        "the same, near the bound: what is left is more than half of 1 %, so that the run is labelled undecided"
-    )
+    NEAR_BOUND = "as small chaos, but near the bound: the rest is more than half of 1 %, so the label is undecided"
     HIDDEN_CHAOS = (
-        "chaos that the section does not show: a positive exponent, and what strays in the section is regular or less "
-        "than single precision holds"
+        "chaos that the section does not show: the exponent is positive, and the part of the section that strays is "
+        "regular or below single precision"
     )
     SMALL_TORUS = (
-        "a second frequency below the scale of the motion: all parts repeat within 1 %, and what is left within that "
-        "is quasi-periodic by both other indicators"
+        "a second frequency below the scale of the motion: all parts repeat within 1 %, and both other indicators say "
+        "that the rest is quasi-periodic"
     )
     NEUTRAL = (
-        "a periodic motion that hardly attracts: the exponent is zero within its error or within 0.001 a turn, as next "
-        "to a bifurcation"
+        "a periodic motion that hardly attracts, as near a bifurcation: the exponent is zero within its error or "
+        "within 0.001 a turn"
     )
-    SMALL_NOISE = "what is left of a periodic motion is irregular, but does not grow: K of what 40 dB hide"
+    SMALL_NOISE = "the rest of a periodic motion, 40 dB below it, is irregular but does not grow"
     SETTLING = (
-        "a transient: what strays falls by more than half within the second half of the record, and the exponent is "
-        "the mean over motion before and after"
+        "a transient: straying falls by more than half within the second half of the record, and the exponent is the "
+        "mean over the motion before and after"
     )
-    SWITCHING = "intermittent: the record holds regular and irregular stretches"
-    LONG_PERIOD = "a period of 17 to 64 turns, longer than those that clusters look for"
+    SWITCHING = "intermittent: the record has regular and irregular stretches"
+    LONG_PERIOD = "a period of 17 to 64 turns; clusters search only shorter periods"
     SLOW_PHASE = (
-        "positive exponent and K below its bound: one spectral line holds at least 80 % of what strays most, a wave of "
-        "the lightly damped blades that keeps its phase over the record, and chaos is in the rest"
+        "the exponent is positive and K is below its bound: one spectral line has at least 80 % of the variance of "
+        "the part that strays most, a vibration of the lightly damped blades that keeps its phase over the record; "
+        "the rest is chaotic"
     )
     UNEXPLAINED = "none of these"
 

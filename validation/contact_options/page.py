@@ -19,10 +19,10 @@ def page(options: Sequence[Found], heavy: Sequence[Found], artefact: Artefact, f
 
 def _introduction() -> str:
     return f"""
-# Options of contact, heavy rub, and shortening blades
+# Options of contact, heavy rub, and shortening of blades
 
-Made by `{COMMAND}` from runs of the preset `zeng2019`; the cases are those of [sensitivity](sensitivity.md), the
-options those of [the model](model.md#options-of-contact). Each option is off by default.
+`{COMMAND}` makes this page from runs of the preset `zeng2019`. [Sensitivity](sensitivity.md) defines the cases.
+[The model](model.md#options-of-contact) defines the options. Each option is off by default.
 """
 
 
@@ -33,13 +33,13 @@ def _options(found: Sequence[Found]) -> str:
     ]
     header = ["case", "option", "motion", "impulse a turn, N s", "tips bent, mm", "draw-in, um"]
     return f"""
-## What the options do
+## Effects of the options
 
 {table(header, rows)}
 
-Impulses are mean and standard deviation over the record's turns. The half thickness of the preset's casing, 0.65 mm,
-moves friction's line of action by 0.16 % of the radius and no class of these runs, but where motion is chaotic every
-change of the last digit makes another run.
+Impulses are mean and standard deviation over the turns of the record. The half thickness of the casing, 0.65 mm in
+the preset, moves the line of action of friction by 0.16 % of the radius. It changes no class of these runs. In
+chaotic motion every change of the last digit leads to another trajectory.
 """
 
 
@@ -49,12 +49,11 @@ def _chords(artefact: Artefact) -> str:
 
 ![Chords](contact-options-chords.png)
 
-At {artefact.tip_speed:.0f} m/s of the tips, chords between the {len(artefact.hits)} nodes lie up to
-{1e6 * artefact.inside.max():.0f} um inside the smooth curve, {1e6 * artefact.inside.mean():.0f} um in the mean, and
-the speed at which they come nearer to a tip jumps at each node by {artefact.hits.min():.1f} to
-{artefact.hits.max():.1f} m/s: every tip is hit at every node that it passes in contact. Above, a stretch of 5 nodes;
-below, the first case (period-1 on the smooth surface) on both surfaces. The clearance at rest is that of the smooth
-curve.
+Chords between the {len(artefact.hits)} nodes lie up to {1e6 * artefact.inside.max():.0f} um inside the smooth curve,
+{1e6 * artefact.inside.mean():.0f} um in the mean. The tips move at {artefact.tip_speed:.0f} m/s. The speed at which
+the surface approaches a tip jumps by {artefact.hits.min():.1f} to {artefact.hits.max():.1f} m/s at each node. So every
+tip in contact has an impact at every node. The upper plot shows a stretch of 5 nodes. The lower plot shows the first
+case, which is period-1 on the smooth surface, on both surfaces. The clearance at rest is defined by the smooth curve.
 """
 
 
@@ -83,14 +82,14 @@ def _liner(found: Sequence[Found]) -> str:
 
 ![Liner](contact-options-liner.png)
 
-Wear {LINER.wear_m2_per_n:g} m2/N (0.01 mm3 for each N m) and ten times that, on a track {1e3 * LINER.width_m:g} mm
-wide.
+The wear coefficient is {LINER.wear_m2_per_n:g} m2/N (0.01 mm3 for each N m), and ten times this value for the softer
+liner. The track is {1e3 * LINER.width_m:g} mm wide.
 
 {table(header, rows)}
 
-Impulses a turn in N s are means of the record's first and last turns. The volume is the one in the profile and, to
-rounding, the sum of what the contacts took. The liner opens the two narrow places; how far, and what motion remains
-while it does, depends on the rate.
+Impulses a turn in N s are means over the first and the last 50 turns of the record. The volume is the volume of the
+profile; to rounding, it equals the sum of the volumes that the contacts removed. Wear widens the two narrow places. The
+rate of wear determines how far, and which motion remains.
 """
 
 
@@ -110,14 +109,14 @@ def _heavy(found: Sequence[Found]) -> str:
     return f"""
 ## Heavy rub near the critical speed
 
-The preset with friction {HEAVY_FRICTION:g}, all else as it is; its critical speed is 8,776 rev/min.
+The preset with friction {HEAVY_FRICTION:g}, nothing else changed. Its critical speed is 8,776 rev/min.
 
 {table(header, rows)}
 
-Runs here settle into irregular motion in which the blades chatter by millimetres, or leave the range of the model,
-10 mm, and are recorded as `diverged` with the branch that left first, the turn, the rates of growth over the last ten
-turns and whether that was growth or an excursion of a motion that was that large all along. With blades bent by several
-millimetres the model itself is at its end: see the draw-in.
+Some of these runs settle into irregular motion in which the blades chatter by millimetres. The others leave the
+range of the model, 10 mm, and are recorded as `diverged`. Their reason names the part that left first, the turn, and
+the rates of growth over the last ten turns. It also says whether this was growth, or an excursion of a motion that
+was always this large. With blades bent by several millimetres the model is no longer valid: see the draw-in.
 """
 
 
@@ -126,16 +125,18 @@ def _draw_in(factor: float) -> str:
     return f"""
 ## Blades do not grow shorter
 
-A linear beam that bends keeps its tip's radius; a real one draws it back by 1/2 int (v'^2 + w'^2) dx. From the static
-shape of the preset's tapered, twisted blade under a force at its tip, where it is softest, that is {factor:.2f} 1/m
-times the square of the tip's deflection (a uniform beam of that length has 4.00):
+When a linear beam bends, its tip stays at the same radius. The tip of a real beam moves inward by 1/2 int (v'^2 +
+w'^2) dx, the draw-in. For the tapered, twisted blade of the preset, this is {factor:.2f} 1/m times the square of the
+tip deflection (4.00 for a uniform beam of the same length). The factor uses the static shape under a force at the
+tip in its softest direction.
 
 {table(["deflection, mm", "draw-in, um"], rows)}
 
-The clearance is 272 um. The tables above give the deflection that each run reached (sections and the eight turns about
-the hardest touch, the disk's motion taken off) and what the tip would have drawn back. With the default recipe's
-friction it is a few micrometres at most and the term is left out; where blades chatter by more than 2 mm it is 17 um
-and more, opens the gap just when a blade swings widest, and labels of such runs are those of the linear model.
+The clearance is 272 um. The tables above show the largest deflection of each run and the draw-in of the tip at this
+deflection. The deflection is taken from the sections and from the eight turns around the hardest touch, without the
+motion of the disk. With the friction of the default recipe the draw-in is at most a few micrometres, so the model
+neglects it. If blades chatter by more than 2 mm, it is 17 um and more, and a real gap opens when a blade swings
+widest. The labels of such runs describe the linear model.
 """
 
 

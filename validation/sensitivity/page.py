@@ -62,7 +62,7 @@ def _equal_labels(study: Study, results: Results) -> str:
     default = study.default if study.default in _values(results) else study.yardstick
     compared = [r for r in results if r.value != default]
     other = [r for r in compared if r.outcome.label != of_case(results, r.case)[default].label]
-    sentence = f"Of {len(compared)} runs, {len(compared) - len(other)} have the motion of the same case at the default."
+    sentence = f"{len(compared) - len(other)} of {len(compared)} runs have the same class of motion as at the default."
     named = "; ".join(f"{r.case} at {study.text(r.value)}: {r.outcome.label}" for r in other)
     return f"{sentence} Others: {named}." if named else sentence
 
@@ -126,8 +126,9 @@ def _equal_sentence(pairs: Sequence[Pair], rubbing: Sequence[Pair]) -> str:
     zones = sum(pair.equal_zones for pair in equal)
     return (
         f"Labels (status, rub, motion, period) are equal at {len(equal)} of {len(pairs)} speeds, "
-        f"{100 * equal_share(pairs):.1f} % (wanted: {100 * EQUAL_LABELS:.0f} %); among the {len(rubbing)} that rub at "
-        f"{_share(rubbing)}. The number of zones and their symmetry are equal too at {zones}."
+        f"{100 * equal_share(pairs):.1f} % (required: {100 * EQUAL_LABELS:.0f} %). Among the {len(rubbing)} speeds "
+        f"with rub they are equal at {_share(rubbing)}. The number of zones and their symmetry are also equal at "
+        f"{zones} speeds."
     )
 
 
@@ -140,8 +141,8 @@ def _impulse_sentence(changes: Mapping[float, float], beyond: Mapping[float, flo
         return "No speed has a period-1 rub with either step."
     values = sorted(abs(value) for value in changes.values())
     start = (
-        f"At the {len(values)} speeds that are period-1 in contact with either step the impulse changes by "
-        f"{100 * values[len(values) // 2]:.2f} % in the median and {100 * values[-1]:.2f} % at most"
+        f"At {len(values)} speeds the motion is period-1 in contact with both steps. There the impulse changes by "
+        f"{100 * values[len(values) // 2]:.2f} % in the median and by {100 * values[-1]:.2f} % at most"
     )
     named = ", ".join(f"{speed:.0f} rev/min {100 * value:+.1f} %" for speed, value in beyond.items())
     return f"{start}; beyond {100 * IMPULSE_TOLERANCE:.0f} %: {named}." if beyond else f"{start}."
@@ -150,8 +151,9 @@ def _impulse_sentence(changes: Mapping[float, float], beyond: Mapping[float, flo
 def _others_sentence(others: Sequence[Pair]) -> str:
     themselves = sum(pair.changes_by_itself for pair in others)
     return (
-        f"The {len(others)} other speeds, with their indicators (1,024 / 2,048 steps). `next record` is the motion of "
-        f"the 500 turns after those, at 1,024 steps: at {themselves} of these speeds the label changes by itself."
+        f"The table shows the {len(others)} other speeds with their indicators (1,024 / 2,048 steps). `next record` is "
+        f"the motion of the next 500 turns, at 1,024 steps: at {themselves} of these speeds the label changes without "
+        "a change of the step."
     )
 
 

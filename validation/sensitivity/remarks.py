@@ -5,77 +5,85 @@ from __future__ import annotations
 INTRODUCTION = """
 # Sensitivity
 
-What a user does not see moves results too: the step, the numbers of modes and nodes, the turns that are thrown away.
-Each is varied alone, all else by default, in five runs of the preset `zeng2019`:
+Results also depend on numerical settings: the time step, the numbers of modes and nodes, and the turns before the
+record. Each study varies one setting and leaves all others at their defaults. It uses five runs of the preset
+`zeng2019`:
 
-- light: 10,000 rev/min with a lateral support stiffness of 2e8 N/m, without friction and with 0.01;
-- heavier: 11,400 rev/min; without friction;
-- chaotic: 9,000 rev/min, without friction and with 0.01.
+- light: 10,000 rev/min with a lateral support stiffness of 2e8 N/m, without friction and with friction 0.01;
+- heavier: 11,400 rev/min, without friction;
+- chaotic: 9,000 rev/min, without friction and with friction 0.01.
 
-Records have 500 turns, orders cover the last 100. `+-` is the standard error of the mean impulse from ten parts of the
-record: what a chaotic run's numbers are uncertain by, whatever is varied. Changes are relative to the yardstick of each
-study, given in its section; figures are linear within 1 % and logarithmic beyond, the grey bar stands at the default,
-the mark's shape is the class of motion. Zones are `equal` when the label says symmetric.
+Records have 500 turns. Orders are computed from the last 100 turns. `+-` is the standard error of the mean impulse,
+from ten parts of the record. It is the uncertainty of the numbers of a chaotic run, whatever is varied. Changes are
+relative to the reference value of each study, which its section states. The axes of the figures are linear within 1 %
+and logarithmic beyond. The grey bar marks the default. The shape of a mark is the class of motion. Zones are `equal`
+if the label says symmetric.
 
-`make sensitivity` makes this page, its figures and `out/sensitivity/`; finished runs are kept there, so a study that
-was stopped goes on where it stood. `python -m validation.sensitivity steps` makes one of them, `--quick` a small
-version of all in `out/sensitivity-quick/`.
+`make sensitivity` makes this page, its figures and `out/sensitivity/`. It keeps finished runs there, so a stopped study
+continues where it stopped. `python -m validation.sensitivity steps` makes one study. `--quick` makes a small version of
+all studies in `out/sensitivity-quick/`.
 """
 FOLLOWS = """
-## What follows
+## Conclusions
 
-- **Steps a turn: 1,024 stays the default and the least for data.** Half the step leaves nearly all labels of the
-  paper's sweep and the impulse of its period-1 runs within 2 % (next section). It is no converged solution: the
-  scheme is of first order in contact. Against 8,192 steps the light rub lacks 0.1 % of impulse and orders, the
-  heavier one 2 % of its impulse, 10 % of order 2 and a third of order 4 of the force. Who compares amplitudes rather
-  than classes takes 4,096 or more. 256 is stable at these speeds, but calls the light rub quasi-periodic and takes 8
-  % off the heavier one.
-- **Modes of blades and disk: 4 and 4 are enough**, fewer would do. In period-1 runs more of them change impulses by
-  less than 0.01 % and orders by less than 1 %.
-- **Modes of the blisk: 4 keep labels, impulses and the orders of the force within 0.3 %, but not order 3 of the disk
-  centre**: it is 5 % too large in the light rub and 45 % in the heavier one; 12 modes do not mend it, 40 do. Who
-  needs it sets `blisk_modes = 40` in the reduction; order 1, far larger, is good to 0.1 % with 4.
-- **Casing modes: 11 by definition, as in the paper.** Two more or fewer change impulses by up to some tens of
-  percent, and classes with them; with 5 and with 23 some of the runs end as diverged. Nothing converges here: data
-  with different numbers are data of different machines.
-- **Casing nodes: 180 are enough** for labels, and for impulses within 0.1 %; 60 are not for order 4 of the force.
-- **Settle turns: `auto` is on the safe side.** In these five runs 50 turns, 10 after closing, give the same labels
-  and the same period-1 impulses within 0.02 %: contact damps more than the linear system, on whose slowest decay
-  `auto` rests. It stays the default, because a run that hardly rubs has that decay alone.
-- **Period-1 means within 1 % of the motion**, the radius inside which `docs/labels.md` takes points as one. The
-  casing of the light rub strays by half of that, the bound from which 0-1 test and exponent may contradict, and they
-  do: with other steps or nodes it strays a little more and is `undecided`, and with friction 0.01 and
-  8,192 steps it is period-3 by name. Impulses and orders hardly move.
-- Mean impulses of the chaotic runs scatter by up to some 8 % whatever is varied, without a trend (casing modes and
-  256 steps apart): 500 turns tell no more.
+- **Steps a turn: 1,024 stays the default, and the minimum for data.** With half the step, nearly all labels of the
+  paper's sweep stay the same, and the impulse of its period-1 runs changes by less than 2 % (next section). The
+  solution is not converged, because the scheme is of first order in contact. Compared with 8,192 steps, impulse and
+  orders of the light rub are 0.1 % too small. In the heavier rub the impulse is 2 % too small, order 2 of the force
+  10 %, and order 4 of the force a third. To compare amplitudes instead of classes, use 4,096 steps or more. 256 steps
+  are stable at these speeds, but then the light rub is labelled quasi-periodic and the impulse of the heavier rub is
+  8 % too small.
+- **Modes of blades and disk: 4 and 4 are enough.** Fewer would also be enough. In period-1 runs, more modes change
+  impulses by less than 0.01 % and orders by less than 1 %.
+- **Modes of the blisk: with 4, labels are right, and impulses and the orders of the force are right within 0.3 %. Order
+  3 of the disk centre is not**: it is 5 % too large in the light rub and 45 % in the heavier rub. 12 modes do not
+  correct it, 40 do. If you need order 3, set `blisk_modes = 40` in the reduction. Order 1 is far larger and is right
+  within 0.1 % with 4 modes.
+- **Casing modes: 11 by definition, as in the paper.** Two more or two fewer modes change impulses by up to some tens of
+  percent, and classes too. With 5 and with 23 modes some of the runs diverge. The results do not converge: data with
+  different numbers of casing modes are data of different machines.
+- **Casing nodes: 180 are enough** for labels, and for impulses within 0.1 %. 60 are too few for order 4 of the force.
+- **Settle turns: `auto` is on the safe side.** In these five runs 50 turns, 10 of them after closing, have the same
+  labels and the same period-1 impulses within 0.02 %. `auto` uses the slowest decay of the linear system, and contact
+  adds damping. `auto` stays the default, because a run that hardly rubs has only the decay of the linear system.
+- **Period-1 means within 1 % of the motion.** This is the radius within which points of the section count as equal
+  (`docs/labels.md`). The casing of the light rub strays by half of it. From this bound on, 0-1 test and exponent may
+  contradict the class, and they do. With other steps or nodes the casing strays a little more, and the run is
+  `undecided`; with friction 0.01 and 8,192 steps it is `period-3`. Impulses and orders hardly change.
+- The mean impulses of the chaotic runs vary by up to about 8 % in all studies, without a trend (except with other
+  casing modes and with 256 steps). Records of 500 turns cannot resolve smaller differences.
 """
 REMARKS = {
     "halving": """
-The paper's sweep, 2,460 to 14,940 rev/min by 120, at 1,024 and at 2,048 steps a turn. `K` is the indicator of the 0-1
-test (chaotic from 0.7), `stray` the rms distance of the section's points from their mean over the size of the motion
-(period-1 up to 0.01), the exponent Lyapunov's largest with its standard error, all as `docs/labels.md` defines them.
+The runs are the sweep of the paper, 2,460 to 14,940 rev/min in steps of 120, with 1,024 and with 2,048 steps a turn.
+`K` is the indicator of the 0-1 test (chaotic from 0.7). `stray` is the rms distance of the points of the section from
+their mean, divided by the size of the motion (period-1 up to 0.01). The exponent is the largest Lyapunov exponent with
+its standard error. `docs/labels.md` defines all three.
 """,
     "steps": """
-Yardstick: 8,192. Gap and normal are taken at n+1, the force acts from n: in contact the scheme is of first order in the
-step, without contact of second. The verification measures it: the stator's phase in full annular rub is off by 5.4e-3
-rad at 1,024 steps. With three lobes, take a number of steps that three divides, so that all lobes see the same steps.
+Reference: 8,192. Gap and normal are taken at step n+1, and the force acts from step n. So the scheme is of first order
+in the step in contact, and of second order without contact. The verification measures this: the phase of the stator in
+full annular rub has an error of 5.4e-3 rad at 1,024 steps. With three lobes, use a number of steps divisible by three,
+so that all lobes have the same steps.
 """,
-    "blade_modes": "Fixed-interface modes of each blade in the first step of the reduction. Yardstick: 16.",
-    "disk_modes": "Fixed-interface modes of the disk in the first step of the reduction. Yardstick: 40.",
+    "blade_modes": "Fixed-interface modes of each blade in the first step of the reduction. Reference: 16.",
+    "disk_modes": "Fixed-interface modes of the disk in the first step of the reduction. Reference: 40.",
     "blisk_modes": """
-Fixed-interface modes of the coupled blisk in the second step; the tips' translations stay in any case. Yardstick: 86,
-the paper's own reference. Modes of higher frequency need smaller steps; where stability raised them, the table says so.
+Fixed-interface modes of the coupled blisk in the second step. The reduction always keeps the translations of the tips.
+Reference: 86, the number of the paper's own reference. Modes of higher frequency need smaller steps. Where stability
+required more steps, the table states their number.
 """,
     "casing_modes": """
-Yardstick: 11. This is no convergence study, for there is none: tips pass at 419 m/s, waves of the ring travel at 66 to
-153 m/s, so contact feeds each wave that is added. The number of casing modes belongs to the definition of the model.
+Reference: 11. This is not a convergence study, because there is no convergence: tips pass at 419 m/s, and waves of the
+ring travel at 66 to 153 m/s, so contact excites every additional wave. The number of casing modes is part of the
+definition of the model.
 """,
     "casing_nodes": """
-Yardstick: 720. Springs stand at the nodes, so their stiffness is divided as nodes are added; the ring stays the same.
-The undeformed surface is smooth with any number of nodes.
+Reference: 720. Springs are attached to the nodes. With more nodes each spring is softer, so that the ring stays the
+same. The undeformed surface is smooth with any number of nodes.
 """,
     "settle_turns": """
-Turns before the record, the closing of the clearance (40 turns) included. Yardstick: 800. `auto` follows from the
+Turns before the record, including the closing of the clearance (40 turns). Reference: 800. `auto` follows from the
 slowest decay of the linear system: here 266 turns (light), 365 (heavier) and 211 (chaotic).
 """,
 }
