@@ -18,29 +18,32 @@ READ: dict[str, Callable[[Candidate], float]] = {
     "friction": lambda one: one.friction,
 }
 INTRODUCTION = """`python -m validation.zeng2019 --fit --out out/zeng2019` makes this page, the machine \
-`zeng2019-fitted` and `fit.json` in `out/zeng2019/fit`. Not published are lateral damping, the casing's mass and \
-springs, friction, unbalance and clearance. The first three are searched on a grid. For each damping unbalance and \
-clearance follow from the speed at which rub begins and the support at which it ends (`docs/preset-zeng2019.md`); \
-springs follow from the mass, since the casing's frequencies fix their ratio. Damping of blades (0.4 %), of the casing \
-(2 %) and of the axial and torsional supports are not searched: they stay as they were chosen, and nothing here says \
-that they are right. The preset `zeng2019` stays as it is. A machine carries no friction: `zeng2019-fitted` is the \
-best candidate without it."""
-SCORE = """The score counts the paper's words for the motion of blisk and casing that a run bears out. Quasi-periodic \
-motion passes for chaotic, as 49 points cannot tell them apart. A fitted word that is borne out is no evidence; the \
-words of the two sweeps of supports were not looked at by the search and are predictions."""
-BASELINE = """The last two rows are no candidates: they tell what a machine would score that is chaotic, or period-1, \
-at every point. Most fitted words say chaotic: a candidate that scores more than another may only be chaotic at more \
-speeds. Of equal candidates the one that shares most values with `zeng2019` is taken."""
-NOTHING = """The best of all bears out {best} fitted words, chaos everywhere {chaos}. So the classes of the regions \
-II, III and V determine none of these unknowns; they only prefer what makes more of the sweep chaotic."""
-SOMETHING = """The best of all bears out {best} fitted words, chaos everywhere {chaos}: more than that it is chaotic."""
-JUDGED = """The statements of the figures 10 and 12 to 18, judged with both machines, without friction, the speed by \
-240 rev/min. `(fitted)` marks what that machine was fitted to."""
-CHANCE = """Of {words} words, each borne out with the best candidate's share, {margin:.1f} more or less are chance \
-(one standard deviation of the binomial count). A value whose best candidate lies within that of the best of all \
-cannot be told from the best."""
-ROOM = """Unbalance and clearance, least and largest that onset (between 6,660 and 6,780 rev/min) and end of rub \
-(between 6.70e8 and 6.75e8 N/m at 10,000 rev/min) leave:"""
+`zeng2019-fitted` and `fit.json` in `out/zeng2019/fit`. The paper does not publish lateral damping, the casing's \
+mass and springs, friction, unbalance and clearance. The search varies lateral damping, casing mass and friction on \
+a grid. For each damping, unbalance and clearance follow from the speed at which rub begins and from the support \
+stiffness at which it ends (`docs/preset-zeng2019.md`). The springs follow from the mass, because the casing's \
+frequencies fix their ratio. The search does not vary the damping of blades (0.4 %), of the casing (2 %), and of \
+the axial and torsional supports. These values were chosen, and this page does not confirm them. The preset \
+`zeng2019` does not change. A machine has no friction, so `zeng2019-fitted` is the best candidate without friction."""
+SCORE = """The score of a candidate is the number of the paper's words for the motion of blisk and casing with \
+which its runs agree. Quasi-periodic motion counts as chaotic, because 49 points cannot distinguish them. Agreement \
+with a fitted word is no evidence. The search did not use the words of the two sweeps of supports; they are \
+predictions."""
+BASELINE = """The last two rows are not candidates. They are the scores of a machine that is chaotic, or period-1, \
+at every point. Most fitted words say chaotic, so a candidate may score more only because it is chaotic at more \
+speeds. Of candidates with equal scores, the one that shares most values with `zeng2019` is taken."""
+NOTHING = """The best of all agrees with {best} fitted words, chaos everywhere with {chaos}. So the classes of the \
+regions II, III and V determine none of these unknowns. They only favour values that make more of the sweep \
+chaotic."""
+SOMETHING = """The best of all agrees with {best} fitted words, chaos everywhere with {chaos}. So the best \
+candidate matches more than chaos."""
+JUDGED = """These are the statements of the figures 10 and 12 to 18, judged with both machines, without friction, \
+with speeds in steps of 240 rev/min. `(fitted)` marks statements to which that machine was fitted."""
+CHANCE = """If each of {words} words agrees with the best candidate's probability, the count varies by {margin:.1f} \
+by chance (one standard deviation of the binomial count). A value cannot be distinguished from the best if its best \
+candidate lies within this margin of the best of all."""
+ROOM = """The table shows the range of unbalance and clearance that is compatible with the onset (between 6,660 and \
+6,780 rev/min) and with the end of rub (between 6.70e8 and 6.75e8 N/m at 10,000 rev/min):"""
 CANDIDATES = ("", "damping", "casing mass", "friction", "fitted", "predicted")
 
 
