@@ -1,11 +1,11 @@
 """The preset against what is published of its machine.
 
-Frequencies and their tolerances are those of the project's acceptance: 0.5 % for the reduced blisk, 2 % for the full
-one, 0.1 % for the casing. Seven unknown dimensions were fitted to six blisk frequencies and three to eleven of the
-casing, so these rows prove the model's form, not the geometry; unbalance and clearance were fitted to onset and end
-of rubbing. Nothing was fitted to the critical speed, the supports' critical stiffness, mass, inertia, growth or the
-response to unbalance; "independent model" is another program's Mindlin disk with Timoshenko blades, whose own disk
-mesh and refit account for up to 1 %.
+Frequencies and their tolerances are the acceptance values of the project: 0.5 % for the reduced blisk, 2 % for the
+full one, 0.1 % for the casing. Seven unknown dimensions were fitted to six blisk frequencies, and three to eleven
+casing frequencies. So these rows support the form of the model, not the geometry. Unbalance and clearance were
+fitted to onset and end of rubbing. Nothing was fitted to the critical speed, the critical stiffness of the
+supports, mass, inertia, growth or the response to unbalance. "Independent model" is another program with a Mindlin
+disk and Timoshenko blades. Its own mesh of the disk and its own fit account for differences of up to 1 %.
 """
 
 from __future__ import annotations

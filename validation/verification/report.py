@@ -11,14 +11,15 @@ from validation.verification.row import Row
 
 HEAD = """# Verification
 
-Every value that rubgen computes with its own elements, reduction, contact and integrator below stands beside one from
-a source that is independent of what is checked: a closed form, the literature, or another method written for the
-purpose (shooting, Runge-Kutta, Rayleigh-Ritz, Bessel determinants, dense full models). A row is ok when |found -
-expected| is at most the tolerance, in the unit of the row; a range has its middle as expected value, a broken bound
-is counted. Tolerances follow from the last digit of a table and from observed convergence, as each section says; none
-was widened to pass. Found values are rounded to a hundredth of the tolerance.
+This table compares values that rubgen computes with its elements, reduction, contact and integrator with
+independent values. These come from a closed form, from the literature, or from another method written for the
+purpose (shooting, Runge-Kutta, Rayleigh-Ritz, Bessel determinants, dense full models). A row is ok if |found -
+expected| is at most the tolerance, in the unit of the row. For a range, the expected value is its middle. For a
+bound, the row counts the cases in which it is broken. Tolerances follow from the last digit of a table and from
+observed convergence, as each section says. No tolerance was widened to pass. Found values are rounded to a
+hundredth of the tolerance.
 
-`make verification` makes this page and `out/verification.json`, and fails when a row is not ok.
+`make verification` makes this page and `out/verification.json`. It fails if a row is not ok.
 
 """
 

@@ -1,10 +1,10 @@
 """Stated errors of Lyapunov exponents, against what the exponents of many records of 500 turns really are off by.
 
-Each growth comes from the variational equation, without a twin. On the tori of forced van der Pol oscillators,
-x'' - mu (1 - x^2) x' + x = F cos(w t), the exponent is zero, and no record may get a sign as the label gives it.
-Oscillators that lock to the force (longer records say so) are left out. On chaos the scatter of the exponents over the
-stated error (both rms over the records) must lie in 0.7 to 1: the error is the largest of three estimates, so it errs
-to the large side.
+Each growth comes from the variational equation, without a companion trajectory. The exponent is zero on the tori of
+forced van der Pol oscillators, x'' - mu (1 - x^2) x' + x = F cos(w t). There the label must not call any exponent
+positive or negative. Oscillators that lock to the force (as longer records show) are left out. In chaos, the
+scatter of the exponents divided by the stated error (both rms over the records) must lie in 0.7 to 1. It may be
+below 1 because the error is the largest of three estimates.
 """
 
 from __future__ import annotations

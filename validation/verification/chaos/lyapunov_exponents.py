@@ -1,14 +1,16 @@
-"""Largest Lyapunov exponents by the twin, against exponents that are known.
+"""Largest Lyapunov exponents from a companion trajectory, against known exponents.
 
-Every row brings a twin back by the solver's own kernel (`bring_back`) and takes the exponent by the labels' own
-function. Maps and the Lorenz system last until their scatter is below the tolerance. The Jeffcott rotor runs through
-the solver with its contact: the exponent of full annular rub is the largest real part of the eigenvalues of the motion
-that stays in contact, a quadratic eigenvalue problem; 1,024 and 2,048 steps a turn are extrapolated to dt = 0.
+Every row uses the solver's own kernel (`bring_back`) to set the distance of a companion trajectory back, and the
+labels' own function to compute the exponent. Runs of maps and of the Lorenz system are so long that their scatter
+is below the tolerance. The Jeffcott rotor runs through the solver with its contact. The exponent of full annular
+rub is the largest real part of the eigenvalues of the motion that stays in contact, a quadratic eigenvalue problem.
+1,024 and 2,048 steps a turn are extrapolated to dt = 0.
 
-The impact oscillator is stepped by the solver's scheme. Where an impact falls between two steps moves its map by the
-first power of dt, and within one step the scheme's own map contracts by sqrt(r), not by r. The twin therefore starts
-farther away than the mass moves in a step, which an exponent of the continuous system needs where r > 0. Contact
-without restitution, the default, needs no such care: two steps of a touch contract to nothing, as they should.
+The impact oscillator uses the solver's scheme. The place of an impact between two steps changes its map by the
+first power of dt, and within one step the map of the scheme contracts by sqrt(r), not by r. For r > 0, an exponent
+of the continuous system therefore needs an initial distance of the companion trajectory that is larger than the
+motion of the mass in a step. Contact without restitution, the default, does not need this: two steps of a touch
+contract the distance to zero, which is right.
 """
 
 from __future__ import annotations

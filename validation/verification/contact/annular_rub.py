@@ -1,10 +1,10 @@
 """A Jeffcott rotor in full annular rub.
 
-A rotor with unbalance, below its critical speed, in a ring on springs and dampers that it touches all the way round,
-with a friction coefficient of 0.1, through the solver's integration. The force of step n has the direction of the
-geometry at step n + 1, an angle Omega dt ahead, so everything is of first order in dt: with 1,024 steps a turn the
-force is 2e-4 too large and the stator 5e-3 rad ahead. 1,024 and 2,048 steps are extrapolated to dt = 0; the second
-order that is left is (Omega dt)^2 = 4e-5. Transients have fallen by 1e-9.
+A rotor with unbalance, below its critical speed, touches a ring on springs and dampers all the way round. The
+friction coefficient is 0.1. The solver integrates the motion. The force of step n has the direction of the geometry
+at step n + 1, which is ahead by the angle Omega dt. So all errors are of first order in dt: with 1,024 steps a turn
+the force is 2e-4 too large, and the stator is 5e-3 rad ahead. 1,024 and 2,048 steps are extrapolated to dt = 0. The
+remaining second-order error is (Omega dt)^2 = 4e-5. Transients have fallen by a factor of 1e-9.
 """
 
 from __future__ import annotations
@@ -71,5 +71,5 @@ def rows() -> Iterator[Row]:
     loss = -2 * np.pi * FRICTION * exact.force * CLEARANCE
     found_loss = 2 * fine.friction_loss - coarse.friction_loss
     yield relative("annular rub: friction loss a turn, J", "2 pi mu N c", loss, found_loss, 4e-5)
-    quantity = "annular rub: residual of the energy identity"
+    quantity = "annular rub: residual of the energy balance"
     yield within(quantity, "exact but for rounding", 0.0, coarse.energy_residual, 1e-8)

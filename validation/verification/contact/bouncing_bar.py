@@ -1,10 +1,10 @@
 """An elastic bar that bounces off a wall.
 
-E = 900, rho = 1, L = 10, A = 1, speed 10: d'Alembert's waves give a plateau of rho c v0 A = 300, a contact of 2 L / c
-and a rebound as fast as the impact. 400 elements with lumped masses. Their dispersion keeps some momentum behind the
-front: the errors of impulse (0.24 %), contact time and rebound fall by 1.6 with each halving of the elements, the
-order 2/3 of a dispersed front. The multiplier's first peak is the end node's momentum over dt, so it goes as 1/dt and
-has no limit: only impulse and plateau mean something.
+E = 900, rho = 1, L = 10, A = 1, speed 10. From d'Alembert's waves follow a plateau of rho c v0 A = 300, a contact
+time of 2 L / c and a rebound as fast as the impact. The bar has 400 elements with lumped masses. Their dispersion
+leaves some momentum behind the front. So the errors of impulse (0.24 %), contact time and rebound fall by 1.6 with
+each halving of the elements, the order 2/3 of a dispersed front. The first peak of the multiplier is the momentum
+of the end node divided by dt. It grows as 1/dt without a limit: only impulse and plateau have a meaning.
 """
 
 from __future__ import annotations

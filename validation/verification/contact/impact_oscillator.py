@@ -1,11 +1,12 @@
 """Impact oscillator: a mass on a spring that meets a wall.
 
-x'' + x = cos(omega t), a wall at x = 0, restitution 0.8, through the solver's free step and complementarity problem.
-The map of position and velocity over one period has an orbit with one impact as its fixed point. Where an impact
-falls between two steps shifts the map by the first power of dt, so it is not smooth at that scale: a quadratic
-polynomial is fitted to 1,000 starts within 0.01 of the fixed point, each with another shift of the steps against the
-force. Fixed point and derivative are of first order in dt in the mean, so 4,000 and 8,000 steps a period are
-extrapolated to dt = 0. That leaves the fit's scatter, some 1e-3 in the derivative, which moves the doubling by 1e-4.
+x'' + x = cos(omega t) with a wall at x = 0 and restitution 0.8, computed with the solver's free step and
+complementarity problem. The map of position and velocity over one period has an orbit with one impact as its fixed
+point. The place of an impact between two steps shifts the map by the first power of dt, so the map is not smooth at
+that scale. Therefore a quadratic polynomial is fitted to 1,000 starts within 0.01 of the fixed point, each with
+another shift of the steps against the force. On average, fixed point and derivative are of first order in dt, so
+4,000 and 8,000 steps a period are extrapolated to dt = 0. The scatter of the fit remains, about 1e-3 in the
+derivative. It moves the period doubling by 1e-4.
 """
 
 from __future__ import annotations

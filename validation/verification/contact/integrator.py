@@ -1,10 +1,10 @@
 """The integrator without contact.
 
 Central differences are of second order. The free motion of the Jeffcott rotor of the annular rub, gyroscopic and
-damped, is compared with the matrix exponential. Single modes of the preset at 8,000 rev/min are let go with 2,048
-steps a turn and their multiplier from turn to turn is compared with exp(s T) of the linear eigenvalue s. The scheme
-errs by (w dt)^2 / 24 of a frequency w, which the spin raises to |s| + Omega at most; twice that is allowed for decay
-rate and frequency.
+damped, is compared with the matrix exponential. Single modes of the preset at 8,000 rev/min are released with 2,048
+steps a turn. The factor by which such a mode changes from turn to turn is compared with exp(s T) of the linear
+eigenvalue s. The error of the scheme at a frequency w is (w dt)^2 / 24. The spin raises w to at most |s| + Omega.
+The tolerance of decay rate and frequency is twice this error.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """A Jeffcott rotor that rubs on part of a misaligned ring, against another integration.
 
-The rotor and the ring of the annular rub with less unbalance and a side force on the ring: from rest, the rotor's
-whirl grows until it strikes the ring and settles to one touch a turn, a quarter or two fifths of it long. The other
-method is scipy's LSODA on the equations in inertial axes with a stiff damped penalty, 1e11 N/m and five times
-critical damping, a plastic impact in the limit; 1e12 N/m changes its impulse by 5e-5. The solver's scheme is of first
-order in dt, so 2,048 and 4,096 steps a turn are extrapolated to dt = 0.
+The rotor and the ring of the annular rub have less unbalance and a side force on the ring. From rest, the rotor's
+whirl grows until it hits the ring. It settles to one touch a turn, a quarter or two fifths of a turn long. The
+other method is scipy's LSODA on the equations in inertial axes with a stiff damped penalty: 1e11 N/m and five times
+critical damping, which is a plastic impact in the limit. With 1e12 N/m its impulse changes by 5e-5. The solver's
+scheme is of first order in dt, so 2,048 and 4,096 steps a turn are extrapolated to dt = 0.
 """
 
 from __future__ import annotations

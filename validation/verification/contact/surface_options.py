@@ -1,11 +1,12 @@
 """The options of the contact surface: inner surface, chords, liner.
 
-The inner surface: a tangential force on the casing with all of its modes, against equilibrium of moments; linear
-algebra, 1e-7. Chords: plane geometry, exact but for rounding. The liner: a Jeffcott rotor in full annular rub wears
-its ring evenly. With normal force N(c) in closed form the depth w follows dw/dt = k N Omega c / (2 pi R b), c = R + w,
-by scipy; force and slip are of first order in dt, so 1,024 and 2,048 steps a turn are extrapolated. At the foot of a
-contact that moves on, the surface recedes at the rate of its own wear times int B^2 / h = 151 / 315, B the cubic spline
-of bins h wide; the work is taken between whole steps, of which a bin spans 43: some 1e-3.
+Inner surface: a tangential force on the casing with all of its modes is compared with the equilibrium of moments;
+this is linear algebra, 1e-7. Chords: the comparison is plane geometry, exact to rounding. Liner: a Jeffcott rotor
+in full annular rub wears its ring evenly. The normal force N(c) has a closed form. The depth w follows from dw/dt =
+k N Omega c / (2 pi R b), c = R + w, solved by scipy. Force and slip are of first order in dt, so 1,024 and 2,048
+steps a turn are extrapolated. At the foot of a moving contact, the surface recedes at the rate of its own wear
+times int B^2 / h = 151 / 315, where B is the cubic spline of bins of width h. The work is taken between whole
+steps. A bin spans 43 steps, so the error is about 1e-3.
 """
 
 from __future__ import annotations

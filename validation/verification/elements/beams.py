@@ -1,10 +1,10 @@
 """Rotating uniform and tapered beams.
 
-Frequencies are omega sqrt(rho A L^4 / EI) of a cantilever, A and I of its root, with the spin Omega in the same scale
-and the hub radius 0. A radius of gyration of 1e-4 L takes shear away where the source is an Euler-Bernoulli beam.
-Tables have four decimals (half a unit: 5e-5); 40 elements converge with order 4 there and leave less than 5e-5
-(relative to the frequency at the third mode: 2e-6). The Timoshenko beam converges with order 2, so two meshes are
-extrapolated to zero element length (Richardson).
+Frequencies are omega sqrt(rho A L^4 / EI) of a cantilever, with A and I at its root. The spin Omega has the same
+scale, and the hub radius is 0. If the source is an Euler-Bernoulli beam, a radius of gyration of 1e-4 L makes shear
+negligible. Tables have four decimals (half a unit: 5e-5). There 40 elements converge with order 4, and the error is
+below 5e-5 (relative to the frequency at the third mode: 2e-6). The Timoshenko beam converges with order 2, so two
+meshes are extrapolated to zero element length (Richardson).
 """
 
 from __future__ import annotations

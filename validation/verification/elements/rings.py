@@ -1,9 +1,9 @@
 """The casing's ring on its springs.
 
-The preset's casing without ovality, 180 nodes, in rad/s. Inextensional theory needs springs that are soft against E A
-/ R^2: 5 and 3 N/m a node, one 1e-6th of it. The polygon of 180 straight elements has a bending stiffness and a length
-that differ from the circle's by (2 pi / 180)^2 / 4 = 3e-4 at most, hence 5e-4; it falls with the square of the
-element length, which is observed.
+The preset's casing without ovality, with 180 nodes; frequencies in rad/s. Inextensional theory needs springs that
+are soft compared with E A / R^2: here 5 and 3 N/m a node, 1e-6 of it. The polygon of 180 straight elements differs
+from the circle in bending stiffness and length by at most (2 pi / 180)^2 / 4 = 3e-4, hence the tolerance of 5e-4.
+This error falls with the square of the element length, which is observed.
 """
 
 from __future__ import annotations

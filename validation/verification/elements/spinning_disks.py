@@ -1,9 +1,9 @@
 """Spinning disks: growth, membranes, and plates under centrifugal stress.
 
-The annular plate (nu = 0.3, h/a = 0.02) is clamped at b = 0.3 a and turns at Omega a^2 sqrt(rho h/D) = 4; the Ritz
-solution with polynomials in the radius is converged to its last digit shown, the elements (7 x 72) leave 1e-3 in
-bending of that thickness. What turns in a plane alone, Coriolis and spin softening of the rotary inertia, is left out
-on both sides here: the tilting disk, below, is their check.
+The annular plate (nu = 0.3, h/a = 0.02) is clamped at b = 0.3 a and turns at Omega a^2 sqrt(rho h/D) = 4. The Ritz
+solution with polynomials in the radius is converged to its last digit shown. The elements (7 x 72) have an error of
+1e-3 in bending at that thickness. Coriolis terms and spin softening of the rotary inertia are left out on both
+sides here. The tilting disk, below, checks them.
 """
 
 from __future__ import annotations

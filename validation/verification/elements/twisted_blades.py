@@ -1,9 +1,9 @@
 """Pre-twisted, tapered blades at rest and in rotation.
 
-One blade with 90 degrees of twist, tapered in chord and thickness, clamped at its root on a radius of 0.25 m. Its
-statics are exact for any number of elements. Its frequencies converge with order 2 in the element length, so 20 and
-40 elements are extrapolated to zero length (Richardson); what that leaves falls with the fourth power and is below
-1e-5.
+One blade with 90 degrees of twist, tapered in chord and thickness, is clamped at its root at a radius of 0.25 m.
+Its statics are exact for any number of elements. Its frequencies converge with order 2 in the element length, so 20
+and 40 elements are extrapolated to zero length (Richardson). The remaining error falls with the fourth power and is
+below 1e-5.
 """
 
 from __future__ import annotations

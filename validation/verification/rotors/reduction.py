@@ -1,9 +1,9 @@
 """Craig-Bampton reduction against the unreduced matrices.
 
-A coarse machine (three blades, disk of 1 x 6 elements) is small enough for dense full-model solutions; nothing but
-rounding against the penalty of the couplings is allowed there. Numbers of broken bounds are counted, with a slack of
-1e-9 for rounding. The steady growth of the preset at 15,000 rev/min is compared with a direct solve of its 14,478
-equations.
+A coarse machine (three blades, disk of 1 x 6 elements) is small enough for dense solutions of the full model. There
+the tolerance allows only rounding against the penalty of the couplings. Rows about bounds count the broken bounds,
+with a slack of 1e-9 for rounding. The steady growth of the preset at 15,000 rev/min is compared with a direct
+solution of its 14,478 equations.
 """
 
 from __future__ import annotations

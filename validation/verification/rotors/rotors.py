@@ -1,10 +1,10 @@
 """Rigid rotors: whirl, damping and unbalance seen from the turning frame.
 
-A disk of even thickness with three feather-light blades, reduced like every machine; frequencies are those of the
-inertial frame, where a forward whirl of the turning frame has the spin added and a backward one subtracted. The mesh
-of 2 x 24 elements has 1e-5 less inertia than the annulus, the disk is not quite rigid (the square of the whirl's
-frequency over the disk's own, 6e-5 for the thin one), and rounding against the couplings' penalty leaves up to 4e-5
-where supports are very soft.
+A disk of uniform thickness with three very light blades is reduced like every machine. Frequencies are given in the
+inertial frame: the spin is added to a forward whirl of the turning frame and subtracted from a backward one. The
+mesh of 2 x 24 elements has 1e-5 less inertia than the annulus. The disk is not quite rigid; the error is the square
+of the ratio of the whirl frequency to the disk's own frequency, 6e-5 for the thin disk. Rounding against the
+penalty of the couplings adds up to 4e-5 if supports are very soft.
 """
 
 from __future__ import annotations

@@ -1,10 +1,11 @@
 """A rigid rotor in a squeeze film damper.
 
-Coefficients: the pressure of a short bearing in a full film, p = 6 mu (z^2 - L^2 / 4) h' / h^3, integrated by
-quadrature. Orbit: round the centre of even springs the rotor circles with the eccentricity at which spring, inertia and
-C_tt balance the unbalance, an equation for one number; the film turns C_tt (e Omega)^2 into heat. Free whirl about the
-centre decays with the film's C_0 beside the damper; about the orbit as the eigenvalues of the two equations there say,
-differentiated by hand in polar coordinates. The rotor is that of the uneven supports.
+Coefficients: the pressure of a short bearing with a full film, p = 6 mu (z^2 - L^2 / 4) h' / h^3, is integrated by
+quadrature. Orbit: around the centre of even springs the rotor moves on a circle. At its eccentricity spring,
+inertia and C_tt balance the unbalance, which is an equation for one number. The film turns C_tt (e Omega)^2 into
+heat. Free whirl about the centre decays with the film's C_0 added to the damper. Free whirl about the orbit decays
+with the eigenvalues of its two equations, which were differentiated by hand in polar coordinates. The rotor is the
+rotor of the uneven supports.
 """
 
 from __future__ import annotations

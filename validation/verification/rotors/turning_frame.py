@@ -1,12 +1,13 @@
 """Uneven supports, a squeeze film and gravity in the turning frame, against an integration in inertial axes.
 
-A disk on lateral supports and a mass on it, held by an elastic and internally damped link that turns with it: the
-disk's supports differ along X and Y, springs and dampers, gravity pulls at both, in one case oil is squeezed about the
-disk. From rest the unbalance drives it, free at first, then in rub with the ring of the annular rub, round a centre
-that gravity has moved. The other method is scipy's on the equations in inertial axes, where supports and weight are
-constant and the link turns: DOP853 without contact; with contact LSODA with the stiff penalty of the misaligned ring,
-compared where the rub has settled (the chatter of its first blows differs between a penalty and a plastic impact).
-The scheme is of second order in dt without contact, of first order with it; two runs are extrapolated to dt = 0.
+A disk has lateral supports and carries a mass on an elastic, internally damped link that turns with it. Springs and
+dampers of the supports differ along X and Y, and gravity acts. In one case a squeeze film acts on the disk. From
+rest the unbalance drives the disk, first without contact, then in rub with the ring of the annular rub, around a
+centre that gravity has moved. The other method is scipy's, on the equations in inertial axes, where supports and
+weight are constant and the link turns. Without contact it is DOP853. With contact it is LSODA with the stiff
+penalty of the misaligned ring, compared after the rub has settled (the chatter of the first impacts differs between
+a penalty and a plastic impact). The scheme is of second order in dt without contact and of first order with
+contact; two runs are extrapolated to dt = 0.
 """
 
 from __future__ import annotations

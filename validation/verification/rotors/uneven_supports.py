@@ -1,12 +1,13 @@
 """A rigid rotor on supports that differ along X and Y, and its weight.
 
-The disk of even thickness of the rigid rotors, from a machine file's keys through the reduction to the harmonic
-balance; for runs and Floquet exponents, whose steps would follow the feather-light blades, a bare mass. In inertial
-axes X and Y are two oscillators: m x'' + c_X x' + k_X x = U Omega^2 cos(Omega t) and the same of y with sin and -m g.
-A forward circle of radius F and a backward one B make X = F + B, Y = F - B; the turning frame sees F at rest, B at
-twice the speed, the sag at once. Between the two critical speeds the backward circle is the larger. The mesh's mass is
-1e-5 below the annulus', the disk is not quite rigid; the scheme errs by (omega dt)^2 / 12 with 1,024 steps a turn, 3e-6
-at the speed itself, some 4e-5 at what is seen from the turning frame.
+The machine is the disk of uniform thickness of the rigid rotors, from the keys of a machine file through the
+reduction to the harmonic balance. Runs and Floquet exponents use a bare mass, because their steps would otherwise
+follow the very light blades. In inertial axes X and Y are two oscillators: m x'' + c_X x' + k_X x = U Omega^2
+cos(Omega t), and the same for y with sin and -m g. A forward circle of radius F and a backward circle of radius B
+make X = F + B, Y = F - B. In the turning frame F is at rest, B turns twice per revolution, and the sag once.
+Between the two critical speeds the backward circle is larger. The mass of the mesh is 1e-5 below the mass of the
+annulus, and the disk is not quite rigid. The error of the scheme is (omega dt)^2 / 12 with 1,024 steps a turn: 3e-6
+at the frequency of the spin, and about 4e-5 at the frequencies in the turning frame.
 """
 
 from __future__ import annotations
