@@ -3,11 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rubgen.fem.draw_in import draw_in_matrix, soft_draw_in
 from rubgen.machine import load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import Reduction
 from validation.contact_options.__main__ import main
+from validation.contact_options.blade_shortening import draw_in_matrix, soft_draw_in
 from validation.contact_options.chords import artefact
 from validation.contact_options.draw_in import draw_in
 

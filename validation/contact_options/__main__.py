@@ -11,11 +11,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from rubgen.fem.draw_in import soft_draw_in
 from rubgen.pipeline import Run, simulate
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario
 from rubgen.viz.figures import save_png
+from validation.contact_options.blade_shortening import soft_draw_in
 from validation.contact_options.chords import artefact
 from validation.contact_options.figures import chords_figure, liner_figure
 from validation.contact_options.page import page

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.fem.draw_in import draw_in_matrix
 from rubgen.pipeline import Run
 from rubgen.scenario import ContactLaw, Liner, Scenario, make_scenario
 from rubgen.scenario.vary import vary
 from rubgen.solver import EnergyBook, Status
 from rubgen.solver.response import WornLiner
+from validation.contact_options.blade_shortening import draw_in_matrix
 from validation.contact_options.draw_in import deflections, draw_in
 from validation.sensitivity.cases import CASES
 
