@@ -84,10 +84,6 @@ class Layout:
         """A file of the sections of as many runs as a data file has."""
         return self.sections / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
 
-    def section_shards(self) -> list[Path]:
-        """The files of sections that are there, in order."""
-        return sorted(self.sections.glob("*.parquet"))
-
     def export(self, kind: str, run_id: str) -> Path:
         """The MCAP or .rrd file of a run."""
         return self.root / FOLDERS[kind] / f"{run_id}.{kind}"

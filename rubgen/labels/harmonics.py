@@ -20,8 +20,6 @@ FOLDED_TURNS = 12
 SIDEBANDS = 2
 """Whole orders on either side of the blade passing frequency."""
 MARKED_TAP, OPPOSITE_TAP = "casing_acc_0", "casing_acc_180"
-MARKED_ORDERS = (1, 2, 3, 4, 5, 6)
-"""Orders of which `has_<k>fr` speaks."""
 RATIO = 10.0
 """20 dB above the median of the neighbourhood."""
 FLOOR = 0.1

@@ -33,17 +33,12 @@ class ReducedCasing:
     surface: CasingSurface
 
 
-def largest_casing_order(modes: int) -> int:
-    """Highest order that the first `modes` modes carry, (modes - 1) // 2, while k_t <= k_r; else `carried_orders`."""
-    return (modes - 1) // 2
-
-
 def carried_orders(machine: Machine, modes: int) -> tuple[int, ...]:
     """Circumferential orders that the first `modes` modes of the casing carry in full, ascending.
 
     Ranked by the thin inextensible circular ring on an elastic foundation, omega_n^2 =
     [E I n^2 (n^2 - 1)^2 / R^4 + k_r n^2 + k_t] / [rho A (n^2 + 1)], k_r and k_t per length: one mode of order 0, two of
-    each other. With k_t <= k_r these are 0 to `largest_casing_order`; stiffer tangential springs raise the low orders.
+    each other. With k_t <= k_r these are 0 to (modes - 1) // 2; stiffer tangential springs raise the low orders.
     """
     casing = machine.casing
     order = np.arange(max(modes, 1) + 2)

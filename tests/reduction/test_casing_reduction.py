@@ -12,7 +12,7 @@ from rubgen.errors import UserError
 from rubgen.fem.casing import assemble_casing
 from rubgen.machine.load import load_machine
 from rubgen.machine.machine import Machine
-from rubgen.reduction.casing import ReducedCasing, carried_orders, largest_casing_order, reduce_casing
+from rubgen.reduction.casing import ReducedCasing, carried_orders, reduce_casing
 
 # Zeng et al. (2019), doi 10.1016/j.ast.2019.105481.
 PUBLISHED_HZ = (180.98, 181.04, 181.05, 181.22, 181.54, 181.99, 181.99, 183.35, 183.36, 186.54, 186.54)
@@ -105,7 +105,7 @@ def test_ring_carries_orders_up_to_half_its_modes() -> None:
     spectrum = np.abs(np.fft.rfft(radial(reduced), axis=0))
     orders = np.argmax(spectrum, axis=0)[spectrum.max(axis=0) > 1e-3 * spectrum.max()]
     np.testing.assert_array_equal(np.sort(orders), [1, 1, 2, 2, 3, 3, 4, 4, 5, 5])  # the eleventh turns as a whole
-    assert carried_orders(machine(), 11) == tuple(range(largest_casing_order(11) + 1)) == (0, 1, 2, 3, 4, 5)
+    assert carried_orders(machine(), 11) == (0, 1, 2, 3, 4, 5)
 
 
 def test_pairs_of_a_circular_ring_are_oriented_to_the_lobe_axis() -> None:

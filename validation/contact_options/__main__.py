@@ -42,7 +42,7 @@ def main(arguments: Sequence[str], folder: Path) -> int:
     hits = artefact(system)
     save_png(chords_figure(hits, *_first(options, "none", "chords")), out / "contact-options-chords.png")
     save_png(liner_figure(options), out / "contact-options-liner.png")
-    factor, _ = soft_draw_in(scenario.machine.blades, scenario.machine.disk.rim_radius_m)
+    factor = soft_draw_in(scenario.machine.blades, scenario.machine.disk.rim_radius_m)
     text = page(options, heavy, hits, factor)
     (out / "contact-options.md").write_text(text, encoding="utf-8")
     return 0

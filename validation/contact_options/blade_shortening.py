@@ -31,9 +31,8 @@ def draw_in_matrix(blades: BladeRow, root_radius: float) -> tuple[FloatArray, Fl
     return np.asarray(0.5 * step * np.einsum("eci,ecj->ij", slopes, slopes)), (compliance + compliance.T) / 2
 
 
-def soft_draw_in(blades: BladeRow, root_radius: float) -> tuple[float, float]:
-    """Draw-in in 1/m where the blade is softest: for the square of its deflection, and of the tangential part of it."""
+def soft_draw_in(blades: BladeRow, root_radius: float) -> float:
+    """Draw-in where the blade is softest, over the square of the tip's deflection, in 1/m."""
     Q, compliance = draw_in_matrix(blades, root_radius)
     direction = np.linalg.eigh(compliance)[1][:, -1]
-    factor = float(direction @ Q @ direction)
-    return factor, factor / float(direction[0] ** 2)
+    return float(direction @ Q @ direction)

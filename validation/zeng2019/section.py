@@ -36,11 +36,6 @@ class Section:
         return f"python -m validation.zeng2019 --figure {self.name}"
 
 
-def no_pieces(_size: Size) -> Sequence[Piece]:
-    """For a section that needs nothing of its own."""
-    return ()
-
-
 def no_figures(_size: Size, _found: Found) -> dict[str, Figure]:
     """For a section that shows nothing."""
     return {}

@@ -24,6 +24,8 @@ PLATE_SHARE = 0.012
 """Drawn thickness of the casing over the tip radius; the true one would not be seen."""
 ROUND = 72
 BLADE_SECTIONS = 24
+COILS, COIL_WIDTH_M = 5, 0.01
+"""Of a drawn spring."""
 
 
 @dataclass(frozen=True)
@@ -236,10 +238,10 @@ def drawn_tips(machine: Machine, frames: MotionFrames, factor: float) -> FloatAr
     return np.stack([x, y], axis=-1)
 
 
-def spring(start: FloatArray, end: FloatArray, coils: int = 5, width: float = 0.01) -> FloatArray:
+def spring(start: FloatArray, end: FloatArray) -> FloatArray:
     """A zigzag (points, 3) between two points, in the plane across Z."""
-    share = np.concatenate([[0.0, 0.15], np.linspace(0.2, 0.8, 2 * coils), [0.85, 1.0]])
-    side = np.concatenate([[0.0, 0.0], width * (-1.0) ** np.arange(2 * coils), [0.0, 0.0]])
+    share = np.concatenate([[0.0, 0.15], np.linspace(0.2, 0.8, 2 * COILS), [0.85, 1.0]])
+    side = np.concatenate([[0.0, 0.0], COIL_WIDTH_M * (-1.0) ** np.arange(2 * COILS), [0.0, 0.0]])
     along = end - start
     across = np.array([-along[1], along[0], 0.0]) / np.linalg.norm(along[:2])
     return np.asarray(start + share[:, None] * along + side[:, None] * across)

@@ -11,20 +11,20 @@ from rubgen.reduction import ReducedModel
 from rubgen.viz.colors import BLUE, GREY, VERMILION
 from rubgen.viz.figures.style import INK, label_axes, new_figure
 
-SPEEDS = 121
+HIGHEST_RPM, SPEEDS = 15_000.0, 121
 BLISK_MODES, CASING_MODES = 12, 11
 HIGHEST_ORDER = 8
 
 
-def campbell(model: ReducedModel, *, highest_rpm: float = 15_000.0) -> Figure:
+def campbell(model: ReducedModel) -> Figure:
     """Campbell diagrams of the blisk, in its turning frame, and of the casing, in the ground's.
 
     In the turning frame the unbalance stands still: the critical speed is where a frequency reaches zero. What stands
     on the ground turns past with -f_r, so a casing of N lobes excites the blisk at orders kN; the blisk passes the
     casing likewise. Lines without damping and without contact.
     """
-    speeds = np.linspace(1.0, highest_rpm, SPEEDS)
-    if model.critical_speed_rpm < highest_rpm:  # there a frequency is zero, in a corner that a grid would cut
+    speeds = np.linspace(1.0, HIGHEST_RPM, SPEEDS)
+    if model.critical_speed_rpm < HIGHEST_RPM:  # there a frequency is zero, in a corner that a grid would cut
         speeds = np.union1d(speeds, model.critical_speed_rpm)
     figure = new_figure(10.0, 5.0)
     blisk, casing = figure.subplots(1, 2)

@@ -18,14 +18,14 @@ DRAWN = 0.18
 DIRECTIONS = ("radial", "tangential", "axial")
 
 
-def mode_shapes(model: ReducedModel, *, shown: int = SHOWN) -> Figure:
+def mode_shapes(model: ReducedModel) -> Figure:
     """The first modes at rest: casing above; below the tips, moved outward by their largest component.
 
     The component that is drawn is named, and its nodal diameters (ND). The tips' rings come from
     the reduced model, without damping.
     """
     figure = new_figure(10.0, 4.4)
-    rows = figure.subplots(2, shown)
+    rows = figure.subplots(2, SHOWN)
     for mode, axes in enumerate(rows[0]):
         shape = model.casing.modes_xy[..., mode]
         hertz = model.casing_frequencies_hz[mode]

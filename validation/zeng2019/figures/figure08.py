@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rubgen.machine.published import BLISK_HZ
 from validation.piece import Found, Piece
 from validation.zeng2019.drawing.style import new_figure
@@ -69,12 +67,6 @@ def figures(_size: Size, found: Found) -> dict[str, Figure]:
         axes.set_title(f"{number}: {hz[number - 1]:.2f} Hz, {NAMES[number]}", fontsize=8)
         axes.set(xlim=(-470, 470), ylim=(-470, 470))
     return {"Modes of the blisk at rest; blue and red: displacement along the axis": figure}
-
-
-def fitted_deviation(found: Found) -> float:
-    """Largest relative deviation of the fitted blisk frequencies."""
-    hz = found(reduced(KEPT))["hz"]
-    return float(max(np.abs(hz[mode - 1] / value - 1) for mode, value in BLISK_HZ.items()))
 
 
 SECTION = Section(
