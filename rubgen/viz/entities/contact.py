@@ -9,6 +9,7 @@ from rubgen.arrays import FloatArray, IntArray
 from rubgen.viz.colors import ORANGE, rgba
 from rubgen.viz.entities.signals import time_column
 from rubgen.viz.replay import Replay
+from rubgen.viz.sectors import sector_of
 
 MOST_TOUCHES = 2000
 SECTORS = 72
@@ -44,8 +45,6 @@ def send_touches(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> N
 def contact_map(replay: Replay) -> FloatArray:
     """Normal impulse (SECTORS, n_blades) in mN s by sector of the casing, the first about 0, and blade."""
     touches, blades = replay.touches, replay.scenario.machine.blades.count
-    width = 2 * np.pi / SECTORS
-    sector = np.floor(np.mod(touches.angle + width / 2, 2 * np.pi) / width).astype(np.int64) % SECTORS
-    place = sector * blades + touches.blade.astype(np.int64)
+    place = sector_of(touches.angle, SECTORS) * blades + touches.blade.astype(np.int64)
     total = np.bincount(place, weights=touches.impulse, minlength=SECTORS * blades)
     return np.asarray(1e3 * total.reshape(SECTORS, blades), dtype=np.float64)

@@ -7,17 +7,16 @@ from typing import cast
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
-from matplotlib.ticker import MaxNLocator
 
 from rubgen.machine.problems import nearest
 from rubgen.measurement.channel import Channel
 from rubgen.viz.colors import BLUE, GREY, PAPER_GREY, VERMILION
-from rubgen.viz.figures.style import INK, label_axes, new_figure, note
+from rubgen.viz.figures.contact_map import contact_map
+from rubgen.viz.figures.style import label_axes, new_figure, note
 from rubgen.viz.orders import HIGHEST_ORDER, order_map
 from rubgen.viz.replay import Replay
 from rubgen.viz.shaft_orbit import section, shaft_orbit
 
-SECTORS = 90
 WAVE_TURNS = 6
 
 
@@ -51,25 +50,12 @@ def contact_distribution(replay: Replay) -> Figure:
     grid = figure.add_gridspec(1, 2, width_ratios=[1, 1.4])
     polar = cast("PolarAxes", figure.add_subplot(grid[0, 0], projection="polar"))
     bars = figure.add_subplot(grid[0, 1])
-    width = 2 * np.pi / SECTORS
-    sector = np.floor(np.mod(touches.angle + width / 2, 2 * np.pi) / width).astype(np.int64) % SECTORS
-    around = 1e3 * np.bincount(sector, weights=touches.impulse, minlength=SECTORS) / turns
-    polar.bar(width * np.arange(SECTORS), around, width=width, color=BLUE, linewidth=0, zorder=3)
-    polar.set_xticks(np.radians(np.arange(0, 360, 45)))
-    polar.tick_params(labelsize=9, colors=INK)
-    polar.grid(color=PAPER_GREY, linewidth=0.7)
-    polar.yaxis.set_major_locator(MaxNLocator(3))
-    polar.set_rlabel_position(112.5)
-    polar.set_xlabel("Impulse a turn and 4°, mN s, over the casing's angle", fontsize=10, color=INK, labelpad=8)
+    contact_map(polar, touches.angle, touches.impulse, turns)
     blades = replay.scenario.machine.blades.count
     by_blade = 1e3 * np.bincount(touches.blade.astype(np.int64), weights=touches.impulse, minlength=blades) / turns
     bars.bar(np.arange(blades), by_blade, color=BLUE, width=0.8)
     label_axes(bars, "Blade", "Impulse a turn, mN s")
-    if around.any():
-        polar.set_rorigin(-0.6 * around.max())
-    else:
-        polar.set_yticks([])
-        note(polar, "no contact")
+    if not by_blade.any():
         note(bars, "no contact")
     return figure
 

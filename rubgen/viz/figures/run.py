@@ -8,12 +8,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
-from matplotlib.ticker import MaxNLocator
 
 from rubgen.arrays import FloatArray
 from rubgen.labels.harmonics import order_spectrum, spectrum_turns
 from rubgen.viz.colors import BLUE, GREY, PAPER_GREY, VERMILION
-from rubgen.viz.figures.style import INK, label_axes, new_figure, note
+from rubgen.viz.figures.contact_map import contact_map
+from rubgen.viz.figures.style import label_axes, new_figure, note
 
 if TYPE_CHECKING:
     from rubgen.pipeline import Run
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 ORBIT_TURNS = 30
 WAVE_TURNS = 5
 HIGHEST_ORDER = 12
-SECTORS = 90
 
 
 def overview(run: Run) -> Figure:
@@ -36,7 +35,9 @@ def overview(run: Run) -> Figure:
     grid = figure.add_gridspec(2, 2, width_ratios=[1, 1.25])
     orbit(figure.add_subplot(grid[0, 0]), run)
     waveform(figure.add_subplot(grid[0, 1]), run, "casing_acc_0")
-    contact_map(cast("PolarAxes", figure.add_subplot(grid[1, 0], projection="polar")), run)
+    events, turns = run.response.events, run.response.record_turns
+    ring = cast("PolarAxes", figure.add_subplot(grid[1, 0], projection="polar"))
+    contact_map(ring, events.angle, events.impulse, turns)
     force_spectrum(figure.add_subplot(grid[1, 1]), run)
     return figure
 
@@ -104,27 +105,3 @@ def force_spectrum(axes: Axes, run: Run) -> None:
         axes.plot(marked, heights, "o", color=color, markersize=4.5, label=f"{name} orders")
     axes.set_ylim(floor, amplitudes.max() * 4)
     axes.legend(frameon=False, loc="lower right", bbox_to_anchor=(1, 0.98), fontsize=9, ncols=2, handletextpad=0.1)
-
-
-def contact_map(axes: PolarAxes, run: Run) -> None:
-    """Normal impulse a turn by polar angle on the casing, in mN s, in sectors of 4 degrees, one about 0."""
-    events = run.response.events
-    width = 2 * np.pi / SECTORS
-    sector = np.floor(np.mod(events.angle + width / 2, 2 * np.pi) / width).astype(np.int64)
-    impulse = np.bincount(sector, weights=events.impulse, minlength=SECTORS)
-    per_turn = 1e3 * impulse / run.response.record_turns
-    axes.bar(width * np.arange(SECTORS), per_turn, width=width, color=BLUE, linewidth=0, zorder=3)
-    axes.set_xticks(np.radians(np.arange(0, 360, 45)))
-    axes.tick_params(labelsize=9, colors=INK)
-    axes.grid(color=PAPER_GREY, linewidth=0.7)
-    axes.spines[["polar", "inner"]].set_color(GREY)
-    axes.set_rlabel_position(112.5)
-    axes.yaxis.set_major_locator(MaxNLocator(3))
-    axes.set_xlabel(
-        "Contact impulse in a turn and 4°, mN s, over the casing's angle", fontsize=10, color=INK, labelpad=8
-    )
-    if per_turn.any():
-        axes.set_rorigin(-0.6 * per_turn.max())  # a ring: near a point no sector could be told from its neighbour
-    else:
-        axes.set_yticks([])
-        note(axes, "no contact")
