@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 from rubgen.machine import Machine
 from rubgen.reduction import reduce
 from rubgen.scenario import Reduction
+from rubgen.units import rad_per_s
 
 ONSET_RPM = 6720.0
 END_OF_RUB_RPM = 10000.0
@@ -27,7 +28,7 @@ def tip_growth(machine: Machine, speed_rpm: float) -> float:
     max_k |P_k| - tip radius, P_k from the steady centrifugal field and the static solve K(Omega) q = Omega^2 U e_x in
     the turning frame. Blades meet the casing when it exceeds the clearance, since each tip passes the smallest gap.
     """
-    system = reduce(machine, Reduction()).at_speed(speed_rpm * np.pi / 30)
+    system = reduce(machine, Reduction()).at_speed(rad_per_s(speed_rpm))
     q = np.linalg.solve(system.K, system.force)
     u = system.tip_static + q[: system.centre].reshape(-1, 3)
     return float(np.hypot(system.tip_radius + u[:, 0], u[:, 1]).max()) - system.tip_radius

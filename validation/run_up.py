@@ -15,8 +15,8 @@ from rubgen.machine import Machine, load_machine
 from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import ContactLaw, Operation, Reduction
 from rubgen.solver.integrate import integrate
+from rubgen.units import rad_per_s, rev_per_min
 
-RPM = np.pi / 30
 START_RPM, END_RPM = 6400.0, 6950.0
 RATES_RPM_PER_S = (250.0, 500.0, 1000.0, 2000.0, 4000.0)
 SETTLE_TURNS = 100
@@ -51,7 +51,9 @@ def reach(model: ReducedModel, speed: float, acceleration: float) -> float:
 def predicted_onset(model: ReducedModel, rate: float) -> float:
     """Speed in rev/min at which the tips reach the smallest gap at a `rate` in rev/min/s; 0 is the steady onset."""
     clearance = model.machine.casing.clearance_m
-    return float(brentq(lambda rpm: reach(model, rpm * RPM, rate * RPM) - clearance, START_RPM, END_RPM, xtol=1e-6))
+    return float(
+        brentq(lambda rpm: reach(model, rad_per_s(rpm), rad_per_s(rate)) - clearance, START_RPM, END_RPM, xtol=1e-6)
+    )
 
 
 def run_up_onset(model: ReducedModel, rate: float) -> Onset:
@@ -75,7 +77,7 @@ def run_up_onset(model: ReducedModel, rate: float) -> Onset:
     wait = 60 / predicted / model.machine.casing.lobes
     return Onset(
         rate=rate,
-        measured=float(response.course.rotation.speed(first)) / RPM,
+        measured=rev_per_min(float(response.course.rotation.speed(first))),
         predicted=predicted,
         latest=predicted + rate * wait,
     )

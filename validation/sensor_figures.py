@@ -28,6 +28,7 @@ from rubgen.sensors.load import load_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
 from rubgen.solver import Response
 from rubgen.solver.integrate import integrate
+from rubgen.units import rad_per_s
 from rubgen.viz.colors import BLUE, VERMILION
 from rubgen.viz.figures import save_png
 
@@ -167,7 +168,7 @@ def main(directory: Path) -> None:
 
     machine = load_machine("zeng2019")
     for rpm in (60.0, SPEED_RPM):
-        for name, (reduced, full) in held_load(reduce(machine, Reduction()), rpm * np.pi / 30).items():
+        for name, (reduced, full) in held_load(reduce(machine, Reduction()), rad_per_s(rpm)).items():
             _say(f"{HELD_N:g} N held on a tip at {rpm:g} rev/min: {name} {reduced:.4g}, full {full:.4g}")
 
     sensing = Sensing(set=load_sensor_set("rig"))

@@ -10,6 +10,7 @@ from rubgen.labels import Labels
 from rubgen.labels.labels import Motion
 from rubgen.pipeline import Run
 from rubgen.solver import Status
+from rubgen.units import rev_per_min
 
 MOST_ZONES = 4
 """Zones that are listed one by one."""
@@ -28,7 +29,7 @@ def run_summary(run: Run) -> Iterator[tuple[str, str]]:
 
 def _course_of_run(run: Run) -> str:
     operation, response = run.scenario.operation, run.response
-    speed = f"{operation.speed_rad_per_s * 30 / math.pi:,.6g} rev/min"
+    speed = f"{rev_per_min(operation.speed_rad_per_s):,.6g} rev/min"
     if operation.profile != "steady":
         speed = f"{operation.profile} from {speed}"
     if operation.end_speed_rpm is not None:
@@ -105,4 +106,4 @@ def _speeds(labels: Labels) -> Iterator[tuple[str, str]]:
 
 
 def _rpm(speed: float | None) -> str:
-    return "none" if speed is None else f"{speed * 30 / math.pi:,.5g} rev/min"
+    return "none" if speed is None else f"{rev_per_min(speed):,.5g} rev/min"

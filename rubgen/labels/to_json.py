@@ -13,6 +13,7 @@ from rubgen.labels.label import label
 from rubgen.labels.labels import Labels, Motion
 from rubgen.labels.speed_history import CourseLabels
 from rubgen.labels.windows import Windows
+from rubgen.units import rev_per_min
 
 CLASSES = list(Motion)
 """Classes of motion by their number in `change_motion_classes`."""
@@ -137,7 +138,7 @@ def _window_labels(windows: Windows | None) -> dict[str, object]:
 
 
 def _rpm(speed: float | None) -> float | None:
-    return None if speed is None else _number(speed * 30 / math.pi)
+    return None if speed is None else _number(rev_per_min(speed))
 
 
 def _order_labels(labels: Labels, tap: str) -> dict[str, object]:

@@ -22,6 +22,7 @@ from rubgen.reduction.damping import elastic_damping, support_damping
 from rubgen.reduction.model import Recovery, SpinningSystem, TurningForces
 from rubgen.scenario import Reduction
 from rubgen.scenario.costs import reduction_problem
+from rubgen.units import rev_per_min
 
 # e_z x on the translations and rotations of O_d.
 S6 = np.kron(np.eye(2), np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]))
@@ -206,7 +207,7 @@ class ReducedModel:
         centre = 3 * self.machine.blades.count
         share = self.springs[0] * (modes[centre] ** 2 + modes[centre + 1] ** 2)
         lateral = np.argmax(np.where(inverse_squares > 0, share, 0.0))
-        return float(30 / np.pi / np.sqrt(inverse_squares[lateral]))
+        return rev_per_min(float(1 / np.sqrt(inverse_squares[lateral])))
 
 
 def rigid_shifts(blades: int, size: int) -> FloatArray:

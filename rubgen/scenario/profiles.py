@@ -9,7 +9,8 @@ from rubgen.errors import UserError
 from rubgen.machine.problems import key_name
 from rubgen.machine.quantities import Place
 from rubgen.machine.toml_text import toml_text
-from rubgen.scenario.scenario import RPM, Operation, ProfileName
+from rubgen.scenario.scenario import Operation, ProfileName
+from rubgen.units import rev_per_min
 
 PROFILES_OF: dict[str, tuple[ProfileName, ...]] = {
     "end_speed_rpm": ("run-up", "coast-down"),
@@ -75,7 +76,7 @@ def _value_problem(operation: Operation) -> str | None:
 
 def _band_problem(operation: Operation) -> str | None:
     rotation = operation.rotation
-    slowest, fastest = rotation.slowest / RPM, rotation.fastest / RPM
+    slowest, fastest = rev_per_min(rotation.slowest), rev_per_min(rotation.fastest)
     for low, high in operation.forbidden_speed_rpm:
         if low > high:
             return f"forbidden_speed_rpm = [{low:g}, {high:g}]: the lower end comes first; swap the two"

@@ -37,9 +37,8 @@ from rubgen.machine.quantities import (
 from rubgen.scenario.rotation import Rotation
 from rubgen.sensors.load import default_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
+from rubgen.units import rad_per_s
 
-RPM = 0.10471975511965977
-"""One rev/min in rad/s, 2 pi / 60."""
 ProfileName = Literal["steady", "run-up", "coast-down", "fluctuating"]
 
 
@@ -83,10 +82,10 @@ class Operation:
     def rotation(self) -> Rotation:
         """Speed and angle over time, t = 0 at the start of the record."""
         return Rotation(
-            start=self.speed_rpm * RPM,
-            end=(self.end_speed_rpm or self.speed_rpm) * RPM,
+            start=rad_per_s(self.speed_rpm),
+            end=rad_per_s(self.end_speed_rpm or self.speed_rpm),
             seconds=self.duration_s or 1.0,
-            swing=self.fluctuation_rpm * RPM,
+            swing=rad_per_s(self.fluctuation_rpm),
             period=self.fluctuation_period_s,
         )
 
@@ -108,7 +107,7 @@ class Operation:
     @property
     def speed_rad_per_s(self) -> float:
         """Spin speed Omega in rad/s."""
-        return self.speed_rpm * RPM
+        return rad_per_s(self.speed_rpm)
 
     @property
     def rotation_frequency_hz(self) -> float:

@@ -13,6 +13,7 @@ from rubgen.measurement.channel import Recording
 from rubgen.measurement.contact_window import ContactIntervals, contact_intervals
 from rubgen.measurement.motion_frames import MotionFrames, motion_frames
 from rubgen.scenario import Scenario
+from rubgen.units import rev_per_min
 
 if TYPE_CHECKING:
     from rubgen.labels.labels import Labels
@@ -38,10 +39,10 @@ class Replay:
     def title(self) -> str:
         """Run, machine and speed, or the speeds between which the run goes."""
         rotation = self.scenario.operation.rotation
-        start, end = (f"{speed * 30 / np.pi:,.0f}" for speed in (rotation.start, rotation.end))
+        start, end = (f"{rev_per_min(speed):,.0f}" for speed in (rotation.start, rotation.end))
         speed = start if start == end else f"{start} to {end}"
         if rotation.swing:
-            speed += f" ± {abs(rotation.swing) * 30 / np.pi:,.0f}"
+            speed += f" ± {rev_per_min(abs(rotation.swing)):,.0f}"
         return f"{self.scenario.run_id}: {self.scenario.machine.name} at {speed} rev/min"
 
     @property

@@ -8,6 +8,7 @@ from rubgen import make_scenario, simulate
 from rubgen.io.mcap import check_mcap, write_mcap
 from rubgen.io.parquet.read import read_table
 from rubgen.io.parquet.write import write_parquet
+from rubgen.units import rev_per_min
 
 ONSET_RPM = 6720.0
 
@@ -23,7 +24,7 @@ def run():
 
 def test_rub_begins_at_the_steady_onset(run):
     """The preset is fitted to 6,720 rev/min; the tips' whirl lags the speed by some 1 / (2 zeta f), 5 ms: 3 rev/min."""
-    assert run.labels.course.onset_speed * 30 / np.pi == pytest.approx(ONSET_RPM, abs=10)
+    assert rev_per_min(run.labels.course.onset_speed) == pytest.approx(ONSET_RPM, abs=10)
     assert [change.rub for change in run.labels.course.changes] == [False, True]
     assert run.response.energy.residual < 1e-8
 

@@ -10,6 +10,7 @@ from rubgen.labels.to_json import labels_dict
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver.integrate import integrate
 from rubgen.solver.response import Response
+from rubgen.units import rev_per_min
 from validation.verification.rotors.jeffcott import jeffcott_system
 
 Respond = Callable[..., Response]
@@ -18,7 +19,7 @@ Respond = Callable[..., Response]
 @pytest.fixture(scope="module")
 def rub() -> Response:
     system = jeffcott_system()
-    operation = Operation(speed_rpm=system.speed * 30 / np.pi, record_turns=64, steps_per_turn=256, settle_turns=60)
+    operation = Operation(speed_rpm=rev_per_min(system.speed), record_turns=64, steps_per_turn=256, settle_turns=60)
     return integrate(system, operation, ContactLaw(friction=0.1), twin=True)
 
 

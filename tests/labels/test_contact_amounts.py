@@ -12,7 +12,7 @@ from rubgen.labels.motion.whirl import Whirl, WhirlDirection, whirl
 from rubgen.labels.to_json import labels_dict
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver.integrate import integrate
-from rubgen.units import STANDARD_GRAVITY
+from rubgen.units import STANDARD_GRAVITY, rev_per_min
 from validation.verification.rotors.jeffcott import CLEARANCE, FRICTION, ROTOR_MASS, SPEED, annular_rub, jeffcott_system
 
 
@@ -44,7 +44,7 @@ def test_what_is_not_known_is_null_and_without_contact_there_is_none(respond):
 
 def test_an_annular_rub_has_its_closed_form(respond):
     """A Jeffcott rotor that touches all the way round: force and friction work known, first order in dt."""
-    operation = Operation(speed_rpm=SPEED * 30 / np.pi, record_turns=64, steps_per_turn=1024, settle_turns=150)
+    operation = Operation(speed_rpm=rev_per_min(SPEED), record_turns=64, steps_per_turn=1024, settle_turns=150)
     run = integrate(jeffcott_system(), operation, ContactLaw(friction=FRICTION))
     found = amounts(replace(run, blisk_mass=ROTOR_MASS))
     assert found.extent is RubExtent.FULL_ANNULAR

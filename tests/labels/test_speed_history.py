@@ -15,6 +15,7 @@ from rubgen.labels.windows import windows
 from rubgen.scenario.rotation import Rotation
 from rubgen.solver.observers.orders import turn_orders
 from rubgen.solver.response import Course
+from rubgen.units import rev_per_min
 
 TURNS, STEPS = 80, 256
 ROTATION = Rotation(start=800.0, end=1200.0, seconds=0.502)
@@ -101,7 +102,7 @@ def test_the_labels_of_the_record_hold_its_course(ramp):
     assert 2 in labels.orders_present
     plain = labels_dict(labels)
     assert plain["change_rub"] == [0, 1, 0]
-    assert plain["onset_speed_rpm"] == pytest.approx(labels.course.onset_speed * 30 / np.pi)
+    assert plain["onset_speed_rpm"] == pytest.approx(rev_per_min(labels.course.onset_speed))
     assert plain["window_rub"] == [0, 1, 1, 1, 0]
     amplitudes = np.reshape(window_amplitudes(labels)["casing_acc_0_window_amplitudes"], (5, 20))
     np.testing.assert_allclose(amplitudes, labels.windows.orders["casing_acc_0"], rtol=1e-7)

@@ -12,8 +12,8 @@ from rubgen.machine import Mistuning
 from rubgen.reduction import cache, reduce
 from rubgen.reduction.blisk import reduce_blisk
 from rubgen.scenario import Reduction
+from rubgen.units import rad_per_s
 
-RPM = np.pi / 30
 PATTERN = (0.05, -0.03, 0.01)
 
 
@@ -96,7 +96,7 @@ def test_few_modes_are_as_near_to_the_full_model_as_with_equal_blades(small):
 @pytest.mark.parametrize(("rpm", "growth_error", "load_error"), [(1000, 1e-9, 1e-8), (15000, 1e-8, 5e-5)])
 def test_each_tips_growth_and_the_unbalance_of_it_are_the_full_models(preset, scattered, rpm, growth_error, load_error):
     """Growth with O_d held, and what the reduced model adds under the load that held it, against direct solutions."""
-    machine, speed, springs = scattered.machine, rpm * RPM, support_stiffness(preset.disk_support)
+    machine, speed, springs = scattered.machine, rad_per_s(rpm), support_stiffness(preset.disk_support)
     full = assemble_blisk(machine.disk, machine.blades, machine.disk_support)
     K = (on_springs(full.K, springs) + speed**2 * (full.K_sigma - full.S)).tocsr()
     tips = full.tips[:, :3]

@@ -11,8 +11,8 @@ from rubgen.fem.statics import factorize, on_springs, support_stiffness
 from rubgen.reduction import reduce
 from rubgen.reduction.blisk import reduce_blisk
 from rubgen.scenario import Reduction
+from rubgen.units import rad_per_s
 
-RPM = np.pi / 30
 UNDAMPED = {"lateral": 0.0, "tilt": 0.0, "axial": 0.0, "torsion": 0.0, "blade": 0.0, "casing": 0.0}
 
 
@@ -45,7 +45,7 @@ def test_critical_speed_is_where_the_unbalance_response_changes_sign(preset, mod
     assert 8100 < critical < 8910  # region III of the paper
     assert critical == pytest.approx(8785, rel=2e-3)  # independent model
     undamped = reduce(replace(preset, damping=replace(preset.damping, **UNDAMPED)), Reduction())
-    responses = [undamped.at_speed(speed * critical * RPM) for speed in (0.9999, 1.0001)]
+    responses = [undamped.at_speed(rad_per_s(speed * critical)) for speed in (0.9999, 1.0001)]
     below, above = (np.linalg.solve(s.K, s.force)[s.centre] for s in responses)
     assert below > 0.01 > -0.01 > above
 
@@ -61,7 +61,7 @@ def test_critical_support_stiffness_at_10000_rpm(preset):
 )
 def test_unbalance_response_agrees_with_the_independent_model(preset, stiffness, rpm, expected):
     undamped = replace(preset, unbalance_kg_m=1.0, damping=replace(preset.damping, **UNDAMPED))
-    system = reduce(on_lateral_springs(undamped, stiffness), Reduction()).at_speed(rpm * RPM)
+    system = reduce(on_lateral_springs(undamped, stiffness), Reduction()).at_speed(rad_per_s(rpm))
     q = np.linalg.solve(system.K, system.force)
     assert q[system.centre] == pytest.approx(expected, rel=1e-2)
     assert abs(q[system.centre + 1]) < 1e-9
@@ -71,7 +71,7 @@ def test_unbalance_response_agrees_with_the_independent_model(preset, stiffness,
 
 @pytest.mark.parametrize(("rpm", "growth_um"), [(6720, 109.6), (10000, 242.8), (15000, 546.6)])
 def test_steady_growth_agrees_with_the_independent_model(model, rpm, growth_um):
-    static = model.at_speed(rpm * RPM).tip_static
+    static = model.at_speed(rad_per_s(rpm)).tip_static
     np.testing.assert_allclose(static[:, 0], growth_um * 1e-6, rtol=3e-3)
     np.testing.assert_allclose(static[:, 1:], 0.0, atol=1e-12)
 
@@ -81,7 +81,7 @@ def test_steady_growth_is_the_full_models_direct_solution(preset, rpm, request):
     machine = preset if rpm == 15000 else request.getfixturevalue("small")
     full = assemble_blisk(machine.disk, machine.blades, machine.disk_support)
     A, springs = full.K_sigma - full.S, support_stiffness(machine.disk_support)
-    speed = rpm * RPM
+    speed = rad_per_s(rpm)
     direct = factorize((on_springs(full.K, springs) + speed**2 * A).tocsr()).solve(speed**2 * full.f_c)
     tips = direct[full.tips[:, :3]]
     found = reduce(machine, Reduction(blisk_modes=2)).at_speed(speed).tip_static

@@ -9,6 +9,7 @@ from scipy.linalg import block_diag, eigvals
 from rubgen.machine import Damping, DiskSupport
 from rubgen.reduction import reduce
 from rubgen.scenario import Reduction
+from rubgen.units import rad_per_s
 
 NO_DAMPING = Damping(lateral=0, tilt=0, axial=0, torsion=0, blade=0, casing=0)
 
@@ -149,4 +150,4 @@ def test_modes_of_the_preset_have_their_damping_ratios(preset):
 
 @pytest.mark.parametrize("rpm", [100, 6000, 12500, 15000])
 def test_preset_is_stable_at_speed(preset, rpm):
-    assert slowest(reduce(preset, Reduction()).at_speed(rpm * np.pi / 30), 250).real.max() < -1.0
+    assert slowest(reduce(preset, Reduction()).at_speed(rad_per_s(rpm)), 250).real.max() < -1.0

@@ -10,6 +10,7 @@ from rubgen.machine import SqueezeFilm
 from rubgen.reduction.model import CasingSurface, SpinningSystem, TurningForces
 from rubgen.reduction.reduced import rigid_shifts
 from rubgen.scenario import Operation
+from rubgen.units import rev_per_min
 
 Build = Callable[..., SpinningSystem]
 
@@ -151,7 +152,7 @@ def build_operation(
     system: SpinningSystem, record_turns: int = 100, steps_per_turn: int = 256, settle_turns: int | str = "auto"
 ) -> Operation:
     return Operation(
-        speed_rpm=system.speed * 30 / np.pi,
+        speed_rpm=rev_per_min(system.speed),
         record_turns=record_turns,
         steps_per_turn=steps_per_turn,
         settle_turns=settle_turns,

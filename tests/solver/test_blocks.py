@@ -16,6 +16,7 @@ from rubgen.solver.linear.system_blocks import system_blocks
 from rubgen.solver.scheme.central_difference import scheme
 from rubgen.solver.scheme.free_step_kernels import free_step
 from rubgen.solver.speed.start import rub_free_stepper
+from rubgen.units import rad_per_s
 from validation.reference_step import ReferenceStepper
 
 
@@ -36,7 +37,7 @@ def sizes(system):
 
 @pytest.fixture(scope="module")
 def preset():
-    return reduce(load_machine("zeng2019"), Reduction()).at_speed(6900.0 * np.pi / 30)
+    return reduce(load_machine("zeng2019"), Reduction()).at_speed(rad_per_s(6900.0))
 
 
 def test_the_preset_falls_into_nodal_diameters(preset):

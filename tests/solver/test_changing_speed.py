@@ -15,8 +15,8 @@ from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
 from rubgen.solver.speed import driver
+from rubgen.units import rev_per_min
 
-RPM = np.pi / 30
 MASS, STIFFNESS, UNBALANCE = 10.0, 1e7, 2e-4
 CRITICAL = np.sqrt(STIFFNESS / MASS)
 
@@ -90,7 +90,7 @@ def record_taps(response):
 def test_a_rotor_passes_its_critical_speed_as_in_the_inertial_frame(start, end):
     profile = "run-up" if end > start else "coast-down"
     operation = Operation(
-        profile=profile, speed_rpm=start / RPM, end_speed_rpm=end / RPM, duration_s=0.6, settle_turns=3
+        profile=profile, speed_rpm=rev_per_min(start), end_speed_rpm=rev_per_min(end), duration_s=0.6, settle_turns=3
     )
     response = run_jeffcott(operation, 0.02)
     rotation, dt = response.course.rotation, response.dt
@@ -109,7 +109,7 @@ def test_a_rotor_passes_its_critical_speed_as_in_the_inertial_frame(start, end):
 def test_the_track_holds_the_true_motion_of_whole_turns():
     """Without contact the first eight turns of the signals; each part of a turn gives its share of frames."""
     operation = Operation(
-        profile="run-up", speed_rpm=700 / RPM, end_speed_rpm=1300 / RPM, duration_s=0.3, settle_turns=3
+        profile="run-up", speed_rpm=rev_per_min(700), end_speed_rpm=rev_per_min(1300), duration_s=0.3, settle_turns=3
     )
     build = jeffcott_at(0.02)
     start = build(operation.speed_rad_per_s, 0.0)
@@ -155,7 +155,7 @@ def test_the_track_holds_the_true_motion_of_whole_turns():
 def test_the_growth_of_the_tips_in_the_track_follows_the_speed():
     """Made to be 1 nm (rad/s)^-2 Omega^2; a part of a turn stands for speeds within 0.02 %."""
     operation = Operation(
-        profile="run-up", speed_rpm=700 / RPM, end_speed_rpm=1300 / RPM, duration_s=0.6, settle_turns=3
+        profile="run-up", speed_rpm=rev_per_min(700), end_speed_rpm=rev_per_min(1300), duration_s=0.6, settle_turns=3
     )
     build = jeffcott_at(0.02)
 
@@ -172,7 +172,7 @@ def test_the_growth_of_the_tips_in_the_track_follows_the_speed():
 def test_without_damping_the_peak_lags_by_what_the_fresnel_integral_says():
     """A' = e Omega^2 / (2 i omega) exp(i alpha t^2 / 2): the peak is at w = 1.2172, alpha t^2 = pi w^2."""
     operation = Operation(
-        profile="run-up", speed_rpm=800 / RPM, end_speed_rpm=1200 / RPM, duration_s=1.0, settle_turns=3
+        profile="run-up", speed_rpm=rev_per_min(800), end_speed_rpm=rev_per_min(1200), duration_s=1.0, settle_turns=3
     )
     response = run_jeffcott(operation, 1e-5)
     rotation, orbit = response.course.rotation, record_taps(response)
@@ -188,7 +188,7 @@ def test_without_damping_the_peak_lags_by_what_the_fresnel_integral_says():
 
 def test_the_section_is_taken_where_theta_is_0_between_the_steps():
     operation = Operation(
-        profile="run-up", speed_rpm=700 / RPM, end_speed_rpm=1300 / RPM, duration_s=0.3, settle_turns=3
+        profile="run-up", speed_rpm=rev_per_min(700), end_speed_rpm=rev_per_min(1300), duration_s=0.3, settle_turns=3
     )
     response = run_jeffcott(operation, 0.02)
     rotation = response.course.rotation
@@ -205,7 +205,7 @@ def test_the_section_is_taken_where_theta_is_0_between_the_steps():
 
 def test_the_error_of_parts_falls_with_the_square_of_their_length(monkeypatch):
     operation = Operation(
-        profile="run-up", speed_rpm=700 / RPM, end_speed_rpm=1000 / RPM, duration_s=0.8, settle_turns=3
+        profile="run-up", speed_rpm=rev_per_min(700), end_speed_rpm=rev_per_min(1000), duration_s=0.8, settle_turns=3
     )
     ends = []
     for share in (2e-4, 4e-4, 8e-4):
@@ -234,15 +234,15 @@ def small_at(small_system, **options):
 def test_the_slower_the_ramp_the_nearer_to_the_steady_run(small_system):
     build = small_at(small_system, clearance=5e-5, casing_damping=0.4)
     law = ContactLaw(friction=0.1)
-    steady = Operation(speed_rpm=400 / RPM, record_turns=40, steps_per_turn=256)
+    steady = Operation(speed_rpm=rev_per_min(400), record_turns=40, steps_per_turn=256)
     expected = integrate(build(400.0, 0.0), steady, law)
     assert expected.contact_steps_per_turn.min() > 0
     errors = []
     for rise in (1e-7, 1e-6):
         ramp = Operation(
             profile="run-up",
-            speed_rpm=400 / RPM,
-            end_speed_rpm=400 * (1 + rise) / RPM,
+            speed_rpm=rev_per_min(400),
+            end_speed_rpm=rev_per_min(400 * (1 + rise)),
             duration_s=2 * np.pi * 39.5 / 400,
             steps_per_turn=256,
         )
@@ -257,15 +257,15 @@ def test_the_slower_the_ramp_the_nearer_to_the_steady_run(small_system):
 @pytest.mark.parametrize(
     "keys",
     [
-        {"profile": "run-up", "end_speed_rpm": 480 / RPM},
-        {"profile": "coast-down", "end_speed_rpm": 330 / RPM},
-        {"profile": "fluctuating", "fluctuation_rpm": 20 / RPM, "fluctuation_period_s": 0.2},
+        {"profile": "run-up", "end_speed_rpm": rev_per_min(480)},
+        {"profile": "coast-down", "end_speed_rpm": rev_per_min(330)},
+        {"profile": "fluctuating", "fluctuation_rpm": rev_per_min(20), "fluctuation_period_s": 0.2},
     ],
 )
 @pytest.mark.parametrize("restitution", [0.0, 0.5])
 def test_the_energy_identity_holds_while_the_speed_changes_and_blades_rub(small_system, keys, restitution):
     build = small_at(small_system, clearance=5e-5)
-    operation = Operation(speed_rpm=400 / RPM, duration_s=0.6, steps_per_turn=256, settle_turns=50, **keys)
+    operation = Operation(speed_rpm=rev_per_min(400), duration_s=0.6, steps_per_turn=256, settle_turns=50, **keys)
     law = ContactLaw(friction=0.1, restitution=restitution)
     response = integrate(build(400.0, 0.0), operation, law, system_at=build)
     assert response.status is Status.OK
@@ -284,7 +284,7 @@ def test_an_angular_acceleration_bends_the_blades_back(small_system):
     """Damped out, the blades follow K(Omega, Omega') q = force(Omega, Omega'): f_t / k behind the unloaded place."""
     build = small_at(small_system, clearance=3e-3, unbalance=0.0)
     operation = Operation(
-        profile="run-up", speed_rpm=400 / RPM, end_speed_rpm=500 / RPM, duration_s=1.0, steps_per_turn=256
+        profile="run-up", speed_rpm=rev_per_min(400), end_speed_rpm=rev_per_min(500), duration_s=1.0, steps_per_turn=256
     )
     response = integrate(build(400.0, 0.0), operation, ContactLaw(), system_at=build)
     tangential = response.section_q[:, 1:18:3]
@@ -297,7 +297,7 @@ def test_a_speed_at_which_the_system_grows_by_itself_is_refused(small_system):
     def build(speed, _):
         return small_system(speed=speed, lateral_damping=0.1 if speed < 450 else -0.01)
 
-    operation = Operation(profile="run-up", speed_rpm=400 / RPM, end_speed_rpm=500 / RPM, duration_s=0.2)
+    operation = Operation(profile="run-up", speed_rpm=rev_per_min(400), end_speed_rpm=rev_per_min(500), duration_s=0.2)
     response = integrate(build(400.0, 0), operation, ContactLaw(), system_at=build)
     assert response.status is Status.UNSTABLE
     assert "1/s at 4" in response.reason or "1/s at 5" in response.reason
@@ -305,9 +305,9 @@ def test_a_speed_at_which_the_system_grows_by_itself_is_refused(small_system):
 
 def test_what_is_missing_for_a_changing_speed_is_said(small_system):
     system = small_system()
-    operation = Operation(profile="run-up", speed_rpm=400 / RPM, end_speed_rpm=500 / RPM, duration_s=0.2)
+    operation = Operation(profile="run-up", speed_rpm=rev_per_min(400), end_speed_rpm=rev_per_min(500), duration_s=0.2)
     with pytest.raises(ValueError, match="needs system_at"):
         integrate(system, operation, ContactLaw())
-    bad = Operation(profile="run-up", speed_rpm=400 / RPM, duration_s=0.2)
+    bad = Operation(profile="run-up", speed_rpm=rev_per_min(400), duration_s=0.2)
     with pytest.raises(UserError, match=r"operation\.end_speed_rpm: .* add it"):
         integrate(system, bad, ContactLaw())

@@ -6,8 +6,7 @@ from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
 from rubgen.solver.scheme.stepper import Stepper
 from rubgen.solver.speed.interpolation import Following, chebyshev_speeds, lagrange_weights
-
-RPM = np.pi / 30
+from rubgen.units import rad_per_s
 
 
 def test_lagrange_weights_give_back_a_polynomial():
@@ -22,11 +21,11 @@ def test_lagrange_weights_give_back_a_polynomial():
 @pytest.mark.parametrize("acceleration", [0.0, -210.0])
 def test_interpolated_matrices_are_those_made_at_that_speed(acceleration):
     model = reduce(load_machine("zeng2019"), Reduction())
-    speeds = chebyshev_speeds(3000 * RPM, 12000 * RPM)
+    speeds = chebyshev_speeds(rad_per_s(3000), rad_per_s(12000))
     alike = [model.at_speed(speed, push) for speed in (speeds[0], speeds[-1]) for push in (0.0, 300.0)]
     stepper = Stepper(alike[2], ContactLaw(), 1024, alike=alike)
     following = Following(lambda *at: stepper.part_of(model.at_speed(*at)), speeds, 300.0)
-    wanted = np.array([3333.0, 7654.3, 11900.0]) * RPM
+    wanted = rad_per_s(np.array([3333.0, 7654.3, 11900.0]))
     for speed, part in zip(wanted, following.at(wanted, np.full(3, acceleration)), strict=True):
         exact = stepper.part_of(model.at_speed(speed, acceleration))
         for name in ("now", "before", "inverse", "constant"):

@@ -6,6 +6,7 @@ from rubgen import make_scenario
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
 from rubgen.solver.speed.start import rub_free_stepper
+from rubgen.units import rad_per_s
 from validation.reference_step import ReferenceStepper, differentiation_matrix
 
 
@@ -50,7 +51,7 @@ def test_fifty_turns_restarted_from_plain_numpy(small_system, lobes, speed, fric
 def test_the_preset_agrees_with_plain_numpy(rpm, support, friction):
     """Five turns each; `make bench` holds 50 turns of the first two and of heavy rub to the same bound."""
     scenario = make_scenario("zeng2019", speed_rpm=rpm, disk_support_stiffness_n_per_m=support)
-    system = reduce(scenario.machine, Reduction()).at_speed(rpm * np.pi / 30)
+    system = reduce(scenario.machine, Reduction()).at_speed(rad_per_s(rpm))
     with threadpool_limits(1):
         worst, touched = compare_turns(system, friction, 1024, 5, 2e-4)
     assert touched > 50

@@ -10,9 +10,9 @@ from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
 from rubgen.solver.integrate import integrate
 from rubgen.solver.linear.rub_free import free_penetration, rub_free_motion
+from rubgen.units import rad_per_s
 from validation.run_up import predicted_onset, reach
 
-RPM = np.pi / 30
 SMOOTH = ContactLaw()
 
 
@@ -28,10 +28,12 @@ def penetration(system, contact=SMOOTH):
 def test_penetration_is_the_reach_beyond_the_clearance_and_begins_with_rub(preset):
     clearance = preset.machine.casing.clearance_m
     for rpm in (6000.0, 8500.0):
-        expected = reach(preset, rpm * RPM, 0.0) - clearance
-        assert penetration(preset.at_speed(rpm * RPM)) == pytest.approx(expected, abs=2e-9)
+        expected = reach(preset, rad_per_s(rpm), 0.0) - clearance
+        assert penetration(preset.at_speed(rad_per_s(rpm))) == pytest.approx(expected, abs=2e-9)
     onset = predicted_onset(preset, 0.0)
-    assert penetration(preset.at_speed((onset - 0.1) * RPM)) < 0 < penetration(preset.at_speed((onset + 0.1) * RPM))
+    assert (
+        penetration(preset.at_speed(rad_per_s(onset - 0.1))) < 0 < penetration(preset.at_speed(rad_per_s(onset + 0.1)))
+    )
 
 
 @pytest.mark.parametrize("case", ["gravity", "springs"])

@@ -8,6 +8,7 @@ import pytest
 from rubgen.labels import label
 from rubgen.reduction import reduce
 from rubgen.solver.integrate import integrate
+from rubgen.units import rad_per_s
 from validation.rows import read_rows
 from validation.sensitivity import __main__ as command
 from validation.sensitivity import outcome as outcome_module
@@ -62,7 +63,7 @@ def test_growth_is_that_without_contact(short, rub):
     122.7 kg, which 143.65 Hz on 1e8 N/m give.
     """
     speed, k = short.operation.speed_rad_per_s, 2e8
-    critical = rub.critical_speed_rpm * math.pi / 30
+    critical = rad_per_s(rub.critical_speed_rpm)
     drag = 2 * short.machine.damping.lateral * math.sqrt(k * 122.7) * speed
     orbit = short.machine.unbalance_kg_m * speed**2 / abs(complex(k * (1 - (speed / critical) ** 2), drag))
     assert rub.growth == pytest.approx(242.8e-6 + orbit, rel=5e-3)

@@ -9,6 +9,7 @@ from scipy.sparse.linalg import spsolve
 from rubgen.errors import UserError
 from rubgen.fem.statics import on_springs, support_stiffness
 from rubgen.machine.published import CASING_HZ
+from rubgen.units import rad_per_s
 from validation.zeng2019 import reproduce
 from validation.zeng2019.models.full import _around, critical_speed, full_blisk
 from validation.zeng2019.models.mode_shapes import nodal_diameters
@@ -84,7 +85,7 @@ def test_the_full_model_meets_no_stiffness_at_its_critical_speed():
     K = on_springs(model.K, support_stiffness(machine.disk_support))
     load = np.zeros(K.shape[0])
     load[0] = 1.0
-    below, above = (spsolve(sp.csc_array(K + (w * np.pi / 30) ** 2 * (model.K_sigma - model.S)), load)[0]
+    below, above = (spsolve(sp.csc_array(K + rad_per_s(w) ** 2 * (model.K_sigma - model.S)), load)[0]
                     for w in (0.999 * rpm, 1.001 * rpm))  # fmt: skip
     assert below > 100 / 1e8
     assert above < -100 / 1e8

@@ -22,13 +22,13 @@ from rubgen.machine import Damping, Machine, load_machine
 from rubgen.machine.published import BLISK_HZ, CASING_HZ
 from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import Reduction
+from rubgen.units import rad_per_s
 from validation.onset import END_OF_RUB_RPM, tip_growth
 from validation.verification.row import Row, relative, within
 
 TITLE = "The preset"
 PAPER = "Zeng et al. 2019"
 INDEPENDENT = "independent model"
-RPM = np.pi / 30
 UNDAMPED = Damping(lateral=0, tilt=0, axial=0, torsion=0, blade=0, casing=0)
 FULL_DOF, REDUCED_DOF = 15021, 125
 CRITICAL_SPEED_RPM = (8100.0, 8910.0)  # the range that the paper calls near the critical speed
@@ -53,7 +53,7 @@ def critical_stiffness(machine: Machine, rpm: float) -> float:
 def unbalance_response(machine: Machine, stiffness: float, rpm: float) -> float:
     """Displacement of O_d towards the unbalance in m per kg m, undamped."""
     undamped = replace(on_lateral_springs(machine, stiffness), unbalance_kg_m=1.0, damping=UNDAMPED)
-    system = reduce(undamped, Reduction()).at_speed(rpm * RPM)
+    system = reduce(undamped, Reduction()).at_speed(rad_per_s(rpm))
     return float(np.linalg.solve(system.K, system.force)[system.centre])
 
 
@@ -87,7 +87,7 @@ def rows() -> Iterator[Row]:
     quantity = "preset: lateral stiffness critical at 10,000 rev/min, N/m"
     yield relative(quantity, f"{INDEPENDENT}; {PAPER}: 1.3e8", 1.296e8, stiffness, 1e-2)
     for rpm, growth in GROWTH_UM.items():
-        found = 1e6 * model.at_speed(rpm * RPM).tip_static[:, 0].mean()
+        found = 1e6 * model.at_speed(rad_per_s(rpm)).tip_static[:, 0].mean()
         yield relative(f"preset: steady growth at {rpm:g} rev/min, um", INDEPENDENT, growth, found, 3e-3)
     for (spring, rpm), response in RESPONSE.items():
         quantity = f"preset: response of O_d at {rpm:g} rev/min on {spring:g} N/m, m per kg m"

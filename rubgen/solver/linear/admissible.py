@@ -9,6 +9,7 @@ import numpy as np
 from rubgen.errors import UserError
 from rubgen.reduction.model import SpinningSystem
 from rubgen.solver.linear.stability import stable_step
+from rubgen.units import rev_per_min
 
 LEAST_MASS_SHARE = 1e-13
 """A mass eigenvalue below this share of the largest is zero but for rounding."""
@@ -86,7 +87,7 @@ def _growth_problem(system: SpinningSystem) -> str | None:
     if grown < widest:
         return None
     return (
-        f"speed_rpm = {system.speed * 30 / math.pi:.6g}: blade tips grow by {grown - system.tip_radius:.3g} m and pass "
+        f"speed_rpm = {rev_per_min(system.speed):.6g}: blade tips grow by {grown - system.tip_radius:.3g} m and pass "
         f"the casing everywhere, its widest gap at rest is {widest - system.tip_radius:.3g} m; lower the speed or "
         f"raise the clearance"
     )

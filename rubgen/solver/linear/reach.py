@@ -12,9 +12,9 @@ from rubgen.errors import UserError
 from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import Scenario
 from rubgen.scenario.plausible import MOST_TIP_SPEED
-from rubgen.scenario.scenario import RPM
 from rubgen.solver.linear.admissible import check_system
 from rubgen.solver.linear.rub_free import free_penetration, rub_free_motion
+from rubgen.units import rad_per_s, rev_per_min
 
 SPEEDS = 9
 """Speeds that stand for a changing one, its ends among them."""
@@ -58,7 +58,7 @@ def deepest(scenario: Scenario) -> tuple[float, float]:
     """
     model, rotation = reduce(scenario.machine, scenario.reduction), scenario.operation.rotation
     speeds = [rotation.start] if rotation.is_steady else np.linspace(rotation.slowest, rotation.fastest, SPEEDS)
-    return max((_penetration(model, scenario, float(speed)), float(speed) / RPM) for speed in speeds)
+    return max((_penetration(model, scenario, float(speed)), rev_per_min(float(speed))) for speed in speeds)
 
 
 def _penetration(model: ReducedModel, scenario: Scenario, speed: float) -> float:
@@ -71,12 +71,12 @@ def _penetration(model: ReducedModel, scenario: Scenario, speed: float) -> float
 def _question(scenarios: Sequence[Scenario]) -> str:
     """Whether speeds were given in rad/s, where a blade would reach the casing then."""
     fastest = max(scenarios, key=lambda each: each.operation.speed_rpm)
-    rpm = fastest.operation.speed_rpm / RPM
+    rpm = rev_per_min(fastest.operation.speed_rpm)
     if fastest.operation.speed_rpm * fastest.machine.tip_radius_m > MOST_TIP_SPEED:
         return ""
     try:
         model = reduce(fastest.machine, fastest.reduction)
-        reaches = _penetration(model, fastest, rpm * RPM) >= 0
+        reaches = _penetration(model, fastest, rad_per_s(rpm)) >= 0
     except (UserError, np.linalg.LinAlgError):
         return ""
     given = f"{fastest.operation.speed_rpm:.6g} rad/s are {rpm:.6g} rev/min"

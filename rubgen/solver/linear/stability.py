@@ -13,6 +13,7 @@ from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Operation
 from rubgen.scenario.costs import STEPS_PER_SAMPLE
 from rubgen.solver.linear.floquet import floquet_exponents, linearised, quadratic_eigenvalues
+from rubgen.units import rev_per_min
 
 STEP_SAFETY = 0.95
 """The step stays below this share of the stability limit 2 / omega_max."""
@@ -75,7 +76,7 @@ def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0
         steps *= 2
         if steps > MOST_STEPS_PER_TURN:
             raise UserError(
-                f"speed_rpm = {system.speed * 30 / math.pi:.6g}: a stable step of {longest:.3g} s needs more than "
+                f"speed_rpm = {rev_per_min(system.speed):.6g}: a stable step of {longest:.3g} s needs more than "
                 f"{MOST_STEPS_PER_TURN} steps a turn; raise the speed"
             )
     return steps

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from rubgen.arrays import FloatArray
 from rubgen.reduction import ReducedModel
+from rubgen.units import rad_per_s
 from rubgen.viz.colors import BLUE, GREY, VERMILION
 from rubgen.viz.figures.style import INK, label_axes, new_figure
 
@@ -34,7 +35,7 @@ def campbell(model: ReducedModel) -> Figure:
 
 
 def _blisk(axes: Axes, model: ReducedModel, speeds: FloatArray) -> None:
-    hertz = np.array([model.blisk_frequencies_hz(np.pi / 30 * speed)[:BLISK_MODES] for speed in speeds])
+    hertz = np.array([model.blisk_frequencies_hz(rad_per_s(speed))[:BLISK_MODES] for speed in speeds])
     top = 1.05 * float(hertz.max())
     _orders(axes, speeds, top, range(1, HIGHEST_ORDER + 1))
     axes.plot(speeds, hertz, color=BLUE, linewidth=1.1, zorder=3)

@@ -16,6 +16,7 @@ import numpy as np
 
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver.integrate import integrate
+from rubgen.units import rev_per_min
 from validation.verification.rotors.jeffcott import (
     CLEARANCE,
     FRICTION,
@@ -44,7 +45,7 @@ class Steady:
 
 def steady(steps: int) -> Steady:
     """The settled rub from the solver's integration."""
-    operation = Operation(speed_rpm=SPEED * 30 / np.pi, steps_per_turn=steps, settle_turns=SETTLE, record_turns=RECORD)
+    operation = Operation(speed_rpm=rev_per_min(SPEED), steps_per_turn=steps, settle_turns=SETTLE, record_turns=RECORD)
     response = integrate(jeffcott_system(), operation, ContactLaw(friction=FRICTION))
     return Steady(
         touching=float(response.contact_steps_per_turn.min() / steps),

@@ -20,6 +20,7 @@ from rubgen.reduction import SpinningSystem, reduce
 from rubgen.scenario import ContactLaw, Reduction
 from rubgen.solver.linear.rub_free import steady_state
 from rubgen.solver.speed.start import rub_free_stepper
+from rubgen.units import rad_per_s
 from validation.verification.rotors.jeffcott import jeffcott_system
 from validation.verification.row import Row, within
 
@@ -96,7 +97,7 @@ def rows() -> Iterator[Row]:
     errors = [free_motion_error(steps) for steps in (512, 1024, 2048)]
     order = float(np.log2(errors[1] / errors[2]))
     yield within("integrator: observed order of a free motion", "matrix exponential, order 2", 2.0, order, 0.05)
-    system = reduce(load_machine("zeng2019"), Reduction()).at_speed(SPEED_RPM * np.pi / 30)
+    system = reduce(load_machine("zeng2019"), Reduction()).at_speed(rad_per_s(SPEED_RPM))
     values, vectors = modes_at_speed(system)
     turn = 2 * np.pi / system.speed
     for name, mode in chosen_modes(system, values, vectors).items():

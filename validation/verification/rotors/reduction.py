@@ -23,6 +23,7 @@ from rubgen.machine import Machine, load_machine
 from rubgen.reduction import reduce
 from rubgen.reduction.blisk import ReducedBlisk, reduce_blisk
 from rubgen.scenario import Reduction
+from rubgen.units import rad_per_s
 from validation.verification.row import Row, within
 
 TITLE = "Craig-Bampton reduction"
@@ -85,7 +86,7 @@ def receptance_error(full: BliskModel, springs: FloatArray, reduced: ReducedBlis
 
 def growth_error(machine: Machine) -> float:
     """Largest error of the tips' steady growth at 15,000 rev/min, over the largest, against a direct solve."""
-    full, speed = assemble_blisk(machine.disk, machine.blades, machine.disk_support), TOP_SPEED_RPM * np.pi / 30
+    full, speed = assemble_blisk(machine.disk, machine.blades, machine.disk_support), rad_per_s(TOP_SPEED_RPM)
     K = on_springs(full.K, support_stiffness(machine.disk_support)) + speed**2 * (full.K_sigma - full.S)
     exact = factorize(K.tocsr()).solve(speed**2 * full.f_c)[full.tips[:, :3]]
     found = reduce(machine, Reduction(blisk_modes=2)).at_speed(speed).tip_static

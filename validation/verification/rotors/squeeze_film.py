@@ -25,6 +25,7 @@ from rubgen.solver.integrate import integrate
 from rubgen.solver.linear.rub_free import rub_free_motion
 from rubgen.solver.linear.stability import eigenvalues
 from rubgen.solver.linear.turning_forces import turning_force
+from rubgen.units import rev_per_min
 from validation.verification.rotors.rigid_rotor import rigid_rotor
 from validation.verification.rotors.rotors import NO_DAMPING, STIFF, UNBALANCE, annulus_inertia, plain_rotor
 from validation.verification.row import Row, relative
@@ -114,7 +115,7 @@ def rows() -> Iterator[Row]:
 def heat() -> Iterator[Row]:
     """Loss of a run that circles."""
     speed, turns = REST, 20
-    rpm, half = speed * 30 / np.pi, turns // 2
+    rpm, half = rev_per_min(speed), turns // 2
     operation = Operation(speed_rpm=rpm, settle_turns=half, record_turns=half, closing_turns=5)
     system = rigid_rotor(
         speed, mass=MASS, stiffness=STIFFNESS, damping=DAMPING, unbalance=UNBALANCE, forces=TurningForces(film=FILM)

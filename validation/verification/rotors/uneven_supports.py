@@ -23,6 +23,7 @@ from rubgen.scenario import ContactLaw, Operation, Reduction
 from rubgen.solver.integrate import integrate
 from rubgen.solver.linear.rub_free import rub_free_motion
 from rubgen.solver.linear.stability import eigenvalues
+from rubgen.units import rev_per_min
 from validation.verification.rotors.rigid_rotor import rigid_rotor, weight_of
 from validation.verification.rotors.rotors import NO_DAMPING, STIFF, UNBALANCE, annulus_inertia, plain_rotor
 from validation.verification.row import Row, relative, within
@@ -104,7 +105,7 @@ def rows() -> Iterator[Row]:
 def sag_of_a_run() -> Iterator[Row]:
     """Mean places and support forces of a run without rub."""
     speed = SLOW * REST
-    operation = Operation(speed_rpm=speed * 30 / np.pi, settle_turns=10, record_turns=10, closing_turns=5)
+    operation = Operation(speed_rpm=rev_per_min(speed), settle_turns=10, record_turns=10, closing_turns=5)
     response = integrate(bare_mass(speed), operation, ContactLaw())
     turn = response.steps_per_turn
     sag, bearing = (response.taps[name][-turn:].mean() for name in ("blisk_y", "support_force_y"))

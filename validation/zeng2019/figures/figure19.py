@@ -11,6 +11,7 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.reduction import reduce
 from rubgen.scenario import Reduction
+from rubgen.units import rad_per_s
 from rubgen.viz.colors import BLUE, ORANGE, VERMILION
 from validation.piece import Arrays, Found, Piece
 from validation.zeng2019.drawing.style import new_figure, style
@@ -30,7 +31,7 @@ SWEPT = [8e7 + 5e6 * i for i in range(50)]
 
 def over_support(stiffnesses: list[float]) -> Arrays:
     """`k` (s,) in N/m and `forward` (s, 12): forward whirl of one nodal diameter at 10,000 rev/min in Hz, inertial."""
-    model, speed = model_of(4), SUPPORT_RPM * np.pi / 30
+    model, speed = model_of(4), rad_per_s(SUPPORT_RPM)
     rows = []
     for k in stiffnesses:
         support = replace(model.machine.disk_support, lateral_stiffness_n_per_m=k)

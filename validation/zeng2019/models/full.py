@@ -16,6 +16,7 @@ from rubgen.fem.blisk import BliskModel, assemble_blisk
 from rubgen.fem.statics import factorize, on_springs, support_stiffness
 from rubgen.machine import Machine, load_machine
 from rubgen.reduction.craig_bampton import craig_bampton
+from rubgen.units import rad_per_s
 from validation.piece import Arrays
 from validation.zeng2019.size import MACHINE
 
@@ -107,7 +108,7 @@ def spinning_frequencies(speed_rpm: float, count: int) -> Arrays:
     if speed_rpm == 0:
         return {"hz": blisk_modes(count).frequencies_hz}
     machine, model = full_blisk()
-    omega = speed_rpm * np.pi / 30
+    omega = rad_per_s(speed_rpm)
     A = model.K_sigma - model.S
     K = on_springs(model.K, support_stiffness(machine.disk_support)) + omega**2 * A
     shift = 2j * np.pi * SHIFT_HZ
@@ -131,7 +132,7 @@ def critical_speed() -> Arrays:
     load[0] = 1.0
 
     def met(rpm: float) -> float:
-        return float(1 / factorize(K + (rpm * np.pi / 30) ** 2 * A).solve(load)[0])
+        return float(1 / factorize(K + rad_per_s(rpm) ** 2 * A).solve(load)[0])
 
     return {"rpm": np.array(brentq(met, *CRITICAL_BETWEEN_RPM, xtol=0.01))}
 

@@ -9,6 +9,7 @@ import scipy.sparse as sp
 
 from rubgen.arrays import FloatArray, SparseMatrix
 from rubgen.fem.statics import on_springs, support_stiffness
+from rubgen.units import rad_per_s
 from validation.piece import Arrays
 from validation.zeng2019.models.full import blisk_modes, full_blisk
 from validation.zeng2019.models.reduced import SHOWN, seen_frequencies, whirl
@@ -41,7 +42,7 @@ def crossings_by_frame(stiffnesses: list[float], speed_rpm: float) -> Arrays:
     in the inertial frame, and both are joined as they are; every frequency is drawn. `halved`: the same with Omega G
     in place of 2 Omega G for the blades.
     """
-    parts, speed = _parts(), speed_rpm * np.pi / 30
+    parts, speed = _parts(), rad_per_s(speed_rpm)
     centrifugal = speed**2 * (parts.K_sigma - parts.S_blades)
     spin = 2 * speed * parts.G_spin
     models = {

@@ -9,6 +9,7 @@ from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.machine import load_machine
 from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import Reduction
+from rubgen.units import rad_per_s
 from validation.piece import Arrays
 from validation.zeng2019.size import MACHINE
 
@@ -49,7 +50,7 @@ def campbell(blisk_modes: int, top_rpm: float, step_rpm: int) -> Arrays:
 
 
 def _at_speed(model: ReducedModel, rpm: float) -> Arrays:
-    speed = max(rpm, 1.0) * np.pi / 30  # at rest pairs are mixed at will
+    speed = rad_per_s(max(rpm, 1.0))  # at rest pairs are mixed at will
     values, vectors = whirl(model.blisk.M, 2 * speed * model.blisk.G, model.stiffness(speed))
     seen = seen_frequencies(values, vectors, model.machine.blades.count, speed) / (2 * np.pi)
     lowest = np.sort(values[values > 0])[:42] / (2 * np.pi)
