@@ -184,10 +184,10 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="causes",
     title="Where physics and paper part: causes by experiment",
-    text="Suspected differences switched on and off, at 10,000 rev/min: the casing's shapes, its number of nodes, "
-    "chords, its number of modes eta_c for the odd orders; frames and the Coriolis matrix for the second crossing, in "
-    "which the casing has no part. Which frame the blisk's matrices stand in does not matter for the odd orders: that "
-    "odd shapes answer at odd orders follows from the symmetry of the casing.",
+    text="Suspected differences are switched on and off at 10,000 rev/min. For the odd orders these are the shapes of "
+    "the casing, its number of nodes, chords, and its number of modes eta_c. For the second crossing these are "
+    "frames and the Coriolis matrix; the casing does not take part in it. The frame of the blisk's matrices does "
+    "not matter for the odd orders: odd shapes respond at odd orders because of the symmetry of the casing.",
     pieces=pieces,
     statements=statements,
     figures=figures,

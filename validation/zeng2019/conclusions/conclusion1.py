@@ -88,7 +88,7 @@ def _changes(one: Outcome, other: Outcome) -> tuple[float, float, float]:
 SECTION = Section(
     name="c1",
     title="Conclusion (1): few modes suffice",
-    text="The same six speeds with the paper's modes (4, 4, 4 and 11 of the casing) and with more.",
+    text="The same six speeds are run with the paper's modes (4, 4, 4 and 11 of the casing) and with more modes.",
     pieces=pieces,
     statements=statements,
     figures=no_figures,

@@ -77,8 +77,8 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="c2",
     title="Conclusion (2): fundamental frequency and zones",
-    text="Tested with the paper's two lobes and with three, four and five. That period-1 goes with equal and symmetric "
-    "zones is counted under the figures 16, 18 and 21.",
+    text="The paper's two lobes are compared with three, four and five. Figures 16, 18 and 21 count how often period-1"
+    " motion has equal and symmetric zones.",
     pieces=pieces,
     statements=statements,
     figures=figures,

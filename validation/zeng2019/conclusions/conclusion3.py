@@ -176,8 +176,8 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="c3",
     title="Conclusion (3): casing support against blisk support",
-    text="Total Sobol indices (`scipy.stats.sobol_indices`) over the ranges of the recipe that comes with rubgen, "
-    "which are not the paper's.",
+    text="Total Sobol indices (`scipy.stats.sobol_indices`) over the ranges of the recipe that comes with rubgen. "
+    "These are not the ranges of the paper.",
     pieces=pieces,
     statements=statements,
     figures=figures,

@@ -72,7 +72,7 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="friction",
     title="Frictionless against frictional",
-    text="All other sections are frictionless; here the same speeds are run with Coulomb friction.",
+    text="All other sections have no friction. Here the same speeds are run with Coulomb friction.",
     pieces=pieces,
     statements=statements,
     figures=figures,

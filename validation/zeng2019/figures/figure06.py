@@ -232,9 +232,9 @@ def _draw_diagram(axes: Axes, size: Size, found: Found) -> None:
 SECTION = Section(
     name="6",
     title="Figure 6: reduction and Campbell diagram",
-    text="Frequencies are undamped. One blade is clamped at its root, the disk stands on its supports (the paper does "
-    "not say how it holds them). The full model at speed is solved as a quadratic eigenproblem of all its degrees of "
-    "freedom.",
+    text="Frequencies are undamped. One blade is clamped at its root. The disk stands on its supports; the paper does "
+    "not say how it supports the disk. The full model at speed is solved as a quadratic eigenproblem of all its "
+    "degrees of freedom.",
     pieces=pieces,
     statements=statements,
     figures=figures,

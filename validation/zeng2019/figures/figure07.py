@@ -98,8 +98,9 @@ def figures(_size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="7",
     title="Figure 7: frequencies by nodal diameter",
-    text="All from the full model at rest. The nodal diameter is the leading wave number of the tips, for the disk "
-    "alone of the rim; the blades' share is that of kinetic energy.",
+    text="All values are from the full model at rest. The nodal diameter is the leading wave number of the tips; for "
+    "the disk alone it is the leading wave number of the rim. The share of the blades is their share of the "
+    "kinetic energy.",
     pieces=pieces,
     statements=statements,
     figures=figures,

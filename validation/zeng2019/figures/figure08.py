@@ -72,8 +72,8 @@ def figures(_size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="8",
     title="Figure 8: modes of the blisk",
-    text="The preset was fitted to these six frequencies, in the reduced model: their agreement is no evidence for the "
-    "geometry. Shapes are drawn from the full model.",
+    text="The preset was fitted to these six frequencies, in the reduced model. So their agreement is no evidence for "
+    "the geometry. Shapes are drawn from the full model.",
     pieces=pieces,
     statements=statements,
     figures=figures,

@@ -76,8 +76,8 @@ def figures(_size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="9",
     title="Figure 9: modes of the casing",
-    text="The preset's casing was fitted to these frequencies; only the ratio of its springs to its mass follows from "
-    "them.",
+    text="The preset's casing was fitted to these frequencies. They determine only the ratio of its springs to its "
+    "mass.",
     pieces=pieces,
     statements=statements,
     figures=figures,

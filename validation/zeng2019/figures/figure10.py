@@ -160,8 +160,9 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="10",
     title="Figure 10: speed sweep",
-    text="2,460 to 14,940 rev/min, by 120 without rub and by 30 beyond. Shown are x of the disk centre and the "
-    "acceleration of the casing at the minor axis, 49 points once a turn and spectra of 100 turns.",
+    text="The speeds are 2,460 to 14,940 rev/min, in steps of 120 without rub and of 30 with rub. The figure shows x "
+    "of the disk centre and the acceleration of the casing at the minor axis: 49 points, once a turn, and spectra"
+    " of 100 turns.",
     pieces=pieces,
     statements=statements,
     figures=figures,

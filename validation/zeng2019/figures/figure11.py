@@ -76,7 +76,7 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="11",
     title="Figure 11: from the waveform to 49 points",
-    text="One point a turn, counted back from the end.",
+    text="The section has one point a turn. Turns are counted back from the end.",
     pieces=pieces,
     statements=statements,
     figures=figures,

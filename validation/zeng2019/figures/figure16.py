@@ -150,7 +150,7 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="16",
     title="Figure 16: where the casing is touched",
-    text="Statements are counted over every rubbing run of the speed sweep; pictured are the paper's six speeds.",
+    text="Statements are judged over every rubbing run of the speed sweep. The picture shows the paper's six speeds.",
     pieces=pieces,
     statements=statements,
     figures=figures,

@@ -148,8 +148,9 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="17",
     title="Figure 17: stiffness of the disk's support",
-    text="10,000 rev/min, the same stiffness along X and Y, in steps of 5e6 to 2e7 N/m. `II` is the paper's "
-    "alternating region, `trip` its trip point in region I, whose ends it does not give.",
+    text="The speed is 10,000 rev/min. The stiffness is the same along X and Y, in steps of 5e6 to 2e7 N/m. `II` is "
+    "the paper's alternating region. `trip` is its trip point in region I; the paper does not state the ends of "
+    "this region.",
     pieces=pieces,
     statements=statements,
     figures=figures,

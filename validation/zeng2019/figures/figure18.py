@@ -38,7 +38,7 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="18",
     title="Figure 18: contact on two disk supports",
-    text="Counted over every rubbing run of the sweep of the disk's support.",
+    text="Statements are judged over every rubbing run of the sweep of the disk's support.",
     pieces=pieces,
     statements=statements,
     figures=figures,

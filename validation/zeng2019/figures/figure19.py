@@ -111,7 +111,7 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="19",
     title="Figure 19: natural frequencies over the disk's support",
-    text="Seen from the inertial frame, where f_r is 166.67 Hz.",
+    text="All frequencies are in the inertial frame, where f_r is 166.67 Hz.",
     pieces=pieces,
     statements=statements,
     figures=figures,

@@ -68,7 +68,7 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="21",
     title="Figure 21: contact on two casing supports",
-    text="Counted over every rubbing run of both sweeps of the casing's support.",
+    text="Statements are judged over every rubbing run of both sweeps of the casing's support.",
     pieces=pieces,
     statements=statements,
     figures=figures,

@@ -68,7 +68,8 @@ def _section(number: str, region: str) -> Section:
     return Section(
         name=number,
         title=f"Figure {number}: region {region} from near",
-        text=f"{low:,.0f} to {high:,.0f} rev/min by 30. What the eye sees is judged in the diagram of the whole sweep.",
+        text=f"{low:,.0f} to {high:,.0f} rev/min in steps of 30. Statements about what the eye "
+        "sees are judged in the diagram of the whole sweep.",
         pieces=pieces,
         statements=statements,
         figures=figures,
