@@ -20,7 +20,7 @@ from cyclopts.exceptions import (
 if TYPE_CHECKING:
     from cyclopts import App
 
-KINDS = {float: "a number", int: "a whole number", bool: "true or false", Path: "a path"}
+TYPE_NAMES = {float: "a number", int: "a whole number", bool: "true or false", Path: "a path"}
 
 
 def mistake(error: CycloptsError, app: App) -> str:
@@ -55,7 +55,7 @@ def _allowed(error: CoercionError) -> str:
     if get_origin(wanted) is Literal and error.token is not None:
         choices = [str(choice) for choice in get_args(wanted)]
         return f"must be one of {', '.join(choices)};{meant(error.token.value, choices)}".rstrip(";")
-    kinds = [KINDS[kind] for kind in (wanted, *get_args(wanted)) if kind in KINDS]
+    kinds = [TYPE_NAMES[kind] for kind in (wanted, *get_args(wanted)) if kind in TYPE_NAMES]
     return f"must be {kinds[0] if kinds else 'of another kind'}"
 
 

@@ -10,7 +10,7 @@ from rubgen.dataset.files import write_text
 from rubgen.dataset.layout import SPLIT, Layout
 from rubgen.dataset.manifest import Identity
 from rubgen.io.columns import Column, scalar_columns, signal_columns
-from rubgen.io.parquet.sections import KINDS
+from rubgen.io.parquet.sections import RECORD_COLUMNS
 
 LOADING = {
     "parquet": """\
@@ -138,4 +138,4 @@ def _table(columns: tuple[Column, ...]) -> str:
 
 
 def _section_table() -> str:
-    return "\n".join(f"| `{name}` | {kind} | {meaning} |" for name, (kind, meaning) in KINDS.items())
+    return "\n".join(f"| `{name}` | {kind} | {meaning} |" for name, (kind, meaning) in RECORD_COLUMNS.items())

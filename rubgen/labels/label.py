@@ -37,7 +37,7 @@ def label(response: Response) -> Labels:
     turn = response.turn_seconds
     return Labels(
         rub=rub,
-        contact_duty=contact_steps / _record_steps(response),
+        contact_duty=contact_steps / response.record_steps,
         impulse_per_turn=float(response.impulse_per_turn.mean()),
         blades_touched=len(set(response.events.blade.tolist())),
         contact_zones=len(zones.centres),
@@ -69,12 +69,6 @@ def label(response: Response) -> Labels:
         segment_periods=tuple(segment.period for segment in parts.segments),
         course=course,
         windows=cut,
-        amounts=contact_amounts(response, zones, record_steps=_record_steps(response)),
+        amounts=contact_amounts(response, zones, record_steps=response.record_steps),
         whirl=whirl(response.orbit),
     )
-
-
-def _record_steps(response: Response) -> int:
-    if response.course is not None:
-        return int(response.course.turn_steps[-1])
-    return response.record_turns * response.steps_per_turn

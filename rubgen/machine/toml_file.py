@@ -24,7 +24,7 @@ MARKS = {
 LINE = re.compile(r"at line (\d+)")
 SHOWN = 80
 """Letters of a bad line that are shown."""
-KINDS = {
+KEYS_OF_KIND = {
     "recipe": ("runs", "vary", "machine", "simulation", "operation", "output"),
     "machine": ("disk", "blades", "casing", "disk_support", "damping"),
     "sensor set": ("kinds", "shaft_runout"),
@@ -64,9 +64,9 @@ def named_toml(key: str, name: str, folder: Path | None = None) -> Path:
 
 def check_kind(path: Path | str, data: dict[str, object], wanted: str) -> None:
     """Raise UserError for a file of another kind: a machine for a recipe, say."""
-    if any(key in data for key in KINDS[wanted]):
+    if any(key in data for key in KEYS_OF_KIND[wanted]):
         return
-    for kind, keys in KINDS.items():
+    for kind, keys in KEYS_OF_KIND.items():
         listed = kind == "sensor set" and isinstance(data.get("sensors"), list)
         if kind != wanted and (listed or sum(key in data for key in keys) > 1):
             raise UserError(f"{path}: this is a {kind}, no {wanted}; give the TOML file of a {wanted}")

@@ -11,7 +11,7 @@ from rubgen.measurement.chain import half_width_seconds, late_seconds, start_sec
 from rubgen.measurement.channel import Channel, Recording
 from rubgen.measurement.once_per_rev import pulse_channel
 from rubgen.measurement.sampled import feed_of, filtered, recorded
-from rubgen.measurement.shaft import pulse_times, record_steps, shaft_angle, tail_steps
+from rubgen.measurement.shaft import pulse_times, shaft_angle
 from rubgen.scenario import Sensing
 from rubgen.scenario.costs import STEPS_PER_SAMPLE
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
@@ -34,7 +34,7 @@ def measure(response: Response, sensing: Sensing, *, seconds: float, rng: np.ran
     positions = sample_positions(response, sensing, seconds)
     angle = shaft_angle(response, positions)
     covered = positions.size / rate
-    start = start_seconds(sensing, seconds, steps=record_steps(response), dt=response.dt)
+    start = start_seconds(sensing, seconds, steps=response.record_steps, dt=response.dt)
     pulses = pulse_times(response, float(angle[0]), start, covered)
     streams = dict(zip((sensor.name for sensor in sensors), rng.spawn(len(sensors)), strict=True))
     channels = _channels(response, sensing, positions, angle, streams)
@@ -66,7 +66,7 @@ def sample_positions(response: Response, sensing: Sensing, seconds: float) -> Fl
             f"sample_rate_hz = {rate:g}: at most {highest:.6g} Hz with {1 / dt:.6g} steps a second; "
             "lower sample_rate_hz or raise steps_per_turn"
         )
-    tail = tail_steps(response)
+    tail = response.tail_steps
     half_width, late = half_width_seconds(rate) / dt, late_seconds(sensing, seconds) / dt
     count = round(seconds * rate)
     positions = (tail - 1 - half_width - late) - np.arange(count - 1, -1, -1) / (rate * dt)
@@ -88,7 +88,7 @@ def _channels(
     streams: dict[str, np.random.Generator],
 ) -> dict[str, Channel]:
     """The sampled channels and the pulse, in the order of the set."""
-    shaft = shaft_angle(response, np.arange(tail_steps(response)))
+    shaft = shaft_angle(response, np.arange(response.tail_steps))
     feeds = [feed_of(sensor, response, shaft, sensing.set) for sensor in sensing.set.sampled]
     samples = filtered(feeds, positions, dt=response.dt, sensing=sensing)
     channels: dict[str, Channel] = {}

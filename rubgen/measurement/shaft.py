@@ -13,24 +13,12 @@ from rubgen.measurement.once_per_rev import arrival_times
 from rubgen.solver.response import Response
 
 
-def tail_steps(response: Response) -> int:
-    """Number of steps that the taps hold."""
-    return next(iter(response.taps.values())).size
-
-
-def record_steps(response: Response) -> int:
-    """Number of steps of the record."""
-    if response.course is not None:
-        return int(response.course.turn_steps[-1])
-    return response.record_turns * response.steps_per_turn
-
-
 def shaft_angle(response: Response, positions: npt.NDArray[np.floating] | npt.NDArray[np.integer]) -> FloatArray:
     """Theta in [0, 2 pi) at positions, counted in steps from the start of the tail; exact at a changing speed too."""
-    back = positions - tail_steps(response)
+    back = positions - response.tail_steps
     if response.course is None:
         return in_turn(back * (2 * np.pi / response.steps_per_turn))
-    return in_turn(response.course.rotation.angle((record_steps(response) + back) * response.dt))
+    return in_turn(response.course.rotation.angle((response.record_steps + back) * response.dt))
 
 
 def pulse_times(response: Response, first_angle: float, start: float, seconds: float) -> FloatArray:

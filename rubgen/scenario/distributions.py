@@ -144,7 +144,7 @@ class Choice(BaseModel):
         return self.choice
 
 
-KINDS = ("uniform", "log_uniform", "normal", "choice")
+DISTRIBUTIONS = ("uniform", "log_uniform", "normal", "choice")
 
 
 def _kind(value: object) -> str | None:
@@ -152,7 +152,7 @@ def _kind(value: object) -> str | None:
     if isinstance(value, Constant) or _are_numbers(value):
         return "<number>"
     names = list(value) if isinstance(value, Mapping) else list(getattr(type(value), "model_fields", ()))
-    return f"<{names[0]}>" if len(names) == 1 and names[0] in KINDS else None
+    return f"<{names[0]}>" if len(names) == 1 and names[0] in DISTRIBUTIONS else None
 
 
 def _known(value: object) -> object:
@@ -164,7 +164,7 @@ def _known(value: object) -> object:
 
 def _unknown(value: object) -> str:
     """What to write for a value that is no distribution."""
-    allowed = f"give a number or a table of one key: {', '.join(KINDS)}"
+    allowed = f"give a number or a table of one key: {', '.join(DISTRIBUTIONS)}"
     match value:
         case [low, high] if _are_numbers(low, high):
             return f"a range is written {{ uniform = [{low}, {high}] }}; {allowed}"
@@ -175,7 +175,7 @@ def _unknown(value: object) -> str:
             low, high = value.values()
             return f"a range is written {{ uniform = [{low}, {high}] }}; {allowed}"
         case dict() if len(value) == 1:
-            return f"no such distribution; {nearest(str(next(iter(value))), list(KINDS))}"
+            return f"no such distribution; {nearest(str(next(iter(value))), list(DISTRIBUTIONS))}"
     return f"no such distribution; {allowed}"
 
 

@@ -212,3 +212,15 @@ class Response:
     def turn_seconds(self) -> float:
         """Duration of one turn at the highest speed in s."""
         return self.dt * self.steps_per_turn
+
+    @property
+    def record_steps(self) -> int:
+        """Number of steps of the record."""
+        if self.course is not None:
+            return int(self.course.turn_steps[-1])
+        return self.record_turns * self.steps_per_turn
+
+    @property
+    def tail_steps(self) -> int:
+        """Number of steps that `taps` hold: the end of the record."""
+        return next(iter(self.taps.values())).size

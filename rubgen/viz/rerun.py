@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rubgen.scenario.plain import scenario_dict
+from rubgen.scenario.to_json import scenario_dict
 
 if TYPE_CHECKING:
     from rerun import RecordingStream

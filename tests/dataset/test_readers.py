@@ -16,7 +16,7 @@ from rubgen.dataset.card import card
 from rubgen.dataset.manifest import identity_of, read_manifest
 from rubgen.errors import UserError
 from rubgen.io.mcap import read_mcap
-from rubgen.io.parquet.sections import KINDS
+from rubgen.io.parquet.sections import RECORD_COLUMNS
 from rubgen.scenario import load_recipe, parse_recipe
 from tests.default_columns import CHANNELS, SCALARS, SIGNALS
 
@@ -76,7 +76,7 @@ def test_the_card_describes_every_column_and_its_head_is_yaml(small_set):
     assert [config["config_name"] for config in values["configs"]] == ["signals", "runs", "sections"]
     for column in SCALARS + SIGNALS:
         assert f"| `{column.name}` | {column.kind} | {column.unit} |" in body
-    for name, (kind, meaning) in KINDS.items():
+    for name, (kind, meaning) in RECORD_COLUMNS.items():
         assert f"| `{name}` | {kind} | {meaning} |" in body
     assert "4 runs" in body
 

@@ -35,14 +35,14 @@ MOST_MEANT = 5
 
 
 @dataclass(frozen=True, kw_only=True)
-class Found:
+class FoundReplay:
     """A replay, and what its reader should know: where it comes from, what of it is lost."""
 
     replay: Replay
     remarks: tuple[str, ...] = ()
 
 
-def find_replay(source: Path, run_id: str | None = None, where: str | None = None) -> Found:
+def find_replay(source: Path, run_id: str | None = None, where: str | None = None) -> FoundReplay:
     """The run of an MCAP file, or of a data set: the named one, the first that meets `where`, else the first good one.
 
     `where` is a condition in duckdb's SQL on the columns of `runs.parquet`. Raises UserError where there is no such
@@ -57,13 +57,13 @@ def find_replay(source: Path, run_id: str | None = None, where: str | None = Non
     return replay_of_mcap(source)
 
 
-def replay_of_mcap(path: Path) -> Found:
+def replay_of_mcap(path: Path) -> FoundReplay:
     """The run in an MCAP file, as far as it can be read."""
     from rubgen.io.mcap.salvage import salvage_mcap
 
     run, lost = salvage_mcap(path)
     remarks = tuple(f"{path} is damaged; lost: {piece}" for piece in lost)
-    return Found(replay=replay_of_recorded(run, source=str(path)), remarks=remarks)
+    return FoundReplay(replay=replay_of_recorded(run, source=str(path)), remarks=remarks)
 
 
 def replay_of_recorded(run: McapRun, *, source: str = "the file") -> Replay:
@@ -123,7 +123,7 @@ def scenario_of(data: DataSet, run_id: str) -> Scenario:
     return data.manifest.identity.recorded().scenario(int(run_id.removeprefix("run-")))
 
 
-def _from_data_set(directory: Path, run_id: str | None, where: str | None) -> Found:
+def _from_data_set(directory: Path, run_id: str | None, where: str | None) -> FoundReplay:
     data = DataSet(directory)
     chosen, remarks = _choose(data, run_id, where)
     path = Layout(directory).export("mcap", chosen)
@@ -131,13 +131,13 @@ def _from_data_set(directory: Path, run_id: str | None, where: str | None) -> Fo
         found = replay_of_mcap(path)
         if found.replay.scenario.run_id != chosen:
             raise UserError(f"{path}: holds {found.replay.scenario.run_id}; see `rubgen verify {directory}`")
-        return Found(replay=found.replay, remarks=(*remarks, *found.remarks))
+        return FoundReplay(replay=found.replay, remarks=(*remarks, *found.remarks))
     from rubgen.pipeline import simulate
     from rubgen.viz.replay import replay_of
 
     check_recipe(data.manifest.identity.recorded(), str(data.layout.manifest))
     run = simulate(scenario_of(data, chosen))
-    return Found(replay=replay_of(run), remarks=(*remarks, f"{chosen} has no MCAP file and was simulated again"))
+    return FoundReplay(replay=replay_of(run), remarks=(*remarks, f"{chosen} has no MCAP file and was simulated again"))
 
 
 def _choose(data: DataSet, run_id: str | None, where: str | None) -> tuple[str, tuple[str, ...]]:

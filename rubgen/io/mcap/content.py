@@ -21,7 +21,7 @@ from rubgen.scenario import Scenario
 
 TIMING = "/blade_tip_timing/"
 """Topics of timing probes begin so."""
-KINDS = {
+MESSAGE_OF_TOPIC = {
     "/raw/": "SampleBlock",
     "/clean/": "SampleBlock",
     TIMING: "BladePassage",
@@ -105,7 +105,9 @@ def _add(kind: str, there: dict[str, Any], name: str, value: object) -> None:
 
 def message_name(topic: str) -> str | None:
     """The message that this topic carries; None for a topic that rubgen does not know."""
-    names = (name for key, name in KINDS.items() if topic == key or (key.endswith("/") and topic.startswith(key)))
+    names = (
+        name for key, name in MESSAGE_OF_TOPIC.items() if topic == key or (key.endswith("/") and topic.startswith(key))
+    )
     return next(names, None)
 
 

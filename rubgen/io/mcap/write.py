@@ -24,7 +24,7 @@ from rubgen.measurement.channel import Channel, Float32Array, Recording
 from rubgen.measurement.contact_window import contact_intervals
 from rubgen.measurement.envelope import Preview, preview
 from rubgen.measurement.motion_frames import MotionFrames, motion_frames
-from rubgen.scenario.plain import scenario_dict
+from rubgen.scenario.to_json import scenario_dict
 
 if TYPE_CHECKING:  # Run carries the solver's imports; who reads or checks a file needs none of them
     from rubgen.labels.labels import Labels

@@ -16,7 +16,7 @@ from rubgen.io.parquet.write import write_table
 from rubgen.labels.compact_record import SCALARS, TOUCHES, Kept, keep
 from rubgen.solver.response import Response
 
-KINDS: dict[str, tuple[pa.DataType, str]] = {
+RECORD_COLUMNS: dict[str, tuple[pa.DataType, str]] = {
     "scalars": (pa.float64(), ", ".join(SCALARS)),
     "section": (
         pa.float32(),
@@ -40,14 +40,17 @@ KINDS: dict[str, tuple[pa.DataType, str]] = {
 """Element and meaning of each list. Lists that hold rows are cut by the number of turns in `scalars`."""
 SCHEMA = pa.schema(
     [pa.field("run_id", pa.string())]
-    + [pa.field(name, pa.list_(kind), metadata={"meaning": meaning}) for name, (kind, meaning) in KINDS.items()]
+    + [
+        pa.field(name, pa.list_(kind), metadata={"meaning": meaning})
+        for name, (kind, meaning) in RECORD_COLUMNS.items()
+    ]
 )
 
 
 def section_table(run_id: str, response: Response) -> pa.Table:
     """One row: what is kept of a run that ended well."""
     kept = keep(response)
-    columns = {name: pa.array([kept[name].ravel()], pa.list_(kind)) for name, (kind, _) in KINDS.items()}
+    columns = {name: pa.array([kept[name].ravel()], pa.list_(kind)) for name, (kind, _) in RECORD_COLUMNS.items()}
     return pa.table({"run_id": pa.array([run_id])} | columns, schema=SCHEMA)
 
 
@@ -60,7 +63,7 @@ def kept_of(table: pa.Table, row: int, path: Path) -> Kept:
     """What was kept of the run in that row of the file at `path`; UserError where its lists do not fit each other."""
     kept: dict[str, np.ndarray[Any, Any]] = {}
     try:
-        for name in KINDS:
+        for name in RECORD_COLUMNS:
             kept[name] = np.asarray(table[name][row].values)
         scalars = dict(zip(SCALARS, kept["scalars"].tolist(), strict=True))
         width = 3 * int(scalars["n_blades"]) + 4 + 2 * int(scalars["n_casing"])
