@@ -123,6 +123,12 @@ def test_recipes_that_come_with_the_sources_can_be_run(path):
     assert recipe.scenario(recipe.runs - 1).index == recipe.runs - 1
 
 
+def test_the_rooms_of_the_package_are_those_that_the_architecture_names():
+    named = re.findall(r"^\| `(rubgen/[\w/]*)` \|", DOCUMENTS["docs/architecture.md"], re.MULTILINE)
+    rooms = [path.parent.relative_to(ROOT).as_posix() + "/" for path in (ROOT / "rubgen").rglob("__init__.py")]
+    assert sorted(named) == sorted(rooms)
+
+
 def test_labels_and_statuses_are_described(rub_run):
     orders = ORDER_SUFFIXES
     labels = [name for name in labels_dict(rub_run.labels) if not name.endswith(orders)]
