@@ -152,7 +152,8 @@ def read_manifest(layout: Layout) -> Manifest:
 def _why_none(layout: Layout) -> str:
     if layout.identity.exists():
         return "it is unfinished; the `rubgen generate` command that began it makes the rest"
-    what = "it has no manifest.json" if layout.root.is_dir() else "there is no such directory"
+    there = "it is a file" if layout.root.exists() else "there is no such directory"
+    what = "it has no manifest.json" if layout.root.is_dir() else there
     return f"{what}; give the directory of `rubgen generate`"
 
 

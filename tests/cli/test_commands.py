@@ -183,6 +183,7 @@ BAD = {
     "too many": (["info", "a", "b"], "b: one argument too many for rubgen info; see"),
     "twice": (["modes", "--json", "--json"], "--json: given more than once; give it once"),
     "shell": (["completion", "zhs"], "SHELL zhs: must be one of bash, zsh, fish, powershell; did you mean zsh?"),
+    "report of a file": (["report", __file__], "test_commands.py: no finished data set of rubgen: it is a file; give"),
     "no report": (["report", "none"], "none: no finished data set of rubgen: there is no such directory; give"),
     "speed 0": (["simulate", "--speed-rpm", "0"], "speed_rpm = 0: must be at least 0.001"),
     "nan": (["simulate", "--friction", "nan"], "friction = nan: must be at least 0 and at most 0.3"),

@@ -112,7 +112,10 @@ def test_an_interrupted_set_is_completed_to_the_same_bytes(fake_simulate, tmp_pa
     assert tree(tmp_path / "parts") == tree(tmp_path / "whole")
 
 
-@pytest.mark.parametrize("names", [[".staging/runs/", ".staging.lock"], [".staging.lock"], [".staging.part/runs/"]])
+@pytest.mark.parametrize(
+    "names",
+    [[".staging/runs/", ".staging.lock"], [".staging.lock"], [".staging.part/runs/"], [".staging.lock.soft"]],
+)
 def test_what_a_stop_after_the_manifest_leaves_is_no_fault_and_removed(small_set, copied_set, short_records, names):
     for name in names:
         (copied_set / name).parent.mkdir(exist_ok=True)

@@ -26,10 +26,11 @@ def test_workers_use_one_thread_and_the_environment_is_put_back(monkeypatch):
     assert os.environ["OPENBLAS_NUM_THREADS"] == "7"
 
 
-def test_a_worker_that_dies_is_reported_in_one_line():
-    said = r"a worker process ended with exit code 9; what is finished is kept: .+ --workers 1 it starts no worker"
+@pytest.mark.parametrize("code", [9, 0])
+def test_a_worker_that_dies_is_reported_in_one_line(code):
+    said = f"a worker process ended with exit code {code}; what is finished is kept: .+ --workers 1 it starts no worker"
     with pytest.raises(RubgenError, match=said), worker_pool(2) as pool:
-        list(unordered(pool, 1, os._exit, [(9,)]))
+        list(unordered(pool, 1, os._exit, [(code,)]))
 
 
 def _kill_this_process():

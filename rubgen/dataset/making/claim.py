@@ -10,7 +10,7 @@ from pathlib import Path
 
 from rubgen.dataset.files import is_system_file, remove_parts, write_json
 from rubgen.dataset.layout import FOLDERS, Layout
-from rubgen.dataset.making.claim_lock import acquired
+from rubgen.dataset.making.claim_lock import acquired, soft_lock
 from rubgen.dataset.making.difference import check_same
 from rubgen.dataset.manifest import Identity, read_manifest
 from rubgen.errors import UserError
@@ -47,8 +47,9 @@ def claimed(layout: Layout, identity: Identity) -> Iterator[None]:
     finally:
         try:
             if not layout.staging.exists():  # all is done, or nothing was begun
-                with suppress(OSError):
-                    _lock(layout).unlink()
+                for left in (_lock(layout), soft_lock(_lock(layout))):  # a kill leaves them too
+                    with suppress(OSError):
+                        left.unlink()
         finally:
             lock.release()
         if new:

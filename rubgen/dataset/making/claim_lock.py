@@ -26,9 +26,14 @@ def acquired(path: Path) -> BaseFileLock | None:
         if error.errno not in _NO_LOCKS:
             raise
         reason = error.strerror
-    soft = path.with_name(f"{path.name}.soft")
+    soft = soft_lock(path)
     warn(f"{path.parent}: no file locks there ({reason}); {soft.name} is made instead, delete it after a kill")
     return _acquired(SoftFileLock(soft, timeout=0))
+
+
+def soft_lock(path: Path) -> Path:
+    """The file that stands for the lock at `path` where there are no locks."""
+    return path.with_name(f"{path.name}.soft")
 
 
 def _acquired(lock: BaseFileLock) -> BaseFileLock | None:

@@ -171,11 +171,11 @@ def _end(pool: ProcessPoolExecutor | None, context: _OwnMain) -> None:
 
 def _how_it_ended(context: _OwnMain) -> str:
     """What the system knows of the process that broke the pool; the pool ends the others by SIGTERM."""
-    codes = [process.exitcode for process in context.workers if process.exitcode]
+    codes = [process.exitcode for process in context.workers if process.exitcode is not None]
     if not codes:
         return "ended, and the system does not say how"
     first = next((code for code in codes if code != -signal.SIGTERM), -signal.SIGTERM)
-    if first > 0:
+    if first >= 0:
         return f"ended with exit code {first}"
     names = {number.value: number.name for number in signal.Signals}
     return f"was ended by {names.get(-first, f'signal {-first}')}"
