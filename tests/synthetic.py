@@ -1,10 +1,13 @@
 """A synthetic run for tests of files and pictures: made-up signals through the real sensors, no dynamics."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from rubgen.labels.contact.amounts import ContactAmounts, RubExtent
 from rubgen.labels.harmonics import FRACTIONS, HIGHEST_ORDER, TapOrders
 from rubgen.labels.labels import Labels, Motion
+from rubgen.labels.windows import Windows
 from rubgen.machine import load_machine
 from rubgen.measurement import measure
 from rubgen.pipeline import Run
@@ -141,9 +144,11 @@ def _amounts(contact: bool) -> ContactAmounts:
     )
 
 
-def _labels(generator: np.random.Generator, contact: bool) -> Labels:
-    names = ["blisk_x", "casing_acc_0", "contact_force"]
-    details = {name: _orders(generator) for name in names}
+def _labels(generator: np.random.Generator, response: Response, contact: bool) -> Labels:
+    orders = {name: _orders(generator) for name in ("blisk_x", "casing_acc_0", "contact_force")}
+    if not contact:
+        orders["contact_force"] = replace(orders["contact_force"], amplitudes=np.zeros(HIGHEST_ORDER))
+    none = np.zeros(0)
     return Labels(
         amounts=_amounts(contact),
         rub=contact,
@@ -161,12 +166,10 @@ def _labels(generator: np.random.Generator, contact: bool) -> Labels:
         period_casing=3 if contact else None,
         period=3 if contact else 1,
         has_2fr=contact,
-        orders={name: tap.amplitudes for name, tap in details.items()},
-        order_details=details,
-        orders_present=details["casing_acc_0"].present if contact else (),
-        even_share={name: 0.75 if contact else float("nan") for name in names},
-        odd_share={name: 0.25 if contact else float("nan") for name in names},
-        dominant_order=dict.fromkeys(names, 2),
+        orders=orders,
+        orders_present=orders["casing_acc_0"].present if contact else (),
+        windows=Windows(start=none, speed=none, impulse=none, duty=none, orders={}, scatter={}),
+        response=response,
     )
 
 
@@ -184,4 +187,5 @@ def make_run(
     )
     response = _response(generator, scenario, contact)
     recording = measure(response, scenario.sensing, seconds=seconds, rng=generator)
-    return Run(scenario=scenario, response=response, recording=recording, labels=_labels(generator, contact))
+    labels = _labels(generator, response, contact)
+    return Run(scenario=scenario, response=response, recording=recording, labels=labels)

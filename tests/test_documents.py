@@ -11,8 +11,8 @@ import pytest
 
 import rubgen
 from rubgen.cli.app import app
-from rubgen.io.columns import ORDER_SUFFIXES
-from rubgen.labels.to_json import labels_dict
+from rubgen.labels.registry import TAP_ENDINGS
+from rubgen.labels.to_json import labels_to_json
 from rubgen.scenario import load_recipe, parse_recipe
 from rubgen.solver import Status
 from tests.default_columns import CHANNELS, SCALARS
@@ -130,8 +130,8 @@ def test_the_rooms_of_the_package_are_those_that_the_architecture_names():
 
 
 def test_labels_and_statuses_are_described(rub_run):
-    orders = ORDER_SUFFIXES
-    labels = [name for name in labels_dict(rub_run.labels) if not name.endswith(orders)]
+    orders = TAP_ENDINGS
+    labels = [name for name in labels_to_json(rub_run.labels) if not name.endswith(orders)]
     assert [name for name in labels if f"`{name}`" not in DOCUMENTS["docs/labels.md"]] == []
     assert [status.code for status in Status if f"`{status.code}`" not in DOCUMENTS["docs/model.md"]] == []
 

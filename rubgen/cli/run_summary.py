@@ -40,22 +40,22 @@ def _course_of_run(run: Run) -> str:
 
 def _contact(labels: Labels) -> Iterator[tuple[str, str]]:
     amounts = labels.amounts
-    penetration = amounts.free_penetration if amounts else None
+    penetration = amounts.free_penetration
     if not labels.rub:
         yield "rub", "no"
         if penetration is not None:
             yield "smallest gap", f"{-penetration * 1e6:.4g} µm without contact"
         return
-    extent = f", {amounts.extent.value}" if amounts else ""
-    yield "rub", f"yes{extent}: {counted(labels.blades_touched, 'blade')}, {labels.contact_zones} {_zones_word(labels)}"
+    touched, zones = counted(labels.blades_touched, "blade"), f"{labels.contact_zones} {_zones_word(labels)}"
+    yield "rub", f"yes, {amounts.extent.value}: {touched}, {zones}"
     yield "contact zones", _zones(labels)
     yield "contact duty", f"{100 * labels.contact_duty:.3g} % of the time"
     yield "impulse", f"{labels.impulse_per_turn:.4g} N s a turn"
-    if amounts and amounts.severity is not None:
+    if amounts.severity is not None:
         yield "severity", f"{amounts.severity:.3g}, mean contact force over the blisk's weight"
     if penetration is not None:
         yield "penetration", f"{penetration * 1e6:.4g} µm, had there been no contact"
-    if amounts and amounts.friction_work:
+    if amounts.friction_work:
         yield "friction work", f"{amounts.friction_work:.4g} J a turn"
 
 
@@ -97,12 +97,12 @@ def _ranges(orders: tuple[int, ...]) -> str:
 
 def _speeds(labels: Labels) -> Iterator[tuple[str, str]]:
     """Where rub begins and ends as the speed changes, and how often the motion changes."""
-    course = labels.course
-    if course is None:
+    history = labels.history
+    if history is None:
         return
-    yield "onset of rub", _rpm(course.onset_speed)
-    yield "end of rub", _rpm(course.end_of_rub_speed)
-    yield "changes", f"{len(course.changes)} of rub or motion over the record"
+    yield "onset of rub", _rpm(history.onset_speed)
+    yield "end of rub", _rpm(history.end_of_rub_speed)
+    yield "changes", f"{len(history.changes)} of rub or motion over the record"
 
 
 def _rpm(speed: float | None) -> str:

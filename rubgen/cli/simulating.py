@@ -11,7 +11,7 @@ from rubgen.cli.printing import print_json, print_pairs, say
 from rubgen.cli.replaying import Showing, show
 from rubgen.cli.run_summary import run_summary
 from rubgen.errors import warn
-from rubgen.labels.to_json import labels_dict
+from rubgen.labels.to_json import labels_to_json
 from rubgen.output import save
 from rubgen.pipeline import Run, simulate
 from rubgen.progress import step
@@ -83,7 +83,7 @@ def _all_labels(run: Run) -> dict[str, object]:
         "settle_turns": run.response.settle_turns,
         "record_turns": run.response.record_turns,
         **dict.fromkeys(LABEL_NAMES),
-        **(labels_dict(run.labels) if run.labels else {}),
+        **(labels_to_json(run.labels) if run.labels else {}),
     }
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -11,19 +10,15 @@ from pydantic import TypeAdapter
 
 from rubgen.dataset.files import write_json, write_text
 from rubgen.dataset.manifest import Manifest
-from rubgen.io.columns import ORDER_SUFFIXES, Column, scalar_columns
+from rubgen.io.columns import Column, scalar_columns
 from rubgen.io.mcap.messages import proto_text
-from rubgen.labels.contact.amounts import RubExtent
-from rubgen.labels.labels import Motion
-from rubgen.labels.motion.whirl import WhirlDirection
+from rubgen.labels.registry import TAP_ENDINGS
 from rubgen.machine import Machine
 from rubgen.scenario import Recipe
 from rubgen.sensors.load import default_sensor_set
 from rubgen.sensors.registry import SENSOR_KINDS
 from rubgen.sensors.sensor_set import SensorSet
 
-TEXTS: dict[str, type[StrEnum]] = {"motion": Motion, "rub": RubExtent, "whirl": WhirlDirection}
-"""Values of text columns by the first word of their names."""
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 JSON_TYPES: dict[str, dict[str, Any]] = {
     "text": {"type": "string"},
@@ -63,9 +58,7 @@ def _run_schema() -> dict[str, Any]:
         "type": "object",
         "properties": {column.name: _property(column) for column in columns},
         "required": [column.name for column in columns],
-        "patternProperties": {
-            f"^[A-Za-z]\\w*({'|'.join(ORDER_SUFFIXES)})$": {"description": "of a further true signal"}
-        },
+        "patternProperties": {f"^[A-Za-z]\\w*({'|'.join(TAP_ENDINGS)})$": {"description": "of a further true signal"}},
         "additionalProperties": False,
     }
 
@@ -84,9 +77,8 @@ def _sensor_set_schema() -> dict[str, Any]:
 
 def _property(column: Column) -> dict[str, Any]:
     kind = dict(JSON_TYPES[column.kind])
-    enum = TEXTS.get(column.name.split("_")[0]) if column.kind == "text" else None
-    if enum:
-        kind["enum"] = [member.value for member in enum]
+    if column.words:
+        kind["enum"] = [member.value for member in column.words]
     nullable = {"anyOf": [kind, {"type": "null"}]} if column.nullable else kind
     return {"description": f"{column.meaning}{f', in {column.unit}' if column.unit else ''}", **nullable}
 

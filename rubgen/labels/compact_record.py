@@ -17,7 +17,7 @@ from rubgen.arrays import FloatArray
 from rubgen.scenario.rotation import Rotation
 from rubgen.solver.response import ORDERS, ContactEvents, Course, EnergyBook, Response, Status
 
-Kept = Mapping[str, npt.NDArray[Any]]
+CompactRecord = Mapping[str, npt.NDArray[Any]]
 
 TOUCHES = {
     "blade": np.int16,
@@ -36,7 +36,7 @@ SCALARS = (
 ROTATION = ("start", "end", "seconds", "swing", "period")
 
 
-def keep(response: Response) -> dict[str, npt.NDArray[Any]]:
+def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
     """The arrays to keep of a response: about 0.27 MB for 500 turns and 36 blades, and 26 bytes for each touch.
 
     `section` (turns, 3 blades + 4 + 2 casing modes): displacements of the tips, x, y, v_x, v_y of the disk centre,
@@ -60,7 +60,7 @@ def keep(response: Response) -> dict[str, npt.NDArray[Any]]:
     return kept | {name: getattr(response.events, name).astype(kind) for name, kind in TOUCHES.items()}
 
 
-def response_of(kept: Kept) -> Response:
+def response_of(kept: CompactRecord) -> Response:
     """The response of these arrays, without blisk modes, taps and their orders, energy, and speeds of tips."""
     scalars = dict(zip(SCALARS, kept["scalars"].tolist(), strict=True))
     blades, casing = int(scalars["n_blades"]), int(scalars["n_casing"])
@@ -92,14 +92,13 @@ def response_of(kept: Kept) -> Response:
     )
 
 
-def as_kept(response: Response) -> Response:
-    """The response with the precision that is kept, and its taps."""
-    return replace(
-        response_of(keep(response)), taps=response.taps, course=response.course, window_orders=response.window_orders
-    )
+def in_record_precision(response: Response) -> Response:
+    """The response in the precision of the compact record, with its taps and orders."""
+    rounded = response_of(compact_record(response))
+    return replace(rounded, taps=response.taps, course=response.course, window_orders=response.window_orders)
 
 
-def _course(kept: Kept, turns: int) -> Course | None:
+def _course(kept: CompactRecord, turns: int) -> Course | None:
     if not kept["rotation"].size:
         return None
     rotation = Rotation(**dict(zip(ROTATION, kept["rotation"].tolist(), strict=True)))
@@ -107,7 +106,7 @@ def _course(kept: Kept, turns: int) -> Course | None:
     return Course(rotation=rotation, turn_steps=kept["turn_steps"].astype(np.int64), orders=orders)
 
 
-def _touches(kept: Kept) -> ContactEvents:
+def _touches(kept: CompactRecord) -> ContactEvents:
     return ContactEvents(
         blade=kept["blade"].astype(np.int64),
         start_step=kept["start_step"].astype(np.int64),

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from rubgen.labels.compact_record import as_kept
+from dataclasses import replace
+
+from rubgen.labels.compact_record import in_record_precision
 from rubgen.labels.contact.amounts import contact_amounts
 from rubgen.labels.contact.zones import contact_zones
 from rubgen.labels.harmonics import MARKED_TAP, harmonics
@@ -10,7 +12,7 @@ from rubgen.labels.labels import Labels
 from rubgen.labels.motion.classify import motion
 from rubgen.labels.motion.lyapunov import lyapunov_of
 from rubgen.labels.motion.whirl import whirl
-from rubgen.labels.speed_history import by_angle, course_labels, course_motion, course_orders
+from rubgen.labels.speed_history import by_angle, changing_motion, changing_orders, speed_history
 from rubgen.labels.windows import windows
 from rubgen.solver.response import Response
 
@@ -24,15 +26,15 @@ def label(response: Response) -> Labels:
     down to 32, where UserError is raised. Where the speed changes, see `course`. A response without taps, as it is
     kept, has no orders: everything else is the same.
     """
-    response = as_kept(response)
+    response = in_record_precision(response)
     contact_steps = int(response.contact_steps_per_turn.sum())
     rub = contact_steps > 0
     zones = contact_zones(by_angle(response), steps_per_turn=response.steps_per_turn)
     exponent = lyapunov_of(response)
-    course = course_labels(response) if response.course else None
-    parts = course_motion(rub) if course else motion(response, exponent)
+    history = speed_history(response) if response.course else None
+    parts = changing_motion(rub) if history else motion(response, exponent)
     cut = windows(response)
-    orders = course_orders(cut) if course else harmonics(response)
+    orders = changing_orders(cut) if history else harmonics(response)
     present = orders[MARKED_TAP].present if rub and orders else ()
     turn = response.turn_seconds
     return Labels(
@@ -51,11 +53,7 @@ def label(response: Response) -> Labels:
         period_casing=parts.casing.period,
         period=parts.system.period,
         has_2fr=2 in present,
-        orders={name: tap.amplitudes for name, tap in orders.items()},
-        even_share={name: tap.even_share for name, tap in orders.items()},
-        odd_share={name: tap.odd_share for name, tap in orders.items()},
-        dominant_order={name: tap.dominant for name, tap in orders.items()},
-        order_details=orders,
+        orders=orders,
         orders_present=present,
         lyapunov=exponent,
         lyapunov_per_second=exponent.per_turn / turn if exponent else None,
@@ -67,8 +65,9 @@ def label(response: Response) -> Labels:
         stray_casing=parts.indicators[1].stray if len(parts.indicators) > 1 else None,
         segment_starts=tuple(segment.start * turn for segment in parts.segments),
         segment_periods=tuple(segment.period for segment in parts.segments),
-        course=course,
+        history=history,
         windows=cut,
         amounts=contact_amounts(response, zones, record_steps=response.record_steps),
         whirl=whirl(response.orbit),
+        response=replace(response, taps={}),
     )

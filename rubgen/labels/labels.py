@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from rubgen.arrays import FloatArray
 from rubgen.brief import number
 from rubgen.labels.harmonics import TapOrders
 from rubgen.labels.motion.lyapunov import Exponent
@@ -14,8 +13,9 @@ from rubgen.labels.motion.lyapunov import Exponent
 if TYPE_CHECKING:
     from rubgen.labels.contact.amounts import ContactAmounts
     from rubgen.labels.motion.whirl import Whirl
-    from rubgen.labels.speed_history import CourseLabels
+    from rubgen.labels.speed_history import Change, SpeedHistory
     from rubgen.labels.windows import Windows
+    from rubgen.solver.response import Response
 
 
 class Motion(StrEnum):
@@ -33,55 +33,78 @@ class Motion(StrEnum):
 class Labels:
     """What the dynamics really did, from the true response over the whole record.
 
-    Angles in rad, impulse in N s. `period*` is None unless the motion repeats after that many turns. The dictionaries
-    are keyed by tap name: `orders` holds peak amplitudes at k f_r, k = 1..20, in the tap's unit; `even_share` and
-    `odd_share` the shares of sum of squared amplitudes on even and odd k; `dominant_order` the k of the largest;
-    `order_details` what else `labels.harmonics` finds.
-    `orders_present` are the k that stand out of the casing acceleration at 0 degrees.
-    `lyapunov` is the largest exponent of the whole system in 1/turn, None where it was switched off.
-    `motion_symmetric` is None unless the motion is period-1 in contact. `zero_one_k` is K of the 0-1 test, `stray_*`
-    how far the points of the section lie from where they should come back to, over the motion. Segments are empty
-    unless the motion switches: starts in s from the record's, periods in turns, 0 where it is irregular. Where the
-    speed changes, `course` tells how the labels go with time; the motion of the whole is undecided in contact, and
-    `orders` are the root mean squares of those of windows. `windows` hold labels of every 16 turns, `amounts` how much
-    blades touch, `whirl` which way the disk centre goes round; None where a response does not tell.
+    `rubgen.labels.registry` gives each value its public name; docs/labels.md defines it.
     """
 
     rub: bool
+    """A blade touched."""
     contact_duty: float
+    """Share of the steps in which any blade touches."""
     impulse_per_turn: float
+    """Mean normal impulse a turn of all blades, N s."""
     blades_touched: int
+    """Number of blades that touched."""
     contact_zones: int
+    """Number of separate zones on the casing."""
     contact_zone_centres: tuple[float, ...]
+    """Polar angle of each zone, rad."""
     contact_zone_widths: tuple[float, ...]
+    """Angular width of each zone, rad."""
     contact_zones_symmetric: bool | None
+    """Zones are equal and evenly spread; None without contact."""
     motion_blisk: Motion
+    """Class of the motion of the blisk; of the whole record undecided where the speed changes in contact."""
     motion_casing: Motion
+    """Class of the motion of the casing."""
     motion: Motion
+    """The less regular of the two."""
     period_blisk: int | None
+    """Turns after which the blisk repeats; None where it does not."""
     period_casing: int | None
+    """Turns after which the casing repeats; None where it does not."""
     period: int | None
+    """Least common multiple of the two; None where there is none."""
     has_2fr: bool
-    orders: dict[str, FloatArray]
-    even_share: dict[str, float]
-    odd_share: dict[str, float]
-    dominant_order: dict[str, int]
-    order_details: dict[str, TapOrders] = field(default_factory=dict)
+    """Order 2 stands out of the casing acceleration at 0 degrees."""
+    orders: dict[str, TapOrders]
+    """By tap: amplitudes at multiples of the rotation frequency; root mean squares over windows at changing speed."""
     orders_present: tuple[int, ...] = ()
+    """The k that stand out of the casing acceleration at 0 degrees."""
     lyapunov: Exponent | None = None
-    motion_confidence: float = 1.0
-    motion_symmetric: bool | None = None
-    tip_chatter: bool = False
-    zero_one_k: float | None = None
-    stray_blisk: float | None = None
-    stray_casing: float | None = None
-    segment_starts: tuple[float, ...] = ()
-    segment_periods: tuple[int, ...] = ()
+    """Largest exponent of the whole system; None where it was switched off."""
     lyapunov_per_second: float | None = None
-    course: CourseLabels | None = None
-    windows: Windows | None = None
-    amounts: ContactAmounts | None = None
+    """The same in 1/s."""
+    motion_confidence: float = 1.0
+    """How sure the class is, 0 to 1."""
+    motion_symmetric: bool | None = None
+    """The motion has the symmetry of the lobes; None unless it is period-1 in contact."""
+    tip_chatter: bool = False
+    """The tips do not repeat; disk centre and casing do."""
+    zero_one_k: float | None = None
+    """K of the 0-1 test."""
+    stray_blisk: float | None = None
+    """Distance of the blisk's section points from where they should return to, over the motion."""
+    stray_casing: float | None = None
+    """The same of the casing; None where it rests."""
+    segment_starts: tuple[float, ...] = ()
+    """Starts of the stretches of an intermittent motion, s from the record's start; else empty."""
+    segment_periods: tuple[int, ...] = ()
+    """Period of each stretch in turns, 0 where it is irregular."""
+    history: SpeedHistory | None = None
+    """What happens when, where the speed changes; None at a steady speed."""
+    windows: Windows
+    """Labels of every 16 turns."""
+    amounts: ContactAmounts
+    """How much the blades touch."""
     whirl: Whirl | None = None
+    """Which way the disk centre goes round; None where it rests."""
+    response: Response = field(repr=False, compare=False)
+    """What the labels come from: the response in the precision of the compact record, without taps."""
+
+    @property
+    def changes(self) -> tuple[Change, ...]:
+        """Changes of rub and motion over time; none at a steady speed."""
+        return self.history.changes if self.history else ()
 
     def __repr__(self) -> str:
         duty, zones = number(self.contact_duty), self.contact_zones

@@ -41,7 +41,7 @@ class Change:
 
 
 @dataclass(frozen=True, kw_only=True)
-class CourseLabels:
+class SpeedHistory:
     """How a run went: `changes` with time; speeds in rad/s at the first and after the last touch or None."""
 
     changes: tuple[Change, ...]
@@ -49,21 +49,21 @@ class CourseLabels:
     end_of_rub_speed: float | None
 
 
-def course_labels(response: Response) -> CourseLabels:
+def speed_history(response: Response) -> SpeedHistory:
     """The labels over time of a response with a course; see docs/labels.md."""
     course = response.course
     if course is None:
         raise ValueError("a steady speed has no course")
     touched = response.events.start_step.size > 0
     ends = response.events.start_step + response.events.steps
-    return CourseLabels(
+    return SpeedHistory(
         changes=_changes(response, course, window_edges(response)),
         onset_speed=_speed_at(course, response.events.start_step.min() * response.dt) if touched else None,
         end_of_rub_speed=_speed_at(course, ends.max() * response.dt) if touched else None,
     )
 
 
-def course_motion(rub: bool) -> Motions:
+def changing_motion(rub: bool) -> Motions:
     """The motion of a whole record whose speed changes: the forced whirl without rub, else undecided."""
     return (
         Motions(blisk=UNDECIDED, casing=UNDECIDED, system=UNDECIDED)
@@ -72,7 +72,7 @@ def course_motion(rub: bool) -> Motions:
     )
 
 
-def course_orders(windows: Windows) -> dict[str, TapOrders]:
+def changing_orders(windows: Windows) -> dict[str, TapOrders]:
     """Orders of a whole record: root mean squares over windows of amplitude and, as floor, of its standard error.
 
     Phases, fractions and blade passing are not told: NaN.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.labels.to_json import labels_dict
+from rubgen.labels.to_json import labels_to_json
 from rubgen.measurement.channel import Recording
 from rubgen.measurement.contact_window import ContactIntervals, contact_intervals
 from rubgen.measurement.motion_frames import MotionFrames, motion_frames
@@ -77,7 +77,7 @@ def replay_of(run: Run) -> Replay:
     touches = contact_intervals(run.response, run.recording)
     return Replay(
         scenario=run.scenario,
-        labels=labels_dict(run.labels),
+        labels=labels_to_json(run.labels),
         recording=run.recording,
         touches=sorted_touches(touches),
         frames=motion_frames(run.response, run.recording),
@@ -88,8 +88,8 @@ def replay_of(run: Run) -> Replay:
 def _motion_classes(labels: Labels, recording: Recording) -> dict[str, list[tuple[float, str]]]:
     """Those of the whole record, or where the speed changes of each change within the recording."""
     stretches = [(0.0, labels.motion, labels.motion_blisk, labels.motion_casing)]
-    if labels.course is not None:
-        changes = labels.course.changes
+    if labels.history is not None:
+        changes = labels.history.changes
         times = [change.time - recording.start_seconds for change in changes]
         last = recording.samples / recording.sample_rate_hz
         stretches = [

@@ -24,8 +24,8 @@ def run():
 
 def test_rub_begins_at_the_steady_onset(run):
     """The preset is fitted to 6,720 rev/min; the tips' whirl lags the speed by some 1 / (2 zeta f), 5 ms: 3 rev/min."""
-    assert rev_per_min(run.labels.course.onset_speed) == pytest.approx(ONSET_RPM, abs=10)
-    assert [change.rub for change in run.labels.course.changes] == [False, True]
+    assert rev_per_min(run.labels.history.onset_speed) == pytest.approx(ONSET_RPM, abs=10)
+    assert [change.rub for change in run.labels.history.changes] == [False, True]
     assert run.response.energy.residual < 1e-8
 
 
@@ -61,7 +61,7 @@ def test_files_hold_the_labels_over_time(run, tmp_path):
     assert check_mcap(tmp_path / "run.mcap") == []
     with (tmp_path / "run.mcap").open("rb") as stream:
         times = [message.log_time for _, _, message in make_reader(stream).iter_messages(topics=["/labels/motion"])]
-    onset = run.labels.course.changes[1].time - run.recording.start_seconds
+    onset = run.labels.history.changes[1].time - run.recording.start_seconds
     assert times == [0, pytest.approx(onset * 1e9, abs=1)]
     write_parquet(run, tmp_path / "run.parquet")
     row = read_table(tmp_path / "run.parquet").to_pylist()[0]

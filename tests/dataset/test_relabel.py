@@ -14,7 +14,7 @@ from rubgen.errors import UserError
 from rubgen.io.columns import scalar_columns
 from rubgen.io.parquet.sections import SCHEMA
 from rubgen.io.parquet.write import write_table
-from rubgen.labels.to_json import ORDER_LABELS
+from rubgen.labels.to_json import FROM_TAPS
 from rubgen.sensors.load import default_sensor_set
 
 SECTIONS = "sections/train-00000-of-00001.parquet"
@@ -39,7 +39,7 @@ def test_all_labels_but_orders_come_back(small_set):
     assert done.runs == 4
     names = [column.name for column in scalar_columns(default_sensor_set())]
     first, last = names.index("rub"), names.index("window_impulse_per_turn_n_s")
-    assert done.labels == 4 * len([name for name in names[first : last + 1] if name not in ORDER_LABELS])
+    assert done.labels == 4 * len([name for name in names[first : last + 1] if name not in FROM_TAPS])
 
 
 def test_a_changed_label_is_found(copied_set, capsys):

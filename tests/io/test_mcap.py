@@ -15,7 +15,7 @@ from rerun.chunk import McapReader as RerunReader
 
 from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
 from rubgen.io.mcap.messages import message_class, proto_text, read_sample_block, sample_block, timestamp
-from rubgen.labels.to_json import labels_dict
+from rubgen.labels.to_json import labels_to_json
 from rubgen.measurement import measure
 from rubgen.measurement.contact_window import contact_intervals
 from rubgen.scenario import Scenario, Sensing
@@ -71,7 +71,7 @@ def test_outside_reader_with_the_embedded_schema_sees_the_same_samples(rub_run, 
 
 def test_labels_and_scenario_come_back_whole(rub_run, mcap_file):
     read = read_mcap(mcap_file)
-    assert read.labels == labels_dict(rub_run.labels)
+    assert read.labels == labels_to_json(rub_run.labels)
     assert TypeAdapter(Scenario).validate_python(read.scenario) == rub_run.scenario
     with mcap_file.open("rb") as stream:
         records = {record.name: record.metadata for record in make_reader(stream).iter_metadata()}

@@ -66,7 +66,7 @@ def test_a_failed_run_is_not_written(rub_run, tmp_path):
 
 
 def test_nothing_half_written_is_left(rub_run, tmp_path, monkeypatch):
-    monkeypatch.setattr("rubgen.io.mcap.write.labels_dict", lambda _: {"bad": object()})
+    monkeypatch.setattr("rubgen.io.mcap.write.labels_to_json", lambda _: {"bad": object()})
     with pytest.raises(TypeError):
         write_mcap(rub_run, tmp_path / "run.mcap")
     assert list(tmp_path.iterdir()) == []

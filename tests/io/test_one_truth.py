@@ -10,8 +10,8 @@ from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
 from rubgen.io.parquet.read import read_table
 from rubgen.io.parquet.write import write_parquet
 from rubgen.labels.labels import Motion
-from rubgen.labels.speed_history import Change, CourseLabels
-from rubgen.labels.to_json import labels_dict
+from rubgen.labels.speed_history import Change, SpeedHistory
+from rubgen.labels.to_json import labels_to_json
 from rubgen.viz.entities.signals import detail_window
 from rubgen.viz.replay import replay_of
 from rubgen.viz.rerun import write_rrd
@@ -58,7 +58,7 @@ def test_rerun_shows_the_same_samples(run, folder):
 
 
 def test_labels_agree(run, folder):
-    memory = labels_dict(run.labels)
+    memory = labels_to_json(run.labels)
     row = read_table(folder / "run.parquet").to_pylist()[0]
     assert read_mcap(folder / "run.mcap").labels == memory
     columns = [column.name for column in SCALARS if column.name in memory]
@@ -116,7 +116,7 @@ def test_motion_changes_with_the_recording_in_memory_and_in_mcap(rub_run, tmp_pa
         rub_run,
         recording=dataclasses.replace(rub_run.recording, start_seconds=0.5),
         labels=dataclasses.replace(
-            rub_run.labels, course=CourseLabels(changes=changes, onset_speed=1e3, end_of_rub_speed=None)
+            rub_run.labels, history=SpeedHistory(changes=changes, onset_speed=1e3, end_of_rub_speed=None)
         ),
     )
     write_mcap(run, tmp_path / "run.mcap")

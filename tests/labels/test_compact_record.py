@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from rubgen.labels import label
-from rubgen.labels.compact_record import as_kept, keep, response_of
-from rubgen.labels.to_json import labels_dict
+from rubgen.labels.compact_record import compact_record, in_record_precision, response_of
+from rubgen.labels.to_json import labels_to_json
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver.integrate import integrate
 from rubgen.solver.response import Response
@@ -29,15 +29,15 @@ def test_kept_arrays_bring_back_the_labels(respond: Respond, rub: Response) -> N
     blisk = 1e-6 * rng.standard_normal((64, 114))
     made = respond(turns=64, blisk=blisk, casing=casing, casing_velocity=1e3 * casing, touches=rub.events)
     made = dataclasses.replace(made, twin_growth=rng.standard_normal(64), fractions=rng.standard_normal((2, 2, 125)))
-    again = dataclasses.replace(response_of(keep(made)), taps=made.taps)
+    again = dataclasses.replace(response_of(compact_record(made)), taps=made.taps)
     first, second = label(made), label(again)
     assert first.lyapunov is not None
     assert first.contact_zones > 0
-    assert labels_dict(first) == labels_dict(second)
+    assert labels_to_json(first) == labels_to_json(second)
 
 
 def test_what_labels_see_differs_by_single_precision(rub: Response) -> None:
-    kept, tips = as_kept(rub), slice(0, 3 * rub.n_blades + 2)
+    kept, tips = in_record_precision(rub), slice(0, 3 * rub.n_blades + 2)
     assert kept.section_q[:, tips] == pytest.approx(rub.section_q[:, tips], rel=1e-7)
     assert kept.section_v[:, -rub.n_casing :] == pytest.approx(rub.section_v[:, -rub.n_casing :], rel=1e-7)
     assert kept.events.impulse == pytest.approx(rub.events.impulse, rel=1e-7)
@@ -46,12 +46,12 @@ def test_what_labels_see_differs_by_single_precision(rub: Response) -> None:
 
 
 def test_kept_arrays_are_small(respond: Respond) -> None:
-    size = sum(array.nbytes for array in keep(respond()).values())
+    size = sum(array.nbytes for array in compact_record(respond()).values())
     assert size == 500 * (134 * 4 + 8 + 4) + 72  # no touches, no twin
 
 
 def test_keeping_twice_changes_nothing(rub: Response) -> None:
-    first, second = keep(rub), keep(as_kept(rub))
+    first, second = compact_record(rub), compact_record(in_record_precision(rub))
     assert first.keys() == second.keys()
     for name, array in first.items():
         assert array.dtype == second[name].dtype

@@ -9,7 +9,7 @@ from rubgen.labels import label
 from rubgen.labels.contact.amounts import RubExtent, contact_amounts, rub_extent
 from rubgen.labels.contact.zones import contact_zones
 from rubgen.labels.motion.whirl import Whirl, WhirlDirection, whirl
-from rubgen.labels.to_json import labels_dict
+from rubgen.labels.to_json import labels_to_json
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver.integrate import integrate
 from rubgen.units import STANDARD_GRAVITY, rev_per_min
@@ -36,7 +36,7 @@ def test_counts_and_works_of_made_touches(respond, events):
 
 
 def test_what_is_not_known_is_null_and_without_contact_there_is_none(respond):
-    plain = labels_dict(label(respond(contact=False)))
+    plain = labels_to_json(label(respond(contact=False)))
     assert plain["contact_severity"] is plain["free_penetration_m"] is plain["whirl"] is plain["whirl_index"] is None
     assert (plain["rub_extent"], plain["contact_touches"]) == ("none", 0)
     assert plain["blade_touches"] == [0] * 36

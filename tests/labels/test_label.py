@@ -6,7 +6,7 @@ import pytest
 from threadpoolctl import threadpool_limits
 
 from rubgen.labels import Motion, label
-from rubgen.labels.to_json import labels_dict
+from rubgen.labels.to_json import labels_to_json
 from rubgen.solver.response import ContactEvents, Response
 
 Respond = Callable[..., Response]
@@ -35,7 +35,7 @@ def test_labels_of_a_run_with_two_zones(respond: Respond, events: Events) -> Non
     assert len(labels.contact_zone_centres) == len(labels.contact_zone_widths) == 2
     assert (labels.motion, labels.period) == (Motion.PERIOD_1, 1)
     assert labels.has_2fr is True
-    assert labels.dominant_order["casing_acc_0"] == 2
+    assert labels.orders["casing_acc_0"].dominant == 2
 
 
 def test_without_contact_there_is_no_2fr_whatever_the_casing_does(respond: Respond) -> None:
@@ -49,7 +49,7 @@ def test_without_contact_there_is_no_2fr_whatever_the_casing_does(respond: Respo
 def test_labels_do_not_depend_on_the_length_of_the_tail(respond: Respond) -> None:
     noise = np.random.default_rng(0).standard_normal(137 * 256)
     long, short = (label(respond(taps={"casing_acc_0": tap})) for tap in (noise, noise[-100 * 256 :]))
-    assert labels_dict(long) == labels_dict(short)
+    assert labels_to_json(long) == labels_to_json(short)
 
 
 def test_labelling_500_turns_is_fast(respond: Respond) -> None:

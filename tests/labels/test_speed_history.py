@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from rubgen.labels import label
-from rubgen.labels.compact_record import keep
+from rubgen.labels.compact_record import compact_record
 from rubgen.labels.labels import Motion
-from rubgen.labels.speed_history import by_angle, course_labels
-from rubgen.labels.to_json import labels_dict, remade_labels, window_amplitudes
+from rubgen.labels.speed_history import by_angle, speed_history
+from rubgen.labels.to_json import labels_to_json, remade_labels, window_amplitudes
 from rubgen.labels.windows import windows
 from rubgen.scenario.rotation import Rotation
 from rubgen.solver.observers.orders import turn_orders
@@ -45,7 +45,7 @@ def ramp(respond, events):
 
 
 def test_rub_begins_with_its_first_touch_and_ends_after_its_last(ramp):
-    found = course_labels(ramp)
+    found = speed_history(ramp)
     assert [change.rub for change in found.changes] == [False, True, False]
     on, off = found.changes[1:]
     assert on.time == pytest.approx(ROTATION.time_of(2 * np.pi * 30 + 1), abs=ramp.dt)
@@ -61,7 +61,7 @@ def test_a_rub_within_the_first_window_does_not_begin_before_its_first_touch(ram
         ramp.events, start_step=ramp.events.start_step - ramp.course.turn_steps[30] + ramp.course.turn_steps[5]
     )
     contact = np.roll(ramp.contact_steps_per_turn, -25)
-    found = course_labels(replace(ramp, events=shifted, contact_steps_per_turn=contact)).changes
+    found = speed_history(replace(ramp, events=shifted, contact_steps_per_turn=contact)).changes
     assert [change.rub for change in found] == [False, True, False]
     assert found[1].time == pytest.approx(shifted.start_step[0] * ramp.dt)
 
@@ -100,16 +100,16 @@ def test_the_labels_of_the_record_hold_its_course(ramp):
     assert labels.motion is Motion.UNDECIDED
     assert labels.contact_duty == pytest.approx(60 / ramp.course.turn_steps[-1])
     assert 2 in labels.orders_present
-    plain = labels_dict(labels)
+    plain = labels_to_json(labels)
     assert plain["change_rub"] == [0, 1, 0]
-    assert plain["onset_speed_rpm"] == pytest.approx(rev_per_min(labels.course.onset_speed))
+    assert plain["onset_speed_rpm"] == pytest.approx(rev_per_min(labels.history.onset_speed))
     assert plain["window_rub"] == [0, 1, 1, 1, 0]
     amplitudes = np.reshape(window_amplitudes(labels)["casing_acc_0_window_amplitudes"], (5, 20))
     np.testing.assert_allclose(amplitudes, labels.windows.orders["casing_acc_0"], rtol=1e-7)
 
 
 def test_labels_over_time_are_made_again_from_what_is_kept(ramp):
-    plain, again = labels_dict(label(ramp)), remade_labels(keep(ramp))
+    plain, again = labels_to_json(label(ramp)), remade_labels(compact_record(ramp))
     assert again["change_rub"] == [0, 1, 0]
     assert len(again["window_starts_s"]) == 5
     assert {name: plain[name] for name in again} == again
@@ -125,5 +125,5 @@ def test_a_slow_fluctuation_in_contact_is_told_its_motion_where_the_speed_hardly
             turn_steps=np.array([round(rotation.time_of(2 * np.pi * k) / response.dt) for k in range(129)]),
             orders=np.zeros((128, 1, 20), complex),
         )
-        found = course_labels(replace(response, course=course))
+        found = speed_history(replace(response, course=course))
         assert {change.motion for change in found.changes} == {expected}

@@ -1,6 +1,6 @@
 import json
 
-from rubgen.labels.to_json import labels_dict
+from rubgen.labels.to_json import labels_to_json
 
 NAMES = [
     "rub",
@@ -67,17 +67,17 @@ def test_labels_have_their_public_names(rub_run):
         "order_floors",
     ]
     endings += ["fractional_amplitudes", "blade_passing"]
-    assert list(labels_dict(rub_run.labels)) == NAMES + [f"{tap}_{ending}" for tap in taps for ending in endings]
+    assert list(labels_to_json(rub_run.labels)) == NAMES + [f"{tap}_{ending}" for tap in taps for ending in endings]
 
 
 def test_labels_survive_json(rub_run, free_run):
     for run in (rub_run, free_run):
-        plain = labels_dict(run.labels)
+        plain = labels_to_json(run.labels)
         assert json.loads(json.dumps(plain, allow_nan=False)) == plain
 
 
 def test_what_is_undefined_is_null(free_run):
-    plain = labels_dict(free_run.labels)
+    plain = labels_to_json(free_run.labels)
     assert plain["contact_force_even_share"] is None
     assert plain["contact_zones_symmetric"] is None
     assert plain["contact_zone_centres_rad"] == []

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rubgen.labels import label
-from rubgen.labels.to_json import labels_dict
+from rubgen.labels.to_json import labels_to_json
 from rubgen.scenario import ContactLaw
 from rubgen.solver.integrate import integrate
 from rubgen.solver.speed.start import closing_ramp, rub_free_stepper
@@ -67,7 +67,7 @@ def test_a_longer_tail_is_the_same_run(small_system, operation):
         windows = short.window_orders
         assert len(other.window_orders) > len(windows) == 6
         np.testing.assert_array_equal(other.window_orders[-len(windows) :], windows)
-        assert labels_dict(label(other)) == labels_dict(label(short))
+        assert labels_to_json(label(other)) == labels_to_json(label(short))
         arrivals, before = other.arrivals["probe"], short.arrivals["probe"]
         assert arrivals.step.size > before.step.size > 99 * system.n_blades
         np.testing.assert_array_equal(arrivals.step[-before.step.size :], before.step)

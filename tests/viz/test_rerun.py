@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from rerun.chunk import RrdReader
 
-from rubgen.labels.to_json import labels_dict
+from rubgen.labels.to_json import labels_to_json
 from rubgen.machine import Unbalance
 from rubgen.measurement.contact_window import contact_intervals
 from rubgen.viz.entities.machine_shape import blade_leanings, blade_placements, drawing_factor
@@ -75,7 +75,7 @@ def test_the_detail_window_holds_the_hardest_touch(rub_run):
 
 def test_labels_and_scenario_are_properties(rub_run, rrd_file):
     read = columns(rrd_file, "/__properties/labels")
-    assert json.loads(read["json"][0][0]) == labels_dict(rub_run.labels)
+    assert json.loads(read["json"][0][0]) == labels_to_json(rub_run.labels)
     assert read["motion"] == [["period-k"]]
     assert read["rub"] == [[True]]
     scenario = json.loads(columns(rrd_file, "/__properties/scenario")["json"][0][0])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rubgen.labels.compact_record import keep
+from rubgen.labels.compact_record import compact_record
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario, make_scenario
 from rubgen.scenario.vary import vary
@@ -45,7 +45,7 @@ def run(scenario: Scenario) -> Arrays:
     operation = scenario.operation
     model = reduce(scenario.machine, scenario.reduction)
     response = integrate(model.at_speed(operation.speed_rad_per_s), operation, scenario.contact, twin=True)
-    return keep(response) if response.status is Status.OK else {}
+    return compact_record(response) if response.status is Status.OK else {}
 
 
 def rubs(kept: Arrays) -> bool:

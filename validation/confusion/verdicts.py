@@ -8,7 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.labels.compact_record import Kept, response_of
+from rubgen.labels.compact_record import CompactRecord, response_of
 from rubgen.labels.labels import Motion
 from rubgen.labels.motion.chaos import CHAOTIC_FROM, ROUNDING, principal_components
 from rubgen.labels.motion.classify import Motions, blisk_points, casing_points, motion
@@ -129,7 +129,7 @@ class Case:
         return None if self.agree else _cause(self)
 
 
-def judge(name: str, kept: Kept) -> Case | None:
+def judge(name: str, kept: CompactRecord) -> Case | None:
     """The verdicts on a run that is kept; None where the casing rests or the twin could not follow."""
     response = response_of(kept)
     exponent = lyapunov_of(response)

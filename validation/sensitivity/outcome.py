@@ -139,8 +139,8 @@ def _dynamics(labels: Labels | None, response: Response) -> dict[str, object]:
         "impulse": labels.impulse_per_turn if labels else float("nan"),
         "impulse_error": _error_of_mean(response.impulse_per_turn) if labels else float("nan"),
         "contact_duty": labels.contact_duty if labels else float("nan"),
-        "force_orders": labels.orders["contact_force"].tolist() if labels else [],
-        "blisk_orders": labels.orders["blisk_x"].tolist() if labels else [],
+        "force_orders": labels.orders["contact_force"].amplitudes.tolist() if labels else [],
+        "blisk_orders": labels.orders["blisk_x"].amplitudes.tolist() if labels else [],
     } | (_indicators(response, labels) if labels and labels.rub else _no_indicators(0.0 if labels else float("nan")))
 
 

@@ -15,9 +15,9 @@ from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import read_manifest
 from rubgen.dataset.rows import asked_bytes
 from rubgen.errors import UserError
-from rubgen.io.columns import ORDER_SUFFIXES
 from rubgen.io.parquet.read import row_groups
 from rubgen.io.parquet.sections import SCHEMA, kept_of
+from rubgen.labels.registry import TAP_ENDINGS
 from rubgen.labels.to_json import remade_labels
 
 RELATIVE, ABSOLUTE = 1e-9, 1e-12
@@ -70,7 +70,7 @@ def relabel(directory: Path) -> Relabelled:
 def _good_rows(layout: Layout) -> Iterator[dict[str, Any]]:
     """The runs that ended well, in order, without the columns of orders."""
     for table in row_groups(layout.runs):
-        names = [name for name in table.schema.names if not name.endswith(ORDER_SUFFIXES)]
+        names = [name for name in table.schema.names if not name.endswith(TAP_ENDINGS)]
         yield from (row for row in table.select(names).to_pylist() if row["status"] == "ok")
 
 

@@ -18,7 +18,7 @@ from rubgen.io.mcap.foxglove import TRANSFORM, transform, transform_descriptor_s
 from rubgen.io.mcap.messages import MESSAGES, PACKAGE, file_descriptor_set, message_class, sample_block, timestamp
 from rubgen.io.mcap.multi_array import SCHEMA, SCHEMA_NAME, multi_arrays
 from rubgen.io.mcap.read import McapRun, read_mcap
-from rubgen.labels.to_json import labels_dict
+from rubgen.labels.to_json import labels_to_json
 from rubgen.measurement.blade_tip_timing import TipTimes
 from rubgen.measurement.channel import Channel, Float32Array, Recording
 from rubgen.measurement.contact_window import contact_intervals
@@ -63,7 +63,7 @@ def _write_file(path: Path, run: Run, recording: Recording, labels: Labels) -> N
         writer = Writer(stream, chunk_size=CHUNK_BYTES, enable_data_crcs=True)
         writer.start(profile="", library=LIBRARY)
         _write_records(writer, "scenario", scenario_dict(run.scenario))
-        _write_records(writer, "labels", labels_dict(labels))
+        _write_records(writer, "labels", labels_to_json(labels))
         _write_messages(writer, run, recording, labels)
         writer.finish()  # type: ignore[no-untyped-call]  # the mcap package annotates no return type
 
@@ -182,14 +182,14 @@ def _passages(seen: TipTimes) -> Iterator[Stamped]:
 def _motions(labels: Labels, recording: Recording) -> Iterator[Stamped]:
     """The class from the first sample on, and where the speed changes each later one within the recording."""
     message = message_class("MotionLabel")
-    if labels.course is None:
+    if labels.history is None:
         stretches = [(0, labels.motion, labels.motion_blisk, labels.motion_casing, labels.period or 0)]
     else:
         last = recording.samples / recording.sample_rate_hz
-        times = [change.time - recording.start_seconds for change in labels.course.changes]
+        times = [change.time - recording.start_seconds for change in labels.history.changes]
         stretches = [
             (max(0, nanoseconds(time)), change.motion, change.blisk, change.casing, 0)
-            for time, after, change in zip(times, [*times[1:], np.inf], labels.course.changes, strict=True)
+            for time, after, change in zip(times, [*times[1:], np.inf], labels.history.changes, strict=True)
             if after > 0 and time < last
         ]
     for time, system, blisk, casing, period in stretches:

@@ -13,7 +13,7 @@ import pyarrow as pa
 
 from rubgen.errors import UserError
 from rubgen.io.parquet.write import write_table
-from rubgen.labels.compact_record import SCALARS, TOUCHES, Kept, keep
+from rubgen.labels.compact_record import SCALARS, TOUCHES, CompactRecord, compact_record
 from rubgen.solver.response import Response
 
 RECORD_COLUMNS: dict[str, tuple[pa.DataType, str]] = {
@@ -49,7 +49,7 @@ SCHEMA = pa.schema(
 
 def section_table(run_id: str, response: Response) -> pa.Table:
     """One row: what is kept of a run that ended well."""
-    kept = keep(response)
+    kept = compact_record(response)
     columns = {name: pa.array([kept[name].ravel()], pa.list_(kind)) for name, (kind, _) in RECORD_COLUMNS.items()}
     return pa.table({"run_id": pa.array([run_id])} | columns, schema=SCHEMA)
 
@@ -59,7 +59,7 @@ def write_section(run_id: str, response: Response, path: Path) -> None:
     write_table([section_table(run_id, response)], SCHEMA, path)
 
 
-def kept_of(table: pa.Table, row: int, path: Path) -> Kept:
+def kept_of(table: pa.Table, row: int, path: Path) -> CompactRecord:
     """What was kept of the run in that row of the file at `path`; UserError where its lists do not fit each other."""
     kept: dict[str, np.ndarray[Any, Any]] = {}
     try:
@@ -76,7 +76,7 @@ def kept_of(table: pa.Table, row: int, path: Path) -> Kept:
     return kept
 
 
-def _check_lengths(kept: Kept, turns: int, blades: int) -> None:
+def _check_lengths(kept: CompactRecord, turns: int, blades: int) -> None:
     """Raise ValueError where lists of turns or of touches differ in length, or a number of theirs is none."""
     for name in (*TOUCHES, "turn_impulse", "contact_steps"):
         if not np.isfinite(kept[name]).all():

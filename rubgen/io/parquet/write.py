@@ -18,7 +18,7 @@ from rubgen.arrays import FloatArray
 from rubgen.io.columns import Column, scalar_columns, signal_columns
 from rubgen.io.durable import write_durably
 from rubgen.io.parquet.read import open_parquet, read_table, row_groups
-from rubgen.labels.to_json import labels_dict, window_amplitudes
+from rubgen.labels.to_json import labels_to_json, window_amplitudes
 from rubgen.measurement.channel import Recording
 from rubgen.measurement.contact_window import contact_intervals
 from rubgen.scenario.vary import varied_values
@@ -59,7 +59,7 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
     """
     row = _identity(run, split) | varied_values(run.scenario) | _operation(run)
     if run.labels is not None:
-        row |= labels_dict(run.labels)
+        row |= labels_to_json(run.labels)
         energy = run.response.energy
         row |= {"energy_residual": energy.residual, "normal_loss_j": energy.normal_loss}
         row |= {"friction_loss_j": energy.friction_loss}

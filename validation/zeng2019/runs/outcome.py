@@ -129,7 +129,7 @@ def _labels(labels: Labels) -> dict[str, Any]:
         "centres_deg": np.degrees(labels.contact_zone_centres),
         "impulse": labels.impulse_per_turn,
         "blades_touched": labels.blades_touched,
-        "force_orders": labels.orders["contact_force"],
+        "force_orders": labels.orders["contact_force"].amplitudes,
     }
 
 

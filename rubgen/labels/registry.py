@@ -1,0 +1,271 @@
+"""Every label by its public name: kind, unit, meaning, and how its value is read.
+
+The columns of Parquet files, the JSON form (MCAP, Rerun, `--json`), the schema of a run, the card, Croissant, the units
+of a DataFrame and the tables of docs/labels.md come from here. A new label is one entry, where its column is to stand.
+Meanings stand in the files: another wording changes their bytes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+
+from rubgen.labels.contact.amounts import RubExtent
+from rubgen.labels.harmonics import FRACTIONS, TapOrders
+from rubgen.labels.labels import Labels, Motion
+from rubgen.labels.motion.whirl import WhirlDirection
+from rubgen.units import rev_per_min
+
+
+@dataclass(frozen=True)
+class Label:
+    """One label of a run; null where a run failed or has no such value."""
+
+    name: str
+    """Public name, with the unit as its end."""
+    kind: str
+    """text, flag, integer, integers (list), number or numbers (list)."""
+    unit: str
+    """Empty for a text, a flag and a count; "1" for a ratio."""
+    meaning: str
+    """One line for tables."""
+    value: Callable[[Labels], object]
+    """Its value: a Python value, None where it is undefined, any iterable for a list. NaN becomes None."""
+    words: type[StrEnum] | None = None
+    """The values that a text may have."""
+    from_taps: bool = False
+    """Whether it needs the signals at every step, which the compact record does not have."""
+
+
+@dataclass(frozen=True)
+class TapLabel:
+    """One label of each true signal (tap): `<tap>` and `ending` make its name; `{tap}` in its meaning is the name."""
+
+    ending: str
+    kind: str
+    unit: str | None
+    """None for the unit of the tap."""
+    meaning: str
+    value: Callable[[TapOrders], object]
+
+
+_Value = Callable[[Labels], object]
+
+
+def _text(name: str, meaning: str, words: type[StrEnum], value: _Value) -> Label:
+    return Label(name, "text", "", meaning, value, words=words)
+
+
+def _flag(name: str, meaning: str, value: _Value, *, from_taps: bool = False) -> Label:
+    return Label(name, "flag", "", meaning, value, from_taps=from_taps)
+
+
+def _count(name: str, meaning: str, value: _Value, *, unit: str = "") -> Label:
+    return Label(name, "integer", unit, meaning, value)
+
+
+def _counts(name: str, meaning: str, value: _Value, *, unit: str = "", from_taps: bool = False) -> Label:
+    return Label(name, "integers", unit, meaning, value, from_taps=from_taps)
+
+
+def _number(name: str, unit: str, meaning: str, value: _Value) -> Label:
+    return Label(name, "number", unit, meaning, value)
+
+
+def _numbers(name: str, unit: str, meaning: str, value: _Value) -> Label:
+    return Label(name, "numbers", unit, meaning, value)
+
+
+def _rpm(speed: float | None) -> float | None:
+    return None if speed is None else rev_per_min(speed)
+
+
+_CLASSES = list(Motion)
+"""Classes of motion by their number in `change_motion_classes`."""
+_NUMBERED = ", ".join(f"{number} {motion.value}" for number, motion in enumerate(_CLASSES))
+
+CONTACT = (
+    _flag("rub", "a blade touched the casing within the record", lambda x: x.rub),
+    _number("contact_duty", "1", "share of the time in which any blade touches", lambda x: x.contact_duty),
+    _number(
+        "contact_impulse_per_turn_n_s", "N s", "mean normal impulse a turn, all blades", lambda x: x.impulse_per_turn
+    ),
+    _count("blades_touched", "number of blades that touched", lambda x: x.blades_touched),
+    _count("contact_zones", "number of separate contact zones on the casing", lambda x: x.contact_zones),
+    _numbers("contact_zone_centres_rad", "rad", "polar angle of each zone", lambda x: x.contact_zone_centres),
+    _numbers("contact_zone_widths_rad", "rad", "angular width of each zone", lambda x: x.contact_zone_widths),
+    _flag(
+        "contact_zones_symmetric",
+        "zones equal and evenly spread; null without contact",
+        lambda x: x.contact_zones_symmetric,
+    ),
+    _count("contact_touches", "uninterrupted touches of single blades within the record", lambda x: x.amounts.touches),
+    _number(
+        "contact_friction_work_per_turn_j",
+        "J",
+        "mean work of friction a turn, all blades, <= 0",
+        lambda x: x.amounts.friction_work,
+    ),
+    _number("contact_severity", "1", "mean normal force over the blisk's weight", lambda x: x.amounts.severity),
+    _number(
+        "free_penetration_m",
+        "m",
+        "how deep tips would be without contact; null at changing speeds",
+        lambda x: x.amounts.free_penetration,
+    ),
+    _text("rub_extent", "none, partial or full-annular", RubExtent, lambda x: x.amounts.extent),
+    _counts("blade_touches", "touches of each blade within the record", lambda x: x.amounts.blade_touches),
+    _numbers(
+        "blade_impulses_per_turn_n_s",
+        "N s",
+        "mean normal impulse a turn of each blade",
+        lambda x: x.amounts.blade_impulses,
+    ),
+    _text(
+        "whirl",
+        "direction of the disk centre's orbit: forward, backward or mixed",
+        WhirlDirection,
+        lambda x: x.whirl and x.whirl.direction,
+    ),
+    _number(
+        "whirl_index", "1", "1 a circle forward, 0 a line, -1 a circle backward", lambda x: x.whirl and x.whirl.index
+    ),
+)
+MOTION = (
+    _text(
+        "motion_blisk",
+        "static, period-1, period-k, quasi-periodic, undecided or chaotic",
+        Motion,
+        lambda x: x.motion_blisk,
+    ),
+    _text("motion_casing", "the same of the casing", Motion, lambda x: x.motion_casing),
+    _text("motion", "the less regular of the two", Motion, lambda x: x.motion),
+    _count(
+        "period_blisk",
+        "turns after which the blisk repeats; null where it does not",
+        lambda x: x.period_blisk,
+        unit="turns",
+    ),
+    _count("period_casing", "the same of the casing", lambda x: x.period_casing, unit="turns"),
+    _count("period", "least common multiple of the two; null where there is none", lambda x: x.period, unit="turns"),
+    _number(
+        "motion_confidence", "1", "how sure the class is, 0 to 1; 0 where undecided", lambda x: x.motion_confidence
+    ),
+    _flag(
+        "motion_symmetric",
+        "q(t + T/N) = q(t) for N lobes; null unless period-1 in contact",
+        lambda x: x.motion_symmetric,
+    ),
+    _flag("motion_intermittent", "the motion switches between regular and irregular", lambda x: bool(x.segment_starts)),
+    _numbers(
+        "motion_segment_starts_s", "s", "starts of its stretches, from the record's start", lambda x: x.segment_starts
+    ),
+    _counts(
+        "motion_segment_periods", "period of each stretch, 0 where irregular", lambda x: x.segment_periods, unit="turns"
+    ),
+    _flag("tip_chatter", "tips do not repeat, disk centre and casing do", lambda x: x.tip_chatter),
+    _number(
+        "stray_blisk",
+        "1",
+        "how far the blisk's section strays from repeating, over its motion",
+        lambda x: x.stray_blisk,
+    ),
+    _number("stray_casing", "1", "the same of the casing; null where it rests", lambda x: x.stray_casing),
+    _number(
+        "zero_one_k", "1", "K of the 0-1 test: near 1 for chaos, near 0 for regular motion", lambda x: x.zero_one_k
+    ),
+)
+ORDERS = (
+    _flag("has_2fr", "order 2 stands out of the casing acceleration at 0 degrees", lambda x: x.has_2fr, from_taps=True),
+    _counts(
+        "orders_present",
+        "the k up to 20 that stand out of that acceleration, as for has_2fr",
+        lambda x: x.orders_present,
+        from_taps=True,
+    ),
+)
+EXPONENT = (
+    _number(
+        "lyapunov_per_turn",
+        "1/turn",
+        "largest Lyapunov exponent; null where switched off",
+        lambda x: x.lyapunov and x.lyapunov.per_turn,
+    ),
+    _number("lyapunov_per_second", "1/s", "the same by the second", lambda x: x.lyapunov_per_second),
+    _number("lyapunov_error", "1/turn", "its standard error", lambda x: x.lyapunov and x.lyapunov.error),
+    _numbers(
+        "lyapunov_convergence",
+        "1/turn",
+        "it from 1/10, 2/10, ... of the turns that count",
+        lambda x: x.lyapunov.convergence if x.lyapunov else (),
+    ),
+)
+HISTORY = (
+    _number(
+        "onset_speed_rpm",
+        "rev/min",
+        "speed at the first touch; null without or at a steady speed",
+        lambda x: _rpm(x.history.onset_speed) if x.history else None,
+    ),
+    _number(
+        "end_of_rub_speed_rpm",
+        "rev/min",
+        "speed at the end of the last touch",
+        lambda x: _rpm(x.history.end_of_rub_speed) if x.history else None,
+    ),
+    _numbers(
+        "change_times_s",
+        "s",
+        "times from the record's start at which labels change; first 0",
+        lambda x: [change.time for change in x.changes],
+    ),
+    _numbers("change_speeds_rpm", "rev/min", "speed at each", lambda x: [_rpm(change.speed) for change in x.changes]),
+    _counts("change_rub", "1 where a rub goes on from there, else 0", lambda x: [change.rub for change in x.changes]),
+    _numbers(
+        "change_impulse_per_turn_n_s",
+        "N s",
+        "mean normal impulse a turn until the next",
+        lambda x: [change.impulse for change in x.changes],
+    ),
+    _counts(
+        "change_motion_classes",
+        f"class of motion from there on: {_NUMBERED}",
+        lambda x: [_CLASSES.index(change.motion) for change in x.changes],
+    ),
+)
+WINDOWS = (
+    _numbers("window_starts_s", "s", "starts of windows of 16 turns", lambda x: x.windows.start),
+    _numbers(
+        "window_speeds_rpm", "rev/min", "mean speed of each", lambda x: [_rpm(speed) for speed in x.windows.speed]
+    ),
+    _counts("window_rub", "1 where a blade touches within the window, else 0", lambda x: x.windows.duty > 0),
+    _numbers(
+        "window_contact_duty", "1", "share of the time in which any blade touches, of each", lambda x: x.windows.duty
+    ),
+    _numbers("window_impulse_per_turn_n_s", "N s", "mean normal impulse a turn of each", lambda x: x.windows.impulse),
+)
+
+LABELS = (*CONTACT, *MOTION, *ORDERS, *EXPONENT, *HISTORY, *WINDOWS)
+"""In the order of the columns."""
+_FRACTIONS = ", ".join(str(fraction) for fraction in FRACTIONS)
+TAP_LABELS = (
+    TapLabel("orders", "numbers", None, "peak amplitudes of {tap} at k f_r, k = 1..20", lambda tap: tap.amplitudes),
+    TapLabel("even_share", "number", "1", "share of the squares on even k", lambda tap: tap.even_share),
+    TapLabel("odd_share", "number", "1", "share of the squares on odd k", lambda tap: tap.odd_share),
+    TapLabel("dominant_order", "integer", "", "k of the largest amplitude", lambda tap: tap.dominant),
+    TapLabel("order_phases_rad", "numbers", "rad", "phases: A cos(k theta + phase), k = 1..20", lambda tap: tap.phases),
+    TapLabel("order_floors", "numbers", None, "median amplitude around each k", lambda tap: tap.floors),
+    TapLabel(
+        "fractional_amplitudes", "numbers", None, f"the same at f_r times {_FRACTIONS}", lambda tap: tap.fractional
+    ),
+    TapLabel(
+        "blade_passing",
+        "numbers",
+        None,
+        "at blade passing and two orders on either side, b-2..b+2",
+        lambda tap: tap.blade_passing,
+    ),
+)
+TAP_ENDINGS = tuple(f"_{label.ending}" for label in TAP_LABELS)
+"""Ends of the names of the labels that each true signal has."""
