@@ -11,7 +11,8 @@ import pytest
 
 import rubgen
 from rubgen.cli.app import app
-from rubgen.labels.registry import TAP_ENDINGS
+from rubgen.dataset.schemas import with_tables
+from rubgen.labels.registry import LABELS, TAP_ENDINGS
 from rubgen.labels.to_json import labels_to_json
 from rubgen.scenario import load_recipe, parse_recipe
 from rubgen.solver import Status
@@ -127,6 +128,12 @@ def test_the_rooms_of_the_package_are_those_that_the_architecture_names():
     named = re.findall(r"^\| `(rubgen/[\w/]*)` \|", DOCUMENTS["docs/architecture.md"], re.MULTILINE)
     rooms = [path.parent.relative_to(ROOT).as_posix() + "/" for path in (ROOT / "rubgen").rglob("__init__.py")]
     assert sorted(named) == sorted(rooms)
+
+
+def test_tables_of_labels_are_those_of_the_registry():
+    page = DOCUMENTS["docs/labels.md"]
+    assert page == with_tables(page), "run `make schemas`"
+    assert [label.name for label in LABELS if f"| `{label.name}` | {label.kind} | {label.unit} |" not in page] == []
 
 
 def test_labels_and_statuses_are_described(rub_run):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
 from rubgen.brief import counted
@@ -73,9 +74,7 @@ all of them, and labels against signals. `rubgen repair DIR` makes again what is
 
 ## Columns
 
-| column | type | unit | meaning |
-|---|---|---|---|
-{_table(columns)}
+{column_table(columns)}
 
 ## Columns of sections
 
@@ -133,8 +132,10 @@ def _head(recipe: dict[str, object]) -> str:
     return "\n".join([*lines, "---"])
 
 
-def _table(columns: tuple[Column, ...]) -> str:
-    return "\n".join(f"| `{c.name}` | {c.kind} | {c.unit} | {c.meaning} |" for c in columns)
+def column_table(columns: Sequence[Column]) -> str:
+    """The columns as a table in Markdown."""
+    head = "| column | type | unit | meaning |\n|---|---|---|---|\n"
+    return head + "\n".join(f"| `{c.name}` | {c.kind} | {c.unit} | {c.meaning} |" for c in columns)
 
 
 def _section_table() -> str:

@@ -1,18 +1,23 @@
-"""The schemas of what users write and read: `python -m rubgen.dataset.schemas DIRECTORY` writes them."""
+"""The schemas of what users write and read, and the tables of labels in a document.
+
+`python -m rubgen.dataset.schemas DIRECTORY PAGE` writes the schemas into the directory and the tables into the page.
+"""
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import Any
 
 from pydantic import TypeAdapter
 
+from rubgen.dataset.card import column_table
 from rubgen.dataset.files import write_json, write_text
 from rubgen.dataset.manifest import Manifest
-from rubgen.io.columns import Column, scalar_columns
+from rubgen.io.columns import Column, label_columns, scalar_columns, tap_columns
 from rubgen.io.mcap.messages import proto_text
-from rubgen.labels.registry import TAP_ENDINGS
+from rubgen.labels import registry
 from rubgen.machine import Machine
 from rubgen.scenario import Recipe
 from rubgen.sensors.load import default_sensor_set
@@ -50,15 +55,32 @@ def write_schemas(directory: Path) -> None:
     write_text(directory / "rubgen.v1.proto", proto_text())
 
 
+def with_tables(page: str) -> str:
+    """The page with its tables of labels made from the registry, each from `<!-- group -->` to `<!-- end -->`."""
+    groups = {
+        "contact": label_columns(registry.CONTACT),
+        "motion": label_columns(registry.MOTION),
+        "orders": label_columns(registry.ORDERS),
+        "exponent": label_columns(registry.EXPONENT),
+        "history": label_columns(registry.HISTORY),
+        "windows": label_columns(registry.WINDOWS),
+        "taps": tap_columns("<tap>", "of the tap"),
+    }
+    for group, columns in groups.items():
+        table = f"<!-- {group} -->\n{column_table(columns)}\n<!-- end -->"
+        page = re.sub(rf"<!-- {group} -->\n.*?<!-- end -->", lambda _, table=table: table, page, flags=re.DOTALL)  # type: ignore[misc]
+    return page
+
+
 def _run_schema() -> dict[str, Any]:
-    columns = scalar_columns(default_sensor_set())
+    columns, endings = scalar_columns(default_sensor_set()), "|".join(registry.TAP_ENDINGS)
     return {
         "title": "Run",
         "description": "One row of runs.parquet. Labels are null where a run failed or has no such value.",
         "type": "object",
         "properties": {column.name: _property(column) for column in columns},
         "required": [column.name for column in columns],
-        "patternProperties": {f"^[A-Za-z]\\w*({'|'.join(TAP_ENDINGS)})$": {"description": "of a further true signal"}},
+        "patternProperties": {f"^[A-Za-z]\\w*({endings})$": {"description": "of a further true signal"}},
         "additionalProperties": False,
     }
 
@@ -85,3 +107,5 @@ def _property(column: Column) -> dict[str, Any]:
 
 if __name__ == "__main__":
     write_schemas(Path(sys.argv[1]))
+    for page in map(Path, sys.argv[2:]):
+        write_text(page, with_tables(page.read_text(encoding="utf-8")))

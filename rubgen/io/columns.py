@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
 from rubgen.errors import UserError
-from rubgen.labels.registry import LABELS, TAP_LABELS
+from rubgen.labels.registry import LABELS, TAP_LABELS, Label
 from rubgen.scenario.vary import PARAMETERS
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
 from rubgen.sensors.kinds.once_per_rev import OncePerRev
@@ -56,23 +57,19 @@ def _operation() -> list[Column]:
     ]
 
 
-def _labels() -> list[Column]:
-    return [Column(x.name, x.kind, x.unit, x.meaning, nullable=True, words=x.words) for x in LABELS]
+def label_columns(labels: Iterable[Label] = LABELS) -> list[Column]:
+    """The columns of these labels."""
+    return [Column(x.name, x.kind, x.unit, x.meaning, nullable=True, words=x.words) for x in labels]
 
 
 FIELDS = tuple(CasingAcceleration(name=f"casing_{part}", angle_deg=0) for part in ("even", "odd"))
 """Parts of the casing's acceleration of even and odd circumferential order: no taps, but with orders like them."""
 
 
-def _orders(tap: Tap) -> list[Column]:
+def tap_columns(name: str, unit: str) -> list[Column]:
+    """The columns of a true signal of that name and unit."""
     return [
-        Column(
-            f"{tap.name}_{x.ending}",
-            x.kind,
-            tap.UNIT if x.unit is None else x.unit,
-            x.meaning.format(tap=tap.name),
-            nullable=True,
-        )
+        Column(f"{name}_{x.ending}", x.kind, unit if x.unit is None else x.unit, x.meaning.format(tap=name), True)
         for x in TAP_LABELS
     ]
 
@@ -120,8 +117,8 @@ def _ordered_taps(sensors: SensorSet) -> tuple[Tap, ...]:
 
 def scalar_columns(sensors: SensorSet) -> tuple[Column, ...]:
     """Columns of `runs.parquet` for runs with these sensors: each true signal that one sees has its orders."""
-    orders = [column for tap in _ordered_taps(sensors) for column in _orders(tap)]
-    return (*_identity(), *_parameters(), *_operation(), *_labels(), *orders, *_energy())
+    orders = [column for tap in _ordered_taps(sensors) for column in tap_columns(tap.name, tap.UNIT)]
+    return (*_identity(), *_parameters(), *_operation(), *label_columns(), *orders, *_energy())
 
 
 def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
