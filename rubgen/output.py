@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rubgen.errors import UserError, write_problems
+from rubgen.format_names import ENDINGS, FORMAT_NAMES
+from rubgen.formats import format_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Figure
@@ -17,7 +19,7 @@ Write = Callable[["Run", Path], None]
 
 
 def save(run: Run, path: Path, *, named: str = "") -> None:
-    """Write `run` to `path`, complete or not at all: .mcap, .parquet (one row) or .rrd, by the ending.
+    """Write `run` to `path`, complete or not at all, in the format that its ending names (Parquet: one row).
 
     `named` is how messages call the file. Raises UserError for a failed run, another ending, a folder that does not
     exist, and a file that cannot be written.
@@ -33,19 +35,9 @@ def writer_of(path: Path, named: str) -> Write:
     """What writes that kind of file; UserError where the ending or the folder will not do."""
     if not path.parent.is_dir():
         raise UserError(f"{named}: there is no directory {path.parent}; make it first")
-    if path.suffix == ".mcap":
-        from rubgen.io.mcap import write_mcap
-
-        return write_mcap
-    if path.suffix == ".parquet":
-        from rubgen.io.parquet.write import write_parquet
-
-        return write_parquet
-    if path.suffix == ".rrd":
-        from rubgen.viz.rerun import write_rrd
-
-        return write_rrd
-    raise UserError(f"{named}: unknown kind of file; end the name in .mcap, .parquet or .rrd")
+    if path.suffix.removeprefix(".") not in FORMAT_NAMES:
+        raise UserError(f"{named}: unknown kind of file; end the name in {ENDINGS}")
+    return format_of(path.suffix.removeprefix(".")).write
 
 
 def plot(run: Run) -> Figure:

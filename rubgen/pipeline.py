@@ -59,7 +59,7 @@ class Run:
         }
 
     def save(self, path: Path | str) -> None:
-        """Write the run to a file whose name ends in .mcap, .parquet or .rrd. See `rubgen.output.save`."""
+        """Write the run to a file in the format that its ending names. See `rubgen.output.save`."""
         from rubgen.output import save
 
         save(self, Path(path))

@@ -15,6 +15,7 @@ from cyclopts import App, CycloptsError, Parameter, Token
 from rubgen import __version__
 from rubgen.cli.mistakes import mistake
 from rubgen.errors import RubgenError, RubgenWarning, UserError, os_reason
+from rubgen.format_names import ENDINGS
 from rubgen.progress import shown
 
 DONE, WANTING, MISTAKE, INTERRUPTED = 0, 1, 2, 130
@@ -129,7 +130,7 @@ def simulate(
     signal_seconds: Annotated[float, _option("Length of the recorded signals: the end of the record.")] = 1.0,
     seed: Annotated[int, _whole_number("Seed of the sensor noise.")] = 0,
     lyapunov: Annotated[bool | None, _option("Whether to compute the exponent of a steady run; on by default.")] = None,
-    out: Annotated[Path | None, _option("File to write: .mcap, .parquet or .rrd.")] = None,
+    out: Annotated[Path | None, _option(f"File to write: {ENDINGS}.")] = None,
     force: Force = False,
     replay: Annotated[bool, Parameter(negative=(), help="Then show the run in the viewer.")] = False,
     json: Json = False,

@@ -13,6 +13,7 @@ from rubgen.brief import counted
 from rubgen.cli.interrupts import terminable
 from rubgen.cli.printing import print_json, say
 from rubgen.dataset.making.generate import Generated, finished_runs, generate
+from rubgen.formats import run_formats
 
 
 def generate_command(recipe: Path | None, out: Path, runs: int | None, workers: int | None, *, as_json: bool) -> int:
@@ -53,11 +54,10 @@ def _what_was_made(made: Generated) -> Iterator[str]:
 def _ways_to_look(directory: Path) -> Iterator[str]:
     """What stands where, and the command that shows it."""
     yield f"  {directory}/runs.parquet, data/: parameters, labels, signals; for pandas, polars, datasets"
-    recordings = sorted((directory / "rrd").glob("*.rrd"))
-    if recordings:
-        yield f"  see a run:      {_command('rerun')} {recordings[0]}"
-    if (directory / "mcap").is_dir():
-        yield f"  for Foxglove:   {directory}/mcap/"
+    for each in run_formats():
+        files = sorted((directory / each.name).glob(f"*{each.suffix}"))
+        if files and each.look:
+            yield f"  {each.look.format(folder=files[0].parent, first=files[0], rerun=_command('rerun'))}"
     yield f"  count classes:  {_command('rubgen')} info {directory}"
     yield f"  check it all:   {_command('rubgen')} verify {directory}"
     yield f"  {directory}/README.md tells what every column means and how to load it"

@@ -11,6 +11,9 @@ from rubgen.cli.printing import print_json, print_pairs, say
 from rubgen.cli.replaying import Showing, show
 from rubgen.cli.run_summary import run_summary
 from rubgen.errors import warn
+from rubgen.format_names import FORMAT_NAMES
+from rubgen.formats import format_of
+from rubgen.labels.registry import LABELS
 from rubgen.labels.to_json import labels_to_json
 from rubgen.output import save
 from rubgen.pipeline import Run, simulate
@@ -21,26 +24,8 @@ from rubgen.solver import Status
 from rubgen.solver.linear.reach import no_rub
 from rubgen.viz.replay import replay_of
 
-LABEL_NAMES = (
-    "rub",
-    "contact_duty",
-    "contact_impulse_per_turn_n_s",
-    "blades_touched",
-    "contact_zones",
-    "contact_zones_symmetric",
-    "motion_blisk",
-    "motion_casing",
-    "motion",
-    "motion_confidence",
-    "period",
-    "has_2fr",
-    "lyapunov_per_turn",
-    "lyapunov_error",
-    "contact_force_orders",
-    "blisk_x_orders",
-)
+LABEL_NAMES = (*(label.name for label in LABELS), "contact_force_orders", "blisk_x_orders")
 """Labels that programs find as null where a run failed."""
-WRITERS = {".mcap": "MCAP, for Foxglove and rubgen replay", ".parquet": "Parquet", ".rrd": "for the Rerun viewer"}
 
 
 def simulate_command(
@@ -50,7 +35,7 @@ def simulate_command(
     if replay:
         Showing().check()
     if out:
-        check_new_file("--out", out, tuple(WRITERS), force=force)
+        check_new_file("--out", out, tuple(sorted(f".{name}" for name in FORMAT_NAMES)), force=force)
     scenario = _scenario(options)
     text = no_rub([scenario])
     if text:
@@ -65,7 +50,7 @@ def simulate_command(
         with step("write the file"):
             save(run, out, named=f"--out {out}")
         if not as_json:
-            say(f"written        {out}: {out.stat().st_size / 1e6:.2g} MB, {WRITERS[out.suffix]}")
+            say(f"written        {out}: {out.stat().st_size / 1e6:.2g} MB, {format_of(out.suffix[1:]).about}")
     if out and not good and not as_json:
         say(f"not written    {out}: a run that failed has no signals")
     if replay and good:

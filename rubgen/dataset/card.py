@@ -10,28 +10,10 @@ from rubgen.brief import counted
 from rubgen.dataset.files import write_text
 from rubgen.dataset.layout import SPLIT, Layout
 from rubgen.dataset.manifest import Identity
+from rubgen.format_names import FORMAT_NAMES
+from rubgen.formats import format_of
 from rubgen.io.columns import Column, scalar_columns, signal_columns
 from rubgen.io.parquet.sections import RECORD_COLUMNS
-
-LOADING = {
-    "parquet": """\
-```python
-import rubgen
-data = rubgen.open("DIR")                    # data.runs: a DataFrame; data.signals("run-000000"): arrays
-
-import datasets, duckdb, pandas, polars
-pandas.read_parquet("DIR/runs.parquet")      # parameters and labels of every run, failed ones too
-datasets.load_dataset("DIR", split="train")  # with signals; offline
-polars.scan_parquet("DIR/data/*.parquet").select("run_id", "motion", "CHANNEL").collect()
-duckdb.sql("select motion, count(*) from 'DIR/data/*.parquet' group by motion")
-```""",
-    "mcap": """\
-`mcap/<run_id>.mcap`: one file a run; `rubgen.io.mcap.read_mcap(path)`, the `mcap` package, or Foxglove. Blocks of
-1024 samples on `/raw/<channel>`, contacts on `/contact`, labels and scenario as metadata.""",
-    "rrd": """\
-`rrd/<run_id>.rrd`: the same run to look at, `rerun rrd/run-000000.rrd`. A derived view, whose
-bytes differ from writing to writing: their sha256 stands in `derived.json`, not in the manifest.""",
-}
 
 
 def write_card(layout: Layout, identity: Identity, status: dict[str, int]) -> None:
@@ -47,7 +29,8 @@ def card(identity: Identity, status: dict[str, int]) -> str:
     signals = signal_columns(sensors, clean=recipe["sensors"]["keep_clean"])
     columns = scalar_columns(sensors) + (signals if "parquet" in formats else ())
     channel = next((column.name for column in signals if column.kind == "signal"), "rotation_angle_rad")
-    loading = "\n\n".join(LOADING[kind] for kind in LOADING if kind in formats).replace("CHANNEL", channel)
+    loading = "\n\n".join(format_of(name).loading for name in FORMAT_NAMES if name in formats)
+    loading = loading.replace("CHANNEL", channel)
     ended = ", ".join(f"{count} {name}" for name, count in status.items())
     record, limits, runs = _record(recipe), _limits(recipe), counted(recipe["runs"], "run")
     return f"""{_head(recipe)}

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+
+from rubgen.formats import format_of
 
 SPLIT = "train"
 """Splits go by machine, never by run; a recipe has one machine, hence one split."""
@@ -13,7 +16,6 @@ RUNS_PER_SHARD = 256
 RUNS_PER_ROW_GROUP = 8
 """Measured on 32 runs of 1 s: as small (634 kB a run; 723 with 1) and as fast to stream as 16, and one run is read in
 20 ms (35 with 16, 6 with 1)."""
-FOLDERS = {"mcap": "mcap", "rrd": "rrd"}
 
 
 @dataclass(frozen=True)
@@ -85,8 +87,12 @@ class Layout:
         return self.sections / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
 
     def export(self, kind: str, run_id: str) -> Path:
-        """The MCAP or .rrd file of a run."""
-        return self.root / FOLDERS[kind] / f"{run_id}.{kind}"
+        """The file of a run in the format of that name, which is its folder and its ending too."""
+        return self.root / kind / f"{run_id}.{kind}"
+
+    def folders(self, names: Iterable[str]) -> list[Path]:
+        """The folders of these formats: `data` for Parquet, else the one of their name."""
+        return [self.root / name if format_of(name).one_file_a_run else self.data for name in names]
 
     def shard(self, number: int, count: int) -> Path:
         """A data file."""

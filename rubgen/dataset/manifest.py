@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, NonNegativeInt, TypeAdapter, 
 from rubgen.dataset.files import json_text, sha256_of, write_text
 from rubgen.dataset.layout import Layout
 from rubgen.errors import UserError
+from rubgen.formats import run_formats
 from rubgen.io.json_read import read_json
 from rubgen.io.parquet.read import read_table
 from rubgen.io.regular_file import check_regular
@@ -178,8 +179,9 @@ def content_of(layout: Layout, formats: Sequence[str]) -> tuple[list[Path], list
     shards = layout.number_of_shards(len(good))
     data = [layout.shard(number, shards) for number in range(shards)] if "parquet" in formats else []
     sections = [layout.section_shard(number, shards) for number in range(shards)]
-    mcap, rrd = ([layout.export(kind, name) for name in good if kind in formats] for kind in ("mcap", "rrd"))
-    return [layout.card, layout.croissant, layout.runs, *data, *sections, *mcap], rrd
+    hashed = [layout.export(each.name, name) for each in run_formats(formats) if not each.remake for name in good]
+    derived = [layout.export(each.name, name) for each in run_formats(formats) if each.remake for name in good]
+    return [layout.card, layout.croissant, layout.runs, *data, *sections, *hashed], derived
 
 
 def entry_of(path: Path, root: Path) -> FileEntry:

@@ -13,6 +13,8 @@ from rubgen.dataset.checking.verify import verify
 from rubgen.dataset.reading.open import DataSet
 from rubgen.dataset.reading.replaying import find_replay
 from rubgen.errors import UserError, write_problems
+from rubgen.format_names import FORMAT_NAMES
+from rubgen.formats import format_of
 from rubgen.io.durable import write_durably
 from rubgen.labels.labels import Motion
 from rubgen.progress import count
@@ -30,39 +32,11 @@ if TYPE_CHECKING:
 EXAMPLES, MOST_FAILED = 6, 30
 DPI = 90
 """Few dots: a page takes about a megabyte. All colours are kept, for they tell the classes."""
-WAYS = {
-    "rubgen": """import rubgen
+RUBGEN = """import rubgen
 
 data = rubgen.open("DIR")
 runs = data.runs
-signal = data.signals("RUN")["CHANNEL"]""",
-    "pandas": """import glob
-import pandas as pd
-
-files = sorted(glob.glob("DIR/data/train-*.parquet"))
-runs = pd.concat(map(pd.read_parquet, files))
-signal = runs["CHANNEL"].iloc[0]""",
-    "polars": """import polars as pl
-
-runs = pl.scan_parquet("DIR/data/train-*.parquet")
-signal = runs.select("CHANNEL").head(1).collect()["CHANNEL"][0]""",
-    "datasets": """from datasets import load_dataset
-
-runs = load_dataset("parquet", data_files="DIR/data/train-*.parquet", split="train")
-signal = runs[0]["CHANNEL"]""",
-    "torch": """import torch
-from datasets import load_dataset
-
-runs = load_dataset("parquet", data_files="DIR/data/train-*.parquet", split="train")
-runs = runs.select_columns(["CHANNEL", "motion"]).with_format("torch")
-loader = torch.utils.data.DataLoader(runs, batch_size=16)""",
-    "MCAP": """from pathlib import Path
-from rubgen.io.mcap import read_mcap
-
-run = read_mcap(Path("DIR/mcap/RUN.mcap"))
-signal = run.signals["CHANNEL"]
-labels = run.labels""",
-}
+signal = data.signals("RUN")["CHANNEL"]"""
 
 
 def write_report(directory: Path, path: Path) -> None:
@@ -197,10 +171,8 @@ def _channels(replay: Replay) -> list[dict[str, str]]:
 def loading(data: DataSet, replay: Replay) -> dict[str, str]:
     """Ways to load the set, each a few lines of Python in which DIR stands for its directory."""
     formats = data.manifest.identity.recipe["output"]["formats"]
-    ways = {"rubgen": WAYS["rubgen"]}
-    if "parquet" in formats:
-        ways |= {name: WAYS[name] for name in ("pandas", "polars", "datasets", "torch")}
-    if "mcap" in formats:
-        ways["MCAP"] = WAYS["MCAP"]
+    ways = {"rubgen": RUBGEN}
+    for name in FORMAT_NAMES:
+        ways |= format_of(name).ways if name in formats else {}
     channel, run_id = next(iter(replay.recording.channels)), replay.scenario.run_id
     return {name: code.replace("CHANNEL", channel).replace("RUN", run_id) for name, code in ways.items()}

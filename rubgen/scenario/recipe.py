@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, TypeAdapter, Val
 
 from rubgen.brief import counted
 from rubgen.errors import UserError
+from rubgen.format_names import FORMAT_NAMES, FormatName
 from rubgen.machine import Machine, load_machine
 from rubgen.machine.load import machine_id
 from rubgen.machine.problems import first_problem, validated
@@ -42,7 +43,6 @@ from rubgen.sensors.load import DEFAULT_SET, load_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
 
 DEFAULT_RECIPE = Path(__file__).parent / "zeng2019-mini.toml"
-Format = Literal["parquet", "mcap", "rrd"]
 _STRICT = ConfigDict(extra="forbid", frozen=True)
 
 
@@ -72,7 +72,11 @@ class Output(BaseModel):
     """`[output]`: files that are written, and the length of the signals: the end of the record."""
 
     model_config = _STRICT
-    formats: Annotated[tuple[Format, ...], Field(min_length=1, max_length=3)] = ("parquet", "mcap", "rrd")
+    formats: Annotated[tuple[FormatName, ...], Field(min_length=1, max_length=len(FORMAT_NAMES))] = (
+        "parquet",
+        "mcap",
+        "rrd",
+    )
     signal_seconds: Duration = 1.0
 
 

@@ -6,7 +6,7 @@ import pytest
 from rubgen.io.columns import scalar_columns
 from rubgen.labels.registry import LABELS, TAP_LABELS
 from rubgen.labels.to_json import labels_to_json
-from rubgen.scenario.sensor_set import default_sensor_set
+from rubgen.sensors.load import default_sensor_set
 
 TYPES = {"text": str, "flag": bool, "integer": int, "number": float}
 

@@ -10,7 +10,7 @@ from enum import Enum
 from pathlib import Path
 
 from rubgen.dataset.files import is_system_file, sha256_of
-from rubgen.dataset.layout import FOLDERS, Layout
+from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import FileEntry, Manifest, read_derived
 from rubgen.errors import UserError
 
@@ -112,7 +112,7 @@ def strangers(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
     known |= {layout.manifest.name, layout.digest.name}
     known |= {layout.derived.name} if manifest.derived else set()
     folders = {parent.as_posix() for name in known for parent in Path(name).parents}
-    folders |= {FOLDERS.get(kind, layout.data.name) for kind in manifest.identity.recipe["output"]["formats"]}
+    folders |= {folder.name for folder in layout.folders(manifest.identity.recipe["output"]["formats"])}
     unreadable: list[OSError] = []
     for folder, inner, names in os.walk(layout.root, onerror=unreadable.append):
         here = Path(folder).relative_to(layout.root)

@@ -17,7 +17,7 @@ from rubgen.dataset.manifest import Manifest, identity_of, read_manifest, write_
 from rubgen.dataset.reading.open import DataSet
 from rubgen.dataset.reading.replaying import replay_of_mcap, scenario_of
 from rubgen.errors import UserError, write_problems
-from rubgen.io.durable import write_durably
+from rubgen.formats import format_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,8 +75,8 @@ def _recordings(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator
 def _make_recording(data: DataSet, name: str, wrong: set[str]) -> bool:
     """Make one .rrd file again; whether that could be done."""
     from rubgen.viz.replay import replay_of
-    from rubgen.viz.rerun import write_replay
 
+    remake = format_of(Path(name).parts[0]).remake
     path = data.layout.root / name
     mcap = data.layout.export("mcap", path.stem)
     source = mcap.relative_to(data.layout.root).as_posix()
@@ -88,8 +88,10 @@ def _make_recording(data: DataSet, name: str, wrong: set[str]) -> bool:
         replay = replay_of(simulate(scenario_of(data, path.stem)))
     else:
         return False
+    if remake is None:
+        raise ValueError(f"{name} is data, no derived file")
     path.parent.mkdir(exist_ok=True)
     if not path.parent.resolve().is_relative_to(data.layout.root.resolve()):
         raise UserError(f"{path.parent}: is a link out of the set; remove the link")
-    write_durably(path, lambda part: write_replay(replay, part))
+    remake(replay, path)
     return True

@@ -14,6 +14,7 @@ from rubgen.dataset.manifest import Manifest
 from rubgen.dataset.reading.open import is_signal, row_signals
 from rubgen.dataset.rows import asked_bytes
 from rubgen.errors import UserError
+from rubgen.formats import run_formats
 from rubgen.io.parquet.read import ParquetSource, open_parquet
 from rubgen.io.parquet.sections import SCHEMA
 from rubgen.io.parquet.write import schema
@@ -60,8 +61,8 @@ def _run_problems(name: str, rows: dict[str, Row], manifest: Manifest) -> Iterat
 
 
 def _list_problems(manifest: Manifest, formats: Sequence[str], good: set[str]) -> Iterator[str]:
-    """MCAP and .rrd files that the manifest lists without a good run, or does not list for one."""
-    for kind in ("mcap", "rrd"):
+    """Files of single runs that the manifest lists without a good run, or does not list for one."""
+    for kind in (each.name for each in run_formats()):
         listed = set(manifest.listed(kind))
         expected = {f"{kind}/{name}.{kind}" for name in good} if kind in formats else set()
         for name in sorted(listed ^ expected):

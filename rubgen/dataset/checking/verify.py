@@ -9,6 +9,7 @@ from rubgen.dataset.checking.inventory import Finding, Kind, derived_digests, fi
 from rubgen.dataset.checking.table_check import table_problems
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, read_manifest
+from rubgen.formats import run_formats
 
 
 def verify(directory: Path) -> list[str]:
@@ -25,17 +26,28 @@ def verify(directory: Path) -> list[str]:
 
 def findings(directory: Path) -> list[Finding]:
     """The problems of `verify`, each with what it asks for."""
-    from rubgen.io.mcap import check_mcap
-
     layout = Layout(directory)
     manifest = read_manifest(layout)
     found = list(file_findings(layout, manifest))
     found += strangers(layout, manifest)
     closed = {finding.path for finding in found if finding.closed}
     found += (Finding(text=text) for text in table_problems(layout, manifest, closed))
-    for name in (name for name in manifest.listed("mcap") if name not in closed):
-        found += (Finding(text=f"{name}: {problem}") for problem in check_mcap(layout.root / name, Path(name).stem))
-    return [*found, *_recording_findings(layout, manifest, {finding.path for finding in found})]
+    return [*found, *_format_findings(layout, manifest, closed, {finding.path for finding in found})]
+
+
+def _format_findings(layout: Layout, manifest: Manifest, closed: set[str], wrong: set[str]) -> Iterator[Finding]:
+    """What is wrong inside the files of single runs. Of derived ones those are read that are not `wrong` already."""
+    proven = set(derived_digests(layout, manifest)[0])
+    for each in run_formats():
+        kind = Kind.DERIVED if each.remake else Kind.DATA
+        for name in manifest.listed(each.name):
+            if name in (wrong if each.remake else closed):
+                continue
+            path = layout.root / name
+            problems = each.problems(path, path.stem, name in proven)
+            yield from (
+                Finding(text=f"{name}: {text}", kind=kind, path=name if each.remake else "") for text in problems
+            )
 
 
 def advice(directory: Path, found: list[Finding]) -> str:
@@ -52,17 +64,3 @@ def advice(directory: Path, found: list[Finding]) -> str:
     }
     whole = [] if Kind.DATA in kinds else ["the data files are whole"]
     return "; ".join([*whole, *(text for kind, text in sentences.items() if kind in kinds)])
-
-
-def _recording_findings(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[Finding]:
-    """What is wrong in .rrd files; one that has its digest is as rubgen wrote it, and is safe to read here."""
-    if not manifest.derived:
-        return
-    from rubgen.viz.rerun import check_rrd, content_problems
-
-    digests, _ = derived_digests(layout, manifest)
-    for name in manifest.derived:
-        if name not in wrong:
-            path = layout.root / name
-            problems = content_problems(path, path.stem) if name in digests else check_rrd(path, path.stem)
-            yield from (Finding(text=f"{name}: {each}", kind=Kind.DERIVED, path=name) for each in problems)

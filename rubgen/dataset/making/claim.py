@@ -9,11 +9,12 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from rubgen.dataset.files import is_system_file, remove_parts, write_json
-from rubgen.dataset.layout import FOLDERS, Layout
+from rubgen.dataset.layout import Layout
 from rubgen.dataset.making.claim_lock import acquired, soft_lock
 from rubgen.dataset.making.difference import check_same
 from rubgen.dataset.manifest import Identity, read_manifest
 from rubgen.errors import UserError
+from rubgen.format_names import FORMAT_NAMES
 from rubgen.io.durable import PART, sync_directory
 
 _STAGED = ("runs", "sections")
@@ -67,8 +68,7 @@ def begun(layout: Layout, identity: Identity) -> Iterator[None]:
     if not layout.identity.exists():
         _begin(layout, identity)
     _check_begun(layout, identity)
-    kinds = [FOLDERS.get(kind, layout.data.name) for kind in identity.recipe["output"]["formats"]]
-    folders = [layout.sections, *(layout.root / kind for kind in kinds)]
+    folders = [layout.sections, *layout.folders(identity.recipe["output"]["formats"])]
     for folder in folders:
         folder.mkdir(exist_ok=True)
     for folder in (layout.root, *folders, *(layout.staging / name for name in _STAGED)):
@@ -153,7 +153,8 @@ def _holds_nothing(layout: Layout) -> bool:
 def _is_nothing(layout: Layout, path: Path) -> bool:
     if is_system_file(path.name) or path == _unborn(layout) or path.name.startswith(_lock(layout).name):
         return True
-    folders = {layout.staging.name, layout.sections.name, layout.data.name, *FOLDERS.values(), *_STAGED}
+    folders = {layout.staging.name, layout.sections.name, *_STAGED}
+    folders |= {folder.name for folder in layout.folders(FORMAT_NAMES)}
     if path.name not in folders or path.is_symlink() or not path.is_dir():
         return False
     files = (below for below in path.rglob("*") if not (below.name in folders and below.is_dir()))

@@ -5,17 +5,13 @@ from __future__ import annotations
 from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rubgen.cache_root import untold
-from rubgen.dataset.layout import FOLDERS, Layout
+from rubgen.dataset.layout import Layout
 from rubgen.errors import UserError
-from rubgen.io.durable import write_durably
+from rubgen.formats import run_formats
 from rubgen.progress import COMPILING, step
 from rubgen.scenario import Scenario
-
-if TYPE_CHECKING:
-    from rubgen.pipeline import Run
 
 WARM_UP_TURNS = 40
 
@@ -35,7 +31,8 @@ def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
     except UserError as error:
         run = refused(scenario, str(error))
     if run.labels is not None:
-        _write_exports(run, layout, formats)
+        for each in run_formats(formats):
+            each.write(run, layout.export(each.name, scenario.run_id))
         write_section(scenario.run_id, run.response, layout.staged_section(scenario.run_id))
     table = run_table(run, signals="parquet" in formats)
     write_table([table], table.schema, layout.staged(scenario.run_id))
@@ -56,7 +53,7 @@ def is_staged(layout: Layout, index: int, formats: tuple[str, ...], asked_bytes:
         status = read_table(layout.staged(run_id), ["status"], asked_bytes)["status"].to_pylist()
     except UserError:
         return False
-    files = [layout.export(kind, run_id) for kind in FOLDERS if kind in formats]
+    files = [layout.export(each.name, run_id) for each in run_formats(formats)]
     return status != ["ok"] or all(file.exists() for file in (layout.staged_section(run_id), *files))
 
 
@@ -87,14 +84,3 @@ def warming_up() -> AbstractContextManager[None]:
 
     compiled = kernels_are_compiled()
     return step("reduce the machine" if compiled else COMPILING, long=not compiled)
-
-
-def _write_exports(run: Run, layout: Layout, formats: tuple[str, ...]) -> None:
-    if "mcap" in formats:
-        from rubgen.io.mcap import write_mcap
-
-        write_mcap(run, layout.export("mcap", run.scenario.run_id))
-    if "rrd" in formats:
-        from rubgen.viz.rerun import write_rrd
-
-        write_durably(layout.export("rrd", run.scenario.run_id), lambda part: write_rrd(run, part))

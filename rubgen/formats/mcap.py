@@ -1,0 +1,43 @@
+"""MCAP: every sample, contacts, labels and scenario of one run, for Foxglove and `rubgen replay`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rubgen.formats.format import Format
+
+if TYPE_CHECKING:
+    from rubgen.pipeline import Run
+
+
+def _write(run: Run, path: Path) -> None:
+    from rubgen.io.mcap import write_mcap
+
+    write_mcap(run, path)
+
+
+def _problems(path: Path, run_id: str, _proven: bool) -> list[str]:
+    from rubgen.io.mcap import check_mcap
+
+    return check_mcap(path, run_id)
+
+
+FORMAT = Format(
+    name="mcap",
+    about="MCAP, for Foxglove and rubgen replay",
+    loading="""\
+`mcap/<run_id>.mcap`: one file a run; `rubgen.io.mcap.read_mcap(path)`, the `mcap` package, or Foxglove. Blocks of
+1024 samples on `/raw/<channel>`, contacts on `/contact`, labels and scenario as metadata.""",
+    ways={
+        "MCAP": """from pathlib import Path
+from rubgen.io.mcap import read_mcap
+
+run = read_mcap(Path("DIR/mcap/RUN.mcap"))
+signal = run.signals["CHANNEL"]
+labels = run.labels"""
+    },
+    look="for Foxglove:   {folder}/",
+    write=_write,
+    problems=_problems,
+)
