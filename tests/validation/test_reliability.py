@@ -9,9 +9,9 @@ import time
 import pytest
 
 from rubgen.errors import UserError
-from validation.reliability import hostile
-from validation.reliability.documents import json_bytes, mutated, toml_text
 from validation.reliability.guarded import one_outcome, outcomes
+from validation.reliability.hostile import inputs as hostile
+from validation.reliability.hostile.documents import json_bytes, mutated, toml_text
 from validation.reliability.rows import Row, table_of
 from validation.reliability.sets import Truth
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from validation.reliability.damage import damage_rows
 from validation.reliability.disks import full_disk_row, read_only_row, shut_out_row
 from validation.reliability.fuzz import fuzz_rows, repeat
-from validation.reliability.hostile import SHARES, kind_of
+from validation.reliability.hostile.inputs import SHARES, kind_of
 from validation.reliability.kills import signal_row
 from validation.reliability.rows import Row, write_page
 from validation.reliability.sets import Truth, undisturbed

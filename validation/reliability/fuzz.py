@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rubgen.errors import UserError
 from validation.reliability.guarded import GOOD, outcomes
-from validation.reliability.hostile import Inputs, kind_of
+from validation.reliability.hostile.inputs import Inputs, kind_of
 from validation.reliability.rows import Row, timed
 from validation.reliability.sets import undisturbed
 

@@ -20,9 +20,9 @@ from rubgen.errors import UserError
 from rubgen.machine import load_machine
 from rubgen.scenario import load_recipe
 from rubgen.sensors.load import load_sensor_set
-from validation.reliability.documents import json_bytes, mutated, toml_text
-from validation.reliability.hostile_mcap import hostile_mcap
-from validation.reliability.hostile_parquet import hostile_parquet
+from validation.reliability.hostile.documents import json_bytes, mutated, toml_text
+from validation.reliability.hostile.mcap import hostile_mcap
+from validation.reliability.hostile.parquet import hostile_parquet
 
 PACKAGE = Path(rubgen.__file__).parent
 SHARES = {"recipe": 40, "machine": 25, "sensors": 20, "manifest": 9, "mcap": 4, "parquet": 2}

@@ -15,7 +15,7 @@ from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
 
 from rubgen.io.mcap.messages import message_class
-from validation.reliability.documents import json_bytes, mutated
+from validation.reliability.hostile.documents import json_bytes, mutated
 
 FLOATS = (float("nan"), float("inf"), -1.0, 0.0, 1e300, 1e-300, 2.0**53)
 INTEGERS = (0, 1, 2**31 - 1, 2**32 - 1, 2**63 - 1)

@@ -1,0 +1,1 @@
+"""Inputs that no user gives on purpose, made from seeds."""
