@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import importlib
 import json
 import shutil
 import tempfile
@@ -15,7 +14,12 @@ from pathlib import Path
 from typing import Any
 
 import rubgen
+from rubgen.cli import generating
+from rubgen.dataset.checking import verify
+from rubgen.io import mcap
+from rubgen.io.parquet import read, sections, write
 from rubgen.machine.load import PRESETS
+from rubgen.viz import rerun
 from validation.reliability.processes import Process, start
 from validation.reliability.rows import Row
 
@@ -53,7 +57,7 @@ SMALLER = {"count = 36": "count = 8", "circumferential_elements = 72": "circumfe
 """What makes the preset a machine of eight blades, on which a run takes a third of the time."""
 
 
-LOADED = ("cli.generating", "dataset.checking.verify", "io.mcap", "io.parquet.sections", "viz.rerun")
+LOADED = (generating, verify, mcap, read, sections, write, rerun)
 """Modules that commands import late, and that forks of this process need not import again."""
 
 
@@ -98,8 +102,6 @@ def undisturbed(formats: tuple[str, ...] = ("parquet", "mcap"), runs: int = RUNS
         folder.chmod(0o755)
         recipe = folder / "recipe.toml"
         recipe.write_text(RECIPE.format(runs=runs, formats=json.dumps(formats)), encoding="utf-8")
-        for module in LOADED:
-            importlib.import_module(f"rubgen.{module}")
         (folder / "machine.toml").write_text(_small_machine(), encoding="utf-8")
         rubgen.simulate(rubgen.load_recipe(recipe).scenario(0))  # loads all kernels
         truth = Truth(folder=folder, recipe=recipe, directory=folder / "undisturbed", digests={})
