@@ -6,8 +6,11 @@ from collections.abc import Mapping
 from datetime import date, time
 from numbers import Integral, Real
 
+LEVELS = 6
+"""What lies deeper is shown as `...`: nobody reads it, and a manifest may nest without bound."""
 
-def toml_text(value: object) -> str:
+
+def toml_text(value: object, levels: int = LEVELS) -> str:
     """The value in the words of TOML: `true`, `{ uniform = [1, 2] }`, `2026-01-31`; texts in single quotes."""
     if isinstance(value, bool):
         return str(value).lower()
@@ -17,9 +20,11 @@ def toml_text(value: object) -> str:
         return f"{float(value):.12g}"
     if isinstance(value, date | time):
         return str(value)
+    if levels == 0 and isinstance(value, Mapping | list | tuple):
+        return "..."
     if isinstance(value, Mapping):
-        pairs = ", ".join(f"{key} = {toml_text(each)}" for key, each in value.items())
+        pairs = ", ".join(f"{key} = {toml_text(each, levels - 1)}" for key, each in value.items())
         return f"{{ {pairs} }}" if pairs else "{}"
     if isinstance(value, list | tuple):
-        return f"[{', '.join(map(toml_text, value))}]"
+        return f"[{', '.join(toml_text(each, levels - 1) for each in value)}]"
     return repr(value)

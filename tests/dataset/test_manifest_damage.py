@@ -55,6 +55,8 @@ def test_what_was_written_is_read(small_set, good):
         ("sensors", [], "identity.sensors"),
         ("sensors", {"name": "a"}, "identity: sensors: sensors: this key is missing"),
         ("machine", {"name": 3}, "identity: machine: "),
+        ("machine", {"name": json.loads('{"a": ' * 400 + "1" + "}" * 400)}, "identity: machine: "),
+        ("machine", {"name": json.loads("[" * 400 + "]" * 400)}, "identity: machine: "),
         ("packages", {}, "packages names no rubgen"),
     ],
 )
