@@ -187,7 +187,7 @@ BAD = {
     "no report": (["report", "none"], "none: no finished data set of rubgen: there is no such directory; give"),
     "speed 0": (["simulate", "--speed-rpm", "0"], "speed_rpm = 0: must be at least 0.001"),
     "nan": (["simulate", "--friction", "nan"], "friction = nan: must be a finite number; change the value"),
-    "inf": (["simulate", "--speed-rpm", "inf"], "speed_rpm = inf: must be at least 0.001"),
+    "inf": (["simulate", "--speed-rpm", "inf"], "speed_rpm = inf: must be a finite number"),
     "negative clearance": (["simulate", "--clearance-m", "-1e-4"], "clearance_m = -0.0001: must be at least 1e-07"),
     "lobes": (["simulate", "--lobes", "6"], "lobes = 6: 11 casing modes carry at most 5 lobes"),
     "few turns": (
