@@ -1,4 +1,4 @@
-"""Values as a notebook should show them: a line, not pages."""
+"""Short texts for large values: a notebook then shows one line in place of pages."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ from itertools import islice
 import numpy as np
 
 FEW, LONGEST, MOST = 3, 60, 780
+"""Entries of a list or table that are shown, and the longest text in characters of one value and of a whole object."""
 
 
 def brief(value: object) -> str:
-    """A dataclass as `Name(field=..., ...)`: arrays by their shape, tables and long lists by their size.
+    """A dataclass as `Name(field=..., ...)`. Arrays are shown by their shape, tables and long lists by their size.
 
-    Fields with their default value are left out. As `__repr__` it serves every class with large fields.
+    Fields with their default value are left out. Classes with large fields use it as their `__repr__`.
     """
     fields = dataclasses.fields(value) if dataclasses.is_dataclass(value) else ()
-    shown = [f"{field.name}={_short(getattr(value, field.name))}" for field in fields if _is_told(value, field)]
+    shown = [f"{field.name}={_short(getattr(value, field.name))}" for field in fields if _is_shown(value, field)]
     text = ", ".join(shown)
     return f"{type(value).__name__}({text if len(text) <= MOST else text[:MOST] + '...'})"
 
@@ -30,25 +31,25 @@ def counted(count: int, noun: str) -> str:
 
 
 def table(title: str, rows: Mapping[str, str]) -> str:
-    """A title and pairs of name and value, one a line."""
+    """The title, then each name with its value on one line."""
     width = max(map(len, rows), default=0)
     return "\n".join([title, *(f"  {name:<{width}}  {value}" for name, value in rows.items())])
 
 
 def html_table(title: str, rows: Mapping[str, str]) -> str:
-    """The same for a notebook."""
+    """The same table in HTML, for a notebook."""
     cells = "".join(f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows.items())
     return f"<table><caption>{escape(title)}</caption>{cells}</table>"
 
 
 def number(value: object) -> str:
-    """A label or parameter in a few characters; what is undefined as -."""
+    """A label or parameter in a few characters; None is shown as -."""
     if value is None:
         return "-"
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def _is_told(value: object, field: dataclasses.Field[object]) -> bool:
+def _is_shown(value: object, field: dataclasses.Field[object]) -> bool:
     one = getattr(value, field.name)
     return field.repr and not (isinstance(one, int | float | str | None) and one == field.default)
 

@@ -1,7 +1,7 @@
-"""Where rubgen keeps what it would otherwise make anew: compiled kernels and reduced blisks.
+"""The caches: compiled kernels and reduced blisks, which would otherwise be made again by each process.
 
-A cache is a convenience. Where its folder cannot be used, a private temporary folder takes its place; where a file is
-damaged, it is made anew; where nothing can be kept, everything is made in each process. One line says so.
+rubgen works without them. If the folder of the caches cannot be used, a private temporary folder takes its place. A
+damaged file is made again. If no file can be written at all, each process makes everything. One warning says which.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ CACHE_VARIABLE = "RUBGEN_CACHE_DIR"
 FOLDERS = ("kernels", "reduction")
 _DIGEST_BYTES = hashlib.sha256().digest_size
 
-untold: list[str] = []
-"""What this process has to say of its caches, where it is a worker: its parent says it."""
+pending_warnings: list[str] = []
+"""Warnings of a worker process about its caches; its parent process shows them."""
 
 
 def wanted_root() -> Path:
@@ -39,18 +39,18 @@ def wanted_root() -> Path:
 
 
 def cache_folder(name: str) -> Path | None:
-    """The folder `name` of the caches, one of FOLDERS; None where nothing can be kept.
+    """The folder of the cache `name`, one of FOLDERS. None if no file can be written.
 
-    Processes that are started later use the same folder: a temporary one is handed on in $RUBGEN_CACHE_DIR.
+    Child processes use the same folder: they inherit the path of a temporary one in $RUBGEN_CACHE_DIR.
     """
     root = _settled_root(wanted_root())
     return None if root is None else root / name
 
 
 def problem_of(root: Path) -> str:
-    """Why caches cannot be kept below `root`, which is made where it is missing; empty where they can.
+    """Why caches cannot be written below `root`, or an empty text if they can. A missing folder is made.
 
-    A folder of another user, or one that all may write to, is refused: compiled code from there is not ours.
+    A folder of another user, or one that all users may write to, is refused: anyone could put code there.
     """
     if str(root).startswith("~"):
         return "there is no home folder"
@@ -67,7 +67,7 @@ def problem_of(root: Path) -> str:
 
 
 def keep(path: Path, content: bytes) -> None:
-    """Write `content` behind its SHA-256 into a cache, whole or not at all; that it cannot be written is a remark."""
+    """Write `content` after its SHA-256 to a file of a cache, completely or not at all. A failure is only a warning."""
     part = path.with_name(f"{path.name}.{uuid.uuid4().hex[:12]}.tmp")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -80,7 +80,7 @@ def keep(path: Path, content: bytes) -> None:
 
 
 def kept(path: Path) -> bytes | None:
-    """What `keep` wrote there; None where there is no such file, it is damaged, or another user's."""
+    """The content that `keep` wrote to `path`. None if there is no such file, or if it is damaged or another user's."""
     try:
         with path.open("rb") as file:
             foreign, content = _is_foreign(os.fstat(file.fileno())), file.read()
@@ -130,4 +130,4 @@ def _say_once(message: str) -> None:
     if multiprocessing.parent_process() is None:
         warn(line)
     else:
-        untold.append(line)
+        pending_warnings.append(line)

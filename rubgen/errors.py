@@ -24,14 +24,14 @@ class UserError(RubgenError):
 
 
 class RubgenWarning(UserWarning):
-    """What is allowed but surely not meant, or was done in another way than asked: one line, and the work goes on.
+    """A value that is allowed and surely not meant, or work that was done in another way than asked. The work goes on.
 
-    The command line prints the message alone on stderr.
+    The command line prints the message alone on stderr, in one line.
     """
 
 
 def warn(message: str) -> None:
-    """Warn the user in one line, whatever called this."""
+    """Warn the user in one line."""
     warnings.warn(message, RubgenWarning, stacklevel=2)
 
 
@@ -39,14 +39,16 @@ def warn(message: str) -> None:
 def write_problems(
     output: Path, *, named: str = "", advice: str = "choose another place", kept: str = ""
 ) -> Iterator[None]:
-    """Raise a UserError for an OSError at `output`, a RubgenError with its own cause and file for any other.
+    """Turn an OSError of the block into a UserError if it occurred at `output`, else into a RubgenError with its file.
 
-    `output` is the file or directory that is written, `named` what a message calls it (the path where it is empty).
-    `advice` says what to do where it cannot be written, `kept` what is not lost.
+    - `output`: file or directory that the block writes
+    - `named`: its name in messages; the path if empty
+    - `advice`: what the user can do if it cannot be written
+    - `kept`: what is not lost
     """
     try:
         yield
-    except BrokenPipeError:  # whoever read our output has gone
+    except BrokenPipeError:  # the reader of our output has closed it
         raise
     except OSError as error:
         path = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes | os.PathLike) else None
@@ -61,13 +63,13 @@ def write_problems(
 
 
 def os_reason(error: OSError) -> str:
-    """What the system refused, and at which file where it says so."""
+    """The reason that the system gives, with the file if it names one."""
     named = isinstance(error.filename, str | bytes | os.PathLike)
     return f"{os.fsdecode(error.filename)}: {_text_of(error)}" if named else _text_of(error)
 
 
 def _text_of(error: OSError) -> str:
-    """The system's words for the error; pyarrow and others put theirs around them."""
+    """The system's text for the error alone: pyarrow and others add their own text to it."""
     return os.strerror(error.errno) if error.errno else " ".join((error.strerror or str(error)).split())
 
 

@@ -1,4 +1,4 @@
-"""One run as a file, as a picture, in the viewer: what `Run.save`, `Run.plot` and `Run.replay` do."""
+"""A run as a file, as a figure and in the viewer: the work of `Run.save`, `Run.plot` and `Run.replay`."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def writer_of(path: Path, named: str) -> Write:
 
 
 def plot(run: Run) -> Figure:
-    """Four panels: orbit with its section, a recorded channel, contact by angle, orders of the contact force.
+    """Four panels: orbit with its Poincare section, a recorded channel, contact by angle, orders of the contact force.
 
     Raises UserError for a failed run.
     """

@@ -41,7 +41,7 @@ class Run:
         return html_table(*self._shown())
 
     def _shown(self) -> tuple[str, dict[str, str]]:
-        """A title and the facts that one looks at first."""
+        """The title of the run and its main facts by name."""
         scenario, response, recording, labels = self.scenario, self.response, self.recording, self.labels
         title = f"{scenario.run_id}: {scenario.machine.name}, {scenario.operation.title}"
         if recording is None or labels is None:
@@ -106,7 +106,7 @@ def simulate(scenario: Scenario) -> Run:
 
 
 def _shown_step() -> AbstractContextManager[None]:
-    """What a user sees of a run: its turns, and why the first run takes so long."""
+    """The progress of a run in turns; the first run also says that it compiles."""
     compiled = kernels_are_compiled()
     return step("simulate" if compiled else COMPILING, "turns", long=not compiled)
 

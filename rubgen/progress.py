@@ -1,6 +1,6 @@
-"""A step that takes long says what it does: a bar on a terminal, a line in a notebook, else one line a minute.
+"""Progress of steps that take long: a bar on a terminal, a line in a notebook, else one line a minute.
 
-Nothing is shown unless a program asks for it with `shown`; worker processes never do, so they stay silent.
+Nothing is shown outside of a block `with shown()`. Worker processes have no such block, so they stay silent.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 Report = Callable[[int, int], None]
-"""Called with how much is done and how much there is in all."""
+"""Takes the number of finished parts and the number of all parts."""
 
 SOON_S = 1.0
-"""A step that ends sooner is not shown at all."""
+"""A step that ends within this time is not shown."""
 EVERY_S = 60.0
 """Time between two lines where there is no terminal."""
 COMPILING = "simulate (the kernels are compiled first, once, in about a minute)"
@@ -39,9 +39,9 @@ _counting: ContextVar[Report] = ContextVar("counting", default=lambda _done, _to
 
 @contextmanager
 def step(text: str, unit: str = "", *, long: bool = False) -> Iterator[None]:
-    """Show `text` while the block runs, with the `unit` that it counts; a step within another is not shown.
+    """Show `text` while the block runs; `unit` names the parts that `count` reports. A step within a step is not shown.
 
-    `long` says that it is known to take more than some seconds.
+    `long` shows the step at once: for steps that are known to take more than a few seconds.
     """
     show = _showing.get()
     around = show(text, unit, long=long) if show else nullcontext(_nothing)
@@ -58,13 +58,13 @@ def step(text: str, unit: str = "", *, long: bool = False) -> Iterator[None]:
 
 
 def count(done: int, total: int) -> None:
-    """Say that so much of the step around is done, of so much in all."""
+    """Report that `done` of `total` parts of the surrounding step are finished."""
     _counting.get()(done, total)
 
 
 @contextmanager
 def shown(wanted: bool | None = None) -> Iterator[None]:
-    """Show the steps of the block on stderr: where `wanted` is None, only on a terminal or in a notebook."""
+    """Show the steps of the block on stderr. If `wanted` is None, show them only on a terminal or in a notebook."""
     show = _way(wanted)
     token = _showing.set(show) if show else None
     try:
@@ -85,12 +85,12 @@ def _way(wanted: bool | None) -> Show | None:
 
 
 def _nothing(_done: int, _total: int) -> None:
-    """Report to nobody."""
+    """A report that shows nothing."""
 
 
 @contextmanager
 def _bar(text: str, unit: str, *, long: bool) -> Iterator[Report]:
-    """A bar on the terminal, gone when the step ends."""
+    """A bar on the terminal; it disappears when the step ends."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
@@ -116,22 +116,22 @@ def _bar(text: str, unit: str, *, long: bool) -> Iterator[Report]:
 
 @contextmanager
 def _lines(text: str, unit: str, *, long: bool) -> Iterator[Report]:
-    """A line every minute, the first at once where the step is long."""
-    with _told(_SoFar(text, unit), EVERY_S, long=long, line="rubgen: {}\n") as report:
+    """A line every minute; for a long step the first comes at once."""
+    with _written_regularly(_SoFar(text, unit), EVERY_S, long=long, line="rubgen: {}\n") as report:
         yield report
 
 
 @contextmanager
 def _in_place(text: str, unit: str, *, long: bool) -> Iterator[Report]:
-    """One line of a notebook, written anew every second, and empty when the step ends."""
-    with _told(_SoFar(text, unit), SOON_S, long=long, line="\r{:<78}") as report:
+    """One line of a notebook. It is rewritten every second and cleared when the step ends."""
+    with _written_regularly(_SoFar(text, unit), SOON_S, long=long, line="\r{:<78}") as report:
         yield report
     sys.stderr.write(f"\r{'':<78}\r")
 
 
 @dataclass
 class _SoFar:
-    """How far a step is."""
+    """The state of a step."""
 
     text: str
     unit: str
@@ -139,10 +139,10 @@ class _SoFar:
     total: int = 0
     start: float = field(default_factory=lambda: time.monotonic())
     first: int | None = None
-    """What was done before: no time was spent on it."""
+    """Parts that were finished before the step began; they took no time of it."""
 
     def state(self) -> str:
-        """How many of how many, and how long the rest takes at the rate so far."""
+        """The numbers of finished and of all parts, and the remaining time at the rate so far."""
         if not self.total:
             return ""
         if self.first is None:
@@ -155,15 +155,15 @@ class _SoFar:
         return f"{counted}, about {_duration(left)} left"
 
     def line(self) -> str:
-        """The step and how far it is."""
+        """The step, its state and the time since its start."""
         passed = time.monotonic() - self.start
         parts = [self.state(), f"{_duration(passed)} so far" if passed > SOON_S else ""]
         return ": ".join(filter(None, (self.text, ", ".join(filter(None, parts)))))
 
 
 @contextmanager
-def _told(so_far: _SoFar, every: float, *, long: bool, line: str) -> Iterator[Report]:
-    """Write the line to stderr from a thread, as the step may not report for long."""
+def _written_regularly(so_far: _SoFar, every: float, *, long: bool, line: str) -> Iterator[Report]:
+    """Write `line` to stderr every `every` seconds, from a thread: the step may report nothing for a long time."""
     ended = threading.Event()
     stream = sys.stderr
 

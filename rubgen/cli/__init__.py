@@ -1,4 +1,4 @@
-"""The command line: `rubgen generate`, `simulate`, `modes`, `info`, `verify`; imports wait for them."""
+"""The command line `rubgen`. A command imports its work when it is called."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ __all__ = ["main"]
 
 
 def main(arguments: list[str] | None = None) -> NoReturn:
-    """Run the command line; a Ctrl-C while it is still being imported ends it in one line, as any other does."""
+    """Run the command line. A Ctrl-C during the imports also ends it in one line."""
     try:
         from rubgen.cli.interrupts import terminable
 
         with terminable():
-            from rubgen.cli.app import main as run
+            from rubgen.cli.run import main as run
 
             run(arguments)
     except KeyboardInterrupt:

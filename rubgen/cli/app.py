@@ -1,24 +1,16 @@
-"""The commands, their options, and how they end: 0 done, 1 found wanting, 2 the user's mistake, 130 interrupted."""
+"""The commands and their options. Each function imports its work when it is called."""
 
 from __future__ import annotations
 
-import io
-import os
 import sys
-import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal, NoReturn
+from typing import Annotated, Any, Literal
 
-from cyclopts import App, CycloptsError, Parameter, Token
+from cyclopts import App, Parameter, Token
 
 from rubgen import __version__
-from rubgen.cli.mistakes import mistake
-from rubgen.errors import RubgenError, RubgenWarning, UserError, os_reason
 from rubgen.format_names import ENDINGS
-from rubgen.progress import shown
-
-DONE, WANTING, MISTAKE, INTERRUPTED = 0, 1, 2, 130
 
 app = App(
     name="rubgen",
@@ -39,7 +31,7 @@ def _whole_number(text: str) -> Parameter:
 
 
 def _whole(_type: Any, tokens: Sequence[Token]) -> int:
-    """An integer as written: cyclopts would cut 2.5 to 2."""
+    """The integer as written. Without this converter cyclopts would truncate 2.5 to 2."""
     return int(tokens[0].value)
 
 
@@ -47,37 +39,6 @@ Json = Annotated[bool, Parameter(name="--json", negative=(), help="Print JSON, f
 MachineName = Annotated[str, _option("Name of a preset, or path of a machine TOML.")]
 Force = Annotated[bool, Parameter(negative=(), help="Replace a file that is there.")]
 Directory = Annotated[Path, _option("Directory of a data set.")]
-
-
-def main(arguments: list[str] | None = None) -> NoReturn:
-    """Run the command line; always ends the process, with one line on stderr where it fails."""
-    warnings.simplefilter("always", RubgenWarning)
-    warnings.showwarning = _show_warning
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")  # a name that cannot be shown here costs no result
-    words = sys.argv[1:] if arguments is None else arguments
-    try:
-        with shown("--json" not in words):
-            code = app(words, exit_on_error=False, print_error=False, result_action="return_value")
-        sys.stdout.flush()
-        sys.exit(DONE if code is None else code)
-    except CycloptsError as error:
-        _fail(mistake(error, app), MISTAKE)
-    except UserError as error:
-        _fail(str(error), MISTAKE)
-    except RubgenError as error:
-        _fail(str(error), WANTING)
-    except KeyboardInterrupt:
-        _fail("interrupted", INTERRUPTED)
-    except BrokenPipeError:
-        # Whoever read our output has gone; nothing may be flushed to it any more.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(WANTING)
-    except UnicodeEncodeError as error:
-        _fail(f"{str(error.object)[:200]!r}: cannot be encoded as {error.encoding} ({error.reason})", MISTAKE)
-    except OSError as error:
-        _fail(os_reason(error), MISTAKE)
 
 
 @app.command
@@ -280,18 +241,3 @@ def completion(
     if shell == "zsh":  # what is printed so far works only from a file in $fpath
         sys.stdout.write(_ZSH_END)
     return 0
-
-
-def _show_warning(message: Warning | str, category: type[Warning], *_where: Any, **_how: Any) -> None:
-    """What rubgen warns of, as one line; the place in our code says nothing to a user."""
-    name = "warning" if issubclass(category, RubgenWarning) else category.__name__
-    sys.stderr.write(f"rubgen: {name}: {_one_line(message)}\n")
-
-
-def _one_line(error: Exception | str) -> str:
-    return " ".join(str(error).split()).rstrip(".")
-
-
-def _fail(message: str, code: int) -> NoReturn:
-    sys.stderr.write(f"rubgen: {message}\n")
-    sys.exit(code)

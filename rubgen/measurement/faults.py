@@ -1,4 +1,4 @@
-"""What real chains add to the samples: gain and offset errors, drift, noise, dropouts."""
+"""Faults of a measuring chain: gain and offset errors, drift, noise, dropouts."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ def noise_level(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> f
     if sensor.noise_density == 0:
         return sensor.noise_rms
     shape = _shape(sensor, samples, sample_rate_hz)
-    # Each frequency stands for two of the whole spectrum but for those at its ends.
+    # Each frequency counts twice in the whole spectrum, except the first and, for an even number of samples, the last.
     whole = 2 * np.sum(shape**2) - shape[0] ** 2 - (shape[-1] ** 2 if samples % 2 == 0 else 0.0)
     return float(np.hypot(sensor.noise_rms, np.sqrt(whole / samples)))
 
 
 def _shape(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> FloatArray:
-    """Gain at each frequency of a recording from white noise of rms 1 to that of the sensor's density."""
+    """Gain at each frequency of a recording that turns white noise of rms 1 into noise of the sensor's density."""
     frequency = np.fft.rfftfreq(samples, 1 / sample_rate_hz)
     shape = np.zeros_like(frequency)
     shape[1:] = np.sqrt(1 + sensor.noise_corner_hz / frequency[1:])
@@ -51,7 +51,10 @@ def _shape(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> FloatA
 
 
 def drop_out(sensor: SampledSensor, values: FloatArray, sample_rate_hz: float, rng: np.random.Generator) -> FloatArray:
-    """The samples (n,) with gaps at random times, Poisson of `dropouts_per_s`, in which the last good value is held."""
+    """The samples (n,) with gaps at random times. In a gap the last good value repeats.
+
+    The starts of the gaps are a Poisson process of rate `dropouts_per_s`; each lasts `dropout_s`.
+    """
     if sensor.dropouts_per_s == 0:
         return values
     seconds = values.size / sample_rate_hz

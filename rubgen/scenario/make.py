@@ -122,7 +122,7 @@ def make_scenario(
 
 
 def _recipe_values(given: dict[str, Any]) -> dict[str, Any]:
-    """A recipe of one run with what is given but for the keys of `[vary]`."""
+    """The values of a recipe of one run, from all given keys except those of `[vary]`."""
     values: dict[str, Any] = {"name": "run", "runs": 1}
     for table, keys in TABLES.items():
         values[table] = {key: given[key] for key in keys if key in given}

@@ -42,7 +42,7 @@ class Description:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Sensor:
-    """A sensor; its name is that of its channel or topic. Its place in the set decides which random numbers it gets."""
+    """A sensor. Its channel or topic has its name. Its place in the set decides which random numbers it gets."""
 
     name: Annotated[str, Field(pattern=CHANNEL_NAME)]
 
@@ -55,7 +55,7 @@ class SampledSensor(Sensor, ABC):
     with `resonance_damping`, `saturation` before the anti-alias filter; `gain_error` as a share, `offset`,
     `drift_per_s` from the first sample on; `noise_rms` white in the recorded band, `noise_density` per sqrt(Hz), whose
     power rises as 1/f below `noise_corner_hz`; `range` and `adc_bits` of the converter (None takes the kind's and the
-    recipe's); `dropouts_per_s` gaps of `dropout_s` each, in which the last value is held. The sensor's own clock runs
+    recipe's); `dropouts_per_s` gaps of `dropout_s` each, in which the last value repeats. The sensor's own clock runs
     late by `clock_offset_s` and slow by `clock_ppm`.
     """
 

@@ -62,8 +62,8 @@ def test_an_interrupt_that_is_swallowed_ends_the_command_in_one_line(where):
         "    finally: pass",
     }[where]
     code = (
-        "import ctypes, os, signal, sys\nfrom rubgen import cli\nfrom rubgen.cli import app\n"
-        f"def main(arguments):\n    try:\n        {calls}\napp.main = main\ncli.main(['info', 'x'])\n"
+        "import ctypes, os, signal, sys\nfrom rubgen import cli\nfrom rubgen.cli import run\n"
+        f"def main(arguments):\n    try:\n        {calls}\nrun.main = main\ncli.main(['info', 'x'])\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (130, "rubgen: interrupted\n")

@@ -4,7 +4,7 @@ import warnings
 
 import pytest
 
-from rubgen.cli import app
+from rubgen.cli import run
 from rubgen.errors import RubgenWarning, UserError, warn
 
 
@@ -16,7 +16,7 @@ def test_a_warning_is_one_line_without_a_place_in_our_code(capsys, monkeypatch, 
 
     monkeypatch.setattr("rubgen.cli.inspecting.info_command", warned)
     with warnings.catch_warnings(), pytest.raises(SystemExit) as ended:
-        app.main(["info", "anywhere"])
+        run.main(["info", "anywhere"])
     assert ended.value.code == 0
     line = "rubgen: warning: clearance_m = 0.22: no blade can reach the casing\n"
     assert capsys.readouterr().err == line * runs

@@ -153,8 +153,8 @@ def test_a_set_that_records_no_signal_is_refused(tmp_path, sensor):
 
 def test_the_command_line_ends_with_2_and_one_line(tmp_path):
     recipe = written(tmp_path, GOOD.replace("proximity", "proximty", 1).replace("kinds.proximty", "kinds.proxi"))
-    command = [sys.executable, "-m", "rubgen.cli.app", "generate", str(recipe), "--out", str(tmp_path / "out")]
-    code = "from rubgen.cli.app import main; import sys; main(sys.argv[1:])"
+    command = [sys.executable, "-m", "rubgen.cli.run", "generate", str(recipe), "--out", str(tmp_path / "out")]
+    code = "from rubgen.cli.run import main; import sys; main(sys.argv[1:])"
     command = [sys.executable, "-c", code, *command[3:]]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 2

@@ -6,7 +6,7 @@ from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from pathlib import Path
 
-from rubgen.cache_root import untold
+from rubgen.cache_root import pending_warnings
 from rubgen.dataset.layout import Layout
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
@@ -75,7 +75,7 @@ def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple
     with suppress(UserError):  # this run's own values, not the recipe's ends: it will be recorded as refused
         simulate(replace(scenario, operation=operation, signal_seconds=5 / operation.rotation_frequency_hz))
     text = no_rub(first_runs)
-    return [*untold, text] if text else untold
+    return [*pending_warnings, text] if text else pending_warnings
 
 
 def warming_up() -> AbstractContextManager[None]:

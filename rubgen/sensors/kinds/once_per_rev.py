@@ -10,7 +10,7 @@ from rubgen.sensors.sensor import Sensor
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class OncePerRev(Sensor):
-    """The pulse of a notch on the shaft that passes at theta = 0, and its arrival times, blurred as those of blades."""
+    """The pulse of a notch on the shaft that passes at theta = 0, and its arrival times with jitter."""
 
     kind: Literal["once_per_rev"] = "once_per_rev"
     jitter_s: Jitter = 0.0
