@@ -18,7 +18,7 @@ from rubgen.scenario.profiles import profile_problem
 from rubgen.scenario.rotation import Rotation
 from rubgen.solver.linear.admissible import check_system
 from rubgen.solver.linear.rub_free import free_penetration, rub_free_motion
-from rubgen.solver.linear.stability import settle_turns, slowest_decay, steps_per_turn
+from rubgen.solver.linear.stability import settle_turns, steps_per_turn
 from rubgen.solver.observers.companion import Twin, check_turns, piece_ends
 from rubgen.solver.observers.divergence import ADVICE, Growth
 from rubgen.solver.observers.orders import WindowOrders, turn_orders
@@ -26,7 +26,7 @@ from rubgen.solver.observers.symmetry import Fractions
 from rubgen.solver.observers.touches import contact_events, tip_arrivals
 from rubgen.solver.observers.track import TrackKeeper
 from rubgen.solver.observers.worn_liner import worn_liner
-from rubgen.solver.refusal import no_response
+from rubgen.solver.refusal import film_refusal, no_response, stability
 from rubgen.solver.response import Course, EnergyBook, Response, Status
 from rubgen.solver.scheme.energy_kernels import (
     ABSOLUTE,
@@ -54,10 +54,6 @@ LEAST_TAIL_TURNS = 100
 ENERGY_TOLERANCE = 1e-8
 ROUNDING_SHARE = 1e-6
 """Energies below this share of their summed absolute terms are rounding to eight digits."""
-UNDYING_SHARE = 1e-6
-"""A slowest decay below this share of the spin speed is none: a transient would need 700,000 turns to die."""
-MOTION_TOLERANCE = 1e-8
-"""The share of force on O_d that may be unbalanced in the motion from which a run starts."""
 STATUS = {
     OK: Status.OK,
     CONTACT_UNSOLVED: Status.CONTACT_UNSOLVED,
@@ -264,14 +260,14 @@ def integrate(
         if operation.profile != "steady":
             changing = _changing(system_at, operation)
             steps = changing.steps(sample_rate_hz)
-            refusal = _film_refusal(changing.start, steps) or _stability(changing.least_stable())[0]
+            refusal = film_refusal(changing.start, steps) or stability(changing.least_stable())[0]
             if refusal:
                 return _not_integrated(changing.systems[-1], operation, steps, *refusal)
             return _run(changing.spin(contact, steps, taps), changing.start, operation, tail_seconds, taps)
         steps = steps_per_turn(system, operation.steps_per_turn, sample_rate_hz)
-        refusal, decay = _film_refusal(system, steps), None
+        refusal, decay = film_refusal(system, steps), None
         if not refusal:
-            refusal, decay = _stability(system)
+            refusal, decay = stability(system)
         if refusal:
             return _not_integrated(system, operation, steps, *refusal)
         settle = settle_turns(system, operation, decay)
@@ -377,29 +373,6 @@ def _energy(integration: Integration) -> EnergyBook:
         absolute_work=works[ABSOLUTE],
         residual=integration.energy_residual(),
     )
-
-
-def _film_refusal(system: SpinningSystem, steps: int) -> tuple[Status, str] | None:
-    """Why a squeeze film holds no rub-free motion, if it does not."""
-    if system.turning is None or system.turning.film is None:
-        return None
-    missing = rub_free_motion(system, steps).residual
-    if missing <= MOTION_TOLERANCE:
-        return None
-    return (
-        Status.FILM_CLOSED,
-        f"no rub-free motion inside it: {missing:.3g} of the force on the disk centre is not borne",
-    )
-
-
-def _stability(system: SpinningSystem) -> tuple[tuple[Status, str] | None, float]:
-    """Why a system grows by itself, or nothing ever dies in it, if so; and its slowest decay."""
-    decay = slowest_decay(system)
-    if decay > UNDYING_SHARE * system.speed:
-        return None, decay
-    largest = f"largest real part of the eigenvalues {-decay:.4g} 1/s at {system.speed:.6g} rad/s"
-    undying = "; some motion never dies, at a critical speed it grows without limit: add damping"
-    return (Status.UNSTABLE, largest + (undying if abs(decay) <= UNDYING_SHARE * system.speed else "")), decay
 
 
 def _not_integrated(system: SpinningSystem, operation: Operation, steps: int, status: Status, reason: str) -> Response:

@@ -1,13 +1,26 @@
-"""The response of a run that never began."""
+"""Runs that never begin: why one cannot be integrated, known before it is made, and its response."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from rubgen.errors import UserError
+from rubgen.reduction import reduce
+from rubgen.reduction.model import SpinningSystem
+from rubgen.scenario import Scenario
+from rubgen.solver.linear.admissible import check_system
+from rubgen.solver.linear.rub_free import rub_free_motion
+from rubgen.solver.linear.stability import slowest_decay, steps_per_turn
 from rubgen.solver.observers.touches import contact_events
 from rubgen.solver.response import EnergyBook, Response, Status
 from rubgen.taps import DEFAULT_TAPS
 
+UNDYING_SHARE = 1e-6
+"""A slowest decay below this share of the spin speed is none: a transient would need 700,000 turns to die."""
+MOTION_TOLERANCE = 1e-8
+"""The share of force on O_d that may be unbalanced in the motion from which a run starts."""
 NO_ENERGY = EnergyBook(**dict.fromkeys(EnergyBook.__dataclass_fields__, 0.0))
 
 
@@ -43,3 +56,56 @@ def no_response(
         n_blades=n_blades,
         n_casing=n_casing,
     )
+
+
+def film_refusal(system: SpinningSystem, steps: int) -> tuple[Status, str] | None:
+    """Why a squeeze film holds no rub-free motion, if it does not."""
+    if system.turning is None or system.turning.film is None:
+        return None
+    missing = rub_free_motion(system, steps).residual
+    if missing <= MOTION_TOLERANCE:
+        return None
+    return (
+        Status.FILM_CLOSED,
+        f"no rub-free motion inside it: {missing:.3g} of the force on the disk centre is not borne",
+    )
+
+
+def stability(system: SpinningSystem) -> tuple[tuple[Status, str] | None, float]:
+    """Why a system grows by itself, or nothing ever dies in it, if so; and its slowest decay."""
+    decay = slowest_decay(system)
+    if decay > UNDYING_SHARE * system.speed:
+        return None, decay
+    largest = f"largest real part of the eigenvalues {-decay:.4g} 1/s at {system.speed:.6g} rad/s"
+    undying = "; some motion never dies, at a critical speed it grows without limit: add damping"
+    return (Status.UNSTABLE, largest + (undying if abs(decay) <= UNDYING_SHARE * system.speed else "")), decay
+
+
+def no_run(scenarios: Sequence[Scenario]) -> str | None:
+    """One line where none of these runs can be integrated, with the reason of the first; None where one can."""
+    reasons = []
+    for scenario in scenarios:
+        reason = _refusal(scenario)
+        if reason is None:
+            return None
+        reasons.append(reason)
+    which = "the run cannot" if len(reasons) == 1 else f"none of the {len(reasons)} runs looked at can"
+    return f"{which} be integrated: {reasons[0]}"
+
+
+def _refusal(scenario: Scenario) -> str | None:
+    """Why `integrate` would refuse the run, from its first, slowest and fastest speed."""
+    operation, model = scenario.operation, reduce(scenario.machine, scenario.reduction)
+    speeds = (operation.rotation.start, operation.rotation.slowest, operation.rotation.fastest)
+    try:
+        systems = [model.at_speed(speed) for speed in dict.fromkeys(speeds)]
+        for system in systems:
+            check_system(system)
+            unstable = stability(system)[0]
+            if unstable:
+                return f"{unstable[0].code}: {unstable[1]}"
+        steps = steps_per_turn(systems[0], operation.steps_per_turn, scenario.sensing.fastest_hz)
+        closed = film_refusal(systems[0], steps)
+    except (UserError, np.linalg.LinAlgError) as error:
+        return str(error)
+    return f"{closed[0].code}: {closed[1]}" if closed else None

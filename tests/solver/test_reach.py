@@ -12,6 +12,7 @@ from rubgen.errors import RubgenWarning
 from rubgen.pipeline import simulate
 from rubgen.scenario import Labelling, load_recipe, make_scenario, parse_recipe
 from rubgen.solver.linear.reach import deepest, no_rub
+from rubgen.solver.refusal import no_run
 
 DATASETS = Path(__file__).parents[2] / "datasets"
 SLOW = {
@@ -62,9 +63,26 @@ def test_what_is_shipped_can_rub(name):
     assert no_rub([recipe.scenario(index) for index in range(3)]) is None
 
 
-def test_a_run_that_is_refused_says_nothing_here():
-    grown = make_scenario(speed_rpm=16_000, ovality_m=0.0, clearance_m=3e-4, signal_seconds=0.1)
-    assert no_rub([grown, grown]) is None
+GROWN = {"speed_rpm": 16_000, "ovality_m": 0.0, "clearance_m": 3e-4}
+FAILING = [
+    (GROWN, "refused", "speed_rpm = 16000: blade tips grow by "),
+    ({"lateral_damping": 0.0, "speed_rpm": 12_000}, "unstable", "unstable: largest real part of the eigenvalues "),
+]
+
+
+@pytest.mark.parametrize(("keys", "status", "reason"), FAILING, ids=["grown", "unstable"])
+def test_a_set_of_which_no_run_can_be_made_is_told_before(keys, status, reason, tmp_path):
+    failing, good = make_scenario(signal_seconds=0.1, **keys), make_scenario(signal_seconds=0.1)
+    assert no_rub([failing] * 2) is None or status != "refused"
+    assert no_run([failing, good]) is None
+    assert no_run([failing]).startswith(f"the run cannot be integrated: {reason}")
+    recipe = SLOW | {"vary": keys, "output": {"formats": ["parquet"], "signal_seconds": 0.1}}
+    with pytest.warns(RubgenWarning) as found:
+        made = generate(recipe, tmp_path / "set", workers=1)
+    assert [str(each.message) for each in found][-1].startswith(
+        f"none of the 2 runs looked at can be integrated: {reason}"
+    )
+    assert made.status == {status: 2}
 
 
 def test_a_set_that_cannot_rub_is_warned_of_once_and_made(tmp_path):

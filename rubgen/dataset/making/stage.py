@@ -60,13 +60,15 @@ def is_staged(layout: Layout, index: int, formats: tuple[str, ...], asked_bytes:
 def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple[Scenario, ...]) -> list[str]:
     """Reduce the machine at the extremes of `[vary]`, then run a few turns.
 
-    Gives what to warn of: what a worker found wrong in caches, and that none of the first runs can rub.
+    Gives what to warn of: what a worker found wrong in caches, and that none of the first runs can be made or can
+    rub.
 
     What cannot be done fails before any run; kernels are compiled and the reduced model cached before workers start.
     """
     from rubgen.pipeline import simulate
     from rubgen.reduction import reduce
     from rubgen.solver.linear.reach import no_rub
+    from rubgen.solver.refusal import no_run
 
     for corner in corners:
         reduce(corner.machine, corner.reduction)
@@ -74,7 +76,7 @@ def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple
     operation = replace(operation, closing_turns=WARM_UP_TURNS)
     with suppress(UserError):  # this run's own values, not the recipe's ends: it will be recorded as refused
         simulate(replace(scenario, operation=operation, signal_seconds=5 / operation.rotation_frequency_hz))
-    text = no_rub(first_runs)
+    text = no_run(first_runs) or no_rub(first_runs)
     return [*pending_warnings, text] if text else pending_warnings
 
 
