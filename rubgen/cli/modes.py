@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rubgen.cli.printing import print_json, print_pairs, say
 from rubgen.machine import load_machine
+from rubgen.machine.load import file_named
 from rubgen.machine.published import BLISK_HZ, CASING_HZ, blisk_deviation, casing_deviation
 from rubgen.reduction import reduce
 from rubgen.scenario import Reduction
@@ -15,7 +16,8 @@ SHOWN_BLISK_MODES = 42
 def modes_command(machine: str, *, as_json: bool) -> int:
     """Reduce the machine at rest and print; deviations from the paper are relative."""
     loaded = load_machine(machine)
-    model = reduce(loaded, Reduction())
+    with file_named(machine):
+        model = reduce(loaded, Reduction())
     blisk, casing = model.blisk_frequencies_hz().tolist(), model.casing_frequencies_hz.tolist()
     result: dict[str, object] = {
         "machine": loaded.name,

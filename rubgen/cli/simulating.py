@@ -15,6 +15,7 @@ from rubgen.format_names import FORMAT_NAMES
 from rubgen.formats import format_of
 from rubgen.labels.registry import LABELS
 from rubgen.labels.to_json import labels_to_json
+from rubgen.machine.load import file_named
 from rubgen.output import save
 from rubgen.pipeline import Run, simulate
 from rubgen.progress import step
@@ -40,7 +41,8 @@ def simulate_command(
     text = no_rub([scenario])
     if text:
         warn(text)
-    run = simulate(scenario)
+    with file_named(options["machine"]):
+        run = simulate(scenario)
     good = run.response.status is Status.OK
     if as_json:
         print_json(_all_labels(run))

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from pydantic import TypeAdapter
@@ -11,9 +14,10 @@ from pydantic import TypeAdapter
 from rubgen.errors import UserError
 from rubgen.machine.machine import Machine
 from rubgen.machine.problems import nearest, validated
-from rubgen.machine.toml_file import check_kind, named_toml, names_toml, read_toml
+from rubgen.machine.toml_file import check_kind, named_toml, names_toml, read_toml, toml_path
 
 PRESETS = Path(__file__).parent / "presets"
+ABOUT_MACHINE = re.compile(r"(?:^|: )machine .*?: (its .*)")
 
 
 def preset_names() -> list[str]:
@@ -32,6 +36,21 @@ def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
         hint = nearest(name_or_path, preset_names())
         raise UserError(f"machine = {name_or_path!r:.200}: no such preset; {hint}, or the path of a machine .toml")
     return _machine_from(named_toml("machine", name_or_path, folder))
+
+
+@contextmanager
+def file_named(name_or_path: str, folder: Path | None = None) -> Iterator[None]:
+    """Raise a UserError about a machine, `machine <name>: its ...`, with the machine's file in front where it has one.
+
+    Whoever builds the model of a machine knows its name alone.
+    """
+    try:
+        yield
+    except UserError as error:
+        about = ABOUT_MACHINE.search(str(error))
+        if not about or not names_toml(name_or_path):
+            raise
+        raise UserError(f"{toml_path(name_or_path, folder)}: {about[1]}") from error
 
 
 def machine_id(machine: Machine) -> str:

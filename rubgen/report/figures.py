@@ -13,6 +13,7 @@ from rubgen.dataset.reading.open import DataSet
 from rubgen.dataset.reading.replaying import find_replay
 from rubgen.errors import UserError
 from rubgen.machine import load_machine
+from rubgen.machine.load import file_named
 from rubgen.machine.problems import nearest
 from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import Reduction
@@ -52,7 +53,9 @@ def make_figure(name: str, source: Path | None, choice: Choice) -> Figure:
 
 def _of_machine(draw: Callable[[ReducedModel], Figure]) -> Make:
     def make(source: Path | None, _choice: Choice) -> Figure:
-        return draw(reduce(load_machine(str(source or DEFAULT_MACHINE)), Reduction()))
+        name = str(source or DEFAULT_MACHINE)
+        with file_named(name):
+            return draw(reduce(load_machine(name), Reduction()))
 
     return make
 

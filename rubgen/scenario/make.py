@@ -116,7 +116,8 @@ def make_scenario(
     recipe = validated("", values, _RECIPE, _key_alone)
     check_used("", {**values, "vary": varied}, _key_alone)
     scenario = vary(recipe.base, varied)
-    check_feasible(scenario)
+    with recipe.machine_named():
+        check_feasible(scenario)
     warn_of([scenario])
     return scenario
 

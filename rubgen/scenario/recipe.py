@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -14,7 +15,7 @@ from rubgen.brief import counted
 from rubgen.errors import UserError
 from rubgen.format_names import FORMAT_NAMES, FormatName
 from rubgen.machine import Machine, load_machine
-from rubgen.machine.load import machine_id
+from rubgen.machine.load import file_named, machine_id
 from rubgen.machine.problems import first_problem, validated
 from rubgen.machine.quantities import (
     MOST_RUNS,
@@ -155,6 +156,10 @@ class Recipe(BaseModel):
         rest = self.sensors.model_dump(exclude={"set"})
         return Sensing(set=self._sensor_set or load_sensor_set(self.sensors.set, self._folder), **rest)
 
+    def machine_named(self) -> AbstractContextManager[None]:
+        """Within it, errors about the machine name its file."""
+        return file_named(self.machine, self._folder)
+
     def distributions(self) -> Iterator[tuple[Parameter, Distribution]]:
         """The keys that the recipe names, with their distributions, in the order of the registry."""
         for entry in PARAMETERS:
@@ -243,8 +248,9 @@ def check_recipe(recipe: Recipe, source: str = "recipe") -> None:
     except UserError as error:
         text = str(error)
         raise UserError(f"{source}: {text}" if text.startswith(("machine = ", "sensors.set = ")) else text) from None
-    for scenario in recipe.corners(source):
-        check_feasible(scenario, f"{source}: ")
+    with recipe.machine_named():
+        for scenario in recipe.corners(source):
+            check_feasible(scenario, f"{source}: ")
 
 
 def _check_whole(recipe: Recipe, source: str) -> None:

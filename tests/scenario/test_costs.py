@@ -6,8 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rubgen.cli.app import main
+from rubgen.dataset.making.generate import generate
 from rubgen.errors import UserError
 from rubgen.machine import load_machine
+from rubgen.machine.load import PRESETS
 from rubgen.reduction import reduce
 from rubgen.scenario import Reduction, load_recipe, make_scenario, parse_recipe
 from rubgen.scenario.costs import coordinates, reduction_bytes, reduction_problem, run_problem, steps_per_turn
@@ -92,6 +95,27 @@ def test_what_is_shipped_is_far_from_the_limits():
     for scenario in (make_scenario(), load_recipe().scenario(0), make_scenario("zeng2019-fitted")):
         assert reduction_bytes(scenario.machine, scenario.reduction) < 0.4e9
         assert run_problem(scenario) is None
+
+
+def test_the_file_of_a_machine_beyond_memory_or_factorisation_is_named(tmp_path, monkeypatch, capsys):
+    file, text = tmp_path / "mine.toml", (PRESETS / "zeng2019.toml").read_text()
+    file.write_text(text.replace("circumferential_elements = 72", "circumferential_elements = 3600"))
+    for asked in (lambda: parse_recipe(MINIMAL | {"machine": str(file)}), lambda: make_scenario(file)):
+        with pytest.raises(UserError, match=r"mine\.toml: its reduction takes about 8\.4 GB of memory") as caught:
+            asked()
+        assert str(caught.value).startswith(str(file))
+    file.write_text(text)
+
+    def fail(*_arguments):
+        raise np.linalg.LinAlgError("no")
+
+    monkeypatch.setattr("rubgen.reduction.reduced.cached_blisk", fail)
+    with pytest.raises(UserError, match=rf"^{re.escape(str(file))}: its stiffness or mass cannot be factorised"):
+        generate(MINIMAL | {"machine": str(file)}, tmp_path / "set", workers=1)
+    for command in (["simulate", "--machine", str(file)], ["modes", str(file)]):
+        with pytest.raises(SystemExit):
+            main(command)
+        assert f"rubgen: {file}: its stiffness or mass cannot be factorised" in capsys.readouterr().err
 
 
 def test_a_matrix_that_cannot_be_factorised_names_machine_and_materials(monkeypatch):

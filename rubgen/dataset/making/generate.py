@@ -145,7 +145,7 @@ def _make_missing(recipe: Recipe, layout: Layout, workers: int, progress: Report
     first_runs = tuple(recipe.scenario(index) for index in range(min(recipe.runs, LOOKED_AT)))
     first = recipe.scenario(missing[0]), tuple(recipe.corners()), first_runs
     with worker_pool(min(workers, len(missing))) as pool:
-        with warming_up():
+        with warming_up(), recipe.machine_named():
             remarks = list(unordered(pool, 1, warm_up, [first]))
         for remark in chain.from_iterable(remarks):
             warn(remark)
