@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rubgen.cli.app import main
+from rubgen.cli import main
 from rubgen.dataset.making.generate import generate
 from rubgen.errors import UserError
 from rubgen.machine import load_machine
