@@ -30,7 +30,10 @@ def test_a_file_of_another_run_and_a_cut_one_are_found(rub_run, tmp_path, each):
 
 
 def test_the_folder_of_a_format_is_its_name_but_data_for_parquet(tmp_path):
-    assert [folder.name for folder in Layout(tmp_path).folders(FORMAT_NAMES)] == ["data", "mcap", "rrd"]
+    assert [folder.name for folder in Layout(tmp_path).folders(FORMAT_NAMES)] == [
+        "data",
+        *(each.name for each in run_formats()),
+    ]
 
 
 def test_an_unknown_ending_is_refused_with_the_known_ones(rub_run, tmp_path):
