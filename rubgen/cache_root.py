@@ -82,9 +82,9 @@ def keep(path: Path, content: bytes) -> None:
 def kept(path: Path) -> bytes | None:
     """The content that `keep` wrote to `path`. None if there is no such file, or if it is damaged or another user's."""
     try:
-        with path.open("rb") as file:
+        with open(path, "rb", opener=_at_once) as file:
             foreign, content = _is_foreign(os.fstat(file.fileno())), file.read()
-    except FileNotFoundError:
+    except (FileNotFoundError, IsADirectoryError):  # `keep` says that a folder is in the way
         return None
     except OSError as error:
         _say_once(f"the cache {wanted_root()} cannot be read ({error.strerror or error})")
@@ -118,6 +118,11 @@ def _settled_root(wanted: Path) -> Path | None:
 def _remove(folder: Path, owner: int) -> None:
     if os.getpid() == owner:  # a process that was forked from it runs this too
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def _at_once(name: str, flags: int) -> int:
+    """Open it without waiting for whoever writes to a pipe in its place."""
+    return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 def _is_foreign(status: os.stat_result) -> bool:

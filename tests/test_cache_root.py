@@ -134,6 +134,23 @@ def test_a_file_of_another_user_is_not_believed(tmp_path):
         assert kept(tmp_path / "file") is None
 
 
+def test_a_pipe_in_the_place_of_a_file_is_replaced(tmp_path):
+    os.mkfifo(tmp_path / "x")
+    with pytest.warns(RubgenWarning, match="damaged"):
+        assert kept(tmp_path / "x") is None
+    keep(tmp_path / "x", b"content")
+    assert kept(tmp_path / "x") == b"content"
+
+
+def test_a_folder_in_the_place_of_a_file_costs_one_line(tmp_path):
+    (tmp_path / "x").mkdir()
+    assert kept(tmp_path / "x") is None
+    with pytest.warns(RubgenWarning, match=NAMED) as said:
+        keep(tmp_path / "x", b"content")
+    assert len(said) == 1
+    assert list(tmp_path.rglob("*")) == [tmp_path / "x"]
+
+
 def test_a_full_disk_costs_one_line(tmp_path, monkeypatch):
     def full(_path, _content):
         raise OSError(errno.ENOSPC, "No space left on device")
