@@ -63,6 +63,13 @@ def test_the_command_says_what_it_did_and_changes_nothing(small_set, capsys):
     assert before == {path: path.stat().st_mtime_ns for path in small_set.directory.rglob("*")}
 
 
+@pytest.mark.parametrize("name", ["blade", "scalars", "contact_steps"])
+def test_a_null_list_is_named(copied_set, name):
+    change(copied_set, SECTIONS, lambda row: row | {name: None})
+    with pytest.raises(UserError, match=rf"{SECTIONS}: run-00000\d: {name} is null"):
+        relabel(copied_set)
+
+
 def test_lost_sections_are_named(copied_set):
     (copied_set / SECTIONS).unlink()
     with pytest.raises(UserError, match=rf"{SECTIONS}: cannot be read \(No such file"):

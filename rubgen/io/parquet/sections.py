@@ -64,7 +64,7 @@ def kept_of(table: pa.Table, row: int, path: Path) -> CompactRecord:
     kept: dict[str, np.ndarray[Any, Any]] = {}
     try:
         for name in RECORD_COLUMNS:
-            kept[name] = np.asarray(table[name][row].values)
+            kept[name] = _listed(table, name, row)
         scalars = dict(zip(SCALARS, kept["scalars"].tolist(), strict=True))
         width = 3 * int(scalars["n_blades"]) + 4 + 2 * int(scalars["n_casing"])
         for name, columns in (("section", width), ("fractions", width), ("orbit", 5)):
@@ -74,6 +74,13 @@ def kept_of(table: pa.Table, row: int, path: Path) -> CompactRecord:
         run_id = table["run_id"][row].as_py()
         raise UserError(f"{path}: {run_id}: {' '.join(str(error).split())[:200]}; generate the set again") from None
     return kept
+
+
+def _listed(table: pa.Table, name: str, row: int) -> np.ndarray[Any, Any]:
+    values = table[name][row].values
+    if values is None:
+        raise ValueError(f"{name} is null")
+    return np.asarray(values)
 
 
 def _check_lengths(kept: CompactRecord, turns: int, blades: int) -> None:
