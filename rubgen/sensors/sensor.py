@@ -87,7 +87,8 @@ class SampledSensor(Sensor, ABC):
         if not self.unit:
             object.__setattr__(self, "unit", next(iter(self.UNITS)))
         if self.unit not in self.UNITS:
-            raise ValueError(f"unit = {self.unit!r} of {self.name}: unknown unit; {nearest(self.unit, [*self.UNITS])}")
+            unknown = f"unit = {self.unit!r:.60} of {self.name}: unknown unit"
+            raise ValueError(f"{unknown}; {nearest(self.unit, [*self.UNITS])}")
         for key in ("range", "saturation"):
             limits = getattr(self, key)
             if limits is not None and limits[0] >= limits[1]:

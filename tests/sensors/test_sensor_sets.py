@@ -79,6 +79,7 @@ WRONG = [
     ('unit = "um"', 'kind = "torque"', "kinds.proximity.kind: each sensor has its own; give it in [[sensors]]"),
     ('kind = "proximity"\n', "", "sensors.0.kind: this key is missing; add it, one of proximity, "),
     ('unit = "um"', 'unit = "micron"', "sensors.0: unit = 'micron' of p: unknown unit; allowed: m, mm, um, V"),
+    ('unit = "um"', f'unit = "{"a" * 5000}"', f"unit = '{'a' * 59} of p: unknown unit; "),
     ('unit = "um"', 'unit = "umm"', "unit = 'umm' of p: unknown unit; did you mean um? allowed: m, mm, um, V"),
     (
         "angle_deg = 30",
