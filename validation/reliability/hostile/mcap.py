@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from google.protobuf.message import DecodeError
 from mcap.records import Attachment, Channel, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
@@ -98,7 +99,10 @@ def _attachment(content: Content, generator: np.random.Generator) -> None:
     """Scenario or labels, wrong in a value, in both places or in one."""
     place = int(generator.integers(len(content.attachments)))
     old = content.attachments[place]
-    document = mutated(json.loads(old.data), generator)
+    try:
+        document = mutated(json.loads(old.data), generator)
+    except ValueError:
+        return  # an integer of an earlier change is too long to be read
     content.attachments[place] = replace(old, data=json_bytes(document))
     if generator.random() < 0.7 and isinstance(document, dict):
         name = f"rubgen.{old.name.removesuffix('.json')}"
@@ -115,7 +119,10 @@ def _field(content: Content, generator: np.random.Generator) -> None:
     kind = message_class(schema.name.removeprefix("rubgen.v1."))
     seed = int(generator.integers(2**32))
     for place in chosen:
-        message = kind.FromString(content.messages[place].data)
+        try:
+            message = kind.FromString(content.messages[place].data)
+        except DecodeError:
+            continue  # an earlier change left bytes that are no message
         _set_field(message, np.random.default_rng(seed))
         content.messages[place] = replace(content.messages[place], data=message.SerializeToString())
 
