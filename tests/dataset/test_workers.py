@@ -72,6 +72,19 @@ def test_where_no_process_can_be_started_one_goes_on(monkeypatch, problem):
         assert list(unordered(pool, 2, os.getpid, [()])) == [os.getpid()]
 
 
+def test_a_daemon_works_alone():
+    made = "with worker_pool(2) as pool: print(pool, list(unordered(pool, 2, abs, [(-1,)])), flush=True)"
+    code = (
+        "import multiprocessing\nfrom rubgen.dataset.making.workers import unordered, worker_pool\n"
+        f"def work():\n    {made}\n"
+        "process = multiprocessing.get_context('fork').Process(target=work, daemon=True)\n"
+        "process.start()\nprocess.join()\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "None [1]\n"
+    assert "which may have no children); the work goes on in one process" in done.stderr
+
+
 @pytest.mark.parametrize("how", ["script", "pipe", "text"])
 def test_workers_leave_the_users_main_module_alone(tmp_path, how):
     code = (
