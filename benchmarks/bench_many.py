@@ -187,7 +187,7 @@ def measure() -> list[dict[str, object]]:
         mixed, light = step_time(alone), [run for run in alone if run[0].contact < LIGHT]
         together, busy, digests = on_processes(runs)
         worst, unequal = np.max([deviation(*settled(case)) for case in CASES[:2]], axis=0)
-        lanes, single = free_step_time(in_lanes(stepper)) / LANES, free_step_time(stepper.scheme)
+        lanes, single = free_step_time(in_lanes(stepper)) / LANES, free_step_time(stepper.model.scheme)
     moved = sum(run[0].digest not in digests for run in alone) + len(digests) - len(runs)
     contact = float(np.mean([run[0].contact for run in alone]))
     rows = (

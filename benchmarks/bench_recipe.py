@@ -101,7 +101,7 @@ def _counted(out: Path, runs: int) -> tuple[float, float]:
     recipe.write_text(RECIPE.format(runs=runs), encoding="utf-8")
     with (
         patch.object(stepper, "run_turn", timed(stepper.run_turn)),
-        patch.object(companion, "run_twin", timed(companion.run_twin)),
+        patch.object(companion, "run_companion", timed(companion.run_companion)),
     ):
         begun = time.process_time()
         rubgen.generate(recipe, out, workers=1)

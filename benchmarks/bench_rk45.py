@@ -142,7 +142,7 @@ class CompiledModel(PenaltyModel):
 
 def start_of(stepper: Stepper, model: PenaltyModel) -> FloatArray:
     """[q, q', 0] of the stepper: q' = (q_n - q_n-1) / dt + dt q'' / 2."""
-    before, now = stepper.state.before, stepper.state.now
+    before, now = stepper.coordinates.before, stepper.coordinates.now
     speed = (now - before) / stepper.dt
     bend = model.constant + model.rates @ np.concatenate([now, speed])
     return np.concatenate([now, speed + stepper.dt / 2 * bend, [0.0]])

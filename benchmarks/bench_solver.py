@@ -71,7 +71,7 @@ def settled(case: Case) -> tuple[Stepper, ReferenceStepper]:
         if code != 0:
             raise RuntimeError(f"the {case.name} run ended in turn {turn}, step {step}")
     reference = ReferenceStepper(system, case.friction, STEPS)
-    reference.before, reference.now = stepper.state.before, stepper.state.now
+    reference.before, reference.now = stepper.coordinates.before, stepper.coordinates.now
     return stepper, reference
 
 
@@ -106,12 +106,12 @@ def deviation(stepper: Stepper, reference: ReferenceStepper) -> tuple[float, int
     """Largest relative difference of states after one turn, and in how many of 50 turns contact counts differ."""
     start, worst, unequal = stepper.system.casing_start, 0.0, 0
     for _ in range(RESTARTS):
-        stepper.set_state(reference.before, reference.now)
+        stepper.set_coordinates(reference.before, reference.now)
         stepper.run_turn()
         touching = sum(reference.step(s) > 0 for s in range(STEPS))
         unequal += int(touching != stepper.result.summary[1])
         for part in (slice(0, start), slice(start, None)):
-            difference = np.abs(stepper.state.now[part] - reference.now[part]).max()
+            difference = np.abs(stepper.coordinates.now[part] - reference.now[part]).max()
             worst = max(worst, float(difference / np.abs(reference.now[part]).max()))
     return worst, unequal
 

@@ -1,8 +1,8 @@
-"""Names for the array types that signatures use."""
+"""Names for the array types that signatures use, and records whose arrays cannot be written."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -14,3 +14,20 @@ BoolArray = npt.NDArray[np.bool_]
 ComplexArray = npt.NDArray[np.complex128]
 AnyArray = npt.NDArray[Any]
 SparseMatrix = sp.csr_array[Any]
+Record = TypeVar("Record", bound=tuple[Any, ...])
+
+
+def frozen(record: Record) -> Record:
+    """A copy of a named tuple whose arrays, at any depth, cannot be written; the arrays of `record` stay as they are.
+
+    Kernels that write into such an array do not compile.
+    """
+    return type(record)(*(_frozen_value(value) for value in record))
+
+
+def _frozen_value(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        view = value.view()
+        view.flags.writeable = False
+        return view
+    return frozen(value) if isinstance(value, tuple) and hasattr(value, "_fields") else value

@@ -43,7 +43,7 @@ def largest_nodal_displacement(surface: Surface, q_casing: FloatArray) -> float:
 def least_clearance(surface: Surface, tips: Tips, states: FloatArray, theta: FloatArray) -> float:
     """The smallest r(angle of P) - |P| over all tips P and states (places, n) at angles `theta` (places,), m.
 
-    r is the undeformed surface, as far as it is worn.
+    r is the undeformed, unworn surface.
     """
     least = math.inf
     for place in range(theta.shape[0]):

@@ -18,45 +18,59 @@ from rubgen.linalg.vector_kernels import LANES, lowest_bit, not_above, square_of
 
 
 class ContactWork(NamedTuple):
-    """Arrays of the contact step, allocated once; row m of the contact arrays belongs to blade `blade[m]`.
-
-    `casing` (any,) are the casing's coordinates in q* and zeros, as the surface's `radial` has them.
-    Per blade: `bounds` (infinite behind the last, to a multiple of eight), `psi`, `gap` (the free gap at q*; NaN when
-    the blade is provably farther than the margin), `tangent` (n_blades, 2), `held` (3, n_blades): the scheme's gaps at
-    steps n - 1, n, n + 1.
-    Per contact: `lam`, `b`, `W`, `normal_tip` and `full_tip` (n_blades, 3), `normal_casing` and `full_casing`
-    (n_blades, n_casing), `slip` (n_blades, 2) the friction direction, `sliding` (n_blades,) the speed |v_rel| where
-    friction or wear asks for it, `casing_response` (n_blades, n_casing) A^-1 B.
-    """
+    """Arrays of the contact step, allocated once. Row m of an array of contacts belongs to blade `blade[m]`."""
 
     casing: FloatArray
+    """The casing's coordinates in q* and zeros behind, as `Surface.radial` has them."""
     bounds: FloatArray
+    """Bound of each blade's clearance, infinite behind the last blade to a multiple of eight, m."""
     psi: FloatArray
+    """Polar angle of each blade's foot (n_blades,)."""
     gap: FloatArray
+    """Free gap of each blade at q* (n_blades,), NaN where the blade is certainly farther than the margin, m."""
     tangent: FloatArray
-    held: FloatArray
+    """X and Y of the tangent at each blade's foot (n_blades, 2)."""
+    step_gaps: FloatArray
+    """The scheme's gaps at steps n - 1, n and n + 1 (3, n_blades), NaN where not known, m. Steps leave them."""
     blade: IntArray
+    """The blade of each contact (n_blades,)."""
     lam: FloatArray
+    """Normal force of each contact (n_blades,), N."""
     b: FloatArray
+    """Gap of each contact before the forces (n_blades,), m."""
     W: FloatArray
+    """B_n^T A^-1 B (n_blades, n_blades), m/N."""
     normal_tip: FloatArray
+    """B_n of each contact on its tip (n_blades, 3)."""
     full_tip: FloatArray
+    """B of each contact on its tip (n_blades, 3)."""
     normal_casing: FloatArray
+    """B_n of each contact on the casing (n_blades, n_casing)."""
     full_casing: FloatArray
+    """B of each contact on the casing (n_blades, n_casing)."""
     slip: FloatArray
+    """Direction of friction of each contact along tangent and axis (n_blades, 2)."""
     sliding: FloatArray
+    """|v_rel| of each contact where friction or wear asks for it (n_blades,), m/s."""
     casing_response: FloatArray
+    """A^-1 B of each contact on the casing (n_blades, n_casing)."""
     ends: FloatArray
+    """Scratch of `foot_of` (8,)."""
     rows: FloatArray
+    """Scratch: X and Y displacement of a point per unit of each casing mode (2, n_casing)."""
     square: FloatArray
+    """Scratch of `solve_lcp` (n_blades, n_blades)."""
     tableau: FloatArray
+    """Scratch of `solve_lcp` (n_blades, 2 n_blades + 2)."""
     basis: IntArray
+    """Scratch of `solve_lcp` (n_blades,)."""
 
 
 @inlined_kernel
 def find_near(
     surface: Surface,
     tips: Tips,
+    worn: FloatArray,
     q: FloatArray,
     displacement: FloatArray,
     casing_start: int,
@@ -69,8 +83,9 @@ def find_near(
 ) -> tuple[int, bool]:
     """Free gaps of all blades that may be nearer than `margin`; how many are, and whether any penetrates.
 
-    They may where `work.bounds`, those to the deformed surface, allow it. `limits` are the deformation bounds;
-    `displacement` (2, any) the tips' radial and tangential one, which goes into q for the blades that are looked at.
+    They may where `work.bounds`, those to the deformed surface, allow it. `limits` are the deformation bounds, `worn`
+    (bins,) the coefficients of the worn depth, `displacement` (2, any) the tips' radial and tangential displacement,
+    which goes into q for the blades that are looked at.
     """
     count, penetrates, enough = 0, False, widened(margin, limits)
     for k in range(work.gap.shape[0]):
@@ -82,7 +97,7 @@ def find_near(
             near &= near - 1
             q[3 * k], q[3 * k + 1] = displacement[0, k], displacement[1, k]
             x, y, _, _ = tip_position(tips, k, q, cos_theta, sin_theta)
-            psi, gap, tx, ty = foot_of(surface, q[casing_start:], opening, x, y, work.ends)
+            psi, gap, tx, ty = foot_of(surface, worn, q[casing_start:], opening, x, y, work.ends)
             if gap >= margin:
                 continue
             work.psi[k], work.gap[k] = psi, gap
@@ -97,6 +112,7 @@ def find_near(
 def gap_at(
     surface: Surface,
     tips: Tips,
+    worn: FloatArray,
     blade: int,
     q: FloatArray,
     casing_start: int,
@@ -107,7 +123,7 @@ def gap_at(
 ) -> float:
     """The geometric gap of one blade in a given state."""
     x, y, _, _ = tip_position(tips, blade, q, cos_theta, sin_theta)
-    return foot_of(surface, q[casing_start:], opening, x, y, ends_work)[1]
+    return foot_of(surface, worn, q[casing_start:], opening, x, y, ends_work)[1]
 
 
 @inlined_kernel
@@ -146,7 +162,7 @@ def build_rows(
     casing_rows(surface, work.psi[k], work.rows)
     tx, ty = work.tangent[k, 0], work.tangent[k, 1]
     along, axial = 0.0, 0.0
-    if friction > 0.0 or surface.liner.depth.shape[0] > 0:
+    if friction > 0.0 or surface.liner.bins > 0:
         slip = contact_slip(tips, m, velocity, q, speed, cosine, sine, work)
         along, axial = friction_direction(slip[0], slip[1])
         work.sliding[m] = math.sqrt(slip[0] * slip[0] + slip[1] * slip[1])

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from rubgen.arrays import FloatArray
+from rubgen.arrays import FloatArray, frozen
 from rubgen.contact.geometry_kernels import Surface, Tips, foot_of
-from rubgen.contact.liner_kernels import Liner
+from rubgen.contact.liner_kernels import Liner, Wear
 from rubgen.errors import UserError
 from rubgen.reduction.model import CasingSurface, SpinningSystem
 from rubgen.scenario import ContactLaw
@@ -65,8 +65,8 @@ def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) ->
     Nodal slopes come from the Fourier series of the nodal displacements, so u is exact to fourth order in the node
     distance, and continuous in slope. A value between nodes is at most the largest nodal value plus a quarter of the
     node distance times the largest slope: that bounds each mode's reach. `contact` may ask for the inner surface's
-    displacement, for chords between the nodes instead of the smooth curve, and for a liner, which begins unworn: the
-    surface of a run is its own.
+    displacement, for chords between the nodes instead of the smooth curve, and for a liner. The arrays cannot be
+    written.
     """
     modes = surface_modes(system, contact)
     nodes = modes.shape[0]
@@ -81,38 +81,42 @@ def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) ->
     angle = step * np.arange(nodes)[:, None]
     corners = node_radii(curve, nodes) if contact.surface == "chords" else np.zeros(0)
     inset, slope = chord_bounds(corners, bend) if len(corners) else (0.0, steepness)
-    return Surface(
-        mean_radius=float(curve.mean_radius),
-        amplitude=np.asarray(curve.amplitude, dtype=float),
-        order=np.asarray(curve.order, dtype=float),
-        phase=np.asarray(curve.phase, dtype=float),
-        table=np.ascontiguousarray(np.concatenate([modes, slopes], axis=1).transpose(0, 2, 1)),
-        node_step=step,
-        reach=np.ascontiguousarray(size + 0.25 * step * slope_size),
-        mode_slope=np.ascontiguousarray(between + size),
-        mode_bend=np.ascontiguousarray(bends + 2 * between + size + 0.25 * step * slope_size),
-        radial=with_zeros(modes[:, 0] * np.cos(angle) + modes[:, 1] * np.sin(angle)),
-        steepness=steepness,
-        bend=bend,
-        corners=corners,
-        inset=inset,
-        slope=slope,
-        liner=unworn(contact.liner, float(curve.mean_radius)),
+    return frozen(
+        Surface(
+            mean_radius=float(curve.mean_radius),
+            amplitude=np.asarray(curve.amplitude, dtype=float),
+            order=np.asarray(curve.order, dtype=float),
+            phase=np.asarray(curve.phase, dtype=float),
+            table=np.ascontiguousarray(np.concatenate([modes, slopes], axis=1).transpose(0, 2, 1)),
+            node_step=step,
+            reach=np.ascontiguousarray(size + 0.25 * step * slope_size),
+            mode_slope=np.ascontiguousarray(between + size),
+            mode_bend=np.ascontiguousarray(bends + 2 * between + size + 0.25 * step * slope_size),
+            radial=with_zeros(modes[:, 0] * np.cos(angle) + modes[:, 1] * np.sin(angle)),
+            steepness=steepness,
+            bend=bend,
+            corners=corners,
+            inset=inset,
+            slope=slope,
+            liner=liner_of(contact.liner, float(curve.mean_radius)),
+        )
     )
 
 
 def blade_tips(system: SpinningSystem) -> Tips:
-    """The tips of a system: rest radius, steady displacement, place on the disk."""
+    """The tips of a system: rest radius, steady displacement, place on the disk. The arrays cannot be written."""
     angle = np.asarray(system.blade_angles, dtype=float)
     orders = np.multiply.outer(np.asarray(system.surface.order, dtype=float), angle)
-    return Tips(
-        radius=float(system.tip_radius),
-        static=np.ascontiguousarray(system.tip_static.T, dtype=float),
-        angle=angle,
-        cos_angle=np.cos(angle),
-        sin_angle=np.sin(angle),
-        cos_order=np.cos(orders),
-        sin_order=np.sin(orders),
+    return frozen(
+        Tips(
+            radius=float(system.tip_radius),
+            static=np.ascontiguousarray(system.tip_static.T, dtype=float),
+            angle=angle,
+            cos_angle=np.cos(angle),
+            sin_angle=np.sin(angle),
+            cos_order=np.cos(orders),
+            sin_order=np.sin(orders),
+        )
     )
 
 
@@ -136,22 +140,29 @@ def chord_bounds(corners: FloatArray, bend: float) -> tuple[float, float]:
     return step**2 / 8 * (bend + float(corners.max()) + 2 * slope**2 / nearest), slope
 
 
-def unworn(spec: LinerSpec | None, radius: float) -> Liner:
-    """The liner of that specification before anything has touched it; `radius` (m) turns angles into lengths."""
+def liner_of(spec: LinerSpec | None, radius: float) -> Liner:
+    """The liner of that specification, without bins where there is none; `radius` (m) turns angles into lengths."""
     if spec is None:
-        return Liner(np.zeros(0), np.zeros((2, 0)), 0.0, 0.0, 1.0, np.zeros(2))
+        return Liner(bins=0, thickness=0.0, rate=0.0, area=1.0)
     area = spec.width_m * radius * 2 * np.pi / spec.bins
-    return Liner(
-        np.zeros(spec.bins), np.zeros((2, spec.bins)), spec.thickness_m, spec.wear_m2_per_n, float(area), np.zeros(2)
-    )
+    return Liner(bins=spec.bins, thickness=spec.thickness_m, rate=spec.wear_m2_per_n, area=float(area))
 
 
-def gap_and_foot(surface: Surface, q_casing: FloatArray, point: FloatArray, opening: float = 0.0) -> FloatArray:
+def unworn(liner: Liner) -> Wear:
+    """The state of a liner before anything has touched it."""
+    return Wear(depth=np.zeros(liner.bins), earlier=np.zeros((2, liner.bins)), sums=np.zeros(2))
+
+
+def gap_and_foot(
+    surface: Surface, q_casing: FloatArray, point: FloatArray, opening: float = 0.0, worn: FloatArray | None = None
+) -> FloatArray:
     """Gap, foot parameter psi and the tangent's X and Y (4,) of an inertial point (2,) near the deformed surface.
 
     Gap in m, positive inside the casing, along the inward normal of the deformed curve; psi in rad is the polar angle
-    of the foot on the undeformed curve. `opening` in m widens the surface. The point must lie much nearer to the
+    of the foot on the undeformed curve. `opening` in m widens the surface; `worn` (bins,) are the coefficients of a
+    liner's worn depth in m. The point must lie much nearer to the
     surface than the radius of curvature.
     """
-    psi, gap, tx, ty = foot_of(surface, q_casing, opening, float(point[0]), float(point[1]), np.zeros(8))
+    depth = np.zeros(0) if worn is None else worn
+    psi, gap, tx, ty = foot_of(surface, depth, q_casing, opening, float(point[0]), float(point[1]), np.zeros(8))
     return np.array([gap, psi, tx, ty])

@@ -19,32 +19,40 @@ FOOT_ITERATIONS = 20
 
 
 class Surface(NamedTuple):
-    """The casing's inner surface as kernels take it; lengths in m, angles in rad.
-
-    `table` (nodes, n_casing, 4) holds X, Y and their derivatives by the polar angle for each node and mode; `reach`
-    (n_casing,) bounds the displacement anywhere on the ring per unit of each mode, `mode_slope` and `mode_bend` the
-    first and second derivative of its radial part; `radial` (nodes, any) is that part at the nodes, and zeros behind.
-    `steepness` bounds |dr/dpsi|, `bend` |d2r/dpsi2| of the smooth curve. `corners` (nodes,) are the radii at the nodes
-    where chords join them, else (0,); `inset` bounds how far the unworn surface lies inside of the smooth curve,
-    `slope` its |dr/dpsi|.
-    """
+    """The casing's inner surface as kernels take it; lengths in m, angles in rad. Wear is no part of it."""
 
     mean_radius: float
+    """Mean radius of the smooth curve."""
     amplitude: FloatArray
+    """Amplitudes of its harmonics (n_harmonics,)."""
     order: FloatArray
+    """Their orders."""
     phase: FloatArray
+    """Their phases."""
     table: FloatArray
+    """X, Y and their derivatives by the polar angle for each node and mode (nodes, n_casing, 4)."""
     node_step: float
+    """Angle between two nodes."""
     reach: FloatArray
+    """Bound of the displacement anywhere on the ring per unit of each mode (n_casing,)."""
     mode_slope: FloatArray
+    """Bound of the first derivative of the radial displacement by the angle per unit of each mode (n_casing,)."""
     mode_bend: FloatArray
+    """Bound of its second derivative (n_casing,)."""
     radial: FloatArray
+    """Radial displacement at the nodes per unit of each mode, and zeros behind (nodes, a multiple of eight)."""
     steepness: float
+    """Bound of |dr/dpsi| of the smooth curve."""
     bend: float
+    """Bound of |d2r/dpsi2| of the smooth curve."""
     corners: FloatArray
+    """Radii at the nodes (nodes,) where chords join them, else (0,)."""
     inset: float
+    """Bound of how far the unworn surface lies inside of the smooth curve."""
     slope: float
+    """Bound of |dr/dpsi| of the unworn surface."""
     liner: Liner
+    """The liner's constants."""
 
 
 class Tips(NamedTuple):
@@ -76,14 +84,21 @@ def chord_radius(start: float, end: float, angle: float, step: float) -> tuple[f
 
 @inlined_kernel
 def undeformed_radius(surface: Surface, psi: float) -> tuple[float, float, float]:
-    """r, dr/dpsi and d2r/dpsi2 of the undeformed surface, as far as it is worn."""
+    """r, dr/dpsi and d2r/dpsi2 of the undeformed, unworn surface."""
     radius, slope, bend = smooth_radius(surface, psi)
     if surface.corners.shape[0] > 0:
         first, second, s = interval(psi, surface.node_step, surface.corners.shape[0])
         angle = s * surface.node_step
         radius, slope, bend = chord_radius(surface.corners[first], surface.corners[second], angle, surface.node_step)
-    if surface.liner.depth.shape[0] > 0:
-        depth, depth_slope, depth_bend = worn_depth(surface.liner.depth, psi)
+    return radius, slope, bend
+
+
+@inlined_kernel
+def worn_radius(surface: Surface, worn: FloatArray, psi: float) -> tuple[float, float, float]:
+    """r, dr/dpsi and d2r/dpsi2 of the undeformed surface, worn by the depth with the coefficients `worn` (bins,)."""
+    radius, slope, bend = undeformed_radius(surface, psi)
+    if worn.shape[0] > 0:
+        depth, depth_slope, depth_bend = worn_depth(worn, psi)
         radius, slope, bend = radius + depth, slope + depth_slope, bend + depth_bend
     return radius, slope, bend
 
@@ -157,13 +172,13 @@ def blend(weights: tuple[float, float, float, float], ends: FloatArray, c: int) 
 
 @inlined_kernel
 def foot_of(
-    surface: Surface, q_casing: FloatArray, opening: float, x: float, y: float, ends_work: FloatArray
+    surface: Surface, worn: FloatArray, q_casing: FloatArray, opening: float, x: float, y: float, ends_work: FloatArray
 ) -> tuple[float, float, float, float]:
     """Foot of (x, y) on the deformed surface: polar parameter psi, gap, and the tangent's X and Y.
 
     Newton's method on (P - X(psi)).X'(psi) = 0, from the polar angle of P. The gap is n.(P - X) with the inward
-    normal n = e_z x t, positive inside the casing. `ends_work` (8,) is scratch. With chords the foot is on the one at
-    the polar angle of P.
+    normal n = e_z x t, positive inside the casing. `worn` (bins,) are the coefficients of the worn
+    depth, `ends_work` (8,) is scratch. With chords the foot is on the one at the polar angle of P.
     """
     h, nodes = surface.node_step, surface.table.shape[0]
     rho = math.sqrt(x * x + y * y)
@@ -176,7 +191,7 @@ def foot_of(
         if first != loaded:
             load_interval(surface.table, first, second, q_casing, ends_work)
             loaded = first
-        radius, slope, bend = undeformed_radius(surface, psi)
+        radius, slope, bend = worn_radius(surface, worn, psi)
         radius += opening
         value, derivative, second_derivative = hermite(s, h), hermite_slope(s, h), hermite_bend(s, h)
         to_x = x - radius * cosine - blend(value, ends_work, 0)

@@ -12,20 +12,27 @@ REMOVED, WORK = range(2)
 
 
 class Liner(NamedTuple):
-    """A liner as kernels take it; without bins there is none.
+    """What does not change of a liner."""
 
-    `depth` (bins,) are the coefficients of the worn depth in m, 0 to `thickness`; `earlier` (2, bins) what they were
-    one and two steps before, the older first. `rate` is the volume worn for each unit of force times sliding, m2/N;
-    `area` the volume of a coefficient of one metre, m2. `book` (2,) holds the volume removed, m3, and the work of the
-    contact force on the receding surface, J.
-    """
+    bins: int
+    """Number of coefficients of the worn depth; 0 where there is no liner."""
+    thickness: float
+    """The largest worn depth, m."""
+    rate: float
+    """Volume worn for each unit of force times sliding, m2/N."""
+    area: float
+    """Volume of a coefficient of one metre, m2."""
+
+
+class Wear(NamedTuple):
+    """The state of a liner."""
 
     depth: FloatArray
+    """Coefficients (bins,) of the worn depth, 0 to `Liner.thickness`, m."""
     earlier: FloatArray
-    thickness: float
-    rate: float
-    area: float
-    book: FloatArray
+    """The same (2, bins) two steps and one step before."""
+    sums: FloatArray
+    """Sums so far (2,): REMOVED volume, m3; WORK of the contact force on the receding surface, J."""
 
 
 @inlined_kernel
@@ -53,18 +60,18 @@ def worn_depth(coefficients: FloatArray, psi: float) -> tuple[float, float, floa
 
 
 @allocation_free_kernel
-def remove(liner: Liner, psi: float, volume: float) -> None:
-    """Take `volume` (m3) from the liner around a polar angle, as far as it is there.
+def remove(liner: Liner, psi: float, volume: float, wear: Wear) -> None:
+    """Take `volume` (m3) from the liner around a polar angle, as far as it is there; `wear` is changed.
 
     The splines sum to one, so the coefficients grow by volume / area in all: nothing is lost but what lies below the
     liner.
     """
-    bins = liner.depth.shape[0]
+    bins = liner.bins
     position = psi * (bins / (2 * math.pi))
     first = math.floor(position)
     weights = spline_weights(position - first)
     for i in range(4):
         bin_ = int((first - 1 + i) % bins)
-        grown = min(weights[i] * volume / liner.area, liner.thickness - liner.depth[bin_])
-        liner.depth[bin_] += grown
-        liner.book[REMOVED] += grown * liner.area
+        grown = min(weights[i] * volume / liner.area, liner.thickness - wear.depth[bin_])
+        wear.depth[bin_] += grown
+        wear.sums[REMOVED] += grown * liner.area

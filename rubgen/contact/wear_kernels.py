@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from rubgen.contact.contact_kernels import ContactWork
-from rubgen.contact.liner_kernels import WORK, Liner, remove, worn_depth
+from rubgen.contact.liner_kernels import WORK, Liner, Wear, remove, worn_depth
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 
 
 @inlined_kernel
-def wear(count: int, liner: Liner, dt: float, work: ContactWork) -> None:
+def wear_where_lined(count: int, liner: Liner, dt: float, work: ContactWork, wear: Wear) -> None:
     """`wear_liner` where there is one."""
-    if liner.depth.shape[0] > 0:
-        wear_liner(count, liner, dt, work)
+    if liner.bins > 0:
+        wear_liner(count, liner, dt, work, wear)
 
 
 @allocation_free_kernel
-def wear_liner(count: int, liner: Liner, dt: float, work: ContactWork) -> None:
+def wear_liner(count: int, liner: Liner, dt: float, work: ContactWork, wear: Wear) -> None:
     """Book the work on the receding surface, then wear it: volume = rate lam |v_rel| dt at each contact's foot.
 
     Archard, J. Appl. Phys. 24 (1953): V = K F s / H, `liner.rate` being K / H. The gaps of this step were found with
@@ -25,11 +25,11 @@ def wear_liner(count: int, liner: Liner, dt: float, work: ContactWork) -> None:
     for m in range(count):
         if work.lam[m] > 0.0:
             psi = work.psi[work.blade[m]]
-            receded = worn_depth(liner.depth, psi)[0] - worn_depth(liner.earlier[0], psi)[0]
-            liner.book[WORK] += 0.5 * work.lam[m] * receded
-    for i in range(liner.depth.shape[0]):
-        liner.earlier[0, i] = liner.earlier[1, i]
-        liner.earlier[1, i] = liner.depth[i]
+            receded = worn_depth(wear.depth, psi)[0] - worn_depth(wear.earlier[0], psi)[0]
+            wear.sums[WORK] += 0.5 * work.lam[m] * receded
+    for i in range(liner.bins):
+        wear.earlier[0, i] = wear.earlier[1, i]
+        wear.earlier[1, i] = wear.depth[i]
     for m in range(count):
         if work.lam[m] > 0.0:
-            remove(liner, work.psi[work.blade[m]], liner.rate * work.lam[m] * work.sliding[m] * dt)
+            remove(liner, work.psi[work.blade[m]], liner.rate * work.lam[m] * work.sliding[m] * dt, wear)

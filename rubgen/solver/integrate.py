@@ -19,7 +19,7 @@ from rubgen.scenario.rotation import Rotation
 from rubgen.solver.linear.admissible import check_system
 from rubgen.solver.linear.rub_free import free_penetration, rub_free_motion
 from rubgen.solver.linear.stability import settle_turns, steps_per_turn
-from rubgen.solver.observers.companion import Twin, check_turns, piece_ends
+from rubgen.solver.observers.companion import Companion, check_turns, piece_ends
 from rubgen.solver.observers.divergence import ADVICE, Growth
 from rubgen.solver.observers.orders import WindowOrders, turn_orders
 from rubgen.solver.observers.symmetry import Fractions
@@ -84,25 +84,25 @@ class Integration:
         self.spin, self.stepper, self.settle = spin, stepper, settle
         self.record, self.rotation = operation.recorded_turns, spin.rotation
         self.closing = min(operation.closing_turns, settle)
-        self.opening = start_opening(start, stepper.surface.inset)
+        self.opening = start_opening(start, stepper.model.surface.inset)
         self.tail_turns = min(tail_turns, settle + self.record)
         self.tail: deque[FloatArray] = deque(maxlen=self.tail_turns)
         self.arrivals: deque[FloatArray] = deque(maxlen=self.tail_turns)
         n = stepper.system.M.shape[0]
         self.section = np.zeros((self.record, 2, n))
-        self.twin: Twin | None = None
+        self.twin: Companion | None = None
         self.twin_growth = np.zeros(self.record if twin else 0)
         self.fractions = Fractions(stepper.system, stepper.steps) if self.rotation.is_steady else None
         if self.fractions:
             pieces = piece_ends(stepper.steps) if twin else ()
-            stepper.marks = stepper.marks_at(sorted({*self.fractions.steps, *pieces}))
+            stepper.take_snapshots(sorted({*self.fractions.steps, *pieces}))
         self.impulse = np.zeros(self.record)
         self.contact_steps = np.zeros(self.record, dtype=np.int64)
         self.orbit: deque[FloatArray] = deque(maxlen=LEAST_TAIL_TURNS if self.rotation.is_steady else None)
         self.free_penetration = float("nan")
         if self.rotation.is_steady:
             self.free_penetration = free_penetration(
-                rub_free_motion(stepper.system, stepper.steps), stepper.surface, stepper.tips
+                rub_free_motion(stepper.system, stepper.steps), stepper.model.surface, stepper.model.tips
             )
         self.window_orders = WindowOrders(*stepper.result.taps.shape)
         self.touches: list[FloatArray] = []
@@ -121,7 +121,7 @@ class Integration:
             count(turn, turns)
             if turn == self.settle:
                 self.stepper.touches.open[:, STEPS] = 0.0  # a touch that began before is counted from here
-                self.twin = Twin(self.stepper) if self.twin_growth.size else None
+                self.twin = Companion(self.stepper) if self.twin_growth.size else None
             self._run_turn(turn)
             if self.status is not Status.OK:
                 return
@@ -131,8 +131,8 @@ class Integration:
         self.touches.append(touches.ended[:still_open].copy())
 
     def _run_turn(self, turn: int) -> None:
-        liner = self.stepper.surface.liner
-        removed = liner.book[REMOVED]
+        wear = self.stepper.state.wear
+        removed = wear.sums[REMOVED]
         recording = self._is_recorded(turn)
         code, step = self.spin.run_turn(turn, self._opening_after, recording=recording)
         result = self.spin.result
@@ -161,7 +161,7 @@ class Integration:
                 self.window_orders.add(row, result.taps)
             if self.twin is not None:
                 # Beside a surface that has worn within the turn no trajectory is near the run's own.
-                same_surface = liner.book[REMOVED] == removed
+                same_surface = wear.sums[REMOVED] == removed
                 self.twin_growth[row] = self.twin.run_turn(self.spin.opening).sum() if same_surface else np.nan
 
     def _is_recorded(self, turn: int) -> bool:
@@ -189,10 +189,10 @@ class Integration:
 
         At a critical speed the rub-free motion has no energy in the turning frame: there its rounding stands for it.
         """
-        works, energy = self.stepper.book.works, self.stepper.energy()
+        works, energy = self.stepper.state.works, self.stepper.energy()
         self.largest_energy = max(self.largest_energy, abs(energy))
         done = works[UNBALANCE] + works[DAMPING] + works[CIRCULATORY] + works[CONTACT] + works[SPEED_CHANGE]
-        done += self.stepper.support.works[:FILM_LOSS].sum()
+        done += self.stepper.state.support.works[:FILM_LOSS].sum()
         scale = max(float(works[ABSOLUTE]), self.largest_energy, self.rounding_energy)
         return abs(energy - self.start_energy - float(done)) / scale if scale > 0 else 0.0
 
@@ -209,8 +209,8 @@ class Integration:
 
     def _what_diverged(self) -> tuple[str, str]:
         """Which of the two branches ended the run, "blade" or "casing", and how."""
-        system, laws = self.stepper.system, self.stepper.laws
-        tips = np.abs(self.stepper.state.after[: 3 * system.n_blades])
+        system, laws = self.stepper.system, self.stepper.model.laws
+        tips = np.abs(self.stepper.coordinates.after[: 3 * system.n_blades])
         if not np.all(tips <= laws.tip_limit):
             blade = int(np.argmax(~(tips <= laws.tip_limit))) // 3
             return "blade", f"blade {blade} bent beyond {1e3 * laws.tip_limit:.3g} mm"
@@ -312,7 +312,7 @@ def _last_turns(rotation: Rotation, record: int, seconds: float) -> float:
 
 def _gross_energy(stepper: Stepper) -> float:
     """Sum of |q_i K_ij q_j| / 2 at the start, J."""
-    q = np.abs(stepper.state.now)
+    q = np.abs(stepper.coordinates.now)
     return 0.5 * float(q @ np.abs(stepper.system.K) @ q)
 
 
@@ -338,7 +338,7 @@ def _response(integration: Integration, taps: tuple[Tap, ...]) -> Response:
         energy=_energy(integration),
         n_blades=stepper.system.n_blades,
         n_casing=stepper.system.n_casing,
-        worn=worn_liner(stepper.surface),
+        worn=worn_liner(stepper.model.surface.liner, stepper.state.wear),
         track=integration.track.track(integration.spin) if integration.track.kept else None,
         arrivals=tip_arrivals(list(integration.arrivals), [probe.name for probe in timing_taps(taps)]),
         course=None if integration.rotation.is_steady else integration.course(),
@@ -350,9 +350,9 @@ def _response(integration: Integration, taps: tuple[Tap, ...]) -> Response:
 
 
 def _energy(integration: Integration) -> EnergyBook:
-    works = [float(work) for work in integration.stepper.book.works]
-    support = [float(work) for work in integration.stepper.support.works]
-    wear = 0.0 - float(integration.stepper.surface.liner.book[WORK])
+    works = [float(work) for work in integration.stepper.state.works]
+    support = [float(work) for work in integration.stepper.state.support.works]
+    wear = 0.0 - float(integration.stepper.state.wear.sums[WORK])
     return EnergyBook(
         start=integration.start_energy,
         end=integration.stepper.energy(),

@@ -18,7 +18,7 @@ from rubgen.contact.clearance_kernels import (
 from rubgen.contact.geometry import with_zeros
 from rubgen.contact.geometry_kernels import tip_position, undeformed_radius
 from rubgen.scenario import ContactLaw
-from rubgen.solver.scheme.stepper import CASING_LIMIT_SHARE, TIP_LIMIT_SHARE, bounds_hold, tip_spread
+from rubgen.solver.scheme.model import CASING_LIMIT_SHARE, TIP_LIMIT_SHARE, bounds_hold, tip_spread
 
 TIP_LIMIT = TIP_LIMIT_SHARE * RADIUS
 CASING_LIMIT = CASING_LIMIT_SHARE * RADIUS

@@ -63,7 +63,7 @@ def test_taps_give_strain_and_drive_torque_of_a_held_load(model):
     taps = (RootStrain(name="strain", blade=BLADE), DriveTorque(name="drive"))
     stepper = rub_free_stepper(system, ContactLaw(), 1024, taps=taps)
     q = np.concatenate([np.linalg.solve(model.stiffness(0.0), load), np.zeros(system.n_casing)])
-    stepper.set_state(q, q)
+    stepper.set_coordinates(q, q)
     stepper.run_turn(np.full(1026, 0.1))
     strain, torque = stepper.result.taps[:, 0]
     expected = model.root_strain(BLADE, 900.0) @ q[: system.casing_start]

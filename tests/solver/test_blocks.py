@@ -85,13 +85,13 @@ def test_mistuned_blades_move_as_plain_numpy_says(small_system, lobes):
     for turn in range(6):
         stepper.run_turn(np.full(steps + 2, 5e-4 * (1 - turn / 6)))
     reference, touched = ReferenceStepper(system, 0.1, steps), 0
-    reference.before, reference.now = stepper.state.before, stepper.state.now
+    reference.before, reference.now = stepper.coordinates.before, stepper.coordinates.now
     for _ in range(5):
-        stepper.set_state(reference.before, reference.now)
+        stepper.set_coordinates(reference.before, reference.now)
         assert stepper.run_turn()[0] == 0
         touching = sum(reference.step(s) > 0 for s in range(steps))
         assert touching == stepper.result.summary[1]
-        np.testing.assert_allclose(stepper.state.now, reference.now, atol=1e-6 * np.abs(reference.now).max())
+        np.testing.assert_allclose(stepper.coordinates.now, reference.now, atol=1e-6 * np.abs(reference.now).max())
         touched += touching
     assert touched > 100
 
@@ -109,7 +109,7 @@ def test_blocks_and_one_dense_block_give_one_motion(small_system, monkeypatch):
         for turn in range(10):
             stepper.run_turn(np.full(258, 5e-4 * max(0, 1 - turn / 6)))
             impulse += stepper.result.summary[0]
-        ends.append(np.concatenate([stepper.state.now, stepper.result.taps[:2].ravel(), [impulse]]))
+        ends.append(np.concatenate([stepper.coordinates.now, stepper.result.taps[:2].ravel(), [impulse]]))
     assert ends[0][-1] > 1
     np.testing.assert_allclose(ends[1], ends[0], atol=1e-9)
 
@@ -136,8 +136,8 @@ def test_a_free_step_of_several_lanes_is_that_of_the_matrices():
 def check_recovery(system):
     stepper = rub_free_stepper(system, ContactLaw(), 1024)
     q = np.random.default_rng(1).normal(size=len(system.M))
-    found, scratch = np.zeros(len(q)), stepper.scratch
-    recover_all(stepper.harmonics, stepper.blocks.to_z(q), scratch.share, scratch.tips, found)
+    found, scratch = np.zeros(len(q)), stepper.state.scratch
+    recover_all(stepper.model.harmonics, stepper.blocks.to_z(q), scratch.share, scratch.tips, found)
     np.testing.assert_allclose(found, q, atol=1e-14 * 36)
 
 

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
+from rubgen.arrays import frozen
 from rubgen.contact import gap_and_foot
 from rubgen.contact.contact_kernels import build_rows
 from rubgen.contact.geometry_kernels import casing_rows
 from rubgen.scenario import ContactLaw
-from rubgen.solver.scheme.energy_kernels import CONTACT, DRIVE_LIMIT, FRICTION, NORMAL, book_contact
-from rubgen.solver.scheme.model_kernels import State
+from rubgen.solver.scheme.energy_kernels import CONTACT, DRIVE_LIMIT, FRICTION, NORMAL, add_contact_works
+from rubgen.solver.scheme.state_kernels import Coordinates
 from rubgen.solver.speed.start import rub_free_stepper
 
 MU, THETA, BLADE = 0.3, 0.7, 2
@@ -23,14 +24,16 @@ class Touch:
         self.q, self.v = rng.normal(size=(2, len(system.M))) * [[2e-3], [40.0]]
         self.q[system.casing_start :] *= 0.1
         self.v[3 * BLADE + 2] = 30.0
-        self.work = self.stepper.work
-        found = gap_and_foot(self.stepper.surface, self.q[system.casing_start :], self.place(self.q, THETA)[:2])
+        self.work = self.stepper.state.contact
+        found = gap_and_foot(self.stepper.model.surface, self.q[system.casing_start :], self.place(self.q, THETA)[:2])
         self.gap, self.psi, self.tangent = found[0], found[1], found[2:]
         self.rows = np.zeros((2, system.n_casing))
-        casing_rows(self.stepper.surface, self.psi, self.rows)
+        casing_rows(self.stepper.model.surface, self.psi, self.rows)
         self.work.blade[0], self.work.psi[BLADE], self.work.tangent[BLADE] = BLADE, self.psi, self.tangent
         turned = np.cos(THETA), np.sin(THETA)
-        build_rows(self.stepper.surface, self.stepper.tips, 0, self.q, self.v, system.speed, MU, *turned, self.work)
+        build_rows(
+            self.stepper.model.surface, self.stepper.model.tips, 0, self.q, self.v, system.speed, MU, *turned, self.work
+        )
 
     def place(self, q, theta):
         """Inertial position (3,) of the tip."""
@@ -85,7 +88,7 @@ def test_the_normal_row_is_the_slope_of_the_gap(touch):
         for side in (-h, h):
             q = touch.q.copy()
             q[number] += side
-            gaps.append(gap_and_foot(touch.stepper.surface, q[start:], touch.place(q, THETA)[:2])[0])
+            gaps.append(gap_and_foot(touch.stepper.model.surface, q[start:], touch.place(q, THETA)[:2])[0])
         slopes.append((gaps[1] - gaps[0]) / (2 * h))
     expected = np.concatenate([touch.work.normal_tip[0], touch.work.normal_casing[0]])
     np.testing.assert_allclose(expected, slopes, atol=1e-7)
@@ -95,12 +98,13 @@ def test_works_of_a_contact_are_those_of_its_force(touch):
     """One step of motion d = v dt: lam B.d, the normal and the friction loss, and the drive's -Omega dt e_z.(P x F)."""
     stepper, work, lam, dt = touch.stepper, touch.work, 700.0, touch.stepper.dt
     d = touch.v * dt
-    state = State(touch.q, touch.q, touch.q, d)
-    work.lam[0], work.held[0, BLADE], work.held[2, BLADE] = lam, 5e-5, -3e-5
+    coordinates = Coordinates(touch.q, touch.q, touch.q, d)
+    work.lam[0], work.step_gaps[0, BLADE], work.step_gaps[2, BLADE] = lam, 5e-5, -3e-5
     step = 40
-    angles = stepper.angles._replace(cosine=np.full(257, np.cos(THETA)), sine=np.full(257, np.sin(THETA)))
-    normal, friction, _torque = book_contact(
-        0, stepper.surface, stepper.tips, stepper.laws, angles, step, np.zeros(258), state, work, stepper.book
+    model = stepper.model
+    angles = model.angles._replace(cosine=np.full(257, np.cos(THETA)), sine=np.full(257, np.sin(THETA)))
+    normal, friction, _torque = add_contact_works(
+        0, frozen(model._replace(angles=angles)), step, np.zeros(258), coordinates, stepper.state
     )
     inward = np.array([-touch.tangent[1], touch.tangent[0]])
     along, axial = work.slip[0]
@@ -108,7 +112,7 @@ def test_works_of_a_contact_are_those_of_its_force(touch):
     tip_move, casing_move = touch.along(d), touch.rows @ d[touch.system.casing_start :]
     turn = touch.system.speed * dt * np.array([-touch.place(touch.q, THETA)[1], touch.place(touch.q, THETA)[0]])
     slip = (tip_move[:2] + turn - casing_move) @ touch.tangent, tip_move[2]
-    works = stepper.book.works
+    works = stepper.state.works
     assert works[CONTACT] == pytest.approx(
         force @ (tip_move[:2] - casing_move) + MU * lam * axial * tip_move[2], rel=1e-9
     )

@@ -126,17 +126,17 @@ def test_complementarity_in_every_step_with_contact(small_system):
     system = small_system(speed=500.0)
     touched = 0
     for stepper, s, opening, count in complementary_steps(system, ContactLaw(friction=0.2)):
-        work = stepper.work
-        lam, gap = work.lam[:count], work.held[1][work.blade[:count]]
+        work = stepper.state.contact
+        lam, gap = work.lam[:count], work.step_gaps[1][work.blade[:count]]
         assert np.all(lam >= 0)
         assert np.all(gap >= -1e-15)
         assert np.all(lam * gap <= 1e-14 * max(lam.max(initial=0), 1))
         theta = 2 * np.pi * (s + 1) / stepper.steps
-        tips = stepper.state.now[: 3 * system.n_blades].reshape(-1, 3) + system.tip_static
+        tips = stepper.coordinates.now[: 3 * system.n_blades].reshape(-1, 3) + system.tip_static
         point = (system.tip_radius + tips[:, 0] + 1j * tips[:, 1]) * np.exp(1j * (theta + system.blade_angles))
         for k in range(system.n_blades):
-            q_casing = stepper.state.now[system.casing_start :]
-            true = gap_and_foot(stepper.surface, q_casing, np.array([point[k].real, point[k].imag]), opening)[0]
+            q_casing = stepper.coordinates.now[system.casing_start :]
+            true = gap_and_foot(stepper.model.surface, q_casing, np.array([point[k].real, point[k].imag]), opening)[0]
             # What is left is the change of the geometry by the contact itself, of second order.
             assert true > -1e-8
         touched += np.count_nonzero(lam)
@@ -147,11 +147,11 @@ def test_restitution_throws_back_with_the_same_share(small_system):
     system = small_system(speed=500.0)
     touched = 0
     for stepper, _, _, count in complementary_steps(system, ContactLaw(restitution=0.6)):
-        work = stepper.work
+        work = stepper.state.contact
         for m in range(count):
             if work.lam[m] > 0:
                 before = work.b[m] - work.gap[work.blade[m]]
-                assert work.held[1][work.blade[m]] == pytest.approx(-before, abs=1e-14)
+                assert work.step_gaps[1][work.blade[m]] == pytest.approx(-before, abs=1e-14)
                 touched += 1
     assert touched > 50
 
@@ -161,17 +161,17 @@ def test_restitution_reaches_a_blade_that_leaves_by_itself(small_system):
     system = small_system()
     stepper = rub_free_stepper(system, ContactLaw(restitution=0.6), 256)
     angle = 2 * np.pi / 256
-    radial, tangential, _ = stepper.state.now[:3] + system.tip_static[0]
+    radial, tangential, _ = stepper.coordinates.now[:3] + system.tip_static[0]
     tip = (system.tip_radius + radial + 1j * tangential) * np.exp(1j * angle)
-    free = gap_and_foot(stepper.surface, np.zeros(system.n_casing), np.array([tip.real, tip.imag]))[0]
-    stepper.work.held[0, 0] = -1e-4
-    assert stepper.laws.margin < 3e-5
+    free = gap_and_foot(stepper.model.surface, np.zeros(system.n_casing), np.array([tip.real, tip.imag]))[0]
+    stepper.state.contact.step_gaps[0, 0] = -1e-4
+    assert stepper.model.laws.margin < 3e-5
     code, count = stepper.step(0, np.full(258, 3e-5 - free))
     assert code == 0
-    assert stepper.work.blade[:count].tolist() == [0]
-    assert stepper.work.gap[0] == pytest.approx(3e-5, abs=1e-7)
-    assert stepper.work.lam[0] > 0
-    assert stepper.work.held[1, 0] == pytest.approx(6e-5, rel=1e-9)
+    assert stepper.state.contact.blade[:count].tolist() == [0]
+    assert stepper.state.contact.gap[0] == pytest.approx(3e-5, abs=1e-7)
+    assert stepper.state.contact.lam[0] > 0
+    assert stepper.state.contact.step_gaps[1, 0] == pytest.approx(6e-5, rel=1e-9)
 
 
 def test_screening_changes_no_bit(small_system):
@@ -183,7 +183,9 @@ def test_screening_changes_no_bit(small_system):
         for turn in range(12):
             stepper.run_turn(np.full(258, 5e-4 * max(0, 1 - turn / 6)))
             impulse += stepper.result.summary[0]
-        ends.append(np.concatenate([stepper.state.now, stepper.book.works, stepper.result.taps.ravel(), [impulse]]))
+        ends.append(
+            np.concatenate([stepper.coordinates.now, stepper.state.works, stepper.result.taps.ravel(), [impulse]])
+        )
     assert ends[0][-1] > 1
     np.testing.assert_array_equal(ends[0], ends[1])
 
@@ -197,7 +199,7 @@ def test_turning_casing_and_start_together_changes_nothing(small_system):
         for turn in range(8):
             stepper.run_turn(np.full(258, 5e-4 * max(0, 1 - turn / 5)))
             impulse += stepper.result.summary[0]
-        ends.append(np.append(stepper.state.now / np.abs(stepper.state.now).max(), impulse))
+        ends.append(np.append(stepper.coordinates.now / np.abs(stepper.coordinates.now).max(), impulse))
     assert ends[0][-1] > 1
     np.testing.assert_allclose(ends[1], ends[0], atol=1e-8)
     np.testing.assert_allclose(ends[2], ends[0], atol=1e-8)
@@ -211,9 +213,9 @@ def test_the_drive_pays_for_contact_and_impact_loss_does_not_vanish_with_the_ste
         stepper = rub_free_stepper(small_system(casing_damping=0.4), ContactLaw(friction=friction), steps)
         for turn in range(40):
             if turn == 30:
-                stepper.book.works[:] = 0
+                stepper.state.works[:] = 0
             stepper.run_turn(5e-4 * closing_ramp((turn + np.arange(-1, steps + 1) / steps) / 20))
-        contact, normal, rubbing, limit = stepper.book.works[3:7]
+        contact, normal, rubbing, limit = stepper.state.works[3:7]
         apart.append(contact - normal - rubbing - limit)
         losses.append(normal)
     assert limit > 5
@@ -264,9 +266,9 @@ def test_works_on_the_inner_surface_add_up_to_what_the_drive_pays(small_system):
         stepper = rub_free_stepper(small_system(casing_damping=0.4), law, steps)
         for turn in range(30):
             if turn == 20:
-                stepper.book.works[:] = 0
+                stepper.state.works[:] = 0
             stepper.run_turn(5e-4 * closing_ramp((turn + np.arange(-1, steps + 1) / steps) / 15))
-        contact, normal, rubbing, limit = stepper.book.works[3:7]
+        contact, normal, rubbing, limit = stepper.state.works[3:7]
         apart.append(abs(contact - normal - rubbing - limit) / limit)
     assert apart[1] < 0.02
     assert apart[0] / apart[1] == pytest.approx(2, rel=0.15)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from rubgen.arrays import frozen
 from rubgen.scenario import ContactLaw
 from rubgen.solver import Status
 from rubgen.solver.integrate import Integration, integrate
@@ -18,31 +19,39 @@ def integration(small_system, operation):
     return Integration(spin, system, operation(system, record_turns=5), 100)
 
 
+def set_model(integration, **fields):
+    """Give the run another model."""
+    integration.stepper.model = frozen(integration.stepper.model._replace(**fields))
+
+
 def test_a_wrong_mass_in_the_book_breaks_the_energy_identity(integration):
-    integration.stepper.book.M.entries[:] *= 1 + 1e-6
+    energy = integration.stepper.model.energy
+    set_model(integration, energy=energy._replace(M=energy.M._replace(entries=energy.M.entries * (1 + 1e-6))))
     integration.run()
     assert integration.status is Status.ENERGY
     assert "above 1e-08 after turn" in integration.reason
 
 
 def test_a_damping_work_that_is_left_out_breaks_the_energy_identity(integration):
-    integration.stepper.book.damping.entries[:] = 0
+    energy = integration.stepper.model.energy
+    nothing = frozen(energy.damping._replace(entries=np.zeros_like(energy.damping.entries)))
+    set_model(integration, energy=energy._replace(damping=nothing))
     integration.run()
     assert integration.status is Status.ENERGY
 
 
 def test_a_compliance_that_pulls_has_no_contact_force(integration):
-    for compliance in integration.stepper.compliances:
-        compliance[:] *= -1
+    model = integration.stepper.model
+    set_model(integration, tip_compliance=-model.tip_compliance, casing_compliance=-model.casing_compliance)
     integration.run()
     assert integration.status is Status.CONTACT_UNSOLVED
     assert "in turn" in integration.reason
 
 
 def test_a_state_that_is_not_a_number_ends_the_run(integration):
-    q = integration.stepper.state.now.copy()
+    q = integration.stepper.coordinates.now.copy()
     q[-1] = np.nan
-    integration.stepper.set_state(q, q)
+    integration.stepper.set_coordinates(q, q)
     integration.run()
     assert integration.status is Status.DIVERGED
 
@@ -54,7 +63,7 @@ def test_a_fortieth_of_the_tip_radius_is_the_limit_of_tips_and_of_the_casings_no
     start, size = system.casing_start, share * system.tip_radius
 
     def diverged(q):
-        return has_diverged(stepper.surface, stepper.laws, q, start, system.n_blades)
+        return has_diverged(stepper.model.surface, stepper.model.laws, q, start, system.n_blades)
 
     for direction in range(3):
         tip = np.zeros(start + system.n_casing)
@@ -79,13 +88,13 @@ def test_the_margin_of_candidates_changes_no_result(small_system):
     ends = []
     for margin in (1e-5, 1e-12, 5e-4):
         stepper = rub_free_stepper(small_system(speed=500.0), ContactLaw(friction=0.1), 256)
-        stepper.laws = stepper.laws._replace(margin=margin)
+        stepper.model = stepper.model._replace(laws=stepper.model.laws._replace(margin=margin))
         impulse = 0.0
         for turn in range(10):
             code = stepper.run_turn(5e-4 * closing_ramp((turn + np.arange(-1, 257) / 256) / 6))[0]
             assert code == 0
             impulse += stepper.result.summary[0]
-        ends.append(np.append(stepper.state.now / np.abs(stepper.state.now).max(), impulse))
+        ends.append(np.append(stepper.coordinates.now / np.abs(stepper.coordinates.now).max(), impulse))
     assert ends[0][-1] > 1
     np.testing.assert_allclose(ends[1], ends[0], atol=1e-9)
     np.testing.assert_allclose(ends[2], ends[0], atol=1e-9)

@@ -26,10 +26,10 @@ def free_vibration_error(system, steps):
     deviation = np.concatenate([rng.normal(size=n) * 1e-5, rng.normal(size=n) * 1e-3])
     rest = steady_state(system)
     before = exact_flow(system, -stepper.dt) @ deviation
-    stepper.set_state(rest + before[:n], rest + deviation[:n])
+    stepper.set_coordinates(rest + before[:n], rest + deviation[:n])
     stepper.run_turn(np.full(steps + 2, 1e-2))
     exact = rest + (exact_flow(system, stepper.dt * steps) @ deviation)[:n]
-    return np.abs(stepper.state.now - exact).max() / np.abs(exact - rest).max()
+    return np.abs(stepper.coordinates.now - exact).max() / np.abs(exact - rest).max()
 
 
 def test_free_vibration_follows_the_matrix_exponential_with_second_order(small_system):
@@ -95,7 +95,7 @@ def test_the_clearance_of_a_shifted_round_casing_is_that_of_the_shifted_circle(s
     shift = 4e-3 * np.array([np.cos(direction), np.sin(direction)])
     q = steady_state(system)
     q[start : start + 2] = shift / system.casing_modes[0, 0, 0]  # cos t and sin t move the ring along X and Y
-    stepper.set_state(q, q)
+    stepper.set_coordinates(q, q)
     stepper.run_turn(np.full(258, 3e-4))
     tip = system.tip_radius + system.tip_static[0, 0]
     for ray, (along, across) in ((9, shift), (10, shift[::-1])):
@@ -110,7 +110,7 @@ def test_the_clearance_of_a_bent_casing_is_to_where_the_ray_meets_the_curve(smal
     stepper, start = rub_free_stepper(system, ContactLaw(), 256), system.casing_start
     q = steady_state(system)
     q[start : start + 4] = np.array([1.5e-3, -1e-3, 1e-3, 1.5e-3]) / np.hypot(*system.casing_modes[0, :, 0])
-    stepper.set_state(q, q)
+    stepper.set_coordinates(q, q)
     stepper.run_turn()
     nodes = 2 * np.pi * np.arange(36) / 36
     undeformed = system.surface.mean_radius - 3e-3 * np.cos(2 * (nodes - 5 * np.pi / 18))

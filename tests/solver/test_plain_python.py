@@ -31,7 +31,7 @@ def short_run(build, options):
     stepper = rub_free_stepper(system, law, 128, taps=taps)
     stepper.run_turn(np.linspace(4e-4, 0, 130))
     arrivals = stepper.taps.timing.arrivals
-    parts = stepper.state.now, stepper.book.works, stepper.result.summary, stepper.result.taps.ravel()
+    parts = stepper.coordinates.now, stepper.state.works, stepper.result.summary, stepper.result.taps.ravel()
     return np.concatenate([*parts, arrivals[:, :3].ravel(), 1e6 * arrivals[:, 3]])
 
 

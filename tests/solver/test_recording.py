@@ -25,7 +25,7 @@ def run_turns(system, recording):
             result.summary[:3],
             stepper.touches.ended[:ended].ravel(),
         ]
-        ends.append(np.concatenate([*kept, stepper.state.now, stepper.book.works]))
+        ends.append(np.concatenate([*kept, stepper.coordinates.now, stepper.state.works]))
     return stepper, np.concatenate(ends)
 
 

@@ -16,17 +16,17 @@ def compare_turns(system, friction, steps, turns, opening, settle=6, restitution
     reference = ReferenceStepper(system, friction, steps, restitution=restitution)
     for turn in range(settle):
         stepper.run_turn(np.full(steps + 2, opening * (1 - turn / settle)))
-    reference.before, reference.now = stepper.state.before.copy(), stepper.state.now.copy()
+    reference.before, reference.now = stepper.coordinates.before.copy(), stepper.coordinates.now.copy()
     start, worst, touched = system.casing_start, 0.0, 0
     for _ in range(turns):
         reference.set_state(reference.before, reference.now)
-        stepper.set_state(reference.before, reference.now)
+        stepper.set_coordinates(reference.before, reference.now)
         assert stepper.run_turn()[0] == 0
         blades = np.array([reference.step(s) for s in range(steps)])
         assert np.count_nonzero(blades) == stepper.result.summary[1]
         for part in (slice(0, start), slice(start, None)):
             size = np.abs(reference.now[part]).max()
-            worst = max(worst, np.abs(stepper.state.now[part] - reference.now[part]).max() / size)
+            worst = max(worst, np.abs(stepper.coordinates.now[part] - reference.now[part]).max() / size)
         touched += np.count_nonzero(blades)
     return worst, touched
 

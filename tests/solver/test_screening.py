@@ -16,11 +16,11 @@ def runs(system):
     """The state after a few turns of a start from rest, and the impulse of each, screened and not."""
     for screen in (True, False):
         stepper, impulses = rub_free_stepper(system, ContactLaw(friction=0.1), 512, screen=screen), []
-        stepper.set_state(*np.zeros((2, len(system.M))))
+        stepper.set_coordinates(*np.zeros((2, len(system.M))))
         for turn in range(8):
             stepper.run_turn(clock=turn * 512)
             impulses.append(stepper.result.summary[0])
-        yield stepper.state.now, np.array(impulses)
+        yield stepper.coordinates.now, np.array(impulses)
 
 
 @pytest.mark.parametrize("stiffness", [1e7, 6.4e6, 5e6])
@@ -40,8 +40,8 @@ def test_only_where_the_bounds_hold_is_screened(small_system):
     wide, narrow = (
         replace(system.surface, mean_radius=r, amplitude=np.array([a])) for r, a in ((0.2, -1e-3), (0.2, 0.02))
     )
-    assert rub_free_stepper(replace(system, surface=wide), SMOOTH, 256).laws.screen
-    assert not rub_free_stepper(replace(system, surface=wide), SMOOTH, 256, screen=False).laws.screen
-    assert not rub_free_stepper(replace(system, surface=narrow), SMOOTH, 256).laws.screen
+    assert rub_free_stepper(replace(system, surface=wide), SMOOTH, 256).model.laws.screen
+    assert not rub_free_stepper(replace(system, surface=wide), SMOOTH, 256, screen=False).model.laws.screen
+    assert not rub_free_stepper(replace(system, surface=narrow), SMOOTH, 256).model.laws.screen
     away = system.tip_static + np.array([0.0, 0.25 * system.tip_radius, 0.0])
-    assert not rub_free_stepper(replace(system, tip_static=away), SMOOTH, 256).laws.screen
+    assert not rub_free_stepper(replace(system, tip_static=away), SMOOTH, 256).model.laws.screen

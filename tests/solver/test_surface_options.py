@@ -20,7 +20,7 @@ LAWS = {
 
 def run_turns(system, law, steps=256, turns=12, screen=True):
     stepper = rub_free_stepper(system, law, steps, screen=screen)
-    opening, impulse = start_opening(system, stepper.surface.inset), []
+    opening, impulse = start_opening(system, stepper.model.surface.inset), []
     for turn in range(turns):
         assert stepper.run_turn(opening * closing_ramp((turn + np.arange(-1, steps + 1) / steps) / 6))[0] == 0
         impulse.append(stepper.result.summary[0])
@@ -32,10 +32,10 @@ def test_screening_changes_no_bit(small_system, law):
     screened, impulse = run_turns(small_system(speed=500.0), law)
     every, again = run_turns(small_system(speed=500.0), law, screen=False)
     assert impulse[-1] > 0.1
-    np.testing.assert_array_equal(screened.state.now, every.state.now)
-    np.testing.assert_array_equal(screened.book.works, every.book.works)
+    np.testing.assert_array_equal(screened.coordinates.now, every.coordinates.now)
+    np.testing.assert_array_equal(screened.state.works, every.state.works)
     np.testing.assert_array_equal(impulse, again)
-    np.testing.assert_array_equal(screened.surface.liner.depth, every.surface.liner.depth)
+    np.testing.assert_array_equal(screened.state.wear.depth, every.state.wear.depth)
 
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS.keys())
@@ -51,7 +51,7 @@ def test_the_energy_identity_holds_and_nothing_is_gained(small_system, operation
 
 def test_the_start_opens_chords_until_nothing_touches(small_system):
     stepper = rub_free_stepper(small_system(), LAWS["chords"], 256)
-    opening = start_opening(stepper.system, stepper.surface.inset)
+    opening = start_opening(stepper.system, stepper.model.surface.inset)
     assert opening > start_opening(stepper.system) + 0.9 * 0.2 * (1 - np.cos(np.pi / 36))
     stepper.run_turn(np.full(258, opening))
     assert stepper.result.summary[1] == 0
@@ -85,9 +85,9 @@ def test_a_liner_wears_where_it_is_touched_until_the_rub_is_over(small_system, o
 def test_volume_follows_from_force_and_sliding(small_system):
     """Archard's law over a turn: rate times the impulse times the tips' speed, which varies by what blades swing."""
     stepper, _ = run_turns(small_system(speed=500.0), LAWS["liner"], turns=10)
-    before = stepper.surface.liner.book[REMOVED]
+    before = stepper.state.wear.sums[REMOVED]
     stepper.run_turn()
-    worn = stepper.surface.liner.book[REMOVED] - before
+    worn = stepper.state.wear.sums[REMOVED] - before
     speed = 500.0 * 0.2
     assert stepper.result.summary[0] > 0.1
     assert worn == pytest.approx(LINER.wear_m2_per_n * stepper.result.summary[0] * speed, rel=0.05)
@@ -99,11 +99,11 @@ def test_the_drive_pays_for_wear_as_for_other_losses(small_system):
     apart, wears = [], []
     for steps in (1024, 2048, 4096):
         stepper, _ = run_turns(small_system(speed=500.0, casing_damping=0.4), law, steps=steps, turns=6)
-        stepper.book.works[:], stepper.surface.liner.book[:] = 0, 0  # until now the closing surface did work
+        stepper.state.works[:], stepper.state.wear.sums[:] = 0, 0  # until now the closing surface did work
         for _ in range(3):
             stepper.run_turn()
-        contact, normal, rubbing, limit = stepper.book.works[3:7]
-        wears.append(stepper.surface.liner.book[WORK])
+        contact, normal, rubbing, limit = stepper.state.works[3:7]
+        wears.append(stepper.state.wear.sums[WORK])
         apart.append(contact - normal - rubbing + wears[-1] - limit)
     assert wears[2] == pytest.approx(wears[1], rel=0.1)
     assert np.array(apart[:2]) / apart[1:] == pytest.approx([2, 2], rel=0.2)
@@ -113,7 +113,7 @@ def test_the_drive_pays_for_wear_as_for_other_losses(small_system):
 def test_a_worn_liner_is_seen_by_the_clearance_on_a_ray(small_system):
     system = small_system(clearance=2e-3, unbalance=0.0)
     new, worn = (rub_free_stepper(system, ContactLaw(liner=LINER), 256) for _ in range(2))
-    worn.surface.liner.depth[:] = 3e-4
+    worn.state.wear.depth[:] = 3e-4
     for stepper in (new, worn):
         stepper.run_turn()
     np.testing.assert_allclose(worn.result.taps[9] - new.result.taps[9], 3e-4, rtol=1e-9)

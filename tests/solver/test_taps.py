@@ -49,10 +49,10 @@ def test_order_and_number_of_taps_change_no_bit(small_system):
     more = (ContactTorque(name="torque"), TipTiming(name="probe", angle_deg=17), *reversed(DEFAULT_TAPS))
     other, taps = rubbing(system, taps=more)
     np.testing.assert_array_equal(taps[1:], usual[::-1])
-    np.testing.assert_array_equal(other.state.now, stepper.state.now)
+    np.testing.assert_array_equal(other.coordinates.now, stepper.coordinates.now)
     none, nothing = rubbing(system, taps=())
     assert nothing.shape == (0, 256)
-    np.testing.assert_array_equal(none.state.now, stepper.state.now)
+    np.testing.assert_array_equal(none.coordinates.now, stepper.coordinates.now)
 
 
 def test_directions_between_the_axes(small_system):
@@ -81,7 +81,7 @@ def test_the_contact_torque_is_what_the_drive_pays_for(small_system):
     stepper, (torque,) = rubbing(system, taps=(ContactTorque(name="torque"),))
     assert torque.min() < -1
     assert torque.max() <= 0.1 * -torque.min()  # friction brakes
-    assert -system.speed * stepper.dt * torque.sum() == pytest.approx(stepper.book.works[DRIVE_LIMIT], rel=1e-12)
+    assert -system.speed * stepper.dt * torque.sum() == pytest.approx(stepper.state.works[DRIVE_LIMIT], rel=1e-12)
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])
@@ -93,7 +93,7 @@ def test_ring_strain_of_inextensible_modes(small_system, order):
     stepper = rub_free_stepper(system, ContactLaw(), 256, taps=(RingStrain(name="strain", angle_deg=angle),))
     q = steady_state(system)
     q[system.casing_start + 2 * (order - 1)] = 1e-3 / system.casing_modes[0, 0, 2 * (order - 1)]
-    stepper.set_state(q, q)
+    stepper.set_coordinates(q, q)
     stepper.run_turn()
     expected = 1e-3 * 1e-3 * (order**2 - 1) / 0.21**2 * np.cos(order * np.deg2rad(angle))
     assert stepper.result.taps[0, 0] == pytest.approx(expected, rel=1e-9, abs=1e-15)
@@ -135,14 +135,14 @@ def test_arrivals_of_vibrating_blades(small_system):
     runs = [rub_free_stepper(system, ContactLaw(), steps, taps=(TipTiming(name="p", angle_deg=77),)) for _ in range(2)]
     wide = np.full(steps + 2, 0.1)
     for stepper in runs:
-        stepper.set_state(start, start)
+        stepper.set_coordinates(start, start)
     states, seen = [start], []
     for turn in range(turns):
         runs[0].run_turn(wide, clock=turn * steps)
         seen.append(runs[0].taps.timing.arrivals[: int(runs[0].result.summary[3])].copy())
         for s in range(steps):
             runs[1].step(s, wide)
-            states.append(runs[1].state.now)
+            states.append(runs[1].coordinates.now)
     q = np.array(states)[:, : 3 * system.n_blades].reshape(len(states), -1, 3) + system.tip_static
     seen = np.concatenate(seen)
     assert len(seen) == turns * system.n_blades

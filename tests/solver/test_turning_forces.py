@@ -55,7 +55,7 @@ def test_a_run_keeps_the_rub_free_motion_from_which_it_starts(small_system, turn
     for _ in range(5):
         assert stepper.run_turn()[0] == 0
     q = motion.at(0.3)
-    np.testing.assert_allclose(stepper.state.now, q, rtol=0, atol=1e-11 * np.abs(q).max())
+    np.testing.assert_allclose(stepper.coordinates.now, q, rtol=0, atol=1e-11 * np.abs(q).max())
     assert stepper.result.summary[0] == 0
 
 
@@ -74,8 +74,8 @@ def test_no_forces_is_what_forces_of_zero_are(small_system, turning):
         for turn in range(5):
             stepper.run_turn(np.full(258, 4e-4 * (1 - turn / 5)))
         assert stepper.result.summary[0] > 0
-        assert stepper.support.active is (each.turning is not None)
-        ends.append(stepper.state.now)
+        assert stepper.model.support.active is (each.turning is not None)
+        ends.append(stepper.coordinates.now)
     np.testing.assert_allclose(ends[1], ends[0], rtol=0, atol=1e-11 * np.abs(ends[0]).max())
 
 

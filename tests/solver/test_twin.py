@@ -6,7 +6,7 @@ from rubgen.labels.motion.lyapunov import lyapunov
 from rubgen.scenario import ContactLaw
 from rubgen.solver.integrate import integrate
 from rubgen.solver.linear.stability import slowest_decay
-from rubgen.solver.observers.companion import Twin, piece_ends
+from rubgen.solver.observers.companion import Companion, piece_ends
 from rubgen.solver.observers.symmetry import turned_back
 from rubgen.solver.scheme.stepper import Stepper
 from rubgen.solver.speed.start import rub_free_stepper
@@ -14,13 +14,11 @@ from rubgen.solver.speed.start import rub_free_stepper
 STEPS = 256
 
 
-def in_contact(system, restitution: float = 0.0, marks: list[int] | None = None) -> tuple[Stepper, np.ndarray]:
+def in_contact(system, restitution: float = 0.0, snapshots: list[int] | None = None) -> tuple[Stepper, np.ndarray]:
     """A stepper that has settled into a rub, and an opening of zero."""
-    stepper, closed = (
-        rub_free_stepper(system, ContactLaw(friction=0.1, restitution=restitution), STEPS),
-        np.zeros(STEPS + 2),
-    )
-    stepper.marks = stepper.marks_at(marks or piece_ends(STEPS))
+    law, closed = ContactLaw(friction=0.1, restitution=restitution), np.zeros(STEPS + 2)
+    stepper = rub_free_stepper(system, law, STEPS)
+    stepper.take_snapshots(snapshots or piece_ends(STEPS))
     stepper.run_turn(np.linspace(6e-4, 0, STEPS + 2))
     for _ in range(12):
         stepper.run_turn(closed)
@@ -54,17 +52,21 @@ def test_without_contact_the_exponent_is_the_slowest_decay(small_system, operati
 def test_pieces_multiply_to_the_growth_of_a_second_run(small_system, restitution):
     system = small_system(speed=500.0)
     stepper, closed = in_contact(system, restitution)
-    twin = Twin(stepper)
+    twin = Companion(stepper)
     second = rub_free_stepper(system, ContactLaw(friction=0.1, restitution=restitution), STEPS)
-    rows = stepper.blocks.to_q(twin.motions[0].z), stepper.blocks.to_q(twin.motions[1].z)
-    second.set_state(*rows)
-    second.work.held[:] = stepper.work.held
-    before = np.array([second.state.before, second.state.now]) - np.array([stepper.state.before, stepper.state.now])
+    rows = stepper.blocks.to_q(twin.state.motions[0].z), stepper.blocks.to_q(twin.state.motions[1].z)
+    second.set_coordinates(*rows)
+    second.state.contact.step_gaps[:] = stepper.state.contact.step_gaps
+    before = np.array([second.coordinates.before, second.coordinates.now]) - np.array(
+        [stepper.coordinates.before, stepper.coordinates.now]
+    )
     stepper.run_turn(closed)
     second.run_turn(closed)
     touched = stepper.result.summary[1]
     growth = twin.run_turn(closed)
-    after = np.array([second.state.before, second.state.now]) - np.array([stepper.state.before, stepper.state.now])
+    after = np.array([second.coordinates.before, second.coordinates.now]) - np.array(
+        [stepper.coordinates.before, stepper.coordinates.now]
+    )
 
     def size(away):
         d_v = (away[1] - away[0]) / stepper.dt

@@ -6,7 +6,8 @@ import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
-from rubgen.solver.observers.companion_kernels import distance, run_twin
+from rubgen.solver.observers.companion_kernels import distance, run_companion
+from rubgen.solver.scheme.model import new_state, turned
 from rubgen.solver.scheme.motion_kernels import recover
 from rubgen.solver.scheme.step_kernels import OK
 from rubgen.solver.scheme.stepper import Stepper
@@ -14,7 +15,7 @@ from rubgen.solver.scheme.stepper import Stepper
 PIECES = 16
 """Renormalisations in a turn."""
 CLOSENESS = 1e-8
-"""Distance of the twin over the size of the motion: a thousandth of what a tip enters in one step of a touch, and a
+"""Distance of the companion over the size of the motion: a thousandth of what a tip enters in one step of a touch, a
 million times the rounding of a step."""
 LEAST_TURNS = 32
 """An exponent of fewer turns says nothing."""
@@ -35,44 +36,39 @@ def piece_ends(steps: int) -> list[int]:
     return [round(steps * piece / pieces) for piece in range(1, pieces + 1)]
 
 
-class Twin:
-    """A twin that starts beside the present state of `stepper`, all coordinates moved.
+class Companion:
+    """A trajectory that starts beside the present state of `stepper`, all coordinates moved.
 
-    Call `run_turn` after each turn of the stepper, whose marks must be set; the stepper's own bits do not change.
-    The distance is that of an energy norm, sqrt(d_v^T M d_v + Omega^2 d_q^T M d_q), which no choice of coordinates
-    changes; any other norm gives the same exponent in the long run.
+    It is a second state of the same model. Call `run_turn` after each turn of the stepper, which must leave snapshots;
+    the stepper's own bits do not change. The distance is that of an energy norm, sqrt(d_v^T M d_v + Omega^2 d_q^T M
+    d_q), which no choice of coordinates changes; any other norm gives the same exponent in the long run.
     """
 
     def __init__(self, stepper: Stepper) -> None:
-        self.stepper = stepper
-        self.motions = stepper.new_motions()
-        self.work, self.scratch = stepper.new_work()
-        self.work.held[:] = stepper.work.held
-        before, now, _ = stepper.motions
+        self.stepper, self.state = stepper, new_state(stepper.model)
+        self.state.contact.step_gaps[:] = stepper.state.contact.step_gaps
+        before, now, _ = stepper.state.motions
         main, still = np.stack([before.z, now.z]), np.zeros((2, now.z.size))
         self.closeness = CLOSENESS * (self._distance(main, still) or 1.0)
         start = main + self._away(stepper)
         start = main + (start - main) * (self.closeness / self._distance(main, start))
-        for motion, z in zip(self.motions, start, strict=False):
+        for motion, z in zip(self.state.motions, start, strict=False):
             motion.z[:] = z
-            recover(stepper.harmonics, motion, self.scratch.share)
+            recover(stepper.model.harmonics, motion, self.state.scratch.share)
 
     def run_turn(self, opening: FloatArray) -> FloatArray:
-        """Ln of the twin's growth between the marks of the stepper's last turn; NaN where it could not follow."""
-        stepper, growth = self.stepper, np.full(len(self.stepper.marks.steps), np.nan)
-        code = run_twin(
-            stepper.model, stepper.book.M, opening, stepper.marks, self.closeness, self.motions, self.work,
-            self.scratch, growth,
-        )  # fmt: skip
-        first = stepper.steps % 3
-        self.motions = (self.motions * 2)[first : first + 3]  # type: ignore[assignment]  # three of six
+        """Ln of the growth of the distance between the snapshots of the last turn; NaN where it could not follow."""
+        stepper, growth = self.stepper, np.full(len(self.stepper.snapshots.steps), np.nan)
+        self.state.wear.depth[:] = stepper.state.wear.depth
+        code = run_companion(stepper.model, opening, stepper.snapshots, self.closeness, self.state, growth)
+        self.state = turned(self.state, stepper.steps)
         return growth if code == OK else np.full(growth.size, np.nan)
 
-    def _distance(self, main: FloatArray, twin: FloatArray) -> float:
-        stepper = self.stepper
-        for motion, z in zip(self.motions, twin, strict=False):
+    def _distance(self, main: FloatArray, companion: FloatArray) -> float:
+        model, motions = self.stepper.model, self.state.motions[:2]
+        for motion, z in zip(motions, companion, strict=True):
             motion.z[:] = z
-        return float(distance(stepper.model, stepper.book.M, main, self.motions[:2], self.scratch))
+        return float(distance(model.laws, model.energy.M, main, motions, self.state.scratch))
 
     @staticmethod
     def _away(stepper: Stepper) -> FloatArray:

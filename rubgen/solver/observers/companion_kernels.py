@@ -1,4 +1,4 @@
-"""A twin of the run that starts beside it, through the same contact code, brought back near it again and again.
+"""A companion of the run: it starts beside it, takes the same steps, and is brought back near it again and again.
 
 The largest Lyapunov exponent is the mean growth of the distance (Benettin, Galgani, Giorgilli, Strelcyn 1980).
 """
@@ -8,81 +8,67 @@ from __future__ import annotations
 import math
 
 from rubgen.arrays import FloatArray
-from rubgen.contact.contact_kernels import ContactWork
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.block_kernels import Product, quadratic
-from rubgen.solver.scheme.model_kernels import Model, Scratch
+from rubgen.solver.scheme.model_kernels import Laws, Model
 from rubgen.solver.scheme.motion_kernels import Motion, recover
-from rubgen.solver.scheme.snapshot_kernels import Marks
-from rubgen.solver.scheme.step_kernels import OK, advance, shift_held
+from rubgen.solver.scheme.snapshot_kernels import Snapshots
+from rubgen.solver.scheme.state_kernels import Scratch, State
+from rubgen.solver.scheme.step_kernels import OK, advance, shift_gaps
 
 
 @allocation_free_kernel
-def bring_back(main: FloatArray, scale: float, twin: FloatArray) -> None:
-    """Twin = main + scale (twin - main), entry by entry; what is no number in either becomes that of `main`."""
-    for i in range(twin.shape[0]):
-        away = twin[i] - main[i]
-        twin[i] = main[i] + scale * away if math.isfinite(away) else main[i]
+def bring_back(main: FloatArray, scale: float, companion: FloatArray) -> None:
+    """Companion = main + scale (companion - main); an entry that is not finite in either becomes that of `main`."""
+    for i in range(companion.shape[0]):
+        away = companion[i] - main[i]
+        companion[i] = main[i] + scale * away if math.isfinite(away) else main[i]
 
 
 @allocation_free_kernel
-def distance(model: Model, mass: Product, main: FloatArray, twin: tuple[Motion, Motion], scratch: Scratch) -> float:
-    """Sqrt(d_v^T M d_v + Omega^2 d_q^T M d_q) between `main` (2, any), z at two steps, and the twin at the same."""
-    speed, dt = model.laws.speed, model.laws.dt
+def distance(laws: Laws, mass: Product, main: FloatArray, companion: tuple[Motion, Motion], scratch: Scratch) -> float:
+    """Sqrt(d_v^T M d_v + Omega^2 d_q^T M d_q) between `main` (2, any), z at two steps, and the companion there."""
+    speed, dt = laws.speed, laws.dt
     for i in range(scratch.z_change.shape[0]):
-        scratch.z_force[i] = twin[1].z[i] - main[1, i]
-        scratch.z_change[i] = (scratch.z_force[i] - (twin[0].z[i] - main[0, i])) / dt
+        scratch.z_force[i] = companion[1].z[i] - main[1, i]
+        scratch.z_change[i] = (scratch.z_force[i] - (companion[0].z[i] - main[0, i])) / dt
     kinetic = quadratic(mass, scratch.z_change, scratch.z_change)
     return math.sqrt(kinetic + speed * speed * quadratic(mass, scratch.z_force, scratch.z_force))
 
 
 @inlined_kernel
 def renormalise(
-    model: Model,
-    mass: Product,
-    marks: Marks,
-    mark: int,
-    closeness: float,
-    twin: tuple[Motion, Motion],
-    work: ContactWork,
-    scratch: Scratch,
+    model: Model, snapshots: Snapshots, number: int, closeness: float, companion: tuple[Motion, Motion], state: State
 ) -> float:
-    """Bring the twin back to a distance of `closeness` in the direction where it is; gives ln of its growth."""
-    size = distance(model, mass, marks.z[mark], twin, scratch)
+    """Bring the companion back to a distance of `closeness` in the direction where it is; ln of its growth."""
+    size = distance(model.laws, model.energy.M, snapshots.z[number], companion, state.scratch)
     if not size > 0.0:
         return math.nan
     for i in range(2):
-        bring_back(marks.z[mark, i], closeness / size, twin[i].z)
-        bring_back(marks.held[mark, i], closeness / size, work.held[i])
-        recover(model.harmonics, twin[i], scratch.share)
+        bring_back(snapshots.z[number, i], closeness / size, companion[i].z)
+        bring_back(snapshots.step_gaps[number, i], closeness / size, state.contact.step_gaps[i])
+        recover(model.harmonics, companion[i], state.scratch.share)
     return math.log(size / closeness)
 
 
 @allocation_free_kernel
-def run_twin(
-    model: Model,
-    mass: Product,
-    opening: FloatArray,
-    marks: Marks,
-    closeness: float,
-    motions: tuple[Motion, Motion, Motion],
-    work: ContactWork,
-    scratch: Scratch,
-    growth_out: FloatArray,
+def run_companion(
+    model: Model, opening: FloatArray, snapshots: Snapshots, closeness: float, state: State, growth_out: FloatArray
 ) -> int:
-    """The twin's turn after the run has made its own; ln of the growth between marks into `growth_out` (marks,).
+    """The companion's turn after the run has made its own; a code of `step_kernels`.
 
-    `work`, `scratch` and `motions` are the twin's own. A code of `step_kernels`.
+    Ln of the growth between `snapshots`, those of the run, goes into `growth_out` (snapshots,). `state` is the
+    companion's own.
     """
-    before, now, after = motions
+    before, now, after = state.motions
     step = 0
-    for mark in range(marks.steps.shape[0]):
-        while step < marks.steps[mark]:
-            code, _ = advance(model, step, opening, before, now, after, work, scratch)
+    for number in range(snapshots.steps.shape[0]):
+        while step < snapshots.steps[number]:
+            code, _ = advance(model, step, opening, before, now, after, state)
             if code != OK:
                 return code
             before, now, after = now, after, before
-            shift_held(work)
+            shift_gaps(state.contact)
             step += 1
-        growth_out[mark] = renormalise(model, mass, marks, mark, closeness, (before, now), work, scratch)
+        growth_out[number] = renormalise(model, snapshots, number, closeness, (before, now), state)
     return OK

@@ -32,7 +32,7 @@ def turned_back(modes: FloatArray, share: float) -> FloatArray:
 
 
 class Fractions:
-    """After 1/N, 2/N, ... 1 of a turn; `steps` are the marks that a turn needs for them."""
+    """After 1/N, 2/N, ... 1 of a turn; `steps` are the snapshots that a turn must leave for them."""
 
     def __init__(self, system: SpinningSystem, steps: int) -> None:
         lobes = lobes_of(system) if steps >= 2 else 1
@@ -45,8 +45,8 @@ class Fractions:
         out = []
         for share, place in zip(self.shares, self.places, strict=True):
             step = min(math.ceil(place), stepper.steps)
-            mark = int(np.searchsorted(stepper.marks.steps, step))
-            before, now = (stepper.blocks.to_q(z) for z in stepper.marks.z[mark])
+            number = int(np.searchsorted(stepper.snapshots.steps, step))
+            before, now = (stepper.blocks.to_q(z) for z in stepper.snapshots.z[number])
             back = np.eye(len(now))
             start = stepper.system.casing_start
             back[start:, start:] = turned_back(stepper.system.casing_modes, share)

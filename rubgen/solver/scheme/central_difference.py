@@ -8,8 +8,8 @@ import scipy.linalg as la
 from rubgen.arrays import FloatArray
 from rubgen.linalg.blocks import Blocks, aligned
 from rubgen.reduction.model import SpinningSystem
-from rubgen.solver.scheme.energy_kernels import WORKS, Book
 from rubgen.solver.scheme.free_step_kernels import Scheme
+from rubgen.solver.scheme.model_kernels import EnergyTerms
 
 
 def scheme(M: FloatArray, C: FloatArray, K: FloatArray, force: FloatArray, dt: float, blocks: Blocks) -> Scheme:
@@ -40,17 +40,16 @@ def compliances(system: SpinningSystem, dt: float) -> tuple[FloatArray, FloatArr
     return aligned(inverse[:tips, :tips].T), aligned(inverse[start:, start:].T)
 
 
-def energy_book(system: SpinningSystem, blocks: Blocks, *, zeros: bool = False) -> Book:
-    """Matrices of the energy terms in blocks, and works of zero; with `zeros` what is zero is kept in its place."""
+def energy_terms(system: SpinningSystem, blocks: Blocks, *, zeros: bool = False) -> EnergyTerms:
+    """Matrices of the energy terms in blocks; with `zeros` what is zero is kept in its place."""
     force = blocks.to_z(system.force)
     places = np.arange(force.size) if zeros else np.flatnonzero(force)
     circulatory = (system.K - system.K.T) / 2
-    return Book(
+    return EnergyTerms(
         damping=blocks.damping(system.C, whole=zeros),
         circulatory=blocks.product(circulatory) if zeros else blocks.without_zeros(circulatory, system.K),
         M=blocks.product((system.M + system.M.T) / 2),
         K=blocks.product((system.K + system.K.T) / 2),
         force=force[places],
         force_places=places,
-        works=np.zeros(WORKS),
     )

@@ -1,36 +1,40 @@
-"""What a step of the solver takes: laws, angles, states, the model, scratch."""
+"""What a step takes and does not change: laws, tables over the angle, the model."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from rubgen.arrays import FloatArray
+from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.geometry_kernels import Surface, Tips
+from rubgen.linalg.block_kernels import Product
 from rubgen.linalg.harmonic_kernels import Harmonics
 from rubgen.solver.scheme.free_step_kernels import Scheme
-from rubgen.solver.scheme.motion_kernels import Motion
 from rubgen.solver.scheme.support_kernels import Support
 
 
 class Laws(NamedTuple):
-    """Numbers of the step: Omega, dt, friction, restitution; lengths in m; screening on or off.
-
-    `margin` is the candidates' least one; a casing node displaced by more than `casing_limit` or a tip by more than
-    `tip_limit` in one direction means divergence. Until then each tip is within `spread` tip radii of its place at rest
-    in both directions, steady displacement included. `lasting` tells whether gaps that a step leaves are needed again
-    where no blade touches: for restitution, and with a liner, which wears before they are asked for.
-    """
+    """Numbers of a step."""
 
     speed: float
+    """Omega, rad/s."""
     dt: float
+    """Time step, s."""
     friction: float
+    """Coefficient of Coulomb friction."""
     restitution: float
+    """Coefficient of restitution of the contact."""
     margin: float
+    """The least distance within which blades are solved together, m."""
     casing_limit: float
+    """A casing node displaced by more than this has diverged, m."""
     tip_limit: float
+    """A blade tip displaced by more than this in one direction has diverged, m."""
     spread: float
+    """Until then no tip is farther than this from its place at rest along either axis, tip radii."""
     lasting: bool
+    """Whether gaps are needed again in later steps where no blade touches: with restitution, and with a liner."""
     screen: bool
+    """Whether bounds of the clearance are taken before gaps."""
 
 
 class Angles(NamedTuple):
@@ -48,23 +52,25 @@ class Angles(NamedTuple):
     section: float
 
 
-class State(NamedTuple):
-    """q at steps n - 1, n, n + 1, and d or the velocity, each (n,).
+class EnergyTerms(NamedTuple):
+    """Matrices of the energy terms in blocks."""
 
-    Within a turn, of the tips only those of the blades in contact hold.
-    """
-
-    before: FloatArray
-    now: FloatArray
-    after: FloatArray
-    change: FloatArray
+    damping: Product
+    """The lower triangle of C_sym with half its diagonal, so that d^T C d = 2 d^T (triangle d)."""
+    circulatory: Product
+    """K_skew."""
+    M: Product
+    """The symmetric part of M."""
+    K: Product
+    """The symmetric part of K."""
+    force: FloatArray
+    """The numbers of the unbalance force that are not zero, N."""
+    force_places: IntArray
+    """Their places in z."""
 
 
 class Model(NamedTuple):
-    """What does not change from step to step.
-
-    `tip_compliance` (3 blades, 3 blades) and `casing_compliance` (n_casing, n_casing) hold the columns of A^-1.
-    """
+    """All that does not change from step to step; its arrays cannot be written."""
 
     surface: Surface
     tips: Tips
@@ -73,16 +79,8 @@ class Model(NamedTuple):
     scheme: Scheme
     harmonics: Harmonics
     tip_compliance: FloatArray
+    """The columns of A^-1 between tip coordinates (3 blades, 3 blades), m/N."""
     casing_compliance: FloatArray
+    """The columns of A^-1 of the casing modes (n_casing, n_casing)."""
     support: Support
-
-
-class Scratch(NamedTuple):
-    """Arrays of a step: a motion to go back to, d in z, a force in z, numbers of one tip coordinate, d or v, tips."""
-
-    free: Motion
-    z_change: FloatArray
-    z_force: FloatArray
-    share: FloatArray
-    change: FloatArray
-    tips: FloatArray
+    energy: EnergyTerms

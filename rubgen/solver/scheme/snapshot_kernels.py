@@ -10,24 +10,24 @@ from rubgen.jit import inlined_kernel
 from rubgen.solver.scheme.motion_kernels import Motion
 
 
-class Marks(NamedTuple):
-    """Rising numbers `steps` (marks,) in 1 .. steps a turn, and the states there.
-
-    `z` (marks, 2, any) holds z at the step before and at the step, `held` (marks, 2, n_blades) the scheme's gaps there.
-    """
+class Snapshots(NamedTuple):
+    """The motion at chosen steps of a turn."""
 
     steps: IntArray
+    """Rising numbers of the steps (snapshots,), from 1 to the steps of a turn."""
     z: FloatArray
-    held: FloatArray
+    """z at the step before and at the step (snapshots, 2, any)."""
+    step_gaps: FloatArray
+    """The scheme's gaps there (snapshots, 2, n_blades), m."""
 
 
 @inlined_kernel
-def keep_mark(marks: Marks, mark: int, before: Motion, now: Motion, work: ContactWork) -> int:
-    """Keep a state under the number `mark`; gives the next one."""
+def keep_snapshot(snapshots: Snapshots, number: int, before: Motion, now: Motion, work: ContactWork) -> int:
+    """Keep a state under a number; returns the next number."""
     for i in range(now.z.shape[0]):
-        marks.z[mark, 0, i] = before.z[i]
-        marks.z[mark, 1, i] = now.z[i]
-    for k in range(marks.held.shape[2]):
-        marks.held[mark, 0, k] = work.held[0, k]
-        marks.held[mark, 1, k] = work.held[1, k]
-    return mark + 1
+        snapshots.z[number, 0, i] = before.z[i]
+        snapshots.z[number, 1, i] = now.z[i]
+    for k in range(snapshots.step_gaps.shape[2]):
+        snapshots.step_gaps[number, 0, k] = work.step_gaps[0, k]
+        snapshots.step_gaps[number, 1, k] = work.step_gaps[1, k]
+    return number + 1

@@ -38,8 +38,9 @@ from rubgen.linalg.harmonic_kernels import recover_all, spread_tip_force
 from rubgen.linalg.lanes_kernels import dot_rows
 from rubgen.linalg.vector_kernels import LANES
 from rubgen.solver.scheme.free_step_kernels import free_step
-from rubgen.solver.scheme.model_kernels import Laws, Model, Scratch, State
+from rubgen.solver.scheme.model_kernels import Laws, Model
 from rubgen.solver.scheme.motion_kernels import Motion, copy_motion, recover, recover_blade
+from rubgen.solver.scheme.state_kernels import Coordinates, Scratch, State
 from rubgen.solver.scheme.support_kernels import push_supports, resist_contacts, yield_to_contacts
 
 OK, CONTACT_UNSOLVED, DIVERGED, ENERGY, FILM_CLOSED = 0, 1, 2, 3, 4
@@ -50,30 +51,31 @@ MARGIN_TRIES = 6
 def previous_gap(
     surface: Surface,
     tips: Tips,
+    worn: FloatArray,
     blade: int,
-    state: State,
+    coordinates: Coordinates,
     opening: float,
     cosine: float,
     sine: float,
     work: ContactWork,
 ) -> float:
     """The gap of a blade at step n - 1: the scheme's own value where it was near, else from the geometry."""
-    held: float = work.held[0, blade]
-    if math.isnan(held):
-        start = state.now.shape[0] - work.rows.shape[1]
-        held = gap_at(surface, tips, blade, state.before, start, opening, cosine, sine, work.ends)
-        work.held[0, blade] = held
-    return held
+    gap: float = work.step_gaps[0, blade]
+    if math.isnan(gap):
+        start = coordinates.now.shape[0] - work.rows.shape[1]
+        gap = gap_at(surface, tips, worn, blade, coordinates.before, start, opening, cosine, sine, work.ends)
+        work.step_gaps[0, blade] = gap
+    return gap
 
 
 @inlined_kernel
-def starting_margin(laws: Laws, held: FloatArray) -> float:
-    """The least margin, widened by restitution times the deepest gap held at step n - 1."""
+def starting_margin(laws: Laws, step_gaps: FloatArray) -> float:
+    """The least margin, widened by restitution times the deepest gap at step n - 1."""
     deepest = 0.0
     if laws.restitution > 0.0:
-        for k in range(held.shape[1]):
-            if held[0, k] < deepest:
-                deepest = held[0, k]
+        for k in range(step_gaps.shape[1]):
+            if step_gaps[0, k] < deepest:
+                deepest = step_gaps[0, k]
     return laws.margin - laws.restitution * deepest
 
 
@@ -98,31 +100,35 @@ def change_contacts(
 
 
 @inlined_kernel
-def solve_contacts(count: int, model: Model, step: int, opening: FloatArray, state: State, work: ContactWork) -> int:
-    """The multipliers of the near blades at q* (in `state.after`), solved together; SOLVED or UNSOLVED."""
+def solve_contacts(
+    count: int, model: Model, step: int, opening: FloatArray, coordinates: Coordinates, state: State
+) -> int:
+    """The multipliers of the near blades at q* (in `coordinates.after`), solved together; SOLVED or UNSOLVED."""
     surface, tips, laws, angles = model.surface, model.tips, model.laws, model.angles
-    back = step - 1 if step > 0 else angles.cosine.shape[0] - 1
+    work, back = state.contact, step - 1 if step > 0 else angles.cosine.shape[0] - 1
     for m in range(count):
         k = work.blade[m]
         build_rows(
-            surface, tips, m, state.after, state.change, laws.speed, laws.friction,
+            surface, tips, m, coordinates.after, coordinates.change, laws.speed, laws.friction,
             angles.cosine[step + 1], angles.sine[step + 1], work,
         )  # fmt: skip
         build_casing_response(m, model.casing_compliance, work)
         work.b[m] = work.gap[k]
         if laws.restitution > 0.0:
-            held = previous_gap(surface, tips, k, state, opening[step], angles.cosine[back], angles.sine[back], work)
-            work.b[m] += laws.restitution * held
+            work.b[m] += laws.restitution * previous_gap(
+                surface, tips, state.wear.depth, k, coordinates, opening[step], angles.cosine[back],
+                angles.sine[back], work,
+            )  # fmt: skip
     build_compliance(count, model.tip_compliance, work)
     if model.support.active:
-        yield_to_contacts(count, model.support, work)
+        yield_to_contacts(count, model.support, state.support, work)
     return solve_lcp(work.W, work.b, count, work.lam, work.square, work.tableau, work.basis)
 
 
 @inlined_kernel
-def apply_contacts(count: int, model: Model, after: Motion, work: ContactWork, scratch: Scratch) -> None:
+def apply_contacts(count: int, model: Model, after: Motion, state: State) -> None:
     """Q += A^-1 B lam."""
-    force, harmonics = scratch.z_force, model.harmonics
+    work, force, harmonics = state.contact, state.scratch.z_force, model.harmonics
     start = harmonics.rest.shape[0] - work.rows.shape[1]
     force[:] = 0.0
     for m in range(count):
@@ -132,9 +138,9 @@ def apply_contacts(count: int, model: Model, after: Motion, work: ContactWork, s
             for j in range(work.rows.shape[1]):
                 force[harmonics.rest[start + j]] += lam * work.full_casing[m, j]
     if model.support.active:
-        resist_contacts(model.support, force)
+        resist_contacts(model.support, state.support, force)
     multiply(Product(model.scheme.lines, model.scheme.inverse), force, after.z)
-    recover(harmonics, after, scratch.share)
+    recover(harmonics, after, state.scratch.share)
 
 
 @inlined_kernel
@@ -178,8 +184,7 @@ def contact_step(
     now: Motion,
     after: Motion,
     reach: float,
-    work: ContactWork,
-    scratch: Scratch,
+    state: State,
 ) -> tuple[int, int]:
     """Turn q* in `after` into q_n+1; OK or CONTACT_UNSOLVED, and the number of contacts that were solved.
 
@@ -187,34 +192,35 @@ def contact_step(
     bounded; where it exceeds the margin, the margin is widened and the step solved again, so no blade can be missed.
     `reach` is the casing's in q*.
     """
+    work, scratch = state.contact, state.scratch
     n_blades = work.gap.shape[0]
     start = after.q.shape[0] - work.rows.shape[1]
     surface, laws, angles = model.surface, model.laws, model.angles
-    state = State(before.q, now.q, after.q, scratch.change)
+    coordinates = Coordinates(before.q, now.q, after.q, scratch.change)
     new, inside = opening[step + 2], step + 1
     limits = deformation_bounds(surface, after.q[start:], laws.spread)
-    margin = starting_margin(laws, work.held)
+    margin = starting_margin(laws, work.step_gaps)
     for _ in range(MARGIN_TRIES):
         apart = bound_clearances(model, inside, new, after, margin, reach, limits, work)
         if apart and not laws.lasting:
             for k in range(n_blades):
-                work.held[2, k] = math.nan
+                work.step_gaps[2, k] = math.nan
             return OK, 0
         count, penetrates = find_near(
-            surface, model.tips, after.q, after.tips, start, new, angles.cosine[inside], angles.sine[inside], margin,
-            limits, work,
+            surface, model.tips, state.wear.depth, after.q, after.tips, start, new, angles.cosine[inside],
+            angles.sine[inside], margin, limits, work,
         )  # fmt: skip
         for k in range(n_blades):
-            work.held[2, k] = work.gap[k]
+            work.step_gaps[2, k] = work.gap[k]
         if count == 0 or not (penetrates or laws.restitution > 0.0):
             return OK, 0
         recover_contacts(count, model, before, work)
         recover_contacts(count, model, after, work)
         change_contacts(count, before, after, 0.5 / laws.dt, work, scratch.change)
-        if solve_contacts(count, model, step, opening, state, work) != SOLVED:
+        if solve_contacts(count, model, step, opening, coordinates, state) != SOLVED:
             return CONTACT_UNSOLVED, count
         copy_motion(after, scratch.free)
-        apply_contacts(count, model, after, work, scratch)
+        apply_contacts(count, model, after, state)
         approach = largest_approach(surface, after.tips, scratch.free.tips, after.q, scratch.free.q, start)
         if approach <= margin or count == n_blades:
             break
@@ -226,7 +232,7 @@ def contact_step(
         gap = work.gap[work.blade[m]]
         for column in range(count):
             gap += work.W[m, column] * work.lam[column]
-        work.held[2, work.blade[m]] = gap
+        work.step_gaps[2, work.blade[m]] = gap
     return OK, count
 
 
@@ -261,26 +267,25 @@ def advance(
     before: Motion,
     now: Motion,
     after: Motion,
-    work: ContactWork,
-    scratch: Scratch,
+    state: State,
 ) -> tuple[int, int]:
     """One step: q_n+1 into `after`; OK or why it failed, and the number of contacts that were solved."""
     free_step(model.scheme, before.z, now.z, after.z)
     if model.support.active and not push_supports(
         model.support, model.laws.speed, model.laws.dt,
-        model.angles.cosine[step], model.angles.sine[step], before.z, now.z, after.z,
+        model.angles.cosine[step], model.angles.sine[step], before.z, now.z, after.z, state.support,
     ):  # fmt: skip
         return FILM_CLOSED, 0
-    recover(model.harmonics, after, scratch.share)
-    reach = casing_reach(model.surface, after.q[after.q.shape[0] - work.rows.shape[1] :])
-    if leaves_range(model, after, reach, scratch):
+    recover(model.harmonics, after, state.scratch.share)
+    reach = casing_reach(model.surface, after.q[after.q.shape[0] - state.contact.rows.shape[1] :])
+    if leaves_range(model, after, reach, state.scratch):
         return DIVERGED, 0
-    return contact_step(model, step, opening, before, now, after, reach, work, scratch)
+    return contact_step(model, step, opening, before, now, after, reach, state)
 
 
 @inlined_kernel
-def shift_held(work: ContactWork) -> None:
-    """The gaps held at steps n and n + 1 become those at n - 1 and n."""
-    for k in range(work.held.shape[1]):
-        work.held[0, k] = work.held[1, k]
-        work.held[1, k] = work.held[2, k]
+def shift_gaps(work: ContactWork) -> None:
+    """The gaps at steps n and n + 1 become those at n - 1 and n of the next step."""
+    for k in range(work.step_gaps.shape[1]):
+        work.step_gaps[0, k] = work.step_gaps[1, k]
+        work.step_gaps[1, k] = work.step_gaps[2, k]

@@ -21,36 +21,51 @@ from rubgen.linalg.lanes_kernels import dot_rows
 from rubgen.linalg.vector_kernels import LANES
 
 ANISOTROPY, FILM, GRAVITY, FILM_LOSS = range(4)
+SUPPORT_WORKS = 4
 
 
 class Support(NamedTuple):
-    """The forces' constants, what A^-1 makes of them, and what a step keeps.
-
-    `film` C_0 in N s/m and its `clearance` in m. `centre` (2,) the numbers of z of O_d; `places` (m,) those which a
-    force there or the weight can move, where stand `columns` (m, 4), A^-1 times unit forces on O_d x, y and minus the
-    weight's sin and cos part, and `weight` (m, 2) itself. `compliance` (2, 2) is Y; `rows` (2, numbers of z) E^T A^-1;
-    `tip_columns`, `tip_rows` (3 blades, 2) A^-1 E at the tips and its like from there.
-    Kept: `drag` (2, 2) and `yielding` (2, 2): D and (1 + D Y / 2 dt)^-1 D / 2 dt; `force` (2, 2): f without and with
-    contact; `works` (4,).
-    """
+    """What does not change of the forces: their constants, and what A^-1 makes of them."""
 
     active: bool
+    """False where a system has none of these forces; then nothing else is read."""
     stiffness: float
+    """k_a, N/m."""
     damping: float
+    """c_a, N s/m."""
     film: float
+    """C_0 of the squeeze film, N s/m; 0 without one."""
     clearance: float
+    """Clearance of the squeeze film, m."""
     centre: IntArray
+    """Numbers of z of O_d x, y (2,)."""
     places: IntArray
+    """Numbers of z (m,) that a force on O_d or the weight can move."""
     columns: FloatArray
+    """A^-1 at `places` (m, 4) times unit forces on O_d x, y, and times minus the weight's sin and cos part."""
     weight: FloatArray
+    """The weight's sin and cos part at `places` (m, 2), N."""
     compliance: FloatArray
+    """Y = E^T A^-1 E (2, 2), m/N."""
     rows: FloatArray
+    """E^T A^-1 (2, numbers of z)."""
     tip_columns: FloatArray
+    """A^-1 E at the tip coordinates (3 blades, 2)."""
     tip_rows: FloatArray
+    """The transpose of E^T A^-1 there (3 blades, 2)."""
+
+
+class SupportState(NamedTuple):
+    """What the forces are in a step, and their works so far."""
+
     drag: FloatArray
+    """D (2, 2), N s/m."""
     yielding: FloatArray
+    """(1 + D Y / 2 dt)^-1 D / 2 dt (2, 2)."""
     force: FloatArray
+    """f without contact and with it (2, 2), N."""
     works: FloatArray
+    """Works so far (4,), J, at ANISOTROPY, FILM, GRAVITY, FILM_LOSS."""
 
 
 @inlined_kernel
@@ -61,9 +76,11 @@ def turned(cosine: float, sine: float, x: float, y: float) -> tuple[float, float
 
 
 @inlined_kernel
-def build_drag(support: Support, cosine: float, sine: float, x: float, y: float, dt: float) -> None:
-    """`drag` D at u = (x, y) and `yielding` (1 + D Y / 2 dt)^-1 D / 2 dt."""
-    D, Y = support.drag, support.compliance
+def build_drag(
+    support: Support, cosine: float, sine: float, x: float, y: float, dt: float, state: SupportState
+) -> None:
+    """`state.drag` D at u = (x, y) and `yielding` (1 + D Y / 2 dt)^-1 D / 2 dt."""
+    D, Y = state.drag, support.compliance
     for i in range(2):
         D[0, i], D[1, i] = turned(cosine, sine, 1.0 - i, float(i))
         D[0, i] *= support.damping
@@ -82,8 +99,8 @@ def build_drag(support: Support, cosine: float, sine: float, x: float, y: float,
     d = 1.0 + (D[1, 0] * Y[0, 1] + D[1, 1] * Y[1, 1]) / (2 * dt)
     scale = 1.0 / (2 * dt * (a * d - b * c))
     for i in range(2):
-        support.yielding[0, i] = scale * (d * D[0, i] - b * D[1, i])
-        support.yielding[1, i] = scale * (a * D[1, i] - c * D[0, i])
+        state.yielding[0, i] = scale * (d * D[0, i] - b * D[1, i])
+        state.yielding[1, i] = scale * (a * D[1, i] - c * D[0, i])
 
 
 @inlined_kernel
@@ -96,21 +113,22 @@ def push_supports(
     before: FloatArray,
     now: FloatArray,
     after: FloatArray,
+    state: SupportState,
 ) -> bool:
     """Add what f and gravity at step n do to q* without contact, all in z; False where O_d is beyond the film."""
     i, j = support.centre[0], support.centre[1]
     x, y = now[i], now[j]
     if support.film > 0.0 and not x * x + y * y < support.clearance * support.clearance:
         return False
-    build_drag(support, cosine, sine, x, y, dt)
-    force, weight = support.force, support.columns
+    build_drag(support, cosine, sine, x, y, dt, state)
+    force, weight = state.force, support.columns
     for a in range(support.places.shape[0]):
         after[support.places[a]] += sine * weight[a, 2] + cosine * weight[a, 3]
     # f = (1 + D Y / 2 dt)^-1 [-k_a Q u_n - D (v* + Omega e_z x u_n)]: the bracket's spring counts as if D gave it.
     spring_x, spring_y = turned(cosine, sine, -support.stiffness * x, -support.stiffness * y)
     way_x = after[i] - before[i] - 2 * dt * speed * y
     way_y = after[j] - before[j] + 2 * dt * speed * x
-    Y, S = support.compliance, support.yielding
+    Y, S = support.compliance, state.yielding
     way_x += Y[0, 0] * spring_x + Y[0, 1] * spring_y
     way_y += Y[1, 0] * spring_x + Y[1, 1] * spring_y
     force[0, 0] = spring_x - S[0, 0] * way_x - S[0, 1] * way_y
@@ -122,9 +140,9 @@ def push_supports(
 
 
 @inlined_kernel
-def yield_to_contacts(count: int, support: Support, work: ContactWork) -> None:
+def yield_to_contacts(count: int, support: Support, state: SupportState, work: ContactWork) -> None:
     """W becomes that of A + E D E^T / 2 dt: less by (B_n^T A^-1 E) (1 + D Y / 2 dt)^-1 D / 2 dt (E^T A^-1 B)."""
-    S = support.yielding
+    S = state.yielding
     for column in range(count):
         other, x, y = 3 * work.blade[column], 0.0, 0.0
         for b in range(3):
@@ -140,22 +158,29 @@ def yield_to_contacts(count: int, support: Support, work: ContactWork) -> None:
 
 
 @inlined_kernel
-def resist_contacts(support: Support, force: FloatArray) -> None:
-    """Add to a contact force in z the change of f that its jump of velocity brings."""
+def resist_contacts(support: Support, state: SupportState, force: FloatArray) -> None:
+    """Add to a contact `force` in z the change of f that its jump of velocity brings."""
     x = dot_rows(support.rows[0], force, force.shape[0] // LANES)
     y = dot_rows(support.rows[1], force, force.shape[0] // LANES)
-    S = support.yielding
+    S = state.yielding
     for i in range(2):
         change = -S[i, 0] * x - S[i, 1] * y
         force[support.centre[i]] += change
-        support.force[1, i] = support.force[0, i] + change
+        state.force[1, i] = state.force[0, i] + change
 
 
 @inlined_kernel
-def book_supports(
-    support: Support, speed: float, dt: float, cosine: float, sine: float, now: FloatArray, change: FloatArray
+def add_support_works(
+    support: Support,
+    speed: float,
+    dt: float,
+    cosine: float,
+    sine: float,
+    now: FloatArray,
+    change: FloatArray,
+    state: SupportState,
 ) -> float:
-    """Book the works of one step, `change` d in z as `now`; gives the sum of their absolute values.
+    """Add the works of one step to `state.works`; `change` is d, in z as `now`. Returns the sum of their sizes.
 
     Uneven springs and dampers, the film, and gravity, each force on d; apart the film's loss, on dt v_abs, <= 0.
     """
@@ -168,15 +193,15 @@ def book_supports(
         gravity -= weight * change[support.places[a]]
     k, c = support.stiffness, support.damping / dt
     uneven_x, uneven_y = turned(cosine, sine, -k * x - c * way_x, -k * y - c * way_y)
-    film_x, film_y = support.force[1, 0] - uneven_x, support.force[1, 1] - uneven_y
+    film_x, film_y = state.force[1, 0] - uneven_x, state.force[1, 1] - uneven_y
     uneven, film = uneven_x * dx + uneven_y * dy, 0.0
     if support.film > 0.0:
         film = film_x * dx + film_y * dy
-        support.works[FILM_LOSS] += film_x * way_x + film_y * way_y
+        state.works[FILM_LOSS] += film_x * way_x + film_y * way_y
     else:
-        uneven = support.force[1, 0] * dx + support.force[1, 1] * dy
-    support.works[ANISOTROPY] += uneven
-    support.works[FILM] += film
-    support.works[GRAVITY] += gravity
+        uneven = state.force[1, 0] * dx + state.force[1, 1] * dy
+    state.works[ANISOTROPY] += uneven
+    state.works[FILM] += film
+    state.works[GRAVITY] += gravity
     total: float = abs(uneven) + abs(film) + abs(gravity)
     return total

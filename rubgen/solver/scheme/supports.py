@@ -59,8 +59,4 @@ def _support(
         centre=none if centre is None else centre,
         places=none if places is None else places,
         **given,
-        drag=np.zeros((2, 2)),
-        yielding=np.zeros((2, 2)),
-        force=np.zeros((2, 2)),
-        works=np.zeros(4),
     )

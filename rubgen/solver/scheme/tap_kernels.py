@@ -13,9 +13,12 @@ from rubgen.contact.geometry_kernels import Tips
 from rubgen.contact.liner_kernels import worn_depth
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.block_kernels import Product
+from rubgen.linalg.harmonic_kernels import Harmonics
 from rubgen.linalg.lanes_kernels import add_lines
-from rubgen.solver.scheme.model_kernels import Model, State
+from rubgen.solver.scheme.model_kernels import Model
 from rubgen.solver.scheme.motion_kernels import Motion, recover_blade
+from rubgen.solver.scheme.state_kernels import Coordinates, State
+from rubgen.solver.scheme.support_kernels import SupportState
 
 X, Y, FORCE_X, FORCE_Y, CONTACT_FORCE, CONTACT_TORQUE, SPEED_X, SPEED_Y = range(8)
 
@@ -106,17 +109,17 @@ def casing_radius_on_ray(rays: Rays, sums: FloatArray, opening: float, ray: int)
 
 
 @inlined_kernel
-def read_shaft(model: Model, taps: Taps, state: State, step: int) -> None:
+def read_shaft(model: Model, taps: Taps, coordinates: Coordinates, support: SupportState, step: int) -> None:
     """Into `taps.signals`: displacement and velocity of O_d and force on its support in the inertial frame."""
     speed, dt = model.laws.speed, model.laws.dt
     cosine, sine = model.angles.cosine[step], model.angles.sine[step]
-    x, y = state.now[taps.centre], state.now[taps.centre + 1]
-    vx = (state.after[taps.centre] - state.before[taps.centre]) / (2 * dt) - speed * y
-    vy = (state.after[taps.centre + 1] - state.before[taps.centre + 1]) / (2 * dt) + speed * x
+    x, y = coordinates.now[taps.centre], coordinates.now[taps.centre + 1]
+    vx = (coordinates.after[taps.centre] - coordinates.before[taps.centre]) / (2 * dt) - speed * y
+    vy = (coordinates.after[taps.centre + 1] - coordinates.before[taps.centre + 1]) / (2 * dt) + speed * x
     fx = taps.lateral_stiffness * x + taps.lateral_damping * vx
     fy = taps.lateral_stiffness * y + taps.lateral_damping * vy
     if model.support.active:
-        fx, fy = fx - model.support.force[1, 0], fy - model.support.force[1, 1]
+        fx, fy = fx - support.force[1, 0], fy - support.force[1, 1]
     taps.signals[X] = cosine * x - sine * y
     taps.signals[Y] = sine * x + cosine * y
     taps.signals[SPEED_X] = cosine * vx - sine * vy
@@ -126,15 +129,15 @@ def read_shaft(model: Model, taps: Taps, state: State, step: int) -> None:
 
 
 @inlined_kernel
-def sum_functionals(taps: Taps, state: State, z: FloatArray, z_change: FloatArray, dt: float) -> None:
+def sum_functionals(taps: Taps, coordinates: Coordinates, z: FloatArray, z_change: FloatArray, dt: float) -> None:
     """All linear functionals into `taps.sums`; accelerations are central differences."""
-    start = state.now.shape[0] - taps.bend.shape[0]
-    for j in range(start, state.now.shape[0]):
-        taps.bend[j - start] = (state.after[j] - 2 * state.now[j] + state.before[j]) / (dt * dt)
+    start = coordinates.now.shape[0] - taps.bend.shape[0]
+    for j in range(start, coordinates.now.shape[0]):
+        taps.bend[j - start] = (coordinates.after[j] - 2 * coordinates.now[j] + coordinates.before[j]) / (dt * dt)
     taps.sums[:] = 0.0
     add_lines(taps.shaft.lines, taps.shaft.entries, taps.signals, taps.sums)
     add_lines(taps.acceleration.lines, taps.acceleration.entries, taps.bend, taps.sums)
-    add_lines(taps.displacement.lines, taps.displacement.entries, state.now[start:], taps.sums)
+    add_lines(taps.displacement.lines, taps.displacement.entries, coordinates.now[start:], taps.sums)
     add_lines(taps.position.lines, taps.position.entries, z, taps.sums)
     add_lines(taps.change.lines, taps.change.entries, z_change, taps.sums)
 
@@ -143,30 +146,30 @@ def sum_functionals(taps: Taps, state: State, z: FloatArray, z_change: FloatArra
 def record_taps(
     model: Model,
     taps: Taps,
+    coordinates: Coordinates,
     state: State,
     now: Motion,
-    z_change: FloatArray,
     step: int,
     opening: float,
     force: float,
     torque: float,
     out: FloatArray,
 ) -> None:
-    """All taps at step n, where q is `state.now`, velocity and acceleration are central differences.
+    """All taps at step n, where q is `coordinates.now`, velocity and acceleration are central differences.
 
     `force` and `torque` are those of the contact at that time.
     """
-    read_shaft(model, taps, state, step)
+    read_shaft(model, taps, coordinates, state.support, step)
     taps.signals[CONTACT_FORCE], taps.signals[CONTACT_TORQUE] = force, torque
-    sum_functionals(taps, state, now.z, z_change, model.laws.dt)
+    sum_functionals(taps, coordinates, now.z, state.scratch.z_change, model.laws.dt)
     for i in range(taps.linear.shape[0]):
         out[taps.linear[i, 0], step] = taps.sums[taps.linear[i, 1]]
     rays = taps.rays
     for ray in range(rays.output.shape[0]):
         tip = tip_radius_on_ray(model.tips, rays, now.tips, step, ray)
         wide = opening
-        if model.surface.liner.depth.shape[0] > 0:
-            wide += worn_depth(model.surface.liner.depth, rays.angle[ray])[0]
+        if model.surface.liner.bins > 0:
+            wide += worn_depth(state.wear.depth, rays.angle[ray])[0]
         out[rays.output[ray], step] = casing_radius_on_ray(rays, taps.sums, wide, ray) - tip
 
 
@@ -179,33 +182,46 @@ def chord_displacement(tips: Tips, timing: Timing, blade: int, q: FloatArray) ->
 
 
 @inlined_kernel
-def angle_beyond(model: Model, timing: Timing, probe: int, blade: int, step: int, more: float) -> float:
+def angle_beyond(
+    tips: Tips, theta: FloatArray, timing: Timing, probe: int, blade: int, step: int, more: float
+) -> float:
     """How far a blade that stands `more` rad before its place on the disk is beyond a probe, rad in [-pi, pi]."""
-    angle = model.angles.theta[step] + model.tips.angle[blade] - timing.angle[probe] + more
+    angle = theta[step] + tips.angle[blade] - timing.angle[probe] + more
     turned: float = angle - 2 * math.pi * math.floor(angle / (2 * math.pi) + 0.5)
     return turned
 
 
 @inlined_kernel
-def is_near(model: Model, timing: Timing, probe: int, blade: int, step: int, displacement: FloatArray) -> bool:
+def is_near(
+    tips: Tips, theta: FloatArray, timing: Timing, probe: int, blade: int, step: int, displacement: FloatArray
+) -> bool:
     """Whether a blade may pass the probe in this step, from its tangential `displacement` (2, any) alone."""
-    along = model.tips.static[1, blade] + displacement[1, blade] + timing.chord_slope * timing.axial[probe]
-    near: bool = abs(angle_beyond(model, timing, probe, blade, step, along / model.tips.radius)) < timing.reach
+    along = tips.static[1, blade] + displacement[1, blade] + timing.chord_slope * timing.axial[probe]
+    near: bool = abs(angle_beyond(tips, theta, timing, probe, blade, step, along / tips.radius)) < timing.reach
     return near
 
 
 @inlined_kernel
-def beyond_probe(model: Model, timing: Timing, probe: int, blade: int, step: int, q: FloatArray) -> float:
+def beyond_probe(
+    tips: Tips, theta: FloatArray, timing: Timing, probe: int, blade: int, step: int, q: FloatArray
+) -> float:
     """How far a blade's chord at the probe's axial place is beyond the probe, rad in [-pi, pi]."""
-    along = chord_displacement(model.tips, timing, blade, q) + timing.chord_slope * timing.axial[probe]
-    radial = model.tips.radius + model.tips.static[0, blade] + q[3 * blade]
-    beyond: float = angle_beyond(model, timing, probe, blade, step, math.atan2(along, radial))
+    along = chord_displacement(tips, timing, blade, q) + timing.chord_slope * timing.axial[probe]
+    radial = tips.radius + tips.static[0, blade] + q[3 * blade]
+    beyond: float = angle_beyond(tips, theta, timing, probe, blade, step, math.atan2(along, radial))
     return beyond
 
 
 @allocation_free_kernel
 def record_arrivals(
-    model: Model, timing: Timing, motions: tuple[Motion, Motion, Motion], step: int, clock: int, count: int
+    harmonics: Harmonics,
+    tips: Tips,
+    theta: FloatArray,
+    timing: Timing,
+    motions: tuple[Motion, Motion, Motion],
+    step: int,
+    clock: int,
+    count: int,
 ) -> int:
     """Blades that pass a probe between steps n and n + 1, the motions at n - 1, n, n + 1; the number in `arrivals`.
 
@@ -218,20 +234,20 @@ def record_arrivals(
             blade = timing.blade[step, probe, side]
             if side == 1 and blade == timing.blade[step, probe, 0]:
                 continue
-            if not is_near(model, timing, probe, blade, step, now.tips):
+            if not is_near(tips, theta, timing, probe, blade, step, now.tips):
                 continue
-            recover_blade(model.harmonics, now, blade)
-            recover_blade(model.harmonics, after, blade)
-            first = beyond_probe(model, timing, probe, blade, step, now.q)
-            second = beyond_probe(model, timing, probe, blade, step + 1, after.q)
+            recover_blade(harmonics, now, blade)
+            recover_blade(harmonics, after, blade)
+            first = beyond_probe(tips, theta, timing, probe, blade, step, now.q)
+            second = beyond_probe(tips, theta, timing, probe, blade, step + 1, after.q)
             if first < 0.0 <= second and second - first < math.pi:
-                recover_blade(model.harmonics, before, blade)
-                ago = chord_displacement(model.tips, timing, blade, before.q)
-                there = chord_displacement(model.tips, timing, blade, now.q)
-                then = chord_displacement(model.tips, timing, blade, after.q)
+                recover_blade(harmonics, before, blade)
+                ago = chord_displacement(tips, timing, blade, before.q)
+                there = chord_displacement(tips, timing, blade, now.q)
+                then = chord_displacement(tips, timing, blade, after.q)
                 bend = 0.5 * (then - 2 * there + ago)
                 share = first / (first - second)
-                share += share * (1 - share) * bend / model.tips.radius / (second - first)
+                share += share * (1 - share) * bend / tips.radius / (second - first)
                 row = timing.arrivals[count]
                 row[0], row[1], row[2] = probe, blade, clock + step + share
                 row[3] = there + share * (then - there) - share * (1 - share) * bend

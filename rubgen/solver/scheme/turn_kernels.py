@@ -1,4 +1,4 @@
-"""One turn of the blisk in one call: steps, energy book, taps, touches."""
+"""One turn of the blisk in one call: steps, works, taps, touches."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.clearance_kernels import casing_reach
-from rubgen.contact.contact_kernels import ContactWork
-from rubgen.contact.wear_kernels import wear
+from rubgen.contact.wear_kernels import wear_where_lined
 from rubgen.jit import allocation_free_kernel, inlined_kernel
-from rubgen.linalg.harmonic_kernels import recover_all
-from rubgen.solver.scheme.energy_kernels import ABSOLUTE, Book, book_contact, book_linear
-from rubgen.solver.scheme.model_kernels import Model, Scratch, State
+from rubgen.linalg.harmonic_kernels import Harmonics, recover_all
+from rubgen.solver.scheme.energy_kernels import ABSOLUTE, add_contact_works, add_linear_works
+from rubgen.solver.scheme.model_kernels import Model
 from rubgen.solver.scheme.motion_kernels import Motion
-from rubgen.solver.scheme.snapshot_kernels import Marks, keep_mark
-from rubgen.solver.scheme.step_kernels import OK, advance, change_contacts, recover_contacts, shift_held
-from rubgen.solver.scheme.support_kernels import book_supports
+from rubgen.solver.scheme.snapshot_kernels import Snapshots, keep_snapshot
+from rubgen.solver.scheme.state_kernels import Coordinates, Scratch, State
+from rubgen.solver.scheme.step_kernels import OK, advance, change_contacts, recover_contacts, shift_gaps
+from rubgen.solver.scheme.support_kernels import add_support_works
 from rubgen.solver.scheme.tap_kernels import SPEED_X, SPEED_Y, Taps, X, Y, record_arrivals, record_taps
 
 BLADE, START, STEPS, COSINE, SINE, IMPULSE, FRICTION_LOSS, NORMAL_LOSS = range(8)
@@ -85,25 +85,33 @@ def close_touches(touches: Touches, now: int, ended: int) -> int:
 
 
 @allocation_free_kernel
-def record_section(model: Model, before: Motion, now: Motion, after: Motion, scratch: Scratch, out: FloatArray) -> None:
+def record_section(
+    harmonics: Harmonics,
+    tau: float,
+    dt: float,
+    before: Motion,
+    now: Motion,
+    after: Motion,
+    scratch: Scratch,
+    section_out: FloatArray,
+) -> None:
     """The q and v (2, n) at the section, by the parabola through steps -1, 0 and 1.
 
     With tau = `Angles.section` in steps: q_0 + tau d + tau^2 / 2 (q_1 - 2 q_0 + q_-1), and v its derivative. The error
     is of third order in dt for q, of second order for v as that of the central difference; tau is 0 at a steady speed.
     """
-    tau = model.angles.section
     if tau == 0.0:
-        recover_all(model.harmonics, now.z, scratch.share, scratch.tips, out[0])
-        recover_all(model.harmonics, scratch.z_change, scratch.share, scratch.tips, out[1])
+        recover_all(harmonics, now.z, scratch.share, scratch.tips, section_out[0])
+        recover_all(harmonics, scratch.z_change, scratch.share, scratch.tips, section_out[1])
     else:
         for i in range(scratch.z_force.shape[0]):
             bend = after.z[i] - 2 * now.z[i] + before.z[i]
             scratch.z_force[i] = now.z[i] + tau * (scratch.z_change[i] + 0.5 * tau * bend)
             scratch.z_change[i] += tau * bend
-        recover_all(model.harmonics, scratch.z_force, scratch.share, scratch.tips, out[0])
-        recover_all(model.harmonics, scratch.z_change, scratch.share, scratch.tips, out[1])
-    for i in range(out.shape[1]):
-        out[1, i] /= model.laws.dt
+        recover_all(harmonics, scratch.z_force, scratch.share, scratch.tips, section_out[0])
+        recover_all(harmonics, scratch.z_change, scratch.share, scratch.tips, section_out[1])
+    for i in range(section_out.shape[1]):
+        section_out[1, i] /= dt
 
 
 @inlined_kernel
@@ -134,21 +142,18 @@ def add_contacts(
     step: int,
     clock: int,
     opening: FloatArray,
+    coordinates: Coordinates,
     state: State,
-    work: ContactWork,
-    book: Book,
     touches: Touches,
     summary: FloatArray,
     ended: int,
 ) -> tuple[float, float, int]:
-    """Book the contacts of one step and add them to their touches; their force, torque, and the ended touches."""
-    force, torque, dt = 0.0, 0.0, model.laws.dt
+    """Add the works of one step's contacts, and the contacts to their touches; force, torque, and the ended touches."""
+    work, force, torque, dt = state.contact, 0.0, 0.0, model.laws.dt
     for m in range(count):
         lam, k = work.lam[m], work.blade[m]
         if lam > 0.0:
-            normal, friction, brake = book_contact(
-                m, model.surface, model.tips, model.laws, model.angles, step, opening, state, work, book
-            )
+            normal, friction, brake = add_contact_works(m, model, step, opening, coordinates, state)
             ended = add_touch(touches, k, clock + step, work.psi[k], lam * dt, friction, normal, ended)
             force, torque = force + lam, torque + brake
     if force > 0.0:
@@ -163,63 +168,64 @@ def run_turn(
     opening: FloatArray,
     clock: int,
     recording: bool,
-    motions: tuple[Motion, Motion, Motion],
-    work: ContactWork,
-    scratch: Scratch,
-    book: Book,
+    state: State,
     taps: Taps,
     touches: Touches,
-    marks: Marks,
+    snapshots: Snapshots,
     result: TurnResult,
 ) -> tuple[int, int, int]:
     """Integrate one turn, or a part of it; a code, the step where it ended, and the number of ended touches.
 
     Its steps are those of `model.angles`. `opening` (steps + 2,) widens the surface at steps -1, 0, ..., steps. `clock`
-    is the number of the first step. `motions` are those at step -1, at step 0 and one to write; they change places with
-    every step. Taps of step n carry the force lam_n that acts at that time; without `recording` there are none, no
-    orbit and no arrivals, and all else is the same. The last of `marks` is the end or later.
+    is the number of the first step. `state.motions` are those at step -1, at step 0 and one to write; they change
+    places with every step. Taps of step n carry the force lam_n that acts at that time; without `recording` there are
+    none, no orbit and no arrivals, and all else is the same. The last of `snapshots` is the end or later.
     """
     laws, steps = model.laws, model.angles.cosine.shape[0] - 2
-    before, now, after = motions
-    ended = arrivals = frame = mark = 0
+    work, scratch = state.contact, state.scratch
+    before, now, after = state.motions
+    ended = arrivals = frame = number = 0
     result.summary[:] = 0.0
     result.orbit[:] = 0.0
     for s in range(steps):
-        if marks.steps[mark] == s:
-            mark = keep_mark(marks, mark, before, now, work)
-        code, count = advance(model, s, opening, before, now, after, work, scratch)
+        if snapshots.steps[number] == s:
+            number = keep_snapshot(snapshots, number, before, now, work)
+        code, count = advance(model, s, opening, before, now, after, state)
         if code != OK:
             return code, s, ended
-        state = State(before.q, now.q, after.q, scratch.change)
+        coordinates = Coordinates(before.q, now.q, after.q, scratch.change)
         for i in range(scratch.z_change.shape[0]):
             scratch.z_change[i] = 0.5 * (after.z[i] - before.z[i])
-        book_linear(book, now.z, scratch.z_change, laws.dt)
+        add_linear_works(model.energy, now.z, scratch.z_change, laws.dt, state.works)
         if model.support.active:
             cosine, sine = model.angles.cosine[s], model.angles.sine[s]
-            book.works[ABSOLUTE] += book_supports(
-                model.support, laws.speed, laws.dt, cosine, sine, now.z, scratch.z_change
+            state.works[ABSOLUTE] += add_support_works(
+                model.support, laws.speed, laws.dt, cosine, sine, now.z, scratch.z_change, state.support
             )
         force, torque = 0.0, 0.0
         if count > 0:
             recover_contacts(count, model, after, work)  # they moved; those before stand since the contact step
             change_contacts(count, before, after, 0.5, work, scratch.change)
             force, torque, ended = add_contacts(
-                count, model, s, clock, opening, state, work, book, touches, result.summary, ended
+                count, model, s, clock, opening, coordinates, state, touches, result.summary, ended
             )
         if recording:
-            record_taps(model, taps, state, now, scratch.z_change, s, opening[s + 1], force, torque, result.taps)
+            record_taps(model, taps, coordinates, state, now, s, opening[s + 1], force, torque, result.taps)
             add_orbit(taps.signals, result.orbit)
             if taps.timing.angle.shape[0] > 0:
-                arrivals = record_arrivals(model, taps.timing, (before, now, after), s, clock, arrivals)
+                arrivals = record_arrivals(
+                    model.harmonics, model.tips, model.angles.theta, taps.timing, (before, now, after), s, clock,
+                    arrivals,
+                )  # fmt: skip
         frame = record_frame(result.frames, frame, s, steps, now.z)
         if s == 0:
-            record_section(model, before, now, after, scratch, result.section)
+            record_section(model.harmonics, model.angles.section, laws.dt, before, now, after, scratch, result.section)
         reach = casing_reach(model.surface, after.q[after.q.shape[0] - taps.bend.shape[0] :])
         result.summary[2] = max(result.summary[2], reach)
         before, now, after = now, after, before
-        wear(count, model.surface.liner, laws.dt, work)
-        shift_held(work)
-    keep_mark(marks, mark, before, now, work)
+        wear_where_lined(count, model.surface.liner, laws.dt, work, state.wear)
+        shift_gaps(work)
+    keep_snapshot(snapshots, number, before, now, work)
     ended = close_touches(touches, clock + steps - 1, ended)
     result.summary[3] = arrivals
     return OK, steps, ended

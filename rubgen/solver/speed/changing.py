@@ -9,6 +9,7 @@ from rubgen.scenario import ContactLaw, Operation
 from rubgen.scenario.rotation import Rotation
 from rubgen.solver.linear.rub_free import rub_free_motion
 from rubgen.solver.linear.stability import STEP_SAFETY, settle_turns, slowest_decay, stable_step, steps_per_turn
+from rubgen.solver.scheme.model import speed_part
 from rubgen.solver.scheme.stepper import Stepper
 from rubgen.solver.speed.driver import ChangingSpin
 from rubgen.solver.speed.interpolation import Following, SystemAt, chebyshev_speeds
@@ -41,7 +42,9 @@ class ChangingSystem:
         push = largest_acceleration(self.rotation)
         pushed = [self.system_at(speed, push) for speed in (self.rotation.slowest, self.rotation.fastest)]
         stepper = Stepper(self.systems[-1], contact, steps, taps=taps, alike=[*self.systems, *pushed])
-        following = Following(lambda *at: stepper.part_of(self.system_at(*at)), self.speeds, push)
+        following = Following(
+            lambda *at: speed_part(self.system_at(*at), stepper.blocks, stepper.dt), self.speeds, push
+        )
         settle = settle_turns(self.start, self.operation)
         spin = ChangingSpin(stepper, following, self.rotation, settle)
         # A turn of the first speed has not a whole number of steps: the balance takes any.

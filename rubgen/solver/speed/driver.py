@@ -20,7 +20,7 @@ SPEED_SHARE = 2e-4
 """Within a part, whose matrices stand still at its middle speed, the speed changes by this share at most."""
 MOST_PARTS = 64
 NEVER = 2**62
-"""A mark at no step of a part."""
+"""A snapshot at no step of a part."""
 
 Opening = Callable[[FloatArray], FloatArray]
 """How far the surface is opened, m, after so many turns from the start."""
@@ -99,7 +99,7 @@ class ChangingSpin:
         self.result, self.touches = stepper.result, list[FloatArray]()
         self.arrivals, self.opening = np.zeros((0, 4)), np.zeros(0)
         self.frames, self.tip_growth = _frames(stepper.result, 0, 0), stepper.system.tip_static
-        stepper.marks = stepper.marks_at([NEVER])
+        stepper.take_snapshots([NEVER])
 
     def begin(self, motion: RubFreeMotion) -> None:
         """Put the stepper into a rub-free motion, without works so far."""
@@ -109,8 +109,8 @@ class ChangingSpin:
         self.stepper.follow(part, float(speed[0]), np.zeros(3), 0.0)
         first = self.first_step(0)
         angles = self.rotation.angle((first + np.array([-1, 0])) * self.stepper.dt)
-        self.stepper.set_state(*(motion.at(angle) for angle in angles.tolist()))
-        self.stepper.book.works[:] = 0.0
+        self.stepper.set_coordinates(*(motion.at(angle) for angle in angles.tolist()))
+        self.stepper.state.works[:] = 0.0
 
     def first_step(self, turn: int) -> int:
         """Number of the step at which a turn begins."""

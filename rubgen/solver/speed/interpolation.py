@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.polynomial import Chebyshev
 
-from rubgen.arrays import FloatArray
+from rubgen.arrays import FloatArray, frozen
 from rubgen.linalg.block_kernels import Product
 from rubgen.linalg.blocks import aligned, padded
 from rubgen.reduction.model import SpinningSystem
@@ -65,6 +65,7 @@ class Following:
         """The part at each speed and acceleration (any number,)."""
         weights = lagrange_weights(self.speeds, speeds)
         rows = aligned(weights @ self.values + (accelerations[:, None] * weights) @ self.slopes)
+        rows.flags.writeable = False
         for row in rows:
             yield _unpacked(self.template, row, self.layout)
 
@@ -78,19 +79,19 @@ Layout = dict[str, tuple[slice, tuple[int, ...]]]
 
 def _arrays(part: SpeedPart) -> dict[str, FloatArray]:
     """All that may change with the speed, by name."""
-    scheme, book = part.scheme, part.book
+    scheme, energy = part.scheme, part.energy
     return {
         "static": part.tips.static,
         "now": scheme.now,
         "before": scheme.before,
         "constant": scheme.constant,
         "inverse": scheme.inverse,
-        "tips": part.compliances[0],
-        "casing": part.compliances[1],
-        "damping": book.damping.entries,
-        "circulatory": book.circulatory.entries,
-        "stiffness": book.K.entries,
-        "force": book.force,
+        "tips": part.tip_compliance,
+        "casing": part.casing_compliance,
+        "damping": energy.damping.entries,
+        "circulatory": energy.circulatory.entries,
+        "stiffness": energy.K.entries,
+        "force": energy.force,
     } | {name: getattr(part.support, name) for name in SUPPORT}
 
 
@@ -115,17 +116,12 @@ def _packed(part: SpeedPart, layout: Layout) -> FloatArray:
 
 def _unpacked(template: SpeedPart, row: FloatArray, layout: Layout) -> SpeedPart:
     new = _arrays(template) | {name: row[place].reshape(shape) for name, (place, shape) in layout.items()}
-    scheme, book = template.scheme, template.book
+    scheme, energy = template.scheme, template.energy
     return SpeedPart(
         template.tips._replace(static=new["static"]),
         Scheme(scheme.lines, new["now"], new["before"], new["constant"], new["inverse"]),
-        (new["tips"], new["casing"]),
-        book._replace(
-            damping=Product(book.damping.lines, new["damping"]),
-            circulatory=Product(book.circulatory.lines, new["circulatory"]),
-            K=Product(book.K.lines, new["stiffness"]),
-            force=new["force"],
-        ),
+        new["tips"],
+        new["casing"],
         template.support._replace(
             columns=new["columns"],
             compliance=new["compliance"],
@@ -133,16 +129,24 @@ def _unpacked(template: SpeedPart, row: FloatArray, layout: Layout) -> SpeedPart
             tip_columns=new["tip_columns"],
             tip_rows=new["tip_rows"],
         ),
+        energy._replace(
+            damping=Product(energy.damping.lines, new["damping"]),
+            circulatory=Product(energy.circulatory.lines, new["circulatory"]),
+            K=Product(energy.K.lines, new["stiffness"]),
+            force=new["force"],
+        ),
     )
 
 
 def _keep_lines(parts: list[SpeedPart]) -> SpeedPart:
     """The first part, its circulatory stiffness without the lines that are zero in all parts."""
-    book = parts[0].book
-    kind, _, first, _, count = book.circulatory.lines.T
+    energy = parts[0].energy
+    kind, _, first, _, count = energy.circulatory.lines.T
     used = count * (kind // 2 + 1)
     kept = [
-        any(part.book.circulatory.entries[f : f + u].any() for part in parts) for f, u in zip(first, used, strict=True)
+        any(part.energy.circulatory.entries[f : f + u].any() for part in parts)
+        for f, u in zip(first, used, strict=True)
     ]
-    lines = np.ascontiguousarray(book.circulatory.lines[np.array(kept, dtype=bool)])
-    return parts[0]._replace(book=book._replace(circulatory=Product(lines, book.circulatory.entries)))
+    lines = np.ascontiguousarray(energy.circulatory.lines[np.array(kept, dtype=bool)])
+    circulatory = Product(lines, energy.circulatory.entries)
+    return frozen(parts[0]._replace(energy=energy._replace(circulatory=circulatory)))

@@ -32,7 +32,7 @@ def rub_free_stepper(
 
 def set_motion(stepper: Stepper, motion: RubFreeMotion, start_angle: float = 0.0) -> None:
     """Put a stepper of equal steps into a rub-free motion, at the angle of its turn's first step in rad."""
-    stepper.set_state(*(motion.at(start_angle + 2 * np.pi * s / stepper.steps) for s in (-1, 0)))
+    stepper.set_coordinates(*(motion.at(start_angle + 2 * np.pi * s / stepper.steps) for s in (-1, 0)))
 
 
 def start_opening(system: SpinningSystem, inset: float = 0.0) -> float:

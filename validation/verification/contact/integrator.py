@@ -43,10 +43,10 @@ def free_motion_error(steps: int) -> float:
     rng = np.random.default_rng(3)
     start = np.concatenate([1e-5 * rng.normal(size=n), 1e-2 * rng.normal(size=n)])
     rest = steady_state(system)
-    stepper.set_state(rest + (la.expm(-A * stepper.dt) @ start)[:n], rest + start[:n])
+    stepper.set_coordinates(rest + (la.expm(-A * stepper.dt) @ start)[:n], rest + start[:n])
     stepper.run_turn(np.full(steps + 2, OPEN))
     exact = (la.expm(A * stepper.dt * steps) @ start)[:n]
-    return float(np.abs(stepper.state.now - rest - exact).max() / np.abs(exact).max())
+    return float(np.abs(stepper.coordinates.now - rest - exact).max() / np.abs(exact).max())
 
 
 def modes_at_speed(system: SpinningSystem) -> tuple[ComplexArray, ComplexArray]:
@@ -65,10 +65,10 @@ def turn_multiplier(system: SpinningSystem, value: complex, vector: ComplexArray
     stepper, rest = rub_free_stepper(system, ContactLaw(), STEPS), steady_state(system)
     shape = 1e-5 * vector / np.abs(vector).max()
     before = (shape * np.exp(-value * stepper.dt)).real
-    stepper.set_state(rest + before, rest + shape.real)
+    stepper.set_coordinates(rest + before, rest + shape.real)
     states = []
     for _ in range(TURNS):
-        states.append(stepper.state.now - rest)
+        states.append(stepper.coordinates.now - rest)
         stepper.run_turn(np.full(STEPS + 2, OPEN))
     z = np.array(states)
     columns = np.column_stack([z[1:-1].ravel(), -z[:-2].ravel()])

@@ -44,11 +44,11 @@ def by_scheme(unbalance: float, side_force: float, steps: int) -> FloatArray:
     system = jeffcott_system(unbalance, side_force)
     stepper = rub_free_stepper(system, ContactLaw(friction=FRICTION), steps, screen=False)
     acceleration = np.linalg.solve(system.M, system.force)
-    stepper.set_state(acceleration * stepper.dt**2 / 2, np.zeros(len(system.M)))
+    stepper.set_coordinates(acceleration * stepper.dt**2 / 2, np.zeros(len(system.M)))
     turns = []
     for _ in range(TURNS):
         stepper.run_turn()
-        rotor, ring = stepper.state.now[:2], stepper.state.now[-2:] / STATOR_MASS**0.5
+        rotor, ring = stepper.coordinates.now[:2], stepper.coordinates.now[-2:] / STATOR_MASS**0.5
         turns.append(np.concatenate([stepper.result.summary[:1], rotor, ring]))
     return np.array(turns)
 

@@ -108,16 +108,16 @@ class _Worn:
 def _worn(steps: int) -> _Worn:
     system = jeffcott_system()
     stepper = rub_free_stepper(system, ContactLaw(friction=FRICTION, liner=LINER), steps, screen=False)
-    opening, liner = start_opening(system), stepper.surface.liner
+    opening, liner, wear = start_opening(system), stepper.model.surface.liner, stepper.state.wear
     for turn in range(SETTLED):
         stepper.run_turn(opening * closing_ramp((turn + np.arange(-1, steps + 1) / steps) / CLOSING))
-    start, work = float(liner.depth.mean()), float(liner.book[WORK])
+    start, work = float(wear.depth.mean()), float(wear.sums[WORK])
     for _ in range(MEASURED):
         stepper.run_turn()
     return _Worn(
         start=start,
-        gained=float(liner.depth.mean()) - start,
-        volume=float(liner.area * liner.depth.sum()),
-        removed=float(liner.book[REMOVED]),
-        work=float(liner.book[WORK]) - work,
+        gained=float(wear.depth.mean()) - start,
+        volume=float(liner.area * wear.depth.sum()),
+        removed=float(wear.sums[REMOVED]),
+        work=float(wear.sums[WORK]) - work,
     )

@@ -99,11 +99,11 @@ def by_scheme(case: Case, clearance: float, steps: int) -> FloatArray:
     stepper = rub_free_stepper(system, ContactLaw(friction=FRICTION), steps, screen=False)
     # At rest in inertial axes at the origin: q = 0 and q' = 0 there, so the first step backward is a dt^2 / 2.
     weight = np.zeros(7) if system.turning is None or system.turning.weight is None else system.turning.weight[:, 1]
-    stepper.set_state(np.linalg.solve(system.M, system.force - weight) * stepper.dt**2 / 2, np.zeros(7))
+    stepper.set_coordinates(np.linalg.solve(system.M, system.force - weight) * stepper.dt**2 / 2, np.zeros(7))
     turns = []
     for _ in range(TURNS):
         stepper.run_turn()
-        q = stepper.state.now
+        q = stepper.coordinates.now
         turns.append(np.concatenate([stepper.result.summary[:1], q[3:5], q[:2], q[5:] / STATOR_MASS**0.5]))
     return np.array(turns)
 

@@ -1,0 +1,172 @@
+"""The constants of a run, and its first state."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubgen.arrays import FloatArray, frozen
+from rubgen.contact.clearance_kernels import LARGEST_SPREAD, NEAREST_SHARE
+from rubgen.contact.contact_kernels import ContactWork
+from rubgen.contact.geometry import blade_tips, casing_surface, unworn, with_zeros
+from rubgen.contact.geometry_kernels import Surface, Tips
+from rubgen.linalg.blocks import Blocks, aligned, padded, share_width, system_harmonics
+from rubgen.reduction.model import SpinningSystem
+from rubgen.scenario import ContactLaw
+from rubgen.solver.scheme.central_difference import compliances, energy_terms, scheme
+from rubgen.solver.scheme.energy_kernels import WORKS
+from rubgen.solver.scheme.model_kernels import Angles, Laws, Model
+from rubgen.solver.scheme.motion_kernels import Motion
+from rubgen.solver.scheme.speed_part import SpeedPart
+from rubgen.solver.scheme.state_kernels import Scratch, State
+from rubgen.solver.scheme.support_kernels import SUPPORT_WORKS, SupportState
+from rubgen.solver.scheme.supports import support_of
+
+CANDIDATE_MARGIN_SHARE = 5e-5
+"""Blades nearer than this share of the tip radius are solved together; a step widens it where forces reach farther."""
+CASING_LIMIT_SHARE = 0.025
+"""A casing node displaced by this share of the tip radius (10 mm at 0.4 m: eight times the preset casing's thickness,
+seven times its largest regular response) is beyond what a linear ring can mean."""
+TIP_LIMIT_SHARE = 0.025
+"""The same for a tip (10 mm): a cantilever of the preset's blades, 150 mm long and 3.9 mm thick at the root, has
+3 E (h/2) w / L^2 = 0.5 GPa there, the yield stress of good steel, and its tip has drawn back by 3 w^2 / (5 L) = 0.4 mm,
+which a linear beam does not have and which is more than the clearance."""
+
+
+def tip_spread(tips: Tips, tip_limit: float) -> float:
+    """How far, in tip radii, a tip is from its place at rest along either axis, as long as no run has diverged."""
+    return (tip_limit + float(np.abs(tips.static[:2]).max(initial=0.0))) / tips.radius
+
+
+def bounds_hold(surface: Surface, spread: float, casing_limit: float) -> bool:
+    """Whether the bounds of `clearance_kernels` hold in every state of a run that has not diverged.
+
+    They take tips within a quarter of their radius of their place, and a surface whose radius is nowhere below 0.9 of
+    its mean, `casing_limit` (m) being its largest displacement. Blades of any machine are far within; the one "tip" of
+    a Jeffcott rotor, which stands on the axis, is not. Tests: tests/solver/test_screening.py.
+    """
+    narrowest = surface.mean_radius - float(np.abs(surface.amplitude).sum()) - surface.inset - casing_limit
+    return spread < LARGEST_SPREAD and narrowest > NEAREST_SHARE * surface.mean_radius
+
+
+def build_model(
+    system: SpinningSystem,
+    contact: ContactLaw,
+    blocks: Blocks,
+    steps: int,
+    *,
+    start_angle: float = 0.0,
+    screen: bool = True,
+) -> Model:
+    """The constants of a run of `steps` equal steps a turn.
+
+    `blocks` are those of the system's matrices, `start_angle` is theta at the beginning of each turn, rad. Without
+    `screen` every blade's gap is evaluated in every step, as always where `bounds_hold` is false.
+    """
+    dt = 2 * np.pi / system.speed / steps
+    surface, tips = casing_surface(system, contact), blade_tips(system)
+    limits = CASING_LIMIT_SHARE * system.tip_radius, TIP_LIMIT_SHARE * system.tip_radius
+    spread = tip_spread(tips, limits[1])
+    laws = Laws(
+        speed=float(system.speed),
+        dt=float(dt),
+        friction=contact.friction,
+        restitution=contact.restitution,
+        margin=CANDIDATE_MARGIN_SHARE * system.tip_radius,
+        casing_limit=limits[0],
+        tip_limit=limits[1],
+        spread=spread,
+        lasting=contact.restitution > 0 or contact.liner is not None,
+        screen=screen and bounds_hold(surface, spread, limits[0]),
+    )
+    theta = start_angle + 2 * np.pi * (np.arange(steps + 1) % steps) / steps  # the last step is the first exactly
+    tip_compliance, casing_compliance = compliances(system, dt)
+    return frozen(
+        Model(
+            surface=surface,
+            tips=tips,
+            laws=laws,
+            angles=angle_tables(system, np.append(theta, theta[-2])),
+            scheme=scheme(system.M, system.C, system.K, system.force, dt, blocks),
+            harmonics=system_harmonics(blocks, system.n_blades),
+            tip_compliance=tip_compliance,
+            casing_compliance=casing_compliance,
+            support=support_of(system, blocks, dt),
+            energy=energy_terms(system, blocks),
+        )
+    )
+
+
+def speed_part(system: SpinningSystem, blocks: Blocks, dt: float) -> SpeedPart:
+    """What of a model follows the speed, of the same system at another speed."""
+    return frozen(
+        SpeedPart(
+            blade_tips(system),
+            scheme(system.M, system.C, system.K, system.force, dt, blocks),
+            *compliances(system, dt),
+            support_of(system, blocks, dt),
+            energy_terms(system, blocks, zeros=True),
+        )
+    )
+
+
+def at_speed(model: Model, part: SpeedPart, speed: float, angles: Angles, *, screen: bool) -> Model:
+    """The model at another speed in rad/s, with tables at the angles of as many steps as there are to take."""
+    spread = tip_spread(part.tips, model.laws.tip_limit)
+    screen = screen and bounds_hold(model.surface, spread, model.laws.casing_limit)
+    laws = model.laws._replace(speed=speed, spread=spread, screen=screen)
+    return model._replace(laws=laws, angles=angles, **part._asdict())
+
+
+def angle_tables(system: SpinningSystem, theta: FloatArray, section: float = 0.0) -> Angles:
+    """Tables at the angles `theta` (steps + 2,) of steps 0, ..., steps and -1; `section` as in `Angles`."""
+    orders = np.multiply.outer(theta, system.surface.order) - system.surface.order * system.surface.phase
+    return frozen(Angles(theta, np.cos(theta), np.sin(theta), np.cos(orders), np.sin(orders), section))
+
+
+def new_state(model: Model) -> State:
+    """A state at rest, undeformed and unworn, without works so far."""
+    return State(
+        motions=(new_motion(model), new_motion(model), new_motion(model)),
+        contact=_contact_work(len(model.tip_compliance), len(model.casing_compliance)),
+        support=SupportState(np.zeros((2, 2)), np.zeros((2, 2)), np.zeros((2, 2)), np.zeros(SUPPORT_WORKS)),
+        wear=unworn(model.surface.liner),
+        works=np.zeros(WORKS),
+        scratch=_scratch(model),
+    )
+
+
+def turned(state: State, steps: int) -> State:
+    """The state after so many steps, each of which has let the motions change places."""
+    first = steps % 3
+    order = state.motions[first:] + state.motions[:first]
+    return state._replace(motions=(order[0], order[1], order[2]))
+
+
+def new_motion(model: Model) -> Motion:
+    """A motion of zeros."""
+    (blades, width), numbers = model.harmonics.basis.shape, model.scheme.constant.size
+    n = 3 * blades + model.harmonics.rest.size
+    return Motion(aligned(np.zeros(numbers)), aligned(np.zeros((2, width))), aligned(np.zeros(n)))
+
+
+def _scratch(model: Model) -> Scratch:
+    (blades, width), numbers = model.harmonics.basis.shape, model.scheme.constant.size
+    n = 3 * blades + model.harmonics.rest.size
+    return Scratch(
+        new_motion(model), aligned(np.zeros(numbers)), aligned(np.zeros(numbers)),
+        aligned(np.zeros((3, share_width(blades)))), aligned(np.zeros(n)), aligned(np.zeros((3, width))),
+    )  # fmt: skip
+
+
+def _contact_work(tip_coordinates: int, c: int) -> ContactWork:
+    """Arrays of the contact step of a number of tip coordinates and of casing modes."""
+    m = tip_coordinates // 3
+    return ContactWork(
+        casing=with_zeros(np.zeros(c)), bounds=np.full(padded(m), np.inf), psi=np.zeros(m), gap=np.zeros(m),
+        tangent=np.zeros((m, 2)), step_gaps=np.full((3, m), np.nan), blade=np.zeros(m, dtype=np.int64), lam=np.zeros(m),
+        b=np.zeros(m), W=np.zeros((m, m)), normal_tip=np.zeros((m, 3)), full_tip=np.zeros((m, 3)),
+        normal_casing=np.zeros((m, c)), full_casing=np.zeros((m, c)), slip=np.zeros((m, 2)), sliding=np.zeros(m),
+        casing_response=np.zeros((m, c)), ends=np.zeros(8),
+        rows=np.zeros((2, c)), square=np.zeros((m, m)), tableau=np.zeros((m, 2 * m + 2)),
+        basis=np.zeros(m, dtype=np.int64),
+    )  # fmt: skip

@@ -1,0 +1,56 @@
+"""The state of a run, which every step changes, and the room in which a step works."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from rubgen.arrays import FloatArray
+from rubgen.contact.contact_kernels import ContactWork
+from rubgen.contact.liner_kernels import Wear
+from rubgen.solver.scheme.motion_kernels import Motion
+from rubgen.solver.scheme.support_kernels import SupportState
+
+
+class Coordinates(NamedTuple):
+    """q at steps n - 1, n, n + 1, and d or the velocity, each (n,).
+
+    Within a turn, of the tips only those of the blades in contact hold.
+    """
+
+    before: FloatArray
+    now: FloatArray
+    after: FloatArray
+    change: FloatArray
+
+
+class Scratch(NamedTuple):
+    """Arrays that no step reads before it has written them."""
+
+    free: Motion
+    """The free motion q*, to go back to."""
+    z_change: FloatArray
+    """d in z."""
+    z_force: FloatArray
+    """A force in z."""
+    share: FloatArray
+    """Sums over the harmonics of each tip coordinate (3, any)."""
+    change: FloatArray
+    """d or a velocity (n,)."""
+    tips: FloatArray
+    """The three coordinates of all tips (3, width)."""
+
+
+class State(NamedTuple):
+    """All that changes from step to step, and scratch. One model may have several states."""
+
+    motions: tuple[Motion, Motion, Motion]
+    """The motions at steps n - 1 and n, and one to write."""
+    contact: ContactWork
+    """Gaps that steps have left, and the contacts of the last step."""
+    support: SupportState
+    """Forces of uneven supports and of a squeeze film, and their works."""
+    wear: Wear
+    """The liner's worn depth."""
+    works: FloatArray
+    """Works so far (9,), J, at the places of `energy_kernels`."""
+    scratch: Scratch
