@@ -21,6 +21,7 @@ from rubgen.reduction import reduce
 from rubgen.scenario import Scenario
 from rubgen.solver import Response
 from rubgen.solver.integrate import integrate
+from rubgen.solver.wants import Wants
 
 ROUNDS = 5
 RUNS = {
@@ -34,13 +35,15 @@ def run(scenario: Scenario, *, twin: bool) -> Response:
     sensing = scenario.sensing
     model = reduce(scenario.machine, scenario.reduction)
     return integrate(
-        model.at_speed(scenario.operation.speed_rad_per_s),
+        model,
         scenario.operation,
         scenario.contact,
-        tail_seconds=scenario.signal_seconds + margin_seconds(sensing, scenario.signal_seconds),
-        sample_rate_hz=sensing.fastest_hz,
-        taps=sensing.set.taps,
-        twin=twin,
+        Wants(
+            tail_seconds=scenario.signal_seconds + margin_seconds(sensing, scenario.signal_seconds),
+            sample_rate_hz=sensing.fastest_hz,
+            taps=sensing.set.taps,
+            companion=twin,
+        ),
     )
 
 

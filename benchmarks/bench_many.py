@@ -35,6 +35,7 @@ from rubgen.solver import Response, Status
 from rubgen.solver.integrate import integrate
 from rubgen.solver.scheme.free_step_kernels import Scheme
 from rubgen.solver.scheme.stepper import Stepper
+from rubgen.solver.wants import Wants
 from validation.reference_step import ReferenceStepper
 
 RUNS, PROCESSES = 16, 2
@@ -68,15 +69,17 @@ def system_of(scenario: Scenario) -> SpinningSystem:
 
 
 def integrated(scenario: Scenario, system: SpinningSystem) -> Response:
-    """The response of a scenario, as the pipeline integrates it, without a twin."""
+    """The response of a scenario, as the pipeline integrates it, without a companion."""
     sensing, seconds = scenario.sensing, scenario.signal_seconds
     return integrate(
         system,
         scenario.operation,
         scenario.contact,
-        tail_seconds=seconds + margin_seconds(sensing, seconds),
-        sample_rate_hz=sensing.fastest_hz,
-        taps=sensing.set.taps,
+        Wants(
+            tail_seconds=seconds + margin_seconds(sensing, seconds),
+            sample_rate_hz=sensing.fastest_hz,
+            taps=sensing.set.taps,
+        ),
     )
 
 

@@ -20,6 +20,7 @@ from rubgen.scenario import Scenario
 from rubgen.solver import Response, Status
 from rubgen.solver.integrate import integrate
 from rubgen.solver.refusal import no_response
+from rubgen.solver.wants import Wants
 
 if TYPE_CHECKING:
     from rubgen.output import Figure
@@ -89,14 +90,15 @@ def simulate(scenario: Scenario) -> Run:
         model = reduce(scenario.machine, scenario.reduction)
         with _shown_step():
             response = integrate(
-                model.at_speed(operation.speed_rad_per_s),
+                model,
                 operation,
                 scenario.contact,
-                tail_seconds=scenario.signal_seconds + margin_seconds(sensing, scenario.signal_seconds),
-                sample_rate_hz=sensing.fastest_hz,
-                taps=sensing.set.taps,
-                twin=scenario.labelling.lyapunov and operation.profile == "steady",
-                system_at=model.at_speed,
+                Wants(
+                    tail_seconds=scenario.signal_seconds + margin_seconds(sensing, scenario.signal_seconds),
+                    sample_rate_hz=sensing.fastest_hz,
+                    taps=sensing.set.taps,
+                    companion=scenario.labelling.lyapunov and operation.profile == "steady",
+                ),
             )
         if response.status is not Status.OK:
             return Run(scenario=scenario, response=response, recording=None, labels=None)

@@ -68,8 +68,7 @@ def run_up_onset(model: ReducedModel, rate: float) -> Onset:
         duration_s=(END_RPM - START_RPM) / rate,
         settle_turns=SETTLE_TURNS,
     )
-    start = model.at_speed(operation.speed_rad_per_s)
-    response = integrate(start, operation, ContactLaw(), system_at=model.at_speed)
+    response = integrate(model, operation, ContactLaw())
     if response.course is None:
         raise ValueError(f"no run: {response.reason}")
     first = response.events.start_step.min() * response.dt

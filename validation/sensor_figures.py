@@ -28,6 +28,7 @@ from rubgen.sensors.load import load_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
 from rubgen.solver import Response
 from rubgen.solver.integrate import integrate
+from rubgen.solver.wants import Wants
 from rubgen.units import rad_per_s
 from rubgen.viz.colors import BLUE, VERMILION
 from rubgen.viz.figures import save_png
@@ -70,12 +71,14 @@ def response_of(machine: Machine, sensing: Sensing) -> Response:
     """A short chaotic rub of the preset with the taps of these sensors."""
     operation = Operation(speed_rpm=SPEED_RPM, settle_turns=SETTLE_TURNS, record_turns=RECORD_TURNS)
     return integrate(
-        reduce(machine, Reduction()).at_speed(operation.speed_rad_per_s),
+        reduce(machine, Reduction()),
         operation,
         ContactLaw(friction=FRICTION),
-        tail_seconds=SECONDS + margin_seconds(sensing, SECONDS),
-        sample_rate_hz=sensing.fastest_hz,
-        taps=sensing.set.taps,
+        Wants(
+            tail_seconds=SECONDS + margin_seconds(sensing, SECONDS),
+            sample_rate_hz=sensing.fastest_hz,
+            taps=sensing.set.taps,
+        ),
     )
 
 

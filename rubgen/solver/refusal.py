@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from rubgen.errors import UserError
 from rubgen.reduction import reduce
 from rubgen.reduction.model import SpinningSystem
-from rubgen.scenario import Scenario
+from rubgen.scenario import Operation, Scenario
 from rubgen.solver.linear.admissible import check_system
 from rubgen.solver.linear.rub_free import rub_free_motion
 from rubgen.solver.linear.stability import slowest_decay, steps_per_turn
@@ -21,6 +22,8 @@ UNDYING_SHARE = 1e-6
 """A slowest decay below this share of the spin speed is none: a transient would need 700,000 turns to die."""
 MOTION_TOLERANCE = 1e-8
 """The share of force on O_d that may be unbalanced in the motion from which a run starts."""
+Refusal = tuple[Status, str]
+"""Status and reason."""
 NO_ENERGY = EnergyBook(**dict.fromkeys(EnergyBook.__dataclass_fields__, 0.0))
 
 
@@ -58,8 +61,22 @@ def no_response(
     )
 
 
-def film_refusal(system: SpinningSystem, steps: int) -> tuple[Status, str] | None:
-    """Why a squeeze film holds no rub-free motion, if it does not."""
+def refused_response(system: SpinningSystem, operation: Operation, steps: int, refusal: Refusal) -> Response:
+    """The response of a system of which no run of so many steps a turn is made."""
+    return no_response(
+        *refusal,
+        speed=float(system.speed),
+        dt=2 * math.pi / system.speed / steps,
+        steps_per_turn=steps,
+        record_turns=operation.recorded_turns,
+        n_blades=system.n_blades,
+        n_casing=system.n_casing,
+        size=len(system.M),
+    )
+
+
+def film_refusal(system: SpinningSystem, steps: int) -> Refusal | None:
+    """Why a squeeze film holds no rub-free motion at so many steps a turn, if it does not."""
     if system.turning is None or system.turning.film is None:
         return None
     missing = rub_free_motion(system, steps).residual
@@ -71,7 +88,7 @@ def film_refusal(system: SpinningSystem, steps: int) -> tuple[Status, str] | Non
     )
 
 
-def stability(system: SpinningSystem) -> tuple[tuple[Status, str] | None, float]:
+def stability(system: SpinningSystem) -> tuple[Refusal | None, float]:
     """Why a system grows by itself, or nothing ever dies in it, if so; and its slowest decay."""
     decay = slowest_decay(system)
     if decay > UNDYING_SHARE * system.speed:

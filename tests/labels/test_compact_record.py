@@ -10,6 +10,7 @@ from rubgen.labels.to_json import labels_to_json
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver.integrate import integrate
 from rubgen.solver.response import Response
+from rubgen.solver.wants import Wants
 from rubgen.units import rev_per_min
 from validation.verification.rotors.jeffcott import jeffcott_system
 
@@ -20,7 +21,7 @@ Respond = Callable[..., Response]
 def rub() -> Response:
     system = jeffcott_system()
     operation = Operation(speed_rpm=rev_per_min(system.speed), record_turns=64, steps_per_turn=256, settle_turns=60)
-    return integrate(system, operation, ContactLaw(friction=0.1), twin=True)
+    return integrate(system, operation, ContactLaw(friction=0.1), Wants(companion=True))
 
 
 def test_kept_arrays_bring_back_the_labels(respond: Respond, rub: Response) -> None:

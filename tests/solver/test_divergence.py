@@ -31,7 +31,7 @@ def test_rates_are_those_of_exponentials_over_the_last_ten_turns(stepper):
     growth = Growth(stepper)
     for turn in range(25):
         add(growth, 2e-5 * np.exp(0.1 * max(turn - 14, 0)), 1e-6 * np.exp(0.3 * turn))
-    text = growth.told()
+    text = growth.sentence()
     assert text.startswith("growing: rate over the last 10 turns blades +0.3 a turn (+")
     middle = 1e3 * 1e-6 * np.exp(0.3 * 19)
     assert f"({0.3 / (2 * np.pi / 400.0):+.3g} 1/s) about {middle:.3g} mm, casing +0.1 a turn" in text
@@ -41,7 +41,7 @@ def test_a_motion_that_goes_up_and_down_is_no_growth(stepper):
     growth = Growth(stepper)
     for turn in range(15):
         add(growth, 1e-3, 4e-3 * (1 + 0.2 * (-1) ** turn))
-    assert growth.told().startswith(
+    assert growth.sentence().startswith(
         "no steady growth, an excursion of an irregular motion: rate over the last 10 turns"
     )
 
@@ -51,14 +51,14 @@ def test_the_last_turn_counts_as_far_as_it_went(stepper):
     for tip in (1e-3, 2e-3):
         add(growth, 0.0, tip)
     add(growth, 0.0, 9e-3, steps=20)  # the frame of 9 mm stands later in the turn
-    assert f"blades +{np.log(2):.3g} a turn" in growth.told()
+    assert f"blades +{np.log(2):.3g} a turn" in growth.sentence()
 
 
 def test_the_rate_of_a_run_that_diverges_at_once_is_not_made_up(stepper):
     growth = Growth(stepper)
-    assert growth.told() == "too soon to tell a rate of growth"
+    assert growth.sentence() == "too soon to tell a rate of growth"
     add(growth, 1e-3, 1e-3)
-    assert growth.told() == "too soon to tell a rate of growth"
+    assert growth.sentence() == "too soon to tell a rate of growth"
 
 
 def test_amplitudes_that_are_no_numbers_are_left_out():

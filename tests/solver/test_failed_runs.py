@@ -8,15 +8,16 @@ from rubgen.scenario import ContactLaw
 from rubgen.solver import Status
 from rubgen.solver.integrate import Integration, integrate
 from rubgen.solver.scheme.step_kernels import has_diverged
-from rubgen.solver.speed.driver import SteadySpin
+from rubgen.solver.speed.driver import SteadyDriver
 from rubgen.solver.speed.start import closing_ramp, rub_free_stepper
+from rubgen.solver.wants import Wants
 
 
 @pytest.fixture
 def integration(small_system, operation):
     system = small_system(speed=500.0)
-    spin = SteadySpin(rub_free_stepper(system, ContactLaw(friction=0.1), 256), 40)
-    return Integration(spin, system, operation(system, record_turns=5), 100)
+    driver = SteadyDriver(rub_free_stepper(system, ContactLaw(friction=0.1), 256), 40)
+    return Integration(driver, system, operation(system, record_turns=5), Wants())
 
 
 def set_model(integration, **fields):

@@ -6,7 +6,7 @@ from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
 from rubgen.solver.scheme.model import speed_part
 from rubgen.solver.scheme.stepper import Stepper
-from rubgen.solver.speed.interpolation import Following, chebyshev_speeds, lagrange_weights
+from rubgen.solver.speed.interpolation import SpeedInterpolation, chebyshev_speeds, lagrange_weights
 from rubgen.units import rad_per_s
 
 
@@ -25,7 +25,9 @@ def test_interpolated_matrices_are_those_made_at_that_speed(acceleration):
     speeds = chebyshev_speeds(rad_per_s(3000), rad_per_s(12000))
     alike = [model.at_speed(speed, push) for speed in (speeds[0], speeds[-1]) for push in (0.0, 300.0)]
     stepper = Stepper(alike[2], ContactLaw(), 1024, alike=alike)
-    following = Following(lambda *at: speed_part(model.at_speed(*at), stepper.blocks, stepper.dt), speeds, 300.0)
+    following = SpeedInterpolation(
+        lambda *at: speed_part(model.at_speed(*at), stepper.blocks, stepper.dt), speeds, 300.0
+    )
     wanted = rad_per_s(np.array([3333.0, 7654.3, 11900.0]))
     for speed, part in zip(wanted, following.at(wanted, np.full(3, acceleration)), strict=True):
         exact = speed_part(model.at_speed(speed, acceleration), stepper.blocks, stepper.dt)

@@ -7,6 +7,7 @@ from rubgen.labels.to_json import labels_to_json
 from rubgen.scenario import ContactLaw
 from rubgen.solver.integrate import integrate
 from rubgen.solver.speed.start import closing_ramp, rub_free_stepper
+from rubgen.solver.wants import Wants
 from rubgen.taps import DEFAULT_TAPS, TipTiming
 
 STEPS = 256
@@ -52,7 +53,7 @@ def test_a_longer_tail_is_the_same_run(small_system, operation):
     long = operation(system, record_turns=150, settle_turns=60)
     turn = 2 * np.pi / system.speed
     short, longer, whole = (
-        integrate(system, long, ContactLaw(friction=0.1), tail_seconds=turns * turn, taps=TAPS)
+        integrate(system, long, ContactLaw(friction=0.1), Wants(tail_seconds=turns * turn, taps=TAPS))
         for turns in (0.0, 130.5, 1e3)
     )
     assert short.impulse_per_turn.min() > 0

@@ -9,6 +9,7 @@ from rubgen.scenario import ContactLaw, Liner, parse_recipe
 from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
 from rubgen.solver.speed.start import closing_ramp, rub_free_stepper, start_opening
+from rubgen.solver.wants import Wants
 
 LINER = Liner(thickness_m=1e-3, wear_m2_per_n=4e-12, width_m=0.02, bins=240)
 LAWS = {
@@ -122,9 +123,9 @@ def test_a_worn_liner_is_seen_by_the_clearance_on_a_ray(small_system):
 def test_there_is_no_exponent_while_the_liner_wears(small_system, operation):
     system = small_system(speed=500.0)
     asked = operation(system, record_turns=40, settle_turns=50)
-    wearing = integrate(system, asked, LAWS["liner"], twin=True)
+    wearing = integrate(system, asked, LAWS["liner"], Wants(companion=True))
     assert np.isnan(wearing.twin_growth).any()
-    hard = integrate(system, asked, ContactLaw(friction=0.1), twin=True)
+    hard = integrate(system, asked, ContactLaw(friction=0.1), Wants(companion=True))
     assert np.isfinite(hard.twin_growth).all()
 
 

@@ -13,6 +13,7 @@ from rubgen.solver.integrate import integrate
 from rubgen.solver.linear.rub_free import steady_state
 from rubgen.solver.scheme.energy_kernels import DRIVE_LIMIT
 from rubgen.solver.speed.start import rub_free_stepper
+from rubgen.solver.wants import Wants
 from rubgen.taps import (
     DEFAULT_TAPS,
     CasingAcceleration,
@@ -110,7 +111,7 @@ def test_blades_of_a_steady_whirl_arrive_when_geometry_says(small_system, operat
     system = small_system(clearance=2e-3, ovality=1e-3)
     system = replace(system, recovery=recovery(system, chord_slope=chord_slope))
     probes = (TipTiming(name="a", angle_deg=0), TipTiming(name="b", angle_deg=200.3, axial_m=4e-3))
-    response = integrate(system, operation(system, settle_turns=40), ContactLaw(), taps=probes)
+    response = integrate(system, operation(system, settle_turns=40), ContactLaw(), Wants(taps=probes))
     place = steady_state(system)[: 3 * system.n_blades].reshape(-1, 3) + system.tip_static
     for probe in probes:
         seen = response.arrivals[probe.name]

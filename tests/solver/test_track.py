@@ -9,6 +9,7 @@ from rubgen.scenario import ContactLaw
 from rubgen.solver.integrate import integrate
 from rubgen.solver.observers.track import TRACK_TURNS
 from rubgen.solver.scheme.stepper import FRAMES
+from rubgen.solver.wants import Wants
 
 SECONDS = 60.5 * 2 * np.pi / 500.0  # 60 turns
 
@@ -18,7 +19,7 @@ def rub(small_system, operation):
     system = small_system(speed=500.0, unbalance=0.0)
     system.force[[0, 3]] = 40.0, -10.0  # uneven blades
     turned = replace(operation(system), record_turns=80)
-    return system, integrate(system, turned, ContactLaw(friction=0.1), tail_seconds=SECONDS)
+    return system, integrate(system, turned, ContactLaw(friction=0.1), Wants(tail_seconds=SECONDS))
 
 
 def test_the_track_is_eight_whole_turns_of_the_signals(rub):
@@ -61,6 +62,6 @@ def test_without_signals_nothing_is_kept(small_system, operation):
 def test_fewer_turns_than_a_window_are_all_kept(small_system, operation):
     system = small_system()
     short = operation(system, record_turns=3, settle_turns=10)
-    track = integrate(system, short, ContactLaw(), tail_seconds=3.5 * 2 * np.pi / system.speed).track
+    track = integrate(system, short, ContactLaw(), Wants(tail_seconds=3.5 * 2 * np.pi / system.speed)).track
     assert len(track.step) == 3 * FRAMES
     assert track.step[0] == 0

@@ -10,6 +10,7 @@ from rubgen.solver.observers.companion import Companion, piece_ends
 from rubgen.solver.observers.symmetry import turned_back
 from rubgen.solver.scheme.stepper import Stepper
 from rubgen.solver.speed.start import rub_free_stepper
+from rubgen.solver.wants import Wants
 
 STEPS = 256
 
@@ -29,7 +30,7 @@ def test_the_run_keeps_its_bits(small_system, operation):
     system = small_system(speed=500.0)
     short = operation(system, record_turns=40, settle_turns=60)
     for law in (ContactLaw(friction=0.1), ContactLaw(friction=0.1, restitution=0.5)):
-        alone, beside = (integrate(system, short, law, twin=twin) for twin in (False, True))
+        alone, beside = (integrate(system, short, law, Wants(companion=companion)) for companion in (False, True))
         assert alone.impulse_per_turn.min() > 0
         assert np.array_equal(alone.section_q, beside.section_q)
         assert np.array_equal(alone.section_v, beside.section_v)
@@ -41,7 +42,9 @@ def test_the_run_keeps_its_bits(small_system, operation):
 
 def test_without_contact_the_exponent_is_the_slowest_decay(small_system, operation):
     system = small_system(clearance=2e-3, casing_damping=0.02, lateral_damping=0.1)
-    response = integrate(system, operation(system, record_turns=400, settle_turns=60), ContactLaw(), twin=True)
+    response = integrate(
+        system, operation(system, record_turns=400, settle_turns=60), ContactLaw(), Wants(companion=True)
+    )
     assert response.contact_steps_per_turn.sum() == 0
     exponent = lyapunov(response.twin_growth)
     assert exponent.per_turn == pytest.approx(-slowest_decay(system) * response.turn_seconds, rel=5e-3)
@@ -86,7 +89,7 @@ def test_a_turn_of_odd_steps_ends_with_its_last_piece():
 
 def test_an_exponent_of_ten_turns_is_refused(small_system, operation):
     with pytest.raises(UserError, match=r"record_turns = 10: a Lyapunov exponent needs at least 32 turns.*raise it"):
-        integrate(small_system(), operation(small_system(), record_turns=10), ContactLaw(), twin=True)
+        integrate(small_system(), operation(small_system(), record_turns=10), ContactLaw(), Wants(companion=True))
 
 
 def test_modes_of_a_ring_turn_back_by_their_order(small_system):

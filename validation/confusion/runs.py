@@ -8,6 +8,7 @@ from rubgen.scenario import Scenario, make_scenario
 from rubgen.scenario.vary import vary
 from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
+from rubgen.solver.wants import Wants
 from validation.piece import Arrays, Piece
 
 SERIES: dict[str, dict[str, float]] = {
@@ -44,7 +45,7 @@ def run(scenario: Scenario) -> Arrays:
     """What is kept of the response, with its twin; nothing of a run that failed."""
     operation = scenario.operation
     model = reduce(scenario.machine, scenario.reduction)
-    response = integrate(model.at_speed(operation.speed_rad_per_s), operation, scenario.contact, twin=True)
+    response = integrate(model, operation, scenario.contact, Wants(companion=True))
     return compact_record(response) if response.status is Status.OK else {}
 
 

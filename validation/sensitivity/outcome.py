@@ -17,6 +17,7 @@ from rubgen.scenario import Scenario
 from rubgen.solver import Response, Status
 from rubgen.solver.integrate import integrate
 from rubgen.solver.observers.companion import LEAST_TURNS
+from rubgen.solver.wants import Wants
 from validation.piece import Arrays, Piece
 
 BLOCKS = 10
@@ -105,7 +106,7 @@ def run(scenario: Scenario) -> Outcome:
     with threadpool_limits(1, user_api="blas"):
         model = reduce(scenario.machine, scenario.reduction)
         system, twin = model.at_speed(operation.speed_rad_per_s), operation.record_turns >= LEAST_TURNS
-        response = integrate(system, operation, scenario.contact, twin=twin)
+        response = integrate(system, operation, scenario.contact, Wants(companion=twin))
         return outcome(model, response)
 
 

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.contact.liner_kernels import REMOVED
 from rubgen.errors import UserError
 from rubgen.solver.observers.companion_kernels import distance, run_companion
 from rubgen.solver.scheme.model import new_state, turned
 from rubgen.solver.scheme.motion_kernels import recover
 from rubgen.solver.scheme.step_kernels import OK
 from rubgen.solver.scheme.stepper import Stepper
+from rubgen.solver.speed.turn import Turn
 
 PIECES = 16
 """Renormalisations in a turn."""
@@ -34,6 +38,30 @@ def piece_ends(steps: int) -> list[int]:
     """The steps of a turn that end its pieces, as even as whole steps can be."""
     pieces = min(PIECES, steps)
     return [round(steps * piece / pieces) for piece in range(1, pieces + 1)]
+
+
+class CompanionGrowth:
+    """The growth of a companion's distance in each turn of a record."""
+
+    def __init__(self, stepper: Stepper, record: int) -> None:
+        self.stepper, self.growth = stepper, np.zeros(record)
+        self.companion: Companion | None = None
+        self.removed = 0.0
+
+    def start(self) -> None:
+        """Put the companion beside the run."""
+        self.companion, self.removed = Companion(self.stepper), self.stepper.state.wear.sums[REMOVED]
+
+    def turn(self, turn: Turn) -> None:
+        """Run the companion's turn. Beside a surface that has worn in it no trajectory is near the run's own."""
+        before, self.removed = self.removed, self.stepper.state.wear.sums[REMOVED]
+        if self.companion is not None:
+            same_surface = self.removed == before
+            self.growth[turn.number] = self.companion.run_turn(turn.opening).sum() if same_surface else np.nan
+
+    def result(self) -> dict[str, Any]:
+        """`twin_growth` (record,)."""
+        return {"twin_growth": self.growth}
 
 
 class Companion:

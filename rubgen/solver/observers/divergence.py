@@ -46,7 +46,7 @@ class Growth:
         count = math.ceil(steps * len(result.frames) / self.stepper.steps)
         self.turns.append((float(result.summary[2]), result.frames[:count].copy()))
 
-    def told(self) -> str:
+    def sentence(self) -> str:
         """Growth of both over the last turns in words, with the rates a turn and a second."""
         amplitudes = {"blades": self._blades(), "casing": [casing for casing, _ in self.turns]}
         trends = {name: found for name, sizes in amplitudes.items() if (found := trend(np.array(sizes)))}
@@ -68,6 +68,16 @@ class Growth:
             max((float(np.abs(self.stepper.blocks.to_q(z)[:tips]).max()) for z in frames), default=0.0)
             for _, frames in self.turns
         ]
+
+
+def what_diverged(stepper: Stepper) -> tuple[str, str]:
+    """Which of the two branches has left its range, "blade" or "casing", and how far it was."""
+    system, laws = stepper.system, stepper.model.laws
+    tips = np.abs(stepper.coordinates.after[: 3 * system.n_blades])
+    if not np.all(tips <= laws.tip_limit):
+        blade = int(np.argmax(~(tips <= laws.tip_limit))) // 3
+        return "blade", f"blade {blade} bent beyond {1e3 * laws.tip_limit:.3g} mm"
+    return "casing", f"the casing left {1e3 * laws.casing_limit:.3g} mm"
 
 
 @dataclass(frozen=True, kw_only=True)

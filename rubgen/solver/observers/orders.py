@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from rubgen.arrays import ComplexArray, FloatArray
-from rubgen.solver.response import ORDERS, WINDOW_TURNS
+from rubgen.solver.response import ORDERS, WINDOW_TURNS, Course
+from rubgen.solver.speed.driver import SpeedDriver
+from rubgen.solver.speed.turn import Turn
 
 
 class WindowOrders:
     """Complex amplitudes of a steady run's taps window by window: of the mean of its turns, which is their mean.
 
-    `add` turns of the record up to its end, taps (taps, steps) with the first step at theta = 0. What precedes the
-    first whole window is left out; the last window may be shorter.
+    The first step of a turn is at theta = 0. What precedes the first whole window is left out; the last window may be
+    shorter.
     """
 
     def __init__(self, taps: int, steps: int) -> None:
@@ -21,25 +25,55 @@ class WindowOrders:
         self.wave = 2 / steps * np.concatenate([np.cos(angle), -np.sin(angle)], axis=1)
         self.windows: list[ComplexArray] = []
 
-    def add(self, turn: int, taps: FloatArray) -> None:
-        """Take the next turn, of this number in the record."""
-        if self.turns == 0 and turn % WINDOW_TURNS:
+    def start(self) -> None:
+        """Nothing to do."""
+
+    def turn(self, turn: Turn) -> None:
+        """Take the next turn of the record."""
+        if turn.number < 0 or not turn.recording or (self.turns == 0 and turn.number % WINDOW_TURNS):
             return
-        self.sum += taps
+        self.sum += turn.result.taps
         self.turns += 1
         if self.turns == WINDOW_TURNS:
             self._close()
 
-    def all(self) -> ComplexArray:
+    def result(self) -> dict[str, Any]:
         """Amplitudes (windows, taps, 20) of all turns so far."""
         if self.turns:
             self._close()
-        return np.array(self.windows, dtype=np.complex128).reshape(len(self.windows), len(self.sum), ORDERS)
+        windows = np.array(self.windows, dtype=np.complex128).reshape(len(self.windows), len(self.sum), ORDERS)
+        return {"window_orders": windows}
 
     def _close(self) -> None:
         parts = self.sum @ self.wave / self.turns
         self.windows.append(parts[:, :ORDERS] + 1j * parts[:, ORDERS:])
         self.sum[:], self.turns = 0.0, 0
+
+
+class SpeedHistory:
+    """Speed and orders of each turn of a record at a changing speed."""
+
+    def __init__(self, driver: SpeedDriver, record: int) -> None:
+        self.driver, self.record = driver, record
+        self.orders: list[ComplexArray] = []
+
+    def start(self) -> None:
+        """Nothing to do."""
+
+    def turn(self, turn: Turn) -> None:
+        """Take the orders of a turn of the record."""
+        if turn.number >= 0:
+            time = np.arange(turn.first_step, turn.end_step + 1) * self.driver.stepper.dt
+            self.orders.append(turn_orders(turn.result.taps, self.driver.rotation.angle(time)))
+
+    def result(self) -> dict[str, Any]:
+        """The course of the speed; there are no windows."""
+        course = Course(
+            rotation=self.driver.rotation,
+            turn_steps=np.array([self.driver.first_step(number) for number in range(self.record + 1)]),
+            orders=np.array(self.orders),
+        )
+        return {"course": course, "window_orders": np.zeros((0, len(self.driver.stepper.result.taps), ORDERS), complex)}
 
 
 def turn_orders(taps: FloatArray, theta: FloatArray) -> ComplexArray:

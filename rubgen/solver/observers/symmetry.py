@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.reduction.model import SpinningSystem
 from rubgen.solver.scheme.stepper import Stepper
+from rubgen.solver.speed.turn import Turn
 
 
 def lobes_of(system: SpinningSystem) -> int:
@@ -31,18 +33,25 @@ def turned_back(modes: FloatArray, share: float) -> FloatArray:
     return np.asarray(np.linalg.lstsq(flat, turned.reshape(2 * nodes, -1))[0])
 
 
-class Fractions:
-    """After 1/N, 2/N, ... 1 of a turn; `steps` are the snapshots that a turn must leave for them."""
+class Symmetry:
+    """The states after 1/N, 2/N, ... 1 of the last turn; `steps` are the snapshots that a turn must leave for them."""
 
-    def __init__(self, system: SpinningSystem, steps: int) -> None:
-        lobes = lobes_of(system) if steps >= 2 else 1
+    def __init__(self, stepper: Stepper) -> None:
+        self.stepper, steps = stepper, stepper.steps
+        lobes = lobes_of(stepper.system) if steps >= 2 else 1
         self.shares = [part / lobes for part in range(1, lobes + 1)]
         self.places = [part * steps / lobes for part in range(1, lobes + 1)]
         self.steps = sorted({min(math.ceil(place), steps) for place in self.places})
 
-    def of(self, stepper: Stepper) -> FloatArray:
-        """The states (N, 2, n), q and v, in the stepper's last turn: linear between two steps, v their difference."""
-        out = []
+    def start(self) -> None:
+        """Nothing to do."""
+
+    def turn(self, turn: Turn) -> None:
+        """Nothing to do: the stepper holds the snapshots of its last turn."""
+
+    def result(self) -> dict[str, Any]:
+        """The states (N, 2, n), q and v: linear between two steps, v their difference."""
+        stepper, states = self.stepper, []
         for share, place in zip(self.shares, self.places, strict=True):
             step = min(math.ceil(place), stepper.steps)
             number = int(np.searchsorted(stepper.snapshots.steps, step))
@@ -51,5 +60,5 @@ class Fractions:
             start = stepper.system.casing_start
             back[start:, start:] = turned_back(stepper.system.casing_modes, share)
             v = (now - before) / stepper.dt
-            out.append(np.stack([back @ (now - (step - place) * stepper.dt * v), back @ v]))
-        return np.array(out)
+            states.append(np.stack([back @ (now - (step - place) * stepper.dt * v), back @ v]))
+        return {"fractions": np.array(states)}

@@ -1,12 +1,39 @@
-"""Touches of blades as arrays."""
+"""Touches of blades."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.solver.response import ContactEvents, TipArrivals
+from rubgen.solver.response import ContactEvents
+from rubgen.solver.scheme.stepper import Stepper
 from rubgen.solver.scheme.turn_kernels import BLADE, COSINE, FRICTION_LOSS, IMPULSE, NORMAL_LOSS, SINE, START, STEPS
+from rubgen.solver.speed.turn import Turn
+
+
+class TouchKeeper:
+    """Keeps the touches of a record of so many turns."""
+
+    def __init__(self, stepper: Stepper, record: int) -> None:
+        self.stepper, self.record = stepper, record
+        self.touches: list[FloatArray] = []
+
+    def start(self) -> None:
+        """A touch that began before is counted from here."""
+        self.stepper.begin_record()
+
+    def turn(self, turn: Turn) -> None:
+        """Keep the touches that ended in a turn; after the last one, those under way too."""
+        if turn.number >= 0:
+            self.touches += turn.touches
+        if turn.number == self.record - 1:
+            self.touches.append(self.stepper.end_record(turn.end_step))
+
+    def result(self) -> dict[str, Any]:
+        """The touches as `ContactEvents`."""
+        return {"events": contact_events(self.touches)}
 
 
 def contact_events(touches: list[FloatArray]) -> ContactEvents:
@@ -23,14 +50,3 @@ def contact_events(touches: list[FloatArray]) -> ContactEvents:
         friction_loss=rows[:, FRICTION_LOSS].copy(),
         normal_loss=rows[:, NORMAL_LOSS].copy(),
     )
-
-
-def tip_arrivals(arrivals: list[FloatArray], names: list[str]) -> dict[str, TipArrivals]:
-    """Arrivals (each array (any, 4): number of the probe, blade, step, displacement) by probe, in order of time."""
-    rows = np.concatenate([np.zeros((0, 4)), *arrivals])
-    seen = {}
-    for number, name in enumerate(names):
-        own = rows[rows[:, 0] == number]
-        own = own[np.argsort(own[:, 2], kind="stable")]
-        seen[name] = TipArrivals(blade=own[:, 1].astype(np.int64), step=own[:, 2].copy(), displacement=own[:, 3].copy())
-    return seen

@@ -22,7 +22,7 @@ from rubgen.solver.scheme.speed_part import SpeedPart
 from rubgen.solver.scheme.state_kernels import Coordinates
 from rubgen.solver.scheme.step_kernels import advance, shift_gaps
 from rubgen.solver.scheme.taps import build_taps, sampled_taps, turned_taps
-from rubgen.solver.scheme.turn_kernels import Touches, TurnResult, run_turn
+from rubgen.solver.scheme.turn_kernels import STEPS, Touches, TurnResult, close_touches, run_turn
 from rubgen.taps import DEFAULT_TAPS, Tap
 
 FRAMES = 32
@@ -66,7 +66,7 @@ class Stepper:
             np.zeros((len(sampled_taps(taps)), steps)), np.zeros((2, n)), np.zeros(4), np.zeros(5),
             np.zeros((min(FRAMES, steps), self.blocks.rows * LANES)),
         )  # fmt: skip
-        self.snapshots = self.snapshots_at([steps])
+        self.take_snapshots([steps])
 
     @property
     def steps(self) -> int:
@@ -130,14 +130,29 @@ class Stepper:
         self.state = turned(self.state, step)
         return code, step, ended
 
+    def begin_record(self) -> None:
+        """Count touches that are under way from here on."""
+        self.touches.open[:, STEPS] = 0.0
+
+    def end_record(self, clock: int) -> FloatArray:
+        """End the touches that are under way at the step `clock`; these touches (any, 8)."""
+        return self.touches.ended[: close_touches(self.touches, clock, 0)].copy()
+
+    def clear_works(self) -> None:
+        """Count works from here on."""
+        self.state.works[:] = 0.0
+
+    def take_frames(self, frames: int) -> None:
+        """Let every turn, or part of one, leave so many frames."""
+        if len(self.result.frames) != frames:
+            self.result = self.result._replace(frames=np.zeros((frames, self.result.frames.shape[1])))
+
     def take_snapshots(self, steps: list[int]) -> None:
         """Let every turn leave snapshots at rising steps, the last of which ends it or is never reached."""
-        self.snapshots = self.snapshots_at(steps)
-
-    def snapshots_at(self, steps: list[int]) -> Snapshots:
-        """Room for snapshots at these steps."""
         numbers, blades = self.blocks.rows * LANES, self.system.n_blades
-        return Snapshots(np.array(steps), np.zeros((len(steps), 2, numbers)), np.full((len(steps), 2, blades), np.nan))
+        self.snapshots = Snapshots(
+            np.array(steps), np.zeros((len(steps), 2, numbers)), np.full((len(steps), 2, blades), np.nan)
+        )
 
     def step(self, index: int, opening: FloatArray | None = None) -> tuple[int, int]:
         """One step from the turn's step `index`, without works, taps and touches; `state.contact` holds its contacts.

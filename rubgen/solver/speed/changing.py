@@ -10,20 +10,22 @@ from rubgen.scenario.rotation import Rotation
 from rubgen.solver.linear.rub_free import rub_free_motion
 from rubgen.solver.linear.stability import STEP_SAFETY, settle_turns, slowest_decay, stable_step, steps_per_turn
 from rubgen.solver.scheme.model import speed_part
+from rubgen.solver.scheme.speed_part import SpeedPart
 from rubgen.solver.scheme.stepper import Stepper
-from rubgen.solver.speed.driver import ChangingSpin
-from rubgen.solver.speed.interpolation import Following, SystemAt, chebyshev_speeds
+from rubgen.solver.speed.driver import ChangingDriver
+from rubgen.solver.speed.interpolation import SpeedInterpolation, chebyshev_speeds
+from rubgen.solver.wants import SpeedModel
 from rubgen.taps import DEFAULT_TAPS, Tap
 
 
 class ChangingSystem:
     """A system at all speeds of an operation: `systems` at Chebyshev speeds, `start` at the first instant."""
 
-    def __init__(self, system_at: SystemAt, operation: Operation) -> None:
-        self.system_at, self.operation, self.rotation = system_at, operation, operation.rotation
+    def __init__(self, model: SpeedModel, operation: Operation) -> None:
+        self.model, self.operation, self.rotation = model, operation, operation.rotation
         speeds = chebyshev_speeds(self.rotation.slowest, self.rotation.fastest)
-        self.systems = [system_at(speed, 0.0) for speed in speeds.tolist()]
-        self.speeds, self.start = speeds, system_at(self.rotation.start, 0.0)
+        self.systems = [model.at_speed(speed, 0.0) for speed in speeds.tolist()]
+        self.speeds, self.start = speeds, model.at_speed(self.rotation.start, 0.0)
 
     def least_stable(self) -> SpinningSystem:
         """The system of the slowest decay, negative where it grows by itself."""
@@ -37,19 +39,20 @@ class ChangingSystem:
             steps *= 2
         return steps
 
-    def spin(self, contact: ContactLaw, steps: int, taps: tuple[Tap, ...] = DEFAULT_TAPS) -> ChangingSpin:
+    def driver(self, contact: ContactLaw, steps: int, taps: tuple[Tap, ...] = DEFAULT_TAPS) -> ChangingDriver:
         """A stepper in the rub-free motion of the first instant, and what takes it through the turns."""
         push = largest_acceleration(self.rotation)
-        pushed = [self.system_at(speed, push) for speed in (self.rotation.slowest, self.rotation.fastest)]
+        pushed = [self.model.at_speed(speed, push) for speed in (self.rotation.slowest, self.rotation.fastest)]
         stepper = Stepper(self.systems[-1], contact, steps, taps=taps, alike=[*self.systems, *pushed])
-        following = Following(
-            lambda *at: speed_part(self.system_at(*at), stepper.blocks, stepper.dt), self.speeds, push
-        )
-        settle = settle_turns(self.start, self.operation)
-        spin = ChangingSpin(stepper, following, self.rotation, settle)
+
+        def part_at(speed: float, acceleration: float) -> SpeedPart:
+            return speed_part(self.model.at_speed(speed, acceleration), stepper.blocks, stepper.dt)
+
+        matrices = SpeedInterpolation(part_at, self.speeds, push)
+        driver = ChangingDriver(stepper, matrices, self.rotation, settle_turns(self.start, self.operation))
         # A turn of the first speed has not a whole number of steps: the balance takes any.
-        spin.begin(rub_free_motion(self.start, 2 * np.pi / self.start.speed / stepper.dt))
-        return spin
+        driver.begin(rub_free_motion(self.start, 2 * np.pi / self.start.speed / stepper.dt))
+        return driver
 
 
 def largest_acceleration(rotation: Rotation) -> float:

@@ -1,10 +1,11 @@
-"""How a stepper is taken through a turn: at a steady speed in one call, at a changing one in short parts."""
+"""How a stepper is taken through its turns: at a steady speed in one call, at a changing one in short parts."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple, Protocol
+from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 
@@ -14,7 +15,8 @@ from rubgen.solver.linear.rub_free import RubFreeMotion
 from rubgen.solver.scheme.step_kernels import OK
 from rubgen.solver.scheme.stepper import FRAMES, Stepper
 from rubgen.solver.scheme.turn_kernels import TurnResult
-from rubgen.solver.speed.interpolation import Following
+from rubgen.solver.speed.interpolation import SpeedInterpolation
+from rubgen.solver.speed.turn import Turn, TurnFrames
 
 SPEED_SHARE = 2e-4
 """Within a part, whose matrices stand still at its middle speed, the speed changes by this share at most."""
@@ -26,66 +28,56 @@ Opening = Callable[[FloatArray], FloatArray]
 """How far the surface is opened, m, after so many turns from the start."""
 
 
-class TurnFrames(NamedTuple):
-    """Some 32 moments of a turn: `step` (frames,) their numbers, `z` (frames, any) the motion in its blocks."""
-
-    step: IntArray
-    z: FloatArray
-
-
-class Spin(Protocol):
-    """Takes a stepper turn by turn from the start; steps are numbered from the start of the record.
-
-    `settle` turns go before the record. What the last turn gave: `result` with taps, section, summary; `touches`,
-    arrays of touches that ended; `arrivals` (any, 4) under timing probes; `opening` of the surface in its last part;
-    `frames` of the motion, and `tip_growth` (n_blades, 3), the tips' steady displacement at its beginning in m.
-    """
+class SpeedDriver(Protocol):
+    """Takes a stepper turn by turn from the start; turns and steps are counted from the start of the record."""
 
     stepper: Stepper
     settle: int
+    """Turns before the record."""
     rotation: Rotation
-    result: TurnResult
-    touches: list[FloatArray]
-    arrivals: FloatArray
-    opening: FloatArray
-    frames: TurnFrames
-    tip_growth: FloatArray
 
-    def first_step(self, turn: int) -> int:
+    def first_step(self, number: int) -> int:
         """Number of the step at which a turn begins."""
         ...
 
-    def run_turn(self, turn: int, opening: Opening, *, recording: bool) -> tuple[int, int]:
-        """One turn; a code of `step_kernels`, and the step of the turn where it ended. Taps only where recording."""
+    def run_turn(self, number: int, opening: Opening, *, recording: bool) -> Turn:
+        """Run one turn. Taps, orbit and arrivals are made only where `recording`."""
         ...
 
 
-class SteadySpin:
+class SteadyDriver:
     """A constant speed: every turn is one part with the same steps; the record begins after `settle` turns."""
 
     def __init__(self, stepper: Stepper, settle: int) -> None:
         self.stepper, self.settle = stepper, settle
         self.rotation = steady_rotation(stepper.system.speed)
-        self.result, self.touches = stepper.result, list[FloatArray]()
-        self.arrivals, self.opening = np.zeros((0, 4)), np.zeros(0)
-        self.frames, self.tip_growth = _frames(stepper.result, 0, 0), stepper.system.tip_static
 
-    def first_step(self, turn: int) -> int:
+    def first_step(self, number: int) -> int:
         """Number of the step at which a turn begins."""
-        return (turn - self.settle) * self.stepper.steps
+        return number * self.stepper.steps
 
-    def run_turn(self, turn: int, opening: Opening, *, recording: bool) -> tuple[int, int]:
-        """One turn; a code of `step_kernels`, and the step of the turn where it ended. Taps only where recording."""
-        steps = self.stepper.steps
-        self.opening = opening(turn + np.arange(-1, steps + 1) / steps)
-        code, step, ended = self.stepper.run_turn(self.opening, self.first_step(turn), recording=recording)
-        self.result, self.touches = self.stepper.result, [self.stepper.touches.ended[:ended].copy()]
-        self.arrivals = _arrivals(self.stepper)
-        self.frames = _frames(self.result, self.first_step(turn), steps)
-        return code, step
+    def run_turn(self, number: int, opening: Opening, *, recording: bool) -> Turn:
+        """Run one turn. Taps, orbit and arrivals are made only where `recording`."""
+        stepper, steps, first = self.stepper, self.stepper.steps, self.first_step(number)
+        width = opening(number + self.settle + np.arange(-1, steps + 1) / steps)
+        code, step, ended = stepper.run_turn(width, first, recording=recording)
+        return Turn(
+            number=number,
+            code=code,
+            step=step,
+            first_step=first,
+            end_step=first + steps,
+            recording=recording,
+            result=stepper.result,
+            touches=[stepper.touches.ended[:ended].copy()],
+            arrivals=_arrivals(stepper),
+            opening=width,
+            frames=_frames(stepper.result, first, steps),
+            tip_growth=stepper.system.tip_static,
+        )
 
 
-class ChangingSpin:
+class ChangingDriver:
     """A speed that follows a rotation, theta = 0 at t = 0, where the record begins after `settle` turns.
 
     Time steps are equal: a turn has as many as fit, and begins at the step that is nearest to theta = 0 mod 2 pi. Each
@@ -94,80 +86,75 @@ class ChangingSpin:
     closes follows every step, through the opening of the surface.
     """
 
-    def __init__(self, stepper: Stepper, following: Following, rotation: Rotation, settle: int) -> None:
-        self.stepper, self.following, self.rotation, self.settle = stepper, following, rotation, settle
-        self.result, self.touches = stepper.result, list[FloatArray]()
-        self.arrivals, self.opening = np.zeros((0, 4)), np.zeros(0)
-        self.frames, self.tip_growth = _frames(stepper.result, 0, 0), stepper.system.tip_static
+    def __init__(self, stepper: Stepper, matrices: SpeedInterpolation, rotation: Rotation, settle: int) -> None:
+        self.stepper, self.matrices, self.rotation, self.settle = stepper, matrices, rotation, settle
         stepper.take_snapshots([NEVER])
 
     def begin(self, motion: RubFreeMotion) -> None:
         """Put the stepper into a rub-free motion, without works so far."""
-        start = np.array([self._time_of(0)])
+        start = np.array([self._time_of(-self.settle)])
         speed = self.rotation.speed(start)
-        part = next(self.following.at(speed, self.rotation.acceleration(start)))
+        part = next(self.matrices.at(speed, self.rotation.acceleration(start)))
         self.stepper.follow(part, float(speed[0]), np.zeros(3), 0.0)
-        first = self.first_step(0)
+        first = self.first_step(-self.settle)
         angles = self.rotation.angle((first + np.array([-1, 0])) * self.stepper.dt)
         self.stepper.set_coordinates(*(motion.at(angle) for angle in angles.tolist()))
-        self.stepper.state.works[:] = 0.0
+        self.stepper.clear_works()
 
-    def first_step(self, turn: int) -> int:
+    def first_step(self, number: int) -> int:
         """Number of the step at which a turn begins."""
-        return round(self._time_of(turn) / self.stepper.dt)
+        return round(self._time_of(number) / self.stepper.dt)
 
-    def run_turn(self, turn: int, opening: Opening, *, recording: bool) -> tuple[int, int]:
-        """One turn; a code of `step_kernels`, and the step of the turn where it ended. Taps only where recording."""
-        starts = self._part_starts(turn)
-        middles = 0.5 * (starts[:-1] + starts[1:] - 1) * self.stepper.dt
+    def run_turn(self, number: int, opening: Opening, *, recording: bool) -> Turn:
+        """Run one turn. Taps, orbit and arrivals are made only where `recording`."""
+        stepper, starts = self.stepper, self._part_starts(number)
+        first, ends = int(starts[0]), (starts - starts[0]).tolist()
+        middles = 0.5 * (starts[:-1] + starts[1:] - 1) * stepper.dt
         speeds = self.rotation.speed(middles)
-        parts = self.following.at(speeds, self.rotation.acceleration(middles))
-        theta, width = self._tables(turn, int(starts[0]), int(starts[-1]), opening)
-        section = self._time_of(turn) / self.stepper.dt - starts[0]
-        results: list[TurnResult] = []
-        arrivals: list[FloatArray] = []
-        frames: list[TurnFrames] = []
-        self.touches = []
-        code, step = OK, 0
-        ends = (starts - starts[0]).tolist()
-        self._take_frames(len(ends) - 1)
+        parts = self.matrices.at(speeds, self.rotation.acceleration(middles))
+        theta, width = self._tables(number, first, int(starts[-1]), opening)
+        section = self._time_of(number) / stepper.dt - starts[0]
+        stepper.take_frames(-(-FRAMES // (len(ends) - 1)))
+        done: list[Turn] = []
         for start, end, speed, part in zip(ends[:-1], ends[1:], speeds, parts, strict=True):
             rows = slice(start, end + 2)
-            self.stepper.follow(part, float(speed), np.roll(theta[rows], -1), float(section))
-            self.opening = width[rows] + self.following.mean_growth(speed)
-            code, done, ended = self.stepper.run_turn(self.opening, int(starts[0]) + start, recording=recording)
-            arrivals.append(_arrivals(self.stepper))
-            results.append(_copied(self.stepper.result))
-            frames.append(_frames(self.stepper.result, int(starts[0]) + start, end - start))
-            if start == 0:
-                self.tip_growth = part.tips.static.T.copy()
-            self.touches.append(self.stepper.touches.ended[:ended].copy())
-            section, step = 0.0, start + done
+            stepper.follow(part, float(speed), np.roll(theta[rows], -1), float(section))
+            wide = width[rows] + self.matrices.mean_growth(speed)
+            code, step, ended = stepper.run_turn(wide, first + start, recording=recording)
+            done.append(
+                Turn(
+                    number=number,
+                    code=code,
+                    step=start + step,
+                    first_step=first,
+                    end_step=int(starts[-1]),
+                    recording=recording,
+                    result=_copied(stepper.result),
+                    touches=[stepper.touches.ended[:ended].copy()],
+                    arrivals=_arrivals(stepper),
+                    opening=wide,
+                    frames=_frames(stepper.result, first + start, end - start),
+                    tip_growth=part.tips.static.T.copy(),
+                )
+            )
+            section = 0.0
             if code != OK:
                 break
-        self.result, self.arrivals = _joined(results), np.concatenate(arrivals)
-        self.frames = TurnFrames(*(np.concatenate(columns) for columns in zip(*frames, strict=True)))
-        return code, step
+        return _joined(done)
 
-    def _take_frames(self, parts: int) -> None:
-        """Ask each of so many parts of a turn for its share of the frames."""
-        wanted, result = -(-FRAMES // parts), self.stepper.result
-        if len(result.frames) != wanted:
-            self.stepper.result = result._replace(frames=np.zeros((wanted, result.frames.shape[1])))
-
-    def _tables(self, turn: int, first: int, last: int, opening: Opening) -> tuple[FloatArray, FloatArray]:
+    def _tables(self, number: int, first: int, last: int, opening: Opening) -> tuple[FloatArray, FloatArray]:
         """Theta at the steps first - 1, ..., last of a turn, and the surface's opening less the tips' growth."""
         time = np.arange(first - 1, last + 1) * self.stepper.dt
-        theta = self.rotation.angle(time) - 2 * np.pi * (turn - self.settle)
-        growth = self.following.mean_growth(self.rotation.speed(time))
-        return theta, opening(turn + theta / (2 * np.pi)) - growth
+        theta = self.rotation.angle(time) - 2 * np.pi * number
+        growth = self.matrices.mean_growth(self.rotation.speed(time))
+        return theta, opening(number + self.settle + theta / (2 * np.pi)) - growth
 
-    def _time_of(self, turn: int) -> float:
-        return self.rotation.time_of(2 * math.pi * (turn - self.settle))
+    def _time_of(self, number: int) -> float:
+        return self.rotation.time_of(2 * math.pi * number)
 
-    def _part_starts(self, turn: int) -> IntArray:
+    def _part_starts(self, number: int) -> IntArray:
         """First step of each part of a turn, and of the next turn."""
-        first, last = self.first_step(turn), self.first_step(turn + 1)
+        first, last = self.first_step(number), self.first_step(number + 1)
         times = np.linspace(first, last, 9) * self.stepper.dt
         rate = np.abs(self.rotation.acceleration(times) / self.rotation.speed(times)).max()
         parts = min(max(1, math.ceil(rate * (times[-1] - times[0]) / SPEED_SHARE)), MOST_PARTS)
@@ -194,10 +181,25 @@ def _arrivals(stepper: Stepper) -> FloatArray:
     return stepper.taps.timing.arrivals[: int(stepper.result.summary[3])].copy()
 
 
-def _joined(parts: list[TurnResult]) -> TurnResult:
-    """The result of a turn from those of its parts."""
-    taps = np.concatenate([part.taps for part in parts], axis=1)
-    summary = np.sum([part.summary for part in parts], axis=0)
-    summary[2] = max(part.summary[2] for part in parts)
-    orbit = np.sum([part.orbit for part in parts], axis=0)
-    return parts[0]._replace(taps=taps, summary=summary, orbit=orbit)
+def _joined(parts: list[Turn]) -> Turn:
+    """A turn of its parts."""
+    results = [part.result for part in parts]
+    summary = np.sum([result.summary for result in results], axis=0)
+    summary[2] = max(result.summary[2] for result in results)
+    result = results[0]._replace(
+        taps=np.concatenate([result.taps for result in results], axis=1),
+        summary=summary,
+        orbit=np.sum([result.orbit for result in results], axis=0),
+    )
+    return replace(
+        parts[0],
+        code=parts[-1].code,
+        step=parts[-1].step,
+        opening=parts[-1].opening,
+        result=result,
+        touches=[touches for part in parts for touches in part.touches],
+        arrivals=np.concatenate([part.arrivals for part in parts]),
+        frames=TurnFrames(
+            np.concatenate([part.frames.step for part in parts]), np.concatenate([part.frames.z for part in parts])
+        ),
+    )

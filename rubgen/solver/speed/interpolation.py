@@ -14,12 +14,9 @@ from numpy.polynomial import Chebyshev
 from rubgen.arrays import FloatArray, frozen
 from rubgen.linalg.block_kernels import Product
 from rubgen.linalg.blocks import aligned, padded
-from rubgen.reduction.model import SpinningSystem
 from rubgen.solver.scheme.free_step_kernels import Scheme
 from rubgen.solver.scheme.speed_part import SpeedPart
 
-SystemAt = Callable[[float, float], SpinningSystem]
-"""The system at a speed in rad/s and an acceleration in rad/s2."""
 NODES = 12
 """Chebyshev speeds. C and K are polynomials in Omega, and Omega dt is small in A = M / dt^2 + C / (2 dt): from 3,000 to
 12,000 rev/min the preset's matrices come out right to rounding (tests/solver/test_following.py)."""
@@ -43,7 +40,7 @@ def lagrange_weights(nodes: FloatArray, at: FloatArray) -> FloatArray:
     return np.asarray(np.prod((at[:, None, None] - others) / (nodes[:, None] - others), axis=2))
 
 
-class Following:
+class SpeedInterpolation:
     """The parts of a stepper between `speeds` (NODES,), made by `part_at(speed, acceleration)`.
 
     `acceleration` in rad/s2 is the largest one that comes, of either sign. Only what changes is interpolated.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from rubgen.arrays import FloatArray
@@ -51,3 +53,19 @@ def closing_ramp(share: FloatArray) -> FloatArray:
     """1 - (10 x^3 - 15 x^4 + 6 x^5) for x clipped to [0, 1]: from one to zero with continuous second derivative."""
     x = np.clip(share, 0.0, 1.0)
     return np.asarray(1 - x**3 * (10 - 15 * x + 6 * x**2))
+
+
+@dataclass(frozen=True)
+class Closing:
+    """How the surface, opened at the start of a run, closes."""
+
+    opening: float
+    """Opening at the start, m."""
+    turns: int
+    """Turns after which it is closed."""
+
+    def after(self, turns: FloatArray) -> FloatArray:
+        """Opening in m so many turns, which rise, after the start."""
+        if turns[0] >= self.turns:
+            return np.zeros(len(turns))
+        return self.opening * closing_ramp(turns / self.turns)

@@ -26,6 +26,7 @@ from rubgen.labels.motion.lyapunov import Exponent, lyapunov
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver.integrate import integrate
 from rubgen.solver.observers.companion_kernels import bring_back
+from rubgen.solver.wants import Wants
 from rubgen.units import rev_per_min
 from validation.verification.chaos.flow_kernels import lorenz_steps
 from validation.verification.contact.impact_oscillator import REGULAR, RESTITUTION, free_flight, orbit_in_closed_form
@@ -142,7 +143,7 @@ def rub_exponent(steps: int) -> float:
     idle = np.arange(2, 5)
     C[idle, idle] = 1500.0
     operation = Operation(speed_rpm=rev_per_min(SPEED), steps_per_turn=steps, settle_turns=150, record_turns=RECORD)
-    response = integrate(replace(system, C=C), operation, ContactLaw(friction=FRICTION), twin=True)
+    response = integrate(replace(system, C=C), operation, ContactLaw(friction=FRICTION), Wants(companion=True))
     exponent = lyapunov(response.twin_growth)
     return exponent.per_turn if exponent else np.nan
 

@@ -1,0 +1,55 @@
+"""Which observers a run has."""
+
+from __future__ import annotations
+
+import math
+
+from rubgen.scenario.rotation import Rotation
+from rubgen.solver.observers.companion import CompanionGrowth, piece_ends
+from rubgen.solver.observers.observer import Observer
+from rubgen.solver.observers.orbit import Orbit
+from rubgen.solver.observers.orders import SpeedHistory, WindowOrders
+from rubgen.solver.observers.sections import Sections
+from rubgen.solver.observers.symmetry import Symmetry
+from rubgen.solver.observers.tail import Tail
+from rubgen.solver.observers.touches import TouchKeeper
+from rubgen.solver.observers.track import TrackKeeper
+from rubgen.solver.speed.driver import SpeedDriver
+from rubgen.solver.wants import Wants
+
+LEAST_TAIL_TURNS = 100
+
+
+def chosen_observers(driver: SpeedDriver, record: int, wants: Wants) -> list[Observer]:
+    """The observers of a record of so many turns; the driver's stepper leaves the snapshots that they need."""
+    stepper, steady = driver.stepper, driver.rotation.is_steady
+    observers: list[Observer] = [
+        Tail(wants.taps, tail_turns(driver, record, wants)),
+        Sections(record, len(stepper.system.M)),
+        TouchKeeper(stepper, record),
+        TrackKeeper(driver, record, record - math.floor(_signal_turns(driver.rotation, record, wants.tail_seconds))),
+        Orbit(LEAST_TAIL_TURNS if steady else None),
+    ]
+    if not steady:
+        return [*observers, SpeedHistory(driver, record)]
+    symmetry = Symmetry(stepper)
+    observers += [WindowOrders(*stepper.result.taps.shape), symmetry]
+    if wants.companion:
+        observers.append(CompanionGrowth(stepper, record))
+    pieces = piece_ends(stepper.steps) if wants.companion else ()
+    stepper.take_snapshots(sorted({*symmetry.steps, *pieces}))
+    return observers
+
+
+def tail_turns(driver: SpeedDriver, record: int, wants: Wants) -> int:
+    """How many turns the taps cover."""
+    asked = math.ceil(wants.tail_seconds * driver.rotation.fastest / (2 * math.pi))
+    return min(max(LEAST_TAIL_TURNS, asked), driver.settle + record)
+
+
+def _signal_turns(rotation: Rotation, record: int, seconds: float) -> float:
+    """How many turns the last `seconds` of a record of so many turns hold."""
+    if rotation.is_steady:
+        return seconds * rotation.fastest / (2 * math.pi)
+    end = rotation.time_of(2 * math.pi * record)
+    return record - float(rotation.angle(max(end - seconds, 0.0))) / (2 * math.pi)

@@ -1,0 +1,80 @@
+"""The balance of the scheme's energy identity over a run."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from rubgen.contact.liner_kernels import WORK
+from rubgen.solver.response import EnergyBook
+from rubgen.solver.scheme.energy_kernels import (
+    ABSOLUTE,
+    CIRCULATORY,
+    CONTACT,
+    DAMPING,
+    DRIVE_LIMIT,
+    FRICTION,
+    NORMAL,
+    SPEED_CHANGE,
+    UNBALANCE,
+)
+from rubgen.solver.scheme.stepper import Stepper
+from rubgen.solver.scheme.support_kernels import ANISOTROPY, FILM, FILM_LOSS, GRAVITY
+
+ROUNDING_SHARE = 1e-6
+"""Energies below this share of their summed absolute terms are rounding to eight digits."""
+
+
+class EnergyIdentity:
+    """How well a stepper keeps the energy identity, from its present state on."""
+
+    def __init__(self, stepper: Stepper) -> None:
+        self.stepper, self.start_energy = stepper, stepper.energy()
+        self.largest_energy = abs(self.start_energy)
+        self.rounding_energy = ROUNDING_SHARE * gross_energy(stepper)
+
+    def residual(self) -> float:
+        """|E - E_start - works| over the summed absolute works, or over the largest |E| where no work is done.
+
+        At a critical speed the rub-free motion has no energy in the turning frame: there its rounding stands for it.
+        """
+        works, energy = self.stepper.state.works, self.stepper.energy()
+        self.largest_energy = max(self.largest_energy, abs(energy))
+        done = works[UNBALANCE] + works[DAMPING] + works[CIRCULATORY] + works[CONTACT] + works[SPEED_CHANGE]
+        done += self.stepper.state.support.works[:FILM_LOSS].sum()
+        scale = max(float(works[ABSOLUTE]), self.largest_energy, self.rounding_energy)
+        return abs(energy - self.start_energy - float(done)) / scale if scale > 0 else 0.0
+
+    def result(self) -> dict[str, Any]:
+        """The balance as `EnergyBook`."""
+        works = [float(work) for work in self.stepper.state.works]
+        support = [float(work) for work in self.stepper.state.support.works]
+        wear = 0.0 - float(self.stepper.state.wear.sums[WORK])
+        energy = EnergyBook(
+            start=self.start_energy,
+            end=self.stepper.energy(),
+            unbalance=works[UNBALANCE],
+            damping=works[DAMPING],
+            circulatory=works[CIRCULATORY],
+            anisotropy=support[ANISOTROPY],
+            film=support[FILM],
+            gravity=support[GRAVITY],
+            contact=works[CONTACT],
+            normal_loss=works[NORMAL],
+            friction_loss=works[FRICTION],
+            wear_loss=wear,
+            drive_contact_work=works[CONTACT] - works[NORMAL] - works[FRICTION] - wear,
+            drive_contact_limit=works[DRIVE_LIMIT],
+            film_loss=support[FILM_LOSS],
+            speed_change=works[SPEED_CHANGE],
+            absolute_work=works[ABSOLUTE],
+            residual=self.residual(),
+        )
+        return {"energy": energy}
+
+
+def gross_energy(stepper: Stepper) -> float:
+    """Sum of |q_i K_ij q_j| / 2 in the present state, J."""
+    q = np.abs(stepper.coordinates.now)
+    return 0.5 * float(q @ np.abs(stepper.system.K) @ q)

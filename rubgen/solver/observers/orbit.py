@@ -1,0 +1,30 @@
+"""Means of the disk centre's motion."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.solver.speed.turn import Turn
+
+
+class Orbit:
+    """Keeps the orbit's means of the last so many turns of the record, of all with None."""
+
+    def __init__(self, turns: int | None) -> None:
+        self.means: deque[FloatArray] = deque(maxlen=turns)
+
+    def start(self) -> None:
+        """Nothing to do."""
+
+    def turn(self, turn: Turn) -> None:
+        """Keep the means of a turn."""
+        if turn.number >= 0 and turn.recording:
+            self.means.append(turn.result.orbit / turn.result.taps.shape[1])
+
+    def result(self) -> dict[str, Any]:
+        """`orbit` (turns, 5)."""
+        return {"orbit": np.array(self.means).reshape(-1, 5)}

@@ -1,0 +1,37 @@
+"""State, impulse and steps with contact, once a turn."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from rubgen.solver.speed.turn import Turn
+
+
+class Sections:
+    """The Poincare section and the sums of each turn of a record of so many turns, `size` coordinates."""
+
+    def __init__(self, record: int, size: int) -> None:
+        self.section = np.zeros((record, 2, size))
+        self.impulse = np.zeros(record)
+        self.contact_steps = np.zeros(record, dtype=np.int64)
+
+    def start(self) -> None:
+        """Nothing to do."""
+
+    def turn(self, turn: Turn) -> None:
+        """Keep section, impulse and steps with contact."""
+        if turn.number >= 0:
+            result, row = turn.result, turn.number
+            self.section[row] = result.section
+            self.impulse[row], self.contact_steps[row] = result.summary[0], int(result.summary[1])
+
+    def result(self) -> dict[str, Any]:
+        """Sections, impulses and counts, one a turn."""
+        return {
+            "section_q": np.ascontiguousarray(self.section[:, 0]),
+            "section_v": np.ascontiguousarray(self.section[:, 1]),
+            "impulse_per_turn": self.impulse,
+            "contact_steps_per_turn": self.contact_steps,
+        }

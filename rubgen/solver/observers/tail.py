@@ -1,0 +1,52 @@
+"""Taps and passages under timing probes of the last turns."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.solver.response import TipArrivals
+from rubgen.solver.scheme.taps import sampled_taps, timing_taps
+from rubgen.solver.speed.turn import Turn
+from rubgen.taps import Tap
+
+
+class Tail:
+    """Keeps all taps of the last so many turns."""
+
+    def __init__(self, taps: tuple[Tap, ...], turns: int) -> None:
+        self.wanted = taps
+        self.taps: deque[FloatArray] = deque(maxlen=turns)
+        self.arrivals: deque[FloatArray] = deque(maxlen=turns)
+
+    def start(self) -> None:
+        """Nothing to do: the tail may reach back into the settling."""
+
+    def turn(self, turn: Turn) -> None:
+        """Keep the taps of a turn that has made them."""
+        if turn.recording:
+            self.taps.append(turn.result.taps.copy())
+            self.arrivals.append(turn.arrivals)
+
+    def result(self) -> dict[str, Any]:
+        """Taps and arrivals by their names."""
+        sampled = sampled_taps(self.wanted)
+        tail = np.concatenate([np.zeros((len(sampled), 0)), *self.taps], axis=1)
+        return {
+            "taps": {tap.name: np.ascontiguousarray(tail[i]) for i, tap in enumerate(sampled)},
+            "arrivals": tip_arrivals(list(self.arrivals), [probe.name for probe in timing_taps(self.wanted)]),
+        }
+
+
+def tip_arrivals(arrivals: list[FloatArray], names: list[str]) -> dict[str, TipArrivals]:
+    """Arrivals (each array (any, 4): number of the probe, blade, step, displacement) by probe, in order of time."""
+    rows = np.concatenate([np.zeros((0, 4)), *arrivals])
+    seen = {}
+    for number, name in enumerate(names):
+        own = rows[rows[:, 0] == number]
+        own = own[np.argsort(own[:, 2], kind="stable")]
+        seen[name] = TipArrivals(blade=own[:, 1].astype(np.int64), step=own[:, 2].copy(), displacement=own[:, 3].copy())
+    return seen

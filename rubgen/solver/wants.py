@@ -1,0 +1,31 @@
+"""What a run is integrated of, and what its response must hold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from rubgen.reduction.model import SpinningSystem
+from rubgen.taps import DEFAULT_TAPS, Tap
+
+
+class SpeedModel(Protocol):
+    """Makes the system at any speed, as `reduction.ReducedModel` does."""
+
+    def at_speed(self, speed: float, acceleration: float = 0.0) -> SpinningSystem:
+        """The system at a speed in rad/s and an acceleration in rad/s2."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wants:
+    """What a response must hold beside what each holds; nothing here changes the motion."""
+
+    tail_seconds: float = 0.0
+    """Seconds that the taps cover, 100 turns at least; they may reach back before the record, not before the start."""
+    sample_rate_hz: float = 0.0
+    """The sensors' rate, which the steps must feed 2.56 times."""
+    companion: bool = False
+    """Whether a companion trajectory runs beside the record, for the Lyapunov exponent; at a steady speed only."""
+    taps: tuple[Tap, ...] = DEFAULT_TAPS
+    """The taps (`rubgen.taps`); the response holds each by its name."""
