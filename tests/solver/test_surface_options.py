@@ -138,7 +138,7 @@ def test_a_recipe_asks_for_the_options_and_is_told_what_is_wrong_with_them():
         ({"surface": "round"}, "contact.surface = 'round': unknown value; allowed: smooth, chords"),
         (
             {"liner": {**liner, "thickness_m": 0.0}},
-            "contact.liner.thickness_m = 0: must be above 0; change the value",
+            "contact.liner.thickness_m = 0: must be at least 1e-07 and at most 100; change the value",
         ),
         (
             {"liner": {**liner, "bins": 10}},
