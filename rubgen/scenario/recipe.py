@@ -204,7 +204,8 @@ def parse_recipe(
     if runs is not None:
         data = {**data, "runs": checked_runs(runs)}
     recipe = validated(source, data, TypeAdapter(Recipe))
-    if data != recipe.model_dump(mode="json"):  # a manifest has every key of every profile
+    if not any(data == recipe.model_dump(mode="json", exclude_none=short) for short in (True, False)):
+        # The recipe of a manifest has every key of every profile.
         check_used(f"{source}: ", data)
     recipe._folder = folder or Path()
     check_recipe(recipe, source)

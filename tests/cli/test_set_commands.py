@@ -35,7 +35,7 @@ def generate(run, make_synthetic_run, tmp_path, monkeypatch):
 def test_generate_says_what_it_made(generate, tmp_path):
     code, output, errors = generate()
     made, motion, failed, *look = output.splitlines()
-    assert (code, made) == (0, f"{tmp_path / 'set'}: 3 runs, 3 of them new: 2 ok, 1 diverged; 0 rub, 2 do not")
+    assert (code, made) == (0, f"{tmp_path / 'set'}: 3 runs, 3 new: 2 ok, 1 diverged; 0 rub, 2 do not")
     assert motion == "  motion: 2 period-1"
     assert failed == "  1 diverged, such as run-000002: in turn 7"
     assert any(line.endswith(f"verify {tmp_path / 'set'}") for line in look)
@@ -45,7 +45,7 @@ def test_generate_says_what_it_made(generate, tmp_path):
 def test_only_a_set_that_was_verified_is_called_so():
     outcome = Outcome(rub=2, no_rub=1, motion={"chaotic": 2, "period-1": 1}, failures=())
     made = Generated(directory=Path("set"), runs=3, made=0, status={"ok": 3}, outcome=outcome)
-    assert next(_what_was_made(made)) == "set: 3 runs, 0 of them new: 3 ok; 2 rub, 1 do not"
+    assert next(_what_was_made(made)) == "set: 3 runs, 0 new: 3 ok; 2 rub, 1 do not"
     verified = replace(made, verified=True)
     assert next(_what_was_made(verified)) == "set: 3 runs, nothing to do, verified: 3 ok; 2 rub, 1 do not"
 
@@ -127,7 +127,7 @@ def test_ctrl_c_says_how_to_go_on(generate, run, tmp_path, monkeypatch):
         told = run(command, directory)[2]
         assert told.endswith("it is unfinished; the `rubgen generate` command that began it makes the rest\n")
     assert f"interrupted; 1 finished runs are kept in {tmp_path / 'set'}: the same command makes the rest" in errors
-    assert ": 3 runs, 2 of them new: " in generate()[1].splitlines()[0]
+    assert ": 3 runs, 2 new: " in generate()[1].splitlines()[0]
 
 
 @pytest.mark.parametrize("content", ["[]", "no json", '{"recipe": {"name": "free"}}'])

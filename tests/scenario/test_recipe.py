@@ -176,8 +176,9 @@ def test_whatever_stands_in_vary_either_works_or_is_refused_in_one_line(table):
 
 
 @pytest.mark.parametrize("operation", [{}, {"profile": "run-up", "end_speed_rpm": 12000, "duration_s": 2}])
-def test_the_recipe_of_a_manifest_is_a_recipe(operation):
-    """It has the keys of every profile."""
+@pytest.mark.parametrize("exclude_none", [True, False])
+def test_the_recipe_of_a_manifest_is_a_recipe(operation, exclude_none):
+    """It has the keys of every profile, without those that are None."""
     data = {"name": "a", "runs": 1, "machine": "zeng2019", "operation": operation}
-    recorded = json.loads(json.dumps(parse_recipe(data).model_dump(mode="json")))
-    assert parse_recipe(recorded).model_dump(mode="json") == recorded
+    recorded = json.loads(json.dumps(parse_recipe(data).model_dump(mode="json", exclude_none=exclude_none)))
+    assert parse_recipe(recorded).model_dump(mode="json", exclude_none=exclude_none) == recorded

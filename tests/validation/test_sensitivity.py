@@ -189,7 +189,7 @@ def test_page_names_every_other_speed_and_impulse(rub):
     ]
     text = page({"casing_modes": made_up_results(rub)}, pairs)
     assert "equal at 2 of 3 speeds, 66.7 %" in " ".join(text.split())
-    assert "at 1 of these speeds the label changes by itself" in " ".join(text.split())
+    assert "at 1 of these speeds the label changes without a change of the step" in " ".join(text.split())
     assert "Only 3 of the 105 speeds are finished" in text
     (row,) = [line for line in text.splitlines() if line.startswith("| 7120 |")]
     (header,) = [line for line in text.splitlines() if "next record" in line and line.startswith("|")]

@@ -129,7 +129,7 @@ def test_the_search_writes_its_evidence(tmp_path, monkeypatch):
     assert "| 0.1 | 0.013 to 0.015 | 270.0 to 274.0 |" in text
     assert "| Figure 9 | The drawn shapes of the casing's eleven modes. | unknowable | unknowable |" in text
     assert "| chaotic everywhere |  |  |  | 16 of 22 | 7 of 18 |" in text
-    assert "more than that it is chaotic" in text
+    assert "candidate matches more than chaos" in text
     assert load_machine(str(found.machine)).casing.width_m == pytest.approx(0.26662 / 5)
     assert len(json.loads((tmp_path / "fit" / "fit.json").read_text())) == 30
     assert found.made == 30 + 3 + 1
