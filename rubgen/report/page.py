@@ -57,10 +57,7 @@ def render_report(directory: Path) -> str:
     good = data.ok
     if good.empty:
         raise UserError(f"{directory}: no run is good, so there is nothing to show; see `rubgen info {directory}`")
-    examples, replays = example_runs(good), {}
-    for done, run_id in enumerate(examples):
-        count(done, len(examples))
-        replays[run_id] = find_replay(directory, run_id).replay
+    replays = _replays(directory, example_runs(good))
     first = next(iter(replays.values()))
     environment = Environment(loader=PackageLoader("rubgen.report", "."), autoescape=True, undefined=StrictUndefined)
     identity = data.manifest.identity
@@ -86,6 +83,20 @@ def render_report(directory: Path) -> str:
         problems=verify(directory),
         files=len(data.manifest.files),
     )
+
+
+def _replays(directory: Path, examples: list[str]) -> dict[str, Replay]:
+    """The examples that can be read. The checks on the page name a damaged file. Raise UserError if none can be."""
+    replays, problem = dict[str, Replay](), UserError(f"{directory}: no example can be read")
+    for done, run_id in enumerate(examples):
+        count(done, len(examples))
+        try:
+            replays[run_id] = find_replay(directory, run_id).replay
+        except UserError as error:
+            problem = error
+    if not replays:
+        raise problem
+    return replays
 
 
 def example_runs(good: pd.DataFrame) -> list[str]:
