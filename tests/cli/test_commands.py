@@ -269,8 +269,8 @@ def test_a_folder_is_never_replaced(run, tmp_path):
 
 @pytest.mark.parametrize("name", ["Ελλάδα", "Größe-日本"])
 def test_a_name_that_stdout_cannot_encode_costs_nothing(name, tmp_path):
-    code = f"import sys, rubgen.cli.printing as p; from rubgen.cli import app, main; app.app.command(lambda: p.say({name!r}),"
-    code += " name='x'); main(['x'])"
+    code = "import sys, rubgen.cli.printing as p; from rubgen.cli import app, main; "
+    code += f"app.app.command(lambda: p.say({name!r}), name='x'); main(['x'])"
     environment = os.environ | {"PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"}
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment)
     assert (done.returncode, done.stderr) == (0, "")
