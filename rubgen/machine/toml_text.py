@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from datetime import date, time
 from numbers import Integral, Real
@@ -23,8 +24,14 @@ def toml_text(value: object, levels: int = LEVELS) -> str:
     if levels == 0 and isinstance(value, Mapping | list | tuple):
         return "..."
     if isinstance(value, Mapping):
-        pairs = ", ".join(f"{key} = {toml_text(each, levels - 1)}" for key, each in value.items())
+        pairs = ", ".join(f"{_key_text(key)} = {toml_text(each, levels - 1)}" for key, each in value.items())
         return f"{{ {pairs} }}" if pairs else "{}"
     if isinstance(value, list | tuple):
         return f"[{', '.join(toml_text(each, levels - 1) for each in value)}]"
     return repr(value)
+
+
+def _key_text(key: object) -> str:
+    """A key as it is where TOML allows that, else in quotes with its control characters escaped."""
+    text = str(key)
+    return text if re.fullmatch(r"[A-Za-z0-9_-]+", text) else repr(text)

@@ -284,3 +284,11 @@ def test_of_a_thousand_names_forty_are_listed():
     assert text.startswith("did you mean acc_99")
     assert text.endswith("acc_39 and 960 more")
     assert nearest("b", names[:40]).endswith("acc_38, acc_39")
+
+
+@pytest.mark.parametrize("key", ["\n", "a\r\nb", "", "two words"])
+def test_a_key_that_toml_would_quote_is_shown_in_quotes(key):
+    with pytest.raises(UserError) as told:
+        parse_recipe({**MINIMAL, "name": {key: None}}, source="r.toml")
+    assert f"name = {{ {key!r} = None }}: must be a text" in str(told.value)
+    assert "\n" not in str(told.value)
