@@ -13,7 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 from rubgen.errors import UserError
 from rubgen.machine.schema_nodes import Path, SchemaNodes, bounds_in_words
 from rubgen.machine.sentences import DECIMAL_COMMA, OWN, sentence
-from rubgen.machine.toml_text import toml_text
+from rubgen.machine.toml_text import key_text, toml_text
 
 T = TypeVar("T")
 UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
@@ -107,7 +107,7 @@ def nearest(name: str, known: list[str]) -> str:
 
 def key_name(path: Path) -> str:
     """A path as it stands in TOML, `blades.material`; a part that is no bare key is quoted."""
-    return ".".join(str(part) if re.fullmatch(r"[A-Za-z0-9_-]{1,60}", str(part)) else _cut(repr(part)) for part in path)
+    return ".".join(_cut(key_text(part)) for part in path)
 
 
 @dataclass(frozen=True, kw_only=True)

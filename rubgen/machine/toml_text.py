@@ -24,14 +24,14 @@ def toml_text(value: object, levels: int = LEVELS) -> str:
     if levels == 0 and isinstance(value, Mapping | list | tuple):
         return "..."
     if isinstance(value, Mapping):
-        pairs = ", ".join(f"{_key_text(key)} = {toml_text(each, levels - 1)}" for key, each in value.items())
+        pairs = ", ".join(f"{key_text(key)} = {toml_text(each, levels - 1)}" for key, each in value.items())
         return f"{{ {pairs} }}" if pairs else "{}"
     if isinstance(value, list | tuple):
         return f"[{', '.join(toml_text(each, levels - 1) for each in value)}]"
     return repr(value)
 
 
-def _key_text(key: object) -> str:
-    """A key as it is where TOML allows that, else in quotes with its control characters escaped."""
+def key_text(key: object) -> str:
+    """A key as it stands in TOML: bare where that is allowed, else in quotes with control characters escaped."""
     text = str(key)
     return text if re.fullmatch(r"[A-Za-z0-9_-]+", text) else repr(text)
