@@ -23,7 +23,7 @@ def generate_command(recipe: Path | None, out: Path, runs: int | None, workers: 
             made = generate(recipe, out, runs=runs, workers=workers, progress=not as_json)
     except KeyboardInterrupt:
         sys.stderr.write(
-            f"rubgen: interrupted; {finished_runs(out)} finished runs are kept in {out}: "
+            f"rubgen: interrupted; kept in {out}: {counted(finished_runs(out), 'finished run')}; "
             "the same command makes the rest\n"
         )
         return 130

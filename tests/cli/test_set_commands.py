@@ -126,7 +126,7 @@ def test_ctrl_c_says_how_to_go_on(generate, run, tmp_path, monkeypatch):
     for command in ("verify", "label", "report"):
         told = run(command, directory)[2]
         assert told.endswith("it is unfinished; the `rubgen generate` command that began it makes the rest\n")
-    assert f"interrupted; 1 finished runs are kept in {tmp_path / 'set'}: the same command makes the rest" in errors
+    assert f"interrupted; kept in {tmp_path / 'set'}: 1 finished run; the same command makes the rest" in errors
     assert ": 3 runs, 2 new: " in generate()[1].splitlines()[0]
 
 
