@@ -9,6 +9,7 @@ import pytest
 from rubgen.cli.generating import _what_was_made
 from rubgen.dataset.making.generate import Generated
 from rubgen.dataset.making.outcome import Outcome
+from rubgen.progress import COMPILING
 from rubgen.solver.response import Status
 
 
@@ -16,6 +17,7 @@ from rubgen.solver.response import Status
 def generate(run, make_synthetic_run, tmp_path, monkeypatch):
     """Runs `rubgen generate` for three runs without contact, the last of which diverges."""
     monkeypatch.setattr("rubgen.dataset.making.generate.warm_up", lambda *_: [])
+    monkeypatch.setattr("rubgen.jit.kernels_are_compiled", lambda: True)
     template = make_synthetic_run(contact=False, seconds=0.1)
 
     def simulate(scenario):
@@ -40,6 +42,11 @@ def test_generate_says_what_it_made(generate, tmp_path):
     assert failed == "  1 diverged, such as run-000002: in turn 7"
     assert any(line.endswith(f"verify {tmp_path / 'set'}") for line in look)
     assert errors == "rubgen: simulate\n"  # no terminal: the step at once, then a line a minute
+
+
+def test_the_first_run_on_a_machine_says_that_it_compiles(generate, monkeypatch):
+    monkeypatch.setattr("rubgen.jit.kernels_are_compiled", lambda: False)
+    assert generate()[2] == f"rubgen: {COMPILING}\nrubgen: simulate\n"
 
 
 def test_only_a_set_that_was_verified_is_called_so():
