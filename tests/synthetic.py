@@ -15,7 +15,7 @@ from rubgen.scenario import Operation, Scenario, Sensing
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
 from rubgen.sensors.load import load_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
-from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status, TipArrivals, Track
+from rubgen.solver.response import ContactEvents, EnergyBalance, Response, Status, TipArrivals, Track
 from rubgen.taps import (
     CasingAcceleration,
     CentreDisplacement,
@@ -97,7 +97,7 @@ def _track(generator: np.random.Generator) -> Track:
 def _response(generator: np.random.Generator, scenario: Scenario, contact: bool) -> Response:
     speed = scenario.operation.speed_rad_per_s
     dt = 2 * np.pi / speed / STEPS
-    works = dict.fromkeys(EnergyBook.__dataclass_fields__, 1.0) | {"residual": 1e-13}
+    works = dict.fromkeys(EnergyBalance.__dataclass_fields__, 1.0) | {"residual": 1e-13}
     return Response(
         status=Status.OK,
         reason="",
@@ -112,7 +112,7 @@ def _response(generator: np.random.Generator, scenario: Scenario, contact: bool)
         impulse_per_turn=np.full(TURNS, 1.5 if contact else 0.0),
         contact_steps_per_turn=np.full(TURNS, 64 if contact else 0),
         events=_events(generator, 600 if contact else 0),
-        energy=EnergyBook(**works),
+        energy=EnergyBalance(**works),
         n_blades=BLADES,
         n_casing=11,
         arrivals=_arrivals(np.random.default_rng(5), scenario.sensing.set, speed, dt),

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from rubgen.arrays import FloatArray
 from rubgen.scenario.rotation import Rotation
-from rubgen.solver.response import ORDERS, ContactEvents, Course, EnergyBook, Response, Status
+from rubgen.solver.response import ORDERS, ContactEvents, Course, EnergyBalance, Response, Status
 
 CompactRecord = Mapping[str, npt.NDArray[Any]]
 
@@ -80,7 +80,7 @@ def response_of(kept: CompactRecord) -> Response:
         impulse_per_turn=kept["turn_impulse"].astype(np.float64),
         contact_steps_per_turn=kept["contact_steps"].astype(np.int64),
         events=_touches(kept),
-        energy=EnergyBook(**dict.fromkeys(EnergyBook.__dataclass_fields__, float("nan"))),
+        energy=EnergyBalance(**dict.fromkeys(EnergyBalance.__dataclass_fields__, float("nan"))),
         n_blades=blades,
         n_casing=casing,
         twin_growth=kept["growth"].astype(np.float64),

@@ -5,6 +5,6 @@
 `observers` (what is kept of a run). This file compiles nothing; the rooms bring their kernels with them.
 """
 
-from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status
+from rubgen.solver.response import ContactEvents, EnergyBalance, Response, Status
 
-__all__ = ["ContactEvents", "EnergyBook", "Response", "Status"]
+__all__ = ["ContactEvents", "EnergyBalance", "Response", "Status"]

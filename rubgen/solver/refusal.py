@@ -15,7 +15,7 @@ from rubgen.solver.linear.admissible import check_system
 from rubgen.solver.linear.rub_free import rub_free_motion
 from rubgen.solver.linear.stability import slowest_decay, steps_per_turn
 from rubgen.solver.observers.touches import contact_events
-from rubgen.solver.response import EnergyBook, Response, Status
+from rubgen.solver.response import EnergyBalance, Response, Status
 from rubgen.taps import DEFAULT_TAPS
 
 UNDYING_SHARE = 1e-6
@@ -24,7 +24,7 @@ MOTION_TOLERANCE = 1e-8
 """The share of force on O_d that may be unbalanced in the motion from which a run starts."""
 Refusal = tuple[Status, str]
 """Status and reason."""
-NO_ENERGY = EnergyBook(**dict.fromkeys(EnergyBook.__dataclass_fields__, 0.0))
+NO_ENERGY = EnergyBalance(**dict.fromkeys(EnergyBalance.__dataclass_fields__, 0.0))
 
 
 def no_response(

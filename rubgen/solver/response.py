@@ -69,7 +69,7 @@ class TipArrivals:
 
 
 @dataclass(frozen=True, kw_only=True)
-class EnergyBook:
+class EnergyBalance:
     """Works over the whole integration, in J, as the scheme books them.
 
     residual = |E_end - E_start - sum of works| / (sum of absolute works); the identity is exact but for rounding, and
@@ -192,7 +192,7 @@ class Response:
     impulse_per_turn: FloatArray
     contact_steps_per_turn: IntArray
     events: ContactEvents
-    energy: EnergyBook
+    energy: EnergyBalance
     n_blades: int
     n_casing: int
     track: Track | None = None

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status
+from rubgen.solver.response import ContactEvents, EnergyBalance, Response, Status
 
 SPEED = 2 * np.pi * 150.0
 BLADES, STATES, MODES = 36, 125, 11
@@ -87,7 +87,7 @@ def respond() -> Callable[..., Response]:
             impulse_per_turn=np.full(turns, 1.5 if contact else 0.0),
             contact_steps_per_turn=np.full(turns, steps // 4 if contact else 0, dtype=np.int64),
             events=touches or made_events(none, none, none, none, none),
-            energy=EnergyBook(**dict.fromkeys(EnergyBook.__dataclass_fields__, 0.0)),
+            energy=EnergyBalance(**dict.fromkeys(EnergyBalance.__dataclass_fields__, 0.0)),
             n_blades=BLADES,
             n_casing=MODES,
         )

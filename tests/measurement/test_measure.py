@@ -8,7 +8,7 @@ from rubgen.errors import UserError
 from rubgen.measurement import Recording, margin_seconds, measure
 from rubgen.measurement.once_per_rev import NOTCH_ANGLE
 from rubgen.scenario import Sensing
-from rubgen.solver.response import ContactEvents, EnergyBook, Response, Status
+from rubgen.solver.response import ContactEvents, EnergyBalance, Response, Status
 
 SPEED = 2 * np.pi * 150.0  # 9,000 rev/min
 STEPS = 1024
@@ -23,7 +23,7 @@ NO_EVENTS = ContactEvents(
     friction_loss=np.zeros(0),
     normal_loss=np.zeros(0),
 )
-NO_ENERGY = EnergyBook(**dict.fromkeys(EnergyBook.__annotations__, 0.0))
+NO_ENERGY = EnergyBalance(**dict.fromkeys(EnergyBalance.__annotations__, 0.0))
 
 
 def response_of(seconds: float, **signals: np.ndarray) -> Response:

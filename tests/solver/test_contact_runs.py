@@ -23,20 +23,20 @@ def test_the_rub_happens_and_the_identity_holds(rub):
     assert response.status is Status.OK
     assert np.all(response.impulse_per_turn > 1)
     assert np.all(response.contact_steps_per_turn > 50)
-    book = response.energy
-    works = book.unbalance + book.damping + book.circulatory + book.contact
-    assert abs(book.contact) > 1
-    assert abs(book.end - book.start - works) <= 1e-8 * book.absolute_work
+    balance = response.energy
+    works = balance.unbalance + balance.damping + balance.circulatory + balance.contact
+    assert abs(balance.contact) > 1
+    assert abs(balance.end - balance.start - works) <= 1e-8 * balance.absolute_work
     assert response.energy.residual < 1e-10
 
 
 def test_no_loss_is_ever_a_gain(rub):
     _, response = rub
-    book, events = response.energy, response.events
-    assert book.normal_loss < 0
-    assert book.friction_loss < 0
-    assert book.damping < 0
-    allowed = 1e-8 * book.absolute_work
+    balance, events = response.energy, response.events
+    assert balance.normal_loss < 0
+    assert balance.friction_loss < 0
+    assert balance.damping < 0
+    allowed = 1e-8 * balance.absolute_work
     assert events.normal_loss.max() <= allowed
     assert events.friction_loss.max() <= allowed
 

@@ -33,16 +33,16 @@ def test_the_rub_happens_and_every_work_is_booked(rub):
     case, run = rub
     assert run.status is Status.OK
     assert run.impulse_per_turn.min() > 0.1
-    book = run.energy
-    works = book.unbalance + book.damping + book.circulatory + book.contact
-    works += book.anisotropy + book.film + book.gravity
-    assert book.residual < 1e-11
-    assert abs(book.end - book.start - works) <= 1e-11 * book.absolute_work
-    share = 1e-7 * book.absolute_work
-    assert (abs(book.gravity) > share) is (case in ("gravity", "all"))
-    assert (abs(book.anisotropy) > share) is (case in ("springs", "dampers", "all"))
-    assert (abs(book.film) > share) is (case in ("film", "all"))
-    assert (book.film_loss < -share) is (case in ("film", "all"))
+    balance = run.energy
+    works = balance.unbalance + balance.damping + balance.circulatory + balance.contact
+    works += balance.anisotropy + balance.film + balance.gravity
+    assert balance.residual < 1e-11
+    assert abs(balance.end - balance.start - works) <= 1e-11 * balance.absolute_work
+    share = 1e-7 * balance.absolute_work
+    assert (abs(balance.gravity) > share) is (case in ("gravity", "all"))
+    assert (abs(balance.anisotropy) > share) is (case in ("springs", "dampers", "all"))
+    assert (abs(balance.film) > share) is (case in ("film", "all"))
+    assert (balance.film_loss < -share) is (case in ("film", "all"))
 
 
 @pytest.mark.parametrize("case", CASES)

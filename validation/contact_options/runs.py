@@ -10,7 +10,7 @@ from rubgen.arrays import FloatArray
 from rubgen.pipeline import Run
 from rubgen.scenario import ContactLaw, Liner, Scenario, make_scenario
 from rubgen.scenario.vary import vary
-from rubgen.solver import EnergyBook, Status
+from rubgen.solver import EnergyBalance, Status
 from rubgen.solver.response import WornLiner
 from validation.contact_options.blade_shortening import draw_in_matrix
 from validation.contact_options.draw_in import deflections, draw_in
@@ -48,7 +48,7 @@ class Found:
     shortened: float
     centre: FloatArray
     worn: WornLiner | None
-    energy: EnergyBook
+    energy: EnergyBalance
 
 
 def option_scenario(case: str, option: str) -> Scenario:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rubgen.contact.liner_kernels import WORK
-from rubgen.solver.response import EnergyBook
+from rubgen.solver.response import EnergyBalance
 from rubgen.solver.scheme.energy_kernels import (
     ABSOLUTE,
     CIRCULATORY,
@@ -47,11 +47,11 @@ class EnergyIdentity:
         return abs(energy - self.start_energy - float(done)) / scale if scale > 0 else 0.0
 
     def result(self) -> dict[str, Any]:
-        """The balance as `EnergyBook`."""
+        """The balance as `EnergyBalance`."""
         works = [float(work) for work in self.stepper.state.works]
         support = [float(work) for work in self.stepper.state.support.works]
         wear = 0.0 - float(self.stepper.state.wear.sums[WORK])
-        energy = EnergyBook(
+        energy = EnergyBalance(
             start=self.start_energy,
             end=self.stepper.energy(),
             unbalance=works[UNBALANCE],
