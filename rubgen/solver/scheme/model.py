@@ -127,7 +127,7 @@ def new_state(model: Model) -> State:
     """A state at rest, undeformed and unworn, without works so far."""
     return State(
         motions=(new_motion(model), new_motion(model), new_motion(model)),
-        contact=_contact_work(len(model.tip_compliance), len(model.casing_compliance)),
+        contact=new_contact_work(len(model.tip_compliance), len(model.casing_compliance)),
         support=SupportState(np.zeros((2, 2)), np.zeros((2, 2)), np.zeros((2, 2)), np.zeros(SUPPORT_WORKS)),
         wear=unworn(model.surface.liner),
         works=np.zeros(WORKS),
@@ -158,8 +158,8 @@ def _scratch(model: Model) -> Scratch:
     )  # fmt: skip
 
 
-def _contact_work(tip_coordinates: int, c: int) -> ContactWork:
-    """Arrays of the contact step of a number of tip coordinates and of casing modes."""
+def new_contact_work(tip_coordinates: int, c: int) -> ContactWork:
+    """Arrays of the contact step for a number of tip coordinates and of casing modes."""
     m = tip_coordinates // 3
     return ContactWork(
         casing=with_zeros(np.zeros(c)), bounds=np.full(padded(m), np.inf), psi=np.zeros(m), gap=np.zeros(m),
