@@ -1,7 +1,5 @@
 """Names for the array types that signatures use, and records whose arrays cannot be written."""
 
-from __future__ import annotations
-
 from typing import Any, TypeVar
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Short texts for large values: a notebook then shows one line in place of pages."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping
 from enum import Enum

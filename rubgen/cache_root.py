@@ -4,8 +4,6 @@ rubgen works without them. If the folder of the caches cannot be used, a private
 damaged file is made again. If no file can be written at all, each process makes everything. One warning says which.
 """
 
-from __future__ import annotations
-
 import atexit
 import hashlib
 import multiprocessing

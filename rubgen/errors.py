@@ -1,7 +1,5 @@
 """Errors that are addressed to the user."""
 
-from __future__ import annotations
-
 import errno
 import os
 import warnings

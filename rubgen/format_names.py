@@ -1,7 +1,5 @@
 """The names of the file formats. `rubgen.formats.<name>` is the format of that name."""
 
-from __future__ import annotations
-
 from typing import Literal, get_args
 
 FormatName = Literal["parquet", "mcap", "rrd"]

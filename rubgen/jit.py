@@ -5,8 +5,6 @@ another file; where it cannot write, it silently goes beside the sources; and it
 folder is named after all that compiled code comes from, and a file is believed only where its SHA-256 agrees.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import pickle

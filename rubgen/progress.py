@@ -3,8 +3,6 @@
 Nothing is shown outside of a block `with shown()`. Worker processes have no such block, so they stay silent.
 """
 
-from __future__ import annotations
-
 import sys
 import threading
 import time

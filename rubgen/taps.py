@@ -1,7 +1,5 @@
 """Taps: the true signals that the solver gives at every step, before any sensor sees them. One class a kind."""
 
-from __future__ import annotations
-
 from typing import Annotated, ClassVar
 
 from pydantic import Field

@@ -1,7 +1,5 @@
 """Units of the field beside SI: rev/min and g."""
 
-from __future__ import annotations
-
 import math
 from typing import TypeVar
 

@@ -1,7 +1,5 @@
 """The commands and their options. Each function imports its work when it is called."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`rubgen doctor`: whether this machine can do the main job, and with what."""
 
-from __future__ import annotations
-
 import os
 import platform
 import shutil

@@ -1,7 +1,5 @@
 """`rubgen figure` and `rubgen report`: pictures and the page of a data set."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from rubgen.cli.new_file import check_new_file, write_file

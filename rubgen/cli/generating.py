@@ -1,7 +1,5 @@
 """`rubgen generate`: progress for people, a summary for programs."""
 
-from __future__ import annotations
-
 import dataclasses
 import os
 import sys

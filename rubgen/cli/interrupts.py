@@ -1,7 +1,5 @@
 """Ctrl-C and a polite kill, which end every command in the same way."""
 
-from __future__ import annotations
-
 import signal
 import sys
 import threading

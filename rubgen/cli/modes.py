@@ -1,7 +1,5 @@
 """`rubgen modes`: size and natural frequencies of a machine."""
 
-from __future__ import annotations
-
 from rubgen.cli.printing import print_json, print_pairs, say
 from rubgen.machine import load_machine
 from rubgen.machine.load import file_named

@@ -1,7 +1,5 @@
 """Files that a command writes: refused before any work where they cannot be, then complete or not there at all."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

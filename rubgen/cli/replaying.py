@@ -1,7 +1,5 @@
 """`rubgen replay`: a run in the viewer, in the browser, or as a file or picture."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Run the command line and end the process. Every failure is one line on stderr."""
 
-from __future__ import annotations
-
 import io
 import os
 import sys

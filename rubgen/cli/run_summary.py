@@ -1,7 +1,5 @@
 """What one run gave, for people: a screen of sentences with units; programs get all labels by --json."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """`rubgen simulate`: one run, its labels, its file."""
 
-from __future__ import annotations
-
 from inspect import signature
 from pathlib import Path
 from typing import Any

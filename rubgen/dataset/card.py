@@ -1,7 +1,5 @@
 """The card of a data set: what it is, how to load it, what every column means, as the README.md that hubs read."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """The data set's description in Croissant 1.0 (JSON-LD), which machine-learning tools load."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Small files of a data set, and what keeps its directory clean."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from fnmatch import fnmatch

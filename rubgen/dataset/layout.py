@@ -1,7 +1,5 @@
 """Where the files of a data set stand."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The manifest: what a data set is made from, and the sha256 of what it holds."""
 
-from __future__ import annotations
-
 import hashlib
 import platform
 from collections.abc import Sequence
@@ -50,11 +48,11 @@ class Identity(BaseModel):
     sensors: dict[str, Any]
     packages: dict[str, str]
 
-    def same_recipe(self, other: Identity) -> bool:
+    def same_recipe(self, other: "Identity") -> bool:
         """Whether both describe the same data set, whatever the versions."""
         return (self.recipe, self.machine, self.sensors) == (other.recipe, other.machine, other.sensors)
 
-    def checked(self, source: str) -> Identity:
+    def checked(self, source: str) -> "Identity":
         """The same with every key in its place; UserError, beginning with `source`, where it is no identity."""
         if "rubgen" not in self.packages:
             raise UserError(f"{source}: identity.packages names no rubgen; {MAKE_AGAIN}")

@@ -1,7 +1,5 @@
 """Rows of single runs out of Parquet files that hold many."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from itertools import groupby

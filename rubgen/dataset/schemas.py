@@ -3,8 +3,6 @@
 `python -m rubgen.dataset.schemas DIRECTORY PAGE` writes the schemas into the directory and the tables into the page.
 """
 
-from __future__ import annotations
-
 import re
 import sys
 from pathlib import Path

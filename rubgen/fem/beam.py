@@ -4,8 +4,6 @@ Axes: x radial (along the blade), y tangential (e_z x e_x), z along the axis of 
 u_x, u_y, u_z, th_x, th_y, th_z. A point s = (0, y, z) of the section moves by u + th x s.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ Section matrices act on (u_x, u_y, u_z, th_x, th_y, th_z) of the centre line or 
 s = (0, y, z) moves by u + th x s. Each has the shape (..., 6, 6) for sections of shape (...).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The full finite-element blisk in the turning frame: disk centre, disk, blades and their couplings."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

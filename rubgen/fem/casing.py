@@ -1,7 +1,5 @@
 """The casing's full model: a closed ring of Timoshenko beams in its plane, on springs at its nodes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Penalty couplings of the blisk: disk centre to bore, blade root to rim; and what they carry."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.sparse as sp
 

@@ -1,7 +1,5 @@
 """The disk: its mesh of eight-node shells and its matrices of the turning frame."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Strain at the root of a blade from the displacements of its first element."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import FloatArray

@@ -5,8 +5,6 @@ turned copies of others (`ShellMesh.around`). Against shear locking th_x and th_
 (the heterosis idea of Hughes and Cohen 1978), which follows the nodes as in statics: q_54 = T q_48 in every matrix.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Interpolation and strains of the eight-node shell at its quadrature points, for all elements at once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -30,7 +28,7 @@ class ShellMesh:
     around: int = 1
 
     @property
-    def firsts(self) -> ShellMesh:
+    def firsts(self) -> "ShellMesh":
         """The elements that are no turned ones."""
         return ShellMesh(self.nodes, self.elements[:: self.around], self.thickness)
 

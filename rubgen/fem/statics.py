@@ -1,7 +1,5 @@
 """Sparse direct solves with the full blisk."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import SuperLU, splu

@@ -1,7 +1,5 @@
 """The columns of `runs.parquet` and of the data files: names, types, units, meaning, in their fixed order."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum

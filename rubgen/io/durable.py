@@ -1,7 +1,5 @@
 """Files that are either complete and durable or not there."""
 
-from __future__ import annotations
-
 import errno
 import os
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """JSON of unknown origin."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

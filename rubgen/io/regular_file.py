@@ -1,7 +1,5 @@
 """The border of every reader: what is read is a regular file."""
 
-from __future__ import annotations
-
 import stat
 from pathlib import Path
 

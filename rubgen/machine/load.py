@@ -1,7 +1,5 @@
 """Machines from TOML files: the presets that come with rubgen, and the user's own of the same form."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import re

@@ -3,8 +3,6 @@
 All lengths in m, stiffness in N/m or N m/rad, density in kg/m3. Values are checked when an object is made.
 """
 
-from __future__ import annotations
-
 from typing import Annotated, Self
 
 import numpy as np

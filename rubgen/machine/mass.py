@@ -1,7 +1,5 @@
 """The mass of a blisk from its sizes, without a mesh."""
 
-from __future__ import annotations
-
 import math
 
 from rubgen.machine.machine import Machine

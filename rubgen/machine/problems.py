@@ -1,7 +1,5 @@
 """Data that does not fit its type, as one line for the user: file, key, value, what is allowed, how to mend it."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

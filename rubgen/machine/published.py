@@ -1,7 +1,5 @@
 """What Zeng et al. (2019) published of their machine, doi 10.1016/j.ast.2019.105481, to compare with."""
 
-from __future__ import annotations
-
 BLISK_HZ = {
     1: 68.55,
     2: 68.55,

@@ -4,8 +4,6 @@ A value beyond its bounds is an error. A value outside of its `Usual` range is a
 `rubgen.scenario.plausible` warns of it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cache

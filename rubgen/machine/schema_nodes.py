@@ -1,7 +1,5 @@
 """What a type allows at a place of its data, read from its JSON schema: keys, and bounds of a number."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from typing import Any

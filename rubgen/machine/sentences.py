@@ -1,7 +1,5 @@
 """One plain sentence for each way in which a value can fail to fit its type."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from difflib import get_close_matches

@@ -1,7 +1,5 @@
 """TOML files of users: found, read and turned into values, or refused in one line that says how to mend them."""
 
-from __future__ import annotations
-
 import codecs
 import os
 import re

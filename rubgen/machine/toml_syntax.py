@@ -1,7 +1,5 @@
 """What to do about a line that is not TOML, from the line itself: the words of the parser speak to programmers."""
 
-from __future__ import annotations
-
 import re
 
 from rubgen.machine.sentences import DECIMAL_COMMA

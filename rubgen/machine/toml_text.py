@@ -1,7 +1,5 @@
 """Values as they stand in TOML: what a message shows of a user's file."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from datetime import date, time

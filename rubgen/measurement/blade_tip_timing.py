@@ -1,7 +1,5 @@
 """Blade tip timing: when each blade passes each probe, and the tip deflections that follow from it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

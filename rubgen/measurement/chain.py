@@ -1,7 +1,5 @@
 """The measuring chain that every channel passes: anti-alias filter and resampling, then noise, range and ADC."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Contact events in the time of a recording."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Minimum and maximum of signals in equal bins: a preview that keeps every spike."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Faults of a measuring chain: gain and offset errors, drift, noise, dropouts."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import FloatArray

@@ -1,7 +1,5 @@
 """What happens to a signal before the anti-alias filter: the sensor's own dynamics and its saturation."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import FloatArray

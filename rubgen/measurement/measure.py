@@ -1,7 +1,5 @@
 """All channels and events of one run."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import FloatArray

@@ -1,7 +1,5 @@
 """The motion of the whole machine in the time of a recording: dense about the hardest touch, once a turn elsewhere."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The once-per-revolution pulse: a notch on the shaft passes a probe at theta = 0."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import FloatArray

@@ -1,7 +1,5 @@
 """Compiled loop of the sample-rate conversion."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 

@@ -1,7 +1,5 @@
 """Sampled sensors: from the tap to the recorded channel."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Where the shaft stands: angle over the steps of a tail, and when theta passes 0."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

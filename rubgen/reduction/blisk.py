@@ -1,7 +1,5 @@
 """Two-step Craig-Bampton reduction of the blisk, its basis at rest."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The reduced blisk on disk, by a hash of everything that enters it and of the code that makes it."""
 
-from __future__ import annotations
-
 import hashlib
 import io
 import json

@@ -1,7 +1,5 @@
 """The casing's reduction: its first modes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import lru_cache
 

@@ -7,8 +7,6 @@ solves thus stand for 6 + 6 N, whatever the blades are like. Tests: tests/reduct
 path.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

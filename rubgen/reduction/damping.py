@@ -1,7 +1,5 @@
 """Damping constants of a machine from its damping ratios."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import FloatArray

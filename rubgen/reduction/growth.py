@@ -1,7 +1,5 @@
 """Steady centrifugal displacement of the blade tips, from the full model."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

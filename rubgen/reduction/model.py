@@ -1,7 +1,5 @@
 """The reduced system at one speed, as the solver takes it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The reduced machine: matrices as functions of speed."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Figures by name: of a machine, of a run, or of a whole data set."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What a machine and a run take of memory, from their numbers alone: known before anything is built."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -4,8 +4,6 @@ In a recipe a plain number fixes the value; a table with one key draws it. A new
 field of its own name, and one line in `Distribution`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from numbers import Real

@@ -1,7 +1,5 @@
 """What a scenario must satisfy beyond the ranges of its single values, checked before anything is computed."""
 
-from __future__ import annotations
-
 import math
 
 from rubgen.errors import UserError

@@ -1,7 +1,5 @@
 """A single run by its keys: the same names, units and checks for Python and for `rubgen simulate`."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from functools import wraps

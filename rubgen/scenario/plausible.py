@@ -4,8 +4,6 @@ Each check yields "key = value: why; was ... meant?". A question names the unit 
 left out where none would. Limits are far outside of what machines are like, and far inside of what can be computed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple

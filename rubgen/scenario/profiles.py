@@ -1,7 +1,5 @@
 """What the keys of an operation's speed profile must be together."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A recipe: the TOML file from which a whole data set follows, run by run."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import replace

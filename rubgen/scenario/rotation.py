@@ -1,7 +1,5 @@
 """How the blisk turns: speed and angle as exact functions of time."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

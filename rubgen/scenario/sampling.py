@@ -1,7 +1,5 @@
 """Points of the scrambled Sobol sequence, one for each run, so that any run can be made alone."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import FloatArray

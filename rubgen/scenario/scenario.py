@@ -3,8 +3,6 @@
 Frozen and validated on creation, like the machine.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Literal
 

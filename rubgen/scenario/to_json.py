@@ -1,7 +1,5 @@
 """A scenario as a dictionary that JSON can hold."""
 
-from __future__ import annotations
-
 from typing import cast
 
 from pydantic import TypeAdapter

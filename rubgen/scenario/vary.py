@@ -4,8 +4,6 @@ A new key is one entry at the end of `PARAMETERS`: each entry owns one dimension
 must not change.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from operator import attrgetter

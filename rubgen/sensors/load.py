@@ -1,7 +1,5 @@
 """Sensor sets from TOML files: those that come with rubgen, and the user's own of the same form."""
 
-from __future__ import annotations
-
 from functools import cache
 from pathlib import Path
 from typing import Any

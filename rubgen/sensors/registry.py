@@ -1,7 +1,5 @@
 """Every kind of sensor, one line each."""
 
-from __future__ import annotations
-
 from typing import Annotated, get_args
 
 from pydantic import Field

@@ -1,7 +1,5 @@
 """What a sensor is: its values, the true signal that it takes, and the description of its channel."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass as plain_dataclass
 from typing import Annotated, ClassVar, Self

@@ -1,7 +1,5 @@
 """All sensors of a machine."""
 
-from __future__ import annotations
-
 from collections import Counter
 from typing import Annotated, Self
 

@@ -1,7 +1,5 @@
 """Colours that people with colour-blindness tell apart (Okabe, Ito 2008), the same in every picture."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 

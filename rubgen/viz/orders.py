@@ -1,7 +1,5 @@
 """Order spectra of recorded channels along a run: from samples in time to amplitudes over orders of rotation."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

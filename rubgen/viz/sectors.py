@@ -1,7 +1,5 @@
 """Sectors of the casing."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import FloatArray, IntArray

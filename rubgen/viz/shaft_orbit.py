@@ -1,7 +1,5 @@
 """The recorded orbit of the disk centre, from whatever pair of proximity probes there is."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import FloatArray

@@ -1,7 +1,5 @@
 """Rerun's viewer on one replay, until it is closed."""
 
-from __future__ import annotations
-
 import os
 import socket
 import subprocess

@@ -1,7 +1,5 @@
 """How the Rerun viewer arranges a replay."""
 
-from __future__ import annotations
-
 import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb

@@ -1,7 +1,5 @@
 """Whether labels, parameters and recorded signals of a run fit each other."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Iterator

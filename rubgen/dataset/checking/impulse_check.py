@@ -1,7 +1,5 @@
 """Whether labels of windows fit the run's, and the impulse the contact force as far as that channel resolves it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import Any

@@ -1,7 +1,5 @@
 """The files of a data set beside what its manifest lists: whole, damaged, missing, or not of the set."""
 
-from __future__ import annotations
-
 import os
 import stat
 from collections.abc import Iterable, Iterator

@@ -1,7 +1,5 @@
 """Whether the amplitudes of orders fit a recorded channel, as far as it resolves them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """Labels of a data set made again from what is kept with each run, and how they differ from those that it holds."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What is made from the data files of a set, made again where it is lost or damaged."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Whether the Parquet files of a set can be read to the last page and fit each other and the manifest."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 

@@ -1,7 +1,5 @@
 """Whether a data set is what its manifest says, readable to the last page, and consistent in itself."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

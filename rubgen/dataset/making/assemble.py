@@ -1,7 +1,5 @@
 """From finished runs to the files of the set, a few runs in memory at a time."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path

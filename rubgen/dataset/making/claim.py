@@ -1,7 +1,5 @@
 """Whose an output directory is: empty, ours and unfinished, ours and finished, or not ours."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """A lock between processes, on any file system."""
 
-from __future__ import annotations
-
 import errno
 from pathlib import Path
 

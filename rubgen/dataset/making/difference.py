@@ -1,7 +1,5 @@
 """How the data set that is there differs from the one that is asked for."""
 
-from __future__ import annotations
-
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Identity
 from rubgen.errors import UserError

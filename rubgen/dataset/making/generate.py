@@ -1,7 +1,5 @@
 """A recipe becomes a data set: every run made once, whatever stops the work in between."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass

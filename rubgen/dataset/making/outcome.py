@@ -1,7 +1,5 @@
 """How the runs of a set ended: counts of rub and of classes of motion, and why some failed."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass

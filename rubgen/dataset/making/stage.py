@@ -1,7 +1,5 @@
 """One run of a data set: simulated, and its files written so that they are complete or not there."""
 
-from __future__ import annotations
-
 from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A data set that was begun and is not finished."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

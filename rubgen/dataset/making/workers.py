@@ -1,7 +1,5 @@
 """Worker processes that stop when they are told to, and when the process that started them is gone."""
 
-from __future__ import annotations
-
 import math
 import multiprocessing
 import os

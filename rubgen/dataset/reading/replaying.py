@@ -1,7 +1,5 @@
 """Runs to look at: out of a data set, an MCAP file, or made again from their scenario."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass

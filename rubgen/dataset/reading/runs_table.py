@@ -1,7 +1,5 @@
 """`runs.parquet` as it must be: its runs are the manifest's, and good runs have the labels that every view needs."""
 
-from __future__ import annotations
-
 from collections import Counter
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What is wrong with an MCAP file, in sentences."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What an MCAP file holds, by name; what a file of rubgen must hold, as types."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from dataclasses import dataclass, field
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Scenario, labels and descriptions of channels in an MCAP file, as types."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from typing import Annotated, Any

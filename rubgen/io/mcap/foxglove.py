@@ -1,7 +1,5 @@
 """Foxglove's protobuf schema of a moving frame, as Rerun and Foxglove read it from `/tf`."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from typing import Any

@@ -1,7 +1,5 @@
 """The motion of the machine back from the messages of an MCAP file."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.io.mcap.content import McapContent, check_order, rows

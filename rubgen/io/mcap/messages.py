@@ -1,7 +1,5 @@
 """The protobuf messages of rubgen's MCAP files, defined once: classes, descriptor and .proto text follow from it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 from typing import Any

@@ -3,8 +3,6 @@
 JointState carries a name for each line, but Rerun opens an empty view for each of its two unused fields.
 """
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Sequence
 

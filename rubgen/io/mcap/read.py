@@ -1,7 +1,5 @@
 """Runs back from MCAP files, with every checksum checked."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 from pathlib import Path

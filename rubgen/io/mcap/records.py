@@ -4,8 +4,6 @@ The mcap package parses single records. It trusts their lengths, leaves the summ
 to whatever size the chunk names.
 """
 
-from __future__ import annotations
-
 import struct
 import zlib
 from collections.abc import Iterator

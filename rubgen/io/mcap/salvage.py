@@ -1,7 +1,5 @@
 """What can still be read of a damaged MCAP file, and what is lost."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from rubgen.errors import UserError

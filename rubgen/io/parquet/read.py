@@ -1,12 +1,11 @@
 """Tables back from Parquet files: correct, or one line that names the file."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
+from typing import Self
 
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -46,7 +45,7 @@ class ParquetSource:
                 self._stream, metadata=facts, read_dictionary=self._text, page_checksum_verification=True
             )
 
-    def __enter__(self) -> ParquetSource:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(

@@ -3,8 +3,6 @@
 One row a run; arrays stand as flat lists, row after row.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

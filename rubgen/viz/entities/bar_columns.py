@@ -1,7 +1,5 @@
 """Bars that change over time, as one column: Rerun's own `BarChart.columns` takes one row alone."""
 
-from __future__ import annotations
-
 import numpy as np
 import pyarrow as pa
 import rerun as rr

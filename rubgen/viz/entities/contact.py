@@ -1,7 +1,5 @@
 """Touches as Rerun entities: points over time, and the map of blades and casing angles."""
 
-from __future__ import annotations
-
 import numpy as np
 import rerun as rr
 

@@ -1,7 +1,5 @@
 """Labels of a run as Rerun entities and properties."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

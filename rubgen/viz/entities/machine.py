@@ -1,7 +1,5 @@
 """The machine in 3D as Rerun entities: what moves is sent as few numbers, shapes once."""
 
-from __future__ import annotations
-
 import numpy as np
 import rerun as rr
 

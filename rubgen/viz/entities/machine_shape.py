@@ -5,8 +5,6 @@ One rule keeps contact true to the eye: the circle of the tip radius is drawn to
 touch in the run touch in the picture.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

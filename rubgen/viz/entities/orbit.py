@@ -1,7 +1,5 @@
 """The orbit of the disk centre on the time line, with its points once a turn."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Order spectra as Rerun entities: the one at the cursor as bars, all of them as a waterfall."""
 
-from __future__ import annotations
-
 import numpy as np
 import rerun as rr
 

@@ -1,7 +1,5 @@
 """Signals of a replay as Rerun entities: a preview of all, every sample about the hardest touch."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 import rerun as rr

@@ -1,7 +1,5 @@
 """Blade tip timing as Rerun entities."""
 
-from __future__ import annotations
-
 import numpy as np
 import rerun as rr
 

@@ -1,7 +1,5 @@
 """Sweeps of one parameter: where the motion is once a turn, and how fast neighbours part."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

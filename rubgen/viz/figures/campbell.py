@@ -1,7 +1,5 @@
 """Natural frequencies over the speed, with the orders that meet them."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

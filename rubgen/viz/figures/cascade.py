@@ -1,7 +1,5 @@
 """Order spectra of many runs, or of one run along its time, as one map."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

@@ -1,7 +1,5 @@
 """Where contact loads the casing, as a ring of bars."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator

@@ -1,7 +1,5 @@
 """Shapes of the first modes: the casing's ring, and the ring of the blade tips."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

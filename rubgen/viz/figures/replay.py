@@ -1,7 +1,5 @@
 """Figures of one run from what was recorded: they need no solver and work for files."""
 
-from __future__ import annotations
-
 from typing import cast
 
 import numpy as np
