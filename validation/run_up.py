@@ -69,14 +69,14 @@ def run_up_onset(model: ReducedModel, rate: float) -> Onset:
         settle_turns=SETTLE_TURNS,
     )
     response = integrate(model, operation, ContactLaw())
-    if response.course is None:
+    if response.changing_speed is None:
         raise ValueError(f"no run: {response.reason}")
     first = response.events.start_step.min() * response.dt
     predicted = predicted_onset(model, rate)
     wait = 60 / predicted / model.machine.casing.lobes
     return Onset(
         rate=rate,
-        measured=rev_per_min(float(response.course.rotation.speed(first))),
+        measured=rev_per_min(float(response.changing_speed.rotation.speed(first))),
         predicted=predicted,
         latest=predicted + rate * wait,
     )

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from rubgen.arrays import FloatArray
 from rubgen.scenario.rotation import Rotation
-from rubgen.solver.response import ORDERS, ContactEvents, Course, EnergyBalance, Response, Status
+from rubgen.solver.response import ORDERS, ChangingSpeed, ContactEvents, EnergyBalance, Response, Status
 
 CompactRecord = Mapping[str, npt.NDArray[Any]]
 
@@ -44,7 +44,7 @@ def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
     `contact_steps` once a turn, `orbit` in each of the last 100 or, of a changing speed, of all; what `TOUCHES` names
     once a touch; `scalars` (9,); `rotation` (5,) and `turn_steps` of a changing speed, empty otherwise.
     """
-    course = response.course
+    changing = response.changing_speed
     fractions = response.fractions
     kept: dict[str, npt.NDArray[Any]] = {
         "scalars": np.array([getattr(response, name) for name in SCALARS], dtype=np.float64),
@@ -54,8 +54,10 @@ def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
         "turn_impulse": response.impulse_per_turn.astype(np.float64),
         "contact_steps": response.contact_steps_per_turn.astype(np.int32),
         "orbit": response.orbit.astype(np.float32),
-        "rotation": np.array([getattr(course.rotation, name) for name in ROTATION] if course else [], dtype=np.float64),
-        "turn_steps": (course.turn_steps if course else np.zeros(0)).astype(np.int32),
+        "rotation": np.array(
+            [getattr(changing.rotation, name) for name in ROTATION] if changing else [], dtype=np.float64
+        ),
+        "turn_steps": (changing.turn_steps if changing else np.zeros(0)).astype(np.int32),
     }
     return kept | {name: getattr(response.events, name).astype(kind) for name, kind in TOUCHES.items()}
 
@@ -85,7 +87,7 @@ def response_of(kept: CompactRecord) -> Response:
         n_casing=casing,
         twin_growth=kept["growth"].astype(np.float64),
         fractions=fractions,
-        course=_course(kept, int(scalars["record_turns"])),
+        changing_speed=_changing_speed(kept, int(scalars["record_turns"])),
         orbit=kept["orbit"].astype(np.float64),
         blisk_mass=scalars["blisk_mass"],
         free_penetration=scalars["free_penetration"],
@@ -95,15 +97,17 @@ def response_of(kept: CompactRecord) -> Response:
 def in_record_precision(response: Response) -> Response:
     """The response in the precision of the compact record, with its taps and orders."""
     rounded = response_of(compact_record(response))
-    return replace(rounded, taps=response.taps, course=response.course, window_orders=response.window_orders)
+    return replace(
+        rounded, taps=response.taps, changing_speed=response.changing_speed, window_orders=response.window_orders
+    )
 
 
-def _course(kept: CompactRecord, turns: int) -> Course | None:
+def _changing_speed(kept: CompactRecord, turns: int) -> ChangingSpeed | None:
     if not kept["rotation"].size:
         return None
     rotation = Rotation(**dict(zip(ROTATION, kept["rotation"].tolist(), strict=True)))
     orders = np.zeros((turns, 0, ORDERS), dtype=np.complex128)
-    return Course(rotation=rotation, turn_steps=kept["turn_steps"].astype(np.int64), orders=orders)
+    return ChangingSpeed(rotation=rotation, turn_steps=kept["turn_steps"].astype(np.int64), orders=orders)
 
 
 def _touches(kept: CompactRecord) -> ContactEvents:

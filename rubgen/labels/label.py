@@ -20,18 +20,18 @@ from rubgen.solver.response import Response
 def label(response: Response) -> Labels:
     """The labels of a run that ended with status OK; every one is defined in docs/labels.md.
 
-    Contact and motion come from the whole record, orders from its last 100 turns: nothing depends on how long the
-    tail of the taps is, but for the number of windows whose amplitudes are told. Labels are those of the true response,
-    before any sensor. A motion is safely told from 500 recorded turns on (recipes ask for them); fewer are taken too,
-    down to 32, where UserError is raised. Where the speed changes, see `course`. A response without taps, as it is
-    kept, has no orders: everything else is the same.
+    Labels describe the true response, before any sensor. Contact and motion come from the whole record. Orders come
+    from its last 100 turns. Only the number of windows with amplitudes depends on the length of the taps.
+
+    A record of 500 turns or more has a safe class of motion. Fewer than 32 turns raise UserError. For a changing speed
+    see `speed_history`. A response read from a compact record has no taps: its labels are the same without orders.
     """
     response = in_record_precision(response)
     contact_steps = int(response.contact_steps_per_turn.sum())
     rub = contact_steps > 0
     zones = contact_zones(by_angle(response), steps_per_turn=response.steps_per_turn)
     exponent = lyapunov_of(response)
-    history = speed_history(response) if response.course else None
+    history = speed_history(response) if response.changing_speed else None
     parts = changing_motion(rub) if history else motion(response, exponent)
     cut = windows(response)
     orders = changing_orders(cut) if history else harmonics(response)

@@ -14,7 +14,7 @@ from rubgen.labels.motion.classify import LEAST_TURNS, Motions, motion
 from rubgen.labels.motion.decision import AT_REST, FORCED, MotionClass
 from rubgen.labels.motion.section import casing_rests
 from rubgen.labels.windows import Windows, turn_times, window_edges
-from rubgen.solver.response import WINDOW_TURNS, ContactEvents, Course, Response
+from rubgen.solver.response import WINDOW_TURNS, ChangingSpeed, ContactEvents, Response
 
 MOTION_TURNS = 64
 """A window is long enough for a motion class where the speed of so many turns about it hardly changes."""
@@ -50,16 +50,16 @@ class SpeedHistory:
 
 
 def speed_history(response: Response) -> SpeedHistory:
-    """The labels over time of a response with a course; see docs/labels.md."""
-    course = response.course
-    if course is None:
-        raise ValueError("a steady speed has no course")
+    """The labels over time of a response whose speed changes; see docs/labels.md."""
+    changing = response.changing_speed
+    if changing is None:
+        raise ValueError("a steady speed has no history")
     touched = response.events.start_step.size > 0
     ends = response.events.start_step + response.events.steps
     return SpeedHistory(
-        changes=_changes(response, course, window_edges(response)),
-        onset_speed=_speed_at(course, response.events.start_step.min() * response.dt) if touched else None,
-        end_of_rub_speed=_speed_at(course, ends.max() * response.dt) if touched else None,
+        changes=_changes(response, changing, window_edges(response)),
+        onset_speed=_speed_at(changing, response.events.start_step.min() * response.dt) if touched else None,
+        end_of_rub_speed=_speed_at(changing, ends.max() * response.dt) if touched else None,
     )
 
 
@@ -94,23 +94,23 @@ def _rms(values: FloatArray) -> FloatArray:
 
 def by_angle(response: Response) -> ContactEvents:
     """Touches with steps of equal angle, `steps_per_turn` a turn, in place of those of equal time."""
-    course, events = response.course, response.events
-    if course is None:
+    changing, events = response.changing_speed, response.events
+    if changing is None:
         return events
     scale = response.steps_per_turn / (2 * np.pi)
-    start = scale * course.rotation.angle(events.start_step * response.dt)
-    end = scale * course.rotation.angle((events.start_step + events.steps) * response.dt)
+    start = scale * changing.rotation.angle(events.start_step * response.dt)
+    end = scale * changing.rotation.angle((events.start_step + events.steps) * response.dt)
     first = np.rint(start).astype(np.int64)
     return replace(events, start_step=first, steps=np.maximum(1, np.rint(end).astype(np.int64) - first))
 
 
-def _speed_at(course: Course, time: float) -> float:
-    return float(course.rotation.speed(time))
+def _speed_at(changing: ChangingSpeed, time: float) -> float:
+    return float(changing.rotation.speed(time))
 
 
-def _changes(response: Response, course: Course, edges: IntArray) -> tuple[Change, ...]:
+def _changes(response: Response, changing: ChangingSpeed, edges: IntArray) -> tuple[Change, ...]:
     """One change where rub or motion differs from what was before, and the first turn."""
-    times, rubs = turn_times(response, course), _rubbing(response)
+    times, rubs = turn_times(response, changing), _rubbing(response)
     edges = np.union1d(edges, np.flatnonzero(np.diff(rubs)) + 1)
     states = [_state(response, a, b, rub=bool(rubs[a])) for a, b in pairwise(edges.tolist())]
     begins = [0, *(i for i in range(1, len(states)) if states[i] != states[i - 1])]
@@ -122,7 +122,7 @@ def _changes(response: Response, course: Course, edges: IntArray) -> tuple[Chang
         changes.append(
             Change(
                 time=time,
-                speed=_speed_at(course, time),
+                speed=_speed_at(changing, time),
                 rub=rub,
                 impulse=float(response.impulse_per_turn[turns].mean()),
                 blisk=blisk,
@@ -173,10 +173,10 @@ def _state(response: Response, first: int, last: int, *, rub: bool) -> tuple[boo
 
 def _drift(response: Response, first: int, last: int) -> float:
     """Range of the speed over these turns, as a share of it."""
-    course = response.course
-    if course is None:
+    changing = response.changing_speed
+    if changing is None:
         return 0.0
-    speeds = course.rotation.speed(course.turn_steps[first : last + 1] * response.dt)
+    speeds = changing.rotation.speed(changing.turn_steps[first : last + 1] * response.dt)
     return float(np.ptp(speeds) / speeds.mean())
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from rubgen.arrays import ComplexArray, FloatArray, IntArray
 from rubgen.labels.harmonics import MARKED_TAP, OPPOSITE_TAP
-from rubgen.solver.response import WINDOW_TURNS, Course, Response
+from rubgen.solver.response import WINDOW_TURNS, ChangingSpeed, Response
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,16 +36,16 @@ def window_edges(response: Response) -> IntArray:
 
 def windows(response: Response) -> Windows:
     """The windows of a record at a steady or a changing speed."""
-    edges, course = window_edges(response), response.course
-    times = turn_times(response, course)[edges]
-    if course is None:
+    edges, changing = window_edges(response), response.changing_speed
+    times = turn_times(response, changing)[edges]
+    if changing is None:
         steps = response.steps_per_turn * np.diff(edges)
         orders = dict(zip(response.taps, response.window_orders.transpose(1, 0, 2), strict=False))
         means, scatter = {tap: np.abs(each) for tap, each in _with_fields(orders).items()}, {}
     else:
-        steps = np.diff(course.turn_steps[edges])
+        steps = np.diff(changing.turn_steps[edges])
         parts = [slice(first, last) for first, last in pairwise(edges.tolist())]
-        turns = _with_fields({tap: course.orders[:, i] for i, tap in enumerate(response.taps)})
+        turns = _with_fields({tap: changing.orders[:, i] for i, tap in enumerate(response.taps)})
         means = {tap: np.abs([x[part].mean(axis=0) for part in parts]) for tap, x in turns.items()}
         scatter = {tap: np.array([_standard_error(x[part]) for part in parts]) for tap, x in turns.items()}
     return Windows(
@@ -58,12 +58,12 @@ def windows(response: Response) -> Windows:
     )
 
 
-def turn_times(response: Response, course: Course | None) -> FloatArray:
+def turn_times(response: Response, changing: ChangingSpeed | None) -> FloatArray:
     """When each turn begins, and the record ends (record_turns + 1,), s."""
     turns = range(response.record_turns + 1)
-    if course is None:
+    if changing is None:
         return np.asarray(response.turn_seconds * np.array(turns))
-    return np.array([course.rotation.time_of(2 * np.pi * turn) for turn in turns])
+    return np.array([changing.rotation.time_of(2 * np.pi * turn) for turn in turns])
 
 
 def _with_fields(taps: dict[str, ComplexArray]) -> dict[str, ComplexArray]:

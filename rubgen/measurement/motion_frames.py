@@ -63,15 +63,15 @@ def motion_frames(response: Response, recording: Recording) -> MotionFrames | No
 
 def _turn_steps(response: Response) -> IntArray:
     """The first step of each turn of the record."""
-    if response.course is not None:
-        return response.course.turn_steps[:-1]
+    if response.changing_speed is not None:
+        return response.changing_speed.turn_steps[:-1]
     return np.arange(response.record_turns) * response.steps_per_turn
 
 
 def _angle(step: IntArray, response: Response) -> FloatArray:
     """Of the blisk at steps, in [0, 2 pi)."""
-    if response.course is not None:
-        return np.asarray(np.mod(response.course.rotation.angle(step * response.dt), 2 * np.pi))
+    if response.changing_speed is not None:
+        return np.asarray(np.mod(response.changing_speed.rotation.angle(step * response.dt), 2 * np.pi))
     steps = response.steps_per_turn
     return 2 * np.pi * (step % steps) / steps
 

@@ -14,9 +14,9 @@ from rubgen.solver.response import Response
 def shaft_angle(response: Response, positions: npt.NDArray[np.floating] | npt.NDArray[np.integer]) -> FloatArray:
     """Theta in [0, 2 pi) at positions, counted in steps from the start of the tail; exact at a changing speed too."""
     back = positions - response.tail_steps
-    if response.course is None:
+    if response.changing_speed is None:
         return in_turn(back * (2 * np.pi / response.steps_per_turn))
-    return in_turn(response.course.rotation.angle((response.record_steps + back) * response.dt))
+    return in_turn(response.changing_speed.rotation.angle((response.record_steps + back) * response.dt))
 
 
 def pulse_times(response: Response, first_angle: float, start: float, seconds: float) -> FloatArray:
@@ -24,9 +24,9 @@ def pulse_times(response: Response, first_angle: float, start: float, seconds: f
 
     `first_angle` is theta at time 0.
     """
-    if response.course is None:
+    if response.changing_speed is None:
         return arrival_times(first_angle, 2 * np.pi / response.turn_seconds, seconds)
-    rotation = response.course.rotation
+    rotation = response.changing_speed.rotation
     turns = rotation.angle(np.array([start, start + seconds])) / (2 * np.pi)
     each = [rotation.time_of(2 * np.pi * k) - start for k in range(math.floor(turns[0]), math.ceil(turns[1]) + 1)]
     times = np.array(each)

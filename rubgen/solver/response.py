@@ -138,7 +138,7 @@ class WornLiner:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Course:
+class ChangingSpeed:
     """A changing speed: `rotation` holds speed (rad/s) and angle over time, t = 0 at the first step of the record.
 
     Turn k of the record begins at step `turn_steps[k]` (record_turns + 1,), counted from that one: the step nearest to
@@ -174,8 +174,8 @@ class Response:
     they are not known, the latter at a changing speed too. `window_orders` (windows, taps, 20) are the complex
     amplitudes at k f_r of a steady run in windows of 16 turns, for all of `taps` in their order: the last windows of
     the record, those that the taps cover.
-    Of a changing speed, `course` says how it went; `speed` is then the record's mean, and `steps_per_turn` the number
-    of steps in a turn at the highest speed.
+    At a changing speed `changing_speed` has speed and angle over time; `speed` is then the record's mean, and
+    `steps_per_turn` the number of steps in a turn at the highest speed.
     When `status` is not OK, `reason` says where and by how much, and no array may be used as data.
     """
 
@@ -200,7 +200,7 @@ class Response:
     twin_growth: FloatArray = field(default_factory=lambda: np.zeros(0))
     fractions: FloatArray = field(default_factory=lambda: np.zeros((0, 2, 0)))
     arrivals: dict[str, TipArrivals] = field(default_factory=dict)
-    course: Course | None = None
+    changing_speed: ChangingSpeed | None = None
     orbit: FloatArray = field(default_factory=lambda: np.zeros((0, 5)))
     blisk_mass: float = float("nan")
     free_penetration: float = float("nan")
@@ -216,8 +216,8 @@ class Response:
     @property
     def record_steps(self) -> int:
         """Number of steps of the record."""
-        if self.course is not None:
-            return int(self.course.turn_steps[-1])
+        if self.changing_speed is not None:
+            return int(self.changing_speed.turn_steps[-1])
         return self.record_turns * self.steps_per_turn
 
     @property

@@ -30,7 +30,7 @@ def test_rub_begins_at_the_steady_onset(run):
 
 
 def test_pulses_and_the_pulse_channel_follow_the_speed(run):
-    recording, rotation = run.recording, run.response.course.rotation
+    recording, rotation = run.recording, run.response.changing_speed.rotation
     times = recording.once_per_rev + recording.start_seconds
     turns = rotation.angle(times) / (2 * np.pi)
     np.testing.assert_allclose(turns, np.rint(turns), atol=1e-9)
@@ -47,7 +47,7 @@ def test_pulses_and_the_pulse_channel_follow_the_speed(run):
 def test_the_channels_show_the_orbit_at_the_angle_of_the_record(run):
     """Before the onset the disk centre whirls with the unbalance: its channel is the section turned by theta."""
     recording, response = run.recording, run.response
-    rotation, centre = response.course.rotation, 3 * response.n_blades
+    rotation, centre = response.changing_speed.rotation, 3 * response.n_blades
     sample = round((0.05 - recording.start_seconds) * recording.sample_rate_hz)
     theta = float(rotation.angle(recording.start_seconds + sample / recording.sample_rate_hz))
     q = response.section_q[int(theta / (2 * np.pi)), centre : centre + 2]

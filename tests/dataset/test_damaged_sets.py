@@ -89,7 +89,7 @@ def test_a_condition_sees_the_runs_and_no_file(small_set, tmp_path):
         ("turn_impulse", lambda old: old[1:], "run-000001: turn_impulse has 109 of 110 turns"),
         ("turn_impulse", lambda old: [float("nan"), *old[1:]], "run-000001: turn_impulse is not finite"),
         ("blade", lambda old: [*old, 1], "run-000001: lists of touches differ"),
-        ("rotation", [1.0], "run-000001: the course of the speed"),
+        ("rotation", [1.0], "run-000001: rotation and turn_steps do not fit"),
     ],
 )
 def test_sections_that_do_not_fit_are_named(column, value, message, copied_set):

@@ -14,7 +14,7 @@ from rubgen.labels.to_json import labels_to_json, remade_labels, window_amplitud
 from rubgen.labels.windows import windows
 from rubgen.scenario.rotation import Rotation
 from rubgen.solver.observers.orders import turn_orders
-from rubgen.solver.response import Course
+from rubgen.solver.response import ChangingSpeed
 from rubgen.units import rev_per_min
 
 TURNS, STEPS = 80, 256
@@ -40,7 +40,7 @@ def ramp(respond, events):
         dt=dt,
         impulse_per_turn=impulse,
         contact_steps_per_turn=contact,
-        course=Course(rotation=ROTATION, turn_steps=np.array(edges), orders=np.array(orders)),
+        changing_speed=ChangingSpeed(rotation=ROTATION, turn_steps=np.array(edges), orders=np.array(orders)),
     )
 
 
@@ -58,7 +58,8 @@ def test_rub_begins_with_its_first_touch_and_ends_after_its_last(ramp):
 
 def test_a_rub_within_the_first_window_does_not_begin_before_its_first_touch(ramp):
     shifted = replace(
-        ramp.events, start_step=ramp.events.start_step - ramp.course.turn_steps[30] + ramp.course.turn_steps[5]
+        ramp.events,
+        start_step=ramp.events.start_step - ramp.changing_speed.turn_steps[30] + ramp.changing_speed.turn_steps[5],
     )
     contact = np.roll(ramp.contact_steps_per_turn, -25)
     found = speed_history(replace(ramp, events=shifted, contact_steps_per_turn=contact)).changes
@@ -73,7 +74,7 @@ def test_windows_tell_speed_impulse_and_orders(ramp):
     assert np.all(np.diff(found.speed) > 0)
     # Turns 30 and 31 of the second window rub, all of the third, 48 and 49 of the fourth.
     np.testing.assert_allclose(found.impulse, [0, 2 * 0.5 / 16, 0.5, 2 * 0.5 / 16, 0])
-    counts = np.diff(ramp.course.turn_steps[[0, 16, 32, 48, 64, 80]])
+    counts = np.diff(ramp.changing_speed.turn_steps[[0, 16, 32, 48, 64, 80]])
     np.testing.assert_allclose(found.duty, [0, 6, 48, 6, 0] / counts)
     np.testing.assert_allclose(found.orders["casing_acc_0"][:, 1], 5.0, rtol=0.02)
     assert found.orders["casing_acc_0"][:, [0, 2, 3]].max() < 0.1
@@ -83,7 +84,7 @@ def test_the_scatter_of_a_window_is_the_standard_error_of_its_mean(ramp):
     """Of noise whose |x|^2 has the mean 2 about a steady 5: sqrt(2 / 16), whatever the 5 is."""
     rng = np.random.default_rng(3)
     noise = rng.normal(size=(TURNS, 1, 20)) + 1j * rng.normal(size=(TURNS, 1, 20))
-    found = windows(replace(ramp, course=replace(ramp.course, orders=5.0 + noise)))
+    found = windows(replace(ramp, changing_speed=replace(ramp.changing_speed, orders=5.0 + noise)))
     rms = np.sqrt(np.mean(found.scatter["casing_acc_0"] ** 2))
     assert rms == pytest.approx(np.sqrt(2 / 16), rel=0.06)
     away = found.orders["casing_acc_0"] - 5.0  # of a mean far from zero: the error along it, half of both
@@ -98,7 +99,7 @@ def test_touches_by_angle_have_one_spacing_a_turn(ramp):
 def test_the_labels_of_the_record_hold_its_course(ramp):
     labels = label(ramp)
     assert labels.motion is Motion.UNDECIDED
-    assert labels.contact_duty == pytest.approx(60 / ramp.course.turn_steps[-1])
+    assert labels.contact_duty == pytest.approx(60 / ramp.changing_speed.turn_steps[-1])
     assert 2 in labels.orders_present
     plain = labels_to_json(labels)
     assert plain["change_rub"] == [0, 1, 0]
@@ -120,10 +121,10 @@ def test_a_slow_fluctuation_in_contact_is_told_its_motion_where_the_speed_hardly
     for swing, expected in ((0.2, Motion.PERIOD_1), (20.0, Motion.UNDECIDED)):
         rotation = Rotation(start=400.0, end=400.0, swing=swing, period=0.5)
         response = respond(turns=128, steps=STEPS)
-        course = Course(
+        changing = ChangingSpeed(
             rotation=rotation,
             turn_steps=np.array([round(rotation.time_of(2 * np.pi * k) / response.dt) for k in range(129)]),
             orders=np.zeros((128, 1, 20), complex),
         )
-        found = speed_history(replace(response, course=course))
+        found = speed_history(replace(response, changing_speed=changing))
         assert {change.motion for change in found.changes} == {expected}

@@ -92,7 +92,7 @@ def inertial_orbit(rotation, damping, times):
 
 
 def record_taps(response):
-    steps = response.course.turn_steps[-1]
+    steps = response.changing_speed.turn_steps[-1]
     return response.taps["blisk_x"][-steps:] + 1j * response.taps["blisk_y"][-steps:]
 
 
@@ -103,7 +103,7 @@ def test_a_rotor_passes_its_critical_speed_as_in_the_inertial_frame(start, end):
         profile=profile, speed_rpm=rev_per_min(start), end_speed_rpm=rev_per_min(end), duration_s=0.6, settle_turns=3
     )
     response = run_jeffcott(operation, 0.02)
-    rotation, dt = response.course.rotation, response.dt
+    rotation, dt = response.changing_speed.rotation, response.dt
     orbit = record_taps(response)
     times = np.arange(orbit.size) * dt
     exact = inertial_orbit(rotation, 0.02, times)[0]
@@ -123,18 +123,18 @@ def test_the_track_holds_the_true_motion_of_whole_turns():
     )
     build = jeffcott_at(0.02)
     response = integrate(At(build), operation, ContactLaw(), Wants(tail_seconds=0.1))
-    track, course, orbit = response.track, response.course, record_taps(response)
-    turn = np.searchsorted(course.turn_steps, track.step, side="right") - 1
-    begin = course.turn_steps[-1] - 0.1 / response.dt
+    track, changing, orbit = response.track, response.changing_speed, record_taps(response)
+    turn = np.searchsorted(changing.turn_steps, track.step, side="right") - 1
+    begin = changing.turn_steps[-1] - 0.1 / response.dt
     assert np.unique(turn).tolist() == list(range(turn[0], turn[0] + 8))
     assert np.unique(turn, return_counts=True)[1].min() >= 32
-    assert course.turn_steps[turn[0] - 1] < begin <= course.turn_steps[turn[0]] == track.step[0]
-    theta = course.rotation.angle(track.step * response.dt)
+    assert changing.turn_steps[turn[0] - 1] < begin <= changing.turn_steps[turn[0]] == track.step[0]
+    theta = changing.rotation.angle(track.step * response.dt)
     place = np.exp(1j * theta) * (track.q[:, 3] + 1j * track.q[:, 4])
     np.testing.assert_allclose(place, orbit[track.step], rtol=0, atol=1e-12 * np.abs(orbit).max())
     assert track.tip_growth.shape == (response.record_turns, 1, 3)
 
-    start = (course.turn_steps[-1] - 1) * response.dt - 0.1  # as of sensors that record the last 0.1 s
+    start = (changing.turn_steps[-1] - 1) * response.dt - 0.1  # as of sensors that record the last 0.1 s
     silent = Channel(
         name="", unit="", quantity="", axis="", location="", range_min=0.0, range_max=0.0, resolution=0.0,
         noise_rms=0.0,
@@ -151,12 +151,12 @@ def test_the_track_holds_the_true_motion_of_whole_turns():
     place = np.exp(1j * frames.angle) * (frames.centre[:, 0] + 1j * frames.centre[:, 1])
     seen = np.interp(step, np.arange(orbit.size), orbit)
     # Sections lie at theta = 0, up to half a step from the step that dates them.
-    turned = 0.6 * course.rotation.fastest * response.dt * np.abs(orbit).max()
+    turned = 0.6 * changing.rotation.fastest * response.dt * np.abs(orbit).max()
     np.testing.assert_allclose(place, seen, rtol=0, atol=turned)
 
     growth = np.arange(1.0, response.record_turns + 1)[:, None, None] * [1.0, 0.0, 0.0]  # of each turn its number
     grown = motion_frames(replace(response, track=replace(track, tip_growth=growth)), recording)
-    number = np.searchsorted(course.turn_steps, np.rint(step), side="right")
+    number = np.searchsorted(changing.turn_steps, np.rint(step), side="right")
     np.testing.assert_allclose((grown.tips - frames.tips)[:, 0, 0], number, rtol=0, atol=1e-9)
     assert len(set(number.tolist())) > 10
 
@@ -172,7 +172,7 @@ def test_the_growth_of_the_tips_in_the_track_follows_the_speed():
         return replace(build(speed, acceleration), tip_static=np.array([[1e-9 * speed**2, 0.0, 0.0]]))
 
     response = integrate(At(growing), operation, ContactLaw(), Wants(tail_seconds=0.05))
-    speed = response.course.rotation.speed(response.course.turn_steps[:-1] * response.dt)
+    speed = response.changing_speed.rotation.speed(response.changing_speed.turn_steps[:-1] * response.dt)
     np.testing.assert_allclose(response.track.tip_growth[:, 0, 0], 1e-9 * speed**2, rtol=3e-4)
     assert speed[-1] > 1.5 * speed[0]
 
@@ -183,7 +183,7 @@ def test_without_damping_the_peak_lags_by_what_the_fresnel_integral_says():
         profile="run-up", speed_rpm=rev_per_min(800), end_speed_rpm=rev_per_min(1200), duration_s=1.0, settle_turns=3
     )
     response = run_jeffcott(operation, 1e-5)
-    rotation, orbit = response.course.rotation, record_taps(response)
+    rotation, orbit = response.changing_speed.rotation, record_taps(response)
     w = np.linspace(1.0, 1.5, 5001)
     cornu = np.abs((0.5 + 0.5j) + np.array([c + 1j * s for s, c in zip(*fresnel(w), strict=True)]))
     lag = np.sqrt(np.pi * rotation.rate) * w[cornu.argmax()]
@@ -199,9 +199,9 @@ def test_the_section_is_taken_where_theta_is_0_between_the_steps():
         profile="run-up", speed_rpm=rev_per_min(700), end_speed_rpm=rev_per_min(1300), duration_s=0.3, settle_turns=3
     )
     response = run_jeffcott(operation, 0.02)
-    rotation = response.course.rotation
+    rotation = response.changing_speed.rotation
     arrivals = np.array([rotation.time_of(2 * np.pi * turn) for turn in range(response.record_turns)])
-    off = arrivals / response.dt - response.course.turn_steps[:-1]
+    off = arrivals / response.dt - response.changing_speed.turn_steps[:-1]
     assert np.abs(off).max() > 0.4
     u, v = inertial_orbit(rotation, 0.02, arrivals)
     v = v - 1j * rotation.speed(arrivals) * u  # seen from the turning frame
@@ -285,7 +285,7 @@ def test_the_energy_identity_holds_while_the_speed_changes_and_blades_rub(small_
     assert impulse == pytest.approx(response.impulse_per_turn.sum(), rel=1e-9)
     last = response.events.start_step + response.events.steps
     assert response.events.start_step.min() >= 0
-    assert last.max() <= response.course.turn_steps[-1]
+    assert last.max() <= response.changing_speed.turn_steps[-1]
 
 
 def test_an_angular_acceleration_bends_the_blades_back(small_system):
@@ -296,7 +296,7 @@ def test_an_angular_acceleration_bends_the_blades_back(small_system):
     )
     response = integrate(At(build), operation, ContactLaw())
     tangential = response.section_q[:, 1:18:3]
-    speed = float(response.course.rotation.speed(response.course.turn_steps[-2] * response.dt))
+    speed = float(response.changing_speed.rotation.speed(response.changing_speed.turn_steps[-2] * response.dt))
     behind = -100.0 * 0.05 * 0.2 / (1.5e6 - 0.05 * speed**2)
     np.testing.assert_allclose(tangential[-1], behind, rtol=1e-3)
 

@@ -94,4 +94,4 @@ def _check_lengths(kept: CompactRecord, turns: int, blades: int) -> None:
     if kept["blade"].size and not 0 <= kept["blade"].min() <= kept["blade"].max() < blades:
         raise ValueError(f"a touch is of a blade that is none of {blades}")
     if kept["rotation"].size not in (0, 5) or (kept["rotation"].size and kept["turn_steps"].size != turns + 1):
-        raise ValueError("the course of the speed does not fit the turns")
+        raise ValueError("rotation and turn_steps do not fit the number of turns")

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rubgen.arrays import ComplexArray, FloatArray
-from rubgen.solver.response import ORDERS, WINDOW_TURNS, Course
+from rubgen.solver.response import ORDERS, WINDOW_TURNS, ChangingSpeed
 from rubgen.solver.speed.driver import SpeedDriver
 from rubgen.solver.speed.turn import Turn
 
@@ -67,13 +67,16 @@ class SpeedHistory:
             self.orders.append(turn_orders(turn.result.taps, self.driver.rotation.angle(time)))
 
     def result(self) -> dict[str, Any]:
-        """The course of the speed; there are no windows."""
-        course = Course(
+        """`changing_speed`, and `window_orders` without windows."""
+        changing = ChangingSpeed(
             rotation=self.driver.rotation,
             turn_steps=np.array([self.driver.first_step(number) for number in range(self.record + 1)]),
             orders=np.array(self.orders),
         )
-        return {"course": course, "window_orders": np.zeros((0, len(self.driver.stepper.result.taps), ORDERS), complex)}
+        return {
+            "changing_speed": changing,
+            "window_orders": np.zeros((0, len(self.driver.stepper.result.taps), ORDERS), complex),
+        }
 
 
 def turn_orders(taps: FloatArray, theta: FloatArray) -> ComplexArray:
