@@ -12,7 +12,7 @@ import scipy.linalg as la
 
 from rubgen.arrays import BoolArray, FloatArray, IntArray
 from rubgen.reduction.model import SpinningSystem
-from rubgen.solver.linear.turning_forces import force_derivatives, gravity_force, turning_force
+from rubgen.solver.supports.turning_forces import force_derivatives, gravity_force, turning_force
 
 NEWTON_STEPS = 12
 NEWTON_TOLERANCE = 1e-10

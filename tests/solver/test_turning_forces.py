@@ -14,8 +14,8 @@ from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
 from rubgen.solver.linear.rub_free import rub_free_motion
 from rubgen.solver.linear.stability import eigenvalues, slowest_decay, stable_step
-from rubgen.solver.linear.turning_forces import turning_force
 from rubgen.solver.speed.start import rub_free_stepper, start_opening
+from rubgen.solver.supports.turning_forces import turning_force
 
 CASES = ("gravity", "springs", "dampers", "film", "all")
 

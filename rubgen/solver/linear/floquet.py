@@ -12,7 +12,7 @@ from rubgen.arrays import ComplexArray, FloatArray, IntArray
 from rubgen.reduction.model import SpinningSystem, TurningForces
 from rubgen.solver.linear.rub_free import rub_free_motion
 from rubgen.solver.linear.system_blocks import system_blocks
-from rubgen.solver.linear.turning_forces import force_derivatives
+from rubgen.solver.supports.turning_forces import force_derivatives
 
 
 def linearised(system: SpinningSystem) -> SpinningSystem:

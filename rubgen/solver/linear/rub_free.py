@@ -11,7 +11,7 @@ from rubgen.arrays import ComplexArray, FloatArray, IntArray
 from rubgen.contact.clearance_kernels import least_clearance
 from rubgen.contact.geometry_kernels import Surface, Tips
 from rubgen.reduction.model import SpinningSystem, TurningForces
-from rubgen.solver.linear.turning_forces import force_derivatives, gravity_force, turning_force
+from rubgen.solver.supports.turning_forces import force_derivatives, gravity_force, turning_force
 
 SAMPLES = (9, 17, 33, 65, 129)
 """Places of a turn at which the harmonic balance is held; more are taken until the last harmonics have died."""

@@ -20,7 +20,7 @@ from rubgen.solver.scheme.energy_kernels import (
     UNBALANCE,
 )
 from rubgen.solver.scheme.stepper import Stepper
-from rubgen.solver.scheme.support_kernels import ANISOTROPY, FILM, FILM_LOSS, GRAVITY
+from rubgen.solver.supports.support_kernels import ANISOTROPY, FILM, FILM_LOSS, GRAVITY
 
 ROUNDING_SHARE = 1e-6
 """Energies below this share of their summed absolute terms are rounding to eight digits."""

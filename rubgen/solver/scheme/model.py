@@ -18,8 +18,8 @@ from rubgen.solver.scheme.model_kernels import Angles, Laws, Model
 from rubgen.solver.scheme.motion_kernels import Motion
 from rubgen.solver.scheme.speed_part import SpeedPart
 from rubgen.solver.scheme.state_kernels import Scratch, State
-from rubgen.solver.scheme.support_kernels import SUPPORT_WORKS, SupportState
-from rubgen.solver.scheme.supports import support_of
+from rubgen.solver.supports.constants import support_of
+from rubgen.solver.supports.support_kernels import SUPPORT_WORKS, SupportState
 
 CANDIDATE_MARGIN_SHARE = 5e-5
 """Blades nearer than this share of the tip radius are solved together; a step widens it where forces reach farther."""

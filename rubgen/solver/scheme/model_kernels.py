@@ -9,7 +9,7 @@ from rubgen.contact.geometry_kernels import Surface, Tips
 from rubgen.linalg.block_kernels import Product
 from rubgen.linalg.harmonic_kernels import Harmonics
 from rubgen.solver.scheme.free_step_kernels import Scheme
-from rubgen.solver.scheme.support_kernels import Support
+from rubgen.solver.supports.support_kernels import Support
 
 
 class Laws(NamedTuple):

@@ -8,7 +8,7 @@ from rubgen.arrays import FloatArray
 from rubgen.contact.geometry_kernels import Tips
 from rubgen.solver.scheme.free_step_kernels import Scheme
 from rubgen.solver.scheme.model_kernels import EnergyTerms
-from rubgen.solver.scheme.support_kernels import Support
+from rubgen.solver.supports.support_kernels import Support
 
 
 class SpeedPart(NamedTuple):

@@ -8,7 +8,7 @@ from rubgen.arrays import FloatArray
 from rubgen.contact.contact_kernels import ContactWork
 from rubgen.contact.liner_kernels import Wear
 from rubgen.solver.scheme.motion_kernels import Motion
-from rubgen.solver.scheme.support_kernels import SupportState
+from rubgen.solver.supports.support_kernels import SupportState
 
 
 class Coordinates(NamedTuple):

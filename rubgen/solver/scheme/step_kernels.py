@@ -41,7 +41,7 @@ from rubgen.solver.scheme.free_step_kernels import free_step
 from rubgen.solver.scheme.model_kernels import Laws, Model
 from rubgen.solver.scheme.motion_kernels import Motion, copy_motion, recover, recover_blade
 from rubgen.solver.scheme.state_kernels import Coordinates, Scratch, State
-from rubgen.solver.scheme.support_kernels import push_supports, resist_contacts, yield_to_contacts
+from rubgen.solver.supports.support_kernels import push_supports, resist_contacts, yield_to_contacts
 
 OK, CONTACT_UNSOLVED, DIVERGED, ENERGY, FILM_CLOSED = 0, 1, 2, 3, 4
 MARGIN_TRIES = 6

@@ -18,7 +18,7 @@ from rubgen.linalg.lanes_kernels import add_lines
 from rubgen.solver.scheme.model_kernels import Model
 from rubgen.solver.scheme.motion_kernels import Motion, recover_blade
 from rubgen.solver.scheme.state_kernels import Coordinates, State
-from rubgen.solver.scheme.support_kernels import SupportState
+from rubgen.solver.supports.support_kernels import SupportState
 
 X, Y, FORCE_X, FORCE_Y, CONTACT_FORCE, CONTACT_TORQUE, SPEED_X, SPEED_Y = range(8)
 

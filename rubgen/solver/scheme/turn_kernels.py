@@ -16,8 +16,8 @@ from rubgen.solver.scheme.motion_kernels import Motion
 from rubgen.solver.scheme.snapshot_kernels import Snapshots, keep_snapshot
 from rubgen.solver.scheme.state_kernels import Coordinates, Scratch, State
 from rubgen.solver.scheme.step_kernels import OK, advance, change_contacts, recover_contacts, shift_gaps
-from rubgen.solver.scheme.support_kernels import add_support_works
 from rubgen.solver.scheme.tap_kernels import SPEED_X, SPEED_Y, Taps, X, Y, record_arrivals, record_taps
+from rubgen.solver.supports.support_kernels import add_support_works
 
 BLADE, START, STEPS, COSINE, SINE, IMPULSE, FRICTION_LOSS, NORMAL_LOSS = range(8)
 

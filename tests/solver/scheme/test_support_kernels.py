@@ -9,7 +9,7 @@ import pytest
 from kernel_arrays import contact_work
 
 from rubgen.linalg.blocks import aligned
-from rubgen.solver.scheme.support_kernels import (
+from rubgen.solver.supports.support_kernels import (
     ANISOTROPY,
     FILM,
     FILM_LOSS,

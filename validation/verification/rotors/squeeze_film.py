@@ -24,7 +24,7 @@ from rubgen.scenario import ContactLaw, Operation, Reduction
 from rubgen.solver.integrate import integrate
 from rubgen.solver.linear.rub_free import rub_free_motion
 from rubgen.solver.linear.stability import eigenvalues
-from rubgen.solver.linear.turning_forces import turning_force
+from rubgen.solver.supports.turning_forces import turning_force
 from rubgen.units import rev_per_min
 from validation.verification.rotors.rigid_rotor import rigid_rotor
 from validation.verification.rotors.rotors import NO_DAMPING, STIFF, UNBALANCE, annulus_inertia, plain_rotor

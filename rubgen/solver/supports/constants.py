@@ -8,7 +8,7 @@ import scipy.linalg as la
 from rubgen.arrays import AnyArray, FloatArray
 from rubgen.linalg.blocks import Blocks, aligned
 from rubgen.reduction.model import SpinningSystem, TurningForces
-from rubgen.solver.scheme.support_kernels import Support
+from rubgen.solver.supports.support_kernels import Support
 
 
 def support_of(system: SpinningSystem, blocks: Blocks, dt: float) -> Support:

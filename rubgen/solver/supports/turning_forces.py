@@ -1,6 +1,6 @@
 """Forces that no constant matrix holds: uneven supports, a squeeze film damper, gravity. The law in plain numpy.
 
-`scheme.support_kernels` applies the same law in the steps of a run.
+`support_kernels` applies the same law in the steps of a run.
 """
 
 from __future__ import annotations
