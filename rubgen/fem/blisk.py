@@ -14,6 +14,7 @@ from rubgen.fem.disk import DiskModel, assemble_disk
 from rubgen.fem.shell import shell_stress_stiffness
 from rubgen.fem.statics import HeldStiffness, factorize, on_springs, support_stiffness
 from rubgen.machine import BladeRow, Disk, DiskSupport
+from rubgen.machine.mesh import pitch_problem
 
 CENTRE = np.arange(6)
 
@@ -62,7 +63,10 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
     Raises UserError when blades do not meet corner nodes of the rim, for a single blade, whose pull is no symmetric
     load, and for a bore outside the rim.
     """
-    pitch = _elements_per_blade(disk, blades)
+    problem = pitch_problem(disk, blades)
+    if problem:
+        raise UserError(problem)
+    pitch = disk.circumferential_elements // blades.count
     plate, beam = assemble_disk(disk), blade_matrices(blades, disk.rim_radius_m)
     disk_size, n_blade = 6 + plate.M.shape[0], len(beam.f_c)
     size = disk_size + blades.count * n_blade
@@ -141,18 +145,6 @@ def _rigid_nodes(x: FloatArray, y: FloatArray) -> FloatArray:
     R[:, 0, 5], R[:, 1, 5] = -y, x
     R[:, 2, 3], R[:, 2, 4] = y, -x
     return R.reshape(-1, 6)
-
-
-def _elements_per_blade(disk: Disk, blades: BladeRow) -> int:
-    elements, count = disk.circumferential_elements, blades.count
-    if count < 2:
-        raise UserError(f"blades.count = {count}: a blisk needs at least 2 equal blades; raise it")
-    if elements % count:
-        raise UserError(
-            f"disk.circumferential_elements = {elements}: must be a multiple of blades.count = {count}, "
-            f"for every blade needs a node at the rim; try {count * max(1, round(elements / count))}"
-        )
-    return elements // count
 
 
 def _dof(nodes: IntArray) -> IntArray:

@@ -11,6 +11,7 @@ from rubgen.arrays import FloatArray, SparseMatrix
 from rubgen.errors import UserError
 from rubgen.fem.beam_sections import cowper_shear_coefficient
 from rubgen.machine.machine import Casing, Machine, Material
+from rubgen.machine.mesh import node_problem
 
 # The mass integrand is of degree six in the length: four points are exact.
 GAUSS_POINTS = 4
@@ -49,8 +50,9 @@ def assemble_casing(machine: Machine, *, any_nodes: bool = False) -> CasingModel
     experiment do so.
     """
     casing = machine.casing
-    if not any_nodes:
-        _check_nodes(casing)
+    problem = None if any_nodes else node_problem(casing)
+    if problem:
+        raise UserError(problem)
     angles = 2 * np.pi * np.arange(casing.nodes) / casing.nodes
     lobes = np.cos(casing.lobes * (angles - np.deg2rad(casing.lobe_angle_deg)))
     radius = machine.casing_mean_radius_m - casing.ovality_m / 2 * lobes + casing.thickness_m / 2
@@ -87,16 +89,6 @@ def element_matrices(
     stiffness = np.sum(weight * (np.swapaxes(strain, 2, 3) @ np.diag([E * area, shear, E * inertia]) @ strain), axis=1)
     mass = np.sum(weight * (np.swapaxes(field, 2, 3) @ np.diag(rho * np.array([area, area, inertia])) @ field), axis=1)
     return stiffness, mass
-
-
-def _check_nodes(casing: Casing) -> None:
-    step = int(np.lcm(4, casing.lobes))
-    if casing.nodes % step:
-        nearest = step * max(round(casing.nodes / step), -(-12 // step))
-        raise UserError(
-            f"casing.nodes = {casing.nodes}: must be divisible by 4 and by casing.lobes = {casing.lobes}; "
-            f"take {nearest}"
-        )
 
 
 def _shape_functions(s: FloatArray, length: FloatArray, phi: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -81,6 +81,7 @@ NUMBER = BeforeValidator(_no_text)
 """Stands in the annotation of every number, behind its bounds."""
 MOST_RUNS = 1_000_000
 MOST_STEPS = 16_384
+MOST_MODES = 500
 PERCENT = (("%", 0.01),)
 Switch = Annotated[bool, Field(strict=True)]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1), NUMBER]
@@ -167,8 +168,8 @@ CasingNodes = Annotated[int, Field(ge=12, le=1440), NUMBER]
 Lobes = Annotated[int, Field(ge=2, le=100), NUMBER]
 LinerBins = Annotated[int, Field(ge=36, le=3600), NUMBER]
 BladeNumber = Annotated[int, Field(ge=0, lt=1000), NUMBER]
-ModeCount = Annotated[int, Field(ge=0, le=500), NUMBER]
-CasingModeCount = Annotated[int, Field(ge=1, le=500), NUMBER]
+ModeCount = Annotated[int, Field(ge=0, le=MOST_MODES), NUMBER]
+CasingModeCount = Annotated[int, Field(ge=1, le=MOST_MODES), NUMBER]
 RunCount = Annotated[int, Field(ge=1, le=MOST_RUNS), NUMBER]
 
 # Speeds, turns and times.

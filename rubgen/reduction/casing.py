@@ -11,6 +11,7 @@ from rubgen.errors import UserError
 from rubgen.fem.casing import CasingModel, assemble_casing
 from rubgen.machine.machine import Casing, Machine
 from rubgen.reduction.model import CasingSurface
+from rubgen.scenario.reducible import casing_problem
 
 # Pairs closer than this in omega^2 are one pair to the eigen-solver's precision: their orientation is chosen here.
 DEGENERATE = 1e-8
@@ -31,24 +32,6 @@ class ReducedCasing:
     surface: CasingSurface
 
 
-def carried_orders(machine: Machine, modes: int) -> tuple[int, ...]:
-    """Circumferential orders that the first `modes` modes of the casing carry in full, ascending.
-
-    Ranked by the thin inextensible circular ring on an elastic foundation, omega_n^2 =
-    [E I n^2 (n^2 - 1)^2 / R^4 + k_r n^2 + k_t] / [rho A (n^2 + 1)], k_r and k_t per length: one mode of order 0, two of
-    each other. With k_t <= k_r these are 0 to (modes - 1) // 2; stiffer tangential springs raise the low orders.
-    """
-    casing = machine.casing
-    order = np.arange(max(modes, 1) + 2)
-    radius, inertia = machine.casing_mean_radius_m, casing.width_m * casing.thickness_m**3 / 12
-    bending = casing.material.youngs_modulus_pa * inertia * order**2 * (order**2 - 1) ** 2 / radius**4
-    per_length = casing.nodes / (2 * np.pi * radius)
-    springs = casing.radial_support_stiffness_n_per_m * order**2 + casing.circumferential_support_stiffness_n_per_m
-    ranked = np.argsort((bending + per_length * springs) / (order**2 + 1), kind="stable")
-    taken = np.cumsum(np.where(ranked == 0, 1, 2)) <= modes
-    return tuple(sorted(int(n) for n in ranked[taken]))
-
-
 def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
     """The first `modes` modes of the casing, mass-normalised, and its undeformed inner surface.
 
@@ -59,10 +42,9 @@ def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
     Raises UserError for more modes than DoFs, when the modes do not carry the order of the casing's lobes in full
     (`carried_orders`), or for a mesh that `assemble_casing` refuses.
     """
-    if not 1 <= modes <= 3 * machine.casing.nodes:
-        raise UserError(
-            f"casing_modes = {modes}: a ring of {machine.casing.nodes} nodes has {3 * machine.casing.nodes}"
-        )
+    problem = casing_problem(machine, modes)
+    if problem:
+        raise UserError(problem)
     return _reduced(
         _Asked(casing=machine.casing, mean_radius=machine.casing_mean_radius_m, modes=modes, machine=machine)
     )
@@ -81,7 +63,6 @@ class _Asked:
 @lru_cache(maxsize=4)
 def _reduced(asked: _Asked) -> ReducedCasing:
     machine, modes = asked.machine, asked.modes
-    _check_lobes(machine, modes)
     model = assemble_casing(machine)
     eigenvalues, vectors = _lowest_modes(model, modes)
     fields = vectors.reshape(-1, 3, modes)
@@ -97,19 +78,6 @@ def _reduced(asked: _Asked) -> ReducedCasing:
             order=np.array([float(machine.casing.lobes)]),
             phase=np.array([lobe_angle]),
         ),
-    )
-
-
-def _check_lobes(machine: Machine, modes: int) -> None:
-    lobes, carried = machine.casing.lobes, carried_orders(machine, modes)
-    if lobes in carried:
-        return
-    most = 3 * machine.casing.nodes
-    enough = next((n for n in range(modes, most + 1) if lobes in carried_orders(machine, n)), None)
-    held = f"the orders {carried[0]} to {carried[-1]}" if carried else "no order in full"
-    remedy = f"or at least {enough} casing modes" if enough else "or less stiff springs of the casing"
-    raise UserError(
-        f"casing.lobes = {lobes}: {modes} casing modes carry {held}; take another number of lobes, {remedy}"
     )
 
 

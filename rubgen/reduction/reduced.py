@@ -19,7 +19,7 @@ from rubgen.reduction.casing import ReducedCasing, reduce_casing
 from rubgen.reduction.damping import elastic_damping, support_damping
 from rubgen.reduction.model import Recovery, SpinningSystem, TurningForces
 from rubgen.scenario import Reduction
-from rubgen.scenario.costs import reduction_problem
+from rubgen.scenario.reducible import reduction_problem
 from rubgen.units import rev_per_min
 
 # e_z x on the translations and rotations of O_d.

@@ -3,7 +3,8 @@
 import math
 from dataclasses import replace
 
-from rubgen.machine import Disk, Machine
+from rubgen.machine import Machine
+from rubgen.machine.mesh import disk_nodes
 from rubgen.machine.schema_nodes import below, digits
 from rubgen.scenario.scenario import Reduction, Scenario
 
@@ -27,7 +28,7 @@ def reduction_bytes(machine: Machine, reduction: Reduction) -> float:
     blades of 10 elements on 10 x 240 (3.5 GB).
     """
     blades = machine.blades
-    plate = 6 * _disk_nodes(machine.disk)
+    plate = 6 * disk_nodes(machine.disk)
     full = plate + 6 * blades.count * (blades.elements + 1)
     columns = 6 + 6 * blades.count + reduction.disk_modes
     joined = columns + blades.count * (12 + reduction.blade_modes)
@@ -35,7 +36,7 @@ def reduction_bytes(machine: Machine, reduction: Reduction) -> float:
     return BYTES_A_DOF * full + 8 * dense
 
 
-def reduction_problem(machine: Machine, reduction: Reduction) -> str | None:
+def memory_problem(machine: Machine, reduction: Reduction) -> str | None:
     """Why the reduction of a machine takes too much memory, with what to change; None where it does not."""
     disk, blades, most = machine.disk, machine.blades, f"at most {MOST_REDUCTION_BYTES / GIGA:g} GB"
     if _fits(machine, reduction):
@@ -125,8 +126,3 @@ def _too_long(scenario: Scenario, most: int) -> str:
 
 def _taps(scenario: Scenario) -> int:
     return max(LEAST_TAPS, len(scenario.sensing.set.sensors))
-
-
-def _disk_nodes(disk: Disk) -> int:
-    """Corner nodes stand on rings of two an element, the others on rings between them of one."""
-    return disk.circumferential_elements * (3 * disk.radial_elements + 2)

@@ -5,21 +5,21 @@ import math
 from rubgen.errors import UserError
 from rubgen.machine.quantities import MOST_STEPS
 from rubgen.machine.schema_nodes import digits
-from rubgen.scenario.costs import STEPS_PER_SAMPLE, reduction_problem, run_problem
+from rubgen.scenario.costs import STEPS_PER_SAMPLE, run_problem
 from rubgen.scenario.plausible import eccentricity, gram, shares, unbalances
 from rubgen.scenario.profiles import profile_problem
+from rubgen.scenario.reducible import reduction_problem
 from rubgen.scenario.scenario import Scenario
 from rubgen.sensors.kinds.blade_strain import BladeStrain
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
 
 MIN_RECORD_TURNS = 500
 """Fewer strobed turns call quasi-periodic motion chaotic (49 do), so labels ask for these."""
-QUARTERS = 4
 
 
 def check_feasible(scenario: Scenario, source: str = "") -> None:
     """Raise UserError where the scenario cannot be run; keys are named as in a recipe, after `source` (its file)."""
-    for problem in (*PROBLEMS, *SENSOR_PROBLEMS, _memory_problem):
+    for problem in (*PROBLEMS, *SENSOR_PROBLEMS, _cost_problem):
         text = problem(scenario)
         if text:
             raise UserError(source + text)
@@ -86,26 +86,6 @@ def _rate_problem(scenario: Scenario) -> str | None:
     )
 
 
-def _lobe_problem(scenario: Scenario) -> str | None:
-    # One casing mode is the rigid turn, the others are pairs of rising circumferential order from 1.
-    highest = (scenario.reduction.casing_modes - 1) // 2
-    lobes = scenario.machine.casing.lobes
-    if lobes <= highest:
-        return None
-    return (
-        f"lobes = {lobes}: {scenario.reduction.casing_modes} casing modes carry at most {highest} lobes; "
-        f"lower it or raise reduction.casing_modes to {2 * lobes + 1}"
-    )
-
-
-def _node_problem(scenario: Scenario) -> str | None:
-    casing = scenario.machine.casing
-    for divisor, what in ((QUARTERS, "4"), (casing.lobes, f"the number of lobes, {casing.lobes}")):
-        if casing.nodes % divisor:
-            return f"casing.nodes = {casing.nodes}: must be divisible by {what}; change casing.nodes or the lobes"
-    return None
-
-
 def _front_end_problem(scenario: Scenario) -> str | None:
     highest = _highest_hz(scenario)
     for sensor in scenario.sensing.set.sampled:
@@ -156,7 +136,7 @@ def _size_problem(scenario: Scenario) -> str | None:
     return None
 
 
-def _memory_problem(scenario: Scenario) -> str | None:
+def _cost_problem(scenario: Scenario) -> str | None:
     return reduction_problem(scenario.machine, scenario.reduction) or run_problem(scenario)
 
 
@@ -166,8 +146,6 @@ PROBLEMS = (
     _tail_problem,
     _sample_problem,
     _rate_problem,
-    _lobe_problem,
-    _node_problem,
     _size_problem,
 )
 SENSOR_PROBLEMS = (_front_end_problem, _blade_problem, _axial_problem)

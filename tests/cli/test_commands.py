@@ -189,7 +189,7 @@ BAD = {
     "nan": (["simulate", "--friction", "nan"], "friction = nan: must be a finite number; change the value"),
     "inf": (["simulate", "--speed-rpm", "inf"], "speed_rpm = inf: must be a finite number"),
     "negative clearance": (["simulate", "--clearance-m", "-1e-4"], "clearance_m = -0.0001: must be at least 1e-07"),
-    "lobes": (["simulate", "--lobes", "6"], "lobes = 6: 11 casing modes carry at most 5 lobes"),
+    "lobes": (["simulate", "--lobes", "6"], "lobes = 6: 11 casing modes carry the orders 0 to 5"),
     "few turns": (
         ["simulate", "--record-turns", "60"],
         "record_turns = 60: labels need at least 500 turns, the Lyapunov exponent too; raise it",

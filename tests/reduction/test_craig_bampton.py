@@ -12,6 +12,7 @@ from rubgen.reduction import craig_bampton as module
 from rubgen.reduction.blisk import reduce_blisk
 from rubgen.reduction.craig_bampton import craig_bampton
 from rubgen.scenario import Reduction
+from rubgen.scenario.reducible import reduction_problem
 
 
 def chain(n):
@@ -67,6 +68,16 @@ def test_more_modes_than_masses_are_refused():
     massless[3, 3] = 0.0
     with pytest.raises(UserError, match="5 modes of a component that has 4; give at most 4"):
         craig_bampton(sp.csr_array(massless), K, np.array([0]), 5)
+
+
+@pytest.mark.parametrize(("key", "most"), [("blade_modes", 6), ("disk_modes", 135)])
+def test_modes_that_a_mesh_does_not_have_are_refused_before_it_is_built(small, key, most):
+    # The reduction itself finds the same number: it refuses one more, and keeps these in the test below.
+    text = reduction_problem(small, Reduction(**{key: most + 1}))
+    assert text.startswith(f"reduction.{key} = {most + 1}: this mesh has {most}; ")
+    assert reduction_problem(small, Reduction(**{key: most})) is None
+    with pytest.raises(UserError, match=f"{most + 1} modes of a component that has {most}; "):
+        reduce_blisk(small.disk, small.blades, small.disk_support, Reduction(**{key: most + 1}))
 
 
 def test_all_modes_kept_give_the_full_blisk_back(small):

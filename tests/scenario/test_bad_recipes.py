@@ -6,6 +6,7 @@ import pytest
 
 import rubgen
 from rubgen.errors import RubgenWarning, UserError
+from rubgen.machine.load import PRESETS
 from rubgen.scenario import load_recipe, make_scenario, parse_recipe
 from rubgen.scenario.vary import KEYS
 
@@ -121,11 +122,19 @@ CASES = {
     "lobes from a range": (VARY + "lobes = { uniform = [2, 4] }", "vary.lobes: takes whole numbers only"),
     "lobes beyond the modes": (
         VARY + "lobes = { choice = [2, 6] }",
-        "lobes = 6: 11 casing modes carry at most 5 lobes",
+        "casing.lobes = 6: 11 casing modes carry the orders 0 to 5; take another number of lobes, or raise reduction.c",
     ),
     "nodes not divisible": (
         VARY + "lobes = 7\n[reduction]\ncasing_modes = 15",
-        "casing.nodes = 180: must be divisible by the number of lobes, 7",
+        "casing.nodes = 180: must be divisible by 4 and by casing.lobes = 7; take 168",
+    ),
+    "modes of a blade": (
+        GOOD + "[reduction]\nblade_modes = 115",
+        "reduction.blade_modes = 115: this mesh has 114; lower it, or take more elements",
+    ),
+    "springs that leave the order of the lobes to high modes": (
+        VARY + "casing_support_stiffness_n_per_m = 1e4\nlobes = 90",
+        "casing.lobes = 90: 11 casing modes carry the orders 0 to 5; take another number of lobes, or raise reduction",
     ),
     "signal beyond the record": (
         VARY + "speed_rpm = { uniform = [6000, 12000] }\n[output]\nsignal_seconds = 2.6",
@@ -183,6 +192,26 @@ def test_refused_in_one_line(case, tmp_path):
     assert str(caught.value).startswith(f"{path}: ")
     assert message in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            "count = 36",
+            "count = 35",
+            "circumferential_elements = 72: must be a multiple of blades.count = 35, .*; try 70",
+        ),
+        ("count = 36", "count = 1", "blades.count = 1: a blisk needs at least 2 equal blades; raise it"),
+        ("nodes = 180", "nodes = 182", "casing.nodes = 182: must be divisible by 4 and by casing.lobes = 2; take 184"),
+    ],
+)
+def test_a_machine_that_cannot_be_meshed_is_refused_with_its_recipe(tmp_path, old, new, message):
+    text = (PRESETS / "zeng2019.toml").read_text()
+    assert old in text
+    (tmp_path / "own.toml").write_text(text.replace(old, new))
+    with pytest.raises(UserError, match=message):
+        parse_recipe({"name": "a", "runs": 1, "machine": "own.toml"}, folder=tmp_path)
 
 
 def test_missing_file(tmp_path):

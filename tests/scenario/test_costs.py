@@ -13,7 +13,7 @@ from rubgen.machine import load_machine
 from rubgen.machine.load import PRESETS
 from rubgen.reduction import reduce
 from rubgen.scenario import Reduction, load_recipe, make_scenario, parse_recipe
-from rubgen.scenario.costs import coordinates, reduction_bytes, reduction_problem, run_problem, steps_per_turn
+from rubgen.scenario.costs import coordinates, memory_problem, reduction_bytes, run_problem, steps_per_turn
 from rubgen.solver.linear.stability import steps_per_turn as steps_of_model
 
 MINIMAL = {"name": "a", "runs": 1, "machine": "zeng2019"}
@@ -64,15 +64,15 @@ def test_a_run_beyond_the_memory_names_a_number_that_does(tables, key):
 def test_a_machine_beyond_the_memory_names_a_number_that_does():
     machine = load_machine("zeng2019")
     fine = replace(machine, disk=replace(machine.disk, radial_elements=200, circumferential_elements=3600))
-    text = reduction_problem(fine, Reduction())
+    text = memory_problem(fine, Reduction())
     assert "with 36 blades and 200 x 3600 elements of the disk; at most 4 GB: lower disk.radial_elements to 2" in text
     many = replace(machine, blades=replace(machine.blades, count=1000))
-    assert "lower disk.circumferential_elements, or the number of blades" in reduction_problem(many, Reduction())
+    assert "lower disk.circumferential_elements, or the number of blades" in memory_problem(many, Reduction())
     fine = replace(machine, disk=replace(machine.disk, radial_elements=200, circumferential_elements=288))
-    radial = int(re.search(r"lower disk.radial_elements to (\d+)", reduction_problem(fine, Reduction()))[1])
+    radial = int(re.search(r"lower disk.radial_elements to (\d+)", memory_problem(fine, Reduction()))[1])
     fits = replace(machine, disk=replace(fine.disk, radial_elements=radial))
-    assert reduction_problem(fits, Reduction()) is None
-    assert reduction_problem(replace(fits, disk=replace(fits.disk, radial_elements=radial + 1)), Reduction())
+    assert memory_problem(fits, Reduction()) is None
+    assert memory_problem(replace(fits, disk=replace(fits.disk, radial_elements=radial + 1)), Reduction())
     with pytest.raises(UserError, match=r"its reduction takes about .* GB of memory, with 36 blades and 200 x 288"):
         reduce(fine, Reduction())
 
@@ -84,11 +84,11 @@ def test_modes_beyond_the_memory_name_a_number_that_does(key):
     many = replace(Reduction(), **{key: 500})
     if key == "disk_modes":
         machine = replace(machine, blades=replace(machine.blades, count=450, elements=2))
-    text = reduction_problem(machine, many)
+    text = memory_problem(machine, many)
     assert text.startswith(f"reduction.{key} = 500: the reduction takes about ")
     fewer = int(re.search(r"GB; lower it to (\d+)$", text)[1])
-    assert reduction_problem(machine, replace(many, **{key: fewer})) is None
-    assert reduction_problem(machine, replace(many, **{key: fewer + 1}))
+    assert memory_problem(machine, replace(many, **{key: fewer})) is None
+    assert memory_problem(machine, replace(many, **{key: fewer + 1}))
 
 
 def test_what_is_shipped_is_far_from_the_limits():

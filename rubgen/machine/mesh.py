@@ -1,0 +1,34 @@
+"""What the numbers of a machine's meshes must be together."""
+
+from __future__ import annotations
+
+import math
+
+from rubgen.machine.machine import BladeRow, Casing, Disk
+
+
+def disk_nodes(disk: Disk) -> int:
+    """Nodes of the disk: rings of corner nodes have two an element, the rings between them one."""
+    return disk.circumferential_elements * (3 * disk.radial_elements + 2)
+
+
+def pitch_problem(disk: Disk, blades: BladeRow) -> str | None:
+    """Why blades do not meet corner nodes of the rim, or balance no pull alone; None where all is well."""
+    elements, count = disk.circumferential_elements, blades.count
+    if count < 2:
+        return f"blades.count = {count}: a blisk needs at least 2 equal blades; raise it"
+    if elements % count:
+        return (
+            f"disk.circumferential_elements = {elements}: must be a multiple of blades.count = {count}, "
+            f"for every blade needs a node at the rim; try {count * max(1, round(elements / count))}"
+        )
+    return None
+
+
+def node_problem(casing: Casing) -> str | None:
+    """Why the casing's nodes break the symmetry of its quarters or lobes; None where they do not."""
+    step = math.lcm(4, casing.lobes)
+    if casing.nodes % step == 0:
+        return None
+    nearest = step * max(round(casing.nodes / step), -(-12 // step))
+    return f"casing.nodes = {casing.nodes}: must be divisible by 4 and by casing.lobes = {casing.lobes}; take {nearest}"
