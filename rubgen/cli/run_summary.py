@@ -94,13 +94,17 @@ def _ranges(orders: tuple[int, ...]) -> str:
 
 
 def _speeds(labels: Labels) -> Iterator[tuple[str, str]]:
-    """Where rub begins and ends as the speed changes, and how often the motion changes."""
+    """Where rub begins and ends as the speed changes, and how often the motion changes.
+
+    A rub of the first or of the last turns has its onset or end outside of the record.
+    """
     history = labels.history
     if history is None:
         return
-    yield "onset of rub", _rpm(history.onset_speed)
-    yield "end of rub", _rpm(history.end_of_rub_speed)
-    yield "changes", f"{len(history.changes)} of rub or motion over the record"
+    before, after = history.changes[0].rub, history.changes[-1].rub
+    yield "onset of rub", "before the record" if before else _rpm(history.onset_speed)
+    yield "end of rub", "none, it goes on at the end of the record" if after else _rpm(history.end_of_rub_speed)
+    yield "changes", f"{len(history.changes) - 1} of rub or motion over the record"
 
 
 def _rpm(speed: float | None) -> str:
