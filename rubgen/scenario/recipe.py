@@ -120,6 +120,7 @@ class Recipe(BaseModel):
     reduction: Reduction = Reduction()
     contact: ContactLaw = ContactLaw()
     _folder: Path = PrivateAttr(default_factory=Path)
+    _checked: bool = PrivateAttr(default=False)
     _machine: Machine | None = PrivateAttr(default=None)
     _sensor_set: SensorSet | None = PrivateAttr(default=None)
 
@@ -202,12 +203,8 @@ def parse_recipe(
     if runs is not None:
         data = {**data, "runs": checked_runs(runs)}
     recipe = validated(source, data, TypeAdapter(Recipe))
-    if not any(data == recipe.model_dump(mode="json", exclude_none=short) for short in (True, False)):
-        # The recipe of a manifest has every key of every profile.
-        check_used(f"{source}: ", data)
     recipe._folder = folder or Path()
-    check_recipe(recipe, source)
-    warn_of(recipe.corners(), f"{source}: ")
+    check_recipe(recipe, source, data)
     return recipe
 
 
@@ -224,6 +221,7 @@ def recorded_recipe(data: object, machine: object, sensors: object, source: str 
     Raises UserError, beginning with `source`, where this rubgen cannot read them.
     """
     recipe: Recipe = _recorded(Recipe, data, f"{source}: recipe")
+    recipe._checked = True
     recipe._machine = _recorded(Machine, machine, f"{source}: machine")
     recipe._sensor_set = _recorded(SensorSet, sensors, f"{source}: sensors")
     return recipe
@@ -237,8 +235,14 @@ def _recorded(kind: Any, data: object, source: str) -> Any:
         raise first_problem(source, error, data, adapter) from None
 
 
-def check_recipe(recipe: Recipe, source: str = "recipe") -> None:
-    """Raise UserError where some run of the recipe could not be made: single values and extremes of `[vary]`."""
+def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | None = None) -> None:
+    """Raise UserError where some run of the recipe could not be made: single values and extremes of `[vary]`.
+
+    `data` are the TOML values that it comes from; without them, the fields that are set count as given. Warns of values
+    that are surely not meant, once for each recipe.
+    """
+    if not recipe._checked:
+        _check_used(recipe, source, data)
     if len(set(recipe.output.formats)) != len(recipe.output.formats):
         raise UserError(f"{source}: output.formats = {list(recipe.output.formats)}: name each format once")
     _check_whole(recipe, source)
@@ -250,6 +254,17 @@ def check_recipe(recipe: Recipe, source: str = "recipe") -> None:
     with recipe.machine_named():
         for scenario in recipe.corners(source):
             check_feasible(scenario, f"{source}: ")
+    if not recipe._checked:
+        warn_of(recipe.corners(), f"{source}: ")
+    recipe._checked = True
+
+
+def _check_used(recipe: Recipe, source: str, data: dict[str, Any] | None) -> None:
+    """Refuse a key that the profile would ignore; the recipe of a manifest has every key of every profile."""
+    left_out = {"labels"} if data is None else set()  # a dataclass does not tell what was set in it
+    given = data or recipe.model_dump(mode="json", exclude_unset=True, exclude=left_out)
+    if all(given != recipe.model_dump(mode="json", exclude=left_out, exclude_none=short) for short in (True, False)):
+        check_used(f"{source}: ", given)
 
 
 def _check_whole(recipe: Recipe, source: str) -> None:

@@ -10,8 +10,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy.stats import qmc
 
+import rubgen
 from rubgen.errors import RubgenWarning, UserError
-from rubgen.scenario import load_recipe, make_scenario, parse_recipe
+from rubgen.scenario import Recipe, load_recipe, make_scenario, parse_recipe
+from rubgen.scenario.recipe import check_recipe
 from rubgen.scenario.sampling import DIMENSIONS, sobol_point
 from rubgen.scenario.vary import KEYS, PARAMETERS, varied_values
 
@@ -46,6 +48,37 @@ def test_recipes_in_the_repository_are_valid():
     names = [load_recipe(path).name for path in sorted(folder.glob("*.toml"))]
     assert names == [path.stem for path in sorted(folder.glob("*.toml"))]
     assert names
+
+
+@pytest.mark.parametrize(
+    ("tables", "message"),
+    [
+        ({"vary": {"fluctuation_rpm": 3}}, 'vary.fluctuation_rpm = 3: the profile "steady" has none'),
+        ({"operation": {"duration_s": 2}}, 'operation.duration_s = 2: the profile "steady" has none'),
+        (
+            {
+                "operation": {"profile": "run-up", "end_speed_rpm": 12000, "duration_s": 2},
+                "simulation": {"record_turns": 600},
+            },
+            'simulation.record_turns = 600: the profile "run-up" has none',
+        ),
+    ],
+)
+def test_a_recipe_built_of_objects_is_checked_like_one_that_is_read(tmp_path, tables, message):
+    built = Recipe(**MINIMAL, **tables)
+    for refused in (lambda: parse_recipe(MINIMAL | tables), lambda: rubgen.generate(built, tmp_path / "set")):
+        with pytest.raises(UserError, match=message):
+            refused()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_recipe_built_of_objects_warns_once_and_takes_all_keys_of_a_manifest():
+    built = Recipe(**MINIMAL, vary={"clearance_m": 0.05})
+    with pytest.warns(RubgenWarning, match="clearance_m"):
+        check_recipe(built)
+    with warnings.catch_warnings(action="error"):
+        check_recipe(built)
+        check_recipe(Recipe(**Recipe(**MINIMAL).model_dump()))
 
 
 def test_runs_override_changes_no_run():
