@@ -30,7 +30,7 @@ RUNS = {
 }
 
 
-def run(scenario: Scenario, *, twin: bool) -> Response:
+def run(scenario: Scenario, *, companion: bool) -> Response:
     """The response as `simulate` asks for it."""
     sensing = scenario.sensing
     model = reduce(scenario.machine, scenario.reduction)
@@ -42,7 +42,7 @@ def run(scenario: Scenario, *, twin: bool) -> Response:
             tail_seconds=scenario.signal_seconds + margin_seconds(sensing, scenario.signal_seconds),
             sample_rate_hz=sensing.fastest_hz,
             taps=sensing.set.taps,
-            companion=twin,
+            companion=companion,
         ),
     )
 
@@ -52,10 +52,10 @@ def measure_run(name: str, keys: dict[str, float]) -> list[dict[str, object]]:
     scenario = make_scenario("zeng2019", **keys)
     scenario = replace(scenario, operation=replace(scenario.operation, settle_turns=100, record_turns=500))
     with threadpool_limits(1):
-        response = run(scenario, twin=True)  # loads the kernels
+        response = run(scenario, companion=True)  # loads the kernels
         median = partial(median_time, rounds=ROUNDS)
-        plain = median(lambda: run(scenario, twin=False))
-        beside = median(lambda: run(scenario, twin=True))
+        plain = median(lambda: run(scenario, companion=False))
+        beside = median(lambda: run(scenario, companion=True))
         labels = median(lambda: label(response))
         seconds, rng = scenario.signal_seconds, np.random.default_rng(0)
         sensors = median(lambda: record(response, scenario.sensing, seconds=seconds, rng=rng))

@@ -5,9 +5,9 @@ drawn. By default 40 runs are made and the time of 1,000 follows by proportion, 
 RUBGEN_BENCH_RUNS=1000 makes them all. Where other work shares the cores the CPU time of all processes over two says
 what two idle cores would take.
 
-The share of the kernels is taken in this process, one worker: CPU time within the calls of the compiled loops, the
-run's and its twin's, over the CPU time of all of `generate`. What a set costs whatever its size (warm-up, card) would
-weigh in ten runs as it does not in a thousand: the share is that of what ten runs take more than two.
+The share of the kernels is measured in this process with one worker. It is the CPU time in the compiled loops of the
+run and its companion over the CPU time of all of `generate`. The fixed costs of a set (warm-up, card) are removed: both
+times are the difference between a set of ten runs and a set of two.
 """
 
 from __future__ import annotations

@@ -28,8 +28,8 @@ def periodic_derivative(values: FloatArray) -> FloatArray:
 
 def hermite_bends(values: FloatArray, slopes: FloatArray, step: float) -> FloatArray:
     """The largest second derivative of each mode (n_casing,) between nodes, where it is linear in the angle."""
-    following, next_slopes = np.roll(values, -1, axis=0), np.roll(slopes, -1, axis=0)
-    rise = 6 * (following - values) / step**2
+    next_values, next_slopes = np.roll(values, -1, axis=0), np.roll(slopes, -1, axis=0)
+    rise = 6 * (next_values - values) / step**2
     ends = rise - (4 * slopes + 2 * next_slopes) / step, (2 * slopes + 4 * next_slopes) / step - rise
     return np.asarray(np.max([np.sqrt((end**2).sum(axis=1)).max(axis=0) for end in ends], axis=0))
 
@@ -132,9 +132,9 @@ def chord_bounds(corners: FloatArray, bend: float) -> tuple[float, float]:
     Both meet at the nodes, so they differ by at most h^2 / 8 times the largest second derivative of the difference:
     `bend` of the curve plus r + 2 r'^2 / r of a straight line, whose |r'| is largest at its ends.
     """
-    step, following = 2 * np.pi / len(corners), np.roll(corners, -1)
-    at_start = corners / np.tan(step) - corners**2 / (following * np.sin(step))
-    at_end = following**2 / (corners * np.sin(step)) - following / np.tan(step)
+    step, next_values = 2 * np.pi / len(corners), np.roll(corners, -1)
+    at_start = corners / np.tan(step) - corners**2 / (next_values * np.sin(step))
+    at_end = next_values**2 / (corners * np.sin(step)) - next_values / np.tan(step)
     slope = float(np.abs([at_start, at_end]).max())
     nearest = float(corners.min()) * np.cos(step / 2)
     return step**2 / 8 * (bend + float(corners.max()) + 2 * slope**2 / nearest), slope

@@ -11,7 +11,7 @@ from rubgen.dataset.manifest import Identity
 from rubgen.format_names import FORMAT_NAMES
 from rubgen.formats import format_of
 from rubgen.io.columns import Column, scalar_columns, signal_columns
-from rubgen.io.parquet.sections import RECORD_COLUMNS
+from rubgen.io.parquet.compact_records import RECORD_COLUMNS
 
 
 def write_card(layout: Layout, identity: Identity, status: dict[str, int]) -> None:

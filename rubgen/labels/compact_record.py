@@ -1,7 +1,7 @@
-"""What is kept of a response so that its labels can be made again: section, touches, growths of the twin.
+"""The compact record of a response, from which its labels can be made again: section, touches, companion growth.
 
-Every label but those of orders is computed from these numbers as they are kept, most in single precision, so that
-whoever reads them back finds the same values.
+Every label except the orders is computed from the compact record, most of it in single precision. Labels made from a
+record read back from a file are therefore equal.
 """
 
 from __future__ import annotations
@@ -37,20 +37,25 @@ ROTATION = ("start", "end", "seconds", "swing", "period")
 
 
 def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
-    """The arrays to keep of a response: about 0.27 MB for 500 turns and 36 blades, and 26 bytes for each touch.
+    """The arrays from which `label` can be made again: about 0.27 MB for 500 turns and 36 blades, and 26 bytes a touch.
 
-    `section` (turns, 3 blades + 4 + 2 casing modes): displacements of the tips, x, y, v_x, v_y of the disk centre,
-    casing displacements and velocities; `fractions` the same after each Nth of the last turn; `growth`, `turn_impulse`,
-    `contact_steps` once a turn, `orbit` in each of the last 100 or, of a changing speed, of all; what `TOUCHES` names
-    once a touch; `scalars` (9,); `rotation` (5,) and `turn_steps` of a changing speed, empty otherwise.
+    - `scalars` (9,): the numbers named by `SCALARS`.
+    - `section` (turns, 3 blades + 4 + 2 casing modes), once a turn: displacements of the tips, x, y, v_x, v_y of the
+      disk centre, displacements and velocities of the casing modes.
+    - `fractions` (N, as many): the same for each of `Response.symmetry_states`.
+    - `growth`, `turn_impulse`, `contact_steps` (turns,): `companion_growth`, `impulse_per_turn` and
+      `contact_steps_per_turn` of the response.
+    - `orbit` (turns, 5): as in `Response`.
+    - `rotation` (5,) and `turn_steps` (turns + 1,) of a changing speed; empty for a steady speed.
+    - the names of `TOUCHES` (touches,): as in `ContactEvents`.
     """
     changing = response.changing_speed
-    fractions = response.fractions
-    kept: dict[str, npt.NDArray[Any]] = {
+    states = response.symmetry_states
+    record: dict[str, npt.NDArray[Any]] = {
         "scalars": np.array([getattr(response, name) for name in SCALARS], dtype=np.float64),
         "section": _narrow(response.section_q, response.section_v, response),
-        "fractions": _narrow(fractions[:, 0], fractions[:, 1], response) if fractions.size else np.zeros((0, 0), "f4"),
-        "growth": response.twin_growth.astype(np.float32),
+        "fractions": _narrow(states[:, 0], states[:, 1], response) if states.size else np.zeros((0, 0), "f4"),
+        "growth": response.companion_growth.astype(np.float32),
         "turn_impulse": response.impulse_per_turn.astype(np.float64),
         "contact_steps": response.contact_steps_per_turn.astype(np.int32),
         "orbit": response.orbit.astype(np.float32),
@@ -59,15 +64,14 @@ def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
         ),
         "turn_steps": (changing.turn_steps if changing else np.zeros(0)).astype(np.int32),
     }
-    return kept | {name: getattr(response.events, name).astype(kind) for name, kind in TOUCHES.items()}
+    return record | {name: getattr(response.events, name).astype(kind) for name, kind in TOUCHES.items()}
 
 
-def response_of(kept: CompactRecord) -> Response:
-    """The response of these arrays, without blisk modes, taps and their orders, energy, and speeds of tips."""
-    scalars = dict(zip(SCALARS, kept["scalars"].tolist(), strict=True))
+def response_of(record: CompactRecord) -> Response:
+    """The response of a compact record: without taps and their orders, energy, blisk modes and velocities of tips."""
+    scalars = dict(zip(SCALARS, record["scalars"].tolist(), strict=True))
     blades, casing = int(scalars["n_blades"]), int(scalars["n_casing"])
-    q, v = _wide(kept["section"], blades, casing)
-    fractions = np.stack(_wide(kept["fractions"], blades, casing), axis=1)
+    q, v = _wide(record["section"], blades, casing)
     return Response(
         status=Status.OK,
         reason="",
@@ -79,16 +83,16 @@ def response_of(kept: CompactRecord) -> Response:
         taps={},
         section_q=q,
         section_v=v,
-        impulse_per_turn=kept["turn_impulse"].astype(np.float64),
-        contact_steps_per_turn=kept["contact_steps"].astype(np.int64),
-        events=_touches(kept),
+        impulse_per_turn=record["turn_impulse"].astype(np.float64),
+        contact_steps_per_turn=record["contact_steps"].astype(np.int64),
+        events=_touches(record),
         energy=EnergyBalance(**dict.fromkeys(EnergyBalance.__dataclass_fields__, float("nan"))),
         n_blades=blades,
         n_casing=casing,
-        twin_growth=kept["growth"].astype(np.float64),
-        fractions=fractions,
-        changing_speed=_changing_speed(kept, int(scalars["record_turns"])),
-        orbit=kept["orbit"].astype(np.float64),
+        companion_growth=record["growth"].astype(np.float64),
+        symmetry_states=np.stack(_wide(record["fractions"], blades, casing), axis=1),
+        changing_speed=_changing_speed(record, int(scalars["record_turns"])),
+        orbit=record["orbit"].astype(np.float64),
         blisk_mass=scalars["blisk_mass"],
         free_penetration=scalars["free_penetration"],
     )
@@ -102,23 +106,23 @@ def in_record_precision(response: Response) -> Response:
     )
 
 
-def _changing_speed(kept: CompactRecord, turns: int) -> ChangingSpeed | None:
-    if not kept["rotation"].size:
+def _changing_speed(record: CompactRecord, turns: int) -> ChangingSpeed | None:
+    if not record["rotation"].size:
         return None
-    rotation = Rotation(**dict(zip(ROTATION, kept["rotation"].tolist(), strict=True)))
+    rotation = Rotation(**dict(zip(ROTATION, record["rotation"].tolist(), strict=True)))
     orders = np.zeros((turns, 0, ORDERS), dtype=np.complex128)
-    return ChangingSpeed(rotation=rotation, turn_steps=kept["turn_steps"].astype(np.int64), orders=orders)
+    return ChangingSpeed(rotation=rotation, turn_steps=record["turn_steps"].astype(np.int64), orders=orders)
 
 
-def _touches(kept: CompactRecord) -> ContactEvents:
+def _touches(record: CompactRecord) -> ContactEvents:
     return ContactEvents(
-        blade=kept["blade"].astype(np.int64),
-        start_step=kept["start_step"].astype(np.int64),
-        steps=kept["steps"].astype(np.int64),
-        angle=kept["angle"].astype(np.float64),
-        impulse=kept["impulse"].astype(np.float64),
-        friction_loss=kept["friction_loss"].astype(np.float64),
-        normal_loss=kept["normal_loss"].astype(np.float64),
+        blade=record["blade"].astype(np.int64),
+        start_step=record["start_step"].astype(np.int64),
+        steps=record["steps"].astype(np.int64),
+        angle=record["angle"].astype(np.float64),
+        impulse=record["impulse"].astype(np.float64),
+        friction_loss=record["friction_loss"].astype(np.float64),
+        normal_loss=record["normal_loss"].astype(np.float64),
     )
 
 
@@ -129,7 +133,7 @@ def _narrow(q: FloatArray, v: FloatArray, response: Response) -> npt.NDArray[np.
 
 
 def _wide(rows: npt.NDArray[Any], blades: int, casing: int) -> tuple[FloatArray, FloatArray]:
-    """Q and v (any, 3 blades + 2 + casing) of kept rows."""
+    """Q and v (any, 3 blades + 2 + casing) of rows of a record."""
     centre = 3 * blades
     rows = rows.astype(np.float64) if rows.size else np.zeros((0, centre + 4 + 2 * casing))
     q = np.concatenate([rows[:, : centre + 2], rows[:, centre + 4 : centre + 4 + casing]], axis=1)

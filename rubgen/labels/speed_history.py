@@ -190,6 +190,6 @@ def _cut(response: Response, first: int, last: int) -> Response:
         section_v=response.section_v[turns],
         impulse_per_turn=response.impulse_per_turn[turns],
         contact_steps_per_turn=response.contact_steps_per_turn[turns],
-        twin_growth=np.zeros(0),
-        fractions=np.zeros((0, 2, response.section_q.shape[1])),
+        companion_growth=np.zeros(0),
+        symmetry_states=np.zeros((0, 2, response.section_q.shape[1])),
     )

@@ -83,7 +83,7 @@ def _reduced(asked: _Asked) -> ReducedCasing:
 
 def _lowest_modes(model: CasingModel, modes: int) -> tuple[FloatArray, FloatArray]:
     # The spectrum is a cluster with pairs in it: the dense solver is sure to find every one of them, in some 30 ms for
-    # 180 nodes, where a single-vector Lanczos run may miss a twin.
+    # 180 nodes, where a single-vector Lanczos run may miss one mode of a doublet.
     eigenvalues, vectors = eigh(model.K.toarray(), model.M.toarray(), subset_by_index=[0, modes - 1])
     return eigenvalues, vectors
 

@@ -1,4 +1,4 @@
-"""What the integration of one run gives."""
+"""The result of the integration of one run."""
 
 from __future__ import annotations
 
@@ -70,141 +70,170 @@ class TipArrivals:
 
 @dataclass(frozen=True, kw_only=True)
 class EnergyBalance:
-    """Works over the whole integration, in J, as the scheme books them.
+    """Energies and works over the whole integration, in J, computed as the scheme does.
 
-    residual = |E_end - E_start - sum of works| / (sum of absolute works); the identity is exact but for rounding, and
-    where hardly any work is done (no rub) the largest |E| stands for the works. `contact` is lam^T B^T d;
-    `normal_loss` and `friction_loss` are losses of the contact itself, <= 0, and so is `wear_loss`, the work of the
-    contact force on a liner's surface as it recedes (0 without one); the drive that keeps the speed constant pays
-    drive_contact_work = contact - normal_loss - friction_loss - wear_loss, which tends to drive_contact_limit = -Omega
-    times the time integral of the contact torque on the blisk, both positive where contact brakes.
-    `anisotropy` is the work of uneven springs and dampers beyond their mean, `film` that of a squeeze film, `gravity`
-    that of the weight, all in the turning frame, where the drive's share counts too; `film_loss` is what the film turns
-    into heat, <= 0. `speed_change` is what the stiffness, which follows a changing speed, adds to the stored energy.
+    end - start is the sum of the works except for rounding. A work is positive where it adds energy. Works are those
+    of the turning frame.
     """
 
     start: float
+    """Energy E at the first step."""
     end: float
+    """Energy E at the last step."""
     unbalance: float
+    """Work of the unbalance."""
     damping: float
+    """Work of the damping."""
     circulatory: float
+    """Work of the circulatory stiffness."""
     anisotropy: float
+    """Work of uneven springs and dampers beyond their mean."""
     film: float
+    """Work of the squeeze film."""
     gravity: float
+    """Work of the weight."""
     contact: float
+    """Work of the contact forces, the sum of lam^T B^T d.
+
+    The drive that keeps the speed supplies contact - normal_loss - friction_loss - wear_loss."""
     normal_loss: float
+    """Energy that contacts dissipate along the normal, <= 0."""
     friction_loss: float
-    drive_contact_work: float
-    drive_contact_limit: float
+    """Energy that contacts dissipate by friction, <= 0."""
     film_loss: float
+    """Energy that the squeeze film turns into heat, <= 0."""
     speed_change: float
+    """Energy added by the stiffness as it follows a changing speed."""
     absolute_work: float
+    """Sum of the absolute works."""
     residual: float
+    """|end - start - sum of works| over `absolute_work`; over the largest |E| where hardly any work is done."""
     wear_loss: float = 0.0
+    """Work of the contact forces on a liner's surface as it recedes, <= 0; 0 without a liner."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Track:
-    """The whole motion over the few turns about the hardest touch, and what places it in space.
-
-    `step` (frames,) counts from the first of the record; `q` (frames, n) is the state as in `SpinningSystem`, the blisk
-    in its turning frame. `tip_growth` (1, n_blades, 3) is added to the tips; of a changing speed there is one for each
-    turn of the record. `casing_modes` (nodes, 2, n_casing) are the X and Y displacements of each casing mode at its
-    nodes.
-    """
+    """The whole motion over the few turns about the hardest touch, and what places it in space."""
 
     step: IntArray
+    """Steps of the frames (frames,), counted from the first step of the record."""
     q: FloatArray
+    """States (frames, n) as in `SpinningSystem`, the blisk in its turning frame."""
     tip_growth: FloatArray
+    """Steady displacement of the tips (1, n_blades, 3), m; (record_turns, n_blades, 3) where the speed changes."""
     casing_modes: FloatArray
+    """X and Y displacements of each casing mode at the casing's nodes (nodes, 2, n_casing)."""
 
     __repr__ = brief
 
 
 @dataclass(frozen=True, kw_only=True)
 class WornLiner:
-    """What is left of a liner at the end of a run.
-
-    `angle` (bins,) polar angles in rad, `depth` (bins,) worn there in m; `volume` removed in m3, the mean depth times
-    the track's area, and `removed`, the same as the sum of what each contact took.
-    """
+    """A liner at the end of a run."""
 
     angle: FloatArray
+    """Polar angles of the bins (bins,), rad."""
     depth: FloatArray
+    """Depth worn at these angles (bins,), m."""
     volume: float
+    """Volume removed in m3: the mean depth times the area of the track."""
     removed: float
+    """Volume removed in m3: the sum of what each contact removed. Equal to `volume` except for rounding."""
 
     __repr__ = brief
 
 
 @dataclass(frozen=True, kw_only=True)
 class ChangingSpeed:
-    """A changing speed: `rotation` holds speed (rad/s) and angle over time, t = 0 at the first step of the record.
-
-    Turn k of the record begins at step `turn_steps[k]` (record_turns + 1,), counted from that one: the step nearest to
-    theta = 2 pi k. `orders` (record_turns, taps, 20) are complex amplitudes of each tap in each turn, in the order of
-    `Response.taps`: 2 / turn times the integral of x exp(-i k theta) over the angle, k = 1 .. 20.
-    """
+    """How the speed of a run went. Turn k of the record begins at the step nearest to theta = 2 pi k."""
 
     rotation: Rotation
+    """Speed (rad/s) and angle (rad) over time in s; t = 0 at the first step of the record."""
     turn_steps: IntArray
+    """First step of each turn, counted from the first step of the record (record_turns + 1,)."""
     orders: ComplexArray
+    """Complex amplitudes of each tap in each turn (record_turns, taps, 20), taps in the order of `Response.taps`.
+
+    2 / turn times the integral of x exp(-i k theta) over the angle, k = 1 .. 20."""
 
     __repr__ = brief
 
 
 @dataclass(frozen=True, kw_only=True)
 class Response:
-    """The true response of one run: never a history of the state.
+    """The true response of one run. It never holds the history of the state.
 
-    `taps` maps a name to the signal at every step of the end of the record, (n_tail,), the last step of the record
-    being the last value; the tail covers the asked seconds or 100 turns, whichever is longer, and reaches back into the
-    settling where the record is shorter. `section_q`,
-    `section_v` (record_turns, n) are state and velocity once a turn at theta = 0 mod 2 pi (blisk coordinates in the
-    turning frame, which coincides with the inertial one there). `impulse_per_turn` (record_turns,) in N s.
-    `contact_steps_per_turn` (record_turns,) counts the steps of each turn in which any blade touched. `track` is None
-    where no signal was asked for. `arrivals` holds what each timing probe saw in the tail, by
-    its name. `twin_growth` (record_turns,) is ln of what the distance to a trajectory beside the run grew by in each
-    turn, empty where none was asked for. `fractions` (N, 2, n) are q and v after 1/N, 2/N, ... 1 of the last turn, N
-    the lobes of the casing, the casing turned back by as much: all equal where the motion is symmetric,
-    q(t + T/N) = q(t); none for a changing speed. `worn` is what is left of the liner, None without one.
-    `orbit` (turns, 5) are means over each of the last 100 turns, at a changing speed of all, of X, Y (m), X^2 + Y^2,
-    V_X^2 + V_Y^2 and X V_Y - Y V_X of the disk centre in the inertial frame. `blisk_mass` in kg and `free_penetration`
-    in m, how deep the tips of the rub-free motion would enter the casing at rest (negative: clearance), are NaN where
-    they are not known, the latter at a changing speed too. `window_orders` (windows, taps, 20) are the complex
-    amplitudes at k f_r of a steady run in windows of 16 turns, for all of `taps` in their order: the last windows of
-    the record, those that the taps cover.
-    At a changing speed `changing_speed` has speed and angle over time; `speed` is then the record's mean, and
-    `steps_per_turn` the number of steps in a turn at the highest speed.
-    When `status` is not OK, `reason` says where and by how much, and no array may be used as data.
+    Where `status` is not OK, no array may be used as data. States are q and v as in `SpinningSystem`: n coordinates,
+    the blisk in its turning frame. That frame coincides with the inertial frame where theta = 0 mod 2 pi.
     """
 
     status: Status
+    """How the integration ended."""
     reason: str
+    """Where it failed and by how much; empty where `status` is OK."""
     speed: float
+    """Spin speed in rad/s; the mean of the record where the speed changes."""
     dt: float
+    """Time step in s."""
     steps_per_turn: int
+    """Number of steps in a turn; at the highest speed where the speed changes."""
     settle_turns: int
+    """Number of turns before the record."""
     record_turns: int
+    """Number of turns of the record."""
     taps: dict[str, FloatArray]
+    """True signals by name, one value a step (n_tail,). The last value belongs to the last step of the record.
+
+    The tail covers the seconds asked for or 100 turns, whichever is longer. It reaches back into the settling where
+    the record is shorter."""
     section_q: FloatArray
+    """Poincare section (record_turns, n): q once a turn, at theta = 0 mod 2 pi."""
     section_v: FloatArray
+    """Its velocities (record_turns, n)."""
     impulse_per_turn: FloatArray
+    """Normal impulse of all blades in each turn (record_turns,), N s."""
     contact_steps_per_turn: IntArray
+    """Number of steps of each turn in which any blade touched (record_turns,)."""
     events: ContactEvents
+    """The touches of the record."""
     energy: EnergyBalance
+    """Works over the whole integration, settling included."""
     n_blades: int
+    """Number of blades."""
     n_casing: int
+    """Number of casing modes."""
     track: Track | None = None
+    """The motion about the hardest touch; None where no signal was asked for."""
     worn: WornLiner | None = None
-    twin_growth: FloatArray = field(default_factory=lambda: np.zeros(0))
-    fractions: FloatArray = field(default_factory=lambda: np.zeros((0, 2, 0)))
+    """The liner at the end of the run; None without a liner."""
+    companion_growth: FloatArray = field(default_factory=lambda: np.zeros(0))
+    """Ln of the growth of the companion trajectory's distance in each turn (record_turns,); (0,) without a companion.
+
+    NaN in a turn that the companion could not follow."""
+    symmetry_states: FloatArray = field(default_factory=lambda: np.zeros((0, 2, 0)))
+    """q and v (N, 2, n) after 1/N, 2/N, ... 1 of the last turn, the casing turned back by the same share.
+
+    N is the number of the casing's lobes. All N states are equal where q(t + T/N) = q(t). (0, 2, 0) for a changing
+    speed."""
     arrivals: dict[str, TipArrivals] = field(default_factory=dict)
+    """Passages of blades under each timing probe in the tail, by the probe's name."""
     changing_speed: ChangingSpeed | None = None
+    """Speed and angle over time; None for a steady speed."""
     orbit: FloatArray = field(default_factory=lambda: np.zeros((0, 5)))
+    """Means over a turn of X, Y (m), X^2 + Y^2, V_X^2 + V_Y^2 and X V_Y - Y V_X of the disk centre (turns, 5).
+
+    X and Y are inertial. The turns are the last 100; all turns of the record where the speed changes."""
     blisk_mass: float = float("nan")
+    """Mass of the blisk in kg; NaN where it is not known."""
     free_penetration: float = float("nan")
+    """How deep the tips of the rub-free motion would enter the casing at rest, m; negative is a clearance.
+
+    NaN where it is not known, and at a changing speed."""
     window_orders: ComplexArray = field(default_factory=lambda: np.zeros((0, 0, 20), dtype=np.complex128))
+    """Complex amplitudes of each tap at k f_r, k = 1 .. 20, in windows of 16 turns (windows, taps, 20).
+
+    The windows are the last of the record that the taps cover. None (0, ..) where the speed changes."""
 
     __repr__ = brief
 

@@ -16,7 +16,7 @@ from rubgen.dataset.card import card
 from rubgen.dataset.manifest import identity_of, read_manifest
 from rubgen.errors import UserError
 from rubgen.io.mcap import read_mcap
-from rubgen.io.parquet.sections import RECORD_COLUMNS
+from rubgen.io.parquet.compact_records import RECORD_COLUMNS
 from rubgen.scenario import load_recipe, parse_recipe
 from tests.default_columns import CHANNELS, SCALARS, SIGNALS
 

@@ -12,7 +12,7 @@ from rubgen.cli import main
 from rubgen.dataset.checking.relabel import equal, relabel
 from rubgen.errors import UserError
 from rubgen.io.columns import scalar_columns
-from rubgen.io.parquet.sections import SCHEMA
+from rubgen.io.parquet.compact_records import SCHEMA
 from rubgen.io.parquet.write import write_table
 from rubgen.labels.to_json import FROM_TAPS
 from rubgen.sensors.load import default_sensor_set

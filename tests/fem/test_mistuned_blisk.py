@@ -78,7 +78,7 @@ def modes_of(machine, model, count=42):
     return 1 / np.sqrt(compliance[::-1]), modes[:, ::-1] / np.sqrt(compliance[::-1])
 
 
-def twins(omega):
+def doublets(omega):
     return np.flatnonzero(np.diff(omega[:41]) < 1e-9 * omega[:40])
 
 
@@ -96,11 +96,11 @@ def test_a_turned_pattern_has_the_same_frequencies(soft, equal):
 
 
 @pytest.mark.parametrize("pattern", [np.cos(2 * ANGLE), np.cos(4 * ANGLE), np.cos(6 * ANGLE), np.sin(1 + ANGLE**2)])
-def test_a_pattern_shifts_and_splits_twin_modes_as_perturbation_theory_says(soft, equal, pattern):
-    """On a pair Phi of equal blades omega^2 becomes omega^2 + eig(sum_k delta_k Phi_k^T K_k Phi_k), to first order."""
+def test_a_pattern_shifts_and_splits_doublets_as_perturbation_theory_says(soft, equal, pattern):
+    """On a doublet Phi omega^2 becomes omega^2 + eig(sum_k delta_k Phi_k^T K_k Phi_k), to first order."""
     omega, modes, model = equal
     found, _ = modes_of(soft, assemble(soft, EPS * pattern))
-    pairs = twins(omega)
+    pairs = doublets(omega)
     assert len(pairs) >= 16
     for k in pairs:
         blades = modes[model.disk_size :, k : k + 2].reshape(BLADES, -1, 2)
@@ -111,17 +111,17 @@ def test_a_pattern_shifts_and_splits_twin_modes_as_perturbation_theory_says(soft
 
 
 @pytest.mark.parametrize("diameters", [1, 2, 3])
-def test_twins_split_by_twice_their_diameters_as_far_as_all_blades_together_shift_them(soft, equal, diameters):
-    """The pattern eps cos(2 n theta_k) splits the twins of n diameters and no others, without a mode of the model.
+def test_doublets_split_by_twice_their_diameters_as_far_as_all_blades_together_shift_them(soft, equal, diameters):
+    """The pattern eps cos(2 n theta_k) splits the doublets of n diameters and no others, without a mode of the model.
 
-    Blades that all bend alike have the energies cos^2 n theta_k and sin^2 n theta_k in the two twins, which weigh the
-    pattern with +-1/2: omega (1 +- eps s / 4) with s the blades' share of the energy. A uniform deviation eps brings
-    omega (1 + eps s / 2), as much as the twins part.
+    Blades that all bend alike have the energies cos^2 n theta_k and sin^2 n theta_k in the two modes of a doublet. They
+    weigh the pattern with +-1/2: omega (1 +- eps s / 4) with s the blades' share of the energy. A uniform deviation eps
+    brings omega (1 + eps s / 2), as much as the two modes part.
     """
     omega, modes, model = equal
     split, _ = modes_of(soft, assemble(soft, EPS * np.cos(2 * diameters * ANGLE)))
     uniform, _ = modes_of(soft, assemble(soft, [EPS] * BLADES))
-    pairs = [k for k in twins(omega) if omega[k] < 2 * np.pi * 200]  # the blades' first bending
+    pairs = [k for k in doublets(omega) if omega[k] < 2 * np.pi * 200]  # the blades' first bending
     assert [diameters_of(modes[:, k], model) for k in pairs] == [1, 2, 3, 1]
     for k in pairs:
         gap, shift = (split[k + 1] - split[k]) / omega[k], uniform[k] / omega[k] - 1

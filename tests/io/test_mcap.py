@@ -134,7 +134,7 @@ def test_rerun_plots_the_preview_without_set_up(rub_run, mcap_file):
     assert scalars[:, 1].max() == values.max()
 
 
-def test_twin_message_has_the_wire_bytes_of_the_real_one():
+def test_block_of_bytes_has_the_wire_bytes_of_a_sample_block():
     values = np.random.default_rng(0).standard_normal(1024).astype(np.float32)
     fields = {"timestamp": timestamp(1_500_000_007), "sample_rate": 25600.0, "first_index": 2048}
     plain = message_class("SampleBlock")(**fields, values=values.tolist()).SerializeToString(deterministic=True)

@@ -29,7 +29,9 @@ def test_kept_arrays_bring_back_the_labels(respond: Respond, rub: Response) -> N
     casing = 1e-5 * rng.standard_normal((64, 11))
     blisk = 1e-6 * rng.standard_normal((64, 114))
     made = respond(turns=64, blisk=blisk, casing=casing, casing_velocity=1e3 * casing, touches=rub.events)
-    made = dataclasses.replace(made, twin_growth=rng.standard_normal(64), fractions=rng.standard_normal((2, 2, 125)))
+    made = dataclasses.replace(
+        made, companion_growth=rng.standard_normal(64), symmetry_states=rng.standard_normal((2, 2, 125))
+    )
     again = dataclasses.replace(response_of(compact_record(made)), taps=made.taps)
     first, second = label(made), label(again)
     assert first.lyapunov is not None
@@ -48,7 +50,7 @@ def test_what_labels_see_differs_by_single_precision(rub: Response) -> None:
 
 def test_kept_arrays_are_small(respond: Respond) -> None:
     size = sum(array.nbytes for array in compact_record(respond()).values())
-    assert size == 500 * (134 * 4 + 8 + 4) + 72  # no touches, no twin
+    assert size == 500 * (134 * 4 + 8 + 4) + 72  # no touches, no companion
 
 
 def test_keeping_twice_changes_nothing(rub: Response) -> None:

@@ -12,12 +12,12 @@ from rubgen.solver.response import Response
 Respond = Callable[..., Response]
 
 
-def at_fractions(response: Response, moved: float, lobes: int = 2) -> Response:
+def with_states(response: Response, moved: float, lobes: int = 2) -> Response:
     """The response with the section's last state after each Nth of a turn, the disk centre moved in the first."""
     state = np.stack([response.section_q[-1], response.section_v[-1]])
-    fractions = np.repeat(state[None], lobes, axis=0)
-    fractions[0, 0, 108] += moved * np.abs(state[0, 108])
-    return replace(response, fractions=fractions)
+    states = np.repeat(state[None], lobes, axis=0)
+    states[0, 0, 108] += moved * np.abs(state[0, 108])
+    return replace(response, symmetry_states=states)
 
 
 @pytest.fixture
@@ -28,7 +28,7 @@ def periodic(respond: Respond) -> Response:
 
 @pytest.mark.parametrize(("moved", "symmetric"), [(0.0, True), (0.02, True), (0.04, False), (1.0, False)])
 def test_states_that_differ_break_the_symmetry(periodic: Response, moved: float, symmetric: bool) -> None:
-    response = at_fractions(periodic, moved)
+    response = with_states(periodic, moved)
     assert asymmetry(response) == pytest.approx(moved, abs=1e-9)
     assert is_symmetric(response) is symmetric
     assert motion(response).symmetric is symmetric
@@ -36,10 +36,10 @@ def test_states_that_differ_break_the_symmetry(periodic: Response, moved: float,
 
 def test_only_a_rub_of_period_1_on_lobes_has_a_symmetry(periodic: Response, respond: Respond) -> None:
     assert is_symmetric(periodic) is None
-    assert is_symmetric(at_fractions(periodic, 0.0, lobes=1)) is None
-    assert motion(at_fractions(respond(contact=False), 0.0)).symmetric is None
+    assert is_symmetric(with_states(periodic, 0.0, lobes=1)) is None
+    assert motion(with_states(respond(contact=False), 0.0)).symmetric is None
     swinging = np.array([1.0, 2.0])[np.arange(500) % 2][:, None] * np.ones(11)
-    two = at_fractions(respond(casing=swinging, casing_velocity=swinging), 0.0)
+    two = with_states(respond(casing=swinging, casing_velocity=swinging), 0.0)
     assert motion(two).system.motion is Motion.PERIOD_K
     assert motion(two).symmetric is None
 

@@ -74,7 +74,7 @@ def test_five_times_the_width_and_the_springs_leave_the_frequencies() -> None:
     )
     light, heavy = reduce_casing(fifth, 11), reduce_casing(load_machine("zeng2019"), 11)
     np.testing.assert_allclose(light.frequencies_hz, heavy.frequencies_hz, rtol=1e-9)
-    # Order 4 and 5 twins differ by 3e-7 in frequency: rounding mixes them by 1e-4.
+    # The doublets of order 4 and 5 differ by 3e-7 in frequency: rounding mixes them by 1e-4.
     np.testing.assert_allclose(light.modes_xy, np.sqrt(5) * heavy.modes_xy, atol=1e-3)
 
 
@@ -132,9 +132,9 @@ def test_turning_the_lobes_turns_the_modes() -> None:
 def test_three_lobes_split_only_the_pair_of_order_three() -> None:
     # Threefold symmetry keeps pairs of every order that is no multiple of three.
     f = reduce_casing(machine(lobes=3), 11).frequencies_hz
-    twins = np.isclose(f[:, None], f[None, :], rtol=1e-8).sum(axis=1)
-    assert (twins == 2).sum() == 8
-    assert (twins == 1).sum() == 3
+    doublets = np.isclose(f[:, None], f[None, :], rtol=1e-8).sum(axis=1)
+    assert (doublets == 2).sum() == 8
+    assert (doublets == 1).sum() == 3
 
 
 def test_surface_is_the_machines(preset: ReducedCasing) -> None:

@@ -8,7 +8,7 @@ from rubgen.contact import gap_and_foot
 from rubgen.contact.contact_kernels import build_rows
 from rubgen.contact.geometry_kernels import casing_rows
 from rubgen.scenario import ContactLaw
-from rubgen.solver.scheme.energy_kernels import CONTACT, DRIVE_LIMIT, FRICTION, NORMAL, add_contact_works
+from rubgen.solver.scheme.energy_kernels import CONTACT, FRICTION, NORMAL, add_contact_works
 from rubgen.solver.scheme.state_kernels import Coordinates
 from rubgen.solver.speed.start import rub_free_stepper
 
@@ -95,7 +95,7 @@ def test_the_normal_row_is_the_slope_of_the_gap(touch):
 
 
 def test_works_of_a_contact_are_those_of_its_force(touch):
-    """One step of motion d = v dt: lam B.d, the normal and the friction loss, and the drive's -Omega dt e_z.(P x F)."""
+    """One step of motion d = v dt: lam B.d, the normal and the friction loss, and the torque e_z.(P x F)."""
     stepper, work, lam, dt = touch.stepper, touch.work, 700.0, touch.stepper.dt
     d = touch.v * dt
     coordinates = Coordinates(touch.q, touch.q, touch.q, d)
@@ -103,14 +103,15 @@ def test_works_of_a_contact_are_those_of_its_force(touch):
     step = 40
     model = stepper.model
     angles = model.angles._replace(cosine=np.full(257, np.cos(THETA)), sine=np.full(257, np.sin(THETA)))
-    normal, friction, _torque = add_contact_works(
+    normal, friction, torque = add_contact_works(
         0, frozen(model._replace(angles=angles)), step, np.zeros(258), coordinates, stepper.state
     )
     inward = np.array([-touch.tangent[1], touch.tangent[0]])
     along, axial = work.slip[0]
     force = lam * (inward + MU * along * touch.tangent)
     tip_move, casing_move = touch.along(d), touch.rows @ d[touch.system.casing_start :]
-    turn = touch.system.speed * dt * np.array([-touch.place(touch.q, THETA)[1], touch.place(touch.q, THETA)[0]])
+    lever = np.array([-touch.place(touch.q, THETA)[1], touch.place(touch.q, THETA)[0]])
+    turn = touch.system.speed * dt * lever
     slip = (tip_move[:2] + turn - casing_move) @ touch.tangent, tip_move[2]
     works = stepper.state.works
     assert works[CONTACT] == pytest.approx(
@@ -119,4 +120,4 @@ def test_works_of_a_contact_are_those_of_its_force(touch):
     assert works[NORMAL] == normal == pytest.approx(0.5 * lam * -8e-5)
     assert abs(slip[1]) > 0.1 * abs(slip[0])  # the axial part counts
     assert works[FRICTION] == friction == pytest.approx(-MU * lam * np.hypot(*slip), rel=1e-9)
-    assert works[DRIVE_LIMIT] == pytest.approx(-force @ turn, rel=1e-9)
+    assert torque == pytest.approx(force @ lever, rel=1e-9)

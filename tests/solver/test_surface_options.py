@@ -124,9 +124,9 @@ def test_there_is_no_exponent_while_the_liner_wears(small_system, operation):
     system = small_system(speed=500.0)
     asked = operation(system, record_turns=40, settle_turns=50)
     wearing = integrate(system, asked, LAWS["liner"], Wants(companion=True))
-    assert np.isnan(wearing.twin_growth).any()
+    assert np.isnan(wearing.companion_growth).any()
     hard = integrate(system, asked, ContactLaw(friction=0.1), Wants(companion=True))
-    assert np.isfinite(hard.twin_growth).all()
+    assert np.isfinite(hard.companion_growth).all()
 
 
 def test_a_recipe_asks_for_the_options_and_is_told_what_is_wrong_with_them():

@@ -42,7 +42,7 @@ def run_piece(scenario: Scenario) -> Piece:
 
 
 def run(scenario: Scenario) -> Arrays:
-    """What is kept of the response, with its twin; nothing of a run that failed."""
+    """What is kept of the response, with its companion; nothing of a run that failed."""
     operation = scenario.operation
     model = reduce(scenario.machine, scenario.reduction)
     response = integrate(model, operation, scenario.contact, Wants(companion=True))

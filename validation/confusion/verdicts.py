@@ -129,9 +129,9 @@ class Case:
         return None if self.agree else _cause(self)
 
 
-def judge(name: str, kept: CompactRecord) -> Case | None:
-    """The verdicts on a run that is kept; None where the casing rests or the twin could not follow."""
-    response = response_of(kept)
+def judge(name: str, record: CompactRecord) -> Case | None:
+    """The verdicts on a run that is kept; None where the casing rests or the companion could not follow."""
+    response = response_of(record)
     exponent = lyapunov_of(response)
     if exponent is None:
         return None

@@ -17,7 +17,7 @@ import rubgen
 from rubgen.cli import generating
 from rubgen.dataset.checking import verify
 from rubgen.io import mcap
-from rubgen.io.parquet import read, sections, write
+from rubgen.io.parquet import compact_records, read, write
 from rubgen.machine.load import PRESETS
 from rubgen.viz import rerun
 from validation.reliability.processes import Process, start
@@ -57,7 +57,7 @@ SMALLER = {"count = 36": "count = 8", "circumferential_elements = 72": "circumfe
 """What makes the preset a machine of eight blades, on which a run takes a third of the time."""
 
 
-LOADED = (generating, verify, mcap, read, sections, write, rerun)
+LOADED = (generating, verify, mcap, read, compact_records, write, rerun)
 """Modules that commands import late, and that forks of this process need not import again."""
 
 

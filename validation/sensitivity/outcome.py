@@ -105,8 +105,8 @@ def run(scenario: Scenario) -> Outcome:
     operation = scenario.operation
     with threadpool_limits(1, user_api="blas"):
         model = reduce(scenario.machine, scenario.reduction)
-        system, twin = model.at_speed(operation.speed_rad_per_s), operation.record_turns >= LEAST_TURNS
-        response = integrate(system, operation, scenario.contact, Wants(companion=twin))
+        system, companion = model.at_speed(operation.speed_rad_per_s), operation.record_turns >= LEAST_TURNS
+        response = integrate(system, operation, scenario.contact, Wants(companion=companion))
         return outcome(model, response)
 
 

@@ -1,4 +1,4 @@
-"""Labels of a data set made again from what is kept with each run, and how they differ from those that it holds."""
+"""Labels of a data set made again from its compact records, and how they differ from the stored ones."""
 
 import math
 from collections.abc import Iterator
@@ -13,8 +13,8 @@ from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import read_manifest
 from rubgen.dataset.rows import asked_bytes
 from rubgen.errors import UserError
+from rubgen.io.parquet.compact_records import SCHEMA, read_record
 from rubgen.io.parquet.read import row_groups
-from rubgen.io.parquet.sections import SCHEMA, kept_of
 from rubgen.labels.registry import TAP_ENDINGS
 from rubgen.labels.to_json import remade_labels
 
@@ -85,9 +85,9 @@ def _remade(layout: Layout, names: list[str], asked: float) -> Iterator[tuple[st
 
 
 def _labels_of(table: pa.Table, row: int, path: Path) -> dict[str, object]:
-    kept = kept_of(table, row, path)
+    record = read_record(table, row, path)
     try:
-        return remade_labels(kept)
+        return remade_labels(record)
     except (ValueError, LookupError, ArithmeticError) as error:
         reason = " ".join(f"{type(error).__name__} {error}".split())[:200]
         run_id = table["run_id"][row].as_py()

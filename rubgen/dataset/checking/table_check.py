@@ -13,8 +13,8 @@ from rubgen.dataset.reading.open import is_signal, row_signals
 from rubgen.dataset.rows import asked_bytes
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
+from rubgen.io.parquet.compact_records import SCHEMA
 from rubgen.io.parquet.read import ParquetSource, open_parquet
-from rubgen.io.parquet.sections import SCHEMA
 from rubgen.io.parquet.write import schema
 from rubgen.scenario import Sensing
 

@@ -11,8 +11,8 @@ from rubgen.dataset.layout import RUNS_PER_ROW_GROUP, RUNS_PER_SHARD, Layout
 from rubgen.dataset.rows import asked_bytes
 from rubgen.errors import RubgenError, UserError
 from rubgen.io.durable import sync_directory
+from rubgen.io.parquet.compact_records import SCHEMA
 from rubgen.io.parquet.read import read_table
-from rubgen.io.parquet.sections import SCHEMA
 from rubgen.io.parquet.write import schema, write_table
 from rubgen.scenario import Recipe
 

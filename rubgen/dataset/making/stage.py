@@ -19,7 +19,7 @@ def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
 
     A run that cannot be made of the values that were drawn is recorded as refused, with the reason.
     """
-    from rubgen.io.parquet.sections import write_section
+    from rubgen.io.parquet.compact_records import write_record
     from rubgen.io.parquet.write import run_table, write_table
     from rubgen.pipeline import refused, simulate
 
@@ -31,7 +31,7 @@ def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
     if run.labels is not None:
         for each in run_formats(formats):
             each.write(run, layout.export(each.name, scenario.run_id))
-        write_section(scenario.run_id, run.response, layout.staged_section(scenario.run_id))
+        write_record(scenario.run_id, run.response, layout.staged_section(scenario.run_id))
     table = run_table(run, signals="parquet" in formats)
     write_table([table], table.schema, layout.staged(scenario.run_id))
     return run.response.status.code

@@ -24,8 +24,8 @@ from rubgen.dataset.reading.touches import COLUMNS, touches_frame
 from rubgen.dataset.rows import RunRows, asked_bytes
 from rubgen.errors import UserError
 from rubgen.io.columns import signal_columns
+from rubgen.io.parquet.compact_records import SCHEMA
 from rubgen.io.parquet.read import damage_named, read_table
-from rubgen.io.parquet.sections import SCHEMA
 from rubgen.io.parquet.write import schema
 from rubgen.machine.problems import nearest
 from rubgen.measurement.channel import Float32Array

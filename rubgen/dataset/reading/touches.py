@@ -1,4 +1,4 @@
-"""The touches of one run as a DataFrame, from what is kept of it."""
+"""The touches of one run as a DataFrame, from its compact record."""
 
 from __future__ import annotations
 
@@ -33,21 +33,21 @@ def touches_frame(table: pa.Table, sensing: Sensing, seconds: float) -> pd.DataF
 
     from rubgen.measurement.chain import start_seconds
 
-    kept = {name: np.asarray(table[name][0].values) for name in COLUMNS}
-    scalars = dict(zip(SCALARS, kept["scalars"].tolist(), strict=True))
-    dt, turns = scalars["dt"], kept["turn_steps"]
+    record = {name: np.asarray(table[name][0].values) for name in COLUMNS}
+    scalars = dict(zip(SCALARS, record["scalars"].tolist(), strict=True))
+    dt, turns = scalars["dt"], record["turn_steps"]
     steps = int(turns[-1]) if turns.size else int(scalars["record_turns"] * scalars["steps_per_turn"])
     first = start_seconds(sensing, seconds, steps=steps, dt=dt)
-    start: FloatArray = kept["start_step"] * dt - first
+    start: FloatArray = record["start_step"] * dt - first
     frame = pd.DataFrame(
         {
             "start_s": start,
-            "end_s": start + kept["steps"] * dt,
-            "blade": kept["blade"].astype(np.int64),
-            "angle_rad": kept["angle"].astype(np.float64),
-            "impulse_n_s": kept["impulse"].astype(np.float64),
-            "friction_work_j": kept["friction_loss"].astype(np.float64),
-            "normal_work_j": kept["normal_loss"].astype(np.float64),
+            "end_s": start + record["steps"] * dt,
+            "blade": record["blade"].astype(np.int64),
+            "angle_rad": record["angle"].astype(np.float64),
+            "impulse_n_s": record["impulse"].astype(np.float64),
+            "friction_work_j": record["friction_loss"].astype(np.float64),
+            "normal_work_j": record["normal_loss"].astype(np.float64),
         }
     )
     frame = frame.sort_values("start_s", kind="stable", ignore_index=True)

@@ -142,10 +142,10 @@ def timestamp(time_ns: int) -> dict[str, int]:
 def sample_block(values: Float32Array, sample_rate_hz: float, first_index: int, time_ns: int) -> bytes:
     """Serialised SampleBlock of `values` (n,).
 
-    The twin message bears the packed floats as one bytes field of the same number: the same wire bytes (a test
+    This message bears the packed floats as one bytes field of the same number: the same wire bytes (a test
     compares them) without a Python object for each sample.
     """
-    block = _twin_block()(
+    block = _bytes_block()(
         timestamp=timestamp(time_ns),
         sample_rate=sample_rate_hz,
         first_index=first_index,
@@ -156,7 +156,7 @@ def sample_block(values: Float32Array, sample_rate_hz: float, first_index: int, 
 
 def read_sample_block(data: bytes) -> tuple[int, float, int, Float32Array]:
     """Time in ns, sample rate in Hz, first index and values of a serialised SampleBlock."""
-    block = _twin_block().FromString(data)
+    block = _bytes_block().FromString(data)
     time_ns = block.timestamp.seconds * 10**9 + block.timestamp.nanos
     return time_ns, block.sample_rate, block.first_index, np.frombuffer(block.values, dtype="<f4")
 
@@ -186,11 +186,14 @@ def _add_message(file: descriptor_pb2.FileDescriptorProto, name: str, fields: li
 
 
 @cache
-def _twin_block() -> Any:
+def _bytes_block() -> Any:
     """SampleBlock whose packed floats are one bytes field; never written into a file's schema."""
     fields = [_Field("bytes", "values", "") if field.repeated else field for field in MESSAGES["SampleBlock"][1]]
     file = descriptor_pb2.FileDescriptorProto(
-        name="rubgen/twin.proto", package=PACKAGE, syntax="proto3", dependency=["google/protobuf/timestamp.proto"]
+        name="rubgen/bytes.proto",
+        package=PACKAGE,
+        syntax="proto3",
+        dependency=["google/protobuf/timestamp.proto"],
     )
     _add_message(file, "SampleBlock", fields)
     pool = descriptor_pool.DescriptorPool()

@@ -1,4 +1,4 @@
-"""The largest Lyapunov exponent from the growth of the distance to a twin trajectory."""
+"""The largest Lyapunov exponent from the growth of the distance to a companion trajectory."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rubgen.arrays import FloatArray
 from rubgen.solver.response import Response
 
 ALIGNING = 0.1
-"""Share of the record in which the twin turns into the direction of fastest growth; left out."""
+"""Share of the record in which the companion turns into the direction of fastest growth; left out."""
 BLOCKS = 10
 BRIDGE_RANGE = np.sqrt(np.pi / 2)
 """Mean range of a Brownian bridge of unit variance over unit time."""
@@ -44,10 +44,14 @@ LEAST = 1e-3
 
 
 def lyapunov(growth: FloatArray) -> Exponent | None:
-    """The exponent of a trajectory whose twin's distance grew by exp(growth) (n,) from one renormalisation to the next.
+    """The largest Lyapunov exponent: the mean of `growth` without its first tenth.
 
-    The mean of the growths without the first tenth (Benettin, Galgani, Giorgilli, Strelcyn 1980, Meccanica 15, 9). None
-    without growths, or where one is no number: the twin could not follow. For the error see `standard_error`.
+    Benettin, Galgani, Giorgilli, Strelcyn 1980, Meccanica 15, 9. For the error see `standard_error`.
+
+    - growth (n,): ln of the growth of a companion's distance from one renormalisation to the next.
+
+    Returns None for fewer than 20 growths after the first tenth, and where a growth is NaN: the companion could not
+    follow.
     """
     counted = growth[int(ALIGNING * growth.size) :]
     if counted.size < 2 * BLOCKS or not np.isfinite(growth).all():
@@ -88,4 +92,4 @@ def standard_error(growth: FloatArray) -> float:
 
 def lyapunov_of(response: Response) -> Exponent | None:
     """The exponent of a run; None where none was asked for."""
-    return lyapunov(response.twin_growth)
+    return lyapunov(response.companion_growth)

@@ -15,7 +15,7 @@ def asymmetry(response: Response) -> float | None:
     Of the blisk the farthest of disk centre and tips counts, as in the clusters; the casing is turned back by as much
     as the blisk went on.
     """
-    q, v = response.fractions[:, 0], response.fractions[:, 1]
+    q, v = response.symmetry_states[:, 0], response.symmetry_states[:, 1]
     if len(q) < 2:
         return None
     parts = [blisk_states(response, q, v)]

@@ -60,8 +60,8 @@ class CompanionGrowth:
             self.growth[turn.number] = self.companion.run_turn(turn.opening).sum() if same_surface else np.nan
 
     def result(self) -> dict[str, Any]:
-        """`twin_growth` (record,)."""
-        return {"twin_growth": self.growth}
+        """`companion_growth` (record,)."""
+        return {"companion_growth": self.growth}
 
 
 class Companion:

@@ -50,7 +50,7 @@ class Symmetry:
         """Nothing to do: the stepper holds the snapshots of its last turn."""
 
     def result(self) -> dict[str, Any]:
-        """The states (N, 2, n), q and v: linear between two steps, v their difference."""
+        """`symmetry_states` (N, 2, n), q and v: linear between two steps, v their difference."""
         stepper, states = self.stepper, []
         for share, place in zip(self.shares, self.places, strict=True):
             step = min(math.ceil(place), stepper.steps)
@@ -61,4 +61,4 @@ class Symmetry:
             back[start:, start:] = turned_back(stepper.system.casing_modes, share)
             v = (now - before) / stepper.dt
             states.append(np.stack([back @ (now - (step - place) * stepper.dt * v), back @ v]))
-        return {"fractions": np.array(states)}
+        return {"symmetry_states": np.array(states)}

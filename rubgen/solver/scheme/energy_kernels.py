@@ -15,8 +15,8 @@ from rubgen.solver.scheme.model_kernels import EnergyTerms, Model
 from rubgen.solver.scheme.state_kernels import Coordinates, State
 from rubgen.solver.scheme.step_kernels import previous_gap
 
-UNBALANCE, DAMPING, CIRCULATORY, CONTACT, NORMAL, FRICTION, DRIVE_LIMIT, ABSOLUTE, SPEED_CHANGE = range(9)
-WORKS = 9
+UNBALANCE, DAMPING, CIRCULATORY, CONTACT, NORMAL, FRICTION, ABSOLUTE, SPEED_CHANGE = range(8)
+WORKS = 8
 
 
 @allocation_free_kernel
@@ -44,12 +44,11 @@ def add_linear_works(terms: EnergyTerms, now: FloatArray, change: FloatArray, dt
 def add_contact_works(
     m: int, model: Model, step: int, opening: FloatArray, coordinates: Coordinates, state: State
 ) -> tuple[float, float, float]:
-    """Add the works at contact m in one step; its normal loss and friction loss, J, and its torque on the blisk, N m.
+    """Add the works at contact m in one step. Return its normal and friction loss, J, and torque on the blisk, N m.
 
-    Normal loss lam (g_n+1 - g_n-1) / 2 with the gaps that the scheme held at those steps (the linearised ones where
-    the blade was near, else the geometric one). Friction loss lam mu tau.v_rel dt, tau the direction that the step used
-    and v_rel its central relative velocity; it is -mu lam |v_rel| dt but for the change of v_rel's direction by the
-    contact itself. The drive's limit is -Omega dt e_z.(P x F).
+    The normal loss is lam (g_n+1 - g_n-1) / 2. The gaps are the scheme's: linearised where the blade was near, else
+    geometric. The friction loss is lam mu tau.v_rel dt, with tau the direction that the step used and v_rel its central
+    relative velocity. It is -mu lam |v_rel| dt except that the contact itself changes the direction of v_rel.
     """
     surface, tips, laws, angles = model.surface, model.tips, model.laws, model.angles
     work, works = state.contact, state.works
@@ -77,6 +76,5 @@ def add_contact_works(
     works[CONTACT] += lam * done
     works[NORMAL] += normal
     works[FRICTION] += friction
-    works[DRIVE_LIMIT] -= laws.speed * laws.dt * torque
     works[ABSOLUTE] += abs(lam * done)
     return normal, friction, torque

@@ -52,20 +52,20 @@ STEPS, RECORD = 1024, 200
 PERIOD_STEPS, PERIODS, APART = 10000.3, 2000, 1e-2
 
 
-def twin_exponent(advance: Callable[[FloatArray], None], start: FloatArray, times: int, close: float) -> Exponent:
+def companion_exponent(advance: Callable[[FloatArray], None], start: FloatArray, times: int, close: float) -> Exponent:
     """The exponent for one `advance` of a state (n,) in place, renormalised after each."""
     state = start.copy()
-    twin = state + close * np.cos(1.0 + np.arange(len(state)))
+    companion = state + close * np.cos(1.0 + np.arange(len(state)))
     growth = np.zeros(times)
     for i in range(times):
         advance(state)
-        advance(twin)
-        size = float(np.linalg.norm(twin - state))
+        advance(companion)
+        size = float(np.linalg.norm(companion - state))
         growth[i] = np.log(size / close)
-        bring_back(state, close / size, twin)
+        bring_back(state, close / size, companion)
     exponent = lyapunov(growth)
     if exponent is None:
-        raise ArithmeticError("the twin could not follow")
+        raise ArithmeticError("the companion could not follow")
     return exponent
 
 
@@ -88,23 +88,23 @@ def impact_exponent() -> Exponent:
     dt = 2 * np.pi / REGULAR / PERIOD_STEPS
     start = orbit_in_closed_form(REGULAR)[0] + np.pi
     x = free_flight(REGULAR, np.pi / REGULAR + dt * np.array([-1.0, 0.0]))
-    main, twin = (Wall(np.eye(1), np.eye(1), dt, RESTITUTION) for _ in range(2))
-    for wall, away in ((main, 0.0), (twin, APART)):
+    main, companion = (Wall(np.eye(1), np.eye(1), dt, RESTITUTION) for _ in range(2))
+    for wall, away in ((main, 0.0), (companion, APART)):
         wall.before[0], wall.now[0] = x + away
     growth, done = np.zeros(PERIODS), 0
     for period in range(PERIODS):
         end = round((period + 1) * PERIOD_STEPS)
         force = np.cos(start + REGULAR * dt * np.arange(done, end))
         main.run(force)
-        twin.run(force)
-        states = np.array([[w.now[0], (w.now[0] - w.before[0]) / dt] for w in (main, twin)])
+        companion.run(force)
+        states = np.array([[w.now[0], (w.now[0] - w.before[0]) / dt] for w in (main, companion)])
         size = float(np.linalg.norm(states[1] - states[0]))
         growth[period], done = np.log(size / APART), end
-        bring_back(main.now, APART / size, twin.now)
-        bring_back(main.before, APART / size, twin.before)
+        bring_back(main.now, APART / size, companion.now)
+        bring_back(main.before, APART / size, companion.before)
     exponent = lyapunov(growth)
     if exponent is None:
-        raise ArithmeticError("the twin could not follow")
+        raise ArithmeticError("the companion could not follow")
     return exponent
 
 
@@ -144,22 +144,22 @@ def rub_exponent(steps: int) -> float:
     C[idle, idle] = 1500.0
     operation = Operation(speed_rpm=rev_per_min(SPEED), steps_per_turn=steps, settle_turns=150, record_turns=RECORD)
     response = integrate(replace(system, C=C), operation, ContactLaw(friction=FRICTION), Wants(companion=True))
-    exponent = lyapunov(response.twin_growth)
+    exponent = lyapunov(response.companion_growth)
     return exponent.per_turn if exponent else np.nan
 
 
 def rows() -> Iterator[Row]:
     """Maps, a flow, an impact oscillator, a rotor that rubs."""
-    found = twin_exponent(logistic(4.0), np.array([0.3]), 20000, CLOSE)
+    found = companion_exponent(logistic(4.0), np.array([0.3]), 20000, CLOSE)
     yield within("Lyapunov exponent of the logistic map, r = 4", "ln 2", np.log(2), found.per_turn, 0.005)
-    found = twin_exponent(logistic(3.2), np.array([0.3]), 2000, CLOSE)
+    found = companion_exponent(logistic(3.2), np.array([0.3]), 2000, CLOSE)
     expected = np.log(abs(4 + 2 * 3.2 - 3.2**2)) / 2
     yield within("Lyapunov exponent of period 2, r = 3.2", "ln|4 + 2r - r^2| / 2", expected, found.per_turn, 1e-3)
-    found = twin_exponent(henon, np.array([0.1, 0.1]), 20000, CLOSE)
+    found = companion_exponent(henon, np.array([0.1, 0.1]), 20000, CLOSE)
     yield within("Lyapunov exponent of Henon's map", "Sprott 2003: 0.41922", 0.41922, found.per_turn, 0.004)
     state = np.array([1.0, 1.0, 20.0])
     lorenz_steps(state, 0.005, 20000)
-    found = twin_exponent(lambda x: lorenz_steps(x, 0.005, 20), state, 60000, CLOSE)
+    found = companion_exponent(lambda x: lorenz_steps(x, 0.005, 20), state, 60000, CLOSE)
     quantity, source = "Lyapunov exponent of the Lorenz system", "Sprott 2003: 0.90563"
     yield within(quantity, source, 0.90563, found.per_turn / 0.1, 0.006)
     found = impact_exponent()

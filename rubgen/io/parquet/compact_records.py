@@ -1,4 +1,4 @@
-"""What is kept of a run beside its signals, as Parquet, so that its labels can be made again.
+"""Compact records of runs as Parquet, from which labels can be made again.
 
 One row a run; arrays stand as flat lists, row after row.
 """
@@ -45,33 +45,33 @@ SCHEMA = pa.schema(
 )
 
 
-def section_table(run_id: str, response: Response) -> pa.Table:
-    """One row: what is kept of a run that ended well."""
-    kept = compact_record(response)
-    columns = {name: pa.array([kept[name].ravel()], pa.list_(kind)) for name, (kind, _) in RECORD_COLUMNS.items()}
+def record_table(run_id: str, response: Response) -> pa.Table:
+    """One row: the compact record of a run that ended well."""
+    record = compact_record(response)
+    columns = {name: pa.array([record[name].ravel()], pa.list_(kind)) for name, (kind, _) in RECORD_COLUMNS.items()}
     return pa.table({"run_id": pa.array([run_id])} | columns, schema=SCHEMA)
 
 
-def write_section(run_id: str, response: Response, path: Path) -> None:
-    """That row as a file of its own, complete or not at all."""
-    write_table([section_table(run_id, response)], SCHEMA, path)
+def write_record(run_id: str, response: Response, path: Path) -> None:
+    """Write a compact record as a file of its own, complete or not at all."""
+    write_table([record_table(run_id, response)], SCHEMA, path)
 
 
-def kept_of(table: pa.Table, row: int, path: Path) -> CompactRecord:
-    """What was kept of the run in that row of the file at `path`; UserError where its lists do not fit each other."""
-    kept: dict[str, np.ndarray[Any, Any]] = {}
+def read_record(table: pa.Table, row: int, path: Path) -> CompactRecord:
+    """The compact record in a row of the file at `path`. Raises UserError where its lists do not fit each other."""
+    record: dict[str, np.ndarray[Any, Any]] = {}
     try:
         for name in RECORD_COLUMNS:
-            kept[name] = _listed(table, name, row)
-        scalars = dict(zip(SCALARS, kept["scalars"].tolist(), strict=True))
+            record[name] = _listed(table, name, row)
+        scalars = dict(zip(SCALARS, record["scalars"].tolist(), strict=True))
         width = 3 * int(scalars["n_blades"]) + 4 + 2 * int(scalars["n_casing"])
         for name, columns in (("section", width), ("fractions", width), ("orbit", 5)):
-            kept[name] = kept[name].reshape(-1, columns)
-        _check_lengths(kept, int(scalars["record_turns"]), int(scalars["n_blades"]))
+            record[name] = record[name].reshape(-1, columns)
+        _check_lengths(record, int(scalars["record_turns"]), int(scalars["n_blades"]))
     except (ValueError, OverflowError) as error:
         run_id = table["run_id"][row].as_py()
         raise UserError(f"{path}: {run_id}: {' '.join(str(error).split())[:200]}; generate the set again") from None
-    return kept
+    return record
 
 
 def _listed(table: pa.Table, name: str, row: int) -> np.ndarray[Any, Any]:
@@ -81,17 +81,17 @@ def _listed(table: pa.Table, name: str, row: int) -> np.ndarray[Any, Any]:
     return np.asarray(values)
 
 
-def _check_lengths(kept: CompactRecord, turns: int, blades: int) -> None:
+def _check_lengths(record: CompactRecord, turns: int, blades: int) -> None:
     """Raise ValueError where lists of turns or of touches differ in length, or a number of theirs is none."""
     for name in (*TOUCHES, "turn_impulse", "contact_steps"):
-        if not np.isfinite(kept[name]).all():
+        if not np.isfinite(record[name]).all():
             raise ValueError(f"{name} is not finite")
     for name in ("section", "turn_impulse", "contact_steps"):
-        if len(kept[name]) != turns:
-            raise ValueError(f"{name} has {len(kept[name])} of {turns} turns")
-    if len({kept[name].size for name in TOUCHES}) > 1:
+        if len(record[name]) != turns:
+            raise ValueError(f"{name} has {len(record[name])} of {turns} turns")
+    if len({record[name].size for name in TOUCHES}) > 1:
         raise ValueError("lists of touches differ in length")
-    if kept["blade"].size and not 0 <= kept["blade"].min() <= kept["blade"].max() < blades:
+    if record["blade"].size and not 0 <= record["blade"].min() <= record["blade"].max() < blades:
         raise ValueError(f"a touch is of a blade that is none of {blades}")
-    if kept["rotation"].size not in (0, 5) or (kept["rotation"].size and kept["turn_steps"].size != turns + 1):
+    if record["rotation"].size not in (0, 5) or (record["rotation"].size and record["turn_steps"].size != turns + 1):
         raise ValueError("rotation and turn_steps do not fit the number of turns")

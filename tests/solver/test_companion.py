@@ -36,8 +36,8 @@ def test_the_run_keeps_its_bits(small_system, operation):
         assert np.array_equal(alone.section_v, beside.section_v)
         assert np.array_equal(alone.taps["contact_force"], beside.taps["contact_force"])
         assert alone.energy == beside.energy
-        assert (alone.twin_growth.size, beside.twin_growth.size) == (0, 40)
-        assert np.isfinite(beside.twin_growth).all()
+        assert (alone.companion_growth.size, beside.companion_growth.size) == (0, 40)
+        assert np.isfinite(beside.companion_growth).all()
 
 
 def test_without_contact_the_exponent_is_the_slowest_decay(small_system, operation):
@@ -46,7 +46,7 @@ def test_without_contact_the_exponent_is_the_slowest_decay(small_system, operati
         system, operation(system, record_turns=400, settle_turns=60), ContactLaw(), Wants(companion=True)
     )
     assert response.contact_steps_per_turn.sum() == 0
-    exponent = lyapunov(response.twin_growth)
+    exponent = lyapunov(response.companion_growth)
     assert exponent.per_turn == pytest.approx(-slowest_decay(system) * response.turn_seconds, rel=5e-3)
     assert exponent.is_negative
 
@@ -55,9 +55,9 @@ def test_without_contact_the_exponent_is_the_slowest_decay(small_system, operati
 def test_pieces_multiply_to_the_growth_of_a_second_run(small_system, restitution):
     system = small_system(speed=500.0)
     stepper, closed = in_contact(system, restitution)
-    twin = Companion(stepper)
+    companion = Companion(stepper)
     second = rub_free_stepper(system, ContactLaw(friction=0.1, restitution=restitution), STEPS)
-    rows = stepper.blocks.to_q(twin.state.motions[0].z), stepper.blocks.to_q(twin.state.motions[1].z)
+    rows = stepper.blocks.to_q(companion.state.motions[0].z), stepper.blocks.to_q(companion.state.motions[1].z)
     second.set_coordinates(*rows)
     second.state.contact.step_gaps[:] = stepper.state.contact.step_gaps
     before = np.array([second.coordinates.before, second.coordinates.now]) - np.array(
@@ -66,7 +66,7 @@ def test_pieces_multiply_to_the_growth_of_a_second_run(small_system, restitution
     stepper.run_turn(closed)
     second.run_turn(closed)
     touched = stepper.result.summary[1]
-    growth = twin.run_turn(closed)
+    growth = companion.run_turn(closed)
     after = np.array([second.coordinates.before, second.coordinates.now]) - np.array(
         [stepper.coordinates.before, stepper.coordinates.now]
     )
@@ -78,7 +78,7 @@ def test_pieces_multiply_to_the_growth_of_a_second_run(small_system, restitution
     assert touched > 20
     assert len(growth) == 16
     assert growth.sum() == pytest.approx(np.log(size(after) / size(before)), abs=2e-3)
-    assert size(before) == pytest.approx(twin.closeness)
+    assert size(before) == pytest.approx(companion.closeness)
 
 
 def test_a_turn_of_odd_steps_ends_with_its_last_piece():
@@ -104,12 +104,12 @@ def test_modes_of_a_ring_turn_back_by_their_order(small_system):
     assert np.linalg.norm(back @ back @ back - np.eye(6)) < 1e-12
 
 
-def test_without_contact_all_fractions_of_a_turn_are_alike(small_system, operation):
+def test_without_contact_all_symmetry_states_are_alike(small_system, operation):
     for lobes in (2, 3):
         system = small_system(clearance=3e-3, lobes=lobes)
         response = integrate(system, operation(system, record_turns=20, settle_turns=60), ContactLaw())
-        assert response.fractions.shape == (lobes, 2, len(system.M))
-        q, orbit = response.fractions[:, 0], np.abs(response.section_q[-1]).max()
+        assert response.symmetry_states.shape == (lobes, 2, len(system.M))
+        q, orbit = response.symmetry_states[:, 0], np.abs(response.section_q[-1]).max()
         assert np.abs(q - q[0]).max() < 1e-6 * orbit
 
 
@@ -117,7 +117,7 @@ def test_a_rub_of_two_equal_lobes_is_alike_after_half_a_turn(small_system, opera
     system = small_system(speed=500.0)
     response = integrate(system, operation(system, settle_turns=200), ContactLaw(friction=0.1))
     assert response.contact_steps_per_turn.min() > 0
-    first, second = response.fractions[:, 0]
+    first, second = response.symmetry_states[:, 0]
     stray = np.abs(response.section_q[-20:] - response.section_q[-1]).max()
     assert np.abs(second - first).max() < 1e-3 * np.abs(first).max() + 2 * stray
     assert np.abs(second[-6:]).max() > 1e-6

@@ -25,11 +25,11 @@ def test_interpolated_matrices_are_those_made_at_that_speed(acceleration):
     speeds = chebyshev_speeds(rad_per_s(3000), rad_per_s(12000))
     alike = [model.at_speed(speed, push) for speed in (speeds[0], speeds[-1]) for push in (0.0, 300.0)]
     stepper = Stepper(alike[2], ContactLaw(), 1024, alike=alike)
-    following = SpeedInterpolation(
+    interpolation = SpeedInterpolation(
         lambda *at: speed_part(model.at_speed(*at), stepper.blocks, stepper.dt), speeds, 300.0
     )
     wanted = rad_per_s(np.array([3333.0, 7654.3, 11900.0]))
-    for speed, part in zip(wanted, following.at(wanted, np.full(3, acceleration)), strict=True):
+    for speed, part in zip(wanted, interpolation.at(wanted, np.full(3, acceleration)), strict=True):
         exact = speed_part(model.at_speed(speed, acceleration), stepper.blocks, stepper.dt)
         for name in ("now", "before", "inverse", "constant"):
             found, true = getattr(part.scheme, name), getattr(exact.scheme, name)
@@ -42,4 +42,4 @@ def test_interpolated_matrices_are_those_made_at_that_speed(acceleration):
             np.testing.assert_allclose(found, true, atol=1e-13 * np.abs(true).max(), err_msg=name)
         np.testing.assert_allclose(part.energy.force, exact.energy.force, rtol=1e-11, atol=1e-9)
         np.testing.assert_allclose(part.tips.static, exact.tips.static, rtol=1e-9, atol=1e-15)
-        assert following.mean_growth(np.array(speed)) == pytest.approx(exact.tips.static[0].mean(), rel=1e-9)
+        assert interpolation.mean_growth(np.array(speed)) == pytest.approx(exact.tips.static[0].mean(), rel=1e-9)
