@@ -1,4 +1,4 @@
-"""How far from the casing a blade tip certainly is, and the casing from rest: bounds that save work, never decide."""
+"""Bounds of tip clearance and of casing displacement. They only save work: no result depends on them."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from rubgen.contact.geometry_kernels import Surface, Tips, tip_position, undefor
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.vector_kernels import LANES, blended_product, lowest_bit, not_above
 
-LARGEST_SPREAD = 0.25
-"""The bounds hold for tips nearer than this share of their radius to their place at rest."""
+LARGEST_TIP_SHIFT = 0.25
+"""The bounds are valid for tips that moved less than this share of their radius from their place at rest."""
 NEAREST_SHARE = 0.9
-"""The bounds hold for a deformed surface whose radius is nowhere below this share of its mean one."""
+"""The bounds are valid for a deformed surface whose radius is nowhere below this share of its mean radius."""
 
 
 @inlined_kernel
-def casing_reach(surface: Surface, q_casing: FloatArray) -> float:
-    """An upper bound of the casing's displacement anywhere on the ring, sum_j |q_j| reach_j."""
-    reach: float = 0.0
+def casing_displacement_bound(surface: Surface, q_casing: FloatArray) -> float:
+    """An upper bound of the casing's displacement anywhere on the ring, m: sum_j |q_j| mode_displacement_j."""
+    displacement: float = 0.0
     for j in range(q_casing.shape[0]):
-        reach += abs(q_casing[j]) * surface.reach[j]
-    return reach
+        displacement += abs(q_casing[j]) * surface.mode_displacement[j]
+    return displacement
 
 
 @allocation_free_kernel
@@ -58,9 +58,12 @@ def least_clearance(surface: Surface, tips: Tips, states: FloatArray, theta: Flo
 
 @inlined_kernel
 def tip_angle(tips: Tips, blade: int, displacement: FloatArray, theta: float) -> float:
-    """Polar angle of a blade's tip, from the `displacement` (2 or more, any) of all, to `angle_error`.
+    """Polar angle of a blade's tip in rad. Its error is at most `angle_error`.
 
-    The tip stands t aside at a radius of a: t / radius for arctan(t / a).
+    The tip stands at the radius a, t aside of the blade's axis. t / radius replaces arctan(t / a).
+
+    - displacement (2 or more, any): radial and tangential displacement of each blade's tip, m.
+    - theta: angle of the blisk, rad.
     """
     aside = tips.static[1, blade] + displacement[1, blade]
     angle: float = theta + tips.angle[blade] + aside / tips.radius
@@ -68,12 +71,12 @@ def tip_angle(tips: Tips, blade: int, displacement: FloatArray, theta: float) ->
 
 
 @inlined_kernel
-def angle_error(spread: float) -> float:
-    """A bound of the error of `tip_angle` in rad, |a - radius| and |t| below `spread` < LARGEST_SPREAD radii.
+def angle_error(tip_shift: float) -> float:
+    """A bound of the error of `tip_angle` in rad, for |a - radius| and |t| up to s = `tip_shift` radii.
 
-    |t / radius - t / a| <= spread 4/3 spread, and |x - arctan x| <= |x|^3 / 3 with |x| <= 4/3 spread.
+    |t / radius - t / a| <= 4/3 s^2, and |x - arctan x| <= |x|^3 / 3 with |x| <= 4/3 s. Valid for s < LARGEST_TIP_SHIFT.
     """
-    return spread * spread * (4.0 / 3.0 + 0.8 * spread)
+    return tip_shift * tip_shift * (4.0 / 3.0 + 0.8 * tip_shift)
 
 
 @inlined_kernel
@@ -82,26 +85,31 @@ def clearance_bounds(
     tips: Tips,
     displacement: FloatArray,
     opening: float,
-    spread: float,
+    tip_shift: float,
     cos_orders: FloatArray,
     sin_orders: FloatArray,
     bounds_out: FloatArray,
 ) -> None:
-    """A lower bound of r(angle of P) + opening - |P| for every tip P, into `bounds_out` (n_blades or more,).
+    """Write a lower bound of r(angle of P) + opening - |P| for every tip P, m, into `bounds_out`.
 
     Chords lie inside the smooth curve by at most `surface.inset`. Wear is left out: a worn surface encloses the unworn
-    one, so no point is nearer to it.
+    surface, so no point is nearer to it.
 
-    With a and t the radial and tangential place of the tip and x = t / a, its polar angle differs from the blade's by
-    x but for |x|^3 / 3, r there from r + r' x by at most |r''| x^2 / 2, and |P| <= a + t x / 2. `displacement` (2 or
-    more, any) holds the radial and the tangential displacement of each blade's tip, and |a - radius| and |t| are below
-    `spread` < LARGEST_SPREAD radii; `cos_orders`, `sin_orders` (n_harmonics,) are those of order_j (theta - phase_j).
+    Let a and t be the radial and tangential place of the tip, and x = t / a. Its polar angle differs from the blade's
+    by x, with an error of at most |x|^3 / 3. There r differs from r + r' x by at most |r''| x^2 / 2. |P| is at most
+    a + t x / 2.
+
+    - displacement (2 or more, any): radial and tangential displacement of each blade's tip, m.
+    - opening: added to the radius of the surface, m.
+    - tip_shift: bound of |a - radius| and |t|, in tip radii; below LARGEST_TIP_SHIFT.
+    - cos_orders, sin_orders (n_harmonics,): cosine and sine of order_j (theta - phase_j).
+    - bounds_out (n_blades or more,): written, m.
     """
     base = surface.mean_radius + opening - tips.radius - surface.inset
     nearest = 1.0 / tips.radius
-    # 1 / (radius + a) is 1 / radius but for a share of 2 spread.
-    aside = nearest * surface.steepness * spread * (2.0 + spread)
-    bend = nearest * (0.5 + spread + surface.bend * nearest)
+    # 1 / (radius + a) differs from 1 / radius by a share of at most 2 tip_shift.
+    aside = nearest * surface.steepness * tip_shift * (2.0 + tip_shift)
+    bend = nearest * (0.5 + tip_shift + surface.bend * nearest)
     for k in range(tips.angle.shape[0]):
         away = abs(tips.static[1, k] + displacement[1, k])
         bounds_out[k] = base - (tips.static[0, k] + displacement[0, k]) - away * (aside + bend * away)
@@ -116,24 +124,26 @@ def clearance_bounds(
 
 
 @inlined_kernel
-def deformation_bounds(surface: Surface, q_casing: FloatArray, spread: float) -> tuple[float, float]:
-    """Bounds of the deformed surface on the whole ring, for `tighten`.
+def deformation_bounds(surface: Surface, q_casing: FloatArray, tip_shift: float) -> tuple[float, float]:
+    """Two bounds of the deformed surface on the whole ring, for `tighten`.
 
-    First, how far its radius at a polar angle may lie below r + opening + u_r, u_r interpolated linearly between the
-    nodes and taken at the angle that `tip_angle` gives; second, the slope of r + opening + u_r by the angle. A surface
-    point at psi stands at a polar angle that differs by at most |u_t| / |X|, so the radius is less by at most that
-    times the slope.
+    The first is in m: how far its radius at a polar angle may lie below r + opening + u_r. There u_r is interpolated
+    linearly between the nodes, at the angle of `tip_angle`. The second is the slope of r + opening + u_r by the angle,
+    over the smallest radius.
+
+    A surface point at psi stands at a polar angle that differs from psi by at most |u_t| / |X|. Its radius is therefore
+    less by at most that angle times the slope.
     """
-    reach, moved, bend = 0.0, 0.0, 0.0
+    displacement, moved, bend = 0.0, 0.0, 0.0
     for j in range(q_casing.shape[0]):
         size = abs(q_casing[j])
-        reach += size * surface.reach[j]
+        displacement += size * surface.mode_displacement[j]
         moved += size * surface.mode_slope[j]
         bend += size * surface.mode_bend[j]
     slope = surface.slope + moved
     h = surface.node_step
     nearest: float = NEAREST_SHARE * surface.mean_radius
-    return slope * reach / nearest + moved * angle_error(spread) + 0.125 * h * h * bend, slope / nearest
+    return slope * displacement / nearest + moved * angle_error(tip_shift) + 0.125 * h * h * bend, slope / nearest
 
 
 @inlined_kernel
@@ -152,10 +162,10 @@ def inward_displacement(surface: Surface, casing: FloatArray, angle: float) -> f
 
 
 @inlined_kernel
-def widened(margin: float, limits: tuple[float, float]) -> float:
-    """How much larger than a point's the surface's radius at its angle is, at most, if they are a margin apart.
+def radial_margin(margin: float, limits: tuple[float, float]) -> float:
+    """The largest radial distance to the surface, m, of a point that is at most `margin` (m) from the surface.
 
-    `limits` are the deformation bounds: the margin times the Lipschitz constant of that radius.
+    It is the margin times the Lipschitz constant of the surface's radius. `limits` are the two `deformation_bounds`.
     """
     return margin * (1.0 + 0.5 * limits[1] * limits[1])
 
@@ -171,11 +181,17 @@ def tighten(
     limits: tuple[float, float],
     bounds: FloatArray,
 ) -> bool:
-    """Make clearance bounds up to `far` bounds to the deformed surface; whether all bounds are positive then.
+    """Replace every clearance bound of at most `far` by one to the deformed surface.
 
-    To the undeformed surface they were; `bounds` (a multiple of eight,) ends with numbers that are infinite. `casing`
-    is as in `inward_displacement`. A tip whose bound is above `widened` of a margin is certainly farther than it inside
-    of the deformed surface.
+    Return True if all replaced bounds are positive. A tip whose new bound exceeds `radial_margin(margin, limits)` is
+    inside the deformed surface and farther than the margin from it.
+
+    - casing (a multiple of eight,): the casing's coordinates, then zeros.
+    - displacement (2 or more, any): radial and tangential displacement of each blade's tip, m.
+    - theta: angle of the blisk, rad.
+    - far: largest bound that is replaced, m.
+    - limits: the two `deformation_bounds`.
+    - bounds (a multiple of eight,): bounds of `clearance_bounds`, then inf; changed, m.
     """
     positive = True
     for row in range(bounds.shape[0] // LANES):

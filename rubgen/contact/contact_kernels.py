@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.contact.clearance_kernels import widened
+from rubgen.contact.clearance_kernels import radial_margin
 from rubgen.contact.friction_kernels import friction_direction, slip_velocity
 from rubgen.contact.geometry_kernels import Surface, Tips, casing_rows, foot_of, tip_position
 from rubgen.jit import allocation_free_kernel, inlined_kernel
@@ -87,7 +87,7 @@ def find_near(
     (bins,) the coefficients of the worn depth, `displacement` (2, any) the tips' radial and tangential displacement,
     which goes into q for the blades that are looked at.
     """
-    count, penetrates, enough = 0, False, widened(margin, limits)
+    count, penetrates, enough = 0, False, radial_margin(margin, limits)
     for k in range(work.gap.shape[0]):
         work.gap[k] = math.nan
     for row in range(work.bounds.shape[0] // LANES):
@@ -222,6 +222,6 @@ def largest_approach(
     """
     tip = square_of_farthest(tips_new, tips_free)
     casing = 0.0
-    for j in range(surface.reach.shape[0]):
-        casing += abs(q_new[casing_start + j] - q_free[casing_start + j]) * surface.reach[j]
+    for j in range(surface.mode_displacement.shape[0]):
+        casing += abs(q_new[casing_start + j] - q_free[casing_start + j]) * surface.mode_displacement[j]
     return math.sqrt(tip) + casing

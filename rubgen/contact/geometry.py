@@ -63,10 +63,9 @@ def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) ->
     """The surface r(psi) e_r + u(psi) of a system: smooth undeformed curve, Hermite-interpolated displacement.
 
     Nodal slopes come from the Fourier series of the nodal displacements, so u is exact to fourth order in the node
-    distance, and continuous in slope. A value between nodes is at most the largest nodal value plus a quarter of the
-    node distance times the largest slope: that bounds each mode's reach. `contact` may ask for the inner surface's
-    displacement, for chords between the nodes instead of the smooth curve, and for a liner. The arrays cannot be
-    written.
+    distance, and continuous in slope. The displacement of each mode between nodes is at most the largest nodal value
+    plus a quarter of the node distance times the largest slope. `contact` may ask for the inner surface's displacement,
+    for chords between the nodes instead of the smooth curve, and for a liner. The arrays cannot be written.
     """
     modes = surface_modes(system, contact)
     nodes = modes.shape[0]
@@ -89,7 +88,7 @@ def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) ->
             phase=np.asarray(curve.phase, dtype=float),
             table=np.ascontiguousarray(np.concatenate([modes, slopes], axis=1).transpose(0, 2, 1)),
             node_step=step,
-            reach=np.ascontiguousarray(size + 0.25 * step * slope_size),
+            mode_displacement=np.ascontiguousarray(size + 0.25 * step * slope_size),
             mode_slope=np.ascontiguousarray(between + size),
             mode_bend=np.ascontiguousarray(bends + 2 * between + size + 0.25 * step * slope_size),
             radial=with_zeros(modes[:, 0] * np.cos(angle) + modes[:, 1] * np.sin(angle)),

@@ -33,7 +33,7 @@ class Surface(NamedTuple):
     """X, Y and their derivatives by the polar angle for each node and mode (nodes, n_casing, 4)."""
     node_step: float
     """Angle between two nodes."""
-    reach: FloatArray
+    mode_displacement: FloatArray
     """Bound of the displacement anywhere on the ring per unit of each mode (n_casing,)."""
     mode_slope: FloatArray
     """Bound of the first derivative of the radial displacement by the angle per unit of each mode (n_casing,)."""

@@ -91,7 +91,7 @@ class _Emitter(Emitter):
     """Writes sums of products along lines."""
 
     def sum_products(
-        self, sources: list[Source], first: Any, start: Any, count: Any, *, rows: int, spread: bool
+        self, sources: list[Source], first: Any, start: Any, count: Any, *, rows: int, broadcast: bool
     ) -> list[Any]:
         """For each row the sum over sources and j < count of a[first + j rows + row] x[start + j].
 
@@ -110,19 +110,19 @@ class _Emitter(Emitter):
         with cgutils.for_range_slice(builder, self.index(0), whole, step) as (j, _):
             for u in range(together):
                 place = builder.add(j, self.index(u))
-                self._add(sources, first, start, place, [row[u * len(sources) :] for row in sums], spread=spread)
+                self._add(sources, first, start, place, [row[u * len(sources) :] for row in sums], broadcast=broadcast)
         if together > 1:
             with cgutils.for_range_slice(builder, whole, count, self.index(1)) as (j, _):
-                self._add(sources, first, start, j, sums, spread=spread)
+                self._add(sources, first, start, j, sums, broadcast=broadcast)
         return [self._halves([builder.load(each) for each in row]) for row in sums]
 
     def _add(
-        self, sources: list[Source], first: Any, start: Any, j: Any, sums: list[list[Any]], *, spread: bool
+        self, sources: list[Source], first: Any, start: Any, j: Any, sums: list[list[Any]], *, broadcast: bool
     ) -> None:
         builder, rows = self.builder, len(sums)
         base, place = builder.add(first, builder.mul(j, self.index(rows))), builder.add(start, j)
         for i, (a, x) in enumerate(sources):
-            right = self.spread(x, place) if spread else self.load(x, place)
+            right = self.broadcast(x, place) if broadcast else self.load(x, place)
             for row in range(rows):
                 left = self.load(a, builder.add(base, self.index(row)))
                 total = sums[row][i]
@@ -143,7 +143,7 @@ class _Emitter(Emitter):
         with cgutils.for_range(builder, line[COUNT]) as loop:
             base = builder.add(line[FIRST], builder.mul(loop.index, self.index(rows)))
             place = builder.add(line[START], loop.index)
-            right = [self.spread(z, builder.load(builder.gep(each, [place]))) for each in places]
+            right = [self.broadcast(z, builder.load(builder.gep(each, [place]))) for each in places]
             for row in range(rows):
                 left = self.load(a, builder.add(base, self.index(row)))
                 for number, each in zip(right, sums, strict=True):
@@ -159,8 +159,8 @@ Visit = Callable[[list[Any], int, bool], None]
 def _summed(emit: _Emitter, sources: list[Source], use: Callable[[Any, Any], None]) -> Visit:
     """Give each row of results of a line and the sum over the sources there to `use`."""
 
-    def visit(line: list[Any], rows: int, spread: bool) -> None:
-        totals = emit.sum_products(sources, line[FIRST], line[START], line[COUNT], rows=rows, spread=spread)
+    def visit(line: list[Any], rows: int, broadcast: bool) -> None:
+        totals = emit.sum_products(sources, line[FIRST], line[START], line[COUNT], rows=rows, broadcast=broadcast)
         for row, total in enumerate(totals):
             use(emit.builder.add(line[ROW], emit.index(row)), total)
 
@@ -179,11 +179,11 @@ def _each_line(emit: _Emitter, array: Any, visit: Visit) -> None:
         done = builder.append_basic_block("line.done")
         switch = builder.switch(line[KIND], done)
         for rows in range(1, MOST_ROWS + 1):
-            for spread in (False, True):
+            for broadcast in (False, True):
                 case = builder.append_basic_block("line.kind")
-                switch.add_case(index(line_kind(rows, scaled=spread)), case)
+                switch.add_case(index(line_kind(rows, scaled=broadcast)), case)
                 builder.position_at_end(case)
-                visit(line, rows, spread)
+                visit(line, rows, broadcast)
                 builder.branch(done)
         builder.position_at_end(done)
 
@@ -220,8 +220,8 @@ def _gather_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     numbers = [emit.line_of(places, c) for c in chosen]
     outputs = [emit.line_of(out, c) for c in chosen]
 
-    def visit(line: list[Any], rows: int, spread: bool) -> None:
-        if spread:
+    def visit(line: list[Any], rows: int, broadcast: bool) -> None:
+        if broadcast:
             for output, totals in zip(outputs, emit.sum_gathered(a.data, z.data, numbers, line, rows), strict=True):
                 for row, total in enumerate(totals):
                     emit.store(total, output, builder.add(line[ROW], emit.index(row)))
@@ -249,7 +249,7 @@ def _dot_rows(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     emit = _Emitter(context, builder)
     a, b = (emit.array(kind, array).data for kind, array in zip(signature.args[:2], args[:2], strict=True))
     none = emit.index(0)
-    (total,) = emit.sum_products([(a, b)], none, none, args[2], rows=1, spread=False)
+    (total,) = emit.sum_products([(a, b)], none, none, args[2], rows=1, broadcast=False)
     return emit.lane_sum(total)
 
 

@@ -60,7 +60,7 @@ class Emitter:
         """Write a row of eight."""
         self.builder.store(value, self.at_row(data, row)).align = 8
 
-    def spread(self, data: Any, place: Any) -> Any:
+    def broadcast(self, data: Any, place: Any) -> Any:
         """One number of an array in all lanes."""
         return self.in_all_lanes(self.builder.load(self.builder.gep(data, [place])))
 

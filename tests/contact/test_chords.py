@@ -8,8 +8,8 @@ from rubgen.contact import blade_tips, casing_surface, gap_and_foot
 from rubgen.contact.clearance_kernels import (
     clearance_bounds,
     deformation_bounds,
+    radial_margin,
     tighten,
-    widened,
 )
 from rubgen.contact.geometry import with_zeros
 from rubgen.contact.geometry_kernels import chord_radius, undeformed_radius
@@ -96,7 +96,7 @@ def test_the_screening_bounds_hold_for_chords_in_a_deformed_casing():
             gap = gap_and_foot(surface, q[29:], np.array([point.real, point.imag]), 1e-4)[0]
             radius = undeformed_radius(surface, np.angle(point))[0] + 1e-4
             assert free[k] <= radius - abs(point)
-            clear = bounds[k] > widened(2e-5, limits)
+            clear = bounds[k] > radial_margin(2e-5, limits)
             assert gap > 2e-5 or not clear
             decided.append(clear)
     assert 0.3 < np.mean(decided) < 1

@@ -12,13 +12,13 @@ from rubgen.contact.clearance_kernels import (
     clearance_bounds,
     deformation_bounds,
     largest_nodal_displacement,
+    radial_margin,
     tighten,
-    widened,
 )
 from rubgen.contact.geometry import with_zeros
 from rubgen.contact.geometry_kernels import tip_position, undeformed_radius
 from rubgen.scenario import ContactLaw
-from rubgen.solver.scheme.model import CASING_LIMIT_SHARE, TIP_LIMIT_SHARE, bounds_hold, tip_spread
+from rubgen.solver.scheme.model import CASING_LIMIT_SHARE, TIP_LIMIT_SHARE, bounds_hold, relative_tip_shift
 
 TIP_LIMIT = TIP_LIMIT_SHARE * RADIUS
 CASING_LIMIT = CASING_LIMIT_SHARE * RADIUS
@@ -64,13 +64,13 @@ def test_no_tip_within_the_margin_is_ever_called_clear(lobes, contact):
     for ovality in (0.0, 1e-3, 8e-3):
         system = thick_ring(ovality, lobes, rng.uniform(-7, 7))
         surface, tips = casing_surface(system, contact), blade_tips(system)
-        spread = tip_spread(tips, TIP_LIMIT)
-        assert bounds_hold(surface, spread, CASING_LIMIT)
+        tip_shift = relative_tip_shift(tips, TIP_LIMIT)
+        assert bounds_hold(surface, tip_shift, CASING_LIMIT)
         for _ in range(20):
             displacement, casing, opening, theta, margin = near_states(surface, tips, rng)
             orders = system.surface.order * (theta - system.surface.phase)
-            bounds, limits = np.full(16, np.inf), deformation_bounds(surface, casing, spread)
-            clearance_bounds(surface, tips, displacement, opening, spread, np.cos(orders), np.sin(orders), bounds)
+            bounds, limits = np.full(16, np.inf), deformation_bounds(surface, casing, tip_shift)
+            clearance_bounds(surface, tips, displacement, opening, tip_shift, np.cos(orders), np.sin(orders), bounds)
             free = bounds.copy()
             apart = tighten(surface, tips, with_zeros(casing), displacement, theta, 1.0, limits, bounds)
             places = [tip_place(tips, k, displacement, theta) for k in range(9)]
@@ -79,6 +79,6 @@ def test_no_tip_within_the_margin_is_ever_called_clear(lobes, contact):
             radii = np.array([undeformed_radius(surface, angle)[0] for angle in angles]) + opening
             assert np.all(free[:9] <= radii - np.hypot(*np.transpose(places)))
             assert not apart or gaps.min() > 0
-            assert np.all(bounds[:9][gaps < margin] <= widened(margin, limits))
+            assert np.all(bounds[:9][gaps < margin] <= radial_margin(margin, limits))
             within += int((gaps < margin).sum())
     assert within > 300

@@ -5,12 +5,12 @@ from scipy.optimize import minimize_scalar
 from rubgen.contact import blade_tips, casing_surface, gap_and_foot
 from rubgen.contact.clearance_kernels import (
     angle_error,
-    casing_reach,
+    casing_displacement_bound,
     clearance_bounds,
     deformation_bounds,
+    radial_margin,
     tighten,
     tip_angle,
-    widened,
 )
 from rubgen.contact.contact_kernels import largest_approach
 from rubgen.contact.geometry import periodic_derivative, with_zeros
@@ -131,7 +131,7 @@ def test_reach_bounds_the_displacement_everywhere():
     for _ in range(20):
         q = rng.normal(size=3)
         x, y = (sum(a * exact_mode(n, t)[c] for a, n in zip(q, (1, 2, 4), strict=True)) for c in (0, 1))
-        largest, bound = np.hypot(x, y).max(), casing_reach(surface, q)
+        largest, bound = np.hypot(x, y).max(), casing_displacement_bound(surface, q)
         assert largest <= bound < 4 * largest
 
 
@@ -162,7 +162,7 @@ def test_screening_bound_lies_below_the_true_gap_and_near_it():
             at = tip_angle(tips, k, displacement, theta)
             assert abs(point / abs(point) - np.exp(1j * at)) < angle_error(0.01)
             for margin in (2e-5, 1e-3):
-                clear = bounds[k] > widened(margin, limits)
+                clear = bounds[k] > radial_margin(margin, limits)
                 assert deformed > margin or not clear
                 if deformed > margin:
                     decided.append(clear)

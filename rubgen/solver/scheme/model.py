@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rubgen.arrays import FloatArray, frozen
-from rubgen.contact.clearance_kernels import LARGEST_SPREAD, NEAREST_SHARE
+from rubgen.contact.clearance_kernels import LARGEST_TIP_SHIFT, NEAREST_SHARE
 from rubgen.contact.contact_kernels import ContactWork
 from rubgen.contact.geometry import blade_tips, casing_surface, unworn, with_zeros
 from rubgen.contact.geometry_kernels import Surface, Tips
@@ -32,20 +32,26 @@ TIP_LIMIT_SHARE = 0.025
 which a linear beam does not have and which is more than the clearance."""
 
 
-def tip_spread(tips: Tips, tip_limit: float) -> float:
-    """How far, in tip radii, a tip is from its place at rest along either axis, as long as no run has diverged."""
+def relative_tip_shift(tips: Tips, tip_limit: float) -> float:
+    """The largest distance of a tip from its place at rest along either axis, in tip radii.
+
+    Steady displacement plus `tip_limit` (m), beyond which a run has diverged.
+    """
     return (tip_limit + float(np.abs(tips.static[:2]).max(initial=0.0))) / tips.radius
 
 
-def bounds_hold(surface: Surface, spread: float, casing_limit: float) -> bool:
-    """Whether the bounds of `clearance_kernels` hold in every state of a run that has not diverged.
+def bounds_hold(surface: Surface, tip_shift: float, casing_limit: float) -> bool:
+    """Whether the bounds of `clearance_kernels` are valid in every state of a run that has not diverged.
 
-    They take tips within a quarter of their radius of their place, and a surface whose radius is nowhere below 0.9 of
-    its mean, `casing_limit` (m) being its largest displacement. Blades of any machine are far within; the one "tip" of
-    a Jeffcott rotor, which stands on the axis, is not. Tests: tests/solver/test_screening.py.
+    They are valid where a tip is less than a quarter of its radius from its place at rest, and where the radius of the
+    deformed surface is nowhere below 0.9 of its mean. Bladed machines are far inside these limits. A Jeffcott rotor,
+    whose one "tip" stands on the axis, is not. Tests: tests/solver/test_screening.py.
+
+    - tip_shift: `relative_tip_shift`.
+    - casing_limit: largest displacement of the casing, m.
     """
     narrowest = surface.mean_radius - float(np.abs(surface.amplitude).sum()) - surface.inset - casing_limit
-    return spread < LARGEST_SPREAD and narrowest > NEAREST_SHARE * surface.mean_radius
+    return tip_shift < LARGEST_TIP_SHIFT and narrowest > NEAREST_SHARE * surface.mean_radius
 
 
 def build_model(
@@ -65,7 +71,7 @@ def build_model(
     dt = 2 * np.pi / system.speed / steps
     surface, tips = casing_surface(system, contact), blade_tips(system)
     limits = CASING_LIMIT_SHARE * system.tip_radius, TIP_LIMIT_SHARE * system.tip_radius
-    spread = tip_spread(tips, limits[1])
+    tip_shift = relative_tip_shift(tips, limits[1])
     laws = Laws(
         speed=float(system.speed),
         dt=float(dt),
@@ -74,9 +80,9 @@ def build_model(
         margin=CANDIDATE_MARGIN_SHARE * system.tip_radius,
         casing_limit=limits[0],
         tip_limit=limits[1],
-        spread=spread,
+        tip_shift=tip_shift,
         lasting=contact.restitution > 0 or contact.liner is not None,
-        screen=screen and bounds_hold(surface, spread, limits[0]),
+        screen=screen and bounds_hold(surface, tip_shift, limits[0]),
     )
     theta = start_angle + 2 * np.pi * (np.arange(steps + 1) % steps) / steps  # the last step is the first exactly
     tip_compliance, casing_compliance = compliances(system, dt)
@@ -111,9 +117,9 @@ def speed_part(system: SpinningSystem, blocks: Blocks, dt: float) -> SpeedPart:
 
 def at_speed(model: Model, part: SpeedPart, speed: float, angles: Angles, *, screen: bool) -> Model:
     """The model at another speed in rad/s, with tables at the angles of as many steps as there are to take."""
-    spread = tip_spread(part.tips, model.laws.tip_limit)
-    screen = screen and bounds_hold(model.surface, spread, model.laws.casing_limit)
-    laws = model.laws._replace(speed=speed, spread=spread, screen=screen)
+    tip_shift = relative_tip_shift(part.tips, model.laws.tip_limit)
+    screen = screen and bounds_hold(model.surface, tip_shift, model.laws.casing_limit)
+    laws = model.laws._replace(speed=speed, tip_shift=tip_shift, screen=screen)
     return model._replace(laws=laws, angles=angles, **part._asdict())
 
 

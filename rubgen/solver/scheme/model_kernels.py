@@ -29,7 +29,7 @@ class Laws(NamedTuple):
     """A casing node displaced by more than this has diverged, m."""
     tip_limit: float
     """A blade tip displaced by more than this in one direction has diverged, m."""
-    spread: float
+    tip_shift: float
     """Until then no tip is farther than this from its place at rest along either axis, tip radii."""
     lasting: bool
     """Whether gaps are needed again in later steps where no blade touches: with restitution, and with a liner."""

@@ -14,12 +14,12 @@ import math
 
 from rubgen.arrays import FloatArray
 from rubgen.contact.clearance_kernels import (
-    casing_reach,
+    casing_displacement_bound,
     clearance_bounds,
     deformation_bounds,
     largest_nodal_displacement,
+    radial_margin,
     tighten,
-    widened,
 )
 from rubgen.contact.contact_kernels import (
     ContactWork,
@@ -150,13 +150,19 @@ def bound_clearances(
     opening: float,
     after: Motion,
     margin: float,
-    reach: float,
+    casing_bound: float,
     limits: tuple[float, float],
     work: ContactWork,
 ) -> bool:
-    """Bounds of how far each tip is inside of the deformed surface, as `tighten`; whether certainly none touches it.
+    """Write into `work.bounds` how far each tip is inside the deformed surface at least, m; -inf without screening.
 
-    `inside` is the row of the angles. Without screening nothing is known of any tip.
+    Return True if no tip can touch the surface.
+
+    - inside: row of `model.angles` of the step.
+    - opening: added to the radius of the surface, m.
+    - margin: tips nearer than this need a bound to the deformed surface, m.
+    - casing_bound: bound of the casing's displacement, m.
+    - limits: the two `deformation_bounds`.
     """
     n_blades, n_casing = work.gap.shape[0], work.rows.shape[1]
     if not model.laws.screen:
@@ -165,13 +171,13 @@ def bound_clearances(
         return False
     angles, start = model.angles, after.q.shape[0] - n_casing
     clearance_bounds(
-        model.surface, model.tips, after.tips, opening, model.laws.spread, angles.cos_orders[inside],
+        model.surface, model.tips, after.tips, opening, model.laws.tip_shift, angles.cos_orders[inside],
         angles.sin_orders[inside], work.bounds,
     )  # fmt: skip
     for j in range(n_casing):
         work.casing[j] = after.q[start + j]
-    # The linear interpolation of u_r lies within the reach.
-    far = (reach + limits[0]) + widened(margin, limits)
+    # The linear interpolation of u_r is nowhere above casing_bound.
+    far = (casing_bound + limits[0]) + radial_margin(margin, limits)
     return tighten(model.surface, model.tips, work.casing, after.tips, angles.theta[inside], far, limits, work.bounds)
 
 
@@ -183,14 +189,20 @@ def contact_step(
     before: Motion,
     now: Motion,
     after: Motion,
-    reach: float,
+    casing_bound: float,
     state: State,
 ) -> tuple[int, int]:
-    """Turn q* in `after` into q_n+1; OK or CONTACT_UNSOLVED, and the number of contacts that were solved.
+    """Turn q* in `after` into q_n+1. Return OK or CONTACT_UNSOLVED, and the number of contacts that were solved.
 
-    Only blades whose free gap is below the margin enter, if any is in the surface at all. What the forces then close is
-    bounded; where it exceeds the margin, the margin is widened and the step solved again, so no blade can be missed.
-    `reach` is the casing's in q*.
+    If a blade has entered the surface, all blades whose gap in q* is below a margin are solved together. The contact
+    forces may close other gaps by at most `largest_approach`. Where that exceeds the margin, the step is solved again
+    with a larger margin, so no blade can be missed.
+
+    - step: number of the step n in `model.angles`.
+    - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., m.
+    - before, now: motion at steps n - 1 and n.
+    - after: q*, the motion at step n + 1 without contact; changed to q_n+1.
+    - casing_bound: bound of the casing's displacement in q*, m.
     """
     work, scratch = state.contact, state.scratch
     n_blades = work.gap.shape[0]
@@ -198,10 +210,10 @@ def contact_step(
     surface, laws, angles = model.surface, model.laws, model.angles
     coordinates = Coordinates(before.q, now.q, after.q, scratch.change)
     new, inside = opening[step + 2], step + 1
-    limits = deformation_bounds(surface, after.q[start:], laws.spread)
+    limits = deformation_bounds(surface, after.q[start:], laws.tip_shift)
     margin = starting_margin(laws, work.step_gaps)
     for _ in range(MARGIN_TRIES):
-        apart = bound_clearances(model, inside, new, after, margin, reach, limits, work)
+        apart = bound_clearances(model, inside, new, after, margin, casing_bound, limits, work)
         if apart and not laws.lasting:
             for k in range(n_blades):
                 work.step_gaps[2, k] = math.nan
@@ -243,19 +255,19 @@ def has_diverged(surface: Surface, laws: Laws, q: FloatArray, casing_start: int,
         if not abs(q[k]) <= laws.tip_limit:
             return True
     q_casing = q[casing_start:]
-    if casing_reach(surface, q_casing) <= laws.casing_limit:
+    if casing_displacement_bound(surface, q_casing) <= laws.casing_limit:
         return False
     return not largest_nodal_displacement(surface, q_casing) <= laws.casing_limit
 
 
 @inlined_kernel
-def leaves_range(model: Model, motion: Motion, reach: float, scratch: Scratch) -> bool:
+def leaves_range(model: Model, motion: Motion, casing_bound: float, scratch: Scratch) -> bool:
     """`has_diverged`, decided by bounds where they suffice: no tip coordinate is beyond the norm of z."""
     norm = dot_rows(motion.z, motion.z, motion.z.shape[0] // LANES)
-    if norm <= model.laws.tip_limit**2 and reach <= model.laws.casing_limit:
+    if norm <= model.laws.tip_limit**2 and casing_bound <= model.laws.casing_limit:
         return False
     recover_all(model.harmonics, motion.z, scratch.share, scratch.tips, motion.q)
-    start = motion.q.shape[0] - model.surface.reach.shape[0]
+    start = motion.q.shape[0] - model.surface.mode_displacement.shape[0]
     return has_diverged(model.surface, model.laws, motion.q, start, model.harmonics.basis.shape[0])
 
 
@@ -277,10 +289,10 @@ def advance(
     ):  # fmt: skip
         return FILM_CLOSED, 0
     recover(model.harmonics, after, state.scratch.share)
-    reach = casing_reach(model.surface, after.q[after.q.shape[0] - state.contact.rows.shape[1] :])
-    if leaves_range(model, after, reach, state.scratch):
+    casing_bound = casing_displacement_bound(model.surface, after.q[after.q.shape[0] - state.contact.rows.shape[1] :])
+    if leaves_range(model, after, casing_bound, state.scratch):
         return DIVERGED, 0
-    return contact_step(model, step, opening, before, now, after, reach, state)
+    return contact_step(model, step, opening, before, now, after, casing_bound, state)
 
 
 @inlined_kernel

@@ -41,19 +41,20 @@ class Rays(NamedTuple):
 
 
 class Timing(NamedTuple):
-    """Probes that see blades pass: `angle` (probes,) in rad, `axial` (probes,) in m, `blade` (steps, probes, 2).
-
-    `chord_slope` is the tangential way of the tip's chord for one of axial way, `reach` (rad) how near to a probe a
-    blade is looked at. `arrivals` (many, 4) are written: probe, blade, time in steps, displacement of the chord along
-    the rotation there.
-    """
+    """Timing probes, which record passing blades."""
 
     angle: FloatArray
+    """Polar angle of each probe (probes,), rad."""
     axial: FloatArray
+    """Axial place of each probe (probes,), m."""
     chord_slope: float
-    reach: float
+    """Tangential displacement of the tip's chord per unit of axial distance."""
+    near_angle: float
+    """A blade is evaluated where it is nearer than this to a probe, rad."""
     blade: IntArray
+    """The blades on either side of each probe at each step (steps, probes, 2)."""
     arrivals: FloatArray
+    """Written (many, 4): probe, blade, time in steps, displacement of the chord along the rotation there, m."""
 
 
 class Taps(NamedTuple):
@@ -197,7 +198,7 @@ def is_near(
 ) -> bool:
     """Whether a blade may pass the probe in this step, from its tangential `displacement` (2, any) alone."""
     along = tips.static[1, blade] + displacement[1, blade] + timing.chord_slope * timing.axial[probe]
-    near: bool = abs(angle_beyond(tips, theta, timing, probe, blade, step, along / tips.radius)) < timing.reach
+    near: bool = abs(angle_beyond(tips, theta, timing, probe, blade, step, along / tips.radius)) < timing.near_angle
     return near
 
 

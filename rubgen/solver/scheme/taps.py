@@ -123,7 +123,7 @@ def only(signal: int) -> FloatArray:
 def polar_rows(surface: Surface, angle: float) -> list[FloatArray]:
     """Radial, tangential displacement and d(radial)/d(angle) at a polar angle per unit of each casing mode."""
     cosine, sine = np.cos(angle), np.sin(angle)
-    n_casing = len(surface.reach)
+    n_casing = len(surface.mode_displacement)
     at, aside = np.zeros((2, n_casing)), np.zeros((2, 2, n_casing))
     casing_rows(surface, angle, at)
     width = 1e-3 * surface.node_step
@@ -246,7 +246,7 @@ def _timing(system: SpinningSystem, probes: list[TipTiming], theta: FloatArray, 
         axial=np.array([probe.axial_m for probe in probes], dtype=float),
         chord_slope=slope,
         # Three steps, what the axial displacement of the tip may do, and the curvature of the tip's way.
-        reach=6 * np.pi / len(theta) + 2 * abs(slope) * tip_limit / system.tip_radius + 2e-3,
+        near_angle=6 * np.pi / len(theta) + 2 * abs(slope) * tip_limit / system.tip_radius + 2e-3,
         blade=_blades_around_rays(system, angle, theta)[0],
         arrivals=np.zeros((2 * (system.n_blades + 1) * len(probes), 4)),
     )

@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.contact.clearance_kernels import casing_reach
+from rubgen.contact.clearance_kernels import casing_displacement_bound
 from rubgen.contact.wear_kernels import wear_where_lined
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.harmonic_kernels import Harmonics, recover_all
@@ -220,8 +220,8 @@ def run_turn(
         frame = record_frame(result.frames, frame, s, steps, now.z)
         if s == 0:
             record_section(model.harmonics, model.angles.section, laws.dt, before, now, after, scratch, result.section)
-        reach = casing_reach(model.surface, after.q[after.q.shape[0] - taps.bend.shape[0] :])
-        result.summary[2] = max(result.summary[2], reach)
+        displacement = casing_displacement_bound(model.surface, after.q[after.q.shape[0] - taps.bend.shape[0] :])
+        result.summary[2] = max(result.summary[2], displacement)
         before, now, after = now, after, before
         wear_where_lined(count, model.surface.liner, laws.dt, work, state.wear)
         shift_gaps(work)
