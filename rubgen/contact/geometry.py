@@ -53,7 +53,7 @@ def surface_modes(system: SpinningSystem, contact: ContactLaw) -> FloatArray:
     if not contact.half_thickness:
         return modes
     if system.casing_rotations is None:
-        raise UserError("half_thickness = true: the system holds no rotations of the casing's sections; add them")
+        raise UserError("half_thickness = true: the system holds no rotations of the casing's cross-sections; add them")
     angle = 2 * np.pi * np.arange(len(modes)) / len(modes)
     e_theta = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
     return modes - system.half_thickness * e_theta[:, :, None] * system.casing_rotations[:, None, :]

@@ -1,7 +1,7 @@
 """Pre-twisted, tapered Timoshenko beams: one blade in its own axes.
 
 Axes: x radial (along the blade), y tangential (e_z x e_x), z along the axis of rotation. Six DoF a node:
-u_x, u_y, u_z, th_x, th_y, th_z. A point s = (0, y, z) of the section moves by u + th x s.
+u_x, u_y, u_z, th_x, th_y, th_z. A point s = (0, y, z) of the cross-section moves by u + th x s.
 """
 
 from dataclasses import dataclass
@@ -10,15 +10,15 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from rubgen.arrays import FloatArray
-from rubgen.fem.beam_sections import (
-    blade_sections,
-    section_coriolis,
-    section_load,
-    section_mass,
-    section_pull,
-    section_second_order,
-    section_spin,
-    section_stiffness,
+from rubgen.fem.cross_sections import (
+    cross_section_coriolis,
+    cross_section_load,
+    cross_section_mass,
+    cross_section_pull,
+    cross_section_second_order,
+    cross_section_spin,
+    cross_section_stiffness,
+    cross_sections,
 )
 from rubgen.machine.machine import BladeRow
 
@@ -47,8 +47,8 @@ class BeamMatrices:
 def blade_matrices(blades: BladeRow, root_radius: float) -> BeamMatrices:
     """Matrices of one blade, assembled from exact-statics two-node elements.
 
-    Stiffness: the section forces of an element in equilibrium are b(x) F with F the forces at its outer end; with
-    the section stiffness D the flexibility is f = int b^T D^-1 b dx and K = Gamma^T f^-1 Gamma, Gamma q the outer
+    Stiffness: the internal forces of an element in equilibrium are b(x) F with F the forces at its outer end; with
+    the cross-section stiffness D the flexibility is f = int b^T D^-1 b dx and K = Gamma^T f^-1 Gamma, Gamma q the outer
     node's motion relative to the inner one carried rigidly. The displacement that belongs to it gives the shape
     functions N(x) of every other matrix: statics are exact at the nodes for any taper and twist, nothing locks.
     Frequencies converge with order 4 where bending rules, with order 2 where shear, torsion or extension do.
@@ -57,7 +57,7 @@ def blade_matrices(blades: BladeRow, root_radius: float) -> BeamMatrices:
     volume, so with rotary inertia; f_c holds the propeller moment -rho I_yz about x. K_sigma, at 1 rad/s, is twice
     the energy per length of P (u_y'^2 + u_z'^2) / 2 + P I_p / A th_x'^2 / 2 + E2, P(x) = int_x^L rho A r dr, where
     E2 = rho [I_y2 (th_x^2 + th_z^2) - I_yz th_y th_z] / 2 is the work of the centrifugal load on the second-order
-    displacement th x (th x s) / 2 of the section.
+    displacement th x (th x s) / 2 of the cross-section.
 
     Not in it: warping, the coupling of extension with twist, the geometric stiffness of the steady twisting moment.
     Checked against closed forms, shooting and published rotating beams in tests/fem/test_beam*.py.
@@ -67,7 +67,7 @@ def blade_matrices(blades: BladeRow, root_radius: float) -> BeamMatrices:
     starts: FloatArray = step * np.arange(elements, dtype=np.float64)
     shape, strain = _shape_functions(blades, root_radius, starts, step)
     points, weights = _gauss(step)
-    sections = blade_sections(blades, root_radius, starts[:, None] + points)
+    sections = cross_sections(blades, root_radius, starts[:, None] + points)
     rho = blades.material.density_kg_per_m3
     radius = root_radius + starts[:, None] + points
     gradient = strain.copy()
@@ -79,17 +79,18 @@ def blade_matrices(blades: BladeRow, root_radius: float) -> BeamMatrices:
         blocks: FloatArray = np.sum(np.swapaxes(fields, -1, -2) @ weighted, axis=1)
         return _assemble(blocks)
 
-    load = rho * np.einsum("g,egif,egi->ef", weights, shape, section_load(sections, radius))
+    load = rho * np.einsum("g,egif,egi->ef", weights, shape, cross_section_load(sections, radius))
     return BeamMatrices(
-        M=_symmetric(integral(shape, rho * section_mass(sections))),
-        K=_symmetric(integral(strain, section_stiffness(blades, sections))),
-        G=_skew(integral(shape, rho * section_coriolis(sections))),
-        S=_symmetric(integral(shape, rho * section_spin(sections))),
+        M=_symmetric(integral(shape, rho * cross_section_mass(sections))),
+        K=_symmetric(integral(strain, cross_section_stiffness(blades, sections))),
+        G=_skew(integral(shape, rho * cross_section_coriolis(sections))),
+        S=_symmetric(integral(shape, rho * cross_section_spin(sections))),
         K_sigma=_symmetric(
-            integral(gradient, section_pull(sections)) + integral(shape, rho * section_second_order(sections))
+            integral(gradient, cross_section_pull(sections))
+            + integral(shape, rho * cross_section_second_order(sections))
         ),
         f_c=_assemble_vector(load),
-        root_pull=float(blade_sections(blades, root_radius, np.zeros(1)).pull[0]),
+        root_pull=float(cross_sections(blades, root_radius, np.zeros(1)).pull[0]),
     )
 
 
@@ -103,13 +104,13 @@ def _gauss(length: float | FloatArray) -> tuple[FloatArray, FloatArray]:
 def _shape_functions(
     blades: BladeRow, root_radius: float, starts: FloatArray, step: float
 ) -> tuple[FloatArray, FloatArray]:
-    """N(x) and section strains at the Gauss points, each (element, point, 6, 12), from the element's exact statics."""
+    """N(x) and generalised strains at the Gauss points, (element, point, 6, 12), from the element's exact statics."""
 
     def flexibility(ends: FloatArray) -> FloatArray:
         """int_0^end b_end^T D^-1 b ds: motion at `end` by unit forces at the element's outer end."""
         inner, weights = _gauss(ends)
-        sections = blade_sections(blades, root_radius, starts[:, None, None] + inner)
-        compliance = np.linalg.inv(section_stiffness(blades, sections))
+        sections = cross_sections(blades, root_radius, starts[:, None, None] + inner)
+        compliance = np.linalg.inv(cross_section_stiffness(blades, sections))
         at_end = np.swapaxes(_equilibrium(ends[:, None] - inner), -1, -2)
         integrand: FloatArray = weights[..., None, None] * (at_end @ compliance @ _equilibrium(step - inner))
         motion: FloatArray = integrand.sum(axis=2)
@@ -121,14 +122,14 @@ def _shape_functions(
     end_forces = inverse @ relative
     rigid = np.concatenate([_rigid(points), np.zeros((points.size, 6, 6))], axis=-1)
     shape: FloatArray = rigid + flexibility(points) @ end_forces
-    sections = blade_sections(blades, root_radius, starts[:, None] + points)
-    compliance = np.linalg.inv(section_stiffness(blades, sections))
+    sections = cross_sections(blades, root_radius, starts[:, None] + points)
+    compliance = np.linalg.inv(cross_section_stiffness(blades, sections))
     strain: FloatArray = compliance @ _equilibrium(step - points) @ end_forces
     return shape, strain
 
 
 def _equilibrium(arm: FloatArray) -> FloatArray:
-    """b: section forces (N, V_y, V_z, M_x, M_y, M_z) of unit forces that act a distance `arm` further out."""
+    """b: internal forces (N, V_y, V_z, M_x, M_y, M_z) of unit forces that act a distance `arm` further out."""
     b = np.zeros((*arm.shape, 6, 6))
     b[..., range(6), range(6)] = 1.0
     b[..., 4, 2], b[..., 5, 1] = -arm, arm

@@ -9,7 +9,7 @@ from numpy.polynomial.legendre import leggauss
 
 from rubgen.arrays import FloatArray, SparseMatrix
 from rubgen.errors import UserError
-from rubgen.fem.beam_sections import cowper_shear_coefficient
+from rubgen.fem.cross_sections import cowper_shear_coefficient
 from rubgen.machine.machine import Casing, Machine, Material
 from rubgen.machine.mesh import node_problem
 

@@ -6,7 +6,7 @@ from rubgen.machine.machine import Machine
 
 
 def blisk_mass(machine: Machine) -> float:
-    """Mass of disk and blades in kg; blade sections count as chord times thickness.
+    """Mass of disk and blades in kg; blade cross-sections count as chord times thickness.
 
     Disk: 2 pi rho times the integral of r t(r), t linear from bore to rim; blades: rho L times the mean of the product
     of two linear functions. In the preset within 0.1 % of the finite-element model: tests/machine/test_mass.py.
@@ -17,6 +17,6 @@ def blisk_mass(machine: Machine) -> float:
     start = disk.bore_thickness_m - slope * a
     plate = 2 * math.pi * (start * (b**2 - a**2) / 2 + slope * (b**3 - a**3) / 3)
     c0, c1, t0, t1 = blades.root_chord_m, blades.tip_chord_m, blades.root_thickness_m, blades.tip_thickness_m
-    section = (2 * c0 * t0 + c0 * t1 + c1 * t0 + 2 * c1 * t1) / 6
-    blade = section * blades.length_m
+    cross_section = (2 * c0 * t0 + c0 * t1 + c1 * t0 + 2 * c1 * t1) / 6
+    blade = cross_section * blades.length_m
     return abs(plate) * disk.material.density_kg_per_m3 + blades.count * blade * blades.material.density_kg_per_m3

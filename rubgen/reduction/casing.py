@@ -23,7 +23,7 @@ class ReducedCasing:
 
     `frequencies_hz` (n,) ascending; `modes_xy` (nodes, 2, n) the X and Y displacements of the mass-normalised modes
     (in kg^-1/2) at nodes that stand at equal steps of polar angle from 0, `rotations` (nodes, n) the rotation of the
-    section about Z there (in m^-1 kg^-1/2); `surface` the undeformed inner surface.
+    cross-section about Z there (in m^-1 kg^-1/2); `surface` the undeformed inner surface.
     """
 
     frequencies_hz: FloatArray

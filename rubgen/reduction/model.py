@@ -12,45 +12,54 @@ class CasingSurface:
     """Undeformed inner surface r(theta) = mean_radius + sum_j amplitude_j cos(order_j (theta - phase_j)), in m, rad."""
 
     mean_radius: float
+    """Mean radius, m."""
     amplitude: FloatArray
+    """Amplitude of each harmonic (harmonics,), m."""
     order: FloatArray
+    """Order of each harmonic (harmonics,)."""
     phase: FloatArray
+    """Polar angle of a maximum of each harmonic (harmonics,), rad."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Recovery:
-    """What sensors see beside the coordinates: linear functionals of the blisk's n coordinates, and geometry.
-
-    `root_strain` gives the row (n,) of the spanwise strain at a blade's root. `torsion` (n,) is the turn of O_d about
-    Z, on a spring `torsion_stiffness` and a damper `torsion_damping` that turn with the drive. `casing_radius` and
-    `casing_thickness` are those of the ring in m; `chord_slope` is the tangential way along a tip's chord for one of
-    axial way. `blisk_mass` is that of disk and blades, kg.
-    """
+    """What sensors measure beside the coordinates: linear functionals of the blisk's n coordinates, and geometry."""
 
     root_strain: Callable[[int], FloatArray]
+    """For a blade's number, the row (n,) of the spanwise strain at its root."""
     torsion: FloatArray
+    """Row (n,) of the rotation of O_d about Z, rad."""
     torsion_stiffness: float
+    """Torsional stiffness of the drive, N m/rad. The spring turns with the drive."""
     torsion_damping: float
+    """Torsional damping of the drive, N m s/rad."""
     casing_radius: float
+    """Radius of the casing's centre line, m."""
     casing_thickness: float
+    """Radial thickness of the casing, m."""
     chord_slope: float
+    """Tangential displacement along a tip's chord per unit of axial distance."""
     blisk_mass: float
+    """Mass of disk and blades, kg."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class TurningForces:
-    """Forces on the blisk that turn against it or depend on its state, so that no constant matrix holds them.
+    """Forces on the blisk that turn against it or depend on its state: no constant matrix contains them.
 
-    On O_d, u its displacement and v_abs = v + Omega e_z x u its absolute velocity, in the turning frame:
-    -k_a Q u - c_a Q v_abs - C(u) v_abs, Q = [[cos 2 theta, -sin 2 theta], [-sin 2 theta, -cos 2 theta]], with
-    `stiffness` k_a = (k_X - k_Y) / 2 in N/m, `damping` c_a likewise in N s/m, C of the squeeze `film`. On all of the
-    blisk: -g M T (sin theta, cos theta), with `weight` (n, 2) = g M T in N, T the rigid motions along x and y.
+    On O_d, with u its displacement and v_abs = v + Omega e_z x u its absolute velocity in the turning frame:
+    -k_a Q u - c_a Q v_abs - C(u) v_abs, Q = [[cos 2 theta, -sin 2 theta], [-sin 2 theta, -cos 2 theta]].
+    On all of the blisk: -g M T (sin theta, cos theta), with T the rigid motions along x and y.
     """
 
     stiffness: float = 0.0
+    """k_a = (k_X - k_Y) / 2, N/m."""
     damping: float = 0.0
+    """c_a = (c_X - c_Y) / 2, N s/m."""
     film: SqueezeFilm | None = None
+    """The squeeze film damper with the damping C(u)."""
     weight: FloatArray | None = None
+    """g M T (n, 2), N."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,37 +71,46 @@ class SpinningSystem:
     axes, which turn with the blisk: blade k stands at angle theta + blade_angles[k]. The casing modes live in the
     inertial frame and are mass-normalised.
 
-    `M`, `C`, `K` are (n, n) and contain every gyroscopic, centrifugal, support and damping term; `force` (n,) is the
-    unbalance, on O_d x, and where mistuned blades grow unevenly a little on O_d x and y. `tip_static` (n_blades, 3) is
-    the steady centrifugal displacement of the full model at this speed along the same axes as the tips; it is added to
-    the tips wherever a position is needed, and is no part of q.
-    `casing_modes` (nodes, 2, n_casing) holds the X and Y displacement of each mode at the nodes, which stand at equal
-    steps of polar angle from 0. `lateral_stiffness` and `lateral_damping` are the support's, per axis, in N/m, N s/m:
-    the mean of X and Y where they differ.
-    `casing_rotations` (nodes, n_casing) is the rotation of the ring's section about Z of each mode at the nodes, and
-    `half_thickness` (m) how far the inner surface lies inside the centre line; None and 0 where they are not known.
-    `recovery` is None where the system was not reduced from a machine.
-    `turning` holds what `M`, `C`, `K`, `force` do not; None for most machines.
     """
 
     speed: float
+    """Spin speed Omega in rad/s."""
     M: FloatArray
+    """Mass matrix (n, n)."""
     C: FloatArray
+    """Damping and gyroscopic matrix (n, n)."""
     K: FloatArray
+    """Stiffness matrix (n, n) with centrifugal, support and circulatory terms."""
     force: FloatArray
+    """Force of the unbalance (n,), N: on O_d x. Unevenly mistuned blades add a little on O_d x and y."""
     n_blades: int
+    """Number of blades."""
     n_casing: int
+    """Number of casing modes."""
     tip_radius: float
+    """Radius of the blade tips at rest, m."""
     blade_angles: FloatArray
+    """Angle of each blade on the disk (n_blades,), rad."""
     tip_static: FloatArray
+    """Steady centrifugal displacement of the tips in the full model (n_blades, 3), m, along the blade's own axes.
+
+    It is no part of q. Positions of the tips add it to q."""
     surface: CasingSurface
+    """Undeformed inner surface of the casing."""
     casing_modes: FloatArray
+    """X and Y displacement of each casing mode (nodes, 2, n_casing). Nodes stand at equal steps of angle from 0."""
     lateral_stiffness: float
+    """Lateral stiffness of the disk support, mean of X and Y, N/m."""
     lateral_damping: float
+    """Lateral damping of the disk support, mean of X and Y, N s/m."""
     casing_rotations: FloatArray | None = None
+    """Rotation of the ring's cross-section about Z of each mode (nodes, n_casing); None where it is not known."""
     half_thickness: float = 0.0
+    """How far the casing's inner surface lies inside the ring's centre line, m; 0 where it is not known."""
     recovery: Recovery | None = None
+    """What sensors need; None where the system was not reduced from a machine."""
     turning: TurningForces | None = None
+    """Forces that `M`, `C`, `K` and `force` do not contain; None for most machines."""
 
     @property
     def centre(self) -> int:

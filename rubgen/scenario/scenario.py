@@ -132,9 +132,10 @@ class Liner:
 class ContactLaw:
     """Unilateral contact with sliding Coulomb friction; restitution 0 is a plastic impact.
 
-    With `half_thickness` contact acts on the casing's inner surface, half the ring's thickness inside its centre line:
-    friction then turns the ring's section as well, and the surface moves with that rotation. `surface` "chords" joins
-    the casing's nodes by straight lines instead of the smooth curve through them. A `liner` wears where blades touch.
+    With `half_thickness` contact acts on the casing's inner surface, half the ring's thickness inside its centre line.
+    Friction then also turns the ring's cross-section, and the surface moves with that rotation. `surface` "chords"
+    joins the casing's nodes by straight lines instead of the smooth curve through them. A `liner` wears where blades
+    touch.
     """
 
     friction: Friction = 0.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rubgen.fem.beam import BeamMatrices, blade_matrices
-from rubgen.fem.beam_sections import rectangle_torsion_constant
+from rubgen.fem.cross_sections import rectangle_torsion_constant
 from rubgen.machine.machine import BladeRow
 from validation.verification.elements.blade_oracles import section
 from validation.verification.elements.twisted_blades import RADIUS, TWISTED

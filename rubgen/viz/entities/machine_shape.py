@@ -21,7 +21,7 @@ STATIONS = 72
 PLATE_SHARE = 0.012
 """Drawn thickness of the casing over the tip radius; the true one would not be seen."""
 ROUND = 72
-BLADE_SECTIONS = 24
+BLADE_CROSS_SECTIONS = 24
 COILS, COIL_WIDTH_M = 5, 0.01
 """Of a drawn spring."""
 
@@ -139,7 +139,7 @@ def revolved(profile: list[tuple[float, float]]) -> Mesh:
 
 def blade_mesh(blades: BladeRow) -> Mesh:
     """One blade along x from its root at the origin: a rectangle that narrows, thins and turns from root to tip."""
-    span = np.linspace(0.0, 1.0, BLADE_SECTIONS)
+    span = np.linspace(0.0, 1.0, BLADE_CROSS_SECTIONS)
     corners = _blade_corners(blades, span)
     parts = [_strip(corners[:, side], corners[:, (side + 1) % 4]) for side in range(4)]
     cap = corners[-1]
@@ -148,7 +148,7 @@ def blade_mesh(blades: BladeRow) -> Mesh:
 
 
 def _blade_corners(blades: BladeRow, span: FloatArray) -> FloatArray:
-    """Corners (sections, 4, 3) of the sections; the thickness normal stands at the stagger angle to Z."""
+    """Corners (places, 4, 3) of the cross-sections; the thickness normal stands at the stagger angle to Z."""
     chord = blades.root_chord_m + span * (blades.tip_chord_m - blades.root_chord_m)
     thickness = blades.root_thickness_m + span * (blades.tip_thickness_m - blades.root_thickness_m)
     angle = np.radians(blades.root_angle_deg + span * (blades.tip_angle_deg - blades.root_angle_deg))

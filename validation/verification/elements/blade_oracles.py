@@ -10,7 +10,7 @@ from numpy.polynomial.legendre import leggauss
 from scipy.integrate import solve_ivp
 
 from rubgen.arrays import FloatArray
-from rubgen.fem.beam_sections import rectangle_torsion_constant
+from rubgen.fem.cross_sections import rectangle_torsion_constant
 from rubgen.machine import BladeRow
 
 

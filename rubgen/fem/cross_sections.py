@@ -1,7 +1,7 @@
-"""Rectangular sections of a pre-twisted, tapered blade: what the beam element integrates along its length.
+"""Rectangular cross-sections of a pre-twisted, tapered blade: what the beam element integrates along its length.
 
-Section matrices act on (u_x, u_y, u_z, th_x, th_y, th_z) of the centre line or on the six section strains; a point
-s = (0, y, z) moves by u + th x s. Each has the shape (..., 6, 6) for sections of shape (...).
+Cross-section matrices act on (u_x, u_y, u_z, th_x, th_y, th_z) of the centre line or on the six generalised strains. A
+point s = (0, y, z) moves by u + th x s. Each matrix has the shape (..., 6, 6) for cross-sections of shape (...).
 """
 
 from dataclasses import dataclass
@@ -14,8 +14,8 @@ from rubgen.machine.machine import BladeRow
 
 
 @dataclass(frozen=True, kw_only=True)
-class BladeSections:
-    """The rectangular sections of a blade at distances x (any shape) from the root.
+class CrossSections:
+    """The rectangular cross-sections of a blade at distances x (any shape) from the root.
 
     `area` = int dA, `yy` = int y^2 dA, `zz` = int z^2 dA, `yz` = int y z dA, `torsion` the Saint-Venant constant,
     `pull` the axial force of all mass outboard at 1 rad/s. Each has the shape of x.
@@ -46,8 +46,8 @@ def rectangle_torsion_constant(a: FloatArray, b: FloatArray) -> FloatArray:
     return constant
 
 
-def blade_sections(blades: BladeRow, root_radius: float, x: FloatArray) -> BladeSections:
-    """Section properties at distances `x` (m) from the root, which stands at `root_radius` (m).
+def cross_sections(blades: BladeRow, root_radius: float, x: FloatArray) -> CrossSections:
+    """Cross-section properties at distances `x` (m) from the root, which stands at `root_radius` (m).
 
     Chord, thickness and angle are linear in x. The chord points along cos(angle) e_y + sin(angle) e_z, the thickness
     normal along -sin(angle) e_y + cos(angle) e_z: at angle 0 the blade lies flat in the plane of the disk.
@@ -59,7 +59,7 @@ def blade_sections(blades: BladeRow, root_radius: float, x: FloatArray) -> Blade
     along_chord, along_normal = h * c**3 / 12, c * h**3 / 12
     cos, sin = np.cos(angle), np.sin(angle)
     inboard = (chord * thickness * Polynomial([root_radius, 1.0])).integ()
-    return BladeSections(
+    return CrossSections(
         area=c * h,
         yy=along_chord * cos**2 + along_normal * sin**2,
         zz=along_chord * sin**2 + along_normal * cos**2,
@@ -73,8 +73,8 @@ def _linear(root: float, tip: float, length: float) -> Polynomial:
     return Polynomial([root, (tip - root) / length])
 
 
-def section_stiffness(blades: BladeRow, s: BladeSections) -> FloatArray:
-    """Section forces (N, V_y, V_z, M_x, M_y, M_z) per strain (eps, gamma_y, gamma_z, th_x', th_y', th_z')."""
+def cross_section_stiffness(blades: BladeRow, s: CrossSections) -> FloatArray:
+    """Internal forces (N, V_y, V_z, M_x, M_y, M_z) per strain (eps, gamma_y, gamma_z, th_x', th_y', th_z')."""
     E, G = blades.material.youngs_modulus_pa, blades.material.shear_modulus_pa
     shear = cowper_shear_coefficient(blades.material.poisson_ratio) * G * s.area
     D = _bending(E * s.yy, E * s.zz, E * s.yz)
@@ -82,24 +82,24 @@ def section_stiffness(blades: BladeRow, s: BladeSections) -> FloatArray:
     return D
 
 
-def section_mass(s: BladeSections) -> FloatArray:
-    """|u + th x s|^2 over the section: translation and rotary inertia."""
+def cross_section_mass(s: CrossSections) -> FloatArray:
+    """|u + th x s|^2 over the cross-section: translation and rotary inertia."""
     m = _bending(s.yy, s.zz, s.yz)
     m[..., 0, 0] = m[..., 1, 1] = m[..., 2, 2] = s.area
     m[..., 3, 3] = s.yy + s.zz
     return m
 
 
-def section_spin(s: BladeSections) -> FloatArray:
-    """u_x^2 + u_y^2 over the section, u_x = th_y z - th_z y, u_y = -th_x z."""
+def cross_section_spin(s: CrossSections) -> FloatArray:
+    """u_x^2 + u_y^2 over the cross-section, u_x = th_y z - th_z y, u_y = -th_x z."""
     m = _bending(s.yy, s.zz, s.yz)
     m[..., 0, 0] = m[..., 1, 1] = s.area
     m[..., 3, 3] = s.zz
     return m
 
 
-def section_coriolis(s: BladeSections) -> FloatArray:
-    """Virtual work du . (e_z x u) = du_y u_x - du_x u_y over the section."""
+def cross_section_coriolis(s: CrossSections) -> FloatArray:
+    """Virtual work du . (e_z x u) = du_y u_x - du_x u_y over the cross-section."""
     m = np.zeros((*s.area.shape, 6, 6))
     m[..., 1, 0], m[..., 0, 1] = s.area, -s.area
     m[..., 4, 3], m[..., 3, 4] = s.zz, -s.zz
@@ -107,7 +107,7 @@ def section_coriolis(s: BladeSections) -> FloatArray:
     return m
 
 
-def section_pull(s: BladeSections) -> FloatArray:
+def cross_section_pull(s: CrossSections) -> FloatArray:
     """P (u_y'^2 + u_z'^2) + P I_p / A th_x'^2, on (-, u_y', u_z', th_x', -, -)."""
     m = np.zeros((*s.area.shape, 6, 6))
     m[..., 1, 1] = m[..., 2, 2] = s.pull
@@ -115,7 +115,7 @@ def section_pull(s: BladeSections) -> FloatArray:
     return m
 
 
-def section_second_order(s: BladeSections) -> FloatArray:
+def cross_section_second_order(s: CrossSections) -> FloatArray:
     """I_y2 (th_x^2 + th_z^2) - I_yz th_y th_z: twice the work of -(0, y, 0) on th x (th x s) / 2."""
     m = np.zeros((*s.area.shape, 6, 6))
     m[..., 3, 3] = m[..., 5, 5] = s.yy
@@ -123,7 +123,7 @@ def section_second_order(s: BladeSections) -> FloatArray:
     return m
 
 
-def section_load(s: BladeSections, radius: FloatArray) -> FloatArray:
+def cross_section_load(s: CrossSections, radius: FloatArray) -> FloatArray:
     """Work of r_perp on u + th x s, r_perp = (r, y, 0): a pull along x and the propeller moment about x."""
     load = np.zeros((*s.area.shape, 6))
     load[..., 0] = s.area * radius
@@ -132,7 +132,7 @@ def section_load(s: BladeSections, radius: FloatArray) -> FloatArray:
 
 
 def _bending(yy: FloatArray, zz: FloatArray, yz: FloatArray) -> FloatArray:
-    """(th_y z - th_z y)^2 over the section as the last two rows of a 6 x 6 matrix."""
+    """(th_y z - th_z y)^2 over the cross-section as the last two rows of a 6 x 6 matrix."""
     m = np.zeros((*yy.shape, 6, 6))
     m[..., 4, 4], m[..., 5, 5] = zz, yy
     m[..., 4, 5] = m[..., 5, 4] = -yz
