@@ -1,7 +1,8 @@
 """All blades that are near the casing in one step, and the contact forces between them.
 
-Geometry is taken at the free state q* and the angle theta of the new step. B_n lam is the normal force, B = B_n + mu
-B_tau the whole; both have entries at three tip coordinates and the casing modes of each contact only.
+Geometry is evaluated at the free state q* and the angle theta of the new step. B_n lam is the normal force. B lam with
+B = B_n + mu B_tau is the whole force. Both matrices have entries only at three tip coordinates and the casing modes of
+each contact.
 """
 
 from __future__ import annotations
@@ -81,11 +82,17 @@ def find_near(
     limits: tuple[float, float],
     work: ContactWork,
 ) -> tuple[int, bool]:
-    """Free gaps of all blades that may be nearer than `margin`; how many are, and whether any penetrates.
+    """Find the blades nearer to the surface than `margin`. Return their number and whether any has entered it.
 
-    They may where `work.bounds`, those to the deformed surface, allow it. `limits` are the deformation bounds, `worn`
-    (bins,) the coefficients of the worn depth, `displacement` (2, any) the tips' radial and tangential displacement,
-    which goes into q for the blades that are looked at.
+    Foot, gap, tangent and blade of each go into `work`. Only tips whose bound in `work.bounds` allows it are evaluated.
+
+    - worn (bins,): coefficients of the worn depth, m.
+    - q (n,): q*; the displacements of the evaluated tips are written into it.
+    - displacement (2, any): radial and tangential displacement of each tip, m.
+    - casing_start: index of the first casing coordinate in q.
+    - opening: added to the radius of the surface, m.
+    - margin: in m.
+    - limits: the two `deformation_bounds`.
     """
     count, penetrates, enough = 0, False, radial_margin(margin, limits)
     for k in range(work.gap.shape[0]):
@@ -130,7 +137,13 @@ def gap_at(
 def contact_slip(
     tips: Tips, m: int, velocity: FloatArray, q: FloatArray, speed: float, cosine: float, sine: float, work: ContactWork
 ) -> tuple[float, float]:
-    """Relative velocity of contact m along tangent and axis; `velocity` (n,) is q' in the coordinates' own frames."""
+    """Velocity of the tip of contact m relative to the casing, along tangent and axis.
+
+    - velocity (n,): q' or d, in the coordinates' own frames.
+    - q (n,): coordinates, m.
+    - speed: Omega, or Omega dt where `velocity` is d.
+    - cosine, sine: of the blade's angle.
+    """
     k, n_casing = work.blade[m], work.rows.shape[1]
     radial = velocity[3 * k] - speed * (tips.static[1, k] + q[3 * k + 1])
     tangential = velocity[3 * k + 1] + speed * (tips.radius + tips.static[0, k] + q[3 * k])
@@ -156,7 +169,13 @@ def build_rows(
     sin_theta: float,
     work: ContactWork,
 ) -> None:
-    """The normal and full force directions of contact m on its tip and on the casing modes."""
+    """Write B_n and B of contact m, and its direction of friction, into `work`.
+
+    - q (n,), velocity (n,): free state q* and its velocity.
+    - speed: Omega, rad/s.
+    - friction: coefficient of friction.
+    - cos_theta, sin_theta: of the blisk's angle.
+    """
     k = work.blade[m]
     _, _, cosine, sine = tip_position(tips, k, q, cos_theta, sin_theta)
     casing_rows(surface, work.psi[k], work.rows)
@@ -181,7 +200,7 @@ def build_rows(
 
 @inlined_kernel
 def build_casing_response(m: int, compliance: FloatArray, work: ContactWork) -> None:
-    """A^-1 B of contact m on the casing; `compliance[j]` is column j of the casing's A^-1."""
+    """Write A^-1 B of contact m on the casing; `compliance[j]` is column j of the casing's A^-1."""
     n_casing = work.rows.shape[1]
     for i in range(n_casing):
         work.casing_response[m, i] = 0.0
@@ -193,7 +212,7 @@ def build_casing_response(m: int, compliance: FloatArray, work: ContactWork) -> 
 
 @inlined_kernel
 def build_compliance(count: int, compliance: FloatArray, work: ContactWork) -> None:
-    """W = B_n^T A^-1 B of all contacts together; `compliance[j]` is column j of A^-1 between tip coordinates."""
+    """Write W = B_n^T A^-1 B of all contacts; `compliance[j]` is column j of A^-1 between tip coordinates."""
     for row in range(count):
         base = 3 * work.blade[row]
         for column in range(count):
@@ -216,9 +235,11 @@ def largest_approach(
     q_free: FloatArray,
     casing_start: int,
 ) -> float:
-    """A bound of how much the contact forces may have closed any gap: tip movement plus casing movement.
+    """A bound of how much the contact forces may have closed any gap, m: movement of tip plus movement of casing.
 
-    Tips (2, a multiple of eight): radial and tangential; of q (n,) the casing counts.
+    - tips_new, tips_free (2, a multiple of eight): radial and tangential displacement with and without the forces, m.
+    - q_new, q_free (n,): coordinates with and without the forces; only the casing's are read.
+    - casing_start: index of the first casing coordinate.
     """
     tip = square_of_farthest(tips_new, tips_free)
     casing = 0.0

@@ -56,19 +56,22 @@ class Surface(NamedTuple):
 
 
 class Tips(NamedTuple):
-    """The blade tips as kernels take them.
-
-    `radius` at rest, `static` (3, n_blades) steady displacement along blade axes, `angle` (n_blades,) of its place
-    on the disk with `cos_angle`, `sin_angle`, `cos_order`, `sin_order` (n_harmonics, n_blades) of order_j times it.
-    """
+    """The blade tips as kernels take them."""
 
     radius: float
+    """Radius at rest, m."""
     static: FloatArray
+    """Steady displacement along the blade's axes (3, n_blades), m."""
     angle: FloatArray
+    """Angle of each blade on the disk (n_blades,), rad."""
     cos_angle: FloatArray
+    """Its cosine (n_blades,)."""
     sin_angle: FloatArray
+    """Its sine (n_blades,)."""
     cos_order: FloatArray
+    """Cosine of order_j times the angle (n_harmonics, n_blades), order_j as in `Surface`."""
     sin_order: FloatArray
+    """Sine of order_j times the angle (n_harmonics, n_blades)."""
 
 
 @allocation_free_kernel
@@ -177,8 +180,13 @@ def foot_of(
     """Foot of (x, y) on the deformed surface: polar parameter psi, gap, and the tangent's X and Y.
 
     Newton's method on (P - X(psi)).X'(psi) = 0, from the polar angle of P. The gap is n.(P - X) with the inward
-    normal n = e_z x t, positive inside the casing. `worn` (bins,) are the coefficients of the worn
-    depth, `ends_work` (8,) is scratch. With chords the foot is on the one at the polar angle of P.
+    normal n = e_z x t, positive inside the casing. With chords the foot is on the chord at the polar angle of P.
+
+    - worn (bins,): coefficients of the worn depth, m.
+    - q_casing (n_casing,): the casing's coordinates.
+    - opening: added to the radius of the surface, m.
+    - x, y: the point, inertial, m.
+    - ends_work (8,): scratch.
     """
     h, nodes = surface.node_step, surface.table.shape[0]
     rho = math.sqrt(x * x + y * y)

@@ -76,7 +76,7 @@ def _pivot(tableau: FloatArray, row: int, column: int, m: int) -> None:
 
 @allocation_free_kernel
 def _fill_tableau(W: FloatArray, b: FloatArray, m: int, scale: float, tableau: FloatArray, basis: IntArray) -> int:
-    """I w - W z - 1 z0 = b, scaled so that lam = scale z; gives the row of the most negative b."""
+    """I w - W z - 1 z0 = b, scaled so that lam = scale z. Return the row of the most negative b."""
     worst = 0
     for i in range(m):
         for j in range(m):

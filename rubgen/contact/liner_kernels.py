@@ -61,10 +61,10 @@ def worn_depth(coefficients: FloatArray, psi: float) -> tuple[float, float, floa
 
 @allocation_free_kernel
 def remove(liner: Liner, psi: float, volume: float, wear: Wear) -> None:
-    """Take `volume` (m3) from the liner around a polar angle, as far as it is there; `wear` is changed.
+    """Remove a volume (m3) from the liner around the polar angle `psi` (rad). Changes `wear`.
 
-    The splines sum to one, so the coefficients grow by volume / area in all: nothing is lost but what lies below the
-    liner.
+    The splines sum to one, so all coefficients together grow by volume / area. No coefficient exceeds the thickness:
+    the volume below the liner is not removed.
     """
     bins = liner.bins
     position = psi * (bins / (2 * math.pi))

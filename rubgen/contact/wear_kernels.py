@@ -16,11 +16,11 @@ def wear_where_lined(count: int, liner: Liner, dt: float, work: ContactWork, wea
 
 @allocation_free_kernel
 def wear_liner(count: int, liner: Liner, dt: float, work: ContactWork, wear: Wear) -> None:
-    """Book the work on the receding surface, then wear it: volume = rate lam |v_rel| dt at each contact's foot.
+    """Add the work on the receding surface, then wear it: volume = rate lam |v_rel| dt at each contact's foot.
 
-    Archard, J. Appl. Phys. 24 (1953): V = K F s / H, `liner.rate` being K / H. The gaps of this step were found with
-    the depth that still stands, those of two steps before with the older of the earlier ones, so the surface has
-    receded between them, per step, by half their difference.
+    Archard, J. Appl. Phys. 24 (1953): V = K F s / H; `liner.rate` is K / H. The gaps of this step used the present
+    depth. The gaps of two steps before used `wear.earlier[0]`. Per step the surface has therefore receded by half the
+    difference of the two depths.
     """
     for m in range(count):
         if work.lam[m] > 0.0:

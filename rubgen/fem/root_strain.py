@@ -12,8 +12,8 @@ def root_strain_row(blades: BladeRow, root_radius: float, beam: BeamMatrices) ->
     """Spanwise strain (12,) per displacement of a blade's first two nodes, at the root's mid-chord fibre.
 
     The fibre lies on the face to which the thickness normal n = (-sin a, cos a) in (y, z) points, half the thickness h
-    from the centre line: eps + (h / 2) (n_z th_y' - n_y th_z'). The generalised strains are D^-1 F. The internal forces F
-    at the root are minus the nodal forces of the first element, which is exact for loads at the nodes. A blade with
+    from the centre line: eps + (h / 2) (n_z th_y' - n_y th_z'). The generalised strains are D^-1 F. The internal forces
+    F at the root are minus the nodal forces of the first element, which is exact for loads at the nodes. A blade with
     another stiffness has the same row. Test: tests/reduction/test_root_strain.py.
     """
     sections = cross_sections(blades, root_radius, np.zeros(1))

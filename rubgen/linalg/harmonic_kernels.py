@@ -1,4 +1,4 @@
-"""The way between z and the physical coordinates: blade tips as harmonics over the blades, the others as they are."""
+"""From z to physical coordinates and back: blade tips are harmonics over the blades, the others are unchanged."""
 
 from __future__ import annotations
 
@@ -13,25 +13,27 @@ from rubgen.linalg.vector_kernels import LANES
 class Harmonics(NamedTuple):
     """Where the coordinates stand in z, and the harmonics over the blades.
 
-    `basis` (blades, width) holds the harmonics, orthonormal, one row for each blade, padded to a multiple of eight.
-    Of an even number of blades, the first half of the harmonics keep their sign by half a turn and the others change
-    it; so the sums of both halves over half of the blades tell all. `columns` (any, 8) and `lines` (any, 5) are those
-    sums. `places` (3, width) are the numbers of z of the harmonics
-    of the radial, tangential and axial tip coordinate, `rest` (n - 3 blades,) those of the other coordinates.
+    With an even number of blades, half of the harmonics keep their sign after half a turn, and the others change it.
+    The sums of both halves over half of the blades therefore determine all tips.
     """
 
     basis: FloatArray
+    """The harmonics (blades, width), orthonormal, one row a blade, padded to a multiple of eight."""
     columns: FloatArray
+    """Entries of the sums over the harmonics (any, 8)."""
     lines: IntArray
+    """Lines of these sums (any, 5)."""
     places: IntArray
+    """Indices in z of the harmonics of the radial, tangential and axial tip coordinate (3, width)."""
     rest: IntArray
+    """Indices in z of the other coordinates (n - 3 blades,)."""
 
 
 @inlined_kernel
 def recover_tips(harmonics: Harmonics, z: FloatArray, share_work: FloatArray, tips_out: FloatArray) -> None:
-    """The first `tips_out.shape[0]`, two or three, of radial, tangential, axial coordinate of all tips.
+    """Write the radial, tangential and, with three rows, axial coordinate of all tips into `tips_out` (2 or 3, width).
 
-    `share_work` (3, any) is scratch: the sums over the harmonics of each coordinate.
+    `share_work` (3, any) is scratch for the sums over the harmonics.
     """
     blades, many, sums = harmonics.basis.shape[0], tips_out.shape[0], share_work
     half = blades // 2 if blades % 2 == 0 else blades
@@ -51,7 +53,7 @@ def recover_tips(harmonics: Harmonics, z: FloatArray, share_work: FloatArray, ti
 
 @inlined_kernel
 def recover_rest(harmonics: Harmonics, z: FloatArray, q_out: FloatArray) -> None:
-    """The coordinates behind the tips."""
+    """Write the coordinates after the tips into `q_out` (n,)."""
     start = 3 * harmonics.basis.shape[0]
     for i in range(harmonics.rest.shape[0]):
         q_out[start + i] = z[harmonics.rest[i]]
@@ -61,7 +63,7 @@ def recover_rest(harmonics: Harmonics, z: FloatArray, q_out: FloatArray) -> None
 def recover_all(
     harmonics: Harmonics, z: FloatArray, share_work: FloatArray, tips_work: FloatArray, q: FloatArray
 ) -> None:
-    """All of q (n,) from z; `tips_work` (3, width) is scratch."""
+    """Write all of q (n,) from z; `share_work` (3, any) and `tips_work` (3, width) are scratch."""
     recover_tips(harmonics, z, share_work, tips_work)
     for k in range(harmonics.basis.shape[0]):
         for a in range(3):

@@ -55,7 +55,7 @@ def add_lines(lines: IntArray, a: FloatArray, x: FloatArray, out: FloatArray) ->
 def set_two_lines(
     lines: IntArray, a: FloatArray, b: FloatArray, x: FloatArray, y: FloatArray, base: FloatArray, out: FloatArray
 ) -> None:
-    """Each row of `out` is that of `base` and the sums of a, x and of b, y; the lines give every row once."""
+    """Set each row of `out` to the same row of `base` plus the sums of a, x and of b, y; lines have each row once."""
     for line in lines:
         row = _results(line)
         out.reshape(-1, LANES)[row] = base.reshape(-1, LANES)[row] + (line_sum(line, a, x) + line_sum(line, b, y))

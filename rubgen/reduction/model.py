@@ -34,7 +34,7 @@ class Recovery:
     torsion_damping: float
     """Torsional damping of the drive, N m s/rad."""
     casing_radius: float
-    """Radius of the casing's centre line, m."""
+    """Mean radius of the casing's inner surface, m."""
     casing_thickness: float
     """Radial thickness of the casing, m."""
     chord_slope: float

@@ -1,4 +1,4 @@
-"""A companion of the run: it starts beside it, takes the same steps, and is brought back near it again and again.
+"""A companion of the run starts near the run, takes the same steps, and is brought back near the run repeatedly.
 
 The largest Lyapunov exponent is the mean growth of the distance (Benettin, Galgani, Giorgilli, Strelcyn 1980).
 """
@@ -19,7 +19,7 @@ from rubgen.solver.scheme.step_kernels import OK, advance, shift_gaps
 
 @allocation_free_kernel
 def bring_back(main: FloatArray, scale: float, companion: FloatArray) -> None:
-    """Companion = main + scale (companion - main); an entry that is not finite in either becomes that of `main`."""
+    """Set companion = main + scale (companion - main). Where that is not finite, set companion = main."""
     for i in range(companion.shape[0]):
         away = companion[i] - main[i]
         companion[i] = main[i] + scale * away if math.isfinite(away) else main[i]
@@ -27,7 +27,10 @@ def bring_back(main: FloatArray, scale: float, companion: FloatArray) -> None:
 
 @allocation_free_kernel
 def distance(laws: Laws, mass: Product, main: FloatArray, companion: tuple[Motion, Motion], scratch: Scratch) -> float:
-    """Sqrt(d_v^T M d_v + Omega^2 d_q^T M d_q) between `main` (2, any), z at two steps, and the companion there."""
+    """Sqrt(d_v^T M d_v + Omega^2 d_q^T M d_q), d the difference between the run and its companion.
+
+    `main` (2, any) is z of the run at two steps, `companion` its motions at these steps. `mass` is M in blocks.
+    """
     speed, dt = laws.speed, laws.dt
     for i in range(scratch.z_change.shape[0]):
         scratch.z_force[i] = companion[1].z[i] - main[1, i]
@@ -40,7 +43,7 @@ def distance(laws: Laws, mass: Product, main: FloatArray, companion: tuple[Motio
 def renormalise(
     model: Model, snapshots: Snapshots, number: int, closeness: float, companion: tuple[Motion, Motion], state: State
 ) -> float:
-    """Bring the companion back to a distance of `closeness` in the direction where it is; ln of its growth."""
+    """Scale the companion's distance to `closeness`. Return ln of the distance's growth; NaN where it is 0 or NaN."""
     size = distance(model.laws, model.energy.M, snapshots.z[number], companion, state.scratch)
     if not size > 0.0:
         return math.nan
@@ -55,10 +58,13 @@ def renormalise(
 def run_companion(
     model: Model, opening: FloatArray, snapshots: Snapshots, closeness: float, state: State, growth_out: FloatArray
 ) -> int:
-    """The companion's turn after the run has made its own; a code of `step_kernels`.
+    """Run the companion's turn after the run's turn. Return a code of `step_kernels`.
 
-    Ln of the growth between `snapshots`, those of the run, goes into `growth_out` (snapshots,). `state` is the
-    companion's own.
+    - opening (steps + 2,): added to the radius of the surface, m.
+    - snapshots: of the run's turn.
+    - closeness: distance after each renormalisation.
+    - state: the companion's; changed.
+    - growth_out (snapshots,): ln of the distance's growth between snapshots.
     """
     before, now, after = state.motions
     step = 0

@@ -10,16 +10,19 @@ from rubgen.linalg.lanes_kernels import set_two_lines
 
 
 class Scheme(NamedTuple):
-    """The free step q* = now q_n + before q_n-1 + constant, and A^-1, whose entries share the lines of both."""
+    """The step without contact, q* = now q_n + before q_n-1 + constant, and A^-1, all in blocks."""
 
     lines: IntArray
+    """Lines of `now`, `before` and `inverse`."""
     now: FloatArray
     before: FloatArray
     constant: FloatArray
+    """A^-1 times the unbalance force, in z."""
     inverse: FloatArray
+    """A^-1."""
 
 
 @inlined_kernel
 def free_step(scheme: Scheme, before: FloatArray, now: FloatArray, after: FloatArray) -> None:
-    """q* in z."""
+    """Write q* in z into `after`; `before` and `now` are z at steps n - 1 and n."""
     set_two_lines(scheme.lines, scheme.now, scheme.before, now, before, scheme.constant, after)

@@ -1,4 +1,4 @@
-"""What a step takes and does not change: laws, tables over the angle, the model."""
+"""The constants of a step: laws, tables over the angle, the model."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Laws(NamedTuple):
     tip_limit: float
     """A blade tip displaced by more than this in one direction has diverged, m."""
     tip_shift: float
-    """Until then no tip is farther than this from its place at rest along either axis, tip radii."""
+    """Largest distance of a tip from its place at rest along either axis before it diverges, tip radii."""
     lasting: bool
     """Whether gaps are needed again in later steps where no blade touches: with restitution, and with a liner."""
     screen: bool
@@ -38,18 +38,20 @@ class Laws(NamedTuple):
 
 
 class Angles(NamedTuple):
-    """Tables over the steps of a turn or of a part of one: rows for steps 0, ..., steps, and at the end for step -1.
-
-    `theta` and its `cosine`, `sine`; `cos_orders`, `sin_orders` (steps + 2, n_harmonics) of order_j (theta - phase_j).
-    `section` is the time from step 0 to the section, where theta = 0 mod 2 pi, in steps: within half a step of 0.
-    """
+    """Tables over the steps of a turn or part of a turn: rows for steps 0, ..., steps, and last for step -1."""
 
     theta: FloatArray
+    """Angle of the blisk (steps + 2,), rad."""
     cosine: FloatArray
+    """Cosine of theta (steps + 2,)."""
     sine: FloatArray
+    """Sine of theta (steps + 2,)."""
     cos_orders: FloatArray
+    """Cosine of order_j (theta - phase_j) (steps + 2, n_harmonics), order and phase as in `Surface`."""
     sin_orders: FloatArray
+    """Sine of the same angles (steps + 2, n_harmonics)."""
     section: float
+    """Time from step 0 to theta = 0 mod 2 pi, in steps, between -1/2 and 1/2."""
 
 
 class EnergyTerms(NamedTuple):
@@ -73,14 +75,22 @@ class Model(NamedTuple):
     """All that does not change from step to step; its arrays cannot be written."""
 
     surface: Surface
+    """The casing's inner surface."""
     tips: Tips
+    """The blade tips."""
     laws: Laws
+    """Time step and contact law."""
     angles: Angles
+    """Tables over the angle."""
     scheme: Scheme
+    """Matrices of the step without contact."""
     harmonics: Harmonics
+    """From z to tip coordinates."""
     tip_compliance: FloatArray
     """The columns of A^-1 between tip coordinates (3 blades, 3 blades), m/N."""
     casing_compliance: FloatArray
     """The columns of A^-1 of the casing modes (n_casing, n_casing)."""
     support: Support
+    """Uneven supports, squeeze film and gravity."""
     energy: EnergyTerms
+    """Matrices of the energy terms."""

@@ -1,4 +1,4 @@
-"""The coordinates of one step, in blocks and as far as contact needs them in physical ones."""
+"""The coordinates at one step: all in blocks, and the physical coordinates that contact needs."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from rubgen.linalg.harmonic_kernels import Harmonics, recover_rest, recover_tips
 
 
 class Motion(NamedTuple):
-    """One state: z; radial and tangential tip coordinates (2, width), one column for each blade; q (n,).
-
-    Of q, the coordinates behind the tips always hold, those of a tip only where a contact has asked for them.
-    """
+    """The coordinates at one step."""
 
     z: FloatArray
+    """All coordinates in blocks."""
     tips: FloatArray
+    """Radial and tangential coordinates of the tips (2, width), one column a blade."""
     q: FloatArray
+    """Physical coordinates (n,). A tip's are valid only after `recover_blade`; all others always are."""
 
 
 @inlined_kernel
 def recover(harmonics: Harmonics, motion: Motion, share_work: FloatArray) -> None:
-    """Tips and the other coordinates of a motion from its z."""
+    """Write `tips` and the coordinates after the tips in `q` of a motion, from its z."""
     recover_tips(harmonics, motion.z, share_work, motion.tips)
     recover_rest(harmonics, motion.z, motion.q)
 
 
 @inlined_kernel
 def recover_blade(harmonics: Harmonics, motion: Motion, blade: int) -> None:
-    """The three coordinates of one tip in q."""
+    """Write the three coordinates of one tip into q."""
     axial = 0.0
     for j in range(harmonics.basis.shape[0]):
         axial += harmonics.basis[blade, j] * motion.z[harmonics.places[2, j]]
@@ -40,7 +40,7 @@ def recover_blade(harmonics: Harmonics, motion: Motion, blade: int) -> None:
 
 @inlined_kernel
 def copy_motion(source: Motion, target: Motion) -> None:
-    """Copy what always holds of a motion: z, tips, and q."""
+    """Copy a motion."""
     for i in range(source.z.shape[0]):
         target.z[i] = source.z[i]
     for a in range(2):

@@ -12,15 +12,16 @@ from rubgen.solver.supports.support_kernels import SupportState
 
 
 class Coordinates(NamedTuple):
-    """q at steps n - 1, n, n + 1, and d or the velocity, each (n,).
-
-    Within a turn, of the tips only those of the blades in contact hold.
-    """
+    """Physical coordinates of three steps, each (n,). Within a turn only tips of blades in contact are valid."""
 
     before: FloatArray
+    """q at step n - 1."""
     now: FloatArray
+    """q at step n."""
     after: FloatArray
+    """q at step n + 1."""
     change: FloatArray
+    """d = (q_n+1 - q_n-1) / 2, or the velocity d / dt."""
 
 
 class Scratch(NamedTuple):
@@ -52,5 +53,5 @@ class State(NamedTuple):
     wear: Wear
     """The liner's worn depth."""
     works: FloatArray
-    """Works so far (9,), J, at the places of `energy_kernels`."""
+    """Works so far (8,), J, at the places of `energy_kernels`."""
     scratch: Scratch

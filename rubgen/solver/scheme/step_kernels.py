@@ -4,8 +4,8 @@
     q*    = A^-1 [f - K q_n + 2 M / dt^2 q_n - (M / dt^2 - C / (2 dt)) q_n-1]
     q_n+1 = q* + A^-1 B lam,   0 <= lam  _|_  g(q*) + e g_n-1 + W lam >= 0
 
-(Carpenter, Taylor, Katona 1991; restitution e of Paoli and Schatzman.) The matrices are held in blocks
-(`block_kernels`); contact is solved in physical coordinates.
+(Carpenter, Taylor, Katona 1991; restitution e of Paoli and Schatzman.) The matrices are in blocks (`block_kernels`).
+Contact is solved in physical coordinates.
 """
 
 from __future__ import annotations
@@ -59,7 +59,12 @@ def previous_gap(
     sine: float,
     work: ContactWork,
 ) -> float:
-    """The gap of a blade at step n - 1: the scheme's own value where it was near, else from the geometry."""
+    """The gap of a blade at step n - 1, m: the scheme's where it was near, else from the geometry.
+
+    - worn (bins,): coefficients of the worn depth, m.
+    - opening: added to the radius of the surface at step n - 1, m.
+    - cosine, sine: of the blisk's angle at step n - 1.
+    """
     gap: float = work.step_gaps[0, blade]
     if math.isnan(gap):
         start = coordinates.now.shape[0] - work.rows.shape[1]
@@ -70,7 +75,7 @@ def previous_gap(
 
 @inlined_kernel
 def starting_margin(laws: Laws, step_gaps: FloatArray) -> float:
-    """The least margin, widened by restitution times the deepest gap at step n - 1."""
+    """The smallest margin, m: larger by restitution times the deepest penetration at step n - 1."""
     deepest = 0.0
     if laws.restitution > 0.0:
         for k in range(step_gaps.shape[1]):
@@ -81,7 +86,7 @@ def starting_margin(laws: Laws, step_gaps: FloatArray) -> float:
 
 @inlined_kernel
 def recover_contacts(count: int, model: Model, motion: Motion, work: ContactWork) -> None:
-    """The q of the contacts' blades."""
+    """Write the tip coordinates of the contacts' blades into q of a motion."""
     for m in range(count):
         recover_blade(model.harmonics, motion, work.blade[m])
 
@@ -90,7 +95,7 @@ def recover_contacts(count: int, model: Model, motion: Motion, work: ContactWork
 def change_contacts(
     count: int, before: Motion, after: Motion, scale: float, work: ContactWork, change_out: FloatArray
 ) -> None:
-    """(q_after - q_before) scale on the contacts' blades and on the casing."""
+    """Write scale (q_after - q_before) on the contacts' blades and on the casing into `change_out` (n,)."""
     for m in range(count):
         k = work.blade[m]
         for i in range(3 * k, 3 * k + 3):
@@ -103,7 +108,10 @@ def change_contacts(
 def solve_contacts(
     count: int, model: Model, step: int, opening: FloatArray, coordinates: Coordinates, state: State
 ) -> int:
-    """The multipliers of the near blades at q* (in `coordinates.after`), solved together; SOLVED or UNSOLVED."""
+    """Solve for the normal forces of all `count` near blades at q* (`coordinates.after`). Return SOLVED or UNSOLVED.
+
+    The forces go into `state.contact.lam`. `opening` (steps + 2,) is added to the radius of the surface, m.
+    """
     surface, tips, laws, angles = model.surface, model.tips, model.laws, model.angles
     work, back = state.contact, step - 1 if step > 0 else angles.cosine.shape[0] - 1
     for m in range(count):
@@ -127,7 +135,7 @@ def solve_contacts(
 
 @inlined_kernel
 def apply_contacts(count: int, model: Model, after: Motion, state: State) -> None:
-    """Q += A^-1 B lam."""
+    """Add A^-1 B lam to the motion `after`."""
     work, force, harmonics = state.contact, state.scratch.z_force, model.harmonics
     start = harmonics.rest.shape[0] - work.rows.shape[1]
     force[:] = 0.0
@@ -250,7 +258,7 @@ def contact_step(
 
 @allocation_free_kernel
 def has_diverged(surface: Surface, laws: Laws, q: FloatArray, casing_start: int, n_blades: int) -> bool:
-    """Whether a casing node or a blade tip has moved beyond its limit, or is not a number."""
+    """Whether a casing node or a blade tip has moved beyond its limit or is NaN. `q` is (n,)."""
     for k in range(3 * n_blades):
         if not abs(q[k]) <= laws.tip_limit:
             return True
@@ -281,7 +289,13 @@ def advance(
     after: Motion,
     state: State,
 ) -> tuple[int, int]:
-    """One step: q_n+1 into `after`; OK or why it failed, and the number of contacts that were solved."""
+    """Make one step: q_n+1 into `after`. Return OK or the code of a failure, and the number of contacts solved.
+
+    - step: number of the step n in `model.angles`.
+    - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., m.
+    - before, now: motion at steps n - 1 and n.
+    - state: gaps, contacts, supports and scratch; changed.
+    """
     free_step(model.scheme, before.z, now.z, after.z)
     if model.support.active and not push_supports(
         model.support, model.laws.speed, model.laws.dt,

@@ -1,6 +1,6 @@
 """The true signals of a step: taps at step n, and the passages of blades under timing probes.
 
-Every tap but the clearances is a linear functional, eight of them to a row of `Taps.sums`.
+Every tap except the clearances is a linear functional. A row of `Taps.sums` holds eight of them.
 """
 
 from __future__ import annotations
@@ -24,20 +24,22 @@ X, Y, FORCE_X, FORCE_Y, CONTACT_FORCE, CONTACT_TORQUE, SPEED_X, SPEED_Y = range(
 
 
 class Rays(NamedTuple):
-    """Clearances on rays: `output` (rays,) their rows, `sum` (rays,) the first of three places in `Taps.sums`.
-
-    There stand the radial and tangential displacement and the derivative of the radial one. `angle` (rays,) is theirs,
-    `radius`, `slope` (rays,) those of the undeformed surface; `blade` (steps, rays, 2) the blades before and after the
-    ray and `share` (steps, rays) the way between them.
-    """
+    """Rays from the axis on which clearances are measured."""
 
     output: IntArray
+    """Row of each ray's clearance in the taps (rays,)."""
     sum: IntArray
+    """First of three places in `Taps.sums` (rays,): radial and tangential displacement, slope of the radial one."""
     angle: FloatArray
+    """Polar angle of each ray (rays,), rad."""
     radius: FloatArray
+    """Radius of the undeformed surface there (rays,), m."""
     slope: FloatArray
+    """Its derivative by the angle (rays,), m."""
     blade: IntArray
+    """The blades before and after each ray at each step (steps, rays, 2)."""
     share: FloatArray
+    """The ray's share of the angle between the two blades (steps, rays), 0 to 1."""
 
 
 class Timing(NamedTuple):
@@ -58,28 +60,35 @@ class Timing(NamedTuple):
 
 
 class Taps(NamedTuple):
-    """What the taps need.
-
-    `shaft` acts on `signals` (8,): displacement of O_d and force on its support along X and Y, force and torque of
-    contact, velocity of O_d; `acceleration` and `displacement` on the casing's modes, `position` and `change` on z and
-    d in z of the blisk. `linear` (any, 2) are the output row and the place in `sums` of each linear tap. `centre` is
-    the index of O_d x. `signals`, `sums`, `bend` (n_casing,) are scratch.
-    """
+    """Constants and scratch of the taps."""
 
     shaft: Product
+    """Acts on `signals`."""
     acceleration: Product
+    """Acts on the accelerations of the casing modes."""
     displacement: Product
+    """Acts on the coordinates of the casing modes."""
     position: Product
+    """Acts on z of the blisk."""
     change: Product
+    """Acts on d in z of the blisk."""
     linear: IntArray
+    """Output row and place in `sums` of each linear tap (any, 2)."""
     rays: Rays
     timing: Timing
     centre: int
+    """Index of O_d x in q."""
     lateral_stiffness: float
+    """Of the disk support, N/m."""
     lateral_damping: float
+    """Of the disk support, N s/m."""
     signals: FloatArray
+    """Scratch (8,): displacement of O_d and force on its support along X and Y, force and torque of contact, velocity
+    of O_d, inertial."""
     sums: FloatArray
+    """Scratch: the sums of all linear functionals."""
     bend: FloatArray
+    """Scratch: accelerations of the casing modes (n_casing,)."""
 
 
 @inlined_kernel
@@ -156,9 +165,10 @@ def record_taps(
     torque: float,
     out: FloatArray,
 ) -> None:
-    """All taps at step n, where q is `coordinates.now`, velocity and acceleration are central differences.
+    """Write all taps at step n into column `step` of `out` (taps, steps). q is `coordinates.now`.
 
-    `force` and `torque` are those of the contact at that time.
+    Velocity and acceleration are central differences. `opening` (m) is added to the radius of the surface. `force` (N)
+    and `torque` (N m) are the contact's at that time.
     """
     read_shaft(model, taps, coordinates, state.support, step)
     taps.signals[CONTACT_FORCE], taps.signals[CONTACT_TORQUE] = force, torque
@@ -224,10 +234,15 @@ def record_arrivals(
     clock: int,
     count: int,
 ) -> int:
-    """Blades that pass a probe between steps n and n + 1, the motions at n - 1, n, n + 1; the number in `arrivals`.
+    """Write blades that pass a probe between steps n and n + 1 into `arrivals`. Return the number of arrivals so far.
 
-    Between the steps the displacement is the parabola through all three, d_n + s (d_n+1 - d_n) - s (1 - s) c / 2 with
-    the second difference c.
+    Between the steps the displacement is a parabola: d_n + s (d_n+1 - d_n) - s (1 - s) c / 2, with c the second
+    difference.
+
+    - motions: at steps n - 1, n, n + 1; tips in their q are recovered.
+    - theta (steps + 2,): angle of the blisk, rad.
+    - clock: number of the turn's first step.
+    - count: number of arrivals so far.
     """
     before, now, after = motions
     for probe in range(timing.angle.shape[0]):

@@ -23,26 +23,29 @@ BLADE, START, STEPS, COSINE, SINE, IMPULSE, FRICTION_LOSS, NORMAL_LOSS = range(8
 
 
 class Touches(NamedTuple):
-    """Touches under way: `open` (n_blades, 8), `last` (n_blades,) last step with force; `ended` (many, 8)."""
+    """Touches of the blades. Columns of a touch: BLADE, START, STEPS, COSINE, SINE, IMPULSE and the two losses."""
 
     open: FloatArray
+    """The present touch of each blade (n_blades, 8); STEPS is 0 without one."""
     last: IntArray
+    """Last step with a force on each blade (n_blades,)."""
     ended: FloatArray
+    """Touches that ended in the turn (many, 8)."""
 
 
 class TurnResult(NamedTuple):
-    """Outputs of a turn or a part: `taps` (taps, steps), `section` (2, n), `summary` (4,), `orbit` (5,), `frames`.
-
-    `section`: q and v at the section beside the start. `summary`: impulse in N s, steps with contact, largest bound of
-    the casing's displacement in m, number of arrivals. `orbit` are sums over steps, see `add_orbit`. `frames` (any,
-    any) hold z at equal steps from the first on; at most one a step.
-    """
+    """Outputs of a turn or part of a turn."""
 
     taps: FloatArray
+    """True signals (taps, steps)."""
     section: FloatArray
+    """q and v at the Poincare section beside the start (2, n)."""
     summary: FloatArray
+    """Impulse in N s, steps with contact, largest bound of the casing's displacement in m, number of arrivals (4,)."""
     orbit: FloatArray
+    """Sums over the steps (5,), see `add_orbit`."""
     frames: FloatArray
+    """z at equal steps from the first step on (any, any); at most one frame a step."""
 
 
 @allocation_free_kernel
@@ -77,7 +80,7 @@ def add_touch(
 
 @allocation_free_kernel
 def close_touches(touches: Touches, now: int, ended: int) -> int:
-    """End all touches without force at step `now`; their number in `touches.ended`."""
+    """End all touches without force at step `now`. Return the number of ended touches."""
     for k in range(touches.last.shape[0]):
         if touches.open[k, STEPS] > 0.0 and touches.last[k] < now:
             ended = close_touch(touches, k, ended)
@@ -95,10 +98,10 @@ def record_section(
     scratch: Scratch,
     section_out: FloatArray,
 ) -> None:
-    """The q and v (2, n) at the section, by the parabola through steps -1, 0 and 1.
+    """Write q and v at the Poincare section into `section_out` (2, n), from the parabola through steps -1, 0 and 1.
 
-    With tau = `Angles.section` in steps: q_0 + tau d + tau^2 / 2 (q_1 - 2 q_0 + q_-1), and v its derivative. The error
-    is of third order in dt for q, of second order for v as that of the central difference; tau is 0 at a steady speed.
+    q = q_0 + tau d + tau^2 / 2 (q_1 - 2 q_0 + q_-1), and v is its derivative. tau is `Angles.section` in steps, 0 at a
+    steady speed. The error is of third order in dt for q, of second order for v, like the central difference.
     """
     if tau == 0.0:
         recover_all(harmonics, now.z, scratch.share, scratch.tips, section_out[0])
@@ -127,7 +130,7 @@ def add_orbit(signals: FloatArray, out: FloatArray) -> None:
 
 @inlined_kernel
 def record_frame(frames: FloatArray, frame: int, step: int, steps: int, z: FloatArray) -> int:
-    """Copy z where the next frame is due; the number of frames so far."""
+    """Copy z into `frames` where the next frame is due. Return the number of frames so far."""
     if step * frames.shape[0] < frame * steps:
         return frame
     for i in range(z.shape[0]):
@@ -148,7 +151,7 @@ def add_contacts(
     summary: FloatArray,
     ended: int,
 ) -> tuple[float, float, int]:
-    """Add the works of one step's contacts, and the contacts to their touches; force, torque, and the ended touches."""
+    """Add the contacts of one step to works, touches and `summary`. Return force, N, torque, N m, and ended touches."""
     work, force, torque, dt = state.contact, 0.0, 0.0, model.laws.dt
     for m in range(count):
         lam, k = work.lam[m], work.blade[m]
@@ -174,12 +177,17 @@ def run_turn(
     snapshots: Snapshots,
     result: TurnResult,
 ) -> tuple[int, int, int]:
-    """Integrate one turn, or a part of it; a code, the step where it ended, and the number of ended touches.
+    """Integrate one turn or part of a turn. Return a code, the step where it ended, and the number of ended touches.
 
-    Its steps are those of `model.angles`. `opening` (steps + 2,) widens the surface at steps -1, 0, ..., steps. `clock`
-    is the number of the first step. `state.motions` are those at step -1, at step 0 and one to write; they change
-    places with every step. Taps of step n carry the force lam_n that acts at that time; without `recording` there are
-    none, no orbit and no arrivals, and all else is the same. The last of `snapshots` is the end or later.
+    Taps of step n contain the contact force lam_n of that time.
+
+    - model: constants; its `angles` have the steps.
+    - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., steps, m.
+    - clock: number of the first step in the run.
+    - recording: False leaves out taps, orbit and arrivals. The motion is the same.
+    - state: changed. Its motions are at step -1, at step 0, and scratch; they change places with every step.
+    - touches, result: written.
+    - snapshots: written at their steps; the last step is the end of the turn or later.
     """
     laws, steps = model.laws, model.angles.cosine.shape[0] - 2
     work, scratch = state.contact, state.scratch
@@ -204,7 +212,7 @@ def run_turn(
             )
         force, torque = 0.0, 0.0
         if count > 0:
-            recover_contacts(count, model, after, work)  # they moved; those before stand since the contact step
+            recover_contacts(count, model, after, work)  # `after` has moved; `before` was recovered in the contact step
             change_contacts(count, before, after, 0.5, work, scratch.change)
             force, torque, ended = add_contacts(
                 count, model, s, clock, opening, coordinates, state, touches, result.summary, ended

@@ -1,4 +1,4 @@
-"""Forces that no constant matrix holds: uneven supports, a squeeze film damper, gravity.
+"""Forces that no constant matrix contains: uneven supports, a squeeze film damper, gravity.
 
 On O_d, in the turning frame and at the time of step n,
 
@@ -6,8 +6,8 @@ On O_d, in the turning frame and at the time of step n,
     v_abs = (u_n+1 - u_n-1) / (2 dt) + Omega e_z x u_n
 
 (`reduction.model.TurningForces`). It is linear in the velocity and implicit in it, like the scheme's own dampers:
-u_n+1 = u* + Y f with Y = E^T A^-1 E makes it two equations, and contact sees A + E D E^T / (2 dt) for A. So the works
-of D are never positive where D is not negative, whatever the contact does in the same step.
+u_n+1 = u* + Y f with Y = E^T A^-1 E leaves two equations. In the contact problem A + E D E^T / (2 dt) replaces A. The
+works of D are therefore never positive where D is positive semidefinite, whatever the contact does in the same step.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ SUPPORT_WORKS = 4
 
 
 class Support(NamedTuple):
-    """What does not change of the forces: their constants, and what A^-1 makes of them."""
+    """Constants of the forces, and their products with A^-1."""
 
     active: bool
     """False where a system has none of these forces; then nothing else is read."""
@@ -56,7 +56,7 @@ class Support(NamedTuple):
 
 
 class SupportState(NamedTuple):
-    """What the forces are in a step, and their works so far."""
+    """The forces of a step, and their works so far."""
 
     drag: FloatArray
     """D (2, 2), N s/m."""
@@ -115,7 +115,10 @@ def push_supports(
     after: FloatArray,
     state: SupportState,
 ) -> bool:
-    """Add what f and gravity at step n do to q* without contact, all in z; False where O_d is beyond the film."""
+    """Add the effect of f and gravity at step n to q* in `after`. Return False where O_d is beyond the film.
+
+    `before`, `now` and `after` are z at steps n - 1, n and n + 1. `cosine` and `sine` are of theta at step n.
+    """
     i, j = support.centre[0], support.centre[1]
     x, y = now[i], now[j]
     if support.film > 0.0 and not x * x + y * y < support.clearance * support.clearance:
@@ -124,7 +127,7 @@ def push_supports(
     force, weight = state.force, support.columns
     for a in range(support.places.shape[0]):
         after[support.places[a]] += sine * weight[a, 2] + cosine * weight[a, 3]
-    # f = (1 + D Y / 2 dt)^-1 [-k_a Q u_n - D (v* + Omega e_z x u_n)]: the bracket's spring counts as if D gave it.
+    # f = (1 + D Y / 2 dt)^-1 [-k_a Q u_n - D (v* + Omega e_z x u_n)]: the spring is added to the bracket.
     spring_x, spring_y = turned(cosine, sine, -support.stiffness * x, -support.stiffness * y)
     way_x = after[i] - before[i] - 2 * dt * speed * y
     way_y = after[j] - before[j] + 2 * dt * speed * x
@@ -141,7 +144,7 @@ def push_supports(
 
 @inlined_kernel
 def yield_to_contacts(count: int, support: Support, state: SupportState, work: ContactWork) -> None:
-    """W becomes that of A + E D E^T / 2 dt: less by (B_n^T A^-1 E) (1 + D Y / 2 dt)^-1 D / 2 dt (E^T A^-1 B)."""
+    """Change W as if A were A + E D E^T / 2 dt: subtract (B_n^T A^-1 E) (1 + D Y / 2 dt)^-1 D / 2 dt (E^T A^-1 B)."""
     S = state.yielding
     for column in range(count):
         other, x, y = 3 * work.blade[column], 0.0, 0.0
@@ -159,7 +162,7 @@ def yield_to_contacts(count: int, support: Support, state: SupportState, work: C
 
 @inlined_kernel
 def resist_contacts(support: Support, state: SupportState, force: FloatArray) -> None:
-    """Add to a contact `force` in z the change of f that its jump of velocity brings."""
+    """Add to a contact `force` in z the change of f by the contact's jump of velocity."""
     x = dot_rows(support.rows[0], force, force.shape[0] // LANES)
     y = dot_rows(support.rows[1], force, force.shape[0] // LANES)
     S = state.yielding
@@ -180,9 +183,10 @@ def add_support_works(
     change: FloatArray,
     state: SupportState,
 ) -> float:
-    """Add the works of one step to `state.works`; `change` is d, in z as `now`. Returns the sum of their sizes.
+    """Add the works of one step to `state.works`. Return the sum of their absolute values, J.
 
-    Uneven springs and dampers, the film, and gravity, each force on d; apart the film's loss, on dt v_abs, <= 0.
+    Works of uneven springs and dampers, of the film, and of gravity are each force times d. The film's loss is force
+    times dt v_abs, <= 0. `now` and `change` (d) are in z.
     """
     x, y = now[support.centre[0]], now[support.centre[1]]
     dx, dy = change[support.centre[0]], change[support.centre[1]]
