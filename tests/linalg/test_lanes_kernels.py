@@ -27,11 +27,11 @@ def _gather(lines, a, z, places, out):
 
 
 both, gather = kernel(_both), kernel(_gather)
-KINDS = [(rows, scaled) for rows in range(1, MOST_ROWS + 1) for scaled in (False, True)]
+LINE_KINDS = [(rows, scaled) for rows in range(1, MOST_ROWS + 1) for scaled in (False, True)]
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 3, 4, 5, 11])
-@pytest.mark.parametrize(("rows", "scaled"), KINDS)
+@pytest.mark.parametrize(("rows", "scaled"), LINE_KINDS)
 def test_compiled_sums_are_those_of_plain_python(rows, scaled, count):
     """Counts below, at and beyond the partial sums; lines that read rows or numbers, mid-array, of one row and more."""
     rng = np.random.default_rng(count)

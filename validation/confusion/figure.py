@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SMALLEST = 1e-8
-KINDS = {"periodic": BLUE, "quasi-periodic": GREEN, "chaotic": VERMILION, "disagree": ORANGE}
+COLORS = {"periodic": BLUE, "quasi-periodic": GREEN, "chaotic": VERMILION, "disagree": ORANGE}
 
 
 def confusion_figure(cases: Sequence[Case]) -> Figure:
@@ -53,14 +53,14 @@ def _draw_plane(axes: Axes, cases: Sequence[Case]) -> None:
 
 def _draw_speeds(axes: Axes, cases: Sequence[Case]) -> None:
     names = list(SERIES)
-    for kind, color in KINDS.items():
+    for kind, color in COLORS.items():
         places = [_place(case, names) for case in cases if AGREE.get(case.verdict, "disagree") == kind]
         x, y = ([place[i] for place in places] for i in range(2))
         axes.plot(x, y, "s", color=color, markersize=5, label=kind)
     axes.set_yticks(range(len(names)), names)
     axes.set_ylim(len(names) - 0.4, -1.4)
     axes.set_xlabel("speed, rev/min")
-    axes.legend(frameon=False, ncols=len(KINDS), loc="upper right", fontsize=9)
+    axes.legend(frameon=False, ncols=len(COLORS), loc="upper right", fontsize=9)
     axes.spines[["top", "right"]].set_visible(False)
 
 

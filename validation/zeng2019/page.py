@@ -20,7 +20,7 @@ STYLE = (
     ".differs{color:#d55e00}.agrees{color:#009e73}.unknowable{color:#8c8c8c}"
 )
 HEADER = ("statement", "verdict", "found")
-KINDS = ("agrees", "agrees within", "differs", "unknowable")
+VERDICTS = ("agrees", "agrees within", "differs", "unknowable")
 COUNT_HEADER = ("statements", "agrees", "agrees within X", "differs", "unknowable", "all")
 HEADER_BY_FIGURE = "by figure, all kinds"
 
@@ -94,7 +94,7 @@ def _by_figure(judged: Sequence[Judged]) -> list[list[str]]:
 
 
 def _counts(name: str, chosen: Sequence[Statement]) -> list[str]:
-    return [name, *(str(sum(_kind(one) == kind for one in chosen)) for kind in KINDS), str(len(chosen))]
+    return [name, *(str(sum(_kind(one) == kind for one in chosen)) for kind in VERDICTS), str(len(chosen))]
 
 
 def _kind(one: Statement) -> str:

@@ -32,7 +32,7 @@ blocks of 4 kB that are all zero reach 250 times."""
 MAGIC = b"\x89MCAP0\r\n"
 _HEAD = struct.Struct("<BQ")  # opcode, length
 _MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
-_KINDS = {
+_RECORD_CLASSES = {
     Opcode.CHANNEL: Channel,
     Opcode.CHUNK: Chunk,
     Opcode.METADATA: Metadata,
@@ -200,7 +200,7 @@ def _record(opcode: int, body: bytes) -> McapRecord | None:
     if opcode == Opcode.MESSAGE:
         channel_id, sequence, log_time, publish_time = _MESSAGE.unpack_from(body)
         return Message(channel_id, log_time, body[_MESSAGE.size :], publish_time, sequence)
-    kind = _KINDS.get(opcode)  # type: ignore[call-overload]
+    kind = _RECORD_CLASSES.get(opcode)  # type: ignore[call-overload]
     return kind.read(_stream(body)) if kind else None
 
 

@@ -1,4 +1,4 @@
-"""Tap specifications as the kernels take them. A new kind of sampled tap is one function and one line in `KINDS`."""
+"""Tap specifications as the kernels take them. A new kind of sampled tap is one function and one line in `TAP_ROWS`."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ SOURCES = ("shaft", "acceleration", "displacement", "position", "change")
 
 
 @dataclass
-class Layout:
+class TapLayout:
     """Functionals as they are collected: for each source the places in the sums and the rows that belong to them.
 
     A functional is written (source, row): the sum of all functionals of a tap is its value. Each source begins a new
@@ -156,14 +156,14 @@ def ring_strain_row(system: SpinningSystem, recovery: Recovery, angle: float) ->
     return np.asarray(stretch + h / 2 * (value(tangential, 1) - value(radial, 2)) / R**2)
 
 
-def _root_strain(layout: Layout, output: int, tap: RootStrain) -> None:
+def _root_strain(layout: TapLayout, output: int, tap: RootStrain) -> None:
     if tap.blade >= layout.system.n_blades:
         raise ValueError(f"tap {tap.name}: blade {tap.blade} of {layout.system.n_blades}")
     row = layout.recovery.root_strain(tap.blade)
     layout.add(output, position=layout.blocks.to_z(_on_blisk(layout.system, row)))
 
 
-def _drive_torque(layout: Layout, output: int, _tap: DriveTorque) -> None:
+def _drive_torque(layout: TapLayout, output: int, _tap: DriveTorque) -> None:
     recovery, to_z = layout.recovery, layout.blocks.to_z
     torsion = to_z(_on_blisk(layout.system, recovery.torsion))
     velocity = torsion / layout.dt
@@ -174,7 +174,7 @@ def _on_blisk(system: SpinningSystem, row: FloatArray) -> FloatArray:
     return np.concatenate([row, np.zeros(system.n_casing)])
 
 
-KINDS: dict[type[Tap], Callable[[Layout, int, Any], None]] = {
+TAP_ROWS: dict[type[Tap], Callable[[TapLayout, int, Any], None]] = {
     CentreDisplacement: lambda layout, output, tap: layout.add(output, shaft=along(tap.angle_deg, X, Y)),
     SupportForce: lambda layout, output, tap: layout.add(output, shaft=along(tap.angle_deg, FORCE_X, FORCE_Y)),
     ContactForce: lambda layout, output, _: layout.add(output, shaft=only(CONTACT_FORCE)),
@@ -210,9 +210,9 @@ def build_taps(
 
     Raises ValueError for a blade that is not there, and for strain or drive of a system without recovery.
     """
-    layout = Layout(system, surface, blocks, laws.dt)
+    layout = TapLayout(system, surface, blocks, laws.dt)
     for output, tap in enumerate(sampled_taps(taps)):
-        KINDS[type(tap)](layout, output, tap)
+        TAP_ROWS[type(tap)](layout, output, tap)
     return Taps(
         **{source: layout.product(source) for source in SOURCES},
         linear=np.array(layout.linear, dtype=np.int64).reshape(-1, 2),
@@ -227,7 +227,7 @@ def build_taps(
     )
 
 
-def _rays(layout: Layout, theta: FloatArray) -> Rays:
+def _rays(layout: TapLayout, theta: FloatArray) -> Rays:
     output, place, angle = np.array(layout.rays, dtype=float).reshape(-1, 3).T
     blades, shares = _blades_around_rays(layout.system, angle, theta)
     undeformed = np.array([undeformed_radius(layout.surface, each) for each in angle]).reshape(-1, 3)

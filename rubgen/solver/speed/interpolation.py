@@ -71,7 +71,7 @@ class SpeedInterpolation:
         return np.asarray(self.growth(speeds))
 
 
-Layout = dict[str, tuple[slice, tuple[int, ...]]]
+PartLayout = dict[str, tuple[slice, tuple[int, ...]]]
 
 
 def _arrays(part: SpeedPart) -> dict[str, FloatArray]:
@@ -92,10 +92,10 @@ def _arrays(part: SpeedPart) -> dict[str, FloatArray]:
     } | {name: getattr(part.support, name) for name in SUPPORT}
 
 
-def _layout(parts: list[SpeedPart]) -> Layout:
+def _layout(parts: list[SpeedPart]) -> PartLayout:
     """Place and shape of what differs between parts, each array from a multiple of eight on."""
     arrays, start = [_arrays(part) for part in parts], 0
-    layout: Layout = {}
+    layout: PartLayout = {}
     for name, first in arrays[0].items():
         if any(not np.array_equal(first, other[name]) for other in arrays):
             layout[name] = slice(start, start + first.size), first.shape
@@ -103,7 +103,7 @@ def _layout(parts: list[SpeedPart]) -> Layout:
     return layout
 
 
-def _packed(part: SpeedPart, layout: Layout) -> FloatArray:
+def _packed(part: SpeedPart, layout: PartLayout) -> FloatArray:
     row = np.zeros(padded(max((place.stop for place, _ in layout.values()), default=0)))
     arrays = _arrays(part)
     for name, (place, _) in layout.items():
@@ -111,7 +111,7 @@ def _packed(part: SpeedPart, layout: Layout) -> FloatArray:
     return row
 
 
-def _unpacked(template: SpeedPart, row: FloatArray, layout: Layout) -> SpeedPart:
+def _unpacked(template: SpeedPart, row: FloatArray, layout: PartLayout) -> SpeedPart:
     new = _arrays(template) | {name: row[place].reshape(shape) for name, (place, shape) in layout.items()}
     scheme, energy = template.scheme, template.energy
     return SpeedPart(

@@ -29,7 +29,7 @@ from rubgen.solver.scheme.tap_kernels import (
     sum_functionals,
     tip_radius_on_ray,
 )
-from rubgen.solver.scheme.taps import SOURCES, Layout
+from rubgen.solver.scheme.taps import SOURCES, TapLayout
 from rubgen.solver.speed.start import rub_free_stepper
 from rubgen.taps import DEFAULT_TAPS
 
@@ -122,7 +122,7 @@ def test_the_shaft_is_read_in_the_inertial_frame(stepper):
 def with_random_functionals(stepper, taps):
     """The stepper's taps with so many linear ones, whose functionals (taps, source) are random; and these."""
     rng, n_casing = np.random.default_rng(3), stepper.system.n_casing
-    layout = Layout(stepper.system, stepper.model.surface, stepper.blocks, stepper.dt)
+    layout = TapLayout(stepper.system, stepper.model.surface, stepper.blocks, stepper.dt)
     sizes = dict(zip(SOURCES, (LANES, n_casing, n_casing, *[len(stepper.system.M)] * 2), strict=True))
     functionals = [{source: rng.normal(size=size) for source, size in sizes.items()} for _ in range(taps)]
     for number, rows in enumerate(functionals):
