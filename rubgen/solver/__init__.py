@@ -1,8 +1,9 @@
 """Integration of a spinning system in time, with contact.
 
-`integrate` makes a `Response` of a system through four rooms, each of which imports only those before it: `linear`
-(what the linear system says before a run), `scheme` (the steps), `speed` (the start, and how turns follow the speed),
-`observers` (what is kept of a run). This file compiles nothing; the rooms bring their kernels with them.
+`integrate` makes the `Response` of a system with five rooms. Each imports only the rooms before it: `linear` (the
+linear system before a run), `supports` (forces on the disk centre that no constant matrix contains), `scheme` (the
+steps), `speed` (the start, and the turns at a steady or changing speed), `observers` (what a response records of a
+run). This file compiles nothing; the rooms import their kernels.
 """
 
 from rubgen.solver.response import ContactEvents, EnergyBalance, Response, Status

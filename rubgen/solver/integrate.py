@@ -44,21 +44,24 @@ def integrate(
     """The response of a spinning system with contact between blade tips and casing.
 
     Central differences with Lagrange multipliers in forward increments (Carpenter, Taylor, Katona 1991), see
-    `step_kernels`; started from the exact rub-free motion with the surface opened so that nothing touches, closed
-    smoothly (continuous second derivative) over `operation.closing_turns`, at most the settle turns.
+    `step_kernels`. The run starts in the exact rub-free motion, with the surface opened so that nothing touches. The
+    surface closes smoothly (continuous second derivative) over `operation.closing_turns`, at most the settle turns.
 
-    `model` makes the system at the speeds of the operation; a system alone makes runs at its own speed. `operation`
-    gives the speed over time and the turns, `contact` the contact law, `wants` what else the response holds.
+    - model: makes the system at the speeds of the operation. A system alone is run at its own speed.
+    - operation: speed over time, settle and record turns, steps.
+    - contact: the contact law.
+    - wants: what else the response records.
 
-    Taps stand at step n together: displacements q_n, velocities and accelerations from q_n-1, q_n, q_n+1, and the
-    contact force lam_n that acts at that time; the record's last step is the last value. The companion trajectory
-    (`observers.companion`) takes half as long again. At a changing speed time steps are equal, sections lie between
-    steps (`turn_kernels.record_section`), and there are neither companion nor symmetry states.
+    All taps of step n belong to one time: displacements q_n, velocities and accelerations from q_n-1, q_n, q_n+1, and
+    the contact force lam_n. The last value belongs to the last step of the record. The companion trajectory
+    (`observers.companion`) makes a run half as long again. At a changing speed the time steps are equal and the
+    Poincare section lies between steps (`turn_kernels.record_section`). There are then no companion and no symmetry
+    states.
 
-    A run that fails has the status and the reason; nothing else in it is data. Raises UserError for a system that
-    `check_system` refuses, for a record too short for an exponent that is asked for, for a profile that lacks a key,
-    and for a speed so low that a turn would need more than 4,194,304 steps; ValueError where anything but contact
-    couples blisk and casing. Holds for small casing displacements.
+    A run that fails has the status and the reason. Nothing else in it is data. Raises UserError for a system that
+    `check_system` refuses, for a record too short for a wanted exponent, for a profile that lacks a key, and for a turn
+    of more than 4,194,304 steps; ValueError where anything but contact couples blisk and casing. Valid for small casing
+    displacements.
     """
     if wants.companion:
         check_turns(operation.record_turns)
@@ -98,10 +101,7 @@ def _changing(changing: ChangingSystem, operation: Operation, contact: ContactLa
 
 
 class Integration:
-    """One run under way: the speed driver, the observers, and how the run stands.
-
-    `start` is the system at the first instant.
-    """
+    """One run in progress: speed driver, observers and status. `start` is the system at the first instant."""
 
     def __init__(self, driver: SpeedDriver, start: SpinningSystem, operation: Operation, wants: Wants) -> None:
         self.driver, self.stepper, self.record = driver, driver.stepper, operation.recorded_turns
@@ -135,7 +135,7 @@ class Integration:
                 observer.turn(turn)
 
     def response(self) -> Response:
-        """Run, and what was kept."""
+        """Run, and return the response."""
         self.run()
         stepper, rotation, system = self.stepper, self.driver.rotation, self.stepper.system
         penetration = float("nan")

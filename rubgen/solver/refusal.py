@@ -1,4 +1,4 @@
-"""Runs that never begin: why one cannot be integrated, known before it is made, and its response."""
+"""Runs that cannot be integrated: the reason, known before the run, and the response."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from rubgen.solver.response import EnergyBalance, Response, Status
 from rubgen.taps import DEFAULT_TAPS
 
 UNDYING_SHARE = 1e-6
-"""A slowest decay below this share of the spin speed is none: a transient would need 700,000 turns to die."""
+"""A slowest decay below this share of the spin speed counts as none: a transient would need 700,000 turns to decay."""
 MOTION_TOLERANCE = 1e-8
-"""The share of force on O_d that may be unbalanced in the motion from which a run starts."""
+"""Largest share of force on O_d that may be unbalanced in the motion from which a run starts."""
 Refusal = tuple[Status, str]
 """Status and reason."""
 NO_ENERGY = EnergyBalance(**dict.fromkeys(EnergyBalance.__dataclass_fields__, 0.0))
@@ -39,7 +39,11 @@ def no_response(
     n_casing: int = 0,
     size: int = 0,
 ) -> Response:
-    """A response with a status, its reason, and nothing else; `size` is the number of coordinates."""
+    """A response with a status and its reason; all its arrays are empty.
+
+    - speed, dt, steps_per_turn, record_turns, n_blades, n_casing: as in `Response`.
+    - size: number of coordinates.
+    """
     nothing = np.zeros((0, size))
     return Response(
         status=status,
@@ -62,7 +66,7 @@ def no_response(
 
 
 def refused_response(system: SpinningSystem, operation: Operation, steps: int, refusal: Refusal) -> Response:
-    """The response of a system of which no run of so many steps a turn is made."""
+    """The response of a system that is not integrated. `steps` are the steps a turn, `refusal` is status and reason."""
     return no_response(
         *refusal,
         speed=float(system.speed),
@@ -76,7 +80,7 @@ def refused_response(system: SpinningSystem, operation: Operation, steps: int, r
 
 
 def film_refusal(system: SpinningSystem, steps: int) -> Refusal | None:
-    """Why a squeeze film holds no rub-free motion at so many steps a turn, if it does not."""
+    """The refusal where a squeeze film has no rub-free motion at `steps` steps a turn; else None."""
     if system.turning is None or system.turning.film is None:
         return None
     missing = rub_free_motion(system, steps).residual
@@ -89,7 +93,7 @@ def film_refusal(system: SpinningSystem, steps: int) -> Refusal | None:
 
 
 def stability(system: SpinningSystem) -> tuple[Refusal | None, float]:
-    """Why a system grows by itself, or nothing ever dies in it, if so; and its slowest decay."""
+    """The refusal of a system that grows by itself or has an undamped mode, else None; and the slowest decay in 1/s."""
     decay = slowest_decay(system)
     if decay > UNDYING_SHARE * system.speed:
         return None, decay

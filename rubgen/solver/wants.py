@@ -1,4 +1,4 @@
-"""What a run is integrated of, and what its response must hold."""
+"""What is integrated, and what the response records."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class SpeedModel(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Wants:
-    """What a response must hold beside what each holds; nothing here changes the motion."""
+    """What a response records in addition. Nothing here changes the motion."""
 
     tail_seconds: float = 0.0
     """Seconds that the taps cover, 100 turns at least; they may reach back before the record, not before the start."""

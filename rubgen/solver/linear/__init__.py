@@ -1,1 +1,1 @@
-"""What the linear system says before a run: its forces, its motion without rub, its stability, its admissibility."""
+"""The linear system before a run: its motion without rub, its stability, whether it can be integrated."""

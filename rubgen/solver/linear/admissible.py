@@ -1,4 +1,4 @@
-"""What a system must be before it is integrated: checked first, told in one line."""
+"""Checks of a system before it is integrated. Each problem is one line."""
 
 from __future__ import annotations
 
@@ -12,15 +12,16 @@ from rubgen.solver.linear.stability import stable_step
 from rubgen.units import rev_per_min
 
 LEAST_MASS_SHARE = 1e-13
-"""A mass eigenvalue below this share of the largest is zero but for rounding."""
+"""A mass eigenvalue below this share of the largest counts as zero."""
 
 
 def check_system(system: SpinningSystem) -> None:
-    """Raise UserError, one line, for a system that no run can be made of.
+    """Raise UserError, one line, for a system that cannot be integrated.
 
-    It must turn, have blades, finite matrices, a positive definite mass of blisk and of casing, tips inside the
-    casing's narrowest radius at rest, and, grown at speed, inside its widest: blades that grow into the narrow places
-    rub there, which is a run like others; blades that nowhere have room cannot turn.
+    It must turn and have blades, finite matrices, and positive definite masses of blisk and casing. At rest the tips
+    must be inside the casing's narrowest radius. At speed the tips, with their centrifugal growth, must be inside its
+    widest radius. Blades that grow into the narrow places rub there, as in any run. Blades that have room nowhere
+    cannot turn.
     """
     for problem in (_speed_problem, _blade_problem, _number_problem, _mass_problem, _rest_problem, _growth_problem):
         text = problem(system)
@@ -29,7 +30,7 @@ def check_system(system: SpinningSystem) -> None:
 
 
 def check_step(system: SpinningSystem, steps: int) -> None:
-    """Raise UserError where so many steps a turn are above the stability limit, dt < 2 / omega_max."""
+    """Raise UserError where `steps` a turn exceed the stability limit dt < 2 / omega_max."""
     turn, longest = 2 * math.pi / system.speed, stable_step(system)
     if turn / steps >= longest:
         raise UserError(

@@ -1,4 +1,4 @@
-"""How small disturbances of the rub-free motion grow or decay where forces turn against the blisk or are not linear."""
+"""Growth or decay of small disturbances of the rub-free motion, with uneven supports or a squeeze film."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from rubgen.solver.supports.turning_forces import force_derivatives
 
 
 def linearised(system: SpinningSystem) -> SpinningSystem:
-    """The system with its squeeze film as constant matrices, at the rub-free motion, where that is static.
+    """The system with its squeeze film linearised at the rub-free motion, for a static rub-free motion.
 
-    C += -d f / d v and K += -d f / d u on O_d; turning forces are left out of what is given.
+    C += -d f / d v and K += -d f / d u on O_d. The result has no turning forces.
     """
     forces = system.turning
     if forces is None:
@@ -35,9 +35,10 @@ def linearised(system: SpinningSystem) -> SpinningSystem:
 def floquet_exponents(system: SpinningSystem, steps: int) -> ComplexArray:
     """Exponents ln(mu) / T in 1/s of the coordinates that O_d moves, and eigenvalues of all others.
 
-    mu are the eigenvalues of the transition over one period T (half a turn, a whole one with film or gravity) by the
-    scheme's own steps, `steps` a turn (even): M q'' + C q' + K q = E (f_u u + f_v v), with the derivatives of the
-    turning forces along the rub-free motion. Imaginary parts are known but for a multiple of 2 pi / T.
+    mu are the eigenvalues of the transition over one period T: M q'' + C q' + K q = E (f_u u + f_v v), with the
+    derivatives of the turning forces along the rub-free motion. T is half a turn, or a whole turn with film or gravity.
+    The transition uses the scheme's own steps, `steps` a turn (even). Imaginary parts are known up to a multiple of 2
+    pi / T.
     """
     forces = system.turning
     if forces is None:

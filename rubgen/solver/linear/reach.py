@@ -1,4 +1,4 @@
-"""Whether a blade can reach the casing at all: the rub-free motion of runs, before any of them is made."""
+"""Whether a blade can reach the casing at all, from the rub-free motions before any run."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from rubgen.solver.linear.rub_free import free_penetration, rub_free_motion
 from rubgen.units import rad_per_s, rev_per_min
 
 SPEEDS = 9
-"""Speeds that stand for a changing one, its ends among them."""
+"""Number of speeds at which a changing speed is checked, first and last included."""
 
 
 def no_rub(scenarios: Sequence[Scenario]) -> str | None:
     """One line where no blade reaches the casing in the rub-free motion of any of these runs; None where one does.
 
-    A run starts from that motion, and keeps it where nothing touches. It looks no farther than the first run that
-    rubs. Runs that are refused say so themselves and are left out; where all are, nothing is said. A single run without
-    rub may be meant: it is told only where its speed in rad/s would rub.
+    A run starts from that motion and keeps it where nothing touches. The search ends at the first run that rubs.
+    Refused runs are left out, because they report themselves; None where all are refused. A single run without rub may
+    be intended: it is reported only where its speed in rad/s would rub.
     """
     largest, at, looked_at = -math.inf, 0.0, 0
     for scenario in scenarios:
@@ -51,10 +51,10 @@ def no_rub(scenarios: Sequence[Scenario]) -> str | None:
 
 
 def deepest(scenario: Scenario) -> tuple[float, float]:
-    """Largest free penetration in m, negative where a gap is left, and its speed in rev/min.
+    """Largest free penetration in m, and its speed in rev/min. A negative penetration is a gap.
 
-    At a changing speed of nine speeds from the slowest to the fastest: a run through a critical speed swings less.
-    Raises UserError where a speed makes no run.
+    A changing speed is checked at nine speeds from the slowest to the fastest, each as a steady speed. The amplitude of
+    a run through a critical speed is smaller. Raises UserError where a speed makes no run.
     """
     model, rotation = reduce(scenario.machine, scenario.reduction), scenario.operation.rotation
     speeds = [rotation.start] if rotation.is_steady else np.linspace(rotation.slowest, rotation.fastest, SPEEDS)
@@ -69,7 +69,7 @@ def _penetration(model: ReducedModel, scenario: Scenario, speed: float) -> float
 
 
 def _question(scenarios: Sequence[Scenario]) -> str:
-    """Whether speeds were given in rad/s, where a blade would reach the casing then."""
+    """A question whether speeds were meant in rad/s, where a blade would then reach the casing."""
     fastest = max(scenarios, key=lambda each: each.operation.speed_rpm)
     rpm = rev_per_min(fastest.operation.speed_rpm)
     if fastest.operation.speed_rpm * fastest.machine.tip_radius_m > MOST_TIP_SPEED:

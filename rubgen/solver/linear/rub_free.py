@@ -14,29 +14,29 @@ from rubgen.reduction.model import SpinningSystem, TurningForces
 from rubgen.solver.supports.turning_forces import force_derivatives, gravity_force, turning_force
 
 SAMPLES = (9, 17, 33, 65, 129)
-"""Places of a turn at which the harmonic balance is held; more are taken until the last harmonics have died."""
+"""Numbers of places of a turn for the harmonic balance. The next one is used until the last harmonics are small."""
 TAIL = 1e-12
-"""Share of the motion of O_d that the last two harmonics may have."""
+"""The last two harmonics are small below this share of the motion of O_d."""
 NEWTON_STEPS = 60
 NEWTON_TOLERANCE = 1e-13
 FILM_RANGE = 0.999
 """Newton's steps are shortened so that the eccentricity stays below this share of the film's clearance."""
 TURN_PLACES = 64
 CLEARANCE_PLACES = 1440
-"""Places of a turn at which the clearance is taken: a quarter of a degree. It errs by at most |r''| (pi / 1440)^2 / 2,
-40 nm in an oval of 8 mm, 1 um with chords."""
+"""Places of a turn at which the clearance is evaluated: every quarter of a degree. The error is at most |r''| (pi /
+1440)^2 / 2, 40 nm in an oval of 8 mm, 1 um with chords."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RubFreeMotion:
-    """q(theta) = Re sum_m harmonics[m] e^(i m theta), casing at rest; `harmonics` (H + 1, n).
-
-    `residual` is the largest unbalanced force on O_d between the places where the balance was held, as a share of the
-    largest force there: what truncation leaves, or an iteration that found no motion.
-    """
+    """A motion q(theta) = Re sum_m harmonics[m] e^(i m theta) with the casing at rest."""
 
     harmonics: ComplexArray
+    """Complex amplitudes (H + 1, n)."""
     residual: float
+    """Largest unbalanced force on O_d between the places of the balance, over the largest force there.
+
+    It is the truncation error, or large where the iteration found no motion."""
 
     def at(self, theta: float) -> FloatArray:
         """State q (n,) at an angle of rotation."""
@@ -52,9 +52,10 @@ class RubFreeMotion:
 
 
 def free_penetration(motion: RubFreeMotion, surface: Surface, tips: Tips) -> float:
-    """How deep the tips would enter the casing at rest in this motion, m; negative is the clearance that they leave.
+    """How deep the tips would enter the casing at rest in this motion, m; negative is a clearance.
 
-    max over blades and angles of |P_k| - r(angle of P_k), r the undeformed surface with its chords or liner.
+    max over blades and angles of |P_k| - r(angle of P_k), with r the undeformed `surface`, its chords or liner
+    included.
     """
     theta = 2 * np.pi * np.arange(CLEARANCE_PLACES) / CLEARANCE_PLACES
     turn = np.exp(1j * np.multiply.outer(theta, np.arange(len(motion.harmonics))))
@@ -71,13 +72,13 @@ def steady_state(system: SpinningSystem) -> FloatArray:
 
 
 def rub_free_motion(system: SpinningSystem, steps: float = 0) -> RubFreeMotion:
-    """The periodic motion without rub, by harmonic balance; with `steps` a turn that of the scheme itself.
+    """The periodic motion without rub, by harmonic balance. With `steps` a turn, the motion of the scheme itself.
 
-    M q'' + C q' + K q = force + weight(theta) + E f(theta, u, v): each harmonic of f on O_d moves the blisk by the
-    receptance of that harmonic, which leaves a small system for u alone; it is solved at equal places of a turn by
-    Newton's method (once, where nothing is nonlinear). The scheme's motion has the same equations with 2 (cos m phi -
-    1) / dt^2 for -(m Omega)^2 and i sin(m phi) / dt for i m Omega, phi = 2 pi / steps: a run that starts from it keeps
-    it. A squeeze film may have more than one motion; the one that is found from the film's centre is taken.
+    M q'' + C q' + K q = force + weight(theta) + E f(theta, u, v). Each harmonic of f on O_d moves the blisk by the
+    receptance of that harmonic. This leaves a small system for u alone, solved at equal places of a turn by Newton's
+    method (one step where it is linear). For the scheme's motion 2 (cos m phi - 1) / dt^2 replaces -(m Omega)^2 and i
+    sin(m phi) / dt replaces i m Omega, phi = 2 pi / steps: a run that starts from it keeps it. A squeeze film may have
+    more than one motion. The iteration starts from the film's centre.
     """
     forces = system.turning
     if forces is None:
@@ -93,7 +94,7 @@ def rub_free_motion(system: SpinningSystem, steps: float = 0) -> RubFreeMotion:
 
 
 class _Balance:
-    """The equations of u at `samples` places of a turn (an odd number, so that no harmonic is half there)."""
+    """The equations of u at `samples` places of a turn. The number is odd, so that no harmonic is cut in half."""
 
     def __init__(self, system: SpinningSystem, forces: TurningForces, samples: int, steps: float) -> None:
         self.system, self.forces, self.samples = system, forces, samples
@@ -175,7 +176,7 @@ class _Balance:
         )
 
     def motion(self, u: FloatArray) -> RubFreeMotion:
-        """All coordinates from the forces on O_d that u makes."""
+        """All coordinates, from the forces on O_d at the displacements u."""
         v = (self.D @ u.ravel()).reshape(u.shape)
         F = _harmonics(turning_force(self.forces, self.system.speed, self.theta, u, v))
         q = np.zeros((len(F), len(self.system.M)), dtype=np.complex128)
@@ -200,7 +201,7 @@ class _Balance:
 
 
 def _harmonics(values: FloatArray) -> ComplexArray:
-    """Factors of e^(i m theta), m >= 0, of which the values (samples, any) are the real part."""
+    """Factors of e^(i m theta), m >= 0, whose sum has the values (samples, any) as its real part."""
     factors = np.fft.rfft(values, axis=0) / len(values)
     factors[1:] *= 2
     return np.asarray(factors)

@@ -1,4 +1,4 @@
-"""What the linear system says before a run: its eigenvalues, the step, the turns that transients need."""
+"""Eigenvalues of the linear system, its stable step, and the turns in which its transients decay."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ TRANSIENT_DECAY = 100.0
 """Transients have died when they have fallen by this factor."""
 MOST_STEPS_PER_TURN = 2**22
 FLOQUET_STEPS = 1024
-"""Steps a turn, at least, of the transition over one period of a system whose supports are uneven."""
+"""Least number of steps a turn for the transition over one period of a system with uneven supports."""
 
 
 def eigenvalues(system: SpinningSystem) -> ComplexArray:
     """All 2 n eigenvalues s in 1/s of M q'' + C q' + K q = 0, blisk and casing apart.
 
-    A squeeze film enters as its linearisation at the rub-free motion. Uneven supports turn against the blisk: then
-    these are Floquet exponents, with imaginary parts known but for a multiple of 2 Omega (Omega with a film).
+    A squeeze film is linearised at the rub-free motion. With uneven supports, which turn against the blisk, these are
+    Floquet exponents, whose imaginary parts are known up to a multiple of 2 Omega (Omega with a film).
     """
     forces = system.turning
     if forces and (forces.stiffness or forces.damping or (forces.film and forces.weight is not None)):
@@ -63,10 +63,12 @@ def stable_step(system: SpinningSystem) -> float:
 
 
 def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0.0) -> int:
-    """`least`, doubled until the step is below 0.95 * 2 / omega_max and feeds the sensors at 2.56 their rate.
+    """`least`, doubled until the step is stable and the step rate is at least 2.56 `sample_rate_hz`.
 
-    A turn is a whole number of steps, so the section falls on steps exactly. Raises UserError for a system that would
-    need more than 4,194,304 steps.
+    Stable is dt < 0.95 * 2 / omega_max.
+
+    A turn is a whole number of steps, so the Poincare section lies on steps exactly. Raises UserError for a system that
+    would need more than 4,194,304 steps.
     """
     turn = 2 * math.pi / system.speed
     sampled = 1 / (STEPS_PER_SAMPLE * sample_rate_hz) if sample_rate_hz else turn
@@ -83,10 +85,10 @@ def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0
 
 
 def automatic_settle_turns(system: SpinningSystem, closing_turns: int, decay: float | None = None) -> int:
-    """Turns until the clearance is closed and transients have fallen to a hundredth.
+    """Turns until the clearance is closed and transients have decayed to a hundredth.
 
     closing_turns + ln(100) f_r / (2 pi min(zeta f)) with the eigenvalues at speed, rounded up. `decay` is the slowest
-    one, where it is known already. Raises ValueError for an unstable system.
+    decay in 1/s where it is known already. Raises ValueError for an unstable system.
     """
     decay = slowest_decay(system) if decay is None else decay
     if decay <= 0:
@@ -95,7 +97,7 @@ def automatic_settle_turns(system: SpinningSystem, closing_turns: int, decay: fl
 
 
 def settle_turns(system: SpinningSystem, operation: Operation, decay: float | None = None) -> int:
-    """The operation's settle turns, or the automatic ones, as `automatic_settle_turns`."""
+    """The settle turns of the operation, or `automatic_settle_turns` where it has none."""
     if operation.settle_turns == "auto":
         return automatic_settle_turns(system, operation.closing_turns, decay)
     return operation.settle_turns

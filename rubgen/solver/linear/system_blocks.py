@@ -1,4 +1,4 @@
-"""The blocks into which the matrices of systems fall."""
+"""The blocks into which the matrices of systems decompose."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What is kept of a run while it goes: nothing here changes its motion."""
+"""Observers of a run. They record it and never change its motion."""

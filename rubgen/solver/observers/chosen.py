@@ -8,7 +8,7 @@ from rubgen.scenario.rotation import Rotation
 from rubgen.solver.observers.companion import CompanionGrowth, piece_ends
 from rubgen.solver.observers.observer import Observer
 from rubgen.solver.observers.orbit import Orbit
-from rubgen.solver.observers.orders import SpeedHistory, WindowOrders
+from rubgen.solver.observers.orders import ChangingOrders, WindowOrders
 from rubgen.solver.observers.sections import Sections
 from rubgen.solver.observers.symmetry import Symmetry
 from rubgen.solver.observers.tail import Tail
@@ -21,7 +21,7 @@ LEAST_TAIL_TURNS = 100
 
 
 def chosen_observers(driver: SpeedDriver, record: int, wants: Wants) -> list[Observer]:
-    """The observers of a record of so many turns; the driver's stepper leaves the snapshots that they need."""
+    """The observers of a record of `record` turns. Also sets the snapshots that they need on the driver's stepper."""
     stepper, steady = driver.stepper, driver.rotation.is_steady
     observers: list[Observer] = [
         Tail(wants.taps, tail_turns(driver, record, wants)),
@@ -31,7 +31,7 @@ def chosen_observers(driver: SpeedDriver, record: int, wants: Wants) -> list[Obs
         Orbit(LEAST_TAIL_TURNS if steady else None),
     ]
     if not steady:
-        return [*observers, SpeedHistory(driver, record)]
+        return [*observers, ChangingOrders(driver, record)]
     symmetry = Symmetry(stepper)
     observers += [WindowOrders(*stepper.result.taps.shape), symmetry]
     if wants.companion:
@@ -42,13 +42,13 @@ def chosen_observers(driver: SpeedDriver, record: int, wants: Wants) -> list[Obs
 
 
 def tail_turns(driver: SpeedDriver, record: int, wants: Wants) -> int:
-    """How many turns the taps cover."""
+    """Number of turns that the taps cover."""
     asked = math.ceil(wants.tail_seconds * driver.rotation.fastest / (2 * math.pi))
     return min(max(LEAST_TAIL_TURNS, asked), driver.settle + record)
 
 
 def _signal_turns(rotation: Rotation, record: int, seconds: float) -> float:
-    """How many turns the last `seconds` of a record of so many turns hold."""
+    """Number of turns in the last `seconds` of a record of `record` turns."""
     if rotation.is_steady:
         return seconds * rotation.fastest / (2 * math.pi)
     end = rotation.time_of(2 * math.pi * record)

@@ -1,4 +1,4 @@
-"""A trajectory beside that of a stepper, whose distance from it tells the largest Lyapunov exponent."""
+"""A companion trajectory beside the run. The growth of their distance is the largest Lyapunov exponent."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ CLOSENESS = 1e-8
 """Distance of the companion over the size of the motion: a thousandth of what a tip enters in one step of a touch, a
 million times the rounding of a step."""
 LEAST_TURNS = 32
-"""An exponent of fewer turns says nothing."""
+"""The least number of turns of a meaningful exponent."""
 
 
 def check_turns(record_turns: int) -> None:
@@ -49,11 +49,14 @@ class CompanionGrowth:
         self.removed = 0.0
 
     def start(self) -> None:
-        """Put the companion beside the run."""
+        """Start the companion beside the run."""
         self.companion, self.removed = Companion(self.stepper), self.stepper.state.wear.sums[REMOVED]
 
     def turn(self, turn: Turn) -> None:
-        """Run the companion's turn. Beside a surface that has worn in it no trajectory is near the run's own."""
+        """Run the companion's turn.
+
+        NaN where the surface has worn in it: then no trajectory of the same surface is near.
+        """
         before, self.removed = self.removed, self.stepper.state.wear.sums[REMOVED]
         if self.companion is not None:
             same_surface = self.removed == before
@@ -67,9 +70,9 @@ class CompanionGrowth:
 class Companion:
     """A trajectory that starts beside the present state of `stepper`, all coordinates moved.
 
-    It is a second state of the same model. Call `run_turn` after each turn of the stepper, which must leave snapshots;
-    the stepper's own bits do not change. The distance is that of an energy norm, sqrt(d_v^T M d_v + Omega^2 d_q^T M
-    d_q), which no choice of coordinates changes; any other norm gives the same exponent in the long run.
+    It is a second state of the same model. Call `run_turn` after each turn of the stepper, which must leave snapshots.
+    The stepper's own bits do not change. The distance is the energy norm sqrt(d_v^T M d_v + Omega^2 d_q^T M d_q),
+    independent of the choice of coordinates. Any other norm has the same exponent in the long run.
     """
 
     def __init__(self, stepper: Stepper) -> None:
@@ -85,7 +88,7 @@ class Companion:
             recover(stepper.model.harmonics, motion, self.state.scratch.share)
 
     def run_turn(self, opening: FloatArray) -> FloatArray:
-        """Ln of the growth of the distance between the snapshots of the last turn; NaN where it could not follow."""
+        """Ln of the growth of the distance between the snapshots of the last turn; NaN where the companion failed."""
         stepper, growth = self.stepper, np.full(len(self.stepper.snapshots.steps), np.nan)
         self.state.wear.depth[:] = stepper.state.wear.depth
         code = run_companion(stepper.model, opening, stepper.snapshots, self.closeness, self.state, growth)

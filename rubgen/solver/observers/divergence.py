@@ -1,4 +1,4 @@
-"""How fast a run that diverges has grown, and what kept others of its kind in range."""
+"""How fast a diverging run has grown, and what to change."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from rubgen.arrays import FloatArray
 from rubgen.solver.scheme.stepper import Stepper
 
 GROWTH_TURNS = 10
-"""Rates of growth are those of this many last turns."""
+"""Rates of growth are means over this many last turns."""
 STEADY_GROWTH = math.log(2)
-"""A motion that has not even doubled over those turns has not grown: it is irregular, and this was an excursion."""
+"""A motion that has less than doubled over these turns has not grown: it is irregular, and only left its range for a
+moment."""
 
 ADVICE = {
     "blade": (
@@ -26,14 +27,14 @@ ADVICE = {
         "the unbalance, 10 with four times the damping of the casing (docs/model.md)"
     ),
 }
-"""What to change, by the branch that left its range: counted, see docs/model.md."""
+"""What to change, by the branch that left its range. The numbers were counted, see docs/model.md."""
 
 
 class Growth:
     """Amplitudes of casing and blade tips, turn by turn, over the last turns of a stepper.
 
-    Of the casing the largest bound of its displacement within the turn; of the blades the largest tip coordinate in the
-    frames of the turn, which are kept as they are and looked at in the end alone.
+    The casing's amplitude is the largest bound of its displacement within the turn. The blades' amplitude is the
+    largest tip coordinate in the frames of the turn. The frames are evaluated only at the end.
     """
 
     def __init__(self, stepper: Stepper) -> None:
@@ -41,7 +42,7 @@ class Growth:
         self.turns: deque[tuple[float, FloatArray]] = deque(maxlen=GROWTH_TURNS + 1)
 
     def add(self, steps: int) -> None:
-        """Keep the turn that was just run, as far as it went: `steps` of its steps."""
+        """Add the turn that was just run; it made `steps` steps."""
         result = self.stepper.result
         count = math.ceil(steps * len(result.frames) / self.stepper.steps)
         self.turns.append((float(result.summary[2]), result.frames[:count].copy()))
@@ -94,9 +95,9 @@ class Trend:
 
 
 def trend(amplitudes: FloatArray) -> Trend | None:
-    """The growth of amplitudes (turns,) by least squares on their logarithms; None of fewer than two.
+    """The growth of amplitudes (turns,) by least squares on their logarithms; None for fewer than two.
 
-    Amplitudes that are zero or no number are left out.
+    Amplitudes that are zero or NaN are left out.
     """
     known = np.isfinite(amplitudes) & (amplitudes > 0)
     if known.sum() < 2:

@@ -22,11 +22,11 @@ from rubgen.solver.scheme.stepper import Stepper
 from rubgen.solver.supports.support_kernels import ANISOTROPY, FILM, FILM_LOSS, GRAVITY
 
 ROUNDING_SHARE = 1e-6
-"""Energies below this share of their summed absolute terms are rounding to eight digits."""
+"""Energies below this share of their summed absolute terms are rounding errors."""
 
 
 class EnergyIdentity:
-    """How well a stepper keeps the energy identity, from its present state on."""
+    """How well a stepper satisfies the energy identity, from its present state on."""
 
     def __init__(self, stepper: Stepper) -> None:
         self.stepper, self.start_energy = stepper, stepper.energy()
@@ -36,7 +36,8 @@ class EnergyIdentity:
     def residual(self) -> float:
         """|E - E_start - works| over the summed absolute works, or over the largest |E| where no work is done.
 
-        At a critical speed the rub-free motion has no energy in the turning frame: there its rounding stands for it.
+        At a critical speed the rub-free motion has no energy in the turning frame. There the rounding error of its
+        energy terms is the scale.
         """
         works, energy = self.stepper.state.works, self.stepper.energy()
         self.largest_energy = max(self.largest_energy, abs(energy))
@@ -46,7 +47,7 @@ class EnergyIdentity:
         return abs(energy - self.start_energy - float(done)) / scale if scale > 0 else 0.0
 
     def result(self) -> dict[str, Any]:
-        """The balance as `EnergyBalance`."""
+        """`energy`, an `EnergyBalance`."""
         works = [float(work) for work in self.stepper.state.works]
         support = [float(work) for work in self.stepper.state.support.works]
         wear = 0.0 - float(self.stepper.state.wear.sums[WORK])

@@ -12,7 +12,7 @@ from rubgen.solver.speed.turn import Turn
 
 
 class Orbit:
-    """Keeps the orbit's means of the last so many turns of the record, of all with None."""
+    """Means of the orbit over each of the last `turns` turns of the record; over all turns with None."""
 
     def __init__(self, turns: int | None) -> None:
         self.means: deque[FloatArray] = deque(maxlen=turns)

@@ -1,4 +1,4 @@
-"""Orders of rotation of one turn, over its angle."""
+"""Orders of rotation of each turn, over its angle."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ from rubgen.solver.speed.turn import Turn
 
 
 class WindowOrders:
-    """Complex amplitudes of a steady run's taps window by window: of the mean of its turns, which is their mean.
+    """Complex amplitudes of a steady run's taps, window by window.
 
-    The first step of a turn is at theta = 0. What precedes the first whole window is left out; the last window may be
+    A window's amplitude is the amplitude of the mean of its turns.
+
+    The first step of a turn is at theta = 0. Turns before the first whole window are left out; the last window may be
     shorter.
     """
 
@@ -29,7 +31,7 @@ class WindowOrders:
         """Nothing to do."""
 
     def turn(self, turn: Turn) -> None:
-        """Take the next turn of the record."""
+        """Add the next turn of the record."""
         if turn.number < 0 or not turn.recording or (self.turns == 0 and turn.number % WINDOW_TURNS):
             return
         self.sum += turn.result.taps
@@ -38,7 +40,7 @@ class WindowOrders:
             self._close()
 
     def result(self) -> dict[str, Any]:
-        """Amplitudes (windows, taps, 20) of all turns so far."""
+        """`window_orders` (windows, taps, 20) of all turns so far."""
         if self.turns:
             self._close()
         windows = np.array(self.windows, dtype=np.complex128).reshape(len(self.windows), len(self.sum), ORDERS)
@@ -50,7 +52,7 @@ class WindowOrders:
         self.sum[:], self.turns = 0.0, 0
 
 
-class SpeedHistory:
+class ChangingOrders:
     """Speed and orders of each turn of a record at a changing speed."""
 
     def __init__(self, driver: SpeedDriver, record: int) -> None:
@@ -61,7 +63,7 @@ class SpeedHistory:
         """Nothing to do."""
 
     def turn(self, turn: Turn) -> None:
-        """Take the orders of a turn of the record."""
+        """Add the orders of a turn of the record."""
         if turn.number >= 0:
             time = np.arange(turn.first_step, turn.end_step + 1) * self.driver.stepper.dt
             self.orders.append(turn_orders(turn.result.taps, self.driver.rotation.angle(time)))
@@ -82,8 +84,8 @@ class SpeedHistory:
 def turn_orders(taps: FloatArray, theta: FloatArray) -> ComplexArray:
     """Complex amplitudes (taps, 20) at k = 1 .. 20 of `taps` (taps, steps), the steps at angles `theta` (steps + 1,).
 
-    2 / (2 pi) sum x exp(-i k theta) dtheta by the trapezoidal rule on the steps' own angles, taken from the first to
-    the last as if they were one turn: the ends miss it by half a step at most, which leaves a share of 1 / steps.
+    2 / (2 pi) sum x exp(-i k theta) dtheta by the trapezoidal rule on the steps' own angles, from the first to the last
+    as if they were exactly one turn. Each end is off by at most half a step, an error of a share 1 / steps.
     """
     weight = np.zeros(taps.shape[1])
     weight += 0.5 * np.diff(theta)

@@ -1,4 +1,4 @@
-"""State, impulse and steps with contact, once a turn."""
+"""State, impulse and number of steps with contact, once a turn."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rubgen.solver.speed.turn import Turn
 
 
 class Sections:
-    """The Poincare section and the sums of each turn of a record of so many turns, `size` coordinates."""
+    """The Poincare section, and the sums of each turn, of a record of `record` turns with `size` coordinates."""
 
     def __init__(self, record: int, size: int) -> None:
         self.section = np.zeros((record, 2, size))
@@ -21,14 +21,14 @@ class Sections:
         """Nothing to do."""
 
     def turn(self, turn: Turn) -> None:
-        """Keep section, impulse and steps with contact."""
+        """Add section, impulse and number of steps with contact."""
         if turn.number >= 0:
             result, row = turn.result, turn.number
             self.section[row] = result.section
             self.impulse[row], self.contact_steps[row] = result.summary[0], int(result.summary[1])
 
     def result(self) -> dict[str, Any]:
-        """Sections, impulses and counts, one a turn."""
+        """`section_q`, `section_v`, `impulse_per_turn`, `contact_steps_per_turn`."""
         return {
             "section_q": np.ascontiguousarray(self.section[:, 0]),
             "section_v": np.ascontiguousarray(self.section[:, 1]),

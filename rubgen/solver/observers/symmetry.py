@@ -1,4 +1,4 @@
-"""The state after each Nth of a turn, seen so that a motion with the symmetry of the casing has N equal ones."""
+"""The state after each Nth of a turn. A motion with the symmetry of the casing has N equal states."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rubgen.solver.speed.turn import Turn
 
 
 def lobes_of(system: SpinningSystem) -> int:
-    """N of a casing that looks alike after each Nth of a turn; 1 where its nodes do not."""
+    """Number N of lobes: the casing looks alike after each Nth of a turn. 1 where its nodes do not."""
     orders = [round(order) for order, a in zip(system.surface.order, system.surface.amplitude, strict=True) if a]
     lobes = math.gcd(*orders)
     return lobes if lobes and len(system.casing_modes) % lobes == 0 else 1
@@ -23,8 +23,8 @@ def lobes_of(system: SpinningSystem) -> int:
 def turned_back(modes: FloatArray, share: float) -> FloatArray:
     """The matrix (n_casing, n_casing) that turns the casing's displacement back by a share of a turn.
 
-    With u(theta) the displacement in X and Y, R(-a) u(theta + a) on the casing's own modes (nodes, 2, n_casing), by
-    least squares over the nodes: exact where the modes of each order come in pairs.
+    With u(theta) the displacement in X and Y: R(-a) u(theta + a) on the casing's own modes (nodes, 2, n_casing), by
+    least squares over the nodes. Exact where the modes of each order come in pairs.
     """
     angle, nodes = 2 * np.pi * share, len(modes)
     R = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
@@ -34,7 +34,7 @@ def turned_back(modes: FloatArray, share: float) -> FloatArray:
 
 
 class Symmetry:
-    """The states after 1/N, 2/N, ... 1 of the last turn; `steps` are the snapshots that a turn must leave for them."""
+    """The states after 1/N, 2/N, ... 1 of the last turn. A turn must leave snapshots at `steps`."""
 
     def __init__(self, stepper: Stepper) -> None:
         self.stepper, steps = stepper, stepper.steps
@@ -47,10 +47,10 @@ class Symmetry:
         """Nothing to do."""
 
     def turn(self, turn: Turn) -> None:
-        """Nothing to do: the stepper holds the snapshots of its last turn."""
+        """Nothing to do: the stepper has the snapshots of its last turn."""
 
     def result(self) -> dict[str, Any]:
-        """`symmetry_states` (N, 2, n), q and v: linear between two steps, v their difference."""
+        """`symmetry_states` (N, 2, n), q and v, linear between two steps; v is their difference over dt."""
         stepper, states = self.stepper, []
         for share, place in zip(self.shares, self.places, strict=True):
             step = min(math.ceil(place), stepper.steps)

@@ -15,7 +15,7 @@ from rubgen.taps import Tap
 
 
 class Tail:
-    """Keeps all taps of the last so many turns."""
+    """All taps, and all passages under timing probes, of the last `turns` turns."""
 
     def __init__(self, taps: tuple[Tap, ...], turns: int) -> None:
         self.wanted = taps
@@ -26,13 +26,13 @@ class Tail:
         """Nothing to do: the tail may reach back into the settling."""
 
     def turn(self, turn: Turn) -> None:
-        """Keep the taps of a turn that has made them."""
+        """Add the taps of a turn that recorded them."""
         if turn.recording:
             self.taps.append(turn.result.taps.copy())
             self.arrivals.append(turn.arrivals)
 
     def result(self) -> dict[str, Any]:
-        """Taps and arrivals by their names."""
+        """`taps` and `arrivals`."""
         sampled = sampled_taps(self.wanted)
         tail = np.concatenate([np.zeros((len(sampled), 0)), *self.taps], axis=1)
         return {

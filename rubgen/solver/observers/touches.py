@@ -14,25 +14,25 @@ from rubgen.solver.speed.turn import Turn
 
 
 class TouchKeeper:
-    """Keeps the touches of a record of so many turns."""
+    """The touches of a record of `record` turns."""
 
     def __init__(self, stepper: Stepper, record: int) -> None:
         self.stepper, self.record = stepper, record
         self.touches: list[FloatArray] = []
 
     def start(self) -> None:
-        """A touch that began before is counted from here."""
+        """Count a present touch from the start of the record."""
         self.stepper.begin_record()
 
     def turn(self, turn: Turn) -> None:
-        """Keep the touches that ended in a turn; after the last one, those under way too."""
+        """Add the touches that ended in a turn; after the last turn, the present touches too."""
         if turn.number >= 0:
             self.touches += turn.touches
         if turn.number == self.record - 1:
             self.touches.append(self.stepper.end_record(turn.end_step))
 
     def result(self) -> dict[str, Any]:
-        """The touches as `ContactEvents`."""
+        """`events`, the touches as `ContactEvents`."""
         return {"events": contact_events(self.touches)}
 
 

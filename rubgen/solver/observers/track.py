@@ -17,9 +17,9 @@ TRACK_TURNS = 8
 
 
 class TrackKeeper:
-    """Keeps the frames of the eight turns whose middle saw the hardest touch; memory does not grow with turns.
+    """The frames of the eight turns around the hardest touch. The memory does not grow with the turns.
 
-    Turns of the record before `first_turn` are passed over. Without any touch the first eight turns are kept.
+    Turns of the record before `first_turn` are left out. Without any touch the first eight turns are recorded.
     """
 
     def __init__(self, driver: SpeedDriver, record: int, first_turn: int) -> None:
@@ -33,7 +33,7 @@ class TrackKeeper:
         """Nothing to do: the track may reach back into the settling."""
 
     def turn(self, turn: Turn) -> None:
-        """Take the frames of a turn."""
+        """Add the frames of a turn."""
         if turn.number >= 0 and not (self.growth and self.driver.rotation.is_steady):
             self.growth.append(turn.tip_growth)
         if turn.number >= self.first_turn:
@@ -53,7 +53,7 @@ class TrackKeeper:
             self.hardest, self.kept = touch, list(self.frames)
 
     def result(self) -> dict[str, Any]:
-        """The track, None where no turn was taken."""
+        """`track`; None where no turn was recorded."""
         if not self.kept:
             return {"track": None}
         blocks, system = self.driver.stepper.blocks, self.driver.stepper.system

@@ -1,4 +1,4 @@
-"""What a run leaves of a liner."""
+"""The liner at the end of a run."""
 
 from __future__ import annotations
 

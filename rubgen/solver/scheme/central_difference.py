@@ -15,8 +15,8 @@ from rubgen.solver.scheme.model_kernels import EnergyTerms
 def scheme(M: FloatArray, C: FloatArray, K: FloatArray, force: FloatArray, dt: float, blocks: Blocks) -> Scheme:
     """The free step q* = P1 q_n + P2 q_n-1 + p0 and A^-1, in blocks.
 
-    A = M / dt^2 + C / (2 dt), P1 = A^-1 (2 M / dt^2 - K), P2 = -A^-1 (M / dt^2 - C / (2 dt)), p0 = A^-1 force, with
-    C and K unsymmetric as they are (Carpenter, Taylor, Katona 1991).
+    A = M / dt^2 + C / (2 dt), P1 = A^-1 (2 M / dt^2 - K), P2 = -A^-1 (M / dt^2 - C / (2 dt)), p0 = A^-1 force. C and K
+    may be unsymmetric (Carpenter, Taylor, Katona 1991). Matrices are (n, n), `force` is (n,) in N, `dt` in s.
     """
     inertia, drag = M / dt**2, C / (2 * dt)
     inverse = la.inv(inertia + drag)
@@ -41,7 +41,7 @@ def compliances(system: SpinningSystem, dt: float) -> tuple[FloatArray, FloatArr
 
 
 def energy_terms(system: SpinningSystem, blocks: Blocks, *, zeros: bool = False) -> EnergyTerms:
-    """Matrices of the energy terms in blocks; with `zeros` what is zero is kept in its place."""
+    """Matrices of the energy terms in blocks; with `zeros` entries that are zero remain."""
     force = blocks.to_z(system.force)
     places = np.arange(force.size) if zeros else np.flatnonzero(force)
     circulatory = (system.K - system.K.T) / 2

@@ -22,14 +22,15 @@ from rubgen.solver.supports.constants import support_of
 from rubgen.solver.supports.support_kernels import SUPPORT_WORKS, SupportState
 
 CANDIDATE_MARGIN_SHARE = 5e-5
-"""Blades nearer than this share of the tip radius are solved together; a step widens it where forces reach farther."""
+"""Blades nearer than this share of the tip radius are solved together. A step doubles it where forces act farther."""
 CASING_LIMIT_SHARE = 0.025
-"""A casing node displaced by this share of the tip radius (10 mm at 0.4 m: eight times the preset casing's thickness,
-seven times its largest regular response) is beyond what a linear ring can mean."""
+"""A casing node displaced by more than this share of the tip radius is outside the range of a linear ring. It is 10 mm
+at 0.4 m: eight times the preset casing's thickness, seven times its largest regular response."""
 TIP_LIMIT_SHARE = 0.025
-"""The same for a tip (10 mm): a cantilever of the preset's blades, 150 mm long and 3.9 mm thick at the root, has
-3 E (h/2) w / L^2 = 0.5 GPa there, the yield stress of good steel, and its tip has drawn back by 3 w^2 / (5 L) = 0.4 mm,
-which a linear beam does not have and which is more than the clearance."""
+"""A tip displaced by more than this share of the tip radius (10 mm) is outside the range of a linear beam. The preset's
+blades are 150 mm long and 3.9 mm thick at the root. As cantilevers they have the root stress 3 E (h/2) w / L^2 = 0.5
+GPa there, the yield stress of good steel. Their tips would draw back by 3 w^2 / (5 L) = 0.4 mm, more than the
+clearance; the tips of a linear beam do not."""
 
 
 def relative_tip_shift(tips: Tips, tip_limit: float) -> float:
@@ -65,8 +66,9 @@ def build_model(
 ) -> Model:
     """The constants of a run of `steps` equal steps a turn.
 
-    `blocks` are those of the system's matrices, `start_angle` is theta at the beginning of each turn, rad. Without
-    `screen` every blade's gap is evaluated in every step, as always where `bounds_hold` is false.
+    - blocks: of the system's matrices.
+    - start_angle: theta at the beginning of each turn, rad.
+    - screen: False evaluates every blade's gap in every step, as where `bounds_hold` is false. The result is the same.
     """
     dt = 2 * np.pi / system.speed / steps
     surface, tips = casing_surface(system, contact), blade_tips(system)
@@ -103,7 +105,7 @@ def build_model(
 
 
 def speed_part(system: SpinningSystem, blocks: Blocks, dt: float) -> SpeedPart:
-    """What of a model follows the speed, of the same system at another speed."""
+    """The fields of a model that follow the speed, for the same system at another speed; `dt` in s."""
     return frozen(
         SpeedPart(
             blade_tips(system),
@@ -116,7 +118,13 @@ def speed_part(system: SpinningSystem, blocks: Blocks, dt: float) -> SpeedPart:
 
 
 def at_speed(model: Model, part: SpeedPart, speed: float, angles: Angles, *, screen: bool) -> Model:
-    """The model at another speed in rad/s, with tables at the angles of as many steps as there are to take."""
+    """The model at another speed.
+
+    - part: made by `speed_part` at that speed.
+    - speed: in rad/s.
+    - angles: tables of the steps to make.
+    - screen: as in `build_model`.
+    """
     tip_shift = relative_tip_shift(part.tips, model.laws.tip_limit)
     screen = screen and bounds_hold(model.surface, tip_shift, model.laws.casing_limit)
     laws = model.laws._replace(speed=speed, tip_shift=tip_shift, screen=screen)
@@ -124,13 +132,13 @@ def at_speed(model: Model, part: SpeedPart, speed: float, angles: Angles, *, scr
 
 
 def angle_tables(system: SpinningSystem, theta: FloatArray, section: float = 0.0) -> Angles:
-    """Tables at the angles `theta` (steps + 2,) of steps 0, ..., steps and -1; `section` as in `Angles`."""
+    """Tables at the angles `theta` (steps + 2,) in rad of steps 0, ..., steps and -1; `section` as in `Angles`."""
     orders = np.multiply.outer(theta, system.surface.order) - system.surface.order * system.surface.phase
     return frozen(Angles(theta, np.cos(theta), np.sin(theta), np.cos(orders), np.sin(orders), section))
 
 
 def new_state(model: Model) -> State:
-    """A state at rest, undeformed and unworn, without works so far."""
+    """A state at rest, undeformed and unworn, its works zero."""
     return State(
         motions=(new_motion(model), new_motion(model), new_motion(model)),
         contact=new_contact_work(len(model.tip_compliance), len(model.casing_compliance)),
@@ -142,7 +150,7 @@ def new_state(model: Model) -> State:
 
 
 def turned(state: State, steps: int) -> State:
-    """The state after so many steps, each of which has let the motions change places."""
+    """The state after `steps` steps: in each step the three motions have changed places."""
     first = steps % 3
     order = state.motions[first:] + state.motions[:first]
     return state._replace(motions=(order[0], order[1], order[2]))
@@ -165,7 +173,7 @@ def _scratch(model: Model) -> Scratch:
 
 
 def new_contact_work(tip_coordinates: int, c: int) -> ContactWork:
-    """Arrays of the contact step for a number of tip coordinates and of casing modes."""
+    """Arrays of the contact step for `tip_coordinates` tip coordinates and `c` casing modes."""
     m = tip_coordinates // 3
     return ContactWork(
         casing=with_zeros(np.zeros(c)), bounds=np.full(padded(m), np.inf), psi=np.zeros(m), gap=np.zeros(m),

@@ -1,4 +1,4 @@
-"""What of the scheme follows the speed."""
+"""The part of the scheme that follows the speed."""
 
 from __future__ import annotations
 

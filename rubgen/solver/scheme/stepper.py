@@ -1,4 +1,4 @@
-"""A model and a state, and what a turn of theirs leaves."""
+"""A model, its state, and the output of a turn."""
 
 from __future__ import annotations
 
@@ -26,18 +26,21 @@ from rubgen.solver.scheme.turn_kernels import STEPS, Touches, TurnResult, close_
 from rubgen.taps import DEFAULT_TAPS, Tap
 
 FRAMES = 32
-"""Frames of a turn that the solver hands out: blade modes up to the 16th order of rotation move smoothly."""
+"""Frames of a turn: enough for smooth blade modes up to the 16th order of rotation."""
 
 
 class Stepper:
-    """A system's `model`, its `state`, and what a turn leaves: `result`, `touches`, `snapshots`.
+    """A system's `model`, its `state`, and the output of a turn: `result`, `touches`, `snapshots`.
 
-    `taps` are the rows of `result.taps`, timing probes apart. `start_angle` and `screen` as in `build_model`: neither
-    screening nor taps change a result. The state begins at rest, undeformed; see `speed.start`.
+    The state begins at rest, undeformed; see `speed.start`. Raises UserError for a step above the stability limit.
 
-    `alike` are the same system at other speeds, whose matrices must fall into the same blocks; see `follow`. `steps`
-    are then those of the present part, `turn_steps` those of a turn of `system`. Raises UserError for a step above the
-    stability limit.
+    - system: the system at one speed.
+    - contact: the contact law.
+    - steps: steps of a turn of `system`. At a changing speed they become `turn_steps`, and `steps` are the steps of the
+      present part.
+    - start_angle, screen: as in `build_model`.
+    - taps: the rows of `result.taps`, without timing probes. They change no motion.
+    - alike: the same system at other speeds. Its matrices must have the same blocks; see `follow`.
     """
 
     def __init__(
@@ -80,9 +83,10 @@ class Stepper:
 
     @property
     def coordinates(self) -> Coordinates:
-        """Copies of q at the step before the next turn's first, at its first, and of the last that was written.
+        """Copies of q at the step before the next turn's first step, at its first step, and at the last step written.
 
-        Change them by `set_coordinates`. `change` is d of the last two and the one before, without meaning at a start.
+        Change them by `set_coordinates`. `change` is d of the first two and the step before; it is not valid at a
+        start.
         """
         before, now, after = (self.blocks.to_q(motion.z) for motion in self.state.motions)
         for q in (before, now, after):
@@ -99,10 +103,14 @@ class Stepper:
         self.state.contact.step_gaps[:] = np.nan
 
     def follow(self, part: SpeedPart, speed: float, theta: FloatArray, section: float) -> None:
-        """Go on at another speed (rad/s) for as many steps as `theta` (steps + 2,) has, less two: 0, ..., steps and -1.
+        """Continue at another speed. The next turn has as many steps as `theta` has angles, less two.
 
-        `section` is the time from step 0 to the section in steps, where that is one. The state carries over: M and dt
-        are the same. The stored energy's change with K is added to the works.
+        The state carries over: M and dt are the same. The change of stored energy with K is added to the works.
+
+        - part: made by `speed_part` at that speed.
+        - speed: in rad/s.
+        - theta (steps + 2,): angles of steps 0, ..., steps and -1, rad.
+        - section: time from step 0 to the Poincare section in steps, where there is one.
         """
         old, angles = self.model.energy.K, angle_tables(self.system, theta, section)
         self.model = at_speed(self.model, part, speed, angles, screen=self.screen)
@@ -116,12 +124,13 @@ class Stepper:
     def run_turn(
         self, opening: FloatArray | None = None, clock: int = 0, *, recording: bool = True
     ) -> tuple[int, int, int]:
-        """Advance by one turn; its outputs are in `result`, `touches` and `snapshots`.
+        """Integrate one turn. Its outputs are in `result`, `touches` and `snapshots`.
 
-        `opening` (steps + 2,) in m at steps -1, 0, ..., steps of the turn, none by default. `clock` is the number
-        that touches give to the first step. Without `recording` taps and arrivals are not made, which moves nothing
-        else. Returns a code of `step_kernels`, the step where the turn ended, and the number of touches in
-        `touches.ended`.
+        - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., steps, m; none by default.
+        - clock: number of the first step, for touches.
+        - recording: False leaves out taps, orbit and arrivals. The motion is the same.
+
+        Returns a code of `step_kernels`, the step where the turn ended, and the number of touches in `touches.ended`.
         """
         width = np.zeros(self.steps + 2) if opening is None else opening
         code, step, ended = run_turn(
@@ -131,34 +140,34 @@ class Stepper:
         return code, step, ended
 
     def begin_record(self) -> None:
-        """Count touches that are under way from here on."""
+        """Count present touches from here on."""
         self.touches.open[:, STEPS] = 0.0
 
     def end_record(self, clock: int) -> FloatArray:
-        """End the touches that are under way at the step `clock`; these touches (any, 8)."""
+        """End the present touches at the step `clock`. Return them (any, 8)."""
         return self.touches.ended[: close_touches(self.touches, clock, 0)].copy()
 
     def clear_works(self) -> None:
-        """Count works from here on."""
+        """Set the works to zero."""
         self.state.works[:] = 0.0
 
     def take_frames(self, frames: int) -> None:
-        """Let every turn, or part of one, leave so many frames."""
+        """Let every turn or part of a turn leave `frames` frames."""
         if len(self.result.frames) != frames:
             self.result = self.result._replace(frames=np.zeros((frames, self.result.frames.shape[1])))
 
     def take_snapshots(self, steps: list[int]) -> None:
-        """Let every turn leave snapshots at rising steps, the last of which ends it or is never reached."""
+        """Let every turn leave snapshots at rising steps; the last is the end of the turn, or is never reached."""
         numbers, blades = self.blocks.rows * LANES, self.system.n_blades
         self.snapshots = Snapshots(
             np.array(steps), np.zeros((len(steps), 2, numbers)), np.full((len(steps), 2, blades), np.nan)
         )
 
     def step(self, index: int, opening: FloatArray | None = None) -> tuple[int, int]:
-        """One step from the turn's step `index`, without works, taps and touches; `state.contact` holds its contacts.
+        """Make one step from the turn's step `index`, without works, taps and touches.
 
-        Returns a code of `step_kernels` and the number of contacts that were solved: `lam`, `blade` and so on up to
-        that number.
+        Returns a code of `step_kernels` and the number of solved contacts, whose `lam`, `blade` and so on are in
+        `state.contact`.
         """
         width, state = np.zeros(self.steps + 2) if opening is None else opening, self.state
         code, count = advance(self.model, index, width, *state.motions, state)

@@ -1,4 +1,4 @@
-"""Tap specifications as the kernels take them. A new kind of sampled tap is one function and one line in `TAP_ROWS`."""
+"""Taps as the kernels take them. A new kind of sampled tap is one function and one line in `TAP_ROWS`."""
 
 from __future__ import annotations
 
@@ -41,15 +41,15 @@ from rubgen.taps import (
 )
 
 SOURCES = ("shaft", "acceleration", "displacement", "position", "change")
-"""What linear functionals act on, as the fields of `Taps`."""
+"""The inputs of linear functionals, by the names of their fields in `Taps`."""
 
 
 @dataclass
 class TapLayout:
-    """Functionals as they are collected: for each source the places in the sums and the rows that belong to them.
+    """Collects linear functionals: for each source, places in the sums and the rows that belong to them.
 
-    A functional is written (source, row): the sum of all functionals of a tap is its value. Each source begins a new
-    row of eight.
+    A functional is (source, row). The value of a tap is the sum of its functionals. Each source begins a new row of
+    eight.
     """
 
     system: SpinningSystem
@@ -63,17 +63,17 @@ class TapLayout:
 
     @property
     def recovery(self) -> Recovery:
-        """What the system recovers beside its own coordinates."""
+        """What sensors need of the system. Raises ValueError where it was not reduced from a machine."""
         if self.system.recovery is None:
             raise ValueError("this system was not reduced from a machine: it has no strain and no drive")
         return self.system.recovery
 
     def add(self, output: int, **functionals: FloatArray) -> None:
-        """A linear tap: the sum of its functionals, named by their sources."""
+        """Add a linear tap: the sum of its functionals, named by their sources."""
         self.linear.append((output, self._place(**functionals)))
 
     def add_ray(self, output: int, angle: float) -> None:
-        """A clearance on a ray."""
+        """Add a clearance on a ray."""
         self.rays.append((output, self.places, angle))
         for row in polar_rows(self.surface, angle):
             self._place(displacement=row)
@@ -86,7 +86,7 @@ class TapLayout:
         return place
 
     def product(self, source: str) -> Product:
-        """The functionals of one source: a line for each row of eight places that it reaches."""
+        """The functionals of one source: a line for each row of eight places with a functional."""
         placed = self.rows[source]
         lines, parts, first = [], [np.zeros((0, LANES))], 0
         for number in sorted({place // LANES for place, _ in placed}):
@@ -137,8 +137,8 @@ def polar_rows(surface: Surface, angle: float) -> list[FloatArray]:
 def ring_strain_row(system: SpinningSystem, recovery: Recovery, angle: float) -> FloatArray:
     """Hoop strain at the casing's outer face per unit of each mode: (u_t' + u_r) / R + (h / 2) (u_t' - u_r'') / R^2.
 
-    The stretch of the centre line and, with the turn (u_t - u_r') / R of its section, the bending; a thin ring
-    (Love 1888). Derivatives are those of the trigonometric polynomial through the nodes.
+    The first term is the stretch of the centre line. The second is the bending, from the rotation (u_t - u_r') / R of
+    the cross-section; a thin ring (Love 1888). Derivatives are taken of the trigonometric polynomial through the nodes.
     """
     modes = system.casing_modes
     nodes = len(modes)
@@ -192,23 +192,26 @@ TAP_ROWS: dict[type[Tap], Callable[[TapLayout, int, Any], None]] = {
 
 
 def sampled_taps(taps: tuple[Tap, ...]) -> list[Tap]:
-    """Those that are signals, not events."""
+    """The taps that are signals, not events."""
     return [tap for tap in taps if not isinstance(tap, TipTiming)]
 
 
 def timing_taps(taps: tuple[Tap, ...]) -> list[TipTiming]:
-    """Those that are events."""
+    """The taps that are events."""
     return [tap for tap in taps if isinstance(tap, TipTiming)]
 
 
 def build_taps(
     taps: tuple[Tap, ...], system: SpinningSystem, surface: Surface, blocks: Blocks, laws: Laws, theta: FloatArray
 ) -> Taps:
-    """What the kernels need for these taps of a system, at the angles `theta` (steps,) of a turn's steps.
+    """Constants and scratch of the kernels for these taps of a system.
 
-    `surface` is the casing's, `blocks` are the system's; of `laws` dt and the limit of the tips enter.
+    - surface: of the casing.
+    - blocks: of the system's matrices.
+    - laws: dt and the limit of the tips are used.
+    - theta (steps,): angles of a turn's steps, rad.
 
-    Raises ValueError for a blade that is not there, and for strain or drive of a system without recovery.
+    Raises ValueError for a blade that does not exist, and for strain or drive of a system without recovery.
     """
     layout = TapLayout(system, surface, blocks, laws.dt)
     for output, tap in enumerate(sampled_taps(taps)):
@@ -253,14 +256,14 @@ def _timing(system: SpinningSystem, probes: list[TipTiming], theta: FloatArray, 
 
 
 def turned_taps(taps: Taps, system: SpinningSystem, theta: FloatArray) -> Taps:
-    """The same taps at other angles of the steps."""
+    """The same taps at other angles `theta` (steps,) of the steps, rad."""
     blade, share = _blades_around_rays(system, taps.rays.angle, theta)
     passing, _ = _blades_around_rays(system, taps.timing.angle, theta)
     return taps._replace(rays=taps.rays._replace(blade=blade, share=share), timing=taps.timing._replace(blade=passing))
 
 
 def _blades_around_rays(system: SpinningSystem, rays: FloatArray, theta: FloatArray) -> tuple[IntArray, FloatArray]:
-    """For each step, at angle `theta`, and ray the blades (steps, rays, 2) on either side, and the way between them."""
+    """The blades (steps, rays, 2) on either side of each ray at angles `theta`, and the ray's share of the angle."""
     turn = 2 * np.pi
     order = np.argsort(np.mod(system.blade_angles, turn), kind="stable")
     placed = np.mod(system.blade_angles, turn)[order]

@@ -1,1 +1,1 @@
-"""How a run starts, and how the scheme is taken through its turns at a steady or at a changing speed."""
+"""The start of a run, and its turns at a steady or a changing speed."""

@@ -1,4 +1,4 @@
-"""A stepper made ready for a changing speed."""
+"""A stepper prepared for a changing speed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class ChangingSystem:
         self.speeds, self.start = speeds, model.at_speed(self.rotation.start, 0.0)
 
     def least_stable(self) -> SpinningSystem:
-        """The system of the slowest decay, negative where it grows by itself."""
+        """The system with the slowest decay; the decay is negative where it grows by itself."""
         return min(self.systems, key=slowest_decay)
 
     def steps(self, sample_rate_hz: float) -> int:
@@ -40,7 +40,7 @@ class ChangingSystem:
         return steps
 
     def driver(self, contact: ContactLaw, steps: int, taps: tuple[Tap, ...] = DEFAULT_TAPS) -> ChangingDriver:
-        """A stepper in the rub-free motion of the first instant, and what takes it through the turns."""
+        """A driver in the rub-free motion of the first instant, with `steps` a turn at the highest speed."""
         push = largest_acceleration(self.rotation)
         pushed = [self.model.at_speed(speed, push) for speed in (self.rotation.slowest, self.rotation.fastest)]
         stepper = Stepper(self.systems[-1], contact, steps, taps=taps, alike=[*self.systems, *pushed])

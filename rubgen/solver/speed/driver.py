@@ -1,4 +1,4 @@
-"""How a stepper is taken through its turns: at a steady speed in one call, at a changing one in short parts."""
+"""Drivers run a stepper turn by turn: at a steady speed in one call a turn, at a changing speed in short parts."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from rubgen.solver.speed.interpolation import SpeedInterpolation
 from rubgen.solver.speed.turn import Turn, TurnFrames
 
 SPEED_SHARE = 2e-4
-"""Within a part, whose matrices stand still at its middle speed, the speed changes by this share at most."""
+"""Within a part the matrices are constant, at its middle speed. The speed changes by at most this share."""
 MOST_PARTS = 64
 NEVER = 2**62
-"""A snapshot at no step of a part."""
+"""A step number that no part reaches."""
 
 Opening = Callable[[FloatArray], FloatArray]
-"""How far the surface is opened, m, after so many turns from the start."""
+"""The opening of the surface, m, after a number of turns from the start."""
 
 
 class SpeedDriver(Protocol):
-    """Takes a stepper turn by turn from the start; turns and steps are counted from the start of the record."""
+    """Runs a stepper turn by turn. Turns and steps are counted from the start of the record."""
 
     stepper: Stepper
     settle: int
@@ -41,7 +41,12 @@ class SpeedDriver(Protocol):
         ...
 
     def run_turn(self, number: int, opening: Opening, *, recording: bool) -> Turn:
-        """Run one turn. Taps, orbit and arrivals are made only where `recording`."""
+        """Run one turn.
+
+        - number: of the turn; negative in the settling.
+        - opening: of the surface.
+        - recording: whether taps, orbit and arrivals are recorded.
+        """
         ...
 
 
@@ -57,7 +62,7 @@ class SteadyDriver:
         return number * self.stepper.steps
 
     def run_turn(self, number: int, opening: Opening, *, recording: bool) -> Turn:
-        """Run one turn. Taps, orbit and arrivals are made only where `recording`."""
+        """Run one turn, see `SpeedDriver.run_turn`."""
         stepper, steps, first = self.stepper, self.stepper.steps, self.first_step(number)
         width = opening(number + self.settle + np.arange(-1, steps + 1) / steps)
         code, step, ended = stepper.run_turn(width, first, recording=recording)
@@ -80,10 +85,10 @@ class SteadyDriver:
 class ChangingDriver:
     """A speed that follows a rotation, theta = 0 at t = 0, where the record begins after `settle` turns.
 
-    Time steps are equal: a turn has as many as fit, and begins at the step that is nearest to theta = 0 mod 2 pi. Each
-    turn is cut into equal parts in which the speed changes by SPEED_SHARE at most; the matrices of a part are those of
-    the speed in its middle, so the error falls with the square of a part's length. What the tips' mean steady growth
-    closes follows every step, through the opening of the surface.
+    Time steps are equal. A turn begins at the step that is nearest to theta = 0 mod 2 pi. Each turn is cut into equal
+    parts in which the speed changes by at most SPEED_SHARE. The matrices of a part belong to the speed in its middle,
+    so the error falls with the square of a part's length. The tips' mean steady growth changes at every step, as part
+    of the opening of the surface.
     """
 
     def __init__(self, stepper: Stepper, matrices: SpeedInterpolation, rotation: Rotation, settle: int) -> None:
@@ -91,7 +96,7 @@ class ChangingDriver:
         stepper.take_snapshots([NEVER])
 
     def begin(self, motion: RubFreeMotion) -> None:
-        """Put the stepper into a rub-free motion, without works so far."""
+        """Put the stepper into a rub-free motion, and set its works to zero."""
         start = np.array([self._time_of(-self.settle)])
         speed = self.rotation.speed(start)
         part = next(self.matrices.at(speed, self.rotation.acceleration(start)))
@@ -106,7 +111,7 @@ class ChangingDriver:
         return round(self._time_of(number) / self.stepper.dt)
 
     def run_turn(self, number: int, opening: Opening, *, recording: bool) -> Turn:
-        """Run one turn. Taps, orbit and arrivals are made only where `recording`."""
+        """Run one turn, see `SpeedDriver.run_turn`."""
         stepper, starts = self.stepper, self._part_starts(number)
         first, ends = int(starts[0]), (starts - starts[0]).tolist()
         middles = 0.5 * (starts[:-1] + starts[1:] - 1) * stepper.dt
@@ -172,7 +177,7 @@ def _frames(result: TurnResult, first: int, steps: int) -> TurnFrames:
 
 
 def _copied(result: TurnResult) -> TurnResult:
-    """A part's result, safe from the next one; its taps are its own already."""
+    """A copy of a part's result that the next part does not overwrite. Its taps are new in every part."""
     return result._replace(section=result.section.copy(), summary=result.summary.copy(), orbit=result.orbit.copy())
 
 
@@ -182,7 +187,7 @@ def _arrivals(stepper: Stepper) -> FloatArray:
 
 
 def _joined(parts: list[Turn]) -> Turn:
-    """A turn of its parts."""
+    """One turn from its parts."""
     results = [part.result for part in parts]
     summary = np.sum([result.summary for result in results], axis=0)
     summary[2] = max(result.summary[2] for result in results)

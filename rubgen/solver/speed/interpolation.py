@@ -1,7 +1,7 @@
-"""A stepper's matrices as functions of a changing speed, cheap to have at any speed.
+"""A stepper's matrices as functions of a changing speed.
 
-Every number that the kernels take is a smooth function of the speed Omega and linear in its acceleration Omega'. It is
-made exactly at a few Chebyshev speeds, by the same code as for a steady speed, and interpolated between them.
+All numbers of the kernels are smooth functions of the speed Omega and linear in its acceleration Omega'. They are
+computed exactly at a few Chebyshev speeds, by the same code as for a steady speed, and interpolated between them.
 """
 
 from __future__ import annotations
@@ -18,16 +18,18 @@ from rubgen.solver.scheme.free_step_kernels import Scheme
 from rubgen.solver.scheme.speed_part import SpeedPart
 
 NODES = 12
-"""Chebyshev speeds. C and K are polynomials in Omega, and Omega dt is small in A = M / dt^2 + C / (2 dt): from 3,000 to
-12,000 rev/min the preset's matrices come out right to rounding (tests/solver/test_following.py)."""
+"""Number of Chebyshev speeds.
+
+C and K are polynomials in Omega, and Omega dt is small in A = M / dt^2 + C / (2 dt). From 3,000 to 12,000 rev/min the
+preset's interpolated matrices are exact except for rounding (tests/solver/test_speed_interpolation.py)."""
 
 
 SUPPORT = ("columns", "compliance", "rows", "tip_columns", "tip_rows")
-"""What of turning forces follows the speed: all that A^-1 makes of them."""
+"""The fields of `Support` that follow the speed: all products with A^-1."""
 
 
 def chebyshev_speeds(slowest: float, fastest: float) -> FloatArray:
-    """NODES speeds in rad/s from the slowest to the fastest, both among them, densest at the ends."""
+    """NODES speeds in rad/s from the slowest to the fastest, both included, densest at the ends."""
     nodes = -np.cos(np.pi * np.arange(NODES) / (NODES - 1))
     speeds = 0.5 * (slowest + fastest) + 0.5 * (fastest - slowest) * nodes
     speeds[0], speeds[-1] = slowest, fastest
@@ -41,9 +43,9 @@ def lagrange_weights(nodes: FloatArray, at: FloatArray) -> FloatArray:
 
 
 class SpeedInterpolation:
-    """The parts of a stepper between `speeds` (NODES,), made by `part_at(speed, acceleration)`.
+    """The speed parts of a model between `speeds` (NODES,), rad/s, made by `part_at(speed, acceleration)`.
 
-    `acceleration` in rad/s2 is the largest one that comes, of either sign. Only what changes is interpolated.
+    `acceleration` is the largest |Omega'|, rad/s2. Only numbers that differ between parts are interpolated.
     """
 
     def __init__(self, part_at: Callable[[float, float], SpeedPart], speeds: FloatArray, acceleration: float) -> None:

@@ -1,4 +1,4 @@
-"""What one turn leaves."""
+"""The result of one turn."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rubgen.solver.scheme.turn_kernels import TurnResult
 
 
 class TurnFrames(NamedTuple):
-    """Some 32 moments of a turn."""
+    """About 32 moments of a turn."""
 
     step: IntArray
     """Their steps (frames,), counted from the first of the record."""

@@ -1,1 +1,1 @@
-"""Forces on the disk centre that no constant matrix holds: the laws in plain numpy and in kernels."""
+"""Forces on the disk centre that no constant matrix contains: the laws in plain numpy and in kernels."""

@@ -12,7 +12,7 @@ from rubgen.solver.supports.support_kernels import Support
 
 
 def support_of(system: SpinningSystem, blocks: Blocks, dt: float) -> Support:
-    """The system's turning forces for a step of dt; not active where it has none."""
+    """The system's turning forces as constants of the kernels, for a step of dt (s); not active where it has none."""
     forces = system.turning
     if forces is None:
         return _support(TurningForces(), active=False)

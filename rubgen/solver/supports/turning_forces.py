@@ -1,4 +1,4 @@
-"""Forces that no constant matrix holds: uneven supports, a squeeze film damper, gravity. The law in plain numpy.
+"""Forces that no constant matrix contains: uneven supports, a squeeze film damper, gravity. The law in plain numpy.
 
 `support_kernels` applies the same law in the steps of a run.
 """
@@ -12,10 +12,16 @@ from rubgen.reduction.model import TurningForces
 
 
 def turning_force(forces: TurningForces, speed: float, theta: AnyArray, u: AnyArray, v: AnyArray) -> AnyArray:
-    """Force (..., 2) in N on O_d in the turning frame, of its displacement u and velocity v (..., 2) at `theta` (...).
+    """Force (..., 2) in N on O_d in the turning frame.
 
-    -k_a Q u - c_a Q v_abs - C(u) v_abs, C = C_0 (1 - eps^2)^(-3/2) [1 + 3 u u^T / (c^2 (1 - eps^2))], whose
-    values along and across u are the C_rr and C_tt of `machine.SqueezeFilm`. Analytic: complex steps give derivatives.
+    -k_a Q u - c_a Q v_abs - C(u) v_abs, C = C_0 (1 - eps^2)^(-3/2) [1 + 3 u u^T / (c^2 (1 - eps^2))]. The values of C
+    along and across u are the C_rr and C_tt of `machine.SqueezeFilm`. The function is analytic, so complex steps
+    differentiate it.
+
+    - forces: constants of the forces.
+    - speed: Omega, rad/s.
+    - theta (...): angle of the blisk, rad.
+    - u, v (..., 2): displacement, m, and velocity, m/s, of O_d in the turning frame.
     """
     absolute = v + speed * np.stack([-u[..., 1], u[..., 0]], axis=-1)
     f = -_uneven(theta, forces.stiffness * u + forces.damping * absolute)
@@ -30,7 +36,7 @@ def turning_force(forces: TurningForces, speed: float, theta: AnyArray, u: AnyAr
 def force_derivatives(
     forces: TurningForces, speed: float, theta: FloatArray, u: FloatArray, v: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Derivatives by u and by v (..., 2, 2) of `turning_force`, by a complex step."""
+    """Derivatives by u and by v (..., 2, 2) of `turning_force`, by a complex step; parameters as there."""
     by_u, by_v = [], []
     for i in range(2):
         step = 1e-30j * np.eye(2)[i]
