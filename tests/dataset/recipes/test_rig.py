@@ -8,7 +8,7 @@ import rubgen
 from rubgen.io.parquet.read import read_table
 from rubgen.scenario import load_recipe
 
-RECIPE = Path(__file__).parents[2] / "datasets/rig.toml"
+RECIPE = Path(__file__).parents[3] / "datasets/rig.toml"
 
 
 def test_runs_of_the_rig_recipe(tmp_path):

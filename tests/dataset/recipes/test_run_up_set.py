@@ -7,7 +7,7 @@ import rubgen
 from rubgen.dataset.checking.relabel import relabel
 from rubgen.io.parquet.read import read_table
 
-RECIPE = Path(__file__).parents[2] / "datasets" / "run-up.toml"
+RECIPE = Path(__file__).parents[3] / "datasets" / "run-up.toml"
 
 
 def test_the_run_up_recipe_makes_a_set_that_verifies(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 
 @pytest.mark.parametrize("sensors", ["default", "rig"])
 def test_short_sets_are_whole_and_wrong_labels_are_found(sensors, monkeypatch):
-    monkeypatch.syspath_prepend(Path(__file__).parents[2])
+    monkeypatch.syspath_prepend(Path(__file__).parents[3])
     from validation.reliability.short_sets import study
 
     tables = study((0.05, 0.3), (sensors,), 3)

@@ -10,7 +10,7 @@ import rubgen
 from rubgen.dataset.checking.relabel import relabel
 from rubgen.io.parquet.read import read_table
 
-DATASETS = Path(__file__).parents[2] / "datasets"
+DATASETS = Path(__file__).parents[3] / "datasets"
 
 
 @pytest.mark.parametrize("name", ["speed-sweep", "three-lobes"])
