@@ -23,14 +23,20 @@ Arrays = dict[str, np.ndarray[Any, Any]]
 PACKAGE = Path(rubgen.__file__).parent
 APART = ("cli", "report", "dataset", "output.py", "io", "viz", "sensors", "progress.py", "brief.py", "errors.py")
 """What of the package changes no label: all else lies between a machine and its labels."""
+MOTION_LABELS = "labels/motion"
+"""What changes no response, beside APART."""
 
 
 @dataclass(frozen=True)
 class Piece:
-    """`make(*arguments)`: a function of a module, and numbers, texts or a scenario that it takes."""
+    """`make(*arguments)`: a function of a module, and numbers, texts or a scenario that it takes.
+
+    `apart` names a part of the package that `make` does not use.
+    """
 
     make: Callable[..., Arrays]
     arguments: tuple[object, ...] = ()
+    apart: str = ""
 
     @property
     def key(self) -> str:
@@ -39,7 +45,7 @@ class Piece:
         Comments and layout of the code do not count.
         """
         given = [scenario_dict(a) if isinstance(a, Scenario) else a for a in self.arguments]
-        what = [physics(PACKAGE), _source(self.make), self.make.__qualname__, given]
+        what = [physics(PACKAGE, self.apart), _source(self.make), self.make.__qualname__, given]
         return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()[:24]
 
 
@@ -48,11 +54,12 @@ Found = Callable[[Piece], Arrays]
 
 
 @cache
-def physics(package: Path) -> str:
-    """Hash of the syntax trees of everything between a machine and its labels."""
+def physics(package: Path, apart: str = "") -> str:
+    """Hash of the syntax trees of everything between a machine and its labels, without the folder `apart`."""
     digest = hashlib.sha256()
     for source in sorted(package.rglob("*.py")):
-        if source.relative_to(package).parts[0] not in APART:
+        path = source.relative_to(package)
+        if path.parts[0] not in APART and not (apart and path.is_relative_to(apart)):
             digest.update(_tree(source.read_text(encoding="utf-8")))
     return digest.hexdigest()
 

@@ -9,7 +9,7 @@ from rubgen.scenario.vary import vary
 from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
 from rubgen.solver.wants import Wants
-from validation.piece import Arrays, Piece
+from validation.piece import MOTION_LABELS, Arrays, Piece
 
 SERIES: dict[str, dict[str, float]] = {
     "preset": {},
@@ -37,8 +37,8 @@ def scenarios(*, every: int = 1) -> dict[str, Scenario]:
 
 
 def run_piece(scenario: Scenario) -> Piece:
-    """The piece that runs the scenario."""
-    return Piece(run, (scenario,))
+    """The piece that runs the scenario; labels are made when it is read."""
+    return Piece(run, (scenario,), apart=MOTION_LABELS)
 
 
 def run(scenario: Scenario) -> Arrays:

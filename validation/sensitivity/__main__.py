@@ -1,9 +1,9 @@
 """`python -m validation.sensitivity [NAME ...] [--quick] [--finished] [--workers N]`: studies, figures, the page.
 
-Names are those of the studies and `halving`; all by default. Runs and tables go to `out/sensitivity/`, figures and
-`sensitivity.md` to `docs/`; with `--quick`, few values and turns, everything goes to `out/sensitivity-quick/`. A study
-that was stopped goes on where it stood. The page shows every study that is finished, and of `halving` what is finished;
-with `--finished` nothing more is run.
+Names are those of the studies, `halving` and `recipes`; all by default. Runs and tables go to `out/sensitivity/`,
+figures, `sensitivity.md` and, of `recipes`, `confidence.md` to `docs/`; with `--quick`, few values and turns,
+everything goes to `out/sensitivity-quick/`. A study that was stopped goes on where it stood. A page shows every study
+that is finished, and of `halving` and `recipes` what is finished; with `--finished` nothing more is run.
 """
 
 from __future__ import annotations
@@ -19,18 +19,23 @@ from rubgen.progress import count
 from rubgen.scenario import Scenario
 from rubgen.viz.figures import save_png
 from validation.command import run_command
+from validation.piece import Arrays, Piece
 from validation.rows import write_rows
 from validation.sensitivity.cases import STUDIES, Study, with_operation
+from validation.sensitivity.confidence_figure import reliability_figure
+from validation.sensitivity.confidence_page import confidence_page
 from validation.sensitivity.figures import halving_figure, study_figure
 from validation.sensitivity.halving import SPEEDS_RPM, STEPS, Pair, halve, next_record, scenario
 from validation.sensitivity.outcome import Outcome, outcome_of, run_piece
 from validation.sensitivity.page import page
+from validation.sensitivity.recipes import RUNS, SEEDS, Halved, RecipeRun, all_runs, halved, rubbing
 from validation.sensitivity.results import Result, Results, varied
 from validation.store import Store
 
-HALVING = "halving"
+HALVING, RECIPES = "halving", "recipes"
 QUICK_SETTLE, QUICK_RECORD = 60, 64
 QUICK_SPEEDS = SPEEDS_RPM[36::20]
+QUICK_RUNS = 1
 
 
 @dataclass(frozen=True)
@@ -68,6 +73,20 @@ class Finished:
         """The pairs at the speeds that are finished."""
         return halve(self.outcome, self.speeds, self.shorten)
 
+    def found(self, piece: Piece) -> Arrays | None:
+        """The arrays of a piece; None where it is not finished."""
+        return self.store(piece) if self.store.holds(piece) else None
+
+    @property
+    def runs(self) -> list[RecipeRun]:
+        """The runs of the recipes."""
+        return all_runs(QUICK_RUNS if self.quick else RUNS, self.shorten)
+
+    def halved(self) -> dict[str, list[Halved]]:
+        """The pairs of recipes that are finished, by the use of their seed; none without any."""
+        pairs = halved(self.found, self.runs)
+        return {use: [pair for pair in pairs if pair.run.use == use] for use in SEEDS} if pairs else {}
+
 
 def main(arguments: Sequence[str], folder: Path) -> int:
     """Run the studies that are named, all by default; paths start from `folder`."""
@@ -86,7 +105,7 @@ def main(arguments: Sequence[str], folder: Path) -> int:
 
 def _parse(arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m validation.sensitivity")
-    names = [study.name for study in STUDIES] + [HALVING]
+    names = [*(study.name for study in STUDIES), HALVING, RECIPES]
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(names))
     parser.add_argument("--quick", action="store_true", help="few values and turns, into out/sensitivity-quick")
     parser.add_argument("--finished", action="store_true", help="show what is finished already, run nothing more")
@@ -107,6 +126,10 @@ def _compute(finished: Finished, names: Sequence[str], workers: int) -> None:
     if HALVING in names:
         later = [next_record(pair, finished.shorten) for pair in finished.pairs() if not pair.equal]
         finished.store.compute(map(run_piece, later), workers, count)
+    if RECIPES in names:
+        finished.store.compute((run.piece(STEPS) for run in finished.runs), workers, count)
+        again = rubbing(finished.found, finished.runs)
+        finished.store.compute((run.piece(2 * STEPS) for run in again), workers, count)
 
 
 def _write(finished: Finished, out: Path, pictures: Path) -> None:
@@ -119,7 +142,12 @@ def _write(finished: Finished, out: Path, pictures: Path) -> None:
     if pairs:
         write_rows(out / f"{HALVING}.json", [asdict(pair) for pair in pairs])
         save_png(halving_figure(pairs), pictures / f"sensitivity-{HALVING}.png")
-    (pictures / "sensitivity.md").write_text(page(results, pairs), encoding="utf-8")
+    recipes = finished.halved()
+    if recipes:
+        save_png(reliability_figure(recipes), pictures / "confidence.png")
+        (pictures / "confidence.md").write_text(confidence_page(recipes), encoding="utf-8")
+    if results or pairs:
+        (pictures / "sensitivity.md").write_text(page(results, pairs), encoding="utf-8")
 
 
 def _studies(finished: Finished) -> Iterator[tuple[str, Results]]:
