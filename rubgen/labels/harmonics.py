@@ -1,4 +1,4 @@
-"""Amplitudes and phases of the taps at multiples of the rotation frequency, and what stands out of the noise."""
+"""Amplitudes and phases of the taps at multiples of the rotation frequency, and orders above the noise."""
 
 from __future__ import annotations
 
@@ -23,31 +23,32 @@ MARKED_TAP, OPPOSITE_TAP = "casing_acc_0", "casing_acc_180"
 RATIO = 10.0
 """20 dB above the median of the neighbourhood."""
 FLOOR = 0.1
-"""Least amplitude, in m/s2: 20 dB above what the sensor's noise of 1 m/s2 puts into a line over 1 s."""
+"""Least amplitude, in m/s2: 20 dB above a line of a sensor's noise of 1 m/s2 over 1 s."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class TapOrders:
-    """One tap's peak amplitudes in its unit, and phases in rad.
-
-    `amplitudes`, `phases`, `floors` (20,) at k f_r: A cos(k theta + phase), and the median of the lines around order k.
-    `fractional` (9,) at FRACTIONS of f_r; `blade_passing` (5,) at n_blades - 2 .. n_blades + 2, NaN beyond the rate.
-    """
+    """One tap's peak amplitudes in its unit, and phases in rad."""
 
     amplitudes: FloatArray
+    """A (20,) at k f_r, k = 1 .. 20, in A cos(k theta + phase)."""
     phases: FloatArray
+    """Phase (20,) at k f_r."""
     floors: FloatArray
+    """Median of the lines around each order k (20,)."""
     fractional: FloatArray
+    """Amplitudes (9,) at FRACTIONS of f_r."""
     blade_passing: FloatArray
+    """Amplitudes (5,) at the orders n_blades - 2 .. n_blades + 2; NaN above half the step rate."""
 
     @property
     def even_share(self) -> float:
-        """Share of the sum of squares on even orders; NaN, undefined, where there is no amplitude at all."""
+        """Share of the sum of squares on even orders; NaN where all amplitudes are zero."""
         return _share(self.amplitudes, self.amplitudes[1::2])
 
     @property
     def odd_share(self) -> float:
-        """The same on odd orders."""
+        """Share of the sum of squares on odd orders; NaN where all amplitudes are zero."""
         return _share(self.amplitudes, self.amplitudes[0::2])
 
     @property
@@ -65,8 +66,8 @@ class TapOrders:
 def harmonics(response: Response) -> dict[str, TapOrders]:
     """Orders of every tap over exactly the last 100 turns (all turns of a shorter record), at the step rate.
 
-    Beside the taps there are `casing_even` and `casing_odd`, the parts of the casing's radial acceleration at 0 degrees
-    of even and of odd circumferential order, (a(0) +- a(pi)) / 2, where both were recorded.
+    `casing_even` and `casing_odd` are the parts of the casing's radial acceleration at 0 degrees with even and with odd
+    circumferential order, (a(0) +- a(pi)) / 2. They are present where both accelerations were recorded.
     """
     taps = dict(response.taps)
     if OPPOSITE_TAP in taps:
@@ -100,7 +101,7 @@ def spectrum_turns(response: Response) -> int:
 def order_lines(tap: FloatArray, response: Response) -> ComplexArray:
     """Peak amplitudes and phases (complex) at orders 0, 1/turns, ...: 2 X / n of the last n = turns * steps values.
 
-    The record ends with a turn, so the first value stands at theta = 0.
+    The record ends with a turn, so the first value is at theta = 0.
     """
     count = spectrum_turns(response) * response.steps_per_turn
     if tap.size < count:
@@ -109,12 +110,15 @@ def order_lines(tap: FloatArray, response: Response) -> ComplexArray:
 
 
 def order_spectrum(tap: FloatArray, response: Response) -> FloatArray:
-    """The sizes of `order_lines`."""
+    """The amplitudes of `order_lines`."""
     return np.asarray(np.abs(order_lines(tap, response)), dtype=np.float64)
 
 
 def order_floors(spectrum: FloatArray, turns: int) -> FloatArray:
-    """Median amplitude of the lines within half an order of each k = 1 .. 20 but beyond 0.05 of it; 0 without any."""
+    """Median amplitude of the lines around each order k = 1 .. 20; 0 where there is none.
+
+    These are the lines within half an order of k, without the lines within 0.05 of k.
+    """
     near, half = turns // 20, turns // 2
     beside = np.concatenate([np.arange(-half, -near), np.arange(near + 1, half + 1)])
     if beside.size == 0:
@@ -127,10 +131,10 @@ def order_floors(spectrum: FloatArray, turns: int) -> FloatArray:
 
 
 def fractional_amplitudes(tap: FloatArray, response: Response) -> FloatArray:
-    """Peak amplitudes at FRACTIONS of f_r over the last 96 turns (the most multiples of 12 that a shorter record has).
+    """Peak amplitudes at FRACTIONS of f_r over the last 96 turns (in a shorter record, the largest multiple of 12).
 
-    Twelve turns are a whole number of periods of each, so the tap is folded to the mean of all its stretches of twelve
-    turns first: other orders fall out, and so does noise. NaN in a record of fewer turns.
+    Twelve turns are a whole number of periods of each fraction. The tap is therefore averaged over all its stretches of
+    twelve turns, which removes other orders and noise. NaN in a record of fewer turns.
     """
     folds = spectrum_turns(response) // FOLDED_TURNS
     length = FOLDED_TURNS * response.steps_per_turn

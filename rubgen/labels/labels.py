@@ -33,7 +33,7 @@ class Motion(StrEnum):
 class Labels:
     """What the dynamics really did, from the true response over the whole record.
 
-    `rubgen.labels.registry` gives each value its public name; docs/labels.md defines it.
+    `rubgen.labels.registry` has the public name of each value; docs/labels.md defines it.
     """
 
     rub: bool

@@ -1,4 +1,4 @@
-"""Labels of a run whose speed changes: what holds of the whole record, and how it goes from window to window."""
+"""Labels of a run whose speed changes: of the whole record, and from window to window."""
 
 from __future__ import annotations
 
@@ -17,40 +17,50 @@ from rubgen.labels.windows import Windows, turn_times, window_edges
 from rubgen.solver.response import WINDOW_TURNS, ChangingSpeed, ContactEvents, Response
 
 MOTION_TURNS = 64
-"""A window is long enough for a motion class where the speed of so many turns about it hardly changes."""
+"""A window has a motion class where the speed hardly changes over this many turns around it."""
 HARDLY = 0.002
-"""By this share: the drift of the orbit then stays within what clusters allow."""
+"""Largest change of speed, as a share: the orbit then drifts by less than the radius of a cluster."""
 UNDECIDED = MotionClass(motion=Motion.UNDECIDED, period=None, confidence=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """From `time` (s from the record's start) on: rub, mean impulse a turn (N s), motion; `speed` (rad/s) there.
+    """A change of rub or motion during a record.
 
-    A rub begins with its first touch and ends with the end of its last one, when none follows within WINDOW_TURNS
-    turns; other changes come with a window.
+    A rub begins with its first touch. It ends with the end of its last touch, where no other follows within
+    WINDOW_TURNS turns. All other changes are at the start of a window.
     """
 
     time: float
+    """Time from the start of the record, s."""
     speed: float
+    """Spin speed at that time, rad/s."""
     rub: bool
+    """Whether there is rub from then on."""
     impulse: float
+    """Mean impulse a turn until the next change, N s."""
     blisk: Motion
+    """Motion of the blisk from then on."""
     casing: Motion
+    """Motion of the casing from then on."""
     motion: Motion
+    """The less regular of the two."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedHistory:
-    """How a run went: `changes` with time; speeds in rad/s at the first and after the last touch or None."""
+    """How rub and motion changed with the speed."""
 
     changes: tuple[Change, ...]
+    """Changes in order of time; the first is at the start of the record."""
     onset_speed: float | None
+    """Speed at the first touch, rad/s; None without touch."""
     end_of_rub_speed: float | None
+    """Speed at the end of the last touch, rad/s; None without touch."""
 
 
 def speed_history(response: Response) -> SpeedHistory:
-    """The labels over time of a response whose speed changes; see docs/labels.md."""
+    """The labels over time of a response whose speed changes. Raises ValueError at a steady speed."""
     changing = response.changing_speed
     if changing is None:
         raise ValueError("a steady speed has no history")
@@ -73,9 +83,10 @@ def changing_motion(rub: bool) -> Motions:
 
 
 def changing_orders(windows: Windows) -> dict[str, TapOrders]:
-    """Orders of a whole record: root mean squares over windows of amplitude and, as floor, of its standard error.
+    """Orders of a whole record at a changing speed.
 
-    Phases, fractions and blade passing are not told: NaN.
+    Amplitudes are root mean squares over the windows' amplitudes. Floors are root mean squares over their standard
+    errors. Phases, fractional orders and blade passing are unknown: NaN.
     """
     unknown = {
         "phases": np.full(HIGHEST_ORDER, np.nan),
@@ -93,7 +104,7 @@ def _rms(values: FloatArray) -> FloatArray:
 
 
 def by_angle(response: Response) -> ContactEvents:
-    """Touches with steps of equal angle, `steps_per_turn` a turn, in place of those of equal time."""
+    """The touches with steps of equal angle, `steps_per_turn` a turn, instead of steps of equal time."""
     changing, events = response.changing_speed, response.events
     if changing is None:
         return events
@@ -109,7 +120,7 @@ def _speed_at(changing: ChangingSpeed, time: float) -> float:
 
 
 def _changes(response: Response, changing: ChangingSpeed, edges: IntArray) -> tuple[Change, ...]:
-    """One change where rub or motion differs from what was before, and the first turn."""
+    """The first turn, and every turn where rub or motion differs from before."""
     times, rubs = turn_times(response, changing), _rubbing(response)
     edges = np.union1d(edges, np.flatnonzero(np.diff(rubs)) + 1)
     states = [_state(response, a, b, rub=bool(rubs[a])) for a, b in pairwise(edges.tolist())]
@@ -146,7 +157,7 @@ def _start_of(response: Response, times: FloatArray, turn: int, rub: bool, rubbe
 
 
 def _rubbing(response: Response) -> BoolArray:
-    """Whether there is rub (turns,): touches that are fewer than WINDOW_TURNS turns apart belong to one."""
+    """Whether there is rub in each turn (turns,). Touches that are fewer than WINDOW_TURNS turns apart are one rub."""
     touched = np.flatnonzero(response.contact_steps_per_turn)
     rubs = np.zeros(response.record_turns, dtype=bool)
     rubs[touched] = True
@@ -181,7 +192,7 @@ def _drift(response: Response, first: int, last: int) -> float:
 
 
 def _cut(response: Response, first: int, last: int) -> Response:
-    """What the motion of some turns is told from."""
+    """A response of the turns first .. last - 1, with what their motion class needs."""
     turns = slice(first, last)
     return replace(
         response,

@@ -1,4 +1,4 @@
-"""Labels as a dictionary that JSON can hold: the names under which every file and command shows them."""
+"""Labels as a dictionary for JSON, by the names in every file and command."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from rubgen.labels.registry import LABELS, TAP_LABELS
 def labels_to_json(labels: Labels) -> dict[str, object]:
     """The labels of one run by their public names, as JSON-ready Python values.
 
-    `rubgen.labels.registry` lists names, units and meanings; the keys stand in its order, then those of each true
-    signal, `<tap>_orders` and so on. What is undefined (no period, a share of nothing) is None.
+    The keys are in the order of `rubgen.labels.registry`, which lists names, units and meanings. The orders of each
+    true signal follow, `<tap>_orders` and so on. Undefined values (no period, a share of nothing) are None.
     """
     values = {each.name: _plain(each.kind, each.value(labels)) for each in LABELS}
     for tap, orders in labels.orders.items():
@@ -27,7 +27,7 @@ def labels_to_json(labels: Labels) -> dict[str, object]:
 
 
 def remade_labels(record: CompactRecord) -> dict[str, object]:
-    """The labels that follow from the compact record of a run, by the same names: all except those of orders."""
+    """The labels that can be made from the compact record of a run, by their public names: all except orders."""
     values = labels_to_json(label(response_of(record)))
     return {name: value for name, value in values.items() if name not in FROM_TAPS}
 
@@ -35,19 +35,19 @@ def remade_labels(record: CompactRecord) -> dict[str, object]:
 def window_amplitudes(labels: Labels) -> dict[str, list[float]]:
     """`<tap>_window_amplitudes`: the twenty amplitudes of the first window, then of the second, and so on.
 
-    They are rounded to single precision, which a Parquet file then compresses.
+    They are rounded to single precision, so that a Parquet file compresses them.
     """
     orders = labels.windows.orders
     return {f"{tap}_window_amplitudes": values.astype(np.float32).ravel().tolist() for tap, values in orders.items()}
 
 
 def _number(value: float) -> float | None:
-    """JSON has no NaN: what is undefined becomes None."""
+    """A number for JSON, which has no NaN: NaN becomes None."""
     return float(value) if math.isfinite(value) else None
 
 
 FROM_TAPS = tuple(each.name for each in LABELS if each.from_taps)
-"""Labels that need the taps although no tap stands in their name."""
+"""Labels that need the taps although their names contain no tap."""
 _SINGLE: dict[str, Callable[[Any], object]] = {"text": str, "flag": bool, "integer": int, "number": _number}
 
 

@@ -1,4 +1,4 @@
-"""Labels of short windows of a record, for whoever cuts its signals."""
+"""Labels of short windows of a record, for users who cut its signals."""
 
 from __future__ import annotations
 
@@ -14,19 +14,21 @@ from rubgen.solver.response import WINDOW_TURNS, ChangingSpeed, Response
 
 @dataclass(frozen=True, kw_only=True)
 class Windows:
-    """Windows of WINDOW_TURNS turns, the last one shorter: start in s, mean speed in rad/s, impulse in N s a turn.
-
-    `duty` is the share of steps with contact. `orders` by tap (windows, k) are |mean over turns of the complex
-    amplitude at k f_r|, k = 1 .. 20, in the tap's unit, of a steady run for the last windows, which the taps cover;
-    `scatter`, of a changing speed, the standard error of that mean.
-    """
+    """Windows of WINDOW_TURNS turns; the last one may be shorter."""
 
     start: FloatArray
+    """Start of each window (windows,), s."""
     speed: FloatArray
+    """Mean speed (windows,), rad/s."""
     impulse: FloatArray
+    """Impulse a turn (windows,), N s."""
     duty: FloatArray
+    """Share of steps with contact (windows,)."""
     orders: dict[str, FloatArray]
+    """By tap (windows, 20): |mean over turns of the complex amplitude at k f_r|, k = 1 .. 20. At a steady speed only
+    the last windows, which the taps cover."""
     scatter: dict[str, FloatArray]
+    """At a changing speed, the standard error of that mean by tap (windows, 20)."""
 
 
 def window_edges(response: Response) -> IntArray:
@@ -59,7 +61,7 @@ def windows(response: Response) -> Windows:
 
 
 def turn_times(response: Response, changing: ChangingSpeed | None) -> FloatArray:
-    """When each turn begins, and the record ends (record_turns + 1,), s."""
+    """Start of each turn, and end of the record (record_turns + 1,), s."""
     turns = range(response.record_turns + 1)
     if changing is None:
         return np.asarray(response.turn_seconds * np.array(turns))
@@ -67,7 +69,7 @@ def turn_times(response: Response, changing: ChangingSpeed | None) -> FloatArray
 
 
 def _with_fields(taps: dict[str, ComplexArray]) -> dict[str, ComplexArray]:
-    """With the even and the odd part of the casing's acceleration, as in `harmonics`."""
+    """Adds the even and the odd part of the casing's acceleration, as in `harmonics`."""
     if OPPOSITE_TAP not in taps:
         return taps
     first, second = taps[MARKED_TAP], taps[OPPOSITE_TAP]

@@ -1,1 +1,1 @@
-"""How much and where blades touch."""
+"""Labels of contact: how much and where blades touch."""

@@ -14,11 +14,11 @@ from rubgen.solver.response import Response
 from rubgen.units import STANDARD_GRAVITY
 
 LASTING = 0.95
-"""Contact in this share of the time is lasting."""
+"""Contact in at least this share of the time counts as permanent."""
 
 
 class RubExtent(StrEnum):
-    """How far round the casing a rub goes, and whether it ever stops."""
+    """How far around the casing a rub extends, and whether it is permanent."""
 
     NONE = "none"
     PARTIAL = "partial"
@@ -27,28 +27,34 @@ class RubExtent(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class ContactAmounts:
-    """Counts and works over the record.
-
-    `touches` of all blades; `friction_work` of the blisk's and the casing's contact, J a turn, <= 0; `blade_touches`
-    (n_blades,), and `blade_impulses` (n_blades,) in N s a turn; `severity`, the mean normal force over the blisk's
-    weight; `free_penetration` in m. The last two are None where they are not known.
-    """
+    """Counts and works over the record."""
 
     touches: int
+    """Number of touches of all blades."""
     friction_work: float
+    """Work of friction between blisk and casing, J a turn, <= 0."""
     blade_touches: IntArray
+    """Number of touches of each blade (n_blades,)."""
     blade_impulses: FloatArray
+    """Impulse of each blade (n_blades,), N s a turn."""
     severity: float | None
+    """Mean normal force over the weight of the blisk; None where its mass is not known."""
     free_penetration: float | None
+    """How deep the rub-free motion would enter the casing, m; None where it is not known."""
     extent: RubExtent
+    """How far around the casing the rub extends."""
     __repr__ = brief
 
 
 def contact_amounts(response: Response, zones: ContactZones, *, record_steps: int) -> ContactAmounts:
-    """The amounts of a record of so many steps.
+    """The amounts of a record.
 
-    severity = impulse of all blades / (m g T), T the record's time: what acts on the casing on average, in weights of
-    the blisk. By turns that is (impulse a turn) / (m g turn).
+    severity = impulse of all blades / (m g T), with T the time of the record. It is the mean force on the casing in
+    weights of the blisk.
+
+    - response: the response of the run.
+    - zones: its contact zones.
+    - record_steps: number of steps of the record.
     """
     events, turns, blades = response.events, response.record_turns, response.n_blades
     weight_time = response.blisk_mass * STANDARD_GRAVITY * record_steps * response.dt
@@ -66,7 +72,7 @@ def contact_amounts(response: Response, zones: ContactZones, *, record_steps: in
 
 
 def rub_extent(duty: float, zones: ContactZones) -> RubExtent:
-    """Full annular: contact that lasts, all the way round the casing (Muszynska 2005, Rotordynamics, ch. 5)."""
+    """Full annular: permanent contact, all the way round the casing (Muszynska 2005, Rotordynamics, ch. 5)."""
     if duty == 0:
         return RubExtent.NONE
     round_about = len(zones.widths) == 1 and zones.widths[0] >= 2 * np.pi - 1e-9

@@ -12,37 +12,40 @@ from rubgen.solver.response import ContactEvents
 BINS = 720
 """Bins of half a degree round the casing."""
 GAP = np.deg2rad(10.0)
-"""Touched arcs with less than this between them are one zone."""
+"""Arcs with contact are one zone where the gap between them is smaller than this."""
 SPECK = 0.02
-"""The lightest bins that together hold this share of the impulse are left out, and so is a zone below this share."""
+"""The lightest bins that together have this share of the impulse are left out, and zones below this share too."""
 SPACING_TOLERANCE = np.deg2rad(3.0)
 WIDTH_TOLERANCE = np.deg2rad(3.0)
 IMPULSE_TOLERANCE = 0.05
-"""Symmetric: spacings within 3 deg of 2 pi / N, widths within 3 deg, impulses of zones in turns within 5 %, rms."""
+"""Zones are symmetric where spacings are within 3 deg of 2 pi / N, widths within 3 deg, and impulses in each turn
+within 5 %, rms."""
 PHASES = 64
 
 
 @dataclass(frozen=True, kw_only=True)
 class ContactZones:
-    """Arcs of the casing that are touched, by rising centre; `symmetric` is None without contact. Angles in rad.
-
-    `shares` are those of the record's impulse; `imbalance` is that of `turn_imbalance`.
-    """
+    """Arcs of the casing with contact, by rising centre."""
 
     centres: tuple[float, ...]
+    """Mean angle by impulse of each zone, rad."""
     widths: tuple[float, ...]
+    """Angular width of each zone, rad."""
     shares: tuple[float, ...]
+    """Share of the record's impulse in each zone."""
     imbalance: float
+    """How unequal the zones are turn by turn, see `turn_imbalance`."""
     symmetric: bool | None
+    """Whether the zones are symmetric; None without contact."""
 
 
 def contact_zones(events: ContactEvents, *, steps_per_turn: int) -> ContactZones:
     """The contact zones of a record.
 
-    A zone is a connected arc of the impulse histogram: arcs are separated by gaps of more than 10 deg; specks, 2 % of
-    the impulse, do not count. Its centre is the mean angle by impulse, its width the arc from its first to its last
-    bin. A circle without such a gap is one zone of width 2 pi. Zones are symmetric when their widths and spacings are
-    equal and so are their impulses in each turn: over many turns even a chaotic rub has equal means.
+    A zone is a connected arc of the impulse histogram. Gaps of more than 10 deg separate zones. Specks, 2 % of the
+    impulse, are left out. A zone's centre is its mean angle by impulse. Its width is the arc from its first to its last
+    bin. A circle without such a gap is one zone of width 2 pi. Zones are symmetric where their widths, their spacings
+    and their impulses in each turn are equal. Over many turns even a chaotic rub has equal mean impulses.
     """
     density = impulse_histogram(events, steps_per_turn)
     if density.sum() <= 0:
@@ -62,9 +65,10 @@ def contact_zones(events: ContactEvents, *, steps_per_turn: int) -> ContactZones
 
 
 def impulse_histogram(events: ContactEvents, steps_per_turn: int) -> FloatArray:
-    """Impulse in each of BINS bins of casing angle from 0, in N s; its sum is the impulse of all events.
+    """Impulse in each of BINS bins of casing angle from 0, in N s. Its sum is the impulse of all events.
 
-    Each event is spread evenly over the angle that the blade swept while it pushed, steps dt Omega, about its mean.
+    The impulse of an event is distributed evenly over the angle that the blade swept during contact, steps dt Omega,
+    around its mean angle.
     """
     sweep = np.minimum(events.steps * (2 * np.pi / steps_per_turn), 2 * np.pi)
     start = np.mod(events.angle - sweep / 2, 2 * np.pi) / (2 * np.pi) * BINS
@@ -88,7 +92,7 @@ def _ramps(start: FloatArray, slope: FloatArray, edges: IntArray) -> FloatArray:
 
 
 def _without_lightest(density: FloatArray) -> FloatArray:
-    """The histogram without its lightest bins, which together hold the share SPECK at most."""
+    """The histogram without its lightest bins, which together have at most the share SPECK."""
     rising = np.argsort(density, kind="stable")
     light = np.cumsum(density[rising]) <= SPECK * density.sum()
     kept = density.copy()
@@ -117,11 +121,15 @@ def _zone(share: FloatArray, first: int, count: int) -> tuple[float, float, floa
 
 
 def turn_imbalance(events: ContactEvents, centres: FloatArray, steps_per_turn: int) -> float:
-    """Rms of the impulse that a zone gets in a turn, less its mean over all zones and turns, over that mean.
+    """Rms over turns of a zone's impulse less the mean over all zones and turns, over that mean.
 
-    Symmetric motion, q(t + T/N) = q(t), gives every zone the same in every turn, so this is 0.
-    An event belongs to the zone whose centre is nearest. Turns are cut where there is least contact, so that no touch
-    of a periodic rub falls now into one turn, now into the next; the cut first and last turn are left out.
+    Symmetric motion, q(t + T/N) = q(t), has equal impulses of all zones in each turn: 0. An event belongs to the zone
+    with the nearest centre. Turns are cut where there is least contact, so that no touch of a periodic rub changes from
+    one turn to the next. The cut first and last turn are left out.
+
+    - events: the touches of the record.
+    - centres (zones,): centres of the zones, rad.
+    - steps_per_turn: number of steps in a turn.
     """
     middle = (events.start_step + events.steps / 2) / steps_per_turn
     load, edges = np.histogram(np.mod(middle, 1.0), PHASES, (0.0, 1.0), weights=events.impulse)

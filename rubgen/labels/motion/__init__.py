@@ -1,1 +1,1 @@
-"""The class of the motion, and what decides it."""
+"""The class of the motion, and its indicators."""

@@ -1,4 +1,4 @@
-"""The 0-1 test on the parts of a section."""
+"""The 0-1 test on the parts of a Poincare section."""
 
 from __future__ import annotations
 
@@ -10,19 +10,21 @@ from rubgen.labels.motion.clusters import rms, without_periodic_part
 from rubgen.labels.motion.zero_one_test import growth_correlation
 
 CHAOTIC_FROM = 0.7
-"""K of the 0-1 test from which a motion is chaotic: chaotic maps of exponent > 0.1 give 0.8 to 1 on 500 points."""
+"""K of the 0-1 test from which a motion is chaotic. Chaotic maps of exponent > 0.1 have 0.8 to 1 on 500 points."""
 ROUNDING = 1e-6
-"""What strays by less than this share of the part's motion may be rounding or the rest of a transient."""
+"""Distances below this share of the part's motion may be rounding or the rest of a transient."""
 OBSERVABLES = 3
-"""Most principal components that the 0-1 test looks at; each must hold 1 % of the leading one's variance."""
+"""Largest number of principal components in the 0-1 test. Each must have 1 % of the leading one's variance."""
 
 
 def chaos_indicator(points: FloatArray) -> float:
-    """Largest K of the first group of the points and of the others: for a blisk, of the disk centre and of the tips.
+    """Largest K of the groups of points (turns, groups, values).
 
-    Each is the median K of the 0-1 test over the leading principal components of those points without their periodic
-    part. Where the first half of the record strays more than twice as far as the second, it is still settling, and the
-    second alone is tested. A group that strays by less than ROUNDING has K = 0.
+    For a blisk the first group is the disk centre, the others are the tips.
+
+    Each K is the median of the 0-1 test over the leading principal components of the points without their periodic
+    part. Where the first half of the record is more than twice as far from the clusters as the second half, the motion
+    is still settling, and only the second half is tested. A group whose distance is below ROUNDING has K = 0.
     """
     half = points.shape[0] // 2
     first, second = (rms(without_periodic_part(part)) for part in (points[:half], points[half:]))

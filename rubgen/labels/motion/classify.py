@@ -1,4 +1,4 @@
-"""Class of the steady motion of blisk, casing and both, and what else its section shows."""
+"""Class of the steady motion of blisk, casing and both, and further facts of the section."""
 
 from __future__ import annotations
 
@@ -23,19 +23,22 @@ LEAST_TURNS = 32
 
 @dataclass(frozen=True, kw_only=True)
 class Motions:
-    """Classes of the blisk, of the casing, and of both together, and what speaks for them.
-
-    `indicators` are those of the blisk and, where it moves, of the casing; none without contact. `symmetric` is None
-    unless the motion is period-1 in contact. `segments` is empty unless the motion is `intermittent`.
-    """
+    """Classes of the blisk, of the casing, and of both together, with the reasons."""
 
     blisk: MotionClass
+    """Class of the blisk."""
     casing: MotionClass
+    """Class of the casing."""
     system: MotionClass
+    """Class of both together."""
     indicators: tuple[Indicators, ...] = ()
+    """Indicators of the blisk and, where it moves, of the casing; none without contact."""
     symmetric: bool | None = None
+    """Whether the motion has the symmetry of the lobes; None unless it is period-1 in contact."""
     tip_chatter: bool = False
+    """Whether the tips do not repeat while disk centre and casing do."""
     segments: tuple[Segment, ...] = ()
+    """Segments of an `intermittent` motion; else empty."""
 
     @property
     def intermittent(self) -> bool:
@@ -44,11 +47,11 @@ class Motions:
 
 
 def motion(response: Response, exponent: Exponent | None = None) -> Motions:
-    """The motion classes of a run from its section and its exponent; raises UserError below 32 turns.
+    """The motion classes of a run from its Poincare section and its exponent. Raises UserError below 32 turns.
 
-    Each part is periodic or not by its own clusters. The 0-1 test looks at the disk centre, the tips and the casing,
-    and the largest K counts for all: contact couples them into one system, which is chaotic as a whole. A lightly
-    damped blade that is shaken at random looks regular for longer than the record lasts; the disk centre shows it.
+    Each part is periodic or not by its own clusters. The 0-1 test uses the disk centre, the tips and the casing. The
+    largest K counts for all parts: contact couples them into one system, which is chaotic as a whole. A lightly damped
+    blade with random excitation looks regular for longer than the record; the disk centre does not.
     """
     turns = response.section_q.shape[0]
     if turns < LEAST_TURNS:
@@ -71,7 +74,7 @@ def motion(response: Response, exponent: Exponent | None = None) -> Motions:
 
 
 def indicators(parts: list[FloatArray], exponent: Exponent | None) -> tuple[Indicators, ...]:
-    """What clusters, 0-1 test and exponent say of each part."""
+    """Clusters, 0-1 test and exponent of each part."""
     periods = [cluster_period(part) for part in parts]
     strays = [stray(part, period) for part, period in zip(parts, periods, strict=True)]
     growth = max(chaos_indicator(part) for part in parts)

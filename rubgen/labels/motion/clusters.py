@@ -1,4 +1,4 @@
-"""Whether the points of a section come back after some turns."""
+"""Whether the points of a Poincare section repeat after some turns."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from rubgen.arrays import FloatArray
 
 LONGEST_PERIOD = 16
 CLUSTER_RADIUS = 0.01
-"""Points stray from the mean of their cluster by 1 % of the part's motion at most, rms over turns: by -40 dB."""
+"""Largest rms distance of points from the mean of their cluster: 1 % (-40 dB) of the part's motion."""
 EXCURSION = 0.03
-"""No single point strays by more than this."""
+"""Largest distance of a single point."""
 
 
 def cluster_period(points: FloatArray) -> int | None:
-    """Smallest k <= 16 after which the points (turns, groups, values) come back, or None.
+    """Smallest k <= 16 after which the points (turns, groups, values) repeat, or None.
 
-    Looks at the second half of the record, where transients have died. A point's distance to the mean of its cluster is
-    that of its farthest group (so that one chattering tip counts); rms over turns it must be CLUSTER_RADIUS at most,
-    for no turn above EXCURSION, and it must not grow.
+    Only the second half of the record is used, where transients have decayed. A point's distance to the mean of its
+    cluster is the distance of its farthest group, so that one chattering tip counts. The distances must be at most
+    CLUSTER_RADIUS (rms over turns), at most EXCURSION in each turn, and must not grow.
     """
     late = _late(points)
     for period in range(1, _longest(late) + 1):
@@ -31,9 +31,12 @@ def cluster_period(points: FloatArray) -> int | None:
 
 
 def stray(points: FloatArray, period: int | None) -> float:
-    """Rms distance of the second half's points from their clusters, over the motion: of the least k <= 16 without one.
+    """Rms distance of the second half's points from their clusters, over the motion.
 
-    Means of k clusters of n points lie nearer to the points than the true ones; n - k in the mean square allows for it.
+    Without `period`, with the best k <= 16.
+
+    The means of k clusters of n points lie nearer to the points than the true ones. Division by n - k in the mean
+    square corrects this.
     """
     late = _late(points)
     periods = range(1, _longest(late) + 1) if period is None else (period,)
@@ -41,7 +44,7 @@ def stray(points: FloatArray, period: int | None) -> float:
 
 
 def cluster_distances(points: FloatArray, period: int) -> FloatArray:
-    """Distance of each point (turns, groups, values) to its cluster's mean, the largest of its groups."""
+    """Distance of each point (turns, groups, values) to the mean of its cluster: the largest of its groups (turns,)."""
     return farthest(off_cluster(points, period))
 
 
@@ -59,10 +62,10 @@ def farthest(points: FloatArray) -> FloatArray:
 
 
 def without_periodic_part(points: FloatArray) -> FloatArray:
-    """The points less the means of their k clusters, k <= 16 being the one that leaves the least variance.
+    """The points less the means of their k clusters. k <= 16 is the number with the least remaining variance.
 
-    A motion that wanders within bands which it visits in turn would otherwise look regular: the bands outweigh it. The
-    variance is divided by turns - k, so that more clusters alone are no gain.
+    A motion that wanders within bands, and visits the bands in turn, would otherwise look regular, because the bands
+    are larger. The variance is divided by turns - k, so that more clusters alone are no gain.
     """
     turns = points.shape[0]
     left = [off_cluster(points, k) for k in range(1, min(LONGEST_PERIOD, turns // 8) + 1)]
@@ -100,7 +103,7 @@ def _longest(late: FloatArray) -> int:
 
 
 def _grows(distance: FloatArray) -> bool:
-    """Whether the later half is more than twice as far as the earlier one and no longer tiny: an orbit being left."""
+    """Whether the later half is more than twice as far as the earlier half and above rounding: an orbit being left."""
     half = distance.size // 2
     earlier, later = rms(distance[:half]), rms(distance[half:])
     return later > 2 * earlier and later > CLUSTER_RADIUS / 10

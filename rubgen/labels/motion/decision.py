@@ -11,33 +11,38 @@ from rubgen.labels.motion.clusters import CLUSTER_RADIUS
 from rubgen.labels.motion.lyapunov import LEAST, Exponent
 
 CLOSE = 0.5
-"""A part that repeats, but strays by more than this share of the cluster radius (6 dB below it), is near the bound."""
+"""A part that repeats, with points farther from its clusters than this share of the cluster radius (6 dB below it), is
+near the bound."""
 GROWTH_WIDTH = 0.1
-"""K within this of its bound says little."""
+"""K within this of its bound is uncertain."""
 
 _REGULARITY = list(Motion)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Indicators:
-    """What is known of one part: its period by clusters, how far it strays from them over its motion, K, exponent.
-
-    K is the largest of all parts and the exponent that of the whole system: contact couples the parts.
-    """
+    """The indicators of one part."""
 
     period: int | None
+    """Period by clusters in turns; None without clusters."""
     stray: float
+    """Rms distance from the clusters, over the part's motion."""
     growth: float
+    """K of the 0-1 test, the largest of all parts: contact couples the parts."""
     exponent: Exponent | None
+    """Exponent of the whole system; None where it is not known."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class MotionClass:
-    """A class, after how many turns the motion repeats (None for what does not), and how sure it is, 0 to 1."""
+    """A class of motion, its period and its confidence."""
 
     motion: Motion
+    """The class."""
     period: int | None
+    """Turns after which the motion repeats; None where it does not."""
     confidence: float = field(default=1.0, compare=False)
+    """Confidence, 0 to 1."""
 
 
 AT_REST = MotionClass(motion=Motion.STATIC, period=None)
@@ -45,13 +50,13 @@ FORCED = MotionClass(motion=Motion.PERIOD_1, period=1)
 
 
 def decide(seen: Indicators) -> MotionClass:
-    """The class that the indicators agree on, else undecided.
+    """The class on which the indicators agree, else undecided.
 
-    - Clusters: periodic at the scale of the motion. What is left may be chaotic in itself, far below; where it is not
-      far below (CLOSE) and the two others find it chaotic, the part is undecided.
-    - No clusters, K says chaos, exponent positive: chaotic. K says regular, exponent zero within its error:
-      quasi-periodic. Anything else is undecided: a negative exponent belongs to a periodic motion that is not there
-      yet, or comes back after more than 16 turns.
+    - Clusters: periodic at the scale of the motion. The rest may be chaotic at a far smaller scale. Where it is not far
+      smaller (CLOSE) and both other indicators find chaos, the part is undecided.
+    - No clusters, K above its bound, exponent positive: chaotic. K below its bound, exponent zero within its error:
+      quasi-periodic. Anything else is undecided: a negative exponent belongs to a periodic motion that is still
+      settling, or that repeats after more than 16 turns.
     - Without an exponent clusters decide, then K.
     """
     motion = _class_of(seen)
@@ -81,10 +86,11 @@ def _class_of(seen: Indicators) -> Motion:
 def _confidence(seen: Indicators, motion: Motion) -> float:
     """Share of the class in the weights of all three kinds.
 
-    Each indicator has a degree in [0, 1]: periodic c = 1 / (1 + (stray / radius)^2), chaotic by K a logistic function
-    of K about its bound, chaotic by the exponent the probability that it is positive, given its error. Periodic weighs
-    c, halved where both others find chaos in what is left; chaotic (1 - c) times the geometric mean of the others;
-    quasi-periodic the same of their complements, the exponent's being that of zero.
+    Each indicator has a degree in [0, 1]. Periodic: c = 1 / (1 + (stray / radius)^2). Chaotic by K: a logistic function
+    of K about its bound. Chaotic by the exponent: the probability that it is positive, from its error. The weight of
+    periodic is c, halved where both others find chaos in the rest. The weight of chaotic is (1 - c) times the geometric
+    mean of the other two. The weight of quasi-periodic is (1 - c) times the geometric mean of their complements, with
+    the probability that the exponent is zero.
     """
     c = 1 / (1 + (seen.stray / CLUSTER_RADIUS) ** 2)
     k = 1 / (1 + exp(-(seen.growth - CHAOTIC_FROM) / GROWTH_WIDTH))
@@ -111,10 +117,11 @@ def _zero(exponent: Exponent | None) -> float:
 
 
 def combined(blisk: MotionClass, casing: MotionClass) -> MotionClass:
-    """The less regular of the two; undecided where either is and neither is chaotic.
+    """The less regular of the two; undecided where either is undecided and neither is chaotic.
 
-    The period is the least common multiple of theirs, a part at rest counting as 1; the confidence that of the part
-    which decides, of two alike the greater for what does not repeat, the lesser for what does.
+    The period is the least common multiple of both periods; a part at rest counts as 1. The confidence is taken from
+    the part which decides. For two equal classes it is the larger one where the motion does not repeat, and the smaller
+    one where it does.
     """
     worst = max(blisk, casing, key=lambda part: _REGULARITY.index(part.motion))
     alike = [part.confidence for part in (blisk, casing) if part.motion is worst.motion]

@@ -1,4 +1,4 @@
-"""Motion that is regular for a while, then irregular, and back: where it switches."""
+"""Motion that switches between regular and irregular."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from rubgen.arrays import BoolArray, FloatArray
 from rubgen.labels.motion.clusters import EXCURSION, LONGEST_PERIOD, farthest
 
 SHORTEST = 10
-"""Turns that a segment has at least; a regular one lasts three periods, too."""
+"""Least number of turns of a segment. A regular segment also has at least three periods."""
 LEAST_SHARE = 0.1
-"""Of the record, that both kinds have at least."""
+"""Least share of the record for each of both kinds."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,11 +25,13 @@ class Segment:
 
 
 def segments(parts: list[FloatArray]) -> list[Segment]:
-    """The record (parts (turns, groups, values) over their motions) cut where it becomes regular or irregular.
+    """The record cut where its motion becomes regular or irregular.
+
+    - parts: the points (turns, groups, values) of blisk and casing, each over its motion.
 
     A stretch is regular with period k <= 16 where each point returns after k turns within EXCURSION, in every part and
-    group, for at least 10 + k turns and 3 k; of several k the smallest that covers a turn counts. Shorter irregular
-    stretches are joined to what is before them.
+    group, for at least 10 + k turns and 3 k. A turn has the smallest such k. Shorter irregular stretches join the
+    segment before them.
     """
     turns = len(parts[0])
     period = np.zeros(turns, dtype=np.int64)
@@ -42,7 +44,7 @@ def segments(parts: list[FloatArray]) -> list[Segment]:
 
 
 def is_intermittent(found: list[Segment]) -> bool:
-    """Two regular segments at least with an irregular one between, both kinds having a tenth of the turns."""
+    """At least two regular segments with an irregular one between, each kind with a tenth of the turns."""
     regular = [segment.period > 0 for segment in found]
     turns = found[-1].end - found[0].start
     share = sum(segment.end - segment.start for segment in found if segment.period) / turns

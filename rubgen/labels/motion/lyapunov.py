@@ -10,7 +10,7 @@ from rubgen.arrays import FloatArray
 from rubgen.solver.response import Response
 
 ALIGNING = 0.1
-"""Share of the record in which the companion turns into the direction of fastest growth; left out."""
+"""Share of the record in which the companion aligns with the direction of fastest growth; left out."""
 BLOCKS = 10
 BRIDGE_RANGE = np.sqrt(np.pi / 2)
 """Mean range of a Brownian bridge of unit variance over unit time."""
@@ -18,29 +18,29 @@ BRIDGE_RANGE = np.sqrt(np.pi / 2)
 
 @dataclass(frozen=True, kw_only=True)
 class Exponent:
-    """The largest Lyapunov exponent and its standard error, in 1/turn (or by whatever one growth spans).
-
-    `convergence` (10,) is its value from the first tenth of the growths that count, from the first two tenths, and so
-    on: the last is the exponent.
-    """
+    """The largest Lyapunov exponent."""
 
     per_turn: float
+    """The exponent in 1/turn (or by the span of one growth)."""
     error: float
+    """Its standard error in the same unit."""
     convergence: FloatArray
+    """Its value (10,) from the first tenth of the growths, from the first two tenths, and so on. The last is the
+    exponent."""
 
     @property
     def is_positive(self) -> bool:
-        """More than two standard errors above zero, and more than can be told from it."""
+        """More than two standard errors above zero, and above LEAST."""
         return self.per_turn > max(2 * self.error, LEAST)
 
     @property
     def is_negative(self) -> bool:
-        """The same below zero."""
+        """More than two standard errors below zero, and below -LEAST."""
         return self.per_turn < -max(2 * self.error, LEAST)
 
 
 LEAST = 1e-3
-"""Exponents within this of zero, in 1/turn, are zero: what is nearer grows less than half over 500 turns."""
+"""Exponents within this of zero, in 1/turn, count as zero: over 500 turns they grow by less than half."""
 
 
 def lyapunov(growth: FloatArray) -> Exponent | None:
@@ -67,16 +67,16 @@ def lyapunov(growth: FloatArray) -> Exponent | None:
 def standard_error(growth: FloatArray) -> float:
     """The standard error of the mean of growths (n,) that follow each other in time; n is at least ten.
 
-    The largest of three estimates, for each of which there is a motion that the two others underrate:
+    It is the largest of three estimates. For each there is a motion that the other two underestimate:
 
-    - Chaos: the scatter of the means of ten blocks over sqrt(10). Correlation from turn to turn does not fool it.
-    - Tori: range(S) / (n sqrt(pi / 2)), where S is the sum of the growths less its straight line from first to last.
-      On a torus S stays within bounds, and the mean is wrong by about range(S) / n at most, which is 1.25 errors;
-      means of blocks do not show it. Of independent growths S is a Brownian bridge, whose mean range is sqrt(pi n / 2)
-      times their deviation (Feller 1951, Ann. Math. Statist. 22, 427): the estimate is the standard error again.
-    - Drifts: half of what the means of the two halves differ by.
+    - Chaos: the scatter of the means of ten blocks over sqrt(10). It allows for correlation from turn to turn.
+    - Tori: range(S) / (n sqrt(pi / 2)), where S is the sum of the growths less its straight line from first to last. On
+      a torus S is bounded, and the mean is wrong by at most about range(S) / n, which is 1.25 errors. Means of blocks
+      do not show it. For independent growths S is a Brownian bridge with the mean range sqrt(pi n / 2) times their
+      deviation (Feller 1951, Ann. Math. Statist. 22, 427), and the estimate is the standard error again.
+    - Drifts: half of the difference between the means of the two halves.
 
-    `tests/labels/test_lyapunov.py` holds it to tori and to chaos.
+    Checked on tori and on chaos in `tests/labels/test_lyapunov.py`.
     """
     blocks = [block.mean() for block in np.array_split(growth, BLOCKS)]
     first, second = (half.mean() for half in np.array_split(growth, 2))
@@ -91,5 +91,5 @@ def standard_error(growth: FloatArray) -> float:
 
 
 def lyapunov_of(response: Response) -> Exponent | None:
-    """The exponent of a run; None where none was asked for."""
+    """The exponent of a run; None where it was not asked for."""
     return lyapunov(response.companion_growth)

@@ -1,4 +1,4 @@
-"""The parts of the state once a turn, over the size of their motion."""
+"""Points of the Poincare section of blisk and casing, over the size of their motion."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def blisk_points(response: Response) -> FloatArray:
 
 
 def blisk_states(response: Response, q: FloatArray, v: FloatArray) -> FloatArray:
-    """The same points of any states q, v (states, n) of the run, over the size of the section's motion."""
+    """States q, v (states, n) of the run as points of the blisk, see `blisk_points`, over the size of its motion."""
     speed, centre = response.speed, 3 * response.n_blades
     points = np.zeros((len(q), response.n_blades + 1, 4))
     points[:, 0] = np.stack([speed * q[:, centre], speed * q[:, centre + 1], v[:, centre], v[:, centre + 1]], axis=1)
@@ -38,14 +38,14 @@ def _orbital_speed(response: Response) -> float:
 def casing_points(response: Response) -> FloatArray:
     """Section of the casing (turns, 1, 2 modes): Omega times modal displacement, and speed, over their rms norm.
 
-    Between two touches the casing swings freely about its rest shape, so its displacement there is motion. The time
-    average that touches leave is no offset of the section; only a touch that never ends would make it one.
+    Between two touches the casing swings freely about its rest shape, so its displacement there is motion. Touches that
+    end do not offset the section. Only a touch that never ends would.
     """
     return casing_states(response, response.section_q, response.section_v)
 
 
 def casing_states(response: Response, q: FloatArray, v: FloatArray) -> FloatArray:
-    """The same points of any states q, v (states, n) of the run, over the size of the section's motion."""
+    """States q, v (states, n) of the run as points of the casing, see `casing_points`, over the size of its motion."""
     size = np.sqrt(np.mean(np.sum(_casing(response, response.section_q, response.section_v) ** 2, axis=1)))
     return np.asarray(_casing(response, q, v)[:, None, :] / size, dtype=np.float64)
 

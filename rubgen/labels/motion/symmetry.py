@@ -12,8 +12,8 @@ from rubgen.solver.response import Response
 def asymmetry(response: Response) -> float | None:
     """Largest distance between the states after each Nth of the last turn, over the part's motion; None without lobes.
 
-    Of the blisk the farthest of disk centre and tips counts, as in the clusters; the casing is turned back by as much
-    as the blisk went on.
+    For the blisk it is the largest distance of disk centre and tips, as in the clusters. The casing is turned back by
+    the angle that the blisk turned.
     """
     q, v = response.symmetry_states[:, 0], response.symmetry_states[:, 1]
     if len(q) < 2:
@@ -25,6 +25,6 @@ def asymmetry(response: Response) -> float | None:
 
 
 def is_symmetric(response: Response) -> bool | None:
-    """Whether the states differ by no more than one turn's point may from its cluster, 3 %; None without lobes."""
+    """Whether the states differ by at most EXCURSION, 3 %; None without lobes."""
     found = asymmetry(response)
     return None if found is None else found <= EXCURSION

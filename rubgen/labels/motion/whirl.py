@@ -1,4 +1,4 @@
-"""Which way the disk centre goes round: forward, with the rotation, or backward."""
+"""Direction of the disk centre's whirl: forward, with the rotation, or backward."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from rubgen.arrays import FloatArray
 
 LEAST = 0.1
-"""Below this index the orbit is as much backward as forward."""
+"""Below this |index| the orbit has no direction."""
 
 
 class WhirlDirection(StrEnum):
@@ -23,19 +23,19 @@ class WhirlDirection(StrEnum):
 
 @dataclass(frozen=True)
 class Whirl:
-    """Direction and its `index` in [-1, 1]."""
+    """Direction of the whirl and its `index` in [-1, 1]."""
 
     direction: WhirlDirection
     index: float
 
 
 def whirl(orbit: FloatArray) -> Whirl | None:
-    """The whirl of an orbit given by its means over turns (turns, 5), as in `Response.orbit`; None where it rests.
+    """The whirl of an orbit from its means over turns (turns, 5), as in `Response.orbit`; None where it rests.
 
-    index = mean(r x v) / (rms(r) rms(v)), r = (X, Y) less its mean: the areal velocity of the orbit, over the largest
-    that its size and speed allow (Cauchy-Schwarz). A circle forward has 1, backward -1, a line 0. The orbit
-    r = p e^(i w t) + n e^(-i w t) has (|p|^2 - |n|^2) / (|p|^2 + |n|^2): the sign is that of the shape and directivity
-    index (|p| - |n|) / (|p| + |n|) of Lee and Han (1998, J. Sound Vib. 211, 4).
+    index = mean(r x v) / (rms(r) rms(v)), r = (X, Y) less its mean: the areal velocity of the orbit over the largest
+    possible one for its size and speed (Cauchy-Schwarz). A forward circle has 1, a backward circle -1, a line 0. The
+    orbit r = p e^(i w t) + n e^(-i w t) has (|p|^2 - |n|^2) / (|p|^2 + |n|^2), with the sign of the shape and
+    directivity index (|p| - |n|) / (|p| + |n|) of Lee and Han (1998, J. Sound Vib. 211, 4).
     """
     if not len(orbit):
         return None

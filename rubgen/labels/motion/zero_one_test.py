@@ -14,19 +14,20 @@ FREQUENCIES = np.pi * (0.2 + 0.6 * (np.arange(100) + 0.5) / 100 + 0.002 * np.sin
 DAMPING = 2.5
 """Gottwald and Melbourne's alpha."""
 DAMPED_FROM = 200
-"""Points from which the variant is taken: of fewer, n is too short for the added oscillation to average out."""
+"""Least number of points for the damped variant: with fewer, n is too short to average out the added oscillation."""
 
 
 def growth_correlation(observable: FloatArray) -> float:
-    """K of a scalar observable (n,), n >= 32 points of a section: near 1 for chaos, near 0 for regular motion.
+    """K of a scalar observable (n,), n >= 32 points of a Poincare section: near 1 for chaos, near 0 for regular motion.
 
-    With the translation p_c(n) = sum_{j <= n} phi_j exp(i c j), the mean square displacement
-    M_c(n) = mean_j |p_c(j + n) - p_c(j)|^2 over n = 1 .. N/10 loses its oscillation,
-    D_c(n) = M_c(n) - mean(phi)^2 (1 - cos n c)/(1 - cos c), and gains that of the damped variant,
-    D*_c(n) = D_c(n) + DAMPING var(phi) sin(sqrt(2) n), beside which the slow growth that a little noise adds to regular
-    motion is nothing; K_c = corr(n, D*_c(n)), K = median of K_c over all c. (The authors scale it by mean(phi)^2, which
-    depends on the zero of the observable; here it has none.)
-    Meaningless for a constant with rounding noise: cluster first.
+    The translation is p_c(n) = sum_{j <= n} phi_j exp(i c j). Its mean square displacement is M_c(n) = mean_j |p_c(j +
+    n) - p_c(j)|^2 over n = 1 .. N/10. Without its oscillation it is D_c(n) = M_c(n) - mean(phi)^2 (1 - cos n c)/(1 -
+    cos c). The damped variant is D*_c(n) = D_c(n) + DAMPING var(phi) sin(sqrt(2) n): its oscillation is far larger than
+    the slow growth that a little noise adds to regular motion. K_c = corr(n, D*_c(n)), and K is the median of K_c over
+    all c. The authors scale the oscillation by mean(phi)^2, which depends on the zero of the observable; var(phi) does
+    not.
+
+    Not valid for a constant with rounding noise: test for clusters first.
     """
     displacement = _mean_square_displacement(observable)
     steps = np.arange(1, displacement.shape[1] + 1)
@@ -54,7 +55,7 @@ def _mean_square_displacement(observable: FloatArray) -> FloatArray:
 
 @lru_cache(maxsize=4)
 def _turns(size: int) -> ComplexArray:
-    """Exp(i c j) (frequencies, size): a run's observables all have one size, and their exponentials cost most."""
+    """exp(i c j) (frequencies, size), cached: all observables of a run have one size, and the exponentials are slow."""
     turns = np.exp(1j * FREQUENCIES[:, None] * np.arange(1, size + 1))
     turns.setflags(write=False)
     return np.asarray(turns)
