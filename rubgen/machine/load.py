@@ -1,4 +1,4 @@
-"""Machines from TOML files: the presets that come with rubgen, and the user's own of the same form."""
+"""Machines from TOML files: the presets of rubgen, and the user's own in the same form."""
 
 import hashlib
 import json
@@ -26,7 +26,7 @@ def preset_names() -> list[str]:
 def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
     """The preset of that name, or the machine in that TOML file; relative paths start from `folder`.
 
-    Raises UserError with file, key, value and what is allowed when there is none, or when it is not a valid machine.
+    Raises UserError with file, key, value and what is allowed where there is none or it is not a valid machine.
     """
     if name_or_path in preset_names():
         return _machine_from(PRESETS / f"{name_or_path}.toml")
@@ -38,9 +38,9 @@ def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
 
 @contextmanager
 def file_named(name_or_path: str, folder: Path | None = None) -> Iterator[None]:
-    """Raise a UserError about a machine, `machine <name>: its ...`, with the machine's file in front where it has one.
+    """Add the machine's file to the message of a UserError about a machine, `machine <name>: its ...`.
 
-    Whoever builds the model of a machine knows its name alone.
+    The code that builds the model of a machine knows only its name.
     """
     try:
         yield
@@ -52,9 +52,9 @@ def file_named(name_or_path: str, folder: Path | None = None) -> Iterator[None]:
 
 
 def machine_id(machine: Machine) -> str:
-    """Twelve hexadecimal digits that stand for every value of the machine: sha256 of its sorted JSON.
+    """Twelve hexadecimal digits from all values of the machine: sha256 of its sorted JSON.
 
-    Values that are the default are left out, so that a key which a later version adds changes no machine's digits.
+    Default values are left out, so a key that a later version adds changes no machine's digits.
     """
     values = TypeAdapter(Machine).dump_python(machine, mode="json", exclude_defaults=True)
     return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()[:12]

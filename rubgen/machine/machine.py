@@ -75,8 +75,8 @@ class Disk:
 class Mistuning:
     """Relative deviation of each blade's elastic stiffness: `pattern`, or one drawn by `relative_std` and `seed`.
 
-    Blade k has Young's modulus E (1 + deviation_k), and its shear modulus with it; mass and shape are those of every
-    blade. A pattern gives blade 0 first, on x, where the unbalance is, and goes on counter-clockwise. Draws are
+    Blade k has Young's modulus E (1 + deviation_k), and its shear modulus accordingly. All blades have the same mass
+    and shape. A pattern begins with blade 0 on x, where the unbalance is, and continues counter-clockwise. Draws are
     independent and normal with mean 0, so the mean of one draw is not exactly 0.
     """
 
@@ -101,7 +101,7 @@ class Mistuning:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class BladeRow:
-    """Blades on the rim, equal but for their mistuning: chord, thickness and stagger are linear from root to tip.
+    """Blades on the rim, equal except for their mistuning: chord, thickness and stagger are linear from root to tip.
 
     The angle is the one between the thickness normal and the axis of rotation Z, in degrees. Without `mistuning` all
     blades have the material's stiffness.
@@ -158,14 +158,14 @@ class Casing:
 class SqueezeFilm:
     """Short squeeze film damper beside the lateral spring: a centred journal that does not turn, in a full film of oil.
 
-    The Reynolds equation of a short bearing (Ocvirk), integrated over the whole film, without cavitation, gives on the
-    journal F = -C v with v its velocity in the inertial frame and, along and across its eccentricity e = epsilon c,
+    The Reynolds equation of a short bearing (Ocvirk), integrated over the whole film, without cavitation. The force on
+    the journal is F = -C v with v its velocity in the inertial frame. Along and across its eccentricity e = epsilon c,
 
         C_rr = C_0 (1 + 2 epsilon^2) / (1 - epsilon^2)^(5/2),   C_tt = C_0 / (1 - epsilon^2)^(3/2),
         C_0  = pi mu R (L / c)^3
 
     (Barrett, Gunter 1975, NASA CR-2548, with the whole circle as the range of the integrals). A cavitated film has
-    about half of C_0 and a stiffness of its own; fluid inertia, supply grooves and end seals are left out.
+    about half of C_0 and a stiffness of its own. Fluid inertia, supply grooves and end seals are left out.
     """
 
     radius_m: Length
@@ -181,10 +181,10 @@ class SqueezeFilm:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class DiskSupport:
-    """Springs that hold the disk centre in the inertial frame.
+    """Springs between the disk centre and the inertial frame.
 
-    `lateral_stiffness_n_per_m` is the mean of X and Y; `lateral_stiffness_anisotropy` is (k_X - k_Y) / (k_X + k_Y), and
-    `lateral_damping_anisotropy` the same of the dampers beside them. Tilt springs and dampers are isotropic.
+    `lateral_stiffness_n_per_m` is the mean of X and Y. `lateral_stiffness_anisotropy` is (k_X - k_Y) / (k_X + k_Y), and
+    `lateral_damping_anisotropy` is the same ratio of the dampers beside them. Tilt springs and dampers are isotropic.
     """
 
     lateral_stiffness_n_per_m: Stiffness
@@ -198,12 +198,12 @@ class DiskSupport:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Damping:
-    """Damping ratios at rest, each of its own mechanism.
+    """Damping ratios at rest, each with its own mechanism.
 
-    lateral, tilt, axial, torsion: dampers beside the support springs, in the inertial frame, sized so that the blisk
-    moving as a rigid body on that spring has the ratio, c = 2 zeta sqrt(k m); its elastic modes have somewhat less
-    (docs/preset-zeng2019.md). blade: elastic (internal) damping beta K_e with that ratio at
-    the first mode of a blade clamped at its root. casing: the same ratio for every casing mode.
+    lateral, tilt, axial, torsion: dampers beside the support springs, in the inertial frame, c = 2 zeta sqrt(k m). With
+    them the blisk has the ratio as a rigid body on that spring. Its elastic modes have somewhat less
+    (docs/preset-zeng2019.md). blade: elastic (internal) damping beta K_e with that ratio at the first mode of a blade
+    clamped at its root. casing: the same ratio for every casing mode.
     """
 
     lateral: DampingRatio
@@ -218,8 +218,8 @@ class Damping:
 class Unbalance:
     """One more unbalance, mass times radius: on the disk at an angle, or at the tip of a blade.
 
-    The angle is from blade 0, in the sense of rotation. At a tip it also pulls the blade out and, where the speed
-    changes, bends it: on the disk it moves O_d alone.
+    The angle is counted from blade 0 in the sense of rotation. An unbalance at a tip also pulls the blade outward and,
+    where the speed changes, bends it. An unbalance on the disk acts only on O_d.
     """
 
     kg_m: UnbalanceSize
@@ -237,9 +237,9 @@ class Unbalance:
 class Machine:
     """A blisk on its supports, with its unbalance and damping, in its casing.
 
-    `unbalance_kg_m` stands on the disk at `unbalance_angle_deg` from blade 0, in the sense of rotation; there may
-    be more, the `unbalances`.
-    Gravity acts along -Y on the blisk alone; the casing's own sag counts as part of its shape. 0 is a vertical axis.
+    `unbalance_kg_m` is on the disk at `unbalance_angle_deg` from blade 0, in the sense of rotation. `unbalances` are
+    further ones. Gravity acts along -Y, only on the blisk; the casing's own sag is part of its shape. 0 is a vertical
+    axis.
     """
 
     name: Annotated[str, Field(min_length=1)]

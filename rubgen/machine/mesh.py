@@ -1,4 +1,4 @@
-"""What the numbers of a machine's meshes must be together."""
+"""Rules for the numbers of a machine's meshes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def disk_nodes(disk: Disk) -> int:
 
 
 def pitch_problem(disk: Disk, blades: BladeRow) -> str | None:
-    """Why blades do not meet corner nodes of the rim, or balance no pull alone; None where all is well."""
+    """The problem where blades do not meet corner nodes of the rim, or do not balance their pull; None without one."""
     elements, count = disk.circumferential_elements, blades.count
     if count < 2:
         return f"blades.count = {count}: a blisk needs at least 2 equal blades; raise it"
@@ -26,7 +26,7 @@ def pitch_problem(disk: Disk, blades: BladeRow) -> str | None:
 
 
 def node_problem(casing: Casing) -> str | None:
-    """Why the casing's nodes break the symmetry of its quarters or lobes; None where they do not."""
+    """The problem where the casing's nodes break the symmetry of its quarters or lobes; None without one."""
     step = math.lcm(4, casing.lobes)
     if casing.nodes % step == 0:
         return None

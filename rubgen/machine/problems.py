@@ -1,4 +1,4 @@
-"""Data that does not fit its type, as one line for the user: file, key, value, what is allowed, how to mend it."""
+"""Data that does not fit its type, as one line for the user: file, key, value, what is allowed, the remedy."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -28,7 +28,7 @@ LONGEST = 120
 MOST_LISTED = 40
 """Allowed names that a line lists."""
 MOST_ERRORS = 500
-"""More need not be told apart: who compares each with each would take minutes over twenty thousand."""
+"""Largest number of errors that are compared with each other: twenty thousand would take minutes."""
 OTHER_NAMES = {
     "channels": "set",
     "channel": "set",
@@ -40,15 +40,20 @@ OTHER_NAMES = {
     "rho": "density_kg_per_m3",
     "sigma": "std",
 }
-"""Keys that people write for ours and that do not look like them."""
+"""Common wrong names of keys that do not resemble the right ones."""
 
 
 def validated(
     source: object, data: object, adapter: TypeAdapter[T], place: Callable[[Path], Path] = lambda path: path
 ) -> T:
-    """The data as the adapter's type; `place` says where in the file `source` a value of the data stands.
+    """The data as the adapter's type.
 
-    Raises UserError of one line: the first problem in the order of the file, and how many there are.
+    - source: file or name of the data, for messages.
+    - data: the TOML values.
+    - adapter: of the type.
+    - place: turns the path of a value in `data` into its path in the file.
+
+    Raises UserError of one line: the first problem in the order of the file, and the number of problems.
     """
     check_plain(source, data)
     try:
@@ -64,7 +69,14 @@ def first_problem(
     adapter: TypeAdapter[Any] | None = None,
     place: Callable[[Path], Path] = lambda path: path,
 ) -> UserError:
-    """The first problem in `data`, which came from `source` and does not fit the type of `adapter`."""
+    """The first problem of data that does not fit its type.
+
+    - source: file or name of the data.
+    - error: of pydantic.
+    - data: the TOML values.
+    - adapter: of the type; without it no similar keys are suggested.
+    - place: as in `validated`.
+    """
     problems = _problems(error, data)
     first = min(problems, key=lambda each: _order(data, each.path))
     schema = SchemaNodes(adapter) if adapter else None
@@ -77,7 +89,10 @@ def first_problem(
 
 
 def check_plain(source: object, value: object, path: Path = ()) -> None:
-    """Raise UserError where data is nested without end, or holds an integer that does not fit in 64 bits."""
+    """Raise UserError where data is nested too deeply, or has an integer that does not fit in 64 bits.
+
+    `source` is the file or name of the data, `path` the place of `value` in it.
+    """
     if len(path) > DEEPEST:
         raise UserError(_of(source, f"{key_name(path[:3])}: tables or lists in one another without end; write it flat"))
     if isinstance(value, Mapping):
@@ -96,7 +111,7 @@ def _of(source: object, text: str) -> str:
 
 
 def nearest(name: str, known: list[str]) -> str:
-    """What to do about an unknown `name`: the known one that is nearest, and the allowed ones."""
+    """The remedy for an unknown `name`: the nearest known name, and the allowed names."""
     close = _closest(name, known)
     hint = f"did you mean {close}? " if close else ""
     more = f" and {len(known) - MOST_LISTED} more" if len(known) > MOST_LISTED else ""
@@ -104,13 +119,13 @@ def nearest(name: str, known: list[str]) -> str:
 
 
 def key_name(path: Path) -> str:
-    """A path as it stands in TOML, `blades.material`; a part that is no bare key is quoted."""
+    """A path as in TOML, `blades.material`; a part that is no bare key is quoted."""
     return ".".join(_cut(key_text(part)) for part in path)
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Problem:
-    """All that pydantic says of the value at one path: branches of a union complain each for itself."""
+    """All errors of pydantic for the value at one path: each branch of a union has its own errors."""
 
     path: Path
     errors: list[Any]
@@ -121,11 +136,11 @@ class _Problem:
 
     @property
     def own(self) -> bool:
-        """Whether the message is ours, written where the rule stands; it then names its key."""
+        """Whether the message is written in rubgen, where the rule is; it then contains its key."""
         return self.kind in OWN
 
     def text(self, data: object, schema: SchemaNodes | None) -> str:
-        """Value, what is allowed and how to mend it, after the key."""
+        """Value, what is allowed and the remedy, after the key."""
         if self.kind == "missing":
             return ": this key is missing; add it"
         if self.kind in UNKNOWN:
@@ -156,7 +171,7 @@ def _problems(error: ValidationError, data: object) -> list[_Problem]:
 
 
 def _follows(problem: _Problem, problems: list[_Problem]) -> bool:
-    """Whether a problem goes with another: a misspelt key is also a missing one, and a list lacks its bad value."""
+    """Whether a problem follows from another: a misspelt key is also a missing key, and a list lacks its bad value."""
     if problem.kind not in ("too_short", "missing"):
         return False
     path, others = problem.path, [each for each in problems if each is not problem]
@@ -199,7 +214,7 @@ def _closest(name: str, known: list[str], cutoff: float = NEAR) -> str | None:
 
 
 def _hint(value: object, message: str) -> str:
-    """What is meant, where a text should be a number or a share stands in percent."""
+    """The likely mistake, where a number is written as text or a share in percent."""
     if isinstance(value, int | float) and 1 < value <= 100 and message.endswith(SHARES) and not SIGNED.search(message):
         return f"; {value:g} % is written {value / 100:g}"
     if not isinstance(value, str) or "number" not in message:
@@ -245,7 +260,7 @@ def _path_in(data: object, loc: tuple[int | str, ...], *, missing: bool) -> Path
 
 
 def _order(data: object, path: Path) -> tuple[int, ...]:
-    """Where a path stands in the file; what is missing stands at the end of its table."""
+    """The place of a path in the file. A missing key is at the end of its table."""
     order = []
     for part in path:
         keys = list(data) if isinstance(data, Mapping) else list(range(len(data))) if isinstance(data, list) else []

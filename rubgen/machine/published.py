@@ -1,4 +1,4 @@
-"""What Zeng et al. (2019) published of their machine, doi 10.1016/j.ast.2019.105481, to compare with."""
+"""Values that Zeng et al. (2019) published of their machine, doi 10.1016/j.ast.2019.105481, for comparison."""
 
 BLISK_HZ = {
     1: 68.55,

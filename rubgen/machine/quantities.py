@@ -1,6 +1,6 @@
-"""The kinds of quantities that a user gives: every number of a machine, recipe or sensor set is of one of them.
+"""Kinds of quantities: every number of a machine, recipe or sensor set is one of them.
 
-A value beyond its bounds is an error. A value outside of its `Usual` range is allowed and surely not meant:
+A value beyond its bounds is an error. A value outside its `Usual` range is allowed but hardly intended:
 `rubgen.scenario.plausible` warns of it.
 """
 
@@ -16,7 +16,7 @@ from pydantic_core import PydanticCustomError
 
 @dataclass(frozen=True)
 class Usual:
-    """The range in which a value is meant, what is known of it, and the units that people give by mistake."""
+    """The usual range of a value, its reason, and the units that people use by mistake."""
 
     low: float
     high: float
@@ -26,7 +26,7 @@ class Usual:
     ours: str = ""
 
     def doubt(self, value: float) -> str | None:
-        """What speaks against the value, with the first unit in which it would be usual; None where nothing does."""
+        """Why the value is unusual, with the first unit in which it would be usual; None where it is usual."""
         if self.low <= value <= self.high:
             return None
         for unit, size in self.units:
@@ -40,7 +40,7 @@ Place = tuple[int | str, ...]
 
 
 def usual_values(record: Any, place: Place = ()) -> Iterator[tuple[Place, float, Usual]]:
-    """Every number of a record, and of the records in it, that has a usual range: with its place and that range."""
+    """Every number of a record, and of records in it, that has a usual range: with its place and that range."""
     for name, usual in _usual_ranges(record.__class__).items():
         yield from _values(getattr(record, name), usual, (*place, name))
 
@@ -62,7 +62,7 @@ def _usual_ranges(kind: type) -> dict[str, Usual | None]:
 
 
 def _usual_range(hint: Any) -> Usual | None:
-    """The usual range that a type, or one of those that it is made of, is annotated with."""
+    """The usual range in the annotation of a type or of one of its parts."""
     if isinstance(hint, Usual):
         return hint
     parts = (*getattr(hint, "__metadata__", ()), *get_args(hint))
@@ -70,7 +70,7 @@ def _usual_range(hint: Any) -> Usual | None:
 
 
 def _no_text(value: object) -> object:
-    """A number as it is; pydantic would read "0.3" as 0.3 and true as 1."""
+    """The value unchanged if it is a number; pydantic would read "0.3" as 0.3 and true as 1."""
     if isinstance(value, str | bytes | bool | np.bool_):
         raise PydanticCustomError("number", "must be a number")
     return value
@@ -78,7 +78,7 @@ def _no_text(value: object) -> object:
 
 STRICT = ConfigDict(extra="forbid")
 NUMBER = BeforeValidator(_no_text)
-"""Stands in the annotation of every number, behind its bounds."""
+"""Part of the annotation of every number, after its bounds."""
 MOST_RUNS = 1_000_000
 MOST_STEPS = 16_384
 MOST_MODES = 500
@@ -87,7 +87,7 @@ Switch = Annotated[bool, Field(strict=True)]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1), NUMBER]
 Finite = Annotated[float, Field(allow_inf_nan=False), NUMBER]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), NUMBER]
-"""These two are parts of a distribution: the key that is drawn has the bounds."""
+"""`Finite` and `Positive` are parts of a distribution: the drawn key has its own bounds."""
 
 # Lengths, places and angles.
 Length = Annotated[float, Field(ge=1e-7, le=100, allow_inf_nan=False), NUMBER]

@@ -1,4 +1,4 @@
-"""What a type allows at a place of its data, read from its JSON schema: keys, and bounds of a number."""
+"""What a type allows at a place of its data, from its JSON schema: keys, and bounds of a number."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -15,11 +15,11 @@ BOUNDS = {
     "exclusiveMaximum": "below",
 }
 DEEPEST = 6
-"""No table of a recipe, machine or sensor set stands deeper."""
+"""The deepest table of a recipe, machine or sensor set."""
 
 
 class SchemaNodes:
-    """The JSON schema of an adapter's type, walked along data: a sensor's kind says which keys it may have."""
+    """The JSON schema of an adapter's type, followed along data: the kind of a sensor decides its keys."""
 
     def __init__(self, adapter: TypeAdapter[Any]) -> None:
         self.root: Node = adapter.json_schema()
@@ -50,7 +50,7 @@ class SchemaNodes:
                 yield from self._below(child, (*path, key))
 
     def _branches(self, node: Node, data: object) -> Iterator[Node]:
-        """The node itself, or what it refers to: every branch of a union that the data may be."""
+        """The node itself, or the node it refers to: every branch of a union that fits the data."""
         if "$ref" in node:
             yield from self._branches(self.root["$defs"][str(node["$ref"]).rsplit("/", 1)[-1]], data)
             return

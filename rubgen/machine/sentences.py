@@ -1,4 +1,4 @@
-"""One plain sentence for each way in which a value can fail to fit its type."""
+"""One plain sentence for each way in which a value does not fit its type."""
 
 import re
 from collections.abc import Mapping
@@ -45,11 +45,16 @@ BOUNDS = {
     "less_than_equal": ("le", "at most"),
 }
 OWN = ("value_error", "distribution")
-"""Errors whose message is written where the rule stands."""
+"""Errors whose message is written where the rule is."""
 
 
 def sentence(error: Mapping[str, Any], bounds: str, nodes: list[Mapping[str, Any]]) -> str:
-    """What a value must be, for one of pydantic's errors; `bounds` is its allowed range, `nodes` its schema."""
+    """What a value must be.
+
+    - error: one error of pydantic.
+    - bounds: allowed range in words.
+    - nodes: schema of the value.
+    """
     kind, context = str(error["type"]), error.get("ctx", {})
     if kind in OWN:
         return str(error["msg"]).removeprefix("Value error, ")

@@ -1,4 +1,4 @@
-"""TOML files of users: found, read and turned into values, or refused in one line that says how to mend them."""
+"""TOML files of users: found, read and turned into values, or refused in one line with the remedy."""
 
 import codecs
 import os
@@ -11,14 +11,14 @@ from rubgen.errors import UserError
 from rubgen.machine.toml_syntax import remedy
 
 MOST_BYTES = 2**20
-"""A recipe has one or two thousand bytes; a pattern for 1,000 blades 20,000."""
+"""Largest size of a file. A recipe has one or two thousand bytes; a pattern for 1,000 blades has 20,000."""
 MARKS = {
     codecs.BOM_UTF32_LE: "UTF-32",
     codecs.BOM_UTF32_BE: "UTF-32",
     codecs.BOM_UTF16_LE: "UTF-16",
     codecs.BOM_UTF16_BE: "UTF-16",
 }
-"""Byte order marks; one of UTF-32 begins like one of UTF-16 and stands before it."""
+"""Byte order marks. UTF-32 stands before UTF-16, because its mark begins with the mark of UTF-16."""
 LINE = re.compile(r"at line (\d+)")
 SHOWN = 80
 """Letters of a bad line that are shown."""
@@ -27,16 +27,16 @@ KEYS_OF_KIND = {
     "machine": ("disk", "blades", "casing", "disk_support", "damping"),
     "sensor set": ("kinds", "shaft_runout"),
 }
-"""Tables and keys that one kind of file has alone."""
+"""Tables and keys that exist only in one kind of file."""
 
 
 def names_toml(name: str) -> bool:
-    """Whether a text is the path of a TOML file rather than the name of something that comes with rubgen."""
+    """Whether a text is the path of a TOML file rather than the name of a preset."""
     return name.lower().endswith(".toml")
 
 
 def toml_path(name: str | Path, folder: Path | None = None) -> Path:
-    """The path that a user gave, with `~` as the home; a relative one starts from `folder`.
+    """The path that a user gave, with `~` as the home directory; a relative path starts from `folder`.
 
     Raises UserError for a text that cannot be a path.
     """
@@ -52,7 +52,10 @@ def toml_path(name: str | Path, folder: Path | None = None) -> Path:
 
 
 def named_toml(key: str, name: str, folder: Path | None = None) -> Path:
-    """The path of the TOML file that `key` names; UserError with the key where there is none."""
+    """The path of the TOML file `name`, the value of `key`; a relative path starts from `folder`.
+
+    Raises UserError with the key where there is no such file.
+    """
     path = toml_path(name, folder)
     if os.path.lexists(path):
         return path
@@ -61,7 +64,12 @@ def named_toml(key: str, name: str, folder: Path | None = None) -> Path:
 
 
 def check_kind(path: Path | str, data: dict[str, object], wanted: str) -> None:
-    """Raise UserError for a file of another kind: a machine for a recipe, say."""
+    """Raise UserError for a file of another kind, a machine instead of a recipe for example.
+
+    - path: of the file.
+    - data: its content.
+    - wanted: kind of file that is expected.
+    """
     if any(key in data for key in KEYS_OF_KIND[wanted]):
         return
     for kind, keys in KEYS_OF_KIND.items():
@@ -71,9 +79,10 @@ def check_kind(path: Path | str, data: dict[str, object], wanted: str) -> None:
 
 
 def read_toml(path: Path) -> dict[str, object]:
-    """The content of a TOML file; a UserError of one line when it is missing, no text, too large or not TOML.
+    """The content of a TOML file.
 
-    A byte order mark of UTF-8 is skipped, and lines may end as on any system.
+    Raises UserError of one line where it is missing, not text, too large or not TOML. A byte order mark of UTF-8 is
+    skipped. Lines may end as on any system.
     """
     path = toml_path(path)
     text = _text(path, _content(path)).replace("\r\n", "\n").replace("\r", "\n")
@@ -88,7 +97,7 @@ def read_toml(path: Path) -> dict[str, object]:
 
 
 def _content(path: Path) -> bytes:
-    """The bytes of a regular file; nothing that could block or never end is opened."""
+    """The bytes of a regular file. Raises UserError for other files: opening them may block or never end."""
     try:
         found = path.stat()
         if stat.S_ISDIR(found.st_mode):
@@ -120,7 +129,7 @@ def _text(path: Path, content: bytes) -> str:
 
 
 def _not_toml(text: str, error: str) -> str:
-    """The line that is not TOML, and what to do about it."""
+    """The line that is not TOML, and the remedy."""
     found = LINE.search(error)
     lines = text.rstrip().split("\n")
     number = min(int(found[1]), len(lines)) if found else len(lines)

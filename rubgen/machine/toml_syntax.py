@@ -1,4 +1,4 @@
-"""What to do about a line that is not TOML, from the line itself: the words of the parser speak to programmers."""
+"""The remedy for a line that is not TOML, from the line itself. The parser's own messages are for programmers."""
 
 import re
 
@@ -17,7 +17,7 @@ UNCLOSED = {
 
 
 def remedy(line: str, error: str) -> str:
-    """What to write instead of the line; `error` is what the parser says of it."""
+    """What to write instead of the line; `error` is the message of the parser."""
     value = line.partition("=")[2].strip()
     return _of_whole_line(line.strip(), value, error) or _of_value(value) or "write key = value, texts in quotes"
 

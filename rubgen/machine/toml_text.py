@@ -1,4 +1,4 @@
-"""Values as they stand in TOML: what a message shows of a user's file."""
+"""Values in TOML, for messages about a user's file."""
 
 import re
 from collections.abc import Mapping
@@ -6,11 +6,11 @@ from datetime import date, time
 from numbers import Integral, Real
 
 LEVELS = 6
-"""What lies deeper is shown as `...`: nobody reads it, and a manifest may nest without bound."""
+"""Deeper values are shown as `...`, because a manifest may nest without bound."""
 
 
 def toml_text(value: object, levels: int = LEVELS) -> str:
-    """The value in the words of TOML: `true`, `{ uniform = [1, 2] }`, `2026-01-31`; texts in single quotes."""
+    """The value in TOML: `true`, `{ uniform = [1, 2] }`, `2026-01-31`; texts in single quotes."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, Integral):
@@ -30,6 +30,6 @@ def toml_text(value: object, levels: int = LEVELS) -> str:
 
 
 def key_text(key: object) -> str:
-    """A key as it stands in TOML: bare where that is allowed, else in quotes with control characters escaped."""
+    """A key in TOML: bare where that is allowed, else in quotes with control characters escaped."""
     text = str(key)
     return text if re.fullmatch(r"[A-Za-z0-9_-]+", text) else repr(text)

@@ -1,4 +1,4 @@
-"""What a machine and a run take of memory, from their numbers alone: known before anything is built."""
+"""Memory of a machine's reduction and of a run, from their numbers alone, before anything is built."""
 
 import math
 from dataclasses import replace
@@ -20,12 +20,12 @@ GIGA = 1e9
 
 
 def reduction_bytes(machine: Machine, reduction: Reduction) -> float:
-    """Bytes that the reduction of a machine takes at most: 14 kB n + 8 (1.5 n_d m + 4 j^2 + 4 (3 c)^2).
+    """Largest memory of the reduction of a machine in bytes: 14 kB n + 8 (1.5 n_d m + 4 j^2 + 4 (3 c)^2).
 
-    n DoFs of the full blisk, n_d of its disk, m = 6 + 6 blades + disk modes the columns of the disk's basis, j DoFs of
-    disk and blades joined, c nodes of the casing. Measured against the growth of memory of `reduce_blisk` in a process
-    of its own: 155 MB in the preset (0.24 GB here), 1.6 GB with a disk of 20 x 288 elements (1.9 GB), 2.1 GB with 240
-    blades of 10 elements on 10 x 240 (3.5 GB).
+    n are the DoFs of the full blisk, n_d of its disk, m = 6 + 6 blades + disk modes the columns of the disk's basis, j
+    the DoFs of disk and blades joined, c the nodes of the casing. Measured growth of memory of `reduce_blisk` in a
+    process of its own: 155 MB in the preset (0.24 GB here), 1.6 GB with a disk of 20 x 288 elements (1.9 GB), 2.1 GB
+    with 240 blades of 10 elements on 10 x 240 (3.5 GB).
     """
     blades = machine.blades
     plate = 6 * disk_nodes(machine.disk)
@@ -37,7 +37,7 @@ def reduction_bytes(machine: Machine, reduction: Reduction) -> float:
 
 
 def memory_problem(machine: Machine, reduction: Reduction) -> str | None:
-    """Why the reduction of a machine takes too much memory, with what to change; None where it does not."""
+    """The problem where the reduction takes too much memory, with the remedy; None without one."""
     disk, blades, most = machine.disk, machine.blades, f"at most {MOST_REDUCTION_BYTES / GIGA:g} GB"
     if _fits(machine, reduction):
         return None
@@ -64,9 +64,9 @@ def _fits(machine: Machine, reduction: Reduction) -> bool:
 
 
 def steps_per_turn(scenario: Scenario) -> int:
-    """Steps of a turn at the highest speed: the operation's, doubled until they feed the sensors.
+    """Steps of a turn at the highest speed: the operation's, doubled until they are enough for the sensors.
 
-    Stability may double them further, which only the reduced model tells.
+    Stability may double them further, which is known only from the reduced model.
     """
     operation = scenario.operation
     needed = max(1.0, STEPS_PER_SAMPLE * scenario.sensing.fastest_hz * 2 * math.pi / operation.rotation.fastest)
@@ -75,13 +75,13 @@ def steps_per_turn(scenario: Scenario) -> int:
 
 
 def bytes_a_turn(scenario: Scenario) -> float:
-    """Bytes that are kept of each turn of the record: state and velocity once a turn, orders at a changing speed."""
+    """Bytes recorded of each turn: state and velocity once a turn, orders at a changing speed."""
     orders = 0 if scenario.operation.profile == "steady" else 20 * 16 * _taps(scenario)
     return 8 * 2 * coordinates(scenario) + orders
 
 
 def bytes_a_second(scenario: Scenario) -> float:
-    """Bytes of each second of signal: taps at every step, twice while they are joined; channels, clean ones beside."""
+    """Bytes of each second of signal: taps at every step, twice while they are joined; channels, clean ones too."""
     operation, sensing = scenario.operation, scenario.sensing
     steps = steps_per_turn(scenario) * operation.rotation.fastest / (2 * math.pi)
     return 8 * _taps(scenario) * (2 * steps + (3 if sensing.keep_clean else 2) * sensing.sample_rate_hz)
@@ -94,7 +94,7 @@ def coordinates(scenario: Scenario) -> int:
 
 
 def stored_bytes(scenario: Scenario) -> float:
-    """Bytes of a run's channels and states as a file keeps them, unpacked: numbers of 4 bytes."""
+    """Bytes of a run's channels and states in a file, unpacked: numbers of 4 bytes."""
     sensing = scenario.sensing
     channels = (2 if sensing.keep_clean else 1) * len(sensing.set.sensors)
     states = 2 * coordinates(scenario) * scenario.operation.recorded_turns
@@ -102,7 +102,7 @@ def stored_bytes(scenario: Scenario) -> float:
 
 
 def run_problem(scenario: Scenario) -> str | None:
-    """Why what is kept of a run takes too much memory, with the number that would do; None where it does not."""
+    """The problem where a run records more than fits in memory, with a number that fits; None without one."""
     operation = scenario.operation
     turn, second = bytes_a_turn(scenario), bytes_a_second(scenario)
     if operation.recorded_turns * turn > MOST_RUN_BYTES:

@@ -1,7 +1,7 @@
-"""How a varied value is drawn: each distribution maps u in [0, 1) to a value by its quantile function.
+"""Distributions of varied values: each maps u in [0, 1) to a value by its quantile function.
 
-In a recipe a plain number fixes the value; a table with one key draws it. A new distribution is one class with a
-field of its own name, and one line in `Distribution`.
+In a recipe a plain number fixes the value; a table with one key draws it. A new distribution is one class with a field
+of its own name, and one line in `Distribution`.
 """
 
 import math
@@ -18,7 +18,7 @@ from rubgen.machine.quantities import Finite, Positive
 
 T = TypeVar("T")
 LEAST_PROBABILITY = 1e-4
-"""The share of a normal density between its ends below which all values crowd at one of them, or are uniform."""
+"""Least share of a normal density between its ends. With less, all values lie at one end, or are uniform."""
 _FROZEN = ConfigDict(extra="forbid", frozen=True)
 
 
@@ -121,7 +121,7 @@ class Normal(BaseModel):
         return (self.normal.min, self.normal.max)
 
     def _shares(self) -> tuple[float, float]:
-        """Shares of the whole density that lie below min and below max."""
+        """Shares of the whole density below min and below max."""
         shape = self.normal
         low, high = (float(ndtr((end - shape.mean) / shape.std)) for end in (shape.min, shape.max))
         return low, high
@@ -154,7 +154,7 @@ def _kind(value: object) -> str | None:
 
 
 def _known(value: object) -> object:
-    """The value, where it is a distribution of some kind."""
+    """The value, where it is a distribution of any kind."""
     if _kind(value) is None:
         raise PydanticCustomError("distribution", "{message}", {"message": _unknown(value)})
     return value

@@ -1,4 +1,4 @@
-"""What a scenario must satisfy beyond the ranges of its single values, checked before anything is computed."""
+"""Rules of a scenario beyond the ranges of its single values, checked before anything is computed."""
 
 import math
 
@@ -14,11 +14,12 @@ from rubgen.sensors.kinds.blade_strain import BladeStrain
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
 
 MIN_RECORD_TURNS = 500
-"""Fewer strobed turns call quasi-periodic motion chaotic (49 do), so labels ask for these."""
+"""Least number of recorded turns. With fewer, labels call quasi-periodic motion chaotic (with 49 turns, for
+example)."""
 
 
 def check_feasible(scenario: Scenario, source: str = "") -> None:
-    """Raise UserError where the scenario cannot be run; keys are named as in a recipe, after `source` (its file)."""
+    """Raise UserError where the scenario cannot be run. Keys are named as in a recipe, after `source` (its file)."""
     for problem in (*PROBLEMS, *SENSOR_PROBLEMS, _cost_problem):
         text = problem(scenario)
         if text:
@@ -65,12 +66,12 @@ def _sample_problem(scenario: Scenario) -> str | None:
 
 
 def _highest_hz(scenario: Scenario) -> float:
-    """The highest sample rate that the most steps of a turn feed; they are doubled up to there."""
+    """The highest sample rate for which the largest number of steps a turn is enough."""
     return MOST_STEPS * _highest_speed_rpm(scenario) / 60 / STEPS_PER_SAMPLE
 
 
 def _highest_speed_rpm(scenario: Scenario) -> float:
-    """The speed that sets the step."""
+    """The speed that determines the step."""
     operation = scenario.operation
     return max(operation.speed_rpm, operation.end_speed_rpm or 0.0) + operation.fluctuation_rpm
 
@@ -123,7 +124,7 @@ def _axial_problem(scenario: Scenario) -> str | None:
 
 
 def _size_problem(scenario: Scenario) -> str | None:
-    """What cannot be meant: an oval larger than the radius, a ring without a bore, a blisk beside its axis."""
+    """Impossible sizes: an oval larger than the radius, a ring without a bore, a blisk beside its axis."""
     for each in shares(scenario):
         if each.value >= each.whole:
             remedy = each.question or "; lower it"

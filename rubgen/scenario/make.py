@@ -26,12 +26,12 @@ TABLES = {
     "output": ("signal_seconds",),
     "labels": ("lyapunov",),
 }
-"""The tables of a recipe in which the keys stand that are not drawn."""
+"""The tables of a recipe with keys that are not drawn."""
 _RECIPE = TypeAdapter(Recipe)
 
 
 def _known_keys(function: Callable[P, Scenario]) -> Callable[P, Scenario]:
-    """The function, which refuses an unknown key with the one that was meant."""
+    """The function, with a check that refuses an unknown key and names the nearest known one."""
     known = list(signature(function).parameters)
 
     @wraps(function)
@@ -91,7 +91,7 @@ def make_scenario(
     - `support_anisotropy`: (k_X - k_Y) / (k_X + k_Y) of the disk support, above -1 and below 1
     - `gravity_m_per_s2`: gravity along -Y on the blisk in m/s2, >= 0; 0 for a vertical axis
     - `unbalance_angle_deg`: angle of the unbalance from blade 0 in degrees, -360 to 360
-    - `profile`: how the speed goes: "steady", "run-up", "coast-down" or "fluctuating"
+    - `profile`: of the speed: "steady", "run-up", "coast-down" or "fluctuating"
     - `end_speed_rpm`: speed at the end of a run-up or coast-down in rev/min, > 0; these two profiles need it
     - `duration_s`: duration of a record whose speed changes in s, > 0; every profile but "steady" needs it
     - `fluctuation_rpm`: amplitude of a fluctuating speed in rev/min, below speed_rpm; this profile needs it
@@ -105,11 +105,13 @@ def make_scenario(
     - `seed`: seed of the sensor noise, >= 0
     - `lyapunov`: whether to compute the Lyapunov exponent of a steady run, half as long again; yes when not given
 
-    Warns (RubgenWarning) of values that are allowed and surely not meant.
-    Raises UserError for an unknown machine or sensor set, a value that is not allowed, and keys that do not go
-    together.
+    Warns (RubgenWarning) of values that are allowed but hardly intended. Raises UserError for an unknown machine or
+    sensor set, a value that is not allowed, and keys that exclude each other.
     """
-    given = {key: value for key, value in locals().items() if value is not None}
+    return _checked_scenario({key: value for key, value in locals().items() if value is not None})
+
+
+def _checked_scenario(given: dict[str, Any]) -> Scenario:
     values, varied = _recipe_values(given), {key: given[key] for key in KEYS if key in given}
     recipe = validated("", values, _RECIPE, _key_alone)
     check_used("", {**values, "vary": varied}, _key_alone)
@@ -121,7 +123,7 @@ def make_scenario(
 
 
 def _recipe_values(given: dict[str, Any]) -> dict[str, Any]:
-    """The values of a recipe of one run, from all given keys except those of `[vary]`."""
+    """The values of a recipe of one run: all given keys except the keys of `[vary]`."""
     values: dict[str, Any] = {"name": "run", "runs": 1}
     for table, keys in TABLES.items():
         values[table] = {key: given[key] for key in keys if key in given}
@@ -137,5 +139,5 @@ def _text(value: Any) -> Any:
 
 
 def _key_alone(path: tuple[int | str, ...]) -> tuple[int | str, ...]:
-    """The key of `make_scenario` that stands at this place of the recipe."""
+    """The key of `make_scenario` for a place of the recipe."""
     return ("sensors",) if path == ("sensors", "set") else path[-1:]

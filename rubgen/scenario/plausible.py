@@ -1,7 +1,7 @@
-"""What is allowed but surely not meant: values that the machine's own sizes speak against, one line each.
+"""Values that are allowed but hardly intended, from the machine's own sizes; one line each.
 
 Each check yields "key = value: why; was ... meant?". A question names the unit in which the value would fit, and is
-left out where none would. Limits are far outside of what machines are like, and far inside of what can be computed.
+left out where none would. The limits are far outside of real machines, and far inside of what can be computed.
 """
 
 import math
@@ -20,22 +20,22 @@ from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
 from rubgen.sensors.kinds.once_per_rev import OncePerRev
 
 MOST_ECCENTRICITY = 0.01
-"""Share of the tip radius by which an unbalance moves the centre of mass."""
+"""Largest plausible eccentricity of an unbalance as a share of the tip radius."""
 MOST_TIP_SPEED = 1000.0
-"""Twice what turbomachines reach, in m/s."""
+"""Twice the tip speed of turbomachines, in m/s."""
 LEAST_ORDERS = 2.56
 """Samples a turn below which a channel does not show the rotation."""
 MOST_STEP_FACTOR = 16
 LEAST_SHARE = 5e-3
-"""A value is asked about in mm or um where it would be no smaller than this share of the largest plausible one."""
+"""A question about mm or um is asked where the value would then be at least this share of the largest plausible one."""
 LENGTHS = (("mm", 1e-3), ("um", 1e-6))
 LEAST_HZ = 1.0
-"""Softer supports carry no machine."""
+"""Softer supports cannot carry a machine."""
 STIFFNESSES = (("N/mm", 1e3), ("N/um", 1e6), ("GN/m", 1e9))
 SUPPORTED_HZ = (10.0, 10_000.0)
-"""A stiffness is asked about in the first unit in which the supported body would have such a frequency."""
+"""A question about a stiffness names the first unit in which the supported body has a frequency in this range."""
 COUNTS_A_PASSAGE = 20
-"""A clock that counts fewer between two blades does not show their vibration."""
+"""A clock with fewer counts between two blades does not show their vibration."""
 MOST_DROPPED = 0.5
 LEAST_GRAM_MILLIMETRES = 10
 RADIANS = math.pi / 2
@@ -43,7 +43,7 @@ _QUARTERS = ("", "pi / 2", "pi", "3 pi / 2", "2 pi")
 
 
 def warn_of(scenarios: Iterable[Scenario], source: str = "") -> None:
-    """Warn of each implausible key once, with the first of the scenarios in which it is so."""
+    """Warn of each implausible key once, with its value in the first of the scenarios where it is implausible."""
     found: dict[str, str] = {}
     for scenario in scenarios:
         for text in implausible(scenario):
@@ -53,7 +53,7 @@ def warn_of(scenarios: Iterable[Scenario], source: str = "") -> None:
 
 
 def implausible(scenario: Scenario) -> Iterator[str]:
-    """Every value of a scenario that is surely not meant."""
+    """Every value of a scenario that is hardly intended."""
     for check in CHECKS:
         yield from check(scenario)
 
@@ -66,7 +66,7 @@ def _usual(scenario: Scenario) -> Iterator[str]:
 
 
 def _key(scenario: Scenario, place: Place) -> str:
-    """The key at a place of the scenario, as a recipe, a machine or a sensor set names it."""
+    """The key of a place of the scenario, as in a recipe, a machine or a sensor set."""
     match place:
         case ("sensing", "set", "sensors", int(number), key, *_):
             return f"{key} of {scenario.sensing.set.sensors[number].name}"
@@ -76,7 +76,7 @@ def _key(scenario: Scenario, place: Place) -> str:
 
 
 class Share(NamedTuple):
-    """A length that is part of another, the `whole`: at most `most` of it is plausible, all of it cannot be meant."""
+    """A length that is part of another length `whole`: at most `most` of it is plausible, all of it is impossible."""
 
     key: str
     value: float
@@ -230,7 +230,7 @@ def _arrivals(scenario: Scenario) -> Iterator[str]:
 
 
 def _chains(scenario: Scenario) -> Iterator[str]:
-    """What leaves nothing of the signal: noise, offset or drift as large as the range, gaps without end."""
+    """Sensors whose signal is lost: noise, offset or drift as large as the range, or gaps without end."""
     for sensor in scenario.sensing.set.sampled:
         low, high = sensor.full_range
         seconds, rate = scenario.signal_seconds, scenario.sensing.sample_rate_hz

@@ -1,4 +1,4 @@
-"""What the keys of an operation's speed profile must be together."""
+"""Rules for the keys of an operation's speed profile."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -18,9 +18,9 @@ PROFILES_OF: dict[str, tuple[ProfileName, ...]] = {
     "record_turns": ("steady",),
     "lyapunov": ("steady",),
 }
-"""The profiles that use a key; every other key goes with all."""
+"""The profiles that use a key; every other key belongs to all profiles."""
 NEEDED = ("end_speed_rpm", "duration_s", "fluctuation_rpm")
-"""Keys without which their profiles cannot be; the others have a default."""
+"""Keys that their profiles require; the others have a default."""
 LEAST_PERIOD_TURNS = 0.1
 """Shorter fluctuations are not resolved by the steps."""
 
@@ -28,7 +28,9 @@ LEAST_PERIOD_TURNS = 0.1
 def check_used(source: str, recipe: Mapping[str, Any], place: Callable[[Place], Place] = lambda path: path) -> None:
     """Raise UserError for a key in the data of a recipe that its profile would ignore.
 
-    `place` says by which name the user gave what stands at a path of the recipe.
+    - source: beginning of messages.
+    - recipe: the TOML values.
+    - place: turns a path in the recipe into the name that the user gave.
     """
     profile = recipe.get("operation", {}).get("profile", "steady")
     for table, keys in recipe.items():
@@ -39,7 +41,7 @@ def check_used(source: str, recipe: Mapping[str, Any], place: Callable[[Place], 
 
 
 def profile_problem(operation: Operation) -> str | None:
-    """What is wrong with an operation's profile, as key, value, what is allowed and how to mend it; None if nothing."""
+    """The problem of an operation's profile: key, value, what is allowed and the remedy; None without one."""
     return _key_problem(operation) or _value_problem(operation) or _band_problem(operation)
 
 

@@ -1,4 +1,4 @@
-"""A recipe: the TOML file from which a whole data set follows, run by run."""
+"""A recipe: the TOML file that defines a whole data set, run by run."""
 
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
@@ -56,7 +56,7 @@ class Simulation(BaseModel):
 
 
 class Profile(BaseModel):
-    """`[operation]`: how the speed goes, as in `Operation`; it starts at `speed_rpm` of `[vary]`."""
+    """`[operation]`: the profile of the speed, as in `Operation`; it starts at `speed_rpm` of `[vary]`."""
 
     model_config = _STRICT
     profile: ProfileName = "steady"
@@ -68,7 +68,7 @@ class Profile(BaseModel):
 
 
 class Output(BaseModel):
-    """`[output]`: files that are written, and the length of the signals: the end of the record."""
+    """`[output]`: the files to write, and the length of the signals: the end of the record."""
 
     model_config = _STRICT
     formats: Annotated[tuple[FormatName, ...], Field(min_length=1, max_length=len(FORMAT_NAMES))] = (
@@ -80,7 +80,7 @@ class Output(BaseModel):
 
 
 class Sensors(BaseModel):
-    """`[sensors]`: the set, one that comes with rubgen or the path of a TOML file, and what `Sensing` takes beside."""
+    """`[sensors]`: a set of rubgen or the path of a TOML file, and the other keys of `Sensing`."""
 
     model_config = _STRICT
     set: Annotated[str, Field(min_length=1)] = DEFAULT_SET
@@ -103,7 +103,7 @@ Vary = create_model(
 
 
 class Recipe(BaseModel):
-    """A data set before it exists: a machine, what varies in it, how long each run is, what is written."""
+    """The definition of a data set: a machine, what varies, the length of each run, the files."""
 
     model_config = _STRICT
     name: Annotated[str, Field(pattern=FILE_NAME)]
@@ -133,7 +133,7 @@ class Recipe(BaseModel):
 
     @cached_property
     def base(self) -> Scenario:
-        """The scenario before `[vary]`: the machine as its file says, at the default speed."""
+        """The scenario before `[vary]`: the machine of the file, at the default speed."""
         machine = self._machine or load_machine(self.machine, self._folder)
         return Scenario(
             machine=machine,
@@ -156,24 +156,24 @@ class Recipe(BaseModel):
         return Sensing(set=self._sensor_set or load_sensor_set(self.sensors.set, self._folder), **rest)
 
     def machine_named(self) -> AbstractContextManager[None]:
-        """Within it, errors about the machine name its file."""
+        """A context in which errors about the machine name its file."""
         return file_named(self.machine, self._folder)
 
     def distributions(self) -> Iterator[tuple[Parameter, Distribution]]:
-        """The keys that the recipe names, with their distributions, in the order of the registry."""
+        """The keys of the recipe with their distributions, in the order of the registry."""
         for entry in PARAMETERS:
             distribution = getattr(self.vary, entry.key)
             if distribution is not None:
                 yield entry, distribution
 
     def scenario(self, index: int) -> Scenario:
-        """Run number `index`, complete; it depends on no other run and not on how many there are."""
+        """Run number `index`, complete. It depends on no other run and not on the number of runs."""
         point = sobol_point(self.seed, index)
         drawn = {entry.key: distribution.quantile(point[entry.key]) for entry, distribution in self.distributions()}
         return vary(replace(self.base, index=index), drawn)
 
     def corners(self, source: str = "") -> Iterator[Scenario]:
-        """Scenarios at the extreme values of each key, the other keys at their first: what checks must look at.
+        """Scenarios at the extreme values of each key, the other keys at their first value. Checks use them.
 
         Raises UserError, beginning with `source`, where an extreme value is not allowed.
         """
@@ -186,9 +186,9 @@ class Recipe(BaseModel):
 
 
 def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> Recipe:
-    """The recipe in that TOML file, or the one that comes with rubgen; `runs` overrides its number of runs.
+    """The recipe in that TOML file, or the default recipe of rubgen; `runs` overrides its number of runs.
 
-    Raises UserError with file, key, value, what is allowed and how to mend it, before anything is computed.
+    Raises UserError with file, key, value, what is allowed and the remedy, before anything is computed.
     """
     file = DEFAULT_RECIPE if path is None else toml_path(path)
     data = read_toml(file)
@@ -199,7 +199,15 @@ def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> R
 def parse_recipe(
     data: dict[str, Any], *, source: str = "recipe", folder: Path | None = None, runs: int | None = None
 ) -> Recipe:
-    """The recipe of these TOML values; paths in it start from `folder`, errors begin with `source`."""
+    """The recipe of these TOML values.
+
+    - data: the TOML values.
+    - source: beginning of messages.
+    - folder: start of relative paths.
+    - runs: overrides the number of runs.
+
+    Raises UserError for anything that is not allowed.
+    """
     if runs is not None:
         data = {**data, "runs": checked_runs(runs)}
     recipe = validated(source, data, TypeAdapter(Recipe))
@@ -209,16 +217,21 @@ def parse_recipe(
 
 
 def checked_runs(runs: int) -> int:
-    """A number of runs that is given beside a recipe; UserError where a recipe could not say it."""
+    """A number of runs that replaces the recipe's number. Raises UserError where a recipe would not allow it."""
     if isinstance(runs, bool) or not isinstance(runs, int) or not 1 <= runs <= MOST_RUNS:
         raise UserError(f"--runs {runs}: must be at least 1 and at most {MOST_RUNS:,}; give a whole number of runs")
     return runs
 
 
 def recorded_recipe(data: object, machine: object, sensors: object, source: str = "manifest") -> Recipe:
-    """The recipe of a data set from its manifest, with machine and sensors as they were, whatever their files now say.
+    """The recipe of a data set from its manifest, with the recorded machine and sensors.
 
-    Raises UserError, beginning with `source`, where this rubgen cannot read them.
+    Changes of the machine's or sensors' files since then have no effect.
+
+    - data, machine, sensors: the three documents of the manifest.
+    - source: beginning of messages.
+
+    Raises UserError where this rubgen cannot read them.
     """
     recipe: Recipe = _recorded(Recipe, data, f"{source}: recipe")
     recipe._checked = True
@@ -236,10 +249,12 @@ def _recorded(kind: Any, data: object, source: str) -> Any:
 
 
 def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | None = None) -> None:
-    """Raise UserError where some run of the recipe could not be made: single values and extremes of `[vary]`.
+    """Raise UserError where some run of the recipe is not possible: single values, and the extremes of `[vary]`.
 
-    `data` are the TOML values that it comes from; without them, the fields that are set count as given. Warns of values
-    that are surely not meant, once for each recipe.
+    Warns once of each value that is hardly intended.
+
+    - source: beginning of messages.
+    - data: the TOML values of the recipe; without them, fields that are set count as given.
     """
     if not recipe._checked:
         _check_used(recipe, source, data)
@@ -260,7 +275,7 @@ def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | 
 
 
 def _check_used(recipe: Recipe, source: str, data: dict[str, Any] | None) -> None:
-    """Refuse a key that the profile would ignore; the recipe of a manifest has every key of every profile."""
+    """Raise UserError for a key that the profile would ignore. A manifest's recipe has every key of every profile."""
     left_out = {"labels"} if data is None else set()  # a dataclass does not tell what was set in it
     given = data or recipe.model_dump(mode="json", exclude_unset=True, exclude=left_out)
     if all(given != recipe.model_dump(mode="json", exclude=left_out, exclude_none=short) for short in (True, False)):

@@ -1,4 +1,4 @@
-"""Whether a machine can be reduced as asked, from its numbers alone: known before anything is built."""
+"""Whether a machine can be reduced as asked, from its numbers alone, before anything is built."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rubgen.scenario.scenario import Reduction
 
 
 def reduction_problem(machine: Machine, reduction: Reduction) -> str | None:
-    """Why the machine cannot be reduced, with the key, its value and what to change; None where it can."""
+    """Why the machine cannot be reduced, with the key, its value and the remedy; None where it can."""
     return (
         pitch_problem(machine.disk, machine.blades)
         or node_problem(machine.casing)
@@ -23,7 +23,7 @@ def reduction_problem(machine: Machine, reduction: Reduction) -> str | None:
 
 
 def casing_problem(machine: Machine, modes: int) -> str | None:
-    """Why so many modes of the casing cannot be: more than DoFs, or too few for the order of its lobes."""
+    """The problem of `modes` casing modes: more than DoFs, or too few for the order of its lobes; None without one."""
     lobes, most = machine.casing.lobes, 3 * machine.casing.nodes
     if not 1 <= modes <= most:
         return f"reduction.casing_modes = {modes}: a ring of {machine.casing.nodes} nodes has {most}; give 1 to {most}"
@@ -55,7 +55,10 @@ def carried_orders(machine: Machine, modes: int) -> tuple[int, ...]:
 
 
 def _modes_problem(machine: Machine, reduction: Reduction) -> str | None:
-    """More modes than DoFs with mass between the masters: six a node of a blade, five of the disk (no drilling)."""
+    """The problem of more modes than DoFs with mass between the masters.
+
+    A node of a blade has six such DoFs, a node of the disk five (no drilling).
+    """
     blades = machine.blades
     available = {
         "blade_modes": 6 * (blades.elements - 1),

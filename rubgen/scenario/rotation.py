@@ -1,4 +1,4 @@
-"""How the blisk turns: speed and angle as exact functions of time."""
+"""The rotation of the blisk: speed and angle as exact functions of time."""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from rubgen.arrays import FloatArray
 
 NEWTON_STEPS = 50
 ANGLE_TOLERANCE = 1e-13
-"""Newton's method for a time stops when the angle is right to this share of itself and of one radian."""
+"""Newton's method for a time ends where the error of the angle is below this share of the angle and of one radian."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +53,7 @@ class Rotation:
         return np.asarray(ramp + self.swing * np.sin(self._phase(time)))
 
     def acceleration(self, time: npt.ArrayLike) -> FloatArray:
-        """Omega' in rad/s2; at the ramp's two corners that within it."""
+        """Omega' in rad/s2 at `time` (any shape). At the ramp's two corners it is the ramp's."""
         time = np.asarray(time)
         ramp = np.where((time >= 0) & (time <= self.seconds), self.rate, 0.0)
         return np.asarray(ramp + self.swing * (2 * np.pi / self.period) * np.cos(self._phase(time)))
@@ -69,7 +69,7 @@ class Rotation:
         return np.asarray(ramp + wave)
 
     def time_of(self, angle: float) -> float:
-        """The time at which theta reaches `angle` (rad), in s: the ramp in closed form, a fluctuation by Newton."""
+        """Time in s at which theta is `angle` (rad): the ramp in closed form, a fluctuation by Newton's method."""
         time = self._ramp_time(angle)
         if self.swing == 0:
             return time
@@ -85,7 +85,7 @@ class Rotation:
         return self.start if self.is_steady else angle / self.time_of(angle)
 
     def _ramp_time(self, angle: float) -> float:
-        """The same without fluctuation."""
+        """The time of an angle without fluctuation."""
         ramped = 0.5 * (self.start + self.end) * self.seconds
         if angle <= 0:
             return angle / self.start

@@ -6,13 +6,13 @@ from rubgen.arrays import FloatArray
 from rubgen.scenario.vary import KEYS
 
 DIMENSIONS = 32
-"""Dimensions that are always generated: a key that is added later changes no value of an existing recipe."""
+"""Dimensions that are always generated, so a key that is added later changes no value of an existing recipe."""
 
 
 def sobol_point(seed: int, index: int) -> dict[str, float]:
-    """One u in [0, 1) for each key of `[vary]`: point `index` of the Sobol sequence that `seed` scrambles.
+    """One u in [0, 1) for each key of `[vary]`: point `index` of the Sobol sequence scrambled by `seed`.
 
-    Each key owns a fixed dimension, whether it is drawn or fixed: fixing one key leaves all others as they were.
+    Each key has a fixed dimension, whether it is drawn or fixed: fixing one key changes no other key.
     """
     from scipy.stats import qmc  # slow to import, and only needed here
 

@@ -1,4 +1,4 @@
-"""What one run is: a machine, how it is operated, what touches, what is measured.
+"""A run: a machine, its operation, its contact law, its sensors.
 
 Frozen and validated on creation, like the machine.
 """
@@ -42,7 +42,7 @@ ProfileName = Literal["steady", "run-up", "coast-down", "fluctuating"]
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Reduction:
-    """Numbers of Craig-Bampton modes kept: per blade, of the disk, of the coupled blisk, of the casing."""
+    """Numbers of Craig-Bampton modes: per blade, of the disk, of the coupled blisk, of the casing."""
 
     blade_modes: ModeCount = 4
     disk_modes: ModeCount = 4
@@ -52,16 +52,17 @@ class Reduction:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Operation:
-    """Rotation: the clearance closes over `closing_turns`, transients die, then the record begins.
+    """Rotation: the clearance closes over `closing_turns`, transients decay, then the record begins.
 
     `settle_turns` counts from the start and includes the closing; "auto" follows from the slowest decay of the model.
-    `steps_per_turn` is the least number; it is doubled until the step is stable and feeds the sensors.
+    `steps_per_turn` is the least number; it is doubled until the step is stable and short enough for the sensors.
 
-    `profile` "steady": `record_turns` are recorded. "run-up" and "coast-down": the settling at `speed_rpm`, then the
-    record: linear to `end_speed_rpm` within `duration_s`, and to the end of that turn. "fluctuating": speed_rpm +
-    fluctuation_rpm sin(2 pi t / fluctuation_period_s) from the start of the settling on, t = 0 at that of the record,
-    which lasts `duration_s` and to the end of that turn. `profile_problem` says what does not fit together.
-    The speed must stay out of the bands `forbidden_speed_rpm`, each a lower and an upper end.
+    `profile` "steady": the record has `record_turns`. "run-up" and "coast-down": the settling is at `speed_rpm`. In the
+    record the speed is linear to `end_speed_rpm` within `duration_s`, then constant to the end of that turn.
+    "fluctuating": speed_rpm + fluctuation_rpm sin(2 pi t / fluctuation_period_s) from the start of the settling on,
+    with t = 0 at the start of the record, which lasts `duration_s` and to the end of that turn. `profile_problem`
+    checks the combination of keys. The speed must stay out of the bands `forbidden_speed_rpm`, each with a lower and an
+    upper end.
     """
 
     speed_rpm: Speed
@@ -89,7 +90,7 @@ class Operation:
 
     @property
     def recorded_turns(self) -> int:
-        """Turns of the record: `record_turns`, or those that `duration_s` begins."""
+        """Turns of the record: `record_turns`, or the number of turns that begin within `duration_s`."""
         if self.duration_s is None:
             return self.record_turns
         turns = float(self.rotation.angle(self.duration_s)) / (2 * np.pi)
@@ -117,8 +118,8 @@ class Operation:
 class Liner:
     """An abradable lining of the casing that wears at the contact (Archard 1953): volume = wear force sliding.
 
-    `wear_m2_per_n` is the volume worn for each newton and metre of sliding, `width_m` the axial width of the track,
-    over which the depth is even; `bins` the number of equal steps of polar angle in which the depth is kept. Below
+    `wear_m2_per_n` is the volume worn for each newton and metre of sliding. `width_m` is the axial width of the track,
+    over which the depth is constant. `bins` is the number of equal steps of polar angle of the depth. Below
     `thickness_m` the casing does not wear.
     """
 
@@ -149,8 +150,8 @@ class ContactLaw:
 class Sensing:
     """How the true response becomes recorded channels.
 
-    `set` are the sensors. `noise` scales every sensor's own noise level (0 switches it off); `keep_clean` keeps beside
-    each channel what an ideal sensor would give.
+    `set` are the sensors. `noise` scales every sensor's own noise level (0 switches it off). `keep_clean` also records,
+    for each channel, the signal of an ideal sensor.
     """
 
     sample_rate_hz: Rate = 25600.0
@@ -163,20 +164,20 @@ class Sensing:
 
     @property
     def fastest_hz(self) -> float:
-        """The highest frequency that steps must feed: the sample rate, or that of a sensor's own dynamics."""
+        """The highest frequency that steps must resolve: the sample rate, or that of a sensor's own dynamics."""
         return max(self.sample_rate_hz, self.set.front_end_hz)
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Labelling:
-    """What is computed for the labels alone: the Lyapunov exponent, which takes a second trajectory."""
+    """What is computed only for the labels: the Lyapunov exponent, which needs a second trajectory."""
 
     lyapunov: Switch = True
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Scenario:
-    """One run, complete: the same scenario gives the same bytes."""
+    """One run, complete. The same scenario always makes the same bytes."""
 
     machine: Machine
     operation: Operation

@@ -1,4 +1,4 @@
-"""A scenario as a dictionary that JSON can hold."""
+"""A scenario as a dictionary for JSON."""
 
 from typing import cast
 

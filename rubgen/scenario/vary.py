@@ -1,7 +1,7 @@
-"""The keys of `[vary]`: what each one changes in a scenario, where it is read back, and what it may be.
+"""The keys of `[vary]`: where each key is written and read in a scenario, and what is allowed.
 
-A new key is one entry at the end of `PARAMETERS`: each entry owns one dimension of the Sobol sequence, so the order
-must not change.
+A new key is one entry at the end of `PARAMETERS`. Each entry has one dimension of the Sobol sequence, so the order must
+not change.
 """
 
 from collections.abc import Mapping
@@ -36,7 +36,7 @@ DEFAULT_SPEED_RPM = 10_000.0
 
 @dataclass(frozen=True)
 class Parameter:
-    """One key of `[vary]`: its unit, meaning and kind of quantity, and the places of a scenario where it stands."""
+    """One key of `[vary]`: its unit, meaning and kind of quantity, and its places in a scenario."""
 
     key: str
     unit: str
@@ -46,11 +46,11 @@ class Parameter:
 
     @property
     def whole(self) -> bool:
-        """Whether the key takes whole numbers alone."""
+        """Whether the key takes only whole numbers."""
         return self.quantity is Lobes
 
     def read(self, scenario: Scenario) -> float:
-        """The value in that scenario; an end speed and a duration that it does not have are those of its record."""
+        """The value in that scenario. A scenario without end speed or duration has the values of its record."""
         value: float | None = attrgetter(self.places[0])(scenario)
         if value is not None:
             return value
@@ -167,7 +167,7 @@ PARAMETERS = (
 )
 KEYS = tuple(parameter.key for parameter in PARAMETERS)
 KEYS_AT = {place: parameter.key for parameter in PARAMETERS for place in parameter.places}
-"""The key that stands for a place of the scenario."""
+"""The key of a place of the scenario."""
 _FIELDS: dict[str, Any] = {parameter.key: (parameter.quantity, None) for parameter in PARAMETERS}
 _VALUES: TypeAdapter[Any] = TypeAdapter(create_model("Values", __config__=STRICT, **_FIELDS))
 
@@ -175,7 +175,10 @@ _VALUES: TypeAdapter[Any] = TypeAdapter(create_model("Values", __config__=STRICT
 def vary(scenario: Scenario, values: Mapping[str, float], source: str = "", table: tuple[str, ...] = ()) -> Scenario:
     """The scenario with these keys of `[vary]` changed.
 
-    Raises UserError for an unknown key or a value out of range; `source` and `table` name the file and the table.
+    - values: by key, in the key's unit.
+    - source, table: file and table, for messages.
+
+    Raises UserError for an unknown key or a value out of range.
     """
     checked = validated(source, dict(values), _VALUES, lambda path: (*table, *path))
     for entry in PARAMETERS:
