@@ -93,6 +93,15 @@ def test_the_stated_level_is_that_of_the_noise():
     assert not noise(sensor, 4096, RATE, 0.0, np.random.default_rng(0)).any()
 
 
+@pytest.mark.parametrize("samples", [4, 5, 16, 17])
+def test_the_level_is_the_sum_over_all_frequencies_of_an_even_or_odd_number_of_samples(samples):
+    """Every frequency but 0, also the negative ones, has the density D^2 (1 + f_c / |f|) / 2 times RATE / samples."""
+    sensor = accelerometer(noise_density=2e-3, noise_corner_hz=400.0)
+    frequency = np.abs(np.fft.fftfreq(samples, 1 / RATE))[1:]
+    power = np.sum(2e-3**2 * (1 + 400 / frequency) / 2) * RATE / samples
+    assert noise_level(sensor, samples, RATE) == pytest.approx(np.sqrt(power), rel=1e-12)
+
+
 def test_dropouts_hold_the_last_value_as_often_and_as_long_as_stated():
     sensor = accelerometer(dropouts_per_s=20.0, dropout_s=2e-3)
     signal = np.arange(20 * 25600.0)
