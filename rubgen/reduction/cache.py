@@ -25,6 +25,8 @@ _PACKAGE = Path(__file__).parents[1]
 _ARRAYS = ("M", "K", "G", "A", "euler", "centre", "roots", "rigid_inertia")
 _NUMBERS = ("blade_frequency", "full_size")
 _GROWTH = ("K", "A", "f", "tips", "moment")
+PATIENCE_S = 120.0
+"""So long is waited for a process that makes the same blisk; it may be stopped."""
 
 
 def cached_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> ReducedBlisk:
@@ -50,11 +52,11 @@ def cached_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: 
 
 @contextmanager
 def _lock(path: Path) -> Iterator[None]:
-    """One process makes the file at `path`; where files cannot be locked, several may, to the same bytes."""
-    lock = FileLock(path.with_suffix(".lock"))
+    """One process makes the file at `path`; where files cannot be locked in time, several may, to the same bytes."""
+    lock = FileLock(path.with_suffix(".lock"), timeout=PATIENCE_S)
     try:
         lock.acquire()
-    except (OSError, NotImplementedError):
+    except (OSError, NotImplementedError):  # a Timeout is an OSError
         yield
         return
     try:

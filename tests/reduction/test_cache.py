@@ -104,6 +104,26 @@ def test_where_files_cannot_be_locked_it_is_kept_all_the_same(small, calls, monk
     assert len(calls) == 1
 
 
+def test_a_lock_of_a_process_that_never_ends_is_not_waited_for(small, calls, monkeypatch):
+    good = bits(take(small))
+    (path,) = cache.cache_folder("reduction").glob("*.blisk")
+    path.unlink()
+    monkeypatch.setattr(cache, "PATIENCE_S", 0.1)
+    with cache.FileLock(path.with_suffix(".lock")):
+        assert bits(take(small)) == good
+    assert len(calls) == 2
+
+
+def test_a_folder_in_the_place_of_the_lock_costs_nothing(small, calls):
+    good = bits(take(small))
+    (path,) = cache.cache_folder("reduction").glob("*.blisk")
+    path.unlink()
+    path.with_suffix(".lock").unlink(missing_ok=True)
+    path.with_suffix(".lock").mkdir()
+    assert bits(take(small)) == bits(take(small)) == good
+    assert len(calls) == 2
+
+
 def test_a_file_without_seal_is_not_believed(small, calls):
     good = bits(take(small))
     (path,) = cache.cache_folder("reduction").glob("*.blisk")
