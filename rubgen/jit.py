@@ -23,8 +23,11 @@ from rubgen.cache_root import cache_folder, keep, kept
 
 P = ParamSpec("P")
 R = TypeVar("R")
+PACKAGE = Path(__file__).parent
 caching: Any = numba.core.caching
 """Private to numba, hence the bounds of its version in pyproject.toml."""
+LAST_COMPILED = "turn_kernels.run_turn-*.nbc"
+"""The kernel that calls all others of a run."""
 
 
 @cache
@@ -34,23 +37,22 @@ def kernel_key() -> str:
     Kernel sources, Python, numba, llvmlite, numpy and what numba reads from the environment. The number of threads,
     which workers have set, does not enter.
     """
-    root = Path(__file__).parent
     made_by = [sys.version, numba.__version__, version("llvmlite"), np.__version__]
     settings = sorted(
         item for item in os.environ.items() if item[0].startswith("NUMBA_") and item[0] != "NUMBA_NUM_THREADS"
     )
     digest = hashlib.sha256(repr((made_by, settings)).encode())
-    for source in [*sorted(root.rglob("*_kernels.py")), Path(__file__)]:
-        digest.update(source.relative_to(root).as_posix().encode())
+    for source in [*sorted(PACKAGE.rglob("*_kernels.py")), Path(__file__)]:
+        digest.update(source.relative_to(PACKAGE).as_posix().encode())
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
 
 
 def kernels_are_compiled() -> bool:
-    """Whether kernels of this code were compiled before: a run need not wait for the compiler."""
+    """Whether kernels of this code were compiled before, to the last one: a run need not wait for the compiler."""
     config: Any = numba.config
     folder = cache_folder("kernels")
-    return bool(config.DISABLE_JIT) or (folder is not None and any((folder / kernel_key()).rglob("*.nbc")))
+    return bool(config.DISABLE_JIT) or (folder is not None and any((folder / kernel_key()).rglob(LAST_COMPILED)))
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
@@ -137,7 +139,9 @@ class _Implementation(caching.CompileResultCacheImpl):  # type: ignore[misc]
 class _Locator(caching._SourceFileBackedLocatorMixin, caching._CacheLocator):  # type: ignore[misc]
     def __init__(self, function: Callable[..., Any], source: Path, folder: Path) -> None:
         self._py_file, self._lineno = str(source), function.__code__.co_firstlineno
-        self._cache_path = str(folder / self.get_suitable_cache_subpath(str(source)))
+        inside = source.is_relative_to(PACKAGE)  # the key stands for these sources, wherever they are installed
+        room = source.relative_to(PACKAGE).parent if inside else self.get_suitable_cache_subpath(str(source))
+        self._cache_path = str(folder / room)
 
     def get_cache_path(self) -> str:
         return self._cache_path

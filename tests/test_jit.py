@@ -13,7 +13,7 @@ import rubgen
 from rubgen import cache_root
 from rubgen.cache_root import CACHE_VARIABLE
 from rubgen.errors import RubgenWarning
-from rubgen.jit import kernel, kernel_key
+from rubgen.jit import kernel, kernel_key, kernels_are_compiled
 
 PACKAGE = Path(rubgen.__file__).parent
 CALLED = "from rubgen.jit import kernel\n@kernel\ndef called(x: float) -> float:\n    return x + 1.0\n"
@@ -21,6 +21,7 @@ CALLING = (
     "from rubgen.called_kernels import called\nfrom rubgen.jit import kernel\n"
     "@kernel\ndef calling(x: float) -> float:\n    return 10.0 * called(x)\n"
 )
+CALL = [sys.executable, "-c", "from rubgen.calling_kernels import calling; print(calling(2.0))"]
 
 
 @pytest.fixture
@@ -122,10 +123,9 @@ def test_a_change_in_a_called_kernel_is_seen(small_package, tmp_path, writable):
     environment = os.environ | {
         CACHE_VARIABLE: str(cache), "PYTHONPATH": str(small_package.parent), "PYTHONDONTWRITEBYTECODE": "1",
     }  # fmt: skip
-    command = [sys.executable, "-c", "from rubgen.calling_kernels import calling; print(calling(2.0))"]
 
     def said():
-        return subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, check=True)
+        return subprocess.run(CALL, env=environment, cwd=tmp_path, capture_output=True, text=True, check=True)
 
     before = set(small_package.rglob("*"))
     assert said().stdout == "30.0\n"
@@ -134,3 +134,30 @@ def test_a_change_in_a_called_kernel_is_seen(small_package, tmp_path, writable):
     assert last.stdout == "10.0\n"
     assert last.stderr.count(CACHE_VARIABLE) == (0 if writable else 1)
     assert set(small_package.rglob("*")) == before
+
+
+def test_the_same_sources_in_another_place_share_the_kernels(small_package, tmp_path):
+    cache = tmp_path / "cache"
+
+    def compiled(package):
+        environment = os.environ | {CACHE_VARIABLE: str(cache), "PYTHONPATH": str(package.parent)}
+        done = subprocess.run(CALL, env=environment, cwd=tmp_path, capture_output=True, text=True, check=True)
+        assert done.stdout == "30.0\n"
+        return {path: path.stat().st_mtime_ns for path in cache.rglob("*.nb?")}
+
+    first = compiled(small_package)
+    assert len(first) == 4  # index and code of two kernels
+    other = shutil.copytree(small_package.parent, tmp_path / "other") / "rubgen"
+    shutil.rmtree(small_package)
+    assert compiled(other) == first
+
+
+def test_kernels_are_compiled_when_the_last_one_is(monkeypatch, tmp_path):
+    """A compilation that was stopped has left most of the files."""
+    from rubgen.solver.scheme.turn_kernels import run_turn
+
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    assert run_turn.__name__ == "run_turn"
+    for name, compiled in (("step_kernels.advance-262", False), ("turn_kernels.run_turn-165", True)):
+        cache_root.keep(tmp_path / "kernels" / kernel_key() / "solver" / f"{name}.py311.1.nbc", b"code")
+        assert kernels_are_compiled() is compiled

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 TYPE_CHECKING = False
@@ -9,10 +10,12 @@ if TYPE_CHECKING:
     from typing import NoReturn
 
 __all__ = ["main"]
+STDERR = 2
 
 
 def main(arguments: list[str] | None = None) -> NoReturn:
     """Run the command line. A Ctrl-C during the imports also ends it in one line."""
+    _open_streams()
     try:
         from rubgen.cli.interrupts import terminable
 
@@ -23,3 +26,14 @@ def main(arguments: list[str] | None = None) -> NoReturn:
     except KeyboardInterrupt:
         sys.stderr.write("rubgen: interrupted\n")
         raise SystemExit(130) from None
+
+
+def _open_streams() -> None:
+    """Give closed standard streams (`>&-`) the null device, else a file of the set gets their number and their text."""
+    number = os.open(os.devnull, os.O_RDWR)
+    while number <= STDERR:
+        number = os.open(os.devnull, os.O_RDWR)
+    os.close(number)
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w"))

@@ -1,0 +1,32 @@
+"""Standard streams that a shell, a service or a scheduler has closed."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+COMMAND = [sys.executable, "-c", "from rubgen.cli import main; main(['modes', 'no-such-machine'])"]
+OPENED = """
+import os, sys
+from rubgen.cli import _open_streams
+_open_streams()
+numbers = [os.open(sys.argv[1], os.O_WRONLY | os.O_CREAT) for _ in range(2)]
+print("text", flush=True)
+sys.exit(0 if min(numbers) > 2 else 9)
+"""
+
+
+@pytest.mark.parametrize("closed", [(0,), (1,), (2,), (0, 1, 2)])
+def test_a_closed_stream_costs_no_traceback_and_no_file(closed, tmp_path):
+    def close():
+        for number in closed:
+            os.close(number)
+
+    done = subprocess.run(COMMAND, capture_output=True, text=True, preexec_fn=close, check=False)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert ("no such preset" in done.stderr) is (2 not in closed)
+    command = [sys.executable, "-c", OPENED, tmp_path / "file"]
+    assert subprocess.run(command, capture_output=True, preexec_fn=close, check=False).returncode == 0
+    assert (tmp_path / "file").read_bytes() == b""
