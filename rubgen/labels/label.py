@@ -10,10 +10,10 @@ from rubgen.labels.contact.zones import contact_zones
 from rubgen.labels.harmonics import MARKED_TAP, harmonics
 from rubgen.labels.labels import Labels
 from rubgen.labels.motion.classify import motion
-from rubgen.labels.motion.lyapunov import lyapunov_of
 from rubgen.labels.motion.whirl import whirl
 from rubgen.labels.speed_history import by_angle, changing_motion, changing_orders, speed_history
 from rubgen.labels.windows import windows
+from rubgen.solver.exponent import lyapunov
 from rubgen.solver.response import Response
 
 
@@ -30,7 +30,7 @@ def label(response: Response) -> Labels:
     contact_steps = int(response.contact_steps_per_turn.sum())
     rub = contact_steps > 0
     zones = contact_zones(by_angle(response), steps_per_turn=response.steps_per_turn)
-    exponent = lyapunov_of(response)
+    exponent = lyapunov(response.companion_growth)
     history = speed_history(response) if response.changing_speed else None
     parts = changing_motion(rub) if history else motion(response, exponent)
     cut = windows(response)

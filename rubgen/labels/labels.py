@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rubgen.brief import number
 from rubgen.labels.harmonics import TapOrders
-from rubgen.labels.motion.lyapunov import Exponent
+from rubgen.solver.exponent import Exponent
 
 if TYPE_CHECKING:
     from rubgen.labels.contact.amounts import ContactAmounts

@@ -3,7 +3,7 @@ import pytest
 
 from rubgen.labels import Motion
 from rubgen.labels.motion.decision import Indicators, MotionClass, combined, decide
-from rubgen.labels.motion.lyapunov import Exponent
+from rubgen.solver.exponent import Exponent
 
 GROWING, NEUTRAL, DYING = (
     Exponent(per_turn=size, error=0.01, convergence=np.full(10, size)) for size in (0.2, 0.001, -0.2)

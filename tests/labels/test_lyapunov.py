@@ -4,7 +4,7 @@ from scipy.integrate import solve_ivp
 
 from rubgen.labels.labels import Motion
 from rubgen.labels.motion.decision import Indicators, decide
-from rubgen.labels.motion.lyapunov import BLOCKS, Exponent, lyapunov
+from rubgen.solver.exponent import BLOCKS, Exponent, lyapunov
 
 SETTLING = 200
 """Periods before an oscillator is on its attractor."""

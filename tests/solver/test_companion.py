@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from rubgen.errors import UserError
-from rubgen.labels.motion.lyapunov import lyapunov
 from rubgen.scenario import ContactLaw
+from rubgen.solver.exponent import lyapunov
 from rubgen.solver.integrate import integrate
 from rubgen.solver.linear.stability import slowest_decay
 from rubgen.solver.observers.companion import Companion, piece_ends

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from rubgen.labels.labels import Motion
-from rubgen.labels.motion.lyapunov import Exponent
 from rubgen.scenario import make_scenario
+from rubgen.solver.exponent import Exponent
 from validation.confusion.__main__ import main
 from validation.confusion.runs import SERIES, SPEEDS_RPM, run_name, scenarios
 from validation.confusion.verdicts import AGREE, Case, Cause, Clusters, Sign, ZeroOne, line_share

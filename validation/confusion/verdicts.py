@@ -21,7 +21,7 @@ from rubgen.labels.motion.clusters import (
     rms,
     without_periodic_part,
 )
-from rubgen.labels.motion.lyapunov import Exponent, lyapunov_of
+from rubgen.solver.exponent import Exponent, lyapunov
 from rubgen.solver.response import Response
 
 LONG_PERIODS = range(LONGEST_PERIOD + 1, 65)
@@ -132,7 +132,7 @@ class Case:
 def judge(name: str, record: CompactRecord) -> Case | None:
     """The verdicts on a run that is kept; None where the casing rests or the companion could not follow."""
     response = response_of(record)
-    exponent = lyapunov_of(response)
+    exponent = lyapunov(response.companion_growth)
     if exponent is None:
         return None
     found = motion(response, exponent)

@@ -11,9 +11,9 @@ from rubgen.labels.motion.chaos import chaos_indicator
 from rubgen.labels.motion.clusters import cluster_distances, cluster_period, stray
 from rubgen.labels.motion.decision import AT_REST, FORCED, Indicators, MotionClass, combined, decide
 from rubgen.labels.motion.intermittency import Segment, is_intermittent, segments
-from rubgen.labels.motion.lyapunov import Exponent
 from rubgen.labels.motion.section import blisk_points, casing_points, casing_rests
 from rubgen.labels.motion.symmetry import is_symmetric
+from rubgen.solver.exponent import Exponent
 from rubgen.solver.response import Response
 
 __all__ = ["Motions", "blisk_points", "casing_points", "chaos_indicator", "cluster_distances", "motion"]

@@ -8,7 +8,7 @@ from math import erf, exp, lcm, sqrt
 from rubgen.labels.labels import Motion
 from rubgen.labels.motion.chaos import CHAOTIC_FROM
 from rubgen.labels.motion.clusters import CLUSTER_RADIUS
-from rubgen.labels.motion.lyapunov import LEAST, Exponent
+from rubgen.solver.exponent import LEAST, Exponent
 
 CLOSE = 0.5
 """A part that repeats, with points farther from its clusters than this share of the cluster radius (6 dB below it), is

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.labels.motion.lyapunov import Exponent, lyapunov
+from rubgen.solver.exponent import Exponent, lyapunov
 from validation.verification.row import Row, within
 
 TITLE = "Errors of Lyapunov exponents"

@@ -22,8 +22,8 @@ import numpy as np
 import scipy.linalg as la
 
 from rubgen.arrays import FloatArray
-from rubgen.labels.motion.lyapunov import Exponent, lyapunov
 from rubgen.scenario import ContactLaw, Operation
+from rubgen.solver.exponent import Exponent, lyapunov
 from rubgen.solver.integrate import integrate
 from rubgen.solver.observers.companion_kernels import bring_back
 from rubgen.solver.wants import Wants

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.solver.response import Response
 
 ALIGNING = 0.1
 """Share of the record in which the companion aligns with the direction of fastest growth; left out."""
@@ -88,8 +87,3 @@ def standard_error(growth: FloatArray) -> float:
             abs(second - first) / 2,
         )
     )
-
-
-def lyapunov_of(response: Response) -> Exponent | None:
-    """The exponent of a run; None where it was not asked for."""
-    return lyapunov(response.companion_growth)
