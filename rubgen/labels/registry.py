@@ -200,6 +200,11 @@ EXPONENT = (
         "it from 1/10, 2/10, ... of the turns that count",
         lambda x: x.lyapunov.convergence if x.lyapunov else (),
     ),
+    _count(
+        "lyapunov_turns",
+        "turns of the record after which the exponent was settled",
+        lambda x: x.lyapunov and x.lyapunov.turns,
+    ),
 )
 HISTORY = (
     _number(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +28,8 @@ class Exponent:
     convergence: FloatArray
     """Its value (10,) from the first tenth of the growths, from the first two tenths, and so on. The last is the
     exponent."""
+    turns: int
+    """Number of growths."""
 
     @property
     def is_positive(self) -> bool:
@@ -38,6 +42,11 @@ class Exponent:
         return self.per_turn < -max(2 * self.error, LEAST)
 
 
+ASKED_FROM, ASKED_EVERY = 150, 50
+SETTLED_ERRORS, SETTLED_FROM = 6.0, 0.01
+"""An exponent is settled where it is larger than so many of its errors and than this, in 1/turn."""
+CHANGE, CHANGE_TURNS, MOST_LAG = 10.0, 100, 16
+"""See `changed_after`; the lags are the periods that a motion may have, in turns."""
 LEAST = 1e-3
 """Exponents within this of zero, in 1/turn, count as zero: over 500 turns they grow by less than half."""
 
@@ -60,7 +69,44 @@ def lyapunov(growth: FloatArray) -> Exponent | None:
         per_turn=float(counted.mean()),
         error=standard_error(counted),
         convergence=np.cumsum(counted)[ends - 1] / ends,
+        turns=growth.size,
     )
+
+
+def is_settled(growth: Sequence[float]) -> bool:
+    """Whether the growths so far settle the exponent: more of them would not change its sign.
+
+    It is asked for at 150, 200, ... growths, and settled where it is farther from zero than SETTLED_ERRORS standard
+    errors and than SETTLED_FROM. After a growth that is no number there is none.
+    """
+    n = len(growth)
+    if not math.isfinite(growth[-1]):
+        return True
+    if n < ASKED_FROM or n % ASKED_EVERY:
+        return False
+    exponent = lyapunov(np.array(growth))
+    return exponent is not None and abs(exponent.per_turn) > max(SETTLED_ERRORS * exponent.error, SETTLED_FROM)
+
+
+def changed_after(impulse: FloatArray, turns: int, exponent: float) -> bool:
+    """Whether a motion whose exponent was settled after so many turns has become another since.
+
+    Chaos may be a transient, and a regular motion an episode. The impulses of the turns (n,) tell: after chaos some 50
+    turns repeat ten times more closely than the last 100 turns that the exponent knows, after a regular motion ten
+    times less closely. Of 86 rubs of three recipes one changed, and repeated to rounding; the chaotic others stayed
+    within factors of 0.34 and 2.2, the regular ones came closer and closer.
+    """
+    before = _unlikeness(impulse[turns - CHANGE_TURNS : turns])
+    starts = range(turns, len(impulse) - ASKED_EVERY + 1, ASKED_EVERY)
+    after = [_unlikeness(impulse[start : start + ASKED_EVERY]) for start in starts]
+    if exponent > 0:
+        return any(each < before / CHANGE for each in after)
+    return any(each > before * CHANGE for each in after)
+
+
+def _unlikeness(impulse: FloatArray) -> float:
+    """Root mean square of what impulses (n,) differ by from those some turns before, where that is least."""
+    return min(float(np.sqrt(np.mean(np.square(impulse[lag:] - impulse[:-lag])))) for lag in range(1, MOST_LAG + 1))
 
 
 def standard_error(growth: FloatArray) -> float:

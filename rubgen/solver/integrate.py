@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from threadpoolctl import threadpool_limits
 
@@ -11,6 +12,7 @@ from rubgen.progress import count
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.scenario.profiles import profile_problem
+from rubgen.solver.exponent import changed_after, lyapunov
 from rubgen.solver.linear.admissible import check_system
 from rubgen.solver.linear.rub_free import free_penetration, rub_free_motion
 from rubgen.solver.linear.stability import settle_turns, steps_per_turn
@@ -54,9 +56,9 @@ def integrate(
 
     All taps of step n belong to one time: displacements q_n, velocities and accelerations from q_n-1, q_n, q_n+1, and
     the contact force lam_n. The last value belongs to the last step of the record. The companion trajectory
-    (`observers.companion`) makes a run half as long again. At a changing speed the time steps are equal and the
-    Poincare section lies between steps (`turn_kernels.record_section`). There are then no companion and no symmetry
-    states.
+    (`observers.companion`) stops once it has settled the exponent. If the motion becomes another after that, the run is
+    made again with a companion that does not stop. At a changing speed the time steps are equal and the Poincare
+    section lies between steps (`turn_kernels.record_section`). There are then no companion and no symmetry states.
 
     A run that fails has the status and the reason. Nothing else in it is data. Raises UserError for a system that
     `check_system` refuses, for a record too short for a wanted exponent, for a profile that lacks a key, and for a turn
@@ -87,8 +89,27 @@ def _steady(system: SpinningSystem, operation: Operation, contact: ContactLaw, w
     if refusal:
         return refused_response(system, operation, steps, refusal)
     settle = settle_turns(system, operation, decay)
+    response = _integrated(system, operation, contact, wants, (steps, settle))
+    if _settled_too_soon(response):
+        response = _integrated(system, operation, contact, replace(wants, companion_stops=False), (steps, settle))
+    return response
+
+
+def _integrated(
+    system: SpinningSystem, operation: Operation, contact: ContactLaw, wants: Wants, turn: tuple[int, int]
+) -> Response:
+    """A run of so many steps a turn and turns before the record."""
+    steps, settle = turn
     driver = SteadyDriver(rub_free_stepper(system, contact, steps, taps=wants.taps), settle)
     return Integration(driver, system, operation, wants).response()
+
+
+def _settled_too_soon(response: Response) -> bool:
+    """Whether the motion has changed since the companion stopped."""
+    exponent, turns = lyapunov(response.companion_growth), response.companion_growth.size
+    if response.status is not Status.OK or exponent is None or turns == response.record_turns:
+        return False
+    return changed_after(response.impulse_per_turn, turns, exponent.per_turn)
 
 
 def _changing(changing: ChangingSystem, operation: Operation, contact: ContactLaw, wants: Wants) -> Response:

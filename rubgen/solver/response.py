@@ -208,9 +208,9 @@ class Response:
     worn: WornLiner | None = None
     """The liner at the end of the run; None without a liner."""
     companion_growth: FloatArray = field(default_factory=lambda: np.zeros(0))
-    """Ln of the growth of the companion trajectory's distance in each turn (record_turns,); (0,) without a companion.
+    """Ln of the growth of the companion trajectory's distance in each of its turns (turns,); (0,) without a companion.
 
-    NaN in a turn that the companion could not follow."""
+    Its turns are the first of the record, until they settle the exponent. NaN in a turn that it could not follow."""
     symmetry_states: FloatArray = field(default_factory=lambda: np.zeros((0, 2, 0)))
     """q and v (N, 2, n) after 1/N, 2/N, ... 1 of the last turn, the casing turned back by the same share.
 

@@ -27,5 +27,7 @@ class Wants:
     """The sensors' rate, which the steps must feed 2.56 times."""
     companion: bool = False
     """Whether a companion trajectory runs beside the record, for the Lyapunov exponent; at a steady speed only."""
+    companion_stops: bool = True
+    """Whether it stops once it has settled the exponent."""
     taps: tuple[Tap, ...] = DEFAULT_TAPS
     """The taps (`rubgen.taps`); the response holds each by its name."""

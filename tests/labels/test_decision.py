@@ -6,7 +6,7 @@ from rubgen.labels.motion.decision import Indicators, MotionClass, combined, dec
 from rubgen.solver.exponent import Exponent
 
 GROWING, NEUTRAL, DYING = (
-    Exponent(per_turn=size, error=0.01, convergence=np.full(10, size)) for size in (0.2, 0.001, -0.2)
+    Exponent(per_turn=size, error=0.01, convergence=np.full(10, size), turns=500) for size in (0.2, 0.001, -0.2)
 )
 
 

@@ -3,7 +3,8 @@ import pytest
 
 from rubgen.errors import UserError
 from rubgen.scenario import ContactLaw
-from rubgen.solver.exponent import lyapunov
+from rubgen.solver import exponent
+from rubgen.solver.exponent import changed_after, is_settled, lyapunov
 from rubgen.solver.integrate import integrate
 from rubgen.solver.linear.stability import slowest_decay
 from rubgen.solver.observers.companion import Companion, piece_ends
@@ -30,7 +31,7 @@ def test_the_run_keeps_its_bits(small_system, operation):
     system = small_system(speed=500.0)
     short = operation(system, record_turns=40, settle_turns=60)
     for law in (ContactLaw(friction=0.1), ContactLaw(friction=0.1, restitution=0.5)):
-        alone, beside = (integrate(system, short, law, Wants(companion=companion)) for companion in (False, True))
+        alone, beside = (integrate(system, short, law, Wants(companion=asked)) for asked in (False, True))
         assert alone.impulse_per_turn.min() > 0
         assert np.array_equal(alone.section_q, beside.section_q)
         assert np.array_equal(alone.section_v, beside.section_v)
@@ -46,9 +47,56 @@ def test_without_contact_the_exponent_is_the_slowest_decay(small_system, operati
         system, operation(system, record_turns=400, settle_turns=60), ContactLaw(), Wants(companion=True)
     )
     assert response.contact_steps_per_turn.sum() == 0
-    exponent = lyapunov(response.companion_growth)
-    assert exponent.per_turn == pytest.approx(-slowest_decay(system) * response.turn_seconds, rel=5e-3)
-    assert exponent.is_negative
+    found = lyapunov(response.companion_growth)
+    assert found.per_turn == pytest.approx(-slowest_decay(system) * response.turn_seconds, rel=1e-2)
+    assert found.is_negative
+
+
+@pytest.mark.parametrize("unsettled", [False, True])
+def test_the_companion_stops_once_the_exponent_is_settled(small_system, operation, monkeypatch, unsettled):
+    """Up to there its growths, and all else of the run, are those beside a companion that goes on."""
+    system, law = small_system(speed=500.0), ContactLaw(friction=0.1)
+    whole = operation(system, record_turns=230, settle_turns=60)
+    if unsettled:
+        monkeypatch.setattr(exponent, "SETTLED_ERRORS", 1e9)
+    short = integrate(system, whole, law, Wants(companion=True))
+    full = integrate(system, whole, law, Wants(companion=True, companion_stops=False))
+    assert full.impulse_per_turn.min() > 0
+    turns = short.companion_growth.size
+    assert turns == 230 if unsettled else turns in (150, 200)
+    assert np.array_equal(short.companion_growth, full.companion_growth[:turns])
+    assert np.array_equal(short.section_q, full.section_q)
+    assert short.energy == full.energy
+    assert lyapunov(short.companion_growth).is_negative == lyapunov(full.companion_growth).is_negative
+
+
+def test_an_exponent_is_settled_beyond_six_errors_and_a_hundredth_a_turn():
+    scatter = np.random.default_rng(1).standard_normal(600)
+    assert [n for n in range(1, 300) if is_settled(0.1 + 0.05 * scatter[:n])] == [150, 200, 250]
+    assert not any(is_settled(0.1 + 0.5 * scatter[:n]) for n in range(1, 300))
+    assert not any(is_settled(0.009 + 1e-6 * scatter[:n]) for n in range(1, 300))
+    assert is_settled([0.1, np.nan])
+
+
+def test_a_motion_that_changes_after_its_exponent_was_settled_is_made_again(small_system, operation, monkeypatch):
+    """The impulses of the record, as they were found or not, decide alone."""
+    system, law = small_system(speed=500.0), ContactLaw(friction=0.1)
+    asked = operation(system, record_turns=230, settle_turns=60)
+    monkeypatch.setattr(exponent, "CHANGE", 1e-9)
+    assert integrate(system, asked, law, Wants(companion=True)).companion_growth.size == 230
+
+
+def test_transient_chaos_and_a_regular_episode_are_changes():
+    rng = np.random.default_rng(2)
+    chaos, regular = 1 + 0.1 * rng.standard_normal(500), 1 + 1e-6 * rng.standard_normal(500)
+    pairs = 1 + 0.2 * (-1) ** np.arange(500) + 1e-3 * rng.standard_normal(500)
+    late = np.concatenate([chaos[:300], regular[300:]])
+    assert not changed_after(chaos, 150, 0.5)
+    assert not changed_after(regular, 150, -0.02)
+    assert changed_after(late, 150, 0.5)
+    assert changed_after(np.concatenate([chaos[:300], pairs[300:]]), 150, 0.5)
+    assert not changed_after(late, 400, -0.02)
+    assert changed_after(late[::-1], 150, -0.02)
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.5])

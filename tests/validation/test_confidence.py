@@ -5,7 +5,7 @@ import pytest
 
 from rubgen.labels.motion.classify import Motions
 from rubgen.labels.motion.decision import AT_REST, Indicators, combined, decide
-from rubgen.labels.motion.lyapunov import Exponent
+from rubgen.solver.exponent import Exponent
 from validation.sensitivity.confidence import bins, spreads, sure
 from validation.sensitivity.confidence_figure import reliability_figure
 from validation.sensitivity.confidence_page import confidence_page
@@ -15,7 +15,7 @@ RUN = all_runs(1, lambda scenario: scenario)[0]
 
 
 def motions(period: int | None, stray: float, growth: float, exponent: float) -> Motions:
-    known = Exponent(per_turn=exponent, error=0.01, convergence=np.full(10, exponent))
+    known = Exponent(per_turn=exponent, error=0.01, convergence=np.full(10, exponent), turns=500)
     seen = Indicators(period=period, stray=stray, growth=growth, exponent=known)
     blisk = decide(seen)
     return Motions(blisk=blisk, casing=AT_REST, system=combined(blisk, AT_REST), indicators=(seen,))

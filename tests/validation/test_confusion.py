@@ -21,7 +21,7 @@ def case(clusters, test, sign, **changes):
         "stray": 1e-3,
         "group": "tips",
         "growth": 0.9 if test is ZeroOne.CHAOS else 0.1,
-        "exponent": Exponent(per_turn=0.0, error=0.1, convergence=np.zeros(10)),
+        "exponent": Exponent(per_turn=0.0, error=0.1, convergence=np.zeros(10), turns=500),
         "settling": 1.0,
         "intermittent": False,
         "long_period": None,

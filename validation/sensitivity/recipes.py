@@ -11,10 +11,10 @@ from pathlib import Path
 from benchmarks.bench_recipe import RECIPE
 from rubgen.labels.compact_record import CompactRecord, response_of
 from rubgen.labels.motion.classify import Motions, motion
-from rubgen.labels.motion.lyapunov import lyapunov_of
 from rubgen.machine.toml_file import read_toml
 from rubgen.scenario import Recipe, Scenario
 from rubgen.scenario.recipe import DEFAULT_RECIPE, parse_recipe
+from rubgen.solver.exponent import lyapunov
 from validation.confusion.runs import rubs, run_piece
 from validation.piece import Arrays, Piece
 from validation.sensitivity.cases import with_operation
@@ -107,7 +107,7 @@ def rubbing(found: Found, runs: Sequence[RecipeRun]) -> list[RecipeRun]:
 def motions(kept: CompactRecord) -> Motions:
     """The class of a kept run and its indicators, by the present rules."""
     response = response_of(kept)
-    return motion(response, lyapunov_of(response))
+    return motion(response, lyapunov(response.companion_growth))
 
 
 @cache

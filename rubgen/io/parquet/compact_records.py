@@ -21,7 +21,7 @@ RECORD_COLUMNS: dict[str, tuple[pa.DataType, str]] = {
         "once a turn: tips, x, y, v_x, v_y of the disk centre, casing modes and their velocities",
     ),
     "fractions": (pa.float32(), "the same after each Nth of the last turn, N lobes"),
-    "growth": (pa.float32(), "ln of the twin's growth in each turn"),
+    "growth": (pa.float32(), "ln of the companion's growth in each of its turns"),
     "turn_impulse": (pa.float64(), "normal impulse of each turn, N s"),
     "contact_steps": (pa.int32(), "steps with contact in each turn"),
     "orbit": (pa.float32(), "last 100 turns, or all: means of X, Y, X^2 + Y^2, V_X^2 + V_Y^2, X V_Y - Y V_X"),

@@ -35,7 +35,7 @@ def chosen_observers(driver: SpeedDriver, record: int, wants: Wants) -> list[Obs
     symmetry = Symmetry(stepper)
     observers += [WindowOrders(*stepper.result.taps.shape), symmetry]
     if wants.companion:
-        observers.append(CompanionGrowth(stepper, record))
+        observers.append(CompanionGrowth(stepper, stops=wants.companion_stops))
     pieces = piece_ends(stepper.steps) if wants.companion else ()
     stepper.take_snapshots(sorted({*symmetry.steps, *pieces}))
     return observers

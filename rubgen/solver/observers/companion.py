@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.contact.liner_kernels import REMOVED
 from rubgen.errors import UserError
+from rubgen.solver.exponent import is_settled
 from rubgen.solver.observers.companion_kernels import distance, run_companion
 from rubgen.solver.scheme.model import new_state, turned
 from rubgen.solver.scheme.motion_kernels import recover
@@ -41,10 +43,10 @@ def piece_ends(steps: int) -> list[int]:
 
 
 class CompanionGrowth:
-    """The growth of a companion's distance in each turn of a record."""
+    """The growth of a companion's distance in each turn of a record; with `stops` until it settles the exponent."""
 
-    def __init__(self, stepper: Stepper, record: int) -> None:
-        self.stepper, self.growth = stepper, np.zeros(record)
+    def __init__(self, stepper: Stepper, *, stops: bool) -> None:
+        self.stepper, self.stops, self.growth = stepper, stops, list[float]()
         self.companion: Companion | None = None
         self.removed = 0.0
 
@@ -58,13 +60,16 @@ class CompanionGrowth:
         NaN where the surface has worn in it: then no trajectory of the same surface is near.
         """
         before, self.removed = self.removed, self.stepper.state.wear.sums[REMOVED]
-        if self.companion is not None:
-            same_surface = self.removed == before
-            self.growth[turn.number] = self.companion.run_turn(turn.opening).sum() if same_surface else np.nan
+        if self.companion is None:
+            return
+        same_surface = self.removed == before
+        self.growth.append(float(self.companion.run_turn(turn.opening).sum()) if same_surface else math.nan)
+        if self.stops and is_settled(self.growth):
+            self.companion = None
 
     def result(self) -> dict[str, Any]:
-        """`companion_growth` (record,)."""
-        return {"companion_growth": self.growth}
+        """`companion_growth` (turns that the companion ran,)."""
+        return {"companion_growth": np.array(self.growth)}
 
 
 class Companion:
