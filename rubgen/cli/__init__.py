@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 
 TYPE_CHECKING = False
@@ -15,8 +14,8 @@ STDERR = 2
 
 def main(arguments: list[str] | None = None) -> NoReturn:
     """Run the command line. A Ctrl-C during the imports also ends it in one line."""
-    _open_streams()
     try:
+        _open_streams()
         from rubgen.cli.interrupts import terminable
 
         with terminable():
@@ -30,6 +29,8 @@ def main(arguments: list[str] | None = None) -> NoReturn:
 
 def _open_streams() -> None:
     """Give closed standard streams (`>&-`) the null device, else a file of the set gets their number and their text."""
+    import os  # there since Python's own start
+
     number = os.open(os.devnull, os.O_RDWR)
     while number <= STDERR:
         number = os.open(os.devnull, os.O_RDWR)
