@@ -32,7 +32,7 @@ __version__ = "0.1.0"
 
 
 def __getattr__(name: str) -> object:
-    """`make_scenario` and the errors, imported when they are asked for."""
+    """`make_scenario` and the errors, imported on first use."""
     if name == "make_scenario":
         from rubgen.scenario import make_scenario
 
@@ -62,7 +62,7 @@ def simulate(scenario: Scenario) -> Run:
 
 
 def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> Recipe:
-    """The recipe in that TOML file, or the one that comes with rubgen; `runs` overrides its number of runs.
+    """The recipe in that TOML file, or the default recipe of rubgen; `runs` overrides its number of runs.
 
     Raises UserError with file, key, value and what is allowed.
     """
@@ -79,12 +79,17 @@ def generate(
     workers: int | None = None,
     progress: Callable[[int, int], None] | bool | None = None,
 ) -> Generated:
-    """The data set of a recipe in the directory `out`, completed where it was begun.
+    """The data set of a recipe in the directory `out`. A set that was begun there is completed.
 
-    Progress is shown on a terminal and in a notebook, with True everywhere, with False nowhere; a function is called
-    with the numbers of finished and of all runs instead. See `rubgen.dataset.making.generate`. Raises UserError for bad
-    input, a directory that holds something else or cannot be written, and a full disk; RubgenError where a worker
-    process dies.
+    - recipe: a Recipe, its TOML values, the path of its file, or None for the default recipe.
+    - out: directory of the data set; made where it is missing.
+    - runs: overrides the recipe's number of runs.
+    - workers: number of processes; one for each usable core with None.
+    - progress: None shows it on a terminal and in a notebook, True everywhere, False nowhere. A function is called with
+      the numbers of finished and of all runs.
+
+    See `rubgen.dataset.making.generate`. Raises UserError for bad input, a directory that has other content or cannot
+    be written, and a full disk; RubgenError where a worker process dies.
     """
     from rubgen.dataset.making.generate import generate
 
@@ -92,7 +97,7 @@ def generate(
 
 
 def open(directory: Path | str) -> DataSet:  # noqa: A001
-    """The data set in that directory: `.runs` as a DataFrame, `.signals(run_id)` as arrays, read when asked for.
+    """The data set in that directory: `.runs` as a DataFrame, `.signals(run_id)` as arrays, read on demand.
 
     Raises UserError where the directory holds no finished data set.
     """
@@ -104,7 +109,7 @@ def open(directory: Path | str) -> DataSet:  # noqa: A001
 
 
 def verify(directory: Path | str) -> list[str]:
-    """What is wrong with the data set in that directory, one sentence each; empty when nothing is.
+    """Problems of the data set in that directory, one sentence each; empty without problems.
 
     Raises UserError where the directory holds no finished data set.
     """

@@ -119,7 +119,7 @@ def _remove(folder: Path, owner: int) -> None:
 
 
 def _at_once(name: str, flags: int) -> int:
-    """Open it without waiting for whoever writes to a pipe in its place."""
+    """Open a file without waiting: in its place there may be a pipe."""
     return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
 
 

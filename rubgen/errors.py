@@ -1,4 +1,4 @@
-"""Errors that are addressed to the user."""
+"""Errors and warnings for the user."""
 
 import errno
 import os
@@ -15,16 +15,16 @@ class RubgenError(Exception):
 
 
 class UserError(RubgenError):
-    """A mistake in what the user gave: one line that says where, what, what is allowed and how to mend it.
+    """A mistake in the user's input, in one line: where, what, what is allowed and the remedy.
 
-    The command line prints the message alone and exits with 2.
+    The command line prints only the message and exits with 2.
     """
 
 
 class RubgenWarning(UserWarning):
-    """A value that is allowed and surely not meant, or work that was done in another way than asked. The work goes on.
+    """A value that is allowed but hardly intended, or work done in another way than asked. The work continues.
 
-    The command line prints the message alone on stderr, in one line.
+    The command line prints only the message on stderr, in one line.
     """
 
 
@@ -61,7 +61,7 @@ def write_problems(
 
 
 def os_reason(error: OSError) -> str:
-    """The reason that the system gives, with the file if it names one."""
+    """The reason of the system, with the file if it names one."""
     named = isinstance(error.filename, str | bytes | os.PathLike)
     return f"{os.fsdecode(error.filename)}: {_text_of(error)}" if named else _text_of(error)
 

@@ -1,8 +1,8 @@
-"""The one decorator for compiled kernels, and where they are kept.
+"""The decorators for compiled kernels, and the cache of compiled kernels.
 
-Numba's own cache looks at the file of the compiled function alone and misses a change in a kernel that it calls from
-another file; where it cannot write, it silently goes beside the sources; and it unpickles whatever lies there. Here a
-folder is named after all that compiled code comes from, and a file is believed only where its SHA-256 agrees.
+Numba's own cache is not used, for three reasons. It checks only the file of the compiled function, and misses a change
+in a kernel of another file. Where it cannot write, it silently writes beside the sources. It unpickles any file. Here
+the name of a folder depends on all sources of compiled code, and a file is read only where its SHA-256 is right.
 """
 
 import hashlib
@@ -25,17 +25,17 @@ P = ParamSpec("P")
 R = TypeVar("R")
 PACKAGE = Path(__file__).parent
 caching: Any = numba.core.caching
-"""Private to numba, hence the bounds of its version in pyproject.toml."""
+"""Private to numba. Therefore pyproject.toml bounds the version of numba."""
 LAST_COMPILED = "turn_kernels.run_turn-*.nbc"
 """The kernel that calls all others of a run."""
 
 
 @cache
 def kernel_key() -> str:
-    """A hash of all that compiled kernels come from, but the processor, which numba's own index tells apart.
+    """A hash of everything that determines compiled kernels, except the processor.
 
-    Kernel sources, Python, numba, llvmlite, numpy and what numba reads from the environment. The number of threads,
-    which workers have set, does not enter.
+    It covers kernel sources, Python, numba, llvmlite, numpy and numba's environment variables. The number of threads,
+    which workers set, is left out. Numba's own index distinguishes processors.
     """
     made_by = [sys.version, numba.__version__, version("llvmlite"), np.__version__]
     settings = sorted(
@@ -49,34 +49,34 @@ def kernel_key() -> str:
 
 
 def kernels_are_compiled() -> bool:
-    """Whether kernels of this code were compiled before, to the last one: a run need not wait for the compiler."""
+    """Whether all kernels of this code were compiled before, so that a run need not wait for the compiler."""
     config: Any = numba.config
     folder = cache_folder("kernels")
     return bool(config.DISABLE_JIT) or (folder is not None and any((folder / kernel_key()).rglob(LAST_COMPILED)))
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile `function` with numba, without the GIL, without fastmath, and keep it in the cache `kernels`.
+    """Compile `function` with numba, without the GIL and without fastmath, and store it in the cache `kernels`.
 
-    Kernels live in files named `*_kernels.py`, take arrays and scalars only, and never raise (a division by zero gives
-    inf or NaN). `NUMBA_DISABLE_JIT=1` runs them as plain Python.
+    Kernels are in files named `*_kernels.py`. They take only arrays and scalars and never raise: a division by zero is
+    inf or NaN. `NUMBA_DISABLE_JIT=1` runs them as plain Python.
     """
     return _compiled(function)
 
 
 def allocation_free_kernel(function: Callable[P, R]) -> Callable[P, R]:
-    """A `kernel` for inner loops that allocates nothing: one that does fails to compile.
+    """A `kernel` for inner loops. It does not compile where it would allocate memory.
 
-    Without allocation numba need not count references, which cost a third of a step of the solver where arrays come in
-    named tuples.
+    Without allocation numba counts no references. With array fields in named tuples, counting takes a third of a step
+    of the solver.
     """
     return _compiled(function, _nrt=False)
 
 
 def inlined_kernel(function: Callable[P, R]) -> Callable[P, R]:
-    """An `allocation_free_kernel` that is put into its callers.
+    """An `allocation_free_kernel` that is compiled into its callers.
 
-    A call passes every field of every named tuple, 100 to 300 words, which costs more than a short kernel itself.
+    A call passes every field of every named tuple, 100 to 300 words. That takes longer than a short kernel itself.
     """
     return _compiled(function, _nrt=False, forceinline=True)
 
@@ -90,7 +90,10 @@ def _compiled(function: Callable[P, R], **options: bool) -> Callable[P, R]:
 
 
 class _KernelCache(caching.NullCache):  # type: ignore[misc]
-    """Numba's cache in our folder, which is looked for when a kernel is first called; no cache where there is none."""
+    """Numba's cache in rubgen's folder, which is found when a kernel is first called.
+
+    Without a folder there is no cache.
+    """
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self._function = function
@@ -110,12 +113,12 @@ class _KernelCache(caching.NullCache):  # type: ignore[misc]
         return self._cache.load_overload(sig, target_context)
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep it."""
+        """Store the compiled kernel."""
         self._cache.save_overload(sig, data)
 
 
 class _FolderCache(caching.FunctionCache):  # type: ignore[misc]
-    """Numba's logic of keys and signatures, over files that are believed only whole."""
+    """Numba's logic of keys and signatures, over files with a checksum."""
 
     def __init__(self, function: Callable[..., Any], folder: Path) -> None:
         self._name, self._py_func = repr(function), function
@@ -127,7 +130,7 @@ class _FolderCache(caching.FunctionCache):  # type: ignore[misc]
 
 
 class _Implementation(caching.CompileResultCacheImpl):  # type: ignore[misc]
-    """How numba turns compiled code into bytes; the place is ours, whatever numba's settings say."""
+    """Numba's conversion of compiled code into bytes. The folder is rubgen's, whatever numba's settings are."""
 
     def __init__(self, function: Callable[..., Any], folder: Path) -> None:
         source = Path(function.__code__.co_filename)
@@ -147,17 +150,17 @@ class _Locator(caching._SourceFileBackedLocatorMixin, caching._CacheLocator):  #
         return self._cache_path
 
     def ensure_cache_path(self) -> None:
-        """Nothing: the folder is made when a file is written."""
+        """Nothing to do: the folder is made when a file is written."""
 
 
 class _SealedFiles(caching.IndexDataCacheFile):  # type: ignore[misc]
-    """Index and data, each behind its SHA-256; the data says for which kernel and types it was compiled."""
+    """Index and data, each after its SHA-256. The data contain the kernel and types for which they were compiled."""
 
     def save(self, key: Any, data: Any) -> None:
         super().save(key, (self._owner(key), data))
 
     def load(self, key: Any) -> Any:
-        """The data of `key`; None where another process has just put other types into that file."""
+        """The data of `key`; None where another process has just written other types into that file."""
         owner, data = super().load(key) or (None, None)
         return data if owner == self._owner(key) else None
 

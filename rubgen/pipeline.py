@@ -81,8 +81,8 @@ class Run:
 def simulate(scenario: Scenario) -> Run:
     """The run of `scenario`: reduced model, contact integration, sensors, labels.
 
-    The same scenario gives the same bits on one machine, whatever the number of BLAS threads (one is used here) and
-    whether the reduced model comes from the cache. A run that fails is returned with its status, never labelled.
+    On one machine the same scenario always has the same bits, whatever the number of BLAS threads (one is used here),
+    and with or without the cache of reduced models. A run that fails is returned with its status and without labels.
     Raises UserError for a machine that cannot be modelled, reduced or run as asked.
     """
     operation, sensing = scenario.operation, scenario.sensing

@@ -1,4 +1,4 @@
-"""Taps: the true signals that the solver gives at every step, before any sensor sees them. One class a kind."""
+"""Taps: the true signals of the solver at every step, before any sensor. One class a kind."""
 
 from typing import Annotated, ClassVar
 
@@ -109,7 +109,7 @@ DEFAULT_TAPS: tuple[Tap, ...] = (
     TipClearance(name="tip_clearance_0", angle_deg=0),
     TipClearance(name="tip_clearance_90", angle_deg=90),
 )
-"""What every run gives."""
+"""The taps of every run."""
 
 
 def name_of(value: float) -> str:

@@ -1,4 +1,4 @@
-"""What a file format declares, and the formats by name."""
+"""The declaration of a file format, and the formats by name."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def format_of(name: str) -> Format:
 
 
 def run_formats(names: Iterable[str] = FORMAT_NAMES) -> list[Format]:
-    """Those of these formats that have one file for each run, in the order of FORMAT_NAMES."""
+    """The given formats that have one file a run, in the order of FORMAT_NAMES."""
     chosen = set(names)
     found = [format_of(name) for name in FORMAT_NAMES if name in chosen]
     return [each for each in found if each.one_file_a_run]

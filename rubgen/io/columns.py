@@ -16,18 +16,17 @@ from rubgen.taps import CasingAcceleration, Tap, TipTiming
 
 @dataclass(frozen=True)
 class Column:
-    """One column; what a failed run does not have is `nullable`.
-
-    `kind` is text, flag, integer, integers (list), number, numbers (list of float64) or signal (list of float32);
-    `words` are the values that a text may have.
-    """
+    """One column of a table."""
 
     name: str
     kind: str
+    """text, flag, integer, integers (list), number, numbers (list of float64) or signal (list of float32)."""
     unit: str
     meaning: str
     nullable: bool = False
+    """Whether a failed run has null."""
     words: type[StrEnum] | None = None
+    """The values of a text with fixed values."""
 
 
 def _identity() -> list[Column]:
@@ -61,7 +60,7 @@ def label_columns(labels: Iterable[Label] = LABELS) -> list[Column]:
 
 
 FIELDS = tuple(CasingAcceleration(name=f"casing_{part}", angle_deg=0) for part in ("even", "odd"))
-"""Parts of the casing's acceleration of even and odd circumferential order: no taps, but with orders like them."""
+"""Parts of the casing's acceleration with even and odd circumferential order. They are no taps, but have orders."""
 
 
 def tap_columns(name: str, unit: str) -> list[Column]:
@@ -114,13 +113,13 @@ def _ordered_taps(sensors: SensorSet) -> tuple[Tap, ...]:
 
 
 def scalar_columns(sensors: SensorSet) -> tuple[Column, ...]:
-    """Columns of `runs.parquet` for runs with these sensors: each true signal that one sees has its orders."""
+    """Columns of `runs.parquet` for runs with these sensors. Each true signal of a sensor has its orders."""
     orders = [column for tap in _ordered_taps(sensors) for column in tap_columns(tap.name, tap.UNIT)]
     return (*_identity(), *_parameters(), *_operation(), *label_columns(), *orders, *_energy())
 
 
 def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
-    """Columns that the data files have beside those of `runs.parquet`; `clean` where those channels are kept too.
+    """Columns of the data files in addition to `runs.parquet`; with `clean` the clean channels too.
 
     Raises UserError where a sensor has the name of another column.
     """

@@ -1,4 +1,4 @@
-"""Files that are either complete and durable or not there."""
+"""Files that are either complete and durable or absent."""
 
 import errno
 import os
@@ -7,18 +7,18 @@ from contextlib import suppress
 from pathlib import Path
 
 PART = ".part"
-"""End of the name under which a file is written before it is complete."""
+"""Ending of the name of a file that is not complete yet."""
 _OF_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS)
-"""Errors that a write to an open file ends with; they name no file."""
+"""Errors of a write to an open file. They name no file."""
 _NO_SYNC = (errno.EBADF, errno.EINVAL, errno.ENOSYS, errno.ENOTSUP)
-"""What file systems answer that cannot flush a directory."""
+"""Errors of file systems that cannot flush a directory."""
 
 
 def write_durably(path: Path, write: Callable[[Path], object]) -> None:
-    """Let `write` make the file under a temporary name, flush it to the disk, then give it its name.
+    """Let `write` make the file under a temporary name, flush it to the disk, then rename it to `path`.
 
-    Whatever `write` raises passes on; then no file is there, or the one from before. An OSError of the file itself
-    names `path`: one at the temporary file, or one that names no file and is of a kind that only writing has.
+    Any error of `write` passes on. Then there is no file, or the old one. An OSError of the file itself names `path`:
+    this is one at the temporary file, or one without a file name that only writing can cause.
     """
     part = path.with_name(f"{path.stem}{PART}{path.suffix}")
     try:
@@ -38,7 +38,7 @@ def write_durably(path: Path, write: Callable[[Path], object]) -> None:
 
 
 def sync_directory(directory: Path) -> None:
-    """Make the names in a directory durable, where the system can; an OSError names the directory."""
+    """Make the names in a directory durable, where the system can. An OSError names the directory."""
     try:
         descriptor = os.open(directory, os.O_RDONLY)
     except PermissionError:  # Windows opens no directory

@@ -5,7 +5,7 @@ from typing import Any
 
 
 def read_json(content: bytes) -> Any:
-    """The values of a JSON text; ValueError where it is none, whatever is wrong."""
+    """The values of a JSON text. Raises ValueError for anything that is not JSON."""
     try:
         return json.loads(content)
     except RecursionError:

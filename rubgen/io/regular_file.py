@@ -1,4 +1,4 @@
-"""The border of every reader: what is read is a regular file."""
+"""The check before every reader: only regular files are read."""
 
 import stat
 from pathlib import Path
@@ -7,9 +7,10 @@ from rubgen.errors import UserError
 
 
 def check_regular(path: Path) -> int:
-    """Size in bytes of the file at `path`; UserError where there is none, or it is a folder, a pipe or a device.
+    """Size in bytes of the file at `path`.
 
-    Whoever opens a pipe waits for a writer, and a device may have no end.
+    Raises UserError where there is none, or it is a folder, a pipe or a device: opening a pipe waits for a writer, and
+    a device may have no end.
     """
     try:
         found = path.stat()

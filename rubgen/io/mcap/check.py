@@ -1,4 +1,4 @@
-"""What is wrong with an MCAP file, in sentences."""
+"""Problems of an MCAP file, in sentences."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -25,13 +25,12 @@ CHANNEL_KEYS = ("unit", "quantity", "axis", "location", "range_min", "range_max"
 
 
 def check_mcap(path: Path, run_id: str = "") -> list[str]:
-    """Problems of the file at `path`, none for a good one; with `run_id` also where it holds another run.
+    """Problems of the file at `path`, none for a good file. With `run_id`, a file of another run is a problem too.
 
-    Checked: CRCs of chunks, data and summary; scenario and labels present and equal in metadata and attachments;
-    every message of every topic decoded, at the time of its record, in order of time; channels described; blocks
-    without gap, of one sample rate, at the times that their indices imply, of the length that the scenario asks; a
-    preview for every quantity; and what `read_mcap` asks of a run: finite values, blades that exist, events within
-    the recording.
+    Checked: CRCs of chunks, data and summary; scenario and labels present and equal in metadata and attachments; every
+    message of every topic decoded, at the time of its record, in order of time; channels described; blocks without gap,
+    of one sample rate, at the times of their indices, of the length in the scenario; a preview for every quantity; and
+    the rules of `read_mcap`: finite values, existing blades, events within the recording.
     """
     try:
         content = read_content(path)
@@ -93,7 +92,10 @@ def _topic_problems(content: McapContent) -> Iterator[str]:
 
 
 def _check_messages(content: McapContent, topic: str) -> None:
-    """Decode every message of a topic; DamageError where one does not fit, or is not of the time of its record."""
+    """Decode every message of a topic.
+
+    Raises DamageError where one does not fit, or its time differs from its record's.
+    """
     if message_name(topic) is None:
         check_other(content, topic)
         return

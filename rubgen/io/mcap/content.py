@@ -1,4 +1,4 @@
-"""What an MCAP file holds, by name; what a file of rubgen must hold, as types."""
+"""The content of an MCAP file by name; the content of a file of rubgen as types."""
 
 from collections import defaultdict
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ from rubgen.io.mcap.records import DamageError, damage_found, read_records
 from rubgen.scenario import Scenario
 
 TIMING = "/blade_tip_timing/"
-"""Topics of timing probes begin so."""
+"""Beginning of the topics of timing probes."""
 MESSAGE_OF_TOPIC = {
     "/raw/": "SampleBlock",
     "/clean/": "SampleBlock",
@@ -29,11 +29,11 @@ MESSAGE_OF_TOPIC = {
     "/motion/frames": "MotionFrame",
     "/motion/casing_modes": "CasingModes",
 }
-"""Message of each topic, or of all topics that begin so where the name ends with a stroke."""
+"""Message of each topic. A name that ends with a slash stands for all topics that begin with it."""
 MOST_MESSAGES = 500_000
-"""A file may always hold so many; a larger one, one for every byte."""
+"""Number of messages that is allowed for any file; a larger file may have one for every byte."""
 SLACK_S = 1.0
-"""Events may lie so far outside the recording."""
+"""Largest distance of an event from the recording."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,11 +47,11 @@ class McapContent:
     schemas: dict[int, str] = field(default_factory=dict)
 
     def topics(self, prefix: str) -> list[str]:
-        """The topics that begin so."""
+        """The topics that begin with `prefix`."""
         return [topic for topic in self.channels if topic.startswith(prefix)]
 
     def document(self, name: str) -> dict[str, Any]:
-        """The attachment of that name as a table of JSON; DamageError where it is missing or none."""
+        """The attachment of that name as a table of JSON. Raises DamageError where it is missing or not a table."""
         if name not in self.attachments:
             raise DamageError(f"attachment {name} is missing: this is no run of rubgen")
         with damage_found(f"attachment {name}"):
@@ -62,7 +62,7 @@ class McapContent:
 
 
 def read_content(path: Path, lost: list[str] | None = None) -> McapContent:
-    """Every record of the file, as `read_records` gives them; DamageError where names are not unique or unknown."""
+    """Every record of the file, see `read_records`. Raises DamageError where names are not unique or unknown."""
     content = McapContent()
     topics: dict[int, str] = {}
     messages: list[Message] = []
@@ -102,7 +102,7 @@ def _add(kind: str, there: dict[str, Any], name: str, value: object) -> None:
 
 
 def message_name(topic: str) -> str | None:
-    """The message that this topic carries; None for a topic that rubgen does not know."""
+    """The message of this topic; None for a topic that rubgen does not know."""
     names = (
         name for key, name in MESSAGE_OF_TOPIC.items() if topic == key or (key.endswith("/") and topic.startswith(key))
     )
@@ -110,7 +110,7 @@ def message_name(topic: str) -> str | None:
 
 
 def rows(content: McapContent, topic: str) -> list[Any]:
-    """The decoded messages of a topic, none where it is missing; DamageError where schema or bytes do not fit."""
+    """The decoded messages of a topic, none where it is missing. Raises DamageError where they do not fit."""
     name = message_name(topic)
     if name is None or topic not in content.channels:
         return []
@@ -121,12 +121,12 @@ def rows(content: McapContent, topic: str) -> list[Any]:
 
 
 def check_kind(content: McapContent, topic: str, name: str) -> None:
-    """Raise DamageError where the topic does not carry messages rubgen.v1.`name`."""
+    """Raise DamageError where the messages of the topic are not rubgen.v1.`name`."""
     _check_schema(content, content.channels[topic], f"{PACKAGE}.{name}", "protobuf")
 
 
 def check_other(content: McapContent, topic: str) -> None:
-    """Decode a topic that is there for other programs; DamageError where its bytes do not fit, or it is unknown."""
+    """Decode a topic for other programs. Raises DamageError where its bytes do not fit, or it is unknown."""
     channel = content.channels[topic]
     if topic == "/tf":
         _check_schema(content, channel, TRANSFORM, "protobuf")
@@ -153,7 +153,11 @@ def _check_schema(content: McapContent, channel: Channel, name: str, encoding: s
 
 
 def columns(content: McapContent, topic: str, scenario: Scenario) -> dict[str, FloatArray]:
-    """Fields of a topic's events, each (n_events,): finite, with blades that exist, within the recording, in order."""
+    """The fields of a topic's events, each (n_events,).
+
+    Raises DamageError where a value is not finite, a blade does not exist, or events are outside of the recording or
+    not in order. `scenario` has the blades and the length of the recording.
+    """
     found = rows(content, topic)
     names = [each.name for each in message_class(message_name(topic) or "").DESCRIPTOR.fields]
     values = {
@@ -178,7 +182,7 @@ def _check_times(topic: str, start: FloatArray, end: FloatArray, seconds: float)
 
 
 def check_order(content: McapContent, topic: str) -> None:
-    """Raise DamageError where times of a topic's messages run backwards."""
+    """Raise DamageError where the times of a topic's messages decrease."""
     times = [message.log_time for message in content.messages.get(topic, [])]
     if any(later < earlier for earlier, later in pairwise(times)):
         raise DamageError(f"{topic}: messages are not in order of time")

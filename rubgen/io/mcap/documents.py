@@ -13,7 +13,7 @@ from rubgen.labels.labels import Motion
 from rubgen.scenario import Scenario
 
 MOST_SAMPLES = 2**28
-"""All channels of a file together: a gigabyte."""
+"""Largest number of samples of all channels of a file: a gigabyte."""
 
 Whole = Annotated[int, Field(ge=-(2**63), lt=2**63, strict=True)]
 Number = Annotated[float, Field(allow_inf_nan=False, strict=True)]
@@ -47,7 +47,7 @@ class ChannelFacts(BaseModel):
 
 
 def checked_scenario(content: McapContent) -> tuple[dict[str, Any], Scenario]:
-    """The scenario as it stands in the file, and as this rubgen understands it; DamageError where it does not."""
+    """The scenario as in the file, and as a `Scenario`. Raises DamageError where this rubgen cannot read it."""
     plain = content.document("scenario.json")
     scenario: Scenario = _validated(_adapter(Scenario), plain, "its scenario is of another rubgen")
     samples = scenario.signal_seconds * scenario.sensing.sample_rate_hz
@@ -57,7 +57,7 @@ def checked_scenario(content: McapContent) -> tuple[dict[str, Any], Scenario]:
 
 
 def checked_labels(content: McapContent) -> dict[str, Any]:
-    """The labels, each one value or a list of values; DamageError where they are none."""
+    """The labels, each a value or a list of values. Raises DamageError where they are not labels."""
     labels = content.document("labels.json")
     _validated(_adapter(dict[LabelName, LabelValue]), labels, "labels.json is not what rubgen writes")
     _validated(_adapter(RequiredLabels), labels, "labels.json is not what rubgen writes")
@@ -65,7 +65,7 @@ def checked_labels(content: McapContent) -> dict[str, Any]:
 
 
 def check_facts(channel: Channel) -> None:
-    """Raise DamageError where unit, place or range of a channel are missing or wrong."""
+    """Raise DamageError where unit, place or range of a channel is missing or wrong."""
     facts: ChannelFacts = _validated(_adapter(ChannelFacts), channel.metadata, f"metadata of {channel.topic}")
     if not math.isfinite(facts.range_max - facts.range_min) or facts.range_max < facts.range_min:
         raise DamageError(f"metadata of {channel.topic}: the range is empty")

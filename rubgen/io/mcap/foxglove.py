@@ -1,4 +1,4 @@
-"""Foxglove's protobuf schema of a moving frame, as Rerun and Foxglove read it from `/tf`."""
+"""Foxglove's protobuf schema of a moving frame, for Rerun and Foxglove on `/tf`."""
 
 import math
 from functools import cache
@@ -36,7 +36,12 @@ def transform_descriptor_set() -> bytes:
 
 
 def transform(time_ns: int, angle: float, centre: list[float]) -> bytes:
-    """The frame `blisk`, turned by `angle` (rad) about Z in `machine`; `centre` (x, y) in m in the turned frame."""
+    """The frame `blisk` in the frame `machine`, as a serialised message.
+
+    - time_ns: time in ns.
+    - angle: rotation about Z, rad.
+    - centre: x and y of its origin in the turned frame, m.
+    """
     cosine, sine = math.cos(angle), math.sin(angle)
     x, y = centre
     message = _message_class()(
@@ -50,7 +55,7 @@ def transform(time_ns: int, angle: float, centre: list[float]) -> bytes:
 
 
 def read_transform(data: bytes) -> Any:
-    """The message back; protobuf's DecodeError where the bytes are none."""
+    """The message from its bytes. Raises protobuf's DecodeError where they are not one."""
     return _message_class().FromString(data)
 
 
@@ -69,7 +74,7 @@ def _files() -> list[descriptor_pb2.FileDescriptorProto]:
 
 
 def _file(path: str, name: str, fields: tuple[tuple[str, int, str], ...]) -> descriptor_pb2.FileDescriptorProto:
-    """One file with one message; messages among its fields are imported from theirs."""
+    """One file with one message. Messages among its fields are imported from their own files."""
     file = descriptor_pb2.FileDescriptorProto(name=path, package=PACKAGE, syntax="proto3")
     message = file.message_type.add(name=name)
     for number, (field, kind, of) in enumerate(fields, start=1):

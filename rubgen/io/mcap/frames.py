@@ -1,4 +1,4 @@
-"""The motion of the machine back from the messages of an MCAP file."""
+"""The motion of the machine from the messages of an MCAP file."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ FRAMES, MODES = "/motion/frames", "/motion/casing_modes"
 
 
 def read_frames(content: McapContent, scenario: Scenario) -> MotionFrames | None:
-    """The frames, None where the file has none; DamageError where they do not fit each other or the machine."""
+    """The frames; None where the file has none. Raises DamageError where they do not fit each other or the machine."""
     found, shapes = rows(content, FRAMES), rows(content, MODES)
     if not found or not shapes:
         return None

@@ -1,4 +1,4 @@
-"""The protobuf messages of rubgen's MCAP files, defined once: classes, descriptor and .proto text follow from it."""
+"""The protobuf messages of rubgen's MCAP files, defined once. Classes, descriptor and .proto text follow from it."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -24,7 +24,7 @@ TYPES = {
 
 @dataclass(frozen=True)
 class _Field:
-    """One field; numbers follow from the position in the message."""
+    """One field. Its number is its position in the message."""
 
     type: str
     name: str
@@ -106,7 +106,7 @@ MESSAGES: dict[str, tuple[str, list[_Field]]] = {
 
 
 def proto_text() -> str:
-    """The messages as a .proto file, the one under `schemas/`."""
+    """The messages as a .proto file, as under `schemas/`."""
     lines = ['syntax = "proto3";', "", f"package {PACKAGE};", "", 'import "google/protobuf/timestamp.proto";']
     for name, (comment, fields) in MESSAGES.items():
         lines += ["", f"// {comment}", f"message {name} {{"]
@@ -135,15 +135,19 @@ def message_class(name: str) -> Any:
 
 
 def timestamp(time_ns: int) -> dict[str, int]:
-    """A google.protobuf.Timestamp as the keyword of a generated class takes it."""
+    """A google.protobuf.Timestamp as a keyword argument of a generated class."""
     return {"seconds": time_ns // 10**9, "nanos": time_ns % 10**9}
 
 
 def sample_block(values: Float32Array, sample_rate_hz: float, first_index: int, time_ns: int) -> bytes:
     """Serialised SampleBlock of `values` (n,).
 
-    This message bears the packed floats as one bytes field of the same number: the same wire bytes (a test
-    compares them) without a Python object for each sample.
+    The message has the packed floats as one bytes field of the same number. Its wire bytes are the same (a test
+    compares them), without a Python object for each sample.
+
+    - sample_rate_hz: of the channel.
+    - first_index: index of the first sample in the channel.
+    - time_ns: time of the first sample.
     """
     block = _bytes_block()(
         timestamp=timestamp(time_ns),
@@ -187,7 +191,7 @@ def _add_message(file: descriptor_pb2.FileDescriptorProto, name: str, fields: li
 
 @cache
 def _bytes_block() -> Any:
-    """SampleBlock whose packed floats are one bytes field; never written into a file's schema."""
+    """SampleBlock with its packed floats as one bytes field; never written into a file's schema."""
     fields = [_Field("bytes", "values", "") if field.repeated else field for field in MESSAGES["SampleBlock"][1]]
     file = descriptor_pb2.FileDescriptorProto(
         name="rubgen/bytes.proto",

@@ -1,6 +1,6 @@
-"""ROS 2 Float64MultiArray messages in CDR: the form that Rerun and Foxglove plot without set-up.
+"""ROS 2 Float64MultiArray messages in CDR, which Rerun and Foxglove plot without set-up.
 
-JointState carries a name for each line, but Rerun opens an empty view for each of its two unused fields.
+JointState has a name for each line, but Rerun opens an empty view for each of its two unused fields.
 """
 
 import struct
@@ -28,9 +28,9 @@ _ENCAPSULATION = b"\x00\x01\x00\x00"  # plain CDR, little endian; alignment coun
 
 
 def multi_arrays(names: Sequence[str], values: FloatArray) -> list[bytes]:
-    """One CDR message for each row of `values` (n, len(names)); the label of its one dimension lists the names.
+    """One CDR message for each row of `values` (n, len(names)). The label of its one dimension lists the names.
 
-    All messages share their head, so that one template is filled for all of them at once.
+    All messages have the same header, so one template is filled for all of them at once.
     """
     count = len(names)
     label = ", ".join(names).encode() + b"\0"
@@ -45,7 +45,7 @@ def multi_arrays(names: Sequence[str], values: FloatArray) -> list[bytes]:
 
 
 def read_multi_array(data: bytes) -> tuple[list[str], FloatArray]:
-    """Names and values of a message of `multi_arrays`; ValueError or struct.error where it is none."""
+    """Names and values of a message of `multi_arrays`. Raises ValueError or struct.error where it is not one."""
     if data[: len(_ENCAPSULATION)] != _ENCAPSULATION:
         raise ValueError("no little-endian CDR")
     body = data[len(_ENCAPSULATION) :]

@@ -1,4 +1,4 @@
-"""Runs back from MCAP files, with every checksum checked."""
+"""Runs from MCAP files, with every checksum checked."""
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
@@ -32,33 +32,38 @@ MOTION_LABELS = ("motion", "motion_blisk", "motion_casing")
 
 @dataclass(frozen=True, kw_only=True)
 class McapRun:
-    """One run from an MCAP file.
-
-    `signals` and `clean` map a channel's name to its samples (n,), float32, in the unit that `channels[name]` names
-    beside quantity, axis, location and range. `contacts` maps a field of rubgen.v1.Contact to its values (n_events,);
-    `once_per_rev` (n_pulses,) in s. `tip_timing` maps a timing probe's name to fields of rubgen.v1.BladePassage.
-    `frames` is the motion, None where the file has none. `motion_classes` maps each of the labels `motion`,
-    `motion_blisk`, `motion_casing` to its classes with the times in s from which on they hold.
-    """
+    """One run from an MCAP file."""
 
     scenario: dict[str, Any]
+    """The scenario as in `scenario.json`."""
     labels: dict[str, Any]
+    """The labels by their public names."""
     sample_rate_hz: float
+    """Sample rate of all channels."""
     signals: dict[str, Float32Array]
+    """Samples (n,) float32 of each channel by its name, in its unit."""
     clean: dict[str, Float32Array]
+    """The same of clean channels."""
     channels: dict[str, dict[str, str]]
+    """Unit, quantity, axis, location, range and so on of each channel."""
     contacts: dict[str, FloatArray]
+    """Fields of rubgen.v1.Contact, each (n_events,)."""
     once_per_rev: FloatArray
+    """Times of the pulses (n_pulses,), s."""
     tip_timing: dict[str, dict[str, FloatArray]]
+    """Fields of rubgen.v1.BladePassage by the probe's name."""
     frames: MotionFrames | None
+    """The motion; None where the file has none."""
     motion_classes: dict[str, list[tuple[float, str]]]
+    """For each of the labels `motion`, `motion_blisk`, `motion_casing`, its classes with the times in s from which they
+    are valid."""
 
 
 def read_mcap(path: Path, *, channels: Collection[str] | None = None) -> McapRun:
-    """The run in the file at `path`; chunk, data and summary CRCs are validated, and that the content is a run's.
+    """The run in the file at `path`. CRCs of chunks, data and summary, and the content, are checked.
 
-    With `channels` (`<name>_clean` for a clean one) these alone are decoded, and the pulses, of all that was recorded.
-    Raises UserError, one line, when there is no such file, it is damaged, or no run of rubgen is in it.
+    With `channels` (`<name>_clean` for a clean one) only these channels and the pulses are decoded. Raises UserError,
+    one line, where there is no such file, it is damaged, or it has no run of rubgen.
     """
     try:
         return run_of(read_content(path), channels=channels)
@@ -69,9 +74,10 @@ def read_mcap(path: Path, *, channels: Collection[str] | None = None) -> McapRun
 
 
 def run_of(content: McapContent, *, gaps: bool = False, channels: Collection[str] | None = None) -> McapRun:
-    """The run in these records, or `channels` of it; with `gaps` samples may be missing and are NaN.
+    """The run in these records. Raises DamageError where there is none.
 
-    Raises DamageError where it is none.
+    - gaps: samples may be missing and are then NaN.
+    - channels: names of the channels to decode; all with None.
     """
     plain, scenario = checked_scenario(content)
     if not content.topics("/raw/"):
@@ -96,7 +102,7 @@ def run_of(content: McapContent, *, gaps: bool = False, channels: Collection[str
 
 
 def _only(content: McapContent, channels: Collection[str]) -> McapContent:
-    """The content without the messages of all other channels and of what is no signal but a pulse."""
+    """The content with only the messages of these channels and of the pulses."""
     clean = {f"/clean/{name.removesuffix('_clean')}" for name in channels if name.endswith("_clean")}
     topics = {"/once_per_rev", *(f"/raw/{name}" for name in channels), *clean}
     return replace(
@@ -120,7 +126,7 @@ def _signals(content: McapContent, prefix: str, scenario: Scenario, *, gaps: boo
 
 
 def _samples(content: McapContent, topic: str, rate: float, length: int | None) -> Float32Array:
-    """The blocks one after another; with a `length` each at its place in it, NaN between them."""
+    """The blocks one after another. With a `length` each block is at its place, with NaN between."""
     check_kind(content, topic, "SampleBlock")
     check_order(content, topic)
     parts = [np.empty(0, np.float32)]

@@ -23,12 +23,12 @@ from rubgen.errors import RubgenError
 from rubgen.io.regular_file import check_regular
 
 MOST_CHUNK_BYTES = 64 * 1024**2
-"""rubgen writes chunks of 0.5 MiB; other writers some MiB."""
+"""Largest chunk. rubgen writes chunks of 0.5 MiB; other writers some MiB."""
 MOST_BYTES = 256 * 1024**2
-"""All chunks together may always unpack to this: eighty seconds and 30 channels take as much."""
+"""Unpacked size of all chunks that is allowed for any file: eighty seconds and 30 channels need as much."""
 MOST_TIMES = 400
-"""A larger file may unpack to so many times its size. Each message has an index entry of 16 bytes that is not packed:
-blocks of 4 kB that are all zero reach 250 times."""
+"""Largest ratio of unpacked size to size of a larger file. Each message has an index entry of 16 bytes that is not
+packed: blocks of 4 kB of zeros have a ratio of 250."""
 MAGIC = b"\x89MCAP0\r\n"
 _HEAD = struct.Struct("<BQ")  # opcode, length
 _MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
@@ -46,12 +46,12 @@ _PARSERS_RAISE = (
 
 
 class DamageError(RubgenError):
-    """What is wrong with a file, in words that need its name in front."""
+    """A problem of a file, in words to be put after its name."""
 
 
 @contextmanager
 def damage_found(what: str) -> Iterator[None]:
-    """Whatever parsers raise within, as `DamageError` of `what`."""
+    """Turn any error of a parser in the block into a `DamageError` of `what`."""
     try:
         yield
     except _PARSERS_RAISE as error:
@@ -60,10 +60,11 @@ def damage_found(what: str) -> Iterator[None]:
 
 
 def read_records(path: Path, lost: list[str] | None = None) -> Iterator[McapRecord]:
-    """Schemas, channels, messages, metadata and attachments in file order, those of chunks too.
+    """Schemas, channels, messages, metadata and attachments in file order, including those in chunks.
 
-    Raises DamageError where a record, a size or a CRC is wrong. With `lost` what is wrong is noted there and left out,
-    and the CRCs of the whole file are not looked at. UserError, OSError where the file cannot be read at all.
+    Raises DamageError where a record, a size or a CRC is wrong. With `lost`, problems are appended to it and damaged
+    parts left out, and the CRCs of the whole file are not checked. Raises UserError or OSError where the file cannot be
+    read at all.
     """
     size = check_regular(path)
     with path.open("rb") as stream:
@@ -73,7 +74,7 @@ def read_records(path: Path, lost: list[str] | None = None) -> Iterator[McapReco
 class _Reading:
     """One pass through a file.
 
-    `place` is the next byte, `record_start` where the last record begins, `unpacked` what chunks took so far.
+    `place` is the next byte, `record_start` the start of the last record, `unpacked` the bytes of all chunks so far.
     """
 
     def __init__(self, stream: IO[bytes], size: int, lost: list[str] | None) -> None:
@@ -94,7 +95,7 @@ class _Reading:
             self.lost.append(f"the file cannot be followed to its end; {end}")
 
     def _framed(self) -> Iterator[tuple[int, bytes]]:
-        """Opcode and body of each record up to the footer, with the CRCs of data and summary compared on the way."""
+        """Opcode and body of each record up to the footer. The CRCs of data and summary are compared on the way."""
         crc = zlib.crc32(MAGIC)
         summary_start = 0
         while True:
@@ -138,7 +139,7 @@ class _Reading:
             raise DamageError("does not end like an MCAP file")
 
     def _parsed(self, opcode: int, body: bytes) -> list[McapRecord]:
-        """The records of a chunk, or the one that this body is; none of a kind without use here."""
+        """The records of a chunk, or the single record of this body; none of a kind that is not used here."""
         what = f"the record at byte {self.record_start:,}"
         try:
             with damage_found(what):
@@ -178,7 +179,7 @@ class _Reading:
 
 
 def _content(chunk: Chunk) -> bytes:
-    """The chunk unpacked. Its size is compared with the bound before, with what it names after."""
+    """The chunk unpacked. Its size is checked against the bound before, and against its header after."""
     size = chunk.uncompressed_size
     if size > MOST_CHUNK_BYTES:
         raise DamageError(f"a chunk would unpack to {size:,} bytes; {MOST_CHUNK_BYTES:,} are allowed")

@@ -1,4 +1,4 @@
-"""What can still be read of a damaged MCAP file, and what is lost."""
+"""What can be read of a damaged MCAP file, and what is lost."""
 
 from pathlib import Path
 
@@ -11,11 +11,11 @@ MOST_NAMED = 3
 
 
 def salvage_mcap(path: Path) -> tuple[McapRun, list[str]]:
-    """The run in the file at `path`, and what of it is lost, one sentence each: none for a good file.
+    """The run in the file at `path`, and its losses, one sentence each: none for a good file.
 
-    Chunks that fail their CRC, and what stands behind the place where the file cannot be followed any more, are left
-    out; samples lost that way are NaN. Raises UserError where scenario or labels are lost, where what is left
-    contradicts itself, or it is no file of rubgen.
+    Chunks that fail their CRC are left out, and everything after the place where the records can no longer be followed.
+    Lost samples are NaN. Raises UserError where scenario or labels are lost, where the rest contradicts itself, or it
+    is no file of rubgen.
     """
     try:
         return read_mcap(path), []

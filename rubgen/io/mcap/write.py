@@ -1,4 +1,4 @@
-"""One run as one MCAP file: every sample, a preview that plots by itself, contacts, labels and scenario."""
+"""One run as one MCAP file: every sample, a preview for plots, contacts, labels and scenario."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ Stamped = tuple[int, bytes]
 
 
 def write_mcap(run: Run, path: Path) -> None:
-    """Write `run` to `path`, complete or not at all; the same run gives the same bytes.
+    """Write `run` to `path`, complete or not at all. The same run always makes the same bytes.
 
-    Topics: `/raw/<channel>` (`/clean/<channel>` where kept) blocks of 1024 float32 samples, `/preview/<quantity>`
-    minimum and maximum at about 1 kHz, `/contact`, `/once_per_rev`, `/blade_tip_timing/<probe>`, `/labels/motion`, and
-    where the run kept its motion `/motion/frames`, `/motion/casing_modes` and `/tf`. Times are integer ns from the
-    first sample. Scenario and labels stand in metadata records (`rubgen.scenario`, `rubgen.labels`; each value JSON)
-    and as attachments. Raises ValueError for a run without a recording, OSError when the file cannot be written.
+    Topics: `/raw/<channel>` (`/clean/<channel>` for clean channels) blocks of 1024 float32 samples,
+    `/preview/<quantity>` minimum and maximum at about 1 kHz, `/contact`, `/once_per_rev`, `/blade_tip_timing/<probe>`,
+    `/labels/motion`, and with a track `/motion/frames`, `/motion/casing_modes` and `/tf`. Times are integer ns from the
+    first sample. Scenario and labels are metadata records (`rubgen.scenario`, `rubgen.labels`; each value JSON) and
+    attachments. Raises ValueError for a run without a recording, OSError when the file cannot be written.
     """
     if run.recording is None or run.labels is None:
         raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to record")
@@ -54,7 +54,7 @@ def write_mcap(run: Run, path: Path) -> None:
 
 
 def nanoseconds(seconds: float) -> int:
-    """Time as the integer ns that files carry."""
+    """A time in s as integer ns."""
     return round(seconds * 1e9)
 
 
@@ -75,7 +75,7 @@ def _write_records(writer: Writer, name: str, values: dict[str, object]) -> None
 
 
 def _write_messages(writer: Writer, run: Run, recording: Recording, labels: Labels) -> None:
-    """Every channel's messages, merged by time; at equal times in the order in which channels were registered."""
+    """Write every channel's messages in order of time; at equal times in the order of the channels."""
     schemas = {
         name: writer.register_schema(f"{PACKAGE}.{name}", "protobuf", file_descriptor_set()) for name in MESSAGES
     }
@@ -111,7 +111,7 @@ def _write_messages(writer: Writer, run: Run, recording: Recording, labels: Labe
 
 
 def _describe(channel: Channel) -> dict[str, str]:
-    """What the channel's numbers mean; samples are in `unit` already, so that their sensitivity is 1."""
+    """The meaning of the channel's numbers. Samples are in `unit` already, so their sensitivity is 1."""
     return {
         "unit": channel.unit,
         "quantity": channel.quantity,
@@ -163,7 +163,7 @@ def _pulses(recording: Recording) -> Iterator[Stamped]:
 
 
 def _describe_probe(run: Run, name: str) -> dict[str, str]:
-    """Where a timing probe stands."""
+    """The place of a timing probe."""
     (probe,) = [each for each in run.scenario.sensing.set.sensors if each.name == name]
     values = {key: value for key, value in vars(probe).items() if key.endswith(("_deg", "_m", "_s", "_hz"))}
     return {"unit": "s", "quantity": "arrival time", **{key: repr(float(value)) for key, value in values.items()}}
@@ -180,7 +180,7 @@ def _passages(seen: TipTimes) -> Iterator[Stamped]:
 
 
 def _motions(labels: Labels, recording: Recording) -> Iterator[Stamped]:
-    """The class from the first sample on, and where the speed changes each later one within the recording."""
+    """The class from the first sample on, and at a changing speed each later class within the recording."""
     message = message_class("MotionLabel")
     if labels.history is None:
         stretches = [(0, labels.motion, labels.motion_blisk, labels.motion_casing, labels.period or 0)]

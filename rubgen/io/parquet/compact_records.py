@@ -1,6 +1,6 @@
 """Compact records of runs as Parquet, from which labels can be made again.
 
-One row a run; arrays stand as flat lists, row after row.
+One row a run. Arrays are flat lists, row after row.
 """
 
 from pathlib import Path
@@ -35,7 +35,7 @@ RECORD_COLUMNS: dict[str, tuple[pa.DataType, str]] = {
     "friction_loss": (pa.float32(), "its work of friction, J"),
     "normal_loss": (pa.float32(), "its work lost along the normal, J"),
 }
-"""Element and meaning of each list. Lists that hold rows are cut by the number of turns in `scalars`."""
+"""Element type and meaning of each list. The number of turns in `scalars` divides a list into rows."""
 SCHEMA = pa.schema(
     [pa.field("run_id", pa.string())]
     + [
@@ -82,7 +82,7 @@ def _listed(table: pa.Table, name: str, row: int) -> np.ndarray[Any, Any]:
 
 
 def _check_lengths(record: CompactRecord, turns: int, blades: int) -> None:
-    """Raise ValueError where lists of turns or of touches differ in length, or a number of theirs is none."""
+    """Raise ValueError where lists of turns or of touches differ in length, or a number is not valid."""
     for name in (*TOUCHES, "turn_impulse", "contact_steps"):
         if not np.isfinite(record[name]).all():
             raise ValueError(f"{name} is not finite")

@@ -1,4 +1,4 @@
-"""Tables back from Parquet files: correct, or one line that names the file."""
+"""Tables from Parquet files: correct, or an error of one line that names the file."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -15,10 +15,10 @@ from rubgen.errors import UserError
 from rubgen.io.regular_file import check_regular
 
 MOST_BYTES = 256 * 1024**2
-"""What a row group may always unpack to: eight runs of ten seconds and 30 channels take as much."""
+"""Unpacked size that is allowed for any row group: eight runs of ten seconds and 30 channels need as much."""
 MOST_TIMES = 1000
-"""A larger row group may unpack to so many times its size in the file, and to what its recipe asks for beside: signals
-without noise that repeat every turn reach 5,000 times, constant ones 20,000."""
+"""Largest ratio of the unpacked size of a larger row group to its size in the file. The size that its recipe asks for
+is allowed too: signals without noise that repeat every turn have a ratio of 5,000, constant ones of 20,000."""
 
 
 class ParquetSource:
@@ -28,9 +28,9 @@ class ParquetSource:
     """
 
     def __init__(self, path: Path, asked_bytes: float = 0.0) -> None:
-        """Read the footer; UserError where it is missing or damaged, or rubgen writes no such columns.
+        """Read the footer. Raises UserError where it is missing or damaged, or has columns that rubgen does not write.
 
-        `asked_bytes` is what a row group holds by the recipe of its set, where that is known.
+        `asked_bytes` is the size of a row group by the recipe of its set, where that is known.
         """
         self.path, self._asked_bytes = path, asked_bytes
         self._size = check_regular(path)
@@ -55,18 +55,18 @@ class ParquetSource:
         self._stream.close()
 
     def rows_of(self, group: int) -> int:
-        """Rows of one group, as the footer says."""
+        """Number of rows of one group, from the footer."""
         return int(self._file.metadata.row_group(group).num_rows)
 
     def read_row_group(self, group: int, columns: Sequence[str] | None = None) -> pa.Table:
-        """The rows of one group; UserError where a page is damaged or a column is missing."""
+        """The rows of one group. Raises UserError where a page is damaged or a column is missing."""
         names = self._names(columns)
         with damage_named(self.path):
             self._check_size(group)
             return self._plain(self._file.read_row_group(group, columns=names), names)
 
     def read(self, columns: Sequence[str] | None = None) -> pa.Table:
-        """All rows; UserError as for one group."""
+        """All rows. Raises UserError as for one group."""
         groups = [self.read_row_group(group, columns) for group in range(self.num_row_groups)]
         types = pa.schema([self.schema_arrow.field(name) for name in self._names(columns)])
         return pa.concat_tables([types.empty_table(), *groups])
@@ -79,16 +79,16 @@ class ParquetSource:
         return list(there if columns is None else columns)
 
     def _check_size(self, group: int) -> None:
-        """Compare what the footer says of the group with the size of the file.
+        """Compare the group's size in the footer with the size of the file.
 
-        Facts of single columns are not asked for: pyarrow ends the process where they are damaged.
+        Sizes of single columns are not read: pyarrow ends the process where they are damaged.
         """
         facts = self._file.metadata.row_group(group)
         unpacked = max(facts.total_byte_size, 8 * facts.num_rows * len(self.schema_arrow))
         self._refuse_above(unpacked, self._size, self._asked_bytes)
 
     def _plain(self, table: pa.Table, names: list[str]) -> pa.Table:
-        """The table with text as text. It comes as a dictionary, for a long word may stand for a million rows."""
+        """The table with text as text. It was read as a dictionary, as a long word may stand for a million rows."""
         text = [chunk for name in names if name in self._text for chunk in table[name].chunks]
         table.validate(full=True)
         self._refuse_above(sum(_text_bytes(chunk) for chunk in text), 0)
@@ -100,21 +100,31 @@ class ParquetSource:
 
 
 def open_parquet(path: Path, asked_bytes: float = 0.0) -> ParquetSource:
-    """The file, of which only the footer is read yet; UserError where it is missing, damaged or no Parquet of rubgen.
+    """The file with only its footer read.
 
-    A row group may unpack to the general bounds and `asked_bytes`: what the recipe of the set asks for.
+    Raises UserError where it is missing, damaged or not a Parquet file of rubgen.
+
+    The unpacked size of a row group is limited by the general bounds and `asked_bytes`, the size by the recipe of the
+    set.
     """
     return ParquetSource(path, asked_bytes)
 
 
 def read_table(path: Path, columns: Sequence[str] | None = None, asked_bytes: float = 0.0) -> pa.Table:
-    """The rows of a Parquet file, every page checked; UserError where it is missing, damaged or lacks a column."""
+    """The rows of a Parquet file, every page checked.
+
+    - path: of the file.
+    - columns: names of the columns; all with None.
+    - asked_bytes: as in `open_parquet`.
+
+    Raises UserError where the file is missing, damaged or lacks a column.
+    """
     with open_parquet(path, asked_bytes) as file:
         return file.read(columns)
 
 
 def row_groups(path: Path, asked_bytes: float = 0.0) -> Iterator[pa.Table]:
-    """One row group after another, every page checked; UserError where the file is missing or damaged."""
+    """One row group after another, every page checked. Raises UserError where the file is missing or damaged."""
     with open_parquet(path, asked_bytes) as file:
         for group in range(file.num_row_groups):
             yield file.read_row_group(group)
@@ -122,7 +132,7 @@ def row_groups(path: Path, asked_bytes: float = 0.0) -> Iterator[pa.Table]:
 
 @contextmanager
 def damage_named(path: Path) -> Iterator[None]:
-    """Whatever pyarrow raises within, as one line that names the file."""
+    """Turn any error of pyarrow in the block into a UserError of one line that names the file."""
     try:
         yield
     except (pa.ArrowException, OSError, ValueError, LookupError, MemoryError, OverflowError) as error:
@@ -131,7 +141,7 @@ def damage_named(path: Path) -> Iterator[None]:
 
 
 def _text_columns(path: Path, types: pa.Schema) -> list[str]:
-    """Names of the text columns; UserError where two columns share a name or one is of a kind that rubgen has not."""
+    """Names of the text columns. Raises UserError where two columns share a name or one has a type not of rubgen."""
     if len(set(types.names)) != len(types.names):
         raise UserError(f"{path}: two columns share a name; that is no file of rubgen")
     for field in types:

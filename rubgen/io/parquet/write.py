@@ -1,7 +1,7 @@
 """Runs as Parquet: one row a run, scalars and labels as columns, each recorded channel one list<float32> column.
 
-zstd, BYTE_STREAM_SPLIT on every floating leaf, dictionaries on text alone, a checksum on every page. The bytes follow
-from the rows alone.
+zstd, BYTE_STREAM_SPLIT on every floating leaf, dictionaries only on text, a checksum on every page. The bytes depend on
+the rows alone.
 """
 
 from __future__ import annotations
@@ -43,9 +43,11 @@ COMPRESSION_LEVEL = 3
 
 
 def schema(*, signals: bool, clean: bool = False, sensors: SensorSet | None = None) -> pa.Schema:
-    """The Arrow schema of `runs.parquet`, or with `signals` of the data files; unit and meaning stand at each field.
+    """The Arrow schema of `runs.parquet`; with `signals`, of the data files. Each field has its unit and meaning.
 
-    `sensors` are those of the runs, the default set where none is given.
+    - signals: include the channels.
+    - clean: include the clean channels.
+    - sensors: the sensor set of the runs; the default set with None.
     """
     used = sensors or default_sensor_set()
     columns = scalar_columns(used) + (signal_columns(used, clean=clean) if signals else ())
@@ -55,7 +57,8 @@ def schema(*, signals: bool, clean: bool = False, sensors: SensorSet | None = No
 def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Table:
     """One row: the run's identity, parameters and labels, and with `signals` its channels.
 
-    A failed run has null labels, energies and signals. Raises ValueError where a label has no column.
+    `split` is the split of the data set. A failed run has null labels, energies and signals. Raises ValueError where a
+    label has no column.
     """
     row = _identity(run, split) | varied_values(run.scenario) | _operation(run)
     if run.labels is not None:
@@ -74,7 +77,10 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
 
 
 def write_table(tables: Iterable[pa.Table], types: pa.Schema, path: Path) -> int:
-    """Write tables of that schema to `path`, each as one row group, complete or not at all; gives the rows written."""
+    """Write tables to `path`, each as one row group, complete or not at all. Return the number of rows written.
+
+    `types` is the schema of all tables.
+    """
     rows = 0
 
     def write(part: Path) -> None:
@@ -89,7 +95,7 @@ def write_table(tables: Iterable[pa.Table], types: pa.Schema, path: Path) -> int
 
 
 def write_parquet(run: Run, path: Path) -> None:
-    """One run as a Parquet file of one row, with its signals; raises OSError when it cannot be written."""
+    """Write one run as a Parquet file of one row, with its signals. Raises OSError when it cannot be written."""
     table = run_table(run)
     write_table([table], table.schema, path)
 
@@ -151,7 +157,7 @@ def _signals(recording: Recording) -> dict[str, object]:
 
 
 def _touches(run: Run, recording: Recording) -> dict[str, object]:
-    """The touches that overlap the recording, by their beginning."""
+    """The touches that overlap the recording, in order of their start."""
     touches = contact_intervals(run.response, recording)
     order = np.argsort(touches.start, kind="stable")
     return {
@@ -165,5 +171,5 @@ def _touches(run: Run, recording: Recording) -> dict[str, object]:
 
 
 def _single(values: FloatArray) -> FloatArray:
-    """Rounded to single precision, in which they compress."""
+    """Rounded to single precision, so that they compress."""
     return np.asarray(values.astype(np.float32), dtype=np.float64)
