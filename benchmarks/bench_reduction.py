@@ -18,7 +18,7 @@ import numpy as np
 from scipy.linalg import eigh
 from threadpoolctl import threadpool_limits
 
-from rubgen.fem.statics import support_stiffness
+from rubgen.fem.constraints import support_stiffness
 from rubgen.machine import BladeRow, Disk, DiskSupport, Mistuning, load_machine
 from rubgen.reduction.blisk import ReducedBlisk, reduce_blisk
 from rubgen.reduction.casing import reduce_casing

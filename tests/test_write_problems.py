@@ -6,7 +6,7 @@ import os
 import pytest
 
 import rubgen
-from rubgen.cli.new_file import write_file
+from rubgen.cli.printing import write_file
 from rubgen.errors import RubgenError, UserError, write_problems
 from rubgen.report import page
 

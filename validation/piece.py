@@ -17,7 +17,7 @@ import numpy as np
 
 import rubgen
 from rubgen.scenario import Scenario
-from rubgen.scenario.to_json import scenario_dict
+from rubgen.scenario.scenario import scenario_dict
 
 Arrays = dict[str, np.ndarray[Any, Any]]
 PACKAGE = Path(rubgen.__file__).parent

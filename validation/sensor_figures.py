@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from scipy.sparse.linalg import splu
 
 from rubgen.arrays import FloatArray, IntArray
+from rubgen.fem.beam import root_strain_row
 from rubgen.fem.blisk import assemble_blisk
-from rubgen.fem.root_strain import root_strain_row
-from rubgen.fem.statics import on_springs, support_stiffness
+from rubgen.fem.constraints import on_springs, support_stiffness
 from rubgen.machine import Machine, load_machine
 from rubgen.measurement import Recording, margin_seconds, measure
 from rubgen.measurement.blade_tip_timing import tip_deflections

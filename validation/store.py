@@ -11,10 +11,10 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rubgen.dataset.files import is_system_file, remove_parts
-from rubgen.dataset.making.claim_lock import acquired
+from rubgen.dataset.making.claim import acquired
 from rubgen.dataset.making.workers import unordered, worker_pool
 from rubgen.errors import UserError, write_problems
-from rubgen.io.durable import write_durably
+from rubgen.io.files import write_durably
 from rubgen.scenario import Scenario
 from validation.piece import Arrays, Piece
 

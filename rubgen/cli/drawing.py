@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from rubgen.cli.new_file import check_new_file, write_file
-from rubgen.cli.printing import say
+from rubgen.cli.printing import check_new_file, say, write_file
 from rubgen.progress import step
 from rubgen.report.figures import Choice, make_figure
 

@@ -10,7 +10,8 @@ from shutil import which
 from rubgen.brief import counted
 from rubgen.cli.interrupts import terminable
 from rubgen.cli.printing import print_json, say
-from rubgen.dataset.making.generate import Generated, finished_runs, generate
+from rubgen.dataset.making.generate import Generated, generate
+from rubgen.dataset.making.outcome import finished_runs
 from rubgen.formats import run_formats
 
 

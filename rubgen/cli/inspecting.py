@@ -12,7 +12,7 @@ from rubgen.cli.printing import print_json, print_pairs, say
 from rubgen.dataset.checking.inventory import Finding
 from rubgen.dataset.checking.relabel import relabel
 from rubgen.dataset.checking.verify import advice, findings
-from rubgen.dataset.making.unfinished import Unfinished, unfinished
+from rubgen.dataset.making.outcome import Unfinished, unfinished
 from rubgen.labels import Motion
 from rubgen.progress import step
 

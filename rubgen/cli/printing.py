@@ -1,8 +1,12 @@
-"""Results for people and for programs."""
+"""Results for people and programs; files that are refused before any work, or written complete or not at all."""
 
 import json
 import math
 import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from rubgen.errors import UserError, write_problems
 
 
 def say(text: str) -> None:
@@ -42,3 +46,24 @@ def _plain(value: object) -> object:
     if isinstance(value, list | tuple):
         return [_plain(each) for each in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def check_new_file(option: str, path: Path, endings: tuple[str, ...], *, force: bool = False) -> None:
+    """Raise UserError for another ending, a folder that does not exist, or a file that does, unless by `force`."""
+    if path.suffix not in endings:
+        allowed = endings[0] if len(endings) == 1 else f"{', '.join(endings[:-1])} or {endings[-1]}"
+        raise UserError(f"{option} {path}: unknown kind of file; end the name in {allowed}")
+    if not path.parent.is_dir():
+        raise UserError(f"{option} {path}: there is no directory {path.parent}; make it first")
+    if path.exists() and not path.is_file():
+        raise UserError(f"{option} {path}: exists already and is no file; choose another name")
+    if path.exists() and not force:
+        raise UserError(f"{option} {path}: exists already; choose another name, or replace it with --force")
+
+
+def write_file(option: str, path: Path, write: Callable[[Path], object]) -> None:
+    """Write under a temporary name, then rename: a file that was there stays whole until then."""
+    from rubgen.io.files import write_durably
+
+    with write_problems(path, named=f"{option} {path}"):
+        write_durably(path, write)

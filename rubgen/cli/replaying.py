@@ -5,8 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from rubgen.cli.new_file import check_new_file, write_file
-from rubgen.cli.printing import say
+from rubgen.cli.printing import check_new_file, say, write_file
 from rubgen.errors import UserError
 from rubgen.progress import step
 from rubgen.viz.replay import Replay

@@ -1,16 +1,19 @@
 """`rubgen simulate`: one run, its labels, its file."""
 
+import math
+from collections.abc import Iterator
 from inspect import signature
 from pathlib import Path
 from typing import Any
 
-from rubgen.cli.new_file import check_new_file
-from rubgen.cli.printing import print_json, print_pairs, say
+from rubgen.brief import counted
+from rubgen.cli.printing import check_new_file, print_json, print_pairs, say
 from rubgen.cli.replaying import Showing, show
-from rubgen.cli.run_summary import run_summary
 from rubgen.errors import warn
 from rubgen.format_names import FORMAT_NAMES
 from rubgen.formats import format_of
+from rubgen.labels import Labels
+from rubgen.labels.labels import Motion
 from rubgen.labels.registry import LABELS
 from rubgen.labels.to_json import labels_to_json
 from rubgen.machine.load import file_named
@@ -21,10 +24,13 @@ from rubgen.scenario import Scenario, make_scenario
 from rubgen.scenario.vary import varied_values
 from rubgen.solver import Status
 from rubgen.solver.linear.reach import no_rub
+from rubgen.units import rev_per_min
 from rubgen.viz.replay import replay_of
 
 LABEL_NAMES = (*(label.name for label in LABELS), "contact_force_orders", "blisk_x_orders")
 """Labels that programs find as null where a run failed."""
+MOST_ZONES = 4
+"""Zones that are listed one by one."""
 
 
 def simulate_command(
@@ -74,3 +80,100 @@ def _all_labels(run: Run) -> dict[str, object]:
 
 def _scenario(options: dict[str, Any]) -> Scenario:
     return make_scenario(**{key: options[key] for key in signature(make_scenario).parameters})
+
+
+def run_summary(run: Run) -> Iterator[tuple[str, str]]:
+    """Names and values, one line each."""
+    yield "run", _course_of_run(run)
+    if run.response.status is not Status.OK:
+        yield "failed", f"{run.response.status.value}; {run.response.reason}"
+    if run.labels is not None:
+        yield from _contact(run.labels)
+        yield from _motion(run.labels)
+        yield from _speeds(run.labels)
+
+
+def _course_of_run(run: Run) -> str:
+    operation, response = run.scenario.operation, run.response
+    speed = f"{rev_per_min(operation.speed_rad_per_s):,.6g} rev/min"
+    if operation.profile != "steady":
+        speed = f"{operation.profile} from {speed}"
+    if operation.end_speed_rpm is not None:
+        speed += f" to {operation.end_speed_rpm:,.6g} rev/min"
+    turns = f"{response.record_turns} turns after {response.settle_turns} to settle"
+    return f"{run.scenario.machine.name}, {speed}, {turns}, {response.steps_per_turn} steps a turn"
+
+
+def _contact(labels: Labels) -> Iterator[tuple[str, str]]:
+    amounts = labels.amounts
+    penetration = amounts.free_penetration
+    if not labels.rub:
+        yield "rub", "no"
+        if penetration is not None:
+            yield "smallest gap", f"{-penetration * 1e6:.4g} µm without contact"
+        return
+    touched, zones = counted(labels.blades_touched, "blade"), f"{labels.contact_zones} {_zones_word(labels)}"
+    yield "rub", f"yes, {amounts.extent.value}: {touched}, {zones}"
+    yield "contact zones", _zones(labels)
+    yield "contact duty", f"{100 * labels.contact_duty:.3g} % of the time"
+    yield "impulse", f"{labels.impulse_per_turn:.4g} N s a turn"
+    if amounts.severity is not None:
+        yield "severity", f"{amounts.severity:.3g}, mean contact force over the blisk's weight"
+    if penetration is not None:
+        yield "penetration", f"{penetration * 1e6:.4g} µm, had there been no contact"
+    if amounts.friction_work:
+        yield "friction work", f"{amounts.friction_work:.4g} J a turn"
+
+
+def _zones_word(labels: Labels) -> str:
+    shape = {None: "", True: ", symmetric", False: ", not symmetric"}[labels.contact_zones_symmetric]
+    return f"{'zone' if labels.contact_zones == 1 else 'zones'}{shape}"
+
+
+def _zones(labels: Labels) -> str:
+    """Centre and width of each, in degrees on the casing from +X."""
+    zones = zip(labels.contact_zone_centres, labels.contact_zone_widths, strict=True)
+    texts = [f"{math.degrees(centre):.1f}° ({math.degrees(width):.1f}° wide)" for centre, width in zones]
+    more = f" and {len(texts) - MOST_ZONES} more" if len(texts) > MOST_ZONES else ""
+    return ", ".join(texts[:MOST_ZONES]) + more
+
+
+def _motion(labels: Labels) -> Iterator[tuple[str, str]]:
+    parts = f"blisk {labels.motion_blisk.value}, casing {labels.motion_casing.value}"
+    period = f", period {labels.period}" if labels.motion is Motion.PERIOD_K else ""
+    yield "motion", f"{labels.motion.value}{period}, confidence {labels.motion_confidence:.2f} ({parts})"
+    if labels.whirl:
+        yield "whirl", f"{labels.whirl.direction.value}, index {labels.whirl.index:+.2f} of -1 to 1"
+    if labels.lyapunov:
+        yield "exponent", f"{labels.lyapunov.per_turn:+.4g} ± {labels.lyapunov.error:.1g} 1/turn, largest Lyapunov"
+    if labels.orders_present:
+        yield "orders", f"{_ranges(labels.orders_present)} x speed, in the casing's acceleration"
+
+
+def _ranges(orders: tuple[int, ...]) -> str:
+    """Rising numbers, runs of three or more as `4 to 9`."""
+    runs: list[list[int]] = []
+    for order in orders:
+        if runs and order == runs[-1][-1] + 1:
+            runs[-1].append(order)
+        else:
+            runs.append([order])
+    return ", ".join(f"{run[0]} to {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs)
+
+
+def _speeds(labels: Labels) -> Iterator[tuple[str, str]]:
+    """Where rub begins and ends as the speed changes, and how often the motion changes.
+
+    A rub of the first or of the last turns has its onset or end outside of the record.
+    """
+    history = labels.history
+    if history is None:
+        return
+    before, after = history.changes[0].rub, history.changes[-1].rub
+    yield "onset of rub", "before the record" if before else _rpm(history.onset_speed)
+    yield "end of rub", "none, it goes on at the end of the record" if after else _rpm(history.end_of_rub_speed)
+    yield "changes", f"{len(history.changes) - 1} of rub or motion over the record"
+
+
+def _rpm(speed: float | None) -> str:
+    return "none" if speed is None else f"{rev_per_min(speed):,.5g} rev/min"

@@ -5,7 +5,7 @@ import json
 from fnmatch import fnmatch
 from pathlib import Path
 
-from rubgen.io.durable import PART, write_durably
+from rubgen.io.files import PART, write_durably
 
 SYSTEM_FILES = (
     ".DS_Store", "._*", ".Spotlight-V100", ".Trashes", ".fseventsd", ".TemporaryItems", ".apdisk",  # macOS

@@ -13,9 +13,8 @@ from rubgen.dataset.files import json_text, sha256_of, write_text
 from rubgen.dataset.layout import Layout
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
-from rubgen.io.json_read import read_json
+from rubgen.io.files import check_regular, read_json
 from rubgen.io.parquet.read import read_table
-from rubgen.io.regular_file import check_regular
 from rubgen.machine import Machine
 from rubgen.machine.problems import first_problem
 from rubgen.scenario import Recipe

@@ -9,10 +9,18 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from rubgen.arrays import FloatArray, IntArray, SparseMatrix
 from rubgen.errors import UserError
 from rubgen.fem.beam import BeamMatrices, blade_matrices
-from rubgen.fem.constraints import blade_rotation, link_stress_stiffness, rigid_link, rim_joint
+from rubgen.fem.constraints import (
+    HeldStiffness,
+    blade_rotation,
+    factorize,
+    link_stress_stiffness,
+    on_springs,
+    rigid_link,
+    rim_joint,
+    support_stiffness,
+)
 from rubgen.fem.disk import DiskModel, assemble_disk
 from rubgen.fem.shell import shell_stress_stiffness
-from rubgen.fem.statics import HeldStiffness, factorize, on_springs, support_stiffness
 from rubgen.machine import BladeRow, Disk, DiskSupport
 from rubgen.machine.mesh import pitch_problem
 

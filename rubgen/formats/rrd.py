@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rubgen.formats.format import Format
-from rubgen.io.durable import write_durably
+from rubgen.io.files import write_durably
 
 if TYPE_CHECKING:
     from rubgen.pipeline import Run

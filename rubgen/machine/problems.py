@@ -10,8 +10,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from rubgen.errors import UserError
 from rubgen.machine.schema_nodes import Path, SchemaNodes, bounds_in_words
-from rubgen.machine.sentences import DECIMAL_COMMA, OWN, sentence
-from rubgen.machine.toml_text import key_text, toml_text
+from rubgen.machine.sentences import DECIMAL_COMMA, OWN, key_text, sentence, toml_text
 
 T = TypeVar("T")
 UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")

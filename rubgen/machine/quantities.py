@@ -11,6 +11,7 @@ from typing import Annotated, Any, get_args, get_type_hints
 
 import numpy as np
 from pydantic import BeforeValidator, ConfigDict, Field
+from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
 
@@ -65,7 +66,7 @@ def _usual_range(hint: Any) -> Usual | None:
     """The usual range in the annotation of a type or of one of its parts."""
     if isinstance(hint, Usual):
         return hint
-    parts = (*getattr(hint, "__metadata__", ()), *get_args(hint))
+    parts = (*getattr(hint, "__metadata__", ()), *get_args(hint), *getattr(hint, "metadata", ()))
     return next(filter(None, map(_usual_range, parts)), None)
 
 
@@ -76,143 +77,125 @@ def _no_text(value: object) -> object:
     return value
 
 
+def _whole(*, usual: Usual | None = None, **bounds: Any) -> Any:
+    """Bounds of a whole number (`ge`, `gt`, `le`, `lt`), for which no text may stand, and its usual range."""
+    field: FieldInfo = Field(**bounds)
+    field.metadata += [BeforeValidator(_no_text), *([usual] if usual else [])]
+    return field
+
+
+def _real(**bounds: Any) -> Any:
+    """Bounds of a finite number, as `_whole`."""
+    return _whole(allow_inf_nan=False, **bounds)
+
+
 STRICT = ConfigDict(extra="forbid")
-NUMBER = BeforeValidator(_no_text)
-"""Part of the annotation of every number, after its bounds."""
 MOST_RUNS = 1_000_000
 MOST_STEPS = 16_384
 MOST_MODES = 500
 PERCENT = (("%", 0.01),)
 Switch = Annotated[bool, Field(strict=True)]
-Seed = Annotated[int, Field(ge=0, le=2**63 - 1), NUMBER]
-Finite = Annotated[float, Field(allow_inf_nan=False), NUMBER]
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), NUMBER]
+Seed = Annotated[int, _whole(ge=0, le=2**63 - 1)]
+Finite = Annotated[float, _real()]
+Positive = Annotated[float, _real(gt=0)]
 """`Finite` and `Positive` are parts of a distribution: the drawn key has its own bounds."""
 
 # Lengths, places and angles.
-Length = Annotated[float, Field(ge=1e-7, le=100, allow_inf_nan=False), NUMBER]
-Height = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False), NUMBER]
-AxialPlace = Annotated[float, Field(ge=-100, le=100, allow_inf_nan=False), NUMBER]
-Angle = Annotated[float, Field(ge=-360, le=360, allow_inf_nan=False), NUMBER]
-Direction = Annotated[float, Field(ge=0, lt=360, allow_inf_nan=False), NUMBER]
+Length = Annotated[float, _real(ge=1e-7, le=100)]
+Height = Annotated[float, _real(ge=0, le=100)]
+AxialPlace = Annotated[float, _real(ge=-100, le=100)]
+Angle = Annotated[float, _real(ge=-360, le=360)]
+Direction = Annotated[float, _real(ge=0, lt=360)]
 """Polar angle in the inertial frame, in degrees."""
 
 # Materials, springs, dampers, masses.
 Modulus = Annotated[
     float,
-    Field(ge=1, le=1e15, allow_inf_nan=False),
-    NUMBER,
-    Usual(1e9, 1.3e12, "no solid of a machine has it", (("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3)), "Pa"),
+    _real(
+        ge=1,
+        le=1e15,
+        usual=Usual(1e9, 1.3e12, "no solid of a machine has it", (("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3)), "Pa"),
+    ),
 ]
 """Usual from plastics to diamond."""
-PoissonRatio = Annotated[
-    float, Field(gt=-1, lt=0.5, allow_inf_nan=False), NUMBER, Usual(0, 0.5, "metals have 0.25 to 0.35")
-]
+PoissonRatio = Annotated[float, _real(gt=-1, lt=0.5, usual=Usual(0, 0.5, "metals have 0.25 to 0.35"))]
 Density = Annotated[
     float,
-    Field(ge=1e-3, le=1e6, allow_inf_nan=False),
-    NUMBER,
-    Usual(500, 23_000, "no solid of a machine has it", (("g/cm3", 1e3), ("t/mm3", 1e12)), "kg/m3"),
+    _real(
+        ge=1e-3,
+        le=1e6,
+        usual=Usual(500, 23_000, "no solid of a machine has it", (("g/cm3", 1e3), ("t/mm3", 1e12)), "kg/m3"),
+    ),
 ]
 """Usual from foam to osmium."""
-Stiffness = Annotated[float, Field(ge=1e-3, le=1e16, allow_inf_nan=False), NUMBER]
+Stiffness = Annotated[float, _real(ge=1e-3, le=1e16)]
 Anisotropy = Annotated[
-    float,
-    Field(gt=-1, lt=1, allow_inf_nan=False),
-    NUMBER,
-    Usual(-0.9, 0.9, "one direction has less than a 19th of the other", PERCENT),
+    float, _real(gt=-1, lt=1, usual=Usual(-0.9, 0.9, "one direction has less than a 19th of the other", PERCENT))
 ]
-DampingRatio = Annotated[
-    float, Field(ge=0, lt=1, allow_inf_nan=False), NUMBER, Usual(0, 0.6, "machines have 0.001 to 0.3", PERCENT)
-]
+DampingRatio = Annotated[float, _real(ge=0, lt=1, usual=Usual(0, 0.6, "machines have 0.001 to 0.3", PERCENT))]
 Viscosity = Annotated[
-    float,
-    Field(gt=0, le=1e4, allow_inf_nan=False),
-    NUMBER,
-    Usual(1e-5, 10, "oils have 0.001 to 1", (("mPa s", 1e-3),), "Pa s"),
+    float, _real(gt=0, le=1e4, usual=Usual(1e-5, 10, "oils have 0.001 to 1", (("mPa s", 1e-3),), "Pa s"))
 ]
 StiffnessDeviation = Annotated[
-    float,
-    Field(gt=-1, le=1, allow_inf_nan=False),
-    NUMBER,
-    Usual(-0.5, 0.5, "blades of a row differ by a few percent", PERCENT),
+    float, _real(gt=-1, le=1, usual=Usual(-0.5, 0.5, "blades of a row differ by a few percent", PERCENT))
 ]
 DeviationSpread = Annotated[
-    float,
-    Field(ge=0, lt=1, allow_inf_nan=False),
-    NUMBER,
-    Usual(0, 0.2, "blades of a row differ by a few percent", PERCENT),
+    float, _real(ge=0, lt=1, usual=Usual(0, 0.2, "blades of a row differ by a few percent", PERCENT))
 ]
-UnbalanceSize = Annotated[float, Field(ge=0, le=1e7, allow_inf_nan=False), NUMBER]
-Gravity = Annotated[
-    float,
-    Field(ge=0, le=1e4, allow_inf_nan=False),
-    NUMBER,
-    Usual(0, 20, "the earth has 9.81", (("mm/s2", 1e-3),), "m/s2"),
-]
-Friction = Annotated[float, Field(ge=0, le=0.3, allow_inf_nan=False), NUMBER]
-Restitution = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False), NUMBER]
+UnbalanceSize = Annotated[float, _real(ge=0, le=1e7)]
+Gravity = Annotated[float, _real(ge=0, le=1e4, usual=Usual(0, 20, "the earth has 9.81", (("mm/s2", 1e-3),), "m/s2"))]
+Friction = Annotated[float, _real(ge=0, le=0.3)]
+Restitution = Annotated[float, _real(ge=0, le=1)]
 WearRate = Annotated[
-    float,
-    Field(gt=0, le=1, allow_inf_nan=False),
-    NUMBER,
-    Usual(1e-18, 1e-7, "linings wear 1e-14 to 1e-9", (("mm3/(N m)", 1e-9),), "m2/N"),
+    float, _real(gt=0, le=1, usual=Usual(1e-18, 1e-7, "linings wear 1e-14 to 1e-9", (("mm3/(N m)", 1e-9),), "m2/N"))
 ]
 
 # Numbers of parts, of the mesh and of modes.
-BladeCount = Annotated[int, Field(ge=1, le=1000), NUMBER]
-BladeElements = Annotated[int, Field(ge=1, le=200), NUMBER]
-RadialElements = Annotated[int, Field(ge=1, le=200), NUMBER]
-CircumferentialElements = Annotated[int, Field(ge=3, le=3600), NUMBER]
-CasingNodes = Annotated[int, Field(ge=12, le=1440), NUMBER]
-Lobes = Annotated[int, Field(ge=2, le=100), NUMBER]
-LinerBins = Annotated[int, Field(ge=36, le=3600), NUMBER]
-BladeNumber = Annotated[int, Field(ge=0, lt=1000), NUMBER]
-ModeCount = Annotated[int, Field(ge=0, le=MOST_MODES), NUMBER]
-CasingModeCount = Annotated[int, Field(ge=1, le=MOST_MODES), NUMBER]
-RunCount = Annotated[int, Field(ge=1, le=MOST_RUNS), NUMBER]
+BladeCount = Annotated[int, _whole(ge=1, le=1000)]
+BladeElements = Annotated[int, _whole(ge=1, le=200)]
+RadialElements = Annotated[int, _whole(ge=1, le=200)]
+CircumferentialElements = Annotated[int, _whole(ge=3, le=3600)]
+CasingNodes = Annotated[int, _whole(ge=12, le=1440)]
+Lobes = Annotated[int, _whole(ge=2, le=100)]
+LinerBins = Annotated[int, _whole(ge=36, le=3600)]
+BladeNumber = Annotated[int, _whole(ge=0, lt=1000)]
+ModeCount = Annotated[int, _whole(ge=0, le=MOST_MODES)]
+CasingModeCount = Annotated[int, _whole(ge=1, le=MOST_MODES)]
+RunCount = Annotated[int, _whole(ge=1, le=MOST_RUNS)]
 
 # Speeds, turns and times.
-Speed = Annotated[float, Field(ge=1e-3, le=1e6, allow_inf_nan=False), NUMBER]
-SpeedSwing = Annotated[float, Field(ge=0, le=1e6, allow_inf_nan=False), NUMBER]
+Speed = Annotated[float, _real(ge=1e-3, le=1e6)]
+SpeedSwing = Annotated[float, _real(ge=0, le=1e6)]
 TurnCount = Annotated[
-    int, Field(ge=1, le=1_000_000), NUMBER, Usual(1, 50_000, "a run of so many turns takes from minutes to hours")
+    int, _whole(ge=1, le=1_000_000, usual=Usual(1, 50_000, "a run of so many turns takes from minutes to hours"))
 ]
-StepCount = Annotated[int, Field(ge=32, le=MOST_STEPS), NUMBER]
-Duration = Annotated[float, Field(gt=0, le=1e5, allow_inf_nan=False), NUMBER]
-ClockOffset = Annotated[float, Field(ge=-1, le=1, allow_inf_nan=False), NUMBER]
-ClockDrift = Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False), NUMBER]
-Jitter = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False), NUMBER]
+StepCount = Annotated[int, _whole(ge=32, le=MOST_STEPS)]
+Duration = Annotated[float, _real(gt=0, le=1e5)]
+ClockOffset = Annotated[float, _real(ge=-1, le=1)]
+ClockDrift = Annotated[float, _real(ge=-1000, le=1000)]
+Jitter = Annotated[float, _real(ge=0, le=1)]
 
 # Measuring chains. A reading stands in the sensor's unit.
-Rate = Annotated[float, Field(gt=0, le=1e9, allow_inf_nan=False), NUMBER]
-RateOrNone = Annotated[float, Field(ge=0, le=1e9, allow_inf_nan=False), NUMBER]
-Reading = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False), NUMBER]
-Level = Annotated[float, Field(ge=0, le=1e9, allow_inf_nan=False), NUMBER]
-NoiseScale = Annotated[
-    float, Field(ge=0, le=1e6, allow_inf_nan=False), NUMBER, Usual(0, 100, "1 is the noise that each sensor has")
-]
-GainError = Annotated[
-    float,
-    Field(gt=-1, le=10, allow_inf_nan=False),
-    NUMBER,
-    Usual(-0.5, 0.5, "sensors err by a few percent", PERCENT),
-]
-ResonanceDamping = Annotated[float, Field(gt=0, lt=1, allow_inf_nan=False), NUMBER]
+Rate = Annotated[float, _real(gt=0, le=1e9)]
+RateOrNone = Annotated[float, _real(ge=0, le=1e9)]
+Reading = Annotated[float, _real(ge=-1e9, le=1e9)]
+Level = Annotated[float, _real(ge=0, le=1e9)]
+NoiseScale = Annotated[float, _real(ge=0, le=1e6, usual=Usual(0, 100, "1 is the noise that each sensor has"))]
+GainError = Annotated[float, _real(gt=-1, le=10, usual=Usual(-0.5, 0.5, "sensors err by a few percent", PERCENT))]
+ResonanceDamping = Annotated[float, _real(gt=0, lt=1)]
 Sensitivity = Annotated[
     float,
-    Field(gt=0, le=1e9, allow_inf_nan=False),
-    NUMBER,
-    Usual(100, 1e6, "proximity probes have 4000 to 20000", (("mV/um or V/mm", 1e3), ("mV/mil", 1 / 0.0254)), "V/m"),
+    _real(
+        gt=0,
+        le=1e9,
+        usual=Usual(
+            100, 1e6, "proximity probes have 4000 to 20000", (("mV/um or V/mm", 1e3), ("mV/mil", 1 / 0.0254)), "V/m"
+        ),
+    ),
 ]
 Bias = Annotated[
-    float,
-    Field(ge=-1000, le=1000, allow_inf_nan=False),
-    NUMBER,
-    Usual(-30, 30, "drivers are supplied with 24 V", (("mV", 1e-3),), "V"),
+    float, _real(ge=-1000, le=1000, usual=Usual(-30, 30, "drivers are supplied with 24 V", (("mV", 1e-3),), "V"))
 ]
-MissedShare = Annotated[
-    float, Field(ge=0, lt=1, allow_inf_nan=False), NUMBER, Usual(0, 0.9, "hardly a blade is seen", PERCENT)
-]
-RunoutHarmonic = Annotated[int, Field(ge=1, le=1000), NUMBER]
-AdcBits = Annotated[int, Field(ge=8, le=32), NUMBER]
+MissedShare = Annotated[float, _real(ge=0, lt=1, usual=Usual(0, 0.9, "hardly a blade is seen", PERCENT))]
+RunoutHarmonic = Annotated[int, _whole(ge=1, le=1000)]
+AdcBits = Annotated[int, _whole(ge=8, le=32)]

@@ -1,8 +1,10 @@
-"""One plain sentence for each way in which a value does not fit its type."""
+"""One plain sentence for each way in which a value can fail to fit its type, and values as they stand in TOML."""
 
 import re
 from collections.abc import Mapping
+from datetime import date, time
 from difflib import get_close_matches
+from numbers import Integral, Real
 from typing import Any
 
 from rubgen.machine.schema_nodes import limit
@@ -46,6 +48,8 @@ BOUNDS = {
 }
 OWN = ("value_error", "distribution")
 """Errors whose message is written where the rule is."""
+LEVELS = 6
+"""Deeper values are shown as `...`, because a manifest may nest without bound."""
 
 
 def sentence(error: Mapping[str, Any], bounds: str, nodes: list[Mapping[str, Any]]) -> str:
@@ -94,3 +98,29 @@ def _list_of(kind: str, context: Mapping[str, Any], nodes: list[Mapping[str, Any
         return f"must have at most {context['max_length']} values"
     tables = any("$ref" in node.get("items", {}) or "oneOf" in node.get("items", {}) for node in lists)
     return f"{LIST}; begin each of its tables with double brackets, [[...]]" if tables else LIST
+
+
+def toml_text(value: object, levels: int = LEVELS) -> str:
+    """The value in TOML: `true`, `{ uniform = [1, 2] }`, `2026-01-31`; texts in single quotes."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, Integral):
+        return str(int(value))
+    if isinstance(value, Real):
+        return f"{float(value):.12g}"
+    if isinstance(value, date | time):
+        return str(value)
+    if levels == 0 and isinstance(value, Mapping | list | tuple):
+        return "..."
+    if isinstance(value, Mapping):
+        pairs = ", ".join(f"{key_text(key)} = {toml_text(each, levels - 1)}" for key, each in value.items())
+        return f"{{ {pairs} }}" if pairs else "{}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(toml_text(each, levels - 1) for each in value)}]"
+    return repr(value)
+
+
+def key_text(key: object) -> str:
+    """A key in TOML: bare where that is allowed, else in quotes with control characters escaped."""
+    text = str(key)
+    return text if re.fullmatch(r"[A-Za-z0-9_-]+", text) else repr(text)

@@ -1,4 +1,4 @@
-"""What happens to a signal before the anti-alias filter: the sensor's own dynamics and its saturation."""
+"""What a sensor does to a signal: its dynamics and saturation before the anti-alias filter, its faults after it."""
 
 import numpy as np
 
@@ -52,3 +52,61 @@ def memory_seconds(sensor: SampledSensor) -> float:
     if sensor.resonance_hz is not None:
         seconds += float(FORGOTTEN / (2 * np.pi * sensor.resonance_hz * sensor.resonance_damping))
     return seconds
+
+
+def miscalibrate(sensor: SampledSensor, signal: FloatArray, *, zero: float, sample_rate_hz: float) -> FloatArray:
+    """Zero + (1 + gain error) (x - zero) + offset + drift t: `zero` is what the sensor gives at rest."""
+    if not (sensor.gain_error or sensor.offset or sensor.drift_per_s):
+        return signal
+    time = np.arange(signal.size) / sample_rate_hz
+    scaled = zero + (1 + sensor.gain_error) * (signal - zero)
+    return np.asarray(scaled + sensor.offset + sensor.drift_per_s * time)
+
+
+def noise(
+    sensor: SampledSensor, samples: int, sample_rate_hz: float, scale: float, rng: np.random.Generator
+) -> FloatArray:
+    """Gaussian noise (samples,) times `scale`: white of `noise_rms`, and of the one-sided density D^2 (1 + f_c / f).
+
+    The second is white noise shaped in the frequency domain, its mean zero; it repeats after the recording's length,
+    as every spectrum of it does.
+    """
+    total = scale * sensor.noise_rms * rng.standard_normal(samples)
+    if sensor.noise_density > 0:
+        shaped = np.fft.rfft(rng.standard_normal(samples)) * _shape(sensor, samples, sample_rate_hz)
+        total = total + scale * np.fft.irfft(shaped, samples)
+    return np.asarray(total)
+
+
+def noise_level(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> float:
+    """Rms of the noise of a recording."""
+    if sensor.noise_density == 0:
+        return sensor.noise_rms
+    shape = _shape(sensor, samples, sample_rate_hz)
+    # Each frequency counts twice in the whole spectrum, except the first and, for an even number of samples, the last.
+    whole = 2 * np.sum(shape**2) - shape[0] ** 2 - (shape[-1] ** 2 if samples % 2 == 0 else 0.0)
+    return float(np.hypot(sensor.noise_rms, np.sqrt(whole / samples)))
+
+
+def _shape(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> FloatArray:
+    """Gain at each frequency of a recording that turns white noise of rms 1 into noise of the sensor's density."""
+    frequency = np.fft.rfftfreq(samples, 1 / sample_rate_hz)
+    shape = np.zeros_like(frequency)
+    shape[1:] = np.sqrt(1 + sensor.noise_corner_hz / frequency[1:])
+    return np.asarray(sensor.noise_density * np.sqrt(sample_rate_hz / 2) * shape)
+
+
+def drop_out(sensor: SampledSensor, values: FloatArray, sample_rate_hz: float, rng: np.random.Generator) -> FloatArray:
+    """The samples (n,) with gaps at random times. In a gap the last good value repeats.
+
+    The starts of the gaps are a Poisson process of rate `dropouts_per_s`; each lasts `dropout_s`.
+    """
+    if sensor.dropouts_per_s == 0:
+        return values
+    seconds = values.size / sample_rate_hz
+    starts = rng.uniform(0.0, seconds, rng.poisson(sensor.dropouts_per_s * seconds)) * sample_rate_hz
+    good = np.ones(values.size, dtype=bool)
+    for start in starts:
+        good[int(np.ceil(start)) : int(np.ceil(start + sensor.dropout_s * sample_rate_hz))] = False
+    good[0] = True
+    return np.asarray(values[np.maximum.accumulate(np.where(good, np.arange(values.size), 0))])

@@ -7,9 +7,8 @@ from rubgen.errors import UserError
 from rubgen.measurement.blade_tip_timing import TipTimes, blurred, tip_times
 from rubgen.measurement.chain import half_width_seconds, late_seconds, start_seconds
 from rubgen.measurement.channel import Channel, Recording
-from rubgen.measurement.once_per_rev import pulse_channel
 from rubgen.measurement.sampled import feed_of, filtered, recorded
-from rubgen.measurement.shaft import pulse_times, shaft_angle
+from rubgen.measurement.shaft import pulse_channel, pulse_times, shaft_angle
 from rubgen.scenario import Sensing
 from rubgen.scenario.costs import STEPS_PER_SAMPLE
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe

@@ -8,8 +8,7 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.measurement.chain import adc_step, band_limit, digitise
 from rubgen.measurement.channel import Channel
-from rubgen.measurement.faults import drop_out, miscalibrate, noise, noise_level
-from rubgen.measurement.front_end import front_end
+from rubgen.measurement.front_end import drop_out, front_end, miscalibrate, noise, noise_level
 from rubgen.scenario import Sensing
 from rubgen.sensors.sensor import SampledSensor
 from rubgen.sensors.sensor_set import SensorSet

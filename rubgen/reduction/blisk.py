@@ -9,11 +9,9 @@ from scipy.linalg import block_diag, eigh
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.fem.beam import BeamMatrices
 from rubgen.fem.blisk import BliskModel, assemble_blisk, rigid_motions
-from rubgen.fem.constraints import rim_joint
-from rubgen.fem.statics import on_springs, support_stiffness
+from rubgen.fem.constraints import on_springs, rim_joint, support_stiffness
 from rubgen.machine import BladeRow, Disk, DiskSupport
-from rubgen.reduction.craig_bampton import craig_bampton
-from rubgen.reduction.cyclic import Turning, disk_turning
+from rubgen.reduction.craig_bampton import Turning, craig_bampton, disk_turning
 from rubgen.reduction.growth import CentrifugalGrowth, centrifugal_growth
 from rubgen.scenario import Reduction
 

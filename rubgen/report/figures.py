@@ -17,8 +17,8 @@ from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import Reduction
 from rubgen.scenario.vary import KEYS
 from rubgen.viz import figures
+from rubgen.viz.derived import order_map
 from rubgen.viz.figures.data_set import axis_text, scale_of, varied_keys
-from rubgen.viz.orders import order_map
 from rubgen.viz.replay import Replay
 
 DEFAULT_MACHINE = "zeng2019"

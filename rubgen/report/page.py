@@ -15,13 +15,13 @@ from rubgen.dataset.reading.replaying import find_replay
 from rubgen.errors import UserError, write_problems
 from rubgen.format_names import FORMAT_NAMES
 from rubgen.formats import format_of
-from rubgen.io.durable import write_durably
+from rubgen.io.files import write_durably
 from rubgen.labels.labels import Motion
 from rubgen.progress import count
 from rubgen.scenario.vary import PARAMETERS
 from rubgen.viz.colors import MOTION_COLORS
 from rubgen.viz.figures.data_set import dataset_overview, varied_keys
-from rubgen.viz.figures.replay import waveform_orders
+from rubgen.viz.figures.run import waveform_orders
 from rubgen.viz.figures.snapshot import picture
 from rubgen.viz.replay import Replay
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from rubgen.errors import warn
 from rubgen.machine import Machine
-from rubgen.machine.mass import blisk_mass
+from rubgen.machine.machine import blisk_mass
 from rubgen.machine.quantities import Place, usual_values
 from rubgen.machine.schema_nodes import digits
 from rubgen.scenario.costs import steps_per_turn

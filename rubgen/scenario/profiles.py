@@ -6,7 +6,7 @@ from typing import Any
 from rubgen.errors import UserError
 from rubgen.machine.problems import key_name
 from rubgen.machine.quantities import Place
-from rubgen.machine.toml_text import toml_text
+from rubgen.machine.sentences import toml_text
 from rubgen.scenario.scenario import Operation, ProfileName
 from rubgen.units import rev_per_min
 

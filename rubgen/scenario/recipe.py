@@ -35,9 +35,8 @@ from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.profiles import check_used
-from rubgen.scenario.sampling import sobol_point
 from rubgen.scenario.scenario import ContactLaw, Labelling, Operation, ProfileName, Reduction, Scenario, Sensing
-from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, vary
+from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, sobol_point, vary
 from rubgen.sensors.load import DEFAULT_SET, load_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
 

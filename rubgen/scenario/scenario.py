@@ -4,10 +4,10 @@ Frozen and validated on creation, like the machine.
 """
 
 import math
-from typing import Literal
+from typing import Literal, cast
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, TypeAdapter
 from pydantic.dataclasses import dataclass
 
 from rubgen.brief import brief, counted
@@ -200,3 +200,11 @@ class Scenario:
     def run_id(self) -> str:
         """Name of the run in files and tables."""
         return f"run-{self.index:06d}"
+
+
+def scenario_dict(scenario: Scenario) -> dict[str, object]:
+    """The scenario as nested JSON-ready Python values, keys as in the dataclasses, complete with its machine.
+
+    `TypeAdapter(Scenario).validate_python(scenario_dict(s)) == s`: every float keeps all its bits in JSON.
+    """
+    return cast("dict[str, object]", TypeAdapter(Scenario).dump_python(scenario, mode="json"))

@@ -9,8 +9,10 @@ from dataclasses import dataclass, replace
 from operator import attrgetter
 from typing import Any
 
+import numpy as np
 from pydantic import TypeAdapter, create_model
 
+from rubgen.arrays import FloatArray
 from rubgen.machine.problems import validated
 from rubgen.machine.quantities import (
     STRICT,
@@ -32,6 +34,8 @@ from rubgen.scenario.scenario import Scenario
 
 DEFAULT_SPEED_RPM = 10_000.0
 """Speed where none is given: the machine itself has none."""
+DIMENSIONS = 32
+"""Dimensions that are always generated, so a key that is added later changes no value of an existing recipe."""
 
 
 @dataclass(frozen=True)
@@ -196,3 +200,17 @@ def _changed(record: Any, place: list[str], value: float) -> Any:
     """The record with another value at that place."""
     name, *rest = place
     return replace(record, **{name: _changed(getattr(record, name), rest, value) if rest else value})
+
+
+def sobol_point(seed: int, index: int) -> dict[str, float]:
+    """One u in [0, 1) for each key of `[vary]`: point `index` of the Sobol sequence scrambled by `seed`.
+
+    Each key has a fixed dimension, whether it is drawn or fixed: fixing one key changes no other key.
+    """
+    from scipy.stats import qmc  # slow to import, and only needed here
+
+    engine = qmc.Sobol(d=DIMENSIONS, scramble=True, rng=np.random.default_rng(np.random.SeedSequence(seed)))
+    if index:
+        engine.fast_forward(index)  # fast_forward(0) overflows
+    point: FloatArray = engine.random(1)[0]
+    return dict(zip(KEYS, point.tolist(), strict=False))

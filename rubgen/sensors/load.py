@@ -9,8 +9,8 @@ from pydantic import TypeAdapter
 from rubgen.errors import UserError
 from rubgen.machine.problems import check_plain, nearest, validated
 from rubgen.machine.schema_nodes import Path as Place
+from rubgen.machine.sentences import toml_text
 from rubgen.machine.toml_file import check_kind, named_toml, names_toml, read_toml
-from rubgen.machine.toml_text import toml_text
 from rubgen.sensors.registry import SENSOR_KINDS
 from rubgen.sensors.sensor_set import SensorSet
 

@@ -4,6 +4,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass as plain_dataclass
 from typing import Annotated, ClassVar, Self
 
+import numpy as np
 from pydantic import Field, model_validator
 from pydantic.dataclasses import dataclass
 
@@ -12,21 +13,40 @@ from rubgen.machine.problems import nearest
 from rubgen.machine.quantities import (
     STRICT,
     AdcBits,
+    Angle,
     ClockDrift,
     ClockOffset,
     Duration,
     GainError,
+    Height,
     Level,
     Rate,
     RateOrNone,
     Reading,
     ResonanceDamping,
+    RunoutHarmonic,
 )
 from rubgen.machine.sentences import CHANNEL_NAME
-from rubgen.sensors.runout import RunoutOrder
 from rubgen.taps import Tap
 
 Interval = tuple[Reading, Reading]
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class RunoutOrder:
+    """One order of the shaft's profile under the proximity probes: `amplitude_m` cos(order (angle - phase))."""
+
+    order: RunoutHarmonic
+    amplitude_m: Height
+    phase_deg: Angle = 0.0
+
+
+def runout(angle: FloatArray, shaft: tuple[RunoutOrder, ...]) -> FloatArray:
+    """Profile of the shaft in m at `angle` (any,) in rad from its mark: sum of amplitude cos(order (angle - phase))."""
+    profile = np.zeros_like(angle)
+    for part in shaft:
+        profile += part.amplitude_m * np.cos(part.order * (angle - np.deg2rad(part.phase_deg)))
+    return profile
 
 
 @plain_dataclass(frozen=True, kw_only=True)

@@ -11,8 +11,7 @@ from rubgen.machine.quantities import STRICT
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
 from rubgen.sensors.kinds.once_per_rev import OncePerRev
 from rubgen.sensors.registry import AnySensor
-from rubgen.sensors.runout import RunoutOrder
-from rubgen.sensors.sensor import SampledSensor
+from rubgen.sensors.sensor import RunoutOrder, SampledSensor
 from rubgen.taps import DEFAULT_TAPS, Tap
 
 

@@ -10,8 +10,7 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.labels.to_json import labels_to_json
 from rubgen.measurement.channel import Recording
-from rubgen.measurement.contact_window import ContactIntervals, contact_intervals
-from rubgen.measurement.motion_frames import MotionFrames, motion_frames
+from rubgen.measurement.motion import ContactIntervals, MotionFrames, contact_intervals, motion_frames
 from rubgen.scenario import Scenario
 from rubgen.units import rev_per_min
 

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rubgen.scenario.to_json import scenario_dict
+from rubgen.scenario.scenario import scenario_dict
 
 if TYPE_CHECKING:
     from rerun import RecordingStream
@@ -56,13 +56,12 @@ def _recorded(replay: Replay, *, full: bool) -> bytes:
     """The content of the .rrd file."""
     import rerun as rr  # here, for importing it takes 0.6 s
 
-    from rubgen.viz.entities.contact import send_touches
+    from rubgen.viz.entities.events import send_tip_timing, send_touches
     from rubgen.viz.entities.labels import send_labels
     from rubgen.viz.entities.machine import send_machine
     from rubgen.viz.entities.orbit import send_orbit
     from rubgen.viz.entities.orders import send_orders
     from rubgen.viz.entities.signals import send_signals
-    from rubgen.viz.entities.timing import send_tip_timing
     from rubgen.viz.views import arrangement
 
     stream = rr.RecordingStream(APPLICATION, recording_id=recording_id(replay.scenario), send_properties=False)

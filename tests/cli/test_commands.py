@@ -10,7 +10,7 @@ import pytest
 
 import rubgen
 from rubgen.cli.app import app, simulate
-from rubgen.cli.new_file import write_file
+from rubgen.cli.printing import write_file
 from rubgen.errors import UserError
 from rubgen.io.mcap import read_mcap
 from rubgen.scenario.vary import KEYS

@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import eigh
 
 from rubgen.fem.blisk import assemble_blisk, blisk_frequencies
-from rubgen.fem.statics import on_springs, support_stiffness
+from rubgen.fem.constraints import on_springs, support_stiffness
 from rubgen.machine import Mistuning, load_machine
 
 MATRICES = ("M", "G", "K", "K_apart", "S", "K_sigma")

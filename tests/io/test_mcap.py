@@ -17,7 +17,7 @@ from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
 from rubgen.io.mcap.messages import message_class, proto_text, read_sample_block, sample_block, timestamp
 from rubgen.labels.to_json import labels_to_json
 from rubgen.measurement import measure
-from rubgen.measurement.contact_window import contact_intervals
+from rubgen.measurement.motion import contact_intervals
 from rubgen.scenario import Scenario, Sensing
 
 SCHEMA = Path(__file__).parents[2] / "schemas" / "rubgen.v1.proto"

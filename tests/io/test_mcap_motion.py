@@ -9,8 +9,8 @@ from mcap.reader import make_reader
 from rubgen.errors import UserError
 from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
 from rubgen.io.mcap.foxglove import transform_descriptor_set
-from rubgen.io.mcap.salvage import salvage_mcap
-from rubgen.measurement.motion_frames import MotionFrames, motion_frames
+from rubgen.io.mcap.read import salvage_mcap
+from rubgen.measurement.motion import MotionFrames, motion_frames
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rubgen.measurement.contact_window import contact_intervals
+from rubgen.measurement.motion import contact_intervals
 from rubgen.solver.response import ContactEvents
 
 

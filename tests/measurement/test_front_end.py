@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from rubgen.measurement.faults import drop_out, miscalibrate, noise, noise_level
-from rubgen.measurement.front_end import front_end, memory_seconds
+from rubgen.measurement.front_end import drop_out, front_end, memory_seconds, miscalibrate, noise, noise_level
 from rubgen.sensors.kinds.accelerometer import Accelerometer
 from rubgen.sensors.kinds.proximity import Proximity
 

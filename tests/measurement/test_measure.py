@@ -6,7 +6,7 @@ import pytest
 
 from rubgen.errors import UserError
 from rubgen.measurement import Recording, margin_seconds, measure
-from rubgen.measurement.once_per_rev import NOTCH_ANGLE
+from rubgen.measurement.shaft import NOTCH_ANGLE
 from rubgen.scenario import Sensing
 from rubgen.solver.response import ContactEvents, EnergyBalance, Response, Status
 

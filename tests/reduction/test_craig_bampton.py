@@ -7,7 +7,7 @@ from scipy.linalg import eigh, solve
 
 from rubgen.errors import UserError
 from rubgen.fem.blisk import assemble_blisk
-from rubgen.fem.statics import factorize, on_springs, support_stiffness
+from rubgen.fem.constraints import factorize, on_springs, support_stiffness
 from rubgen.reduction import craig_bampton as module
 from rubgen.reduction.blisk import reduce_blisk
 from rubgen.reduction.craig_bampton import craig_bampton

@@ -7,9 +7,9 @@ import pytest
 from scipy.linalg import eigh
 
 from rubgen.fem.blisk import assemble_blisk
+from rubgen.fem.constraints import support_stiffness
 from rubgen.fem.disk import annular_mesh, assemble_disk
 from rubgen.fem.shell import shell_inertia, shell_stiffness
-from rubgen.fem.statics import support_stiffness
 from rubgen.machine import Mistuning
 from rubgen.reduction.blisk import _turning, reduce_blisk
 from rubgen.scenario import Reduction

@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import eigh
 
 from rubgen.fem.blisk import assemble_blisk
-from rubgen.fem.statics import factorize, on_springs, support_stiffness
+from rubgen.fem.constraints import factorize, on_springs, support_stiffness
 from rubgen.machine import Mistuning
 from rubgen.reduction import cache, reduce
 from rubgen.reduction.blisk import reduce_blisk

@@ -7,7 +7,7 @@ import pytest
 from threadpoolctl import threadpool_limits
 
 from rubgen.fem.blisk import assemble_blisk, rigid_motions
-from rubgen.fem.statics import factorize, on_springs, support_stiffness
+from rubgen.fem.constraints import factorize, on_springs, support_stiffness
 from rubgen.reduction import reduce
 from rubgen.reduction.blisk import reduce_blisk
 from rubgen.scenario import Reduction

@@ -7,9 +7,9 @@ import pytest
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
+from rubgen.fem.beam import root_strain_row
 from rubgen.fem.blisk import assemble_blisk
-from rubgen.fem.root_strain import root_strain_row
-from rubgen.fem.statics import on_springs, support_stiffness
+from rubgen.fem.constraints import on_springs, support_stiffness
 from rubgen.machine import load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction

@@ -9,7 +9,7 @@ import pytest
 import rubgen
 from rubgen.errors import RubgenWarning, UserError
 from rubgen.scenario import load_recipe, make_scenario, parse_recipe
-from rubgen.scenario.to_json import scenario_dict
+from rubgen.scenario.scenario import scenario_dict
 from rubgen.scenario.vary import KEYS, PARAMETERS
 
 

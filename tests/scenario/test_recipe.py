@@ -14,8 +14,7 @@ import rubgen
 from rubgen.errors import RubgenWarning, UserError
 from rubgen.scenario import Recipe, load_recipe, make_scenario, parse_recipe
 from rubgen.scenario.recipe import check_recipe
-from rubgen.scenario.sampling import DIMENSIONS, sobol_point
-from rubgen.scenario.vary import KEYS, PARAMETERS, varied_values
+from rubgen.scenario.vary import DIMENSIONS, KEYS, PARAMETERS, sobol_point, varied_values
 
 MINIMAL = {"name": "small", "runs": 4, "machine": "zeng2019"}
 ISSUE_KEYS = [

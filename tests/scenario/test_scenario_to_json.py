@@ -6,7 +6,7 @@ from pydantic import TypeAdapter
 
 from rubgen.machine import load_machine
 from rubgen.scenario import Operation, Scenario
-from rubgen.scenario.to_json import scenario_dict
+from rubgen.scenario.scenario import scenario_dict
 
 
 @given(speed=st.floats(min_value=1e-3, max_value=1e6), seed=st.integers(min_value=0, max_value=2**63 - 1))

@@ -12,7 +12,7 @@ from rubgen.sensors.kinds.proximity import Proximity
 from rubgen.sensors.kinds.tip_clearance import ClearanceProbe
 from rubgen.sensors.kinds.torque import Torque
 from rubgen.sensors.load import load_sensor_set
-from rubgen.sensors.runout import RunoutOrder
+from rubgen.sensors.sensor import RunoutOrder
 from rubgen.sensors.sensor_set import SensorSet
 from rubgen.taps import DEFAULT_TAPS, CentreDisplacement
 from rubgen.units import STANDARD_GRAVITY

@@ -9,7 +9,7 @@ from scipy.special import fresnel
 
 from rubgen.errors import UserError
 from rubgen.measurement.channel import Channel, Recording
-from rubgen.measurement.motion_frames import motion_frames
+from rubgen.measurement.motion import motion_frames
 from rubgen.reduction.model import CasingSurface, SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
 from rubgen.solver import Status

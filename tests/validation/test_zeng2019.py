@@ -7,7 +7,7 @@ from scipy.linalg import eigvals
 from scipy.sparse.linalg import spsolve
 
 from rubgen.errors import UserError
-from rubgen.fem.statics import on_springs, support_stiffness
+from rubgen.fem.constraints import on_springs, support_stiffness
 from rubgen.machine.published import CASING_HZ
 from rubgen.units import rad_per_s
 from validation.zeng2019 import reproduce

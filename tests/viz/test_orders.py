@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rubgen.viz.orders import order_map
+from rubgen.viz.derived import order_map
 
 RATE = 25600.0
 

@@ -9,7 +9,7 @@ from rerun.chunk import RrdReader
 
 from rubgen.labels.to_json import labels_to_json
 from rubgen.machine import Unbalance
-from rubgen.measurement.contact_window import contact_intervals
+from rubgen.measurement.motion import contact_intervals
 from rubgen.viz.entities.machine_shape import blade_leanings, blade_placements, drawing_factor
 from rubgen.viz.entities.signals import PREVIEW_VALUES, detail_window, preview_rate, shown_channels
 from rubgen.viz.replay import replay_of
@@ -207,7 +207,7 @@ def test_a_file_stays_below_two_megabytes(make_synthetic_run, sensors, tmp_path)
 
 
 def test_of_many_passages_those_about_the_hardest_touch_stay_and_full_keeps_all(rig_run, monkeypatch, tmp_path):
-    monkeypatch.setattr("rubgen.viz.entities.timing.MOST_PASSAGES", 400)  # of four probes
+    monkeypatch.setattr("rubgen.viz.entities.events.MOST_PASSAGES", 400)  # of four probes
     replay = replay_of(rig_run)
     for full in (False, True):
         write_replay(replay, tmp_path / "run.rrd", full=full)

@@ -1,6 +1,6 @@
 import numpy as np
 
-from rubgen.viz.sectors import sector_of
+from rubgen.viz.derived import sector_of
 
 
 def test_the_first_sector_lies_about_zero_and_all_turns_are_one():

@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
+from rubgen.viz.derived import section, shaft_orbit
 from rubgen.viz.replay import replay_of
-from rubgen.viz.shaft_orbit import section, shaft_orbit
 
 
 def test_two_probes_along_x_and_y_are_the_orbit_itself(rub_run):

@@ -14,8 +14,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import rubgen
+from rubgen.dataset.checking.channel_check import Row, resolved_impulse, samples_per_turn, whole_turn_weights
 from rubgen.dataset.checking.consistency import label_problems, signal_problems
-from rubgen.dataset.checking.impulse_check import Row, resolved_impulse, samples_per_turn, whole_turn_weights
 from rubgen.dataset.reading.open import row_signals
 from rubgen.io.parquet.read import row_groups
 from rubgen.labels.labels import Motion

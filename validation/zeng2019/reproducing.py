@@ -9,7 +9,7 @@ from pathlib import Path
 from rubgen.dataset.files import write_text
 from rubgen.dataset.making.workers import usable_cores
 from rubgen.errors import UserError
-from rubgen.io.durable import write_durably
+from rubgen.io.files import write_durably
 from validation.rows import Row, write_rows
 from validation.store import Progress, Store
 from validation.zeng2019.drawing.style import png

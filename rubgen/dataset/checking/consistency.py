@@ -6,20 +6,21 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rubgen.dataset.checking.impulse_check import (
+from rubgen.dataset.checking.channel_check import (
+    NOISE_PEAK,
     Row,
     duty_fits,
     exponents_fit,
     impulse_problems,
+    order_problems,
     window_times_fit,
     windows_fit,
 )
-from rubgen.dataset.checking.order_check import NOISE_PEAK, order_problems
 from rubgen.labels.contact.amounts import RubExtent
 from rubgen.labels.harmonics import FLOOR, MARKED_TAP, RATIO
 from rubgen.labels.labels import Motion
 from rubgen.measurement.channel import Float32Array
-from rubgen.measurement.once_per_rev import NOTCH_ANGLE
+from rubgen.measurement.shaft import NOTCH_ANGLE
 from rubgen.scenario import Sensing
 from rubgen.sensors.kinds.once_per_rev import OncePerRev
 from rubgen.sensors.kinds.proximity import Proximity

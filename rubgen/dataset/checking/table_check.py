@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterator, Sequence
 
 import pyarrow as pa
 
+from rubgen.dataset.checking.channel_check import Row
 from rubgen.dataset.checking.consistency import label_problems, signal_problems
-from rubgen.dataset.checking.impulse_check import Row
 from rubgen.dataset.layout import RUNS_PER_SHARD, Layout
 from rubgen.dataset.manifest import Manifest
 from rubgen.dataset.reading.open import is_signal, row_signals

@@ -10,7 +10,7 @@ import pyarrow as pa
 from rubgen.dataset.layout import RUNS_PER_ROW_GROUP, RUNS_PER_SHARD, Layout
 from rubgen.dataset.rows import asked_bytes
 from rubgen.errors import RubgenError, UserError
-from rubgen.io.durable import sync_directory
+from rubgen.io.files import sync_directory
 from rubgen.io.parquet.compact_records import SCHEMA
 from rubgen.io.parquet.read import read_table
 from rubgen.io.parquet.write import schema, write_table

@@ -1,22 +1,56 @@
 """Whose an output directory is: empty, ours and unfinished, ours and finished, or not ours."""
 
+import errno
 import json
 import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from filelock import BaseFileLock, FileLock, SoftFileLock, Timeout
+
 from rubgen.dataset.files import is_system_file, remove_parts, write_json
 from rubgen.dataset.layout import Layout
-from rubgen.dataset.making.claim_lock import acquired, soft_lock
-from rubgen.dataset.making.difference import check_same
 from rubgen.dataset.manifest import Identity, read_manifest
-from rubgen.errors import UserError
+from rubgen.errors import UserError, warn
 from rubgen.format_names import FORMAT_NAMES
-from rubgen.io.durable import PART, sync_directory
+from rubgen.io.files import PART, sync_directory
 
 _STAGED = ("runs", "sections")
 """Folders of `.staging`."""
+_NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EINVAL)
+"""What file systems answer that have no locks, as NFS without its lock daemon."""
+
+
+def acquired(path: Path) -> BaseFileLock | None:
+    """The lock at `path`, or None where another process has it.
+
+    Where the file system has no locks, a file that only one process can make is the lock, and a remark says so.
+    """
+    try:
+        return _acquired(FileLock(path, timeout=0))
+    except NotImplementedError as error:
+        reason: object = error
+    except OSError as error:
+        if error.errno not in _NO_LOCKS:
+            raise
+        reason = error.strerror
+    soft = soft_lock(path)
+    warn(f"{path.parent}: no file locks there ({reason}); {soft.name} is made instead, delete it after a kill")
+    return _acquired(SoftFileLock(soft, timeout=0))
+
+
+def soft_lock(path: Path) -> Path:
+    """The file that stands for the lock at `path` where there are no locks."""
+    return path.with_name(f"{path.name}.soft")
+
+
+def _acquired(lock: BaseFileLock) -> BaseFileLock | None:
+    try:
+        lock.acquire()
+    except Timeout:
+        return None
+    return lock
 
 
 def finished(layout: Layout, identity: Identity) -> bool:
@@ -172,3 +206,46 @@ def _read_identity(layout: Layout) -> Identity:
         raise UserError(
             f"{layout.identity}: damaged ({reason}), so nothing tells what the runs there are; give another directory"
         ) from None
+
+
+def check_same(layout: Layout, there: Identity, asked: Identity, *, versions: bool = False) -> None:
+    """Raise UserError, with the first key that differs, where the directory is of another recipe.
+
+    With `versions` the packages must be the same too.
+    """
+    if not there.same_recipe(asked):
+        key, old, new = _first_difference(there, asked)
+        raise UserError(
+            f"--out {layout.root}: holds the output of another recipe ({key} = {old!r}, asked for {new!r}); "
+            "give another directory"
+        )
+    if versions and there.packages != asked.packages:
+        names = sorted(name for name in asked.packages if there.packages.get(name) != asked.packages[name])
+        name = names[0] if names else "packages"
+        raise UserError(
+            f"--out {layout.root}: begun with {name} {there.packages.get(name)}, now it is {asked.packages.get(name)}; "
+            "finish it with the old version or give another directory"
+        )
+
+
+def _first_difference(there: Identity, asked: Identity) -> tuple[str, object, object]:
+    for part in ("recipe", "machine", "sensors"):
+        old, new = _flat(getattr(there, part)), _flat(getattr(asked, part))
+        for key in [*new, *old]:
+            if old.get(key) != new.get(key):
+                return key if part == "recipe" else f"{part}.{key}", old.get(key), new.get(key)
+    return "recipe", None, None
+
+
+def _flat(values: dict[str, object], prefix: str = "") -> dict[str, object]:
+    flat: dict[str, object] = {}
+    for key, each in values.items():
+        value = _by_name(each) if isinstance(each, list) else each
+        flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
+    return flat
+
+
+def _by_name(listed: list[object]) -> object:
+    """A list of tables by their names or numbers; any other list as it is."""
+    tables = [each for each in listed if isinstance(each, dict)]
+    return {str(each.get("name", i)): each for i, each in enumerate(tables)} if len(tables) == len(listed) else listed

@@ -77,11 +77,6 @@ def generate(
             return _nothing_to_do(layout, identity)
 
 
-def finished_runs(out: Path | str) -> int:
-    """How many runs of an unfinished set are kept."""
-    return len(list((Layout(Path(out)).staging / "runs").glob("run-*[0-9].parquet")))
-
-
 def _recipe(recipe: Recipe | Mapping[str, object] | Path | str | None, runs: int | None) -> Recipe:
     if isinstance(recipe, Mapping):
         return parse_recipe(dict(recipe), runs=runs)

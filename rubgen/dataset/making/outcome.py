@@ -3,9 +3,12 @@
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from rubgen.dataset.layout import Layout
+from rubgen.errors import UserError
+from rubgen.io.files import read_json
 from rubgen.io.parquet.read import read_table
 
 COLUMNS = ["run_id", "status", "reason", "rub", "motion"]
@@ -56,3 +59,32 @@ def _failures(rows: Iterable[dict[str, Any]]) -> list[Failure]:
         shortest = min(mine, key=lambda row: (len(row["reason"]), row["run_id"]))
         found.append(Failure(status=status, count=len(mine), run_id=shortest["run_id"], reason=shortest["reason"]))
     return sorted(found, key=lambda failure: (-failure.count, failure.status))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unfinished:
+    """Name and number of runs of its recipe, and how many runs are kept."""
+
+    name: str
+    runs: int
+    kept: int
+
+
+def finished_runs(out: Path | str) -> int:
+    """How many runs of an unfinished set are kept."""
+    return len(list((Layout(Path(out)).staging / "runs").glob("run-*[0-9].parquet")))
+
+
+def unfinished(directory: Path) -> Unfinished | None:
+    """What an interrupted `generate` left in `directory`; None where it left nothing or the set is finished.
+
+    Raises UserError where it cannot be read.
+    """
+    layout = Layout(directory)
+    if (layout.manifest.exists() and layout.digest.exists()) or not layout.identity.exists():
+        return None
+    try:
+        recipe = read_json(layout.identity.read_bytes())["recipe"]
+        return Unfinished(name=str(recipe["name"]), runs=int(recipe["runs"]), kept=finished_runs(directory))
+    except (OSError, ValueError, TypeError, LookupError):
+        raise UserError(f"{layout.identity}: cannot be read; give the directory of another data set") from None

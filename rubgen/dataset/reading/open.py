@@ -17,10 +17,8 @@ from rubgen.arrays import FloatArray
 from rubgen.brief import counted
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, read_manifest
-from rubgen.dataset.reading.runs_frame import runs_frame
-from rubgen.dataset.reading.runs_table import check_runs
 from rubgen.dataset.reading.stored_run import StoredRun, stored_run
-from rubgen.dataset.reading.touches import COLUMNS, touches_frame
+from rubgen.dataset.reading.tables import COLUMNS, check_runs, runs_frame, touches_frame
 from rubgen.dataset.rows import RunRows, asked_bytes
 from rubgen.errors import UserError
 from rubgen.io.columns import signal_columns

@@ -18,7 +18,7 @@ from rubgen.io.mcap.read import McapRun
 from rubgen.io.parquet.read import read_table
 from rubgen.measurement.blade_tip_timing import TipTimes
 from rubgen.measurement.channel import Channel, Recording
-from rubgen.measurement.contact_window import ContactIntervals
+from rubgen.measurement.motion import ContactIntervals
 from rubgen.scenario import Scenario
 from rubgen.scenario.recipe import check_recipe
 from rubgen.viz.replay import Replay, sorted_touches
@@ -57,7 +57,7 @@ def find_replay(source: Path, run_id: str | None = None, where: str | None = Non
 
 def replay_of_mcap(path: Path) -> FoundReplay:
     """The run in an MCAP file, as far as it can be read."""
-    from rubgen.io.mcap.salvage import salvage_mcap
+    from rubgen.io.mcap.read import salvage_mcap
 
     run, lost = salvage_mcap(path)
     remarks = tuple(f"{path} is damaged; lost: {piece}" for piece in lost)

@@ -4,16 +4,16 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from rubgen.errors import UserError
-from rubgen.io.json_read import read_json
+from rubgen.io.files import read_json
 from rubgen.io.mcap.content import (
     McapContent,
     check_order,
     check_other,
+    checked_scenario,
     message_name,
     read_content,
     rows,
 )
-from rubgen.io.mcap.documents import checked_scenario
 from rubgen.io.mcap.messages import read_sample_block
 from rubgen.io.mcap.read import run_of
 from rubgen.io.mcap.records import DamageError, damage_found

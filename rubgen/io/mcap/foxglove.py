@@ -1,10 +1,19 @@
-"""Foxglove's protobuf schema of a moving frame, for Rerun and Foxglove on `/tf`."""
+"""Messages that Rerun and Foxglove show without set-up: a moving frame on `/tf`, and arrays of floats.
+
+The frame is Foxglove's protobuf message. The arrays are ROS 2 Float64MultiArray in CDR: JointState carries a name for
+each line, but Rerun opens an empty view for each of its two unused fields.
+"""
 
 import math
+import struct
+from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
+import numpy as np
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory, timestamp_pb2
+
+from rubgen.arrays import FloatArray
 
 PACKAGE = "foxglove"
 TRANSFORM = "foxglove.FrameTransform"
@@ -27,6 +36,21 @@ _FILES: tuple[tuple[str, str, tuple[tuple[str, int, str], ...]], ...] = (
         ),
     ),
 )
+SCHEMA_NAME = "std_msgs/msg/Float64MultiArray"
+_RULE = "=" * 80
+SCHEMA = f"""std_msgs/MultiArrayLayout layout
+float64[] data
+{_RULE}
+MSG: std_msgs/MultiArrayLayout
+std_msgs/MultiArrayDimension[] dim
+uint32 data_offset
+{_RULE}
+MSG: std_msgs/MultiArrayDimension
+string label
+uint32 size
+uint32 stride
+""".encode()
+_ENCAPSULATION = b"\x00\x01\x00\x00"  # plain CDR, little endian; alignment counts from here
 
 
 @cache
@@ -85,3 +109,39 @@ def _file(path: str, name: str, fields: tuple[tuple[str, int, str], ...]) -> des
             own = f"foxglove/{of.rsplit('.', 1)[1]}.proto"
             file.dependency.append(own if of.startswith(".foxglove") else "google/protobuf/timestamp.proto")
     return file
+
+
+def multi_arrays(names: Sequence[str], values: FloatArray) -> list[bytes]:
+    """One CDR message for each row of `values` (n, len(names)). The label of its one dimension lists the names.
+
+    All messages have the same header, so one template is filled for all of them at once.
+    """
+    count = len(names)
+    label = ", ".join(names).encode() + b"\0"
+    head = struct.pack("<II", 1, len(label)) + label
+    head = _padded(head, 4) + struct.pack("<IIII", count, count, 0, count)  # size, stride, data_offset, length
+    head = _ENCAPSULATION + _padded(head, 8)
+    layout = np.dtype([("head", np.void, len(head)), ("values", "<f8", (count,))])
+    messages = np.zeros(len(values), dtype=layout)
+    messages["head"] = np.void(head)
+    messages["values"] = values
+    return [message.tobytes() for message in messages]
+
+
+def read_multi_array(data: bytes) -> tuple[list[str], FloatArray]:
+    """Names and values of a message of `multi_arrays`. Raises ValueError or struct.error where it is not one."""
+    if data[: len(_ENCAPSULATION)] != _ENCAPSULATION:
+        raise ValueError("no little-endian CDR")
+    body = data[len(_ENCAPSULATION) :]
+    dimensions, length = struct.unpack_from("<II", body)
+    label = body[8 : 8 + length]
+    place = 8 + length + -length % 4
+    count, stride, offset, values = struct.unpack_from("<IIII", body, place)
+    place += 16 + -(place + 16) % 8
+    if (dimensions, stride, offset, values) != (1, count, 0, count) or len(body) - place != 8 * count:
+        raise ValueError("its sizes contradict each other")
+    return label.rstrip(b"\0").decode().split(", "), np.frombuffer(body, "<f8", count, place)
+
+
+def _padded(data: bytes, size: int) -> bytes:
+    return data + bytes(-len(data) % size)

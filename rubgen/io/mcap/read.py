@@ -1,4 +1,4 @@
-"""Runs from MCAP files, with every checksum checked."""
+"""Runs back from MCAP files, with every checksum checked, and what can still be read of damaged files."""
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
@@ -12,22 +12,61 @@ from rubgen.errors import UserError
 from rubgen.io.mcap.content import (
     TIMING,
     McapContent,
+    check_facts,
     check_kind,
     check_order,
+    checked_labels,
+    checked_scenario,
     columns,
     read_content,
     rows,
 )
-from rubgen.io.mcap.documents import check_facts, checked_labels, checked_scenario
-from rubgen.io.mcap.frames import read_frames
 from rubgen.io.mcap.messages import read_sample_block
 from rubgen.io.mcap.records import DamageError, damage_found
 from rubgen.labels.labels import Motion
 from rubgen.measurement.channel import Float32Array
-from rubgen.measurement.motion_frames import MotionFrames
+from rubgen.measurement.motion import MotionFrames
 from rubgen.scenario import Scenario
 
 MOTION_LABELS = ("motion", "motion_blisk", "motion_casing")
+MOST_NAMED = 3
+FRAMES, MODES = "/motion/frames", "/motion/casing_modes"
+
+
+def read_frames(content: McapContent, scenario: Scenario) -> MotionFrames | None:
+    """The frames; None where the file has none. Raises DamageError where they do not fit each other or the machine."""
+    found, shapes = rows(content, FRAMES), rows(content, MODES)
+    if not found or not shapes:
+        return None
+    check_order(content, FRAMES)
+    blades, modes = scenario.machine.blades.count, shapes[0]
+    sizes = {(len(row.centre_m), len(row.tips_m), len(row.casing)) for row in found}
+    if sizes != {(2, 3 * blades, modes.modes)}:
+        raise DamageError(f"{FRAMES}: sizes are not those of {blades} blades and {modes.modes} modes of the casing")
+    if len(modes.values) != 2 * modes.nodes * modes.modes or not modes.values:
+        raise DamageError(f"{MODES}: {len(modes.values)} values for {modes.nodes} nodes and {modes.modes} modes")
+    frames = MotionFrames(
+        time=np.array([row.time_s for row in found]),
+        angle=np.array([row.angle_rad for row in found]),
+        centre=np.array([row.centre_m for row in found], dtype=np.float64),
+        tips=np.array([row.tips_m for row in found], dtype=np.float64).reshape(len(found), -1, 3),
+        casing=np.array([row.casing for row in found], dtype=np.float64),
+        dense=np.array([row.dense for row in found], dtype=np.int64),
+        casing_modes=np.array(modes.values, dtype=np.float64).reshape(modes.nodes, 2, modes.modes),
+    )
+    _check_values(frames, scenario.signal_seconds)
+    return frames
+
+
+def _check_values(frames: MotionFrames, seconds: float) -> None:
+    for name in MotionFrames.__dataclass_fields__:
+        if not np.isfinite(getattr(frames, name)).all():
+            raise DamageError(f"{FRAMES}: {name} is not finite")
+    time = frames.time
+    if (np.diff(time) < 0).any() or time[0] < 0 or time[-1] > seconds:
+        raise DamageError(f"{FRAMES}: times do not ascend within the recording of {seconds:g} s")
+    if (frames.dense > 1).any():
+        raise DamageError(f"{FRAMES}: dense is neither 0 nor 1")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,3 +202,28 @@ def _motion_classes(content: McapContent) -> dict[str, list[tuple[float, str]]]:
     return {
         name: [(time, getattr(row, name)) for time, row in zip(times, found, strict=True)] for name in MOTION_LABELS
     }
+
+
+def salvage_mcap(path: Path) -> tuple[McapRun, list[str]]:
+    """The run in the file at `path`, and its losses, one sentence each: none for a good file.
+
+    Chunks that fail their CRC are left out, and everything after the place where the records can no longer be followed.
+    Lost samples are NaN. Raises UserError where scenario or labels are lost, where the rest contradicts itself, or it
+    is no file of rubgen.
+    """
+    try:
+        return read_mcap(path), []
+    except UserError as error:
+        whole = UserError(str(error))  # without the frames that still hold what was read
+    lost: list[str] = []
+    try:
+        content = read_content(path, lost)
+        run = run_of(content, gaps=bool(lost))
+    except (DamageError, UserError, OSError):
+        raise whole from None
+    return run, _shortened(lost) or ["nothing that is shown"]
+
+
+def _shortened(lost: list[str]) -> list[str]:
+    more = len(lost) - MOST_NAMED
+    return lost[:MOST_NAMED] + ([f"and {more} more pieces"] if more > 0 else [])

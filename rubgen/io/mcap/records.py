@@ -20,7 +20,7 @@ from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Chunk, DataEnd, Footer, McapRecord, Message, Metadata, Schema
 
 from rubgen.errors import RubgenError
-from rubgen.io.regular_file import check_regular
+from rubgen.io.files import check_regular
 
 MOST_CHUNK_BYTES = 64 * 1024**2
 """Largest chunk. rubgen writes chunks of 0.5 MiB; other writers some MiB."""

@@ -11,20 +11,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mcap.writer import Writer
 
-from rubgen.io.durable import write_durably
+from rubgen.io.files import write_durably
 from rubgen.io.mcap.check import check_mcap
 from rubgen.io.mcap.content import TIMING
-from rubgen.io.mcap.foxglove import TRANSFORM, transform, transform_descriptor_set
+from rubgen.io.mcap.foxglove import SCHEMA, SCHEMA_NAME, TRANSFORM, multi_arrays, transform, transform_descriptor_set
 from rubgen.io.mcap.messages import MESSAGES, PACKAGE, file_descriptor_set, message_class, sample_block, timestamp
-from rubgen.io.mcap.multi_array import SCHEMA, SCHEMA_NAME, multi_arrays
 from rubgen.io.mcap.read import McapRun, read_mcap
 from rubgen.labels.to_json import labels_to_json
 from rubgen.measurement.blade_tip_timing import TipTimes
-from rubgen.measurement.channel import Channel, Float32Array, Recording
-from rubgen.measurement.contact_window import contact_intervals
-from rubgen.measurement.envelope import Preview, preview
-from rubgen.measurement.motion_frames import MotionFrames, motion_frames
-from rubgen.scenario.to_json import scenario_dict
+from rubgen.measurement.channel import Channel, Float32Array, Preview, Recording, preview
+from rubgen.measurement.motion import MotionFrames, contact_intervals, motion_frames
+from rubgen.scenario.scenario import scenario_dict
 
 if TYPE_CHECKING:  # Run carries the solver's imports; who reads or checks a file needs none of them
     from rubgen.labels.labels import Labels

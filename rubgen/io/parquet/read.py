@@ -12,7 +12,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from rubgen.errors import UserError
-from rubgen.io.regular_file import check_regular
+from rubgen.io.files import check_regular
 
 MOST_BYTES = 256 * 1024**2
 """Unpacked size that is allowed for any row group: eight runs of ten seconds and 30 channels need as much."""

@@ -16,11 +16,11 @@ import pyarrow.parquet as pq
 
 from rubgen.arrays import FloatArray
 from rubgen.io.columns import Column, scalar_columns, signal_columns
-from rubgen.io.durable import write_durably
+from rubgen.io.files import write_durably
 from rubgen.io.parquet.read import open_parquet, read_table, row_groups
 from rubgen.labels.to_json import labels_to_json, window_amplitudes
 from rubgen.measurement.channel import Recording
-from rubgen.measurement.contact_window import contact_intervals
+from rubgen.measurement.motion import contact_intervals
 from rubgen.scenario.vary import varied_values
 from rubgen.sensors.load import default_sensor_set
 from rubgen.sensors.sensor_set import SensorSet

@@ -7,8 +7,7 @@ from pydantic.dataclasses import dataclass
 
 from rubgen.arrays import FloatArray
 from rubgen.machine.quantities import STRICT, Bias, Direction, Sensitivity
-from rubgen.sensors.runout import RunoutOrder, runout
-from rubgen.sensors.sensor import Description, SampledSensor, axis_of
+from rubgen.sensors.sensor import Description, RunoutOrder, SampledSensor, axis_of, runout
 from rubgen.taps import CentreDisplacement, name_of_direction
 
 

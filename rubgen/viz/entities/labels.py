@@ -7,7 +7,7 @@ import numpy as np
 import rerun as rr
 
 from rubgen.labels.labels import Motion
-from rubgen.scenario.to_json import scenario_dict
+from rubgen.scenario.scenario import scenario_dict
 from rubgen.viz.colors import MOTION_COLORS, rgba
 from rubgen.viz.entities.signals import time_column
 from rubgen.viz.replay import Replay

@@ -5,7 +5,7 @@ import rerun as rr
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.machine import Machine
-from rubgen.measurement.motion_frames import MotionFrames
+from rubgen.measurement.motion import MotionFrames
 from rubgen.viz.colors import BLUE, GREY, UNBALANCE, impulse_color, rgba
 from rubgen.viz.entities.machine_shape import (
     Mesh,

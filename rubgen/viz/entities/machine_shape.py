@@ -12,7 +12,7 @@ import numpy as np
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.machine import BladeRow, Disk, Machine, Unbalance
-from rubgen.measurement.motion_frames import MotionFrames
+from rubgen.measurement.motion import MotionFrames
 
 DRAWN_SHARE = 0.12
 """The largest deviation is drawn at most as this share of the tip radius."""

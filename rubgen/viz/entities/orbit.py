@@ -7,9 +7,9 @@ import rerun as rr
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.viz.colors import BLUE, GREY, VERMILION, rgba
+from rubgen.viz.derived import section, shaft_orbit
 from rubgen.viz.entities.signals import detail_window, time_column
 from rubgen.viz.replay import Replay
-from rubgen.viz.shaft_orbit import section, shaft_orbit
 
 POINTS_PER_TURN = 48
 COARSE_TURNS = 100

@@ -5,7 +5,7 @@ import numpy.typing as npt
 import rerun as rr
 
 from rubgen.arrays import FloatArray
-from rubgen.measurement.envelope import PREVIEW_RATE_HZ, preview
+from rubgen.measurement.channel import PREVIEW_RATE_HZ, preview
 from rubgen.viz.colors import LINES, rgba
 from rubgen.viz.replay import Replay
 

@@ -1,13 +1,10 @@
 """Figures: functions that return a matplotlib Figure, in one house style, and touch no global state."""
 
-from rubgen.viz.figures.bifurcation import bifurcation, exponent_sweep
-from rubgen.viz.figures.campbell import campbell
-from rubgen.viz.figures.cascade import spectrum_cascade
 from rubgen.viz.figures.data_set import dataset_overview
-from rubgen.viz.figures.mode_shapes import mode_shapes
-from rubgen.viz.figures.replay import contact_distribution, orbit_section, waveform_orders
-from rubgen.viz.figures.run import overview
+from rubgen.viz.figures.machine import campbell, mode_shapes
+from rubgen.viz.figures.run import contact_distribution, orbit_section, overview, waveform_orders
 from rubgen.viz.figures.style import save_figure, save_png
+from rubgen.viz.figures.sweeps import bifurcation, exponent_sweep, spectrum_cascade
 
 __all__ = [
     "bifurcation",

@@ -1,4 +1,4 @@
-"""One run in four panels, from its true response."""
+"""Figures of one run: from its true response, and from what was recorded, which needs no solver and works for files."""
 
 from __future__ import annotations
 
@@ -8,19 +8,24 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
+from matplotlib.ticker import MaxNLocator
 
 from rubgen.arrays import FloatArray
 from rubgen.labels.harmonics import order_spectrum, spectrum_turns
+from rubgen.machine.problems import nearest
+from rubgen.measurement.channel import Channel
 from rubgen.viz.colors import BLUE, GREY, PAPER_GREY, VERMILION
-from rubgen.viz.figures.contact_map import contact_map
-from rubgen.viz.figures.style import label_axes, new_figure, note
+from rubgen.viz.derived import HIGHEST_ORDER, order_map, section, sector_of, shaft_orbit
+from rubgen.viz.figures.style import INK, label_axes, new_figure, note
+from rubgen.viz.replay import Replay
 
 if TYPE_CHECKING:
     from rubgen.pipeline import Run
 
 ORBIT_TURNS = 30
-WAVE_TURNS = 5
-HIGHEST_ORDER = 12
+OVERVIEW_TURNS, WAVE_TURNS = 5, 6
+"""Turns of the waveform in the overview and in the figure of its own."""
+SECTORS = 90
 
 
 def overview(run: Run) -> Figure:
@@ -33,16 +38,19 @@ def overview(run: Run) -> Figure:
         raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to show")
     figure = new_figure(10.0, 7.2)
     grid = figure.add_gridspec(2, 2, width_ratios=[1, 1.25])
-    orbit(figure.add_subplot(grid[0, 0]), run)
-    waveform(figure.add_subplot(grid[0, 1]), run, "casing_acc_0")
+    _true_orbit(figure.add_subplot(grid[0, 0]), run)
+    channel, seconds = run.recording.channels["casing_acc_0"], OVERVIEW_TURNS * run.response.turn_seconds
+    wave = figure.add_subplot(grid[0, 1])
+    _waveform(wave, channel, run.recording.sample_rate_hz, run.recording.once_per_rev, seconds)
+    label_axes(wave, "Time, ms (a line at every turn)", f"Casing acceleration at 0°, {_unit(channel)}")
     events, turns = run.response.events, run.response.record_turns
     ring = cast("PolarAxes", figure.add_subplot(grid[1, 0], projection="polar"))
     contact_map(ring, events.angle, events.impulse, turns)
-    force_spectrum(figure.add_subplot(grid[1, 1]), run)
+    _force_spectrum(figure.add_subplot(grid[1, 1]), run)
     return figure
 
 
-def orbit(axes: Axes, run: Run) -> None:
+def _true_orbit(axes: Axes, run: Run) -> None:
     """Path of the disk centre over the last 30 turns and its position once a turn over the whole record."""
     taps, steps = run.response.taps, ORBIT_TURNS * run.response.steps_per_turn
     axes.plot(1e6 * taps["blisk_x"][-steps:], 1e6 * taps["blisk_y"][-steps:], color=BLUE, linewidth=0.6, alpha=0.8)
@@ -53,10 +61,10 @@ def orbit(axes: Axes, run: Run) -> None:
     axes.margins(0.12)
     axes.locator_params(nbins=6)
     label_axes(axes, "Disk centre $x$, µm", "Disk centre $y$, µm")
-    _section(axes.inset_axes((0.37, 0.39, 0.3, 0.3)), x - x.mean(), y - y.mean())
+    _enlarged(axes.inset_axes((0.37, 0.39, 0.3, 0.3)), x - x.mean(), y - y.mean())
 
 
-def _section(axes: Axes, x: FloatArray, y: FloatArray) -> None:
+def _enlarged(axes: Axes, x: FloatArray, y: FloatArray) -> None:
     """The section points about their mean, enlarged."""
     axes.plot(x, y, ".", color=VERMILION, markersize=3.5, markeredgewidth=0)
     half = 1.25 * max(float(np.abs(x).max()), float(np.abs(y).max()), 0.1)
@@ -67,22 +75,26 @@ def _section(axes: Axes, x: FloatArray, y: FloatArray) -> None:
     axes.locator_params(nbins=3)
 
 
-def waveform(axes: Axes, run: Run, name: str) -> None:
-    """The last five turns of one recorded channel; vertical lines mark the turns."""
-    if run.recording is None:
-        raise ValueError("a waveform needs a recording")
-    channel, rate = run.recording.channels[name], run.recording.sample_rate_hz
-    count = min(channel.values.size, round(WAVE_TURNS * run.response.turn_seconds * rate))
+def _waveform(axes: Axes, channel: Channel, rate: float, pulses: FloatArray, seconds: float) -> None:
+    """The last `seconds` of a recorded channel; vertical lines mark the turns."""
+    count = min(channel.values.size, round(seconds * rate))
     begin = (channel.values.size - count) / rate
-    pulses = run.recording.once_per_rev[run.recording.once_per_rev >= begin] - begin
-    axes.vlines(1e3 * pulses, 0, 1, color=PAPER_GREY, linewidth=1, transform=axes.get_xaxis_transform())
+    turns = pulses[pulses >= begin] - begin
+    axes.vlines(1e3 * turns, 0, 1, color=PAPER_GREY, linewidth=1, transform=axes.get_xaxis_transform())
     axes.plot(1e3 * np.arange(count) / rate, channel.values[-count:], color=BLUE, linewidth=0.9)
     axes.margins(x=0)
-    unit = channel.unit.replace("m/s2", "m/s²")
-    label_axes(axes, "Time, ms (a line at every turn)", f"Casing acceleration at 0°, {unit}")
 
 
-def force_spectrum(axes: Axes, run: Run) -> None:
+def _unit(channel: Channel) -> str:
+    return channel.unit.replace("m/s2", "m/s²")
+
+
+def _floor(amplitudes: FloatArray) -> float:
+    """The lower end of a logarithmic axis of amplitudes: 100 dB below the largest, or half of what is noise."""
+    return max(float(np.percentile(amplitudes, 1)) / 2, float(amplitudes.max()) * 1e-5)
+
+
+def _force_spectrum(axes: Axes, run: Run) -> None:
     """Amplitudes of the total contact force over the order f / f_r, even orders marked."""
     spectrum = order_spectrum(run.response.taps["contact_force"], run.response)
     turns = spectrum_turns(run.response)
@@ -95,7 +107,7 @@ def force_spectrum(axes: Axes, run: Run) -> None:
         axes.set_yticks([0])
         note(axes, "no contact")
         return
-    floor = max(float(np.percentile(amplitudes, 1)) / 2, amplitudes.max() * 1e-5)
+    floor = _floor(amplitudes)
     axes.semilogy(orders, np.maximum(amplitudes, floor), color=BLUE, linewidth=0.9)
     label_axes(axes, "Order $f / f_r$", "Total contact force, N")
     whole = np.arange(1, HIGHEST_ORDER + 1)
@@ -105,3 +117,102 @@ def force_spectrum(axes: Axes, run: Run) -> None:
         axes.plot(marked, heights, "o", color=color, markersize=4.5, label=f"{name} orders")
     axes.set_ylim(floor, amplitudes.max() * 4)
     axes.legend(frameon=False, loc="lower right", bbox_to_anchor=(1, 0.98), fontsize=9, ncols=2, handletextpad=0.1)
+
+
+def orbit_section(replay: Replay) -> Figure:
+    """The recorded orbit of the disk centre over the last 30 turns, and its points once a turn, enlarged.
+
+    Raises ValueError where the probes were not recorded.
+    """
+    orbit, once = shaft_orbit(replay), section(replay)
+    if orbit is None or once is None:
+        raise ValueError("no pair of proximity probes was recorded; choose sensors with two")
+    x, y = orbit
+    time = np.arange(replay.recording.samples) / replay.recording.sample_rate_hz
+    figure = new_figure(9.0, 4.4)
+    path, points = figure.subplots(1, 2)
+    last = time > time[-1] - ORBIT_TURNS * replay.turn_seconds
+    path.plot(x[last], y[last], color=BLUE, linewidth=0.6)
+    path.plot(*once, ".", color=VERMILION, markersize=4)
+    points.plot(*once, ".", color=VERMILION, markersize=4)
+    for axes, text in ((path, "orbit"), (points, "once a turn")):
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.margins(0.1)
+        label_axes(axes, "Disk centre $x$, µm", f"Disk centre $y$, µm ({text})")
+    return figure
+
+
+def contact_distribution(replay: Replay) -> Figure:
+    """Normal impulse around the casing, in sectors of 4 degrees, and by blade, a turn on average."""
+    touches, turns = replay.touches, max(replay.seconds / replay.turn_seconds, 1.0)
+    figure = new_figure(10.0, 4.6)
+    grid = figure.add_gridspec(1, 2, width_ratios=[1, 1.4])
+    polar = cast("PolarAxes", figure.add_subplot(grid[0, 0], projection="polar"))
+    bars = figure.add_subplot(grid[0, 1])
+    contact_map(polar, touches.angle, touches.impulse, turns)
+    blades = replay.scenario.machine.blades.count
+    by_blade = 1e3 * np.bincount(touches.blade.astype(np.int64), weights=touches.impulse, minlength=blades) / turns
+    bars.bar(np.arange(blades), by_blade, color=BLUE, width=0.8)
+    label_axes(bars, "Blade", "Impulse a turn, mN s")
+    if not by_blade.any():
+        note(bars, "no contact")
+    return figure
+
+
+def waveform_orders(replay: Replay, name: str = "casing_acc_0") -> Figure:
+    """A channel over its last six turns, and its order spectrum over the whole recording.
+
+    Raises ValueError for a channel that was not recorded.
+    """
+    channel, rate = channel_of(replay, name), replay.recording.sample_rate_hz
+    figure = new_figure(10.0, 4.0)
+    wave, orders = figure.subplots(1, 2)
+    _waveform(wave, channel, rate, replay.pulse_times, WAVE_TURNS * replay.turn_seconds)
+    unit = _unit(channel)
+    what = f"{channel.quantity[0].upper()}{channel.quantity[1:]}, {channel.location}, {unit}"
+    label_axes(wave, "Time, ms (a line at every turn)", what)
+    found = order_map(channel.values, rate, replay.pulse_times, turns=replay.pulse_times.size)
+    label_axes(orders, "Order $f / f_r$", f"Amplitude, {unit}")
+    orders.set_xticks(range(HIGHEST_ORDER + 1))
+    if found.amplitude.size and found.amplitude.any():
+        amplitude = found.amplitude[0]
+        floor = _floor(amplitude)
+        orders.vlines(range(1, HIGHEST_ORDER + 1), floor, amplitude.max() * 2, color=PAPER_GREY, linewidth=0.8)
+        orders.semilogy(found.order, np.maximum(amplitude, floor), color=BLUE, linewidth=0.9)
+        orders.set_ylim(floor, 2 * amplitude.max())
+    else:
+        note(orders, "no whole turn")
+    orders.spines["left"].set_color(GREY)
+    return figure
+
+
+def channel_of(replay: Replay, name: str) -> Channel:
+    """The recorded channel of that name; ValueError, with the names there are, where there is none."""
+    channels = replay.recording.channels
+    if name not in channels:
+        raise ValueError(f"no channel {name!r}; {nearest(name, list(channels))}")
+    return channels[name]
+
+
+def contact_map(axes: PolarAxes, angle: FloatArray, impulse: FloatArray, turns: float) -> None:
+    """Draw the normal impulse a turn, in mN s, of touches at polar angles of the casing, in sectors of 4 degrees.
+
+    `angle` (touches,) is in rad, `impulse` (touches,) in N s over all `turns`. A sector lies about 0.
+    """
+    width = 2 * np.pi / SECTORS
+    per_turn = 1e3 * np.bincount(sector_of(angle, SECTORS), weights=impulse, minlength=SECTORS) / turns
+    axes.bar(width * np.arange(SECTORS), per_turn, width=width, color=BLUE, linewidth=0, zorder=3)
+    axes.set_xticks(np.radians(np.arange(0, 360, 45)))
+    axes.tick_params(labelsize=9, colors=INK)
+    axes.grid(color=PAPER_GREY, linewidth=0.7)
+    axes.spines[["polar", "inner"]].set_color(GREY)
+    axes.set_rlabel_position(112.5)
+    axes.yaxis.set_major_locator(MaxNLocator(3))
+    axes.set_xlabel(
+        "Contact impulse in a turn and 4°, mN s, over the casing's angle", fontsize=10, color=INK, labelpad=8
+    )
+    if per_turn.any():
+        axes.set_rorigin(-0.6 * per_turn.max())  # a ring: near a point no sector could be told from its neighbour
+    else:
+        axes.set_yticks([])
+        note(axes, "no contact")

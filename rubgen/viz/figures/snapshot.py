@@ -15,9 +15,10 @@ from matplotlib.figure import Figure
 from rubgen.arrays import FloatArray
 from rubgen.labels.labels import Motion
 from rubgen.machine import Unbalance
-from rubgen.measurement.motion_frames import MotionFrames
+from rubgen.measurement.motion import MotionFrames
 from rubgen.progress import count
 from rubgen.viz.colors import BLUE, GREY, MOTION_COLORS, PAPER_GREY, UNBALANCE, VERMILION, impulse_color
+from rubgen.viz.derived import shaft_orbit
 from rubgen.viz.entities.machine_shape import (
     blade_angles,
     casing_angles,
@@ -30,7 +31,6 @@ from rubgen.viz.entities.machine_shape import (
 )
 from rubgen.viz.figures.style import INK, label_axes, new_figure, note
 from rubgen.viz.replay import Replay
-from rubgen.viz.shaft_orbit import shaft_orbit
 
 if TYPE_CHECKING:
     from PIL import Image

@@ -5,8 +5,7 @@ import pyarrow.parquet as pq
 import pytest
 from scipy.stats import norm
 
-from rubgen.dataset.checking.consistency import label_problems, signal_problems
-from rubgen.dataset.checking.impulse_check import (
+from rubgen.dataset.checking.channel_check import (
     _adc_bias,
     impulse_problems,
     resolved_impulse,
@@ -14,6 +13,7 @@ from rubgen.dataset.checking.impulse_check import (
     whole_turn_weights,
     windows_fit,
 )
+from rubgen.dataset.checking.consistency import label_problems, signal_problems
 from rubgen.dataset.reading.open import row_signals
 from rubgen.scenario import Sensing
 

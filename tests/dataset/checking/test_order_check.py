@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from rubgen.dataset.checking.channel_check import ORDER_TOLERANCE, order_amplitudes, order_problems
 from rubgen.dataset.checking.consistency import signal_problems
-from rubgen.dataset.checking.order_check import ORDER_TOLERANCE, order_amplitudes, order_problems
-from rubgen.measurement.once_per_rev import arrival_times, pulse_channel
+from rubgen.measurement.shaft import arrival_times, pulse_channel
 from rubgen.scenario import Sensing
 from rubgen.sensors.kinds.once_per_rev import OncePerRev
 from rubgen.sensors.kinds.torque import Torque

@@ -9,8 +9,8 @@ import pyarrow.parquet as pq
 import pytest
 
 import rubgen
+from rubgen.dataset.checking.channel_check import order_amplitudes
 from rubgen.dataset.checking.consistency import label_problems, signal_problems
-from rubgen.dataset.checking.order_check import order_amplitudes
 from rubgen.dataset.files import sha256_of
 from rubgen.dataset.reading.open import row_signals
 from rubgen.errors import UserError

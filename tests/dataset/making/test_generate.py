@@ -11,6 +11,7 @@ import rubgen
 from rubgen.dataset.files import sha256_of
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.making import generate as generating
+from rubgen.dataset.making.outcome import finished_runs
 from rubgen.dataset.making.stage import stage_run
 from rubgen.errors import RubgenWarning, UserError
 from rubgen.solver.response import Status
@@ -103,7 +104,7 @@ def test_an_interrupted_set_is_completed_to_the_same_bytes(fake_simulate, tmp_pa
         patch.setattr(generating, "stage_run", interrupted)
         with pytest.raises(KeyboardInterrupt):
             rubgen.generate(recipe(), tmp_path / "parts", workers=1)
-    assert generating.finished_runs(tmp_path / "parts") == 2
+    assert finished_runs(tmp_path / "parts") == 2
     assert not (tmp_path / "parts/manifest.json").exists()
     (tmp_path / "parts/mcap/run-000002.part.mcap").write_bytes(b"half-written")
     fake_simulate.clear()
@@ -249,7 +250,7 @@ def test_what_physics_refuses_fails_before_any_run(tmp_path, short_records):
     machine.write_text(machine.read_text().replace("circumferential_elements = 72", "circumferential_elements = 70"))
     with pytest.raises(UserError, match=r"circumferential_elements = 70: must be a multiple"):
         rubgen.generate(recipe(machine=str(machine)), tmp_path / "set", workers=1)
-    assert generating.finished_runs(tmp_path / "set") == 0
+    assert finished_runs(tmp_path / "set") == 0
 
 
 def test_progress_counts_every_run(fake_simulate, tmp_path):

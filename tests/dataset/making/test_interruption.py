@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from rubgen.dataset.making.generate import finished_runs
+from rubgen.dataset.making.outcome import finished_runs
 
 COMMAND = """
 import sys

@@ -10,8 +10,8 @@ import pyarrow as pa
 import pytest
 
 import rubgen
-from rubgen.dataset.reading.runs_frame import runs_frame
 from rubgen.dataset.reading.stored_run import StoredRun
+from rubgen.dataset.reading.tables import runs_frame
 from rubgen.errors import UserError
 from rubgen.io.mcap import read_mcap
 from rubgen.io.parquet.read import read_table

@@ -17,10 +17,10 @@ from scipy.linalg import eigh
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from rubgen.arrays import FloatArray, IntArray, SparseMatrix
+from rubgen.fem.constraints import factorize
 from rubgen.fem.disk import DiskModel, assemble_disk
 from rubgen.fem.shell import shell_inertia, shell_stiffness
 from rubgen.fem.shell_strains import ShellMesh
-from rubgen.fem.statics import factorize
 from rubgen.machine import Disk, Material
 from validation.verification.row import Row, relative, within
 

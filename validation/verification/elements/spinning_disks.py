@@ -16,9 +16,9 @@ from numpy.polynomial.legendre import Legendre, leggauss
 from scipy.linalg import eigh
 
 from rubgen.arrays import FloatArray
+from rubgen.fem.constraints import factorize
 from rubgen.fem.disk import DiskModel, assemble_disk
 from rubgen.fem.shell import shell_stress_stiffness
-from rubgen.fem.statics import factorize
 from validation.verification.elements.plates import STEEL, annulus, bending_stiffness, lowest, out_of_plane
 from validation.verification.row import Row, relative
 

@@ -18,7 +18,7 @@ from scipy.sparse.linalg import splu
 
 from rubgen.arrays import FloatArray
 from rubgen.fem.blisk import BliskModel, assemble_blisk
-from rubgen.fem.statics import factorize, on_springs, support_stiffness
+from rubgen.fem.constraints import factorize, on_springs, support_stiffness
 from rubgen.machine import Machine, load_machine
 from rubgen.reduction import reduce
 from rubgen.reduction.blisk import ReducedBlisk, reduce_blisk

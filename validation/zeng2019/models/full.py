@@ -13,7 +13,7 @@ from scipy.sparse.linalg import LinearOperator, eigs, eigsh, splu
 
 from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.fem.blisk import BliskModel, assemble_blisk
-from rubgen.fem.statics import factorize, on_springs, support_stiffness
+from rubgen.fem.constraints import factorize, on_springs, support_stiffness
 from rubgen.machine import Machine, load_machine
 from rubgen.reduction.craig_bampton import craig_bampton
 from rubgen.units import rad_per_s

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rubgen.arrays import FloatArray, SparseMatrix
-from rubgen.fem.statics import on_springs, support_stiffness
+from rubgen.fem.constraints import on_springs, support_stiffness
 from rubgen.units import rad_per_s
 from validation.piece import Arrays
 from validation.zeng2019.models.full import blisk_modes, full_blisk

@@ -1,10 +1,15 @@
-"""Files that are either complete and durable or absent."""
+"""Files of unknown origin, read with care; files that are written completely and durably, or not at all."""
 
 import errno
+import json
 import os
+import stat
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
+
+from rubgen.errors import UserError
 
 PART = ".part"
 """Ending of the name of a file that is not complete yet."""
@@ -50,3 +55,28 @@ def sync_directory(directory: Path) -> None:
             raise OSError(error.errno, error.strerror, str(directory)) from error
     finally:
         os.close(descriptor)
+
+
+def check_regular(path: Path) -> int:
+    """Size in bytes of the file at `path`.
+
+    Raises UserError where there is none, or it is a folder, a pipe or a device: opening a pipe waits for a writer, and
+    a device may have no end.
+    """
+    try:
+        found = path.stat()
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise UserError(f"{path!s:.300}: cannot be read ({reason}); give an existing file") from None
+    if not stat.S_ISREG(found.st_mode):
+        kind = "a folder" if stat.S_ISDIR(found.st_mode) else "a pipe, a socket or a device"
+        raise UserError(f"{path}: is {kind}, not a file; give an existing file")
+    return found.st_size
+
+
+def read_json(content: bytes) -> Any:
+    """The values of a JSON text. Raises ValueError for anything that is not JSON."""
+    try:
+        return json.loads(content)
+    except RecursionError:
+        raise ValueError("nested too deeply") from None

@@ -1,0 +1,110 @@
+"""Tables of a set: runs.parquet as it must be, runs and touches as DataFrames."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from rubgen.arrays import FloatArray
+from rubgen.dataset.manifest import Manifest
+from rubgen.errors import UserError
+from rubgen.io.columns import scalar_columns
+from rubgen.labels.compact_record import SCALARS, TOUCHES
+from rubgen.labels.labels import Motion
+from rubgen.scenario import Sensing
+from rubgen.sensors.sensor_set import SensorSet
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FLAGS_AND_COUNTS = ("rub", "blades_touched", "contact_touches")
+NUMBERS = ("contact_duty", "contact_impulse_per_turn_n_s", "speed_rpm", "sample_rate_hz")
+MOTIONS = ("motion", "motion_blisk", "motion_casing")
+COLUMNS = ("scalars", "turn_steps", *TOUCHES)
+"""The columns of the section files that are read."""
+UNITS = {
+    "start_s": "s", "end_s": "s", "blade": "", "angle_rad": "rad", "impulse_n_s": "N s", "friction_work_j": "J",
+    "normal_work_j": "J",
+}  # fmt: skip
+
+
+def runs_frame(table: pa.Table, sensors: SensorSet) -> pd.DataFrame:
+    """The table of all runs, failed ones too, with `run_id` as the index and as no column.
+
+    Flags are pandas "boolean", integers "Int64", text "string": a failed run has <NA> there, and a flag still selects
+    rows. Numbers are float64 with NaN. Lists are numpy arrays, None where a run has none. `attrs["units"]` and
+    `attrs["meanings"]` map each column to its unit and to what it means.
+    """
+    frame: pd.DataFrame = table.to_pandas(types_mapper=_nullable)
+    frame = frame.set_index("run_id")
+    columns = {column.name: column for column in scalar_columns(sensors) if column.name in frame}
+    frame.attrs = {
+        "units": {name: column.unit for name, column in columns.items()},
+        "meanings": {name: column.meaning for name, column in columns.items()},
+    }
+    return frame
+
+
+def _nullable(kind: pa.DataType) -> Any:
+    """The pandas type of a column; None leaves it to pyarrow."""
+    import pandas as pd
+
+    return {pa.bool_(): pd.BooleanDtype(), pa.int64(): pd.Int64Dtype(), pa.string(): pd.StringDtype()}.get(kind)
+
+
+def check_runs(table: pa.Table, manifest: Manifest, path: Path) -> None:
+    """Raise UserError, one line with file and run, where the table's values are not those of the set."""
+    names = table["run_id"].to_pylist()
+    if names != [f"run-{index:06d}" for index in range(manifest.runs)]:
+        raise UserError(f"{path}: its runs are not the {manifest.runs} of the manifest; generate the set again")
+    if Counter(table["status"].to_pylist()) != Counter(manifest.status):
+        raise UserError(f"{path}: its status counts are not those of the manifest; generate the set again")
+    good = table.filter(pc.equal(table["status"], "ok"))
+    for name in (*FLAGS_AND_COUNTS, *NUMBERS, *MOTIONS):
+        wrong = pc.is_null(good[name])
+        if name in NUMBERS:
+            wrong = pc.invert(pc.fill_null(pc.is_finite(good[name]), False))
+        elif name in MOTIONS:
+            wrong = pc.invert(pc.is_in(good[name], pa.array([motion.value for motion in Motion])))
+        where = pc.index(wrong, True).as_py()
+        if where >= 0:
+            run_id, value = good["run_id"][where].as_py(), good[name][where].as_py()
+            raise UserError(f"{path}: {run_id}: {name} = {value!r:.60} of a good run; generate the set again")
+
+
+def touches_frame(table: pa.Table, sensing: Sensing, seconds: float) -> pd.DataFrame:
+    """One row a touch of a blade, in order of its start, from the row of a run in `sections/`.
+
+    `start_s` and `end_s` count from the first sample of the signals, which last `seconds`: touches before it have
+    negative times. `angle_rad` is the polar angle on the casing, mean by impulse; the works are <= 0. `attrs["units"]`
+    maps each column to its unit.
+    """
+    import pandas as pd
+
+    from rubgen.measurement.chain import start_seconds
+
+    record = {name: np.asarray(table[name][0].values) for name in COLUMNS}
+    scalars = dict(zip(SCALARS, record["scalars"].tolist(), strict=True))
+    dt, turns = scalars["dt"], record["turn_steps"]
+    steps = int(turns[-1]) if turns.size else int(scalars["record_turns"] * scalars["steps_per_turn"])
+    first = start_seconds(sensing, seconds, steps=steps, dt=dt)
+    start: FloatArray = record["start_step"] * dt - first
+    frame = pd.DataFrame(
+        {
+            "start_s": start,
+            "end_s": start + record["steps"] * dt,
+            "blade": record["blade"].astype(np.int64),
+            "angle_rad": record["angle"].astype(np.float64),
+            "impulse_n_s": record["impulse"].astype(np.float64),
+            "friction_work_j": record["friction_loss"].astype(np.float64),
+            "normal_work_j": record["normal_loss"].astype(np.float64),
+        }
+    )
+    frame = frame.sort_values("start_s", kind="stable", ignore_index=True)
+    frame.attrs = {"units": dict(UNITS)}
+    return frame
