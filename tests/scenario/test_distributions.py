@@ -40,6 +40,14 @@ def test_normal_outside_its_range_stays_within_it():
     assert 0.0 <= values.min() < values.max() <= 1.0
 
 
+@pytest.mark.parametrize("ends", [(-1.0, 40.0), (-40.0, 1.0), (0.1, 0.7)])
+def test_the_ends_of_a_normal_density_stay_within_its_range(ends):
+    """Beyond eight deviations the share below rounds to 1, whose quantile is infinite."""
+    law = ADAPTER.validate_python({"normal": {"mean": 0.0, "std": 1.0, "min": ends[0], "max": ends[1]}})
+    for u in (0.0, np.nextafter(1.0, 0.0)):
+        assert ends[0] <= law.quantile(u) <= ends[1]
+
+
 @pytest.mark.parametrize(("mean", "std"), [(9.0, 0.1), (1e300, 1.0), (-1e300, 1.0), (0.5, 1e300), (0.5, 1e5)])
 def test_normal_that_hardly_reaches_its_range_is_refused(mean, std):
     with pytest.raises(ValidationError, match="hardly a value from min = 0 to max = 1; change mean or std, or write"):
