@@ -126,6 +126,9 @@ def test_a_turn_is_its_steps(small_system, recording):
     assert (impulses.sum(axis=1) > 0).sum() > 10
     assert result.summary[0] == pytest.approx(impulses.sum(), rel=1e-12)
     assert result.summary[1] == (impulses.sum(axis=1) > 0).sum()
+    bounds = np.abs(q[2:, system.casing_start :]) @ whole.model.surface.mode_displacement
+    assert np.argmax(bounds) < TURN - 1  # not the last step's
+    assert result.summary[2] == pytest.approx(bounds.max(), rel=1e-12)
     open_now = whole.touches.open[whole.touches.open[:, STEPS] > 0]
     by_touch = np.concatenate([whole.touches.ended[:ended], open_now])
     per_blade = np.bincount(by_touch[:, BLADE].astype(int), by_touch[:, IMPULSE], minlength=system.n_blades)
