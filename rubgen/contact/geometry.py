@@ -13,7 +13,7 @@ from rubgen.scenario import ContactLaw
 from rubgen.scenario import Liner as LinerSpec
 
 CENTRE_LINE = ContactLaw()
-"""Contact without options: on the smooth surface, which moves as the ring's centre line does."""
+"""Contact without options: on the smooth surface, which moves like the ring's centre line."""
 
 
 def periodic_derivative(values: FloatArray) -> FloatArray:
@@ -27,7 +27,11 @@ def periodic_derivative(values: FloatArray) -> FloatArray:
 
 
 def hermite_bends(values: FloatArray, slopes: FloatArray, step: float) -> FloatArray:
-    """The largest second derivative of each mode (n_casing,) between nodes, where it is linear in the angle."""
+    """The largest second derivative of each mode (n_casing,) between nodes, where it is linear in the angle.
+
+    - values, slopes (nodes, 2, n_casing): displacement at the nodes and its derivative by the angle.
+    - step: angle between nodes, rad.
+    """
     next_values, next_slopes = np.roll(values, -1, axis=0), np.roll(slopes, -1, axis=0)
     rise = 6 * (next_values - values) / step**2
     ends = rise - (4 * slopes + 2 * next_slopes) / step, (2 * slopes + 4 * next_slopes) / step - rise
@@ -35,19 +39,19 @@ def hermite_bends(values: FloatArray, slopes: FloatArray, step: float) -> FloatA
 
 
 def with_zeros(numbers: FloatArray) -> FloatArray:
-    """Numbers of the casing's coordinates (..., n_casing) and zeros behind, to a multiple of eight."""
+    """The casing's coordinates (..., n_casing) followed by zeros, to a multiple of eight."""
     missing = -numbers.shape[-1] % 8
     return np.ascontiguousarray(np.concatenate([numbers, np.zeros((*numbers.shape[:-1], missing))], axis=-1))
 
 
 def surface_modes(system: SpinningSystem, contact: ContactLaw) -> FloatArray:
-    """X and Y displacement (nodes, 2, n_casing) that each mode gives the surface on which contact acts, at the nodes.
+    """X and Y displacement (nodes, 2, n_casing) of the contact surface at the nodes per unit of each mode.
 
-    That of the ring's centre line, u; with `contact.half_thickness` that of the inner surface, half a thickness inside
-    of it along e_r: u - (h / 2) phi e_theta, phi the section's rotation. Force and velocity of that point follow from
-    it alike, so a force F there also turns the section by the moment (-(h / 2) e_r) x F, to no loss of work.
+    It is u of the ring's centre line. With `contact.half_thickness` it is u - (h / 2) phi e_theta of the inner surface,
+    half a thickness inside the centre line, with phi the rotation of the cross-section. Force and velocity use the same
+    point. A force F there therefore also turns the cross-section by the moment (-(h / 2) e_r) x F, and no work is lost.
 
-    Raises UserError where the system does not hold the rotations.
+    Raises UserError where the system has no rotations.
     """
     modes = np.ascontiguousarray(system.casing_modes, dtype=float)
     if not contact.half_thickness:
@@ -103,7 +107,7 @@ def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) ->
 
 
 def blade_tips(system: SpinningSystem) -> Tips:
-    """The tips of a system: rest radius, steady displacement, place on the disk. The arrays cannot be written."""
+    """The tips of a system: rest radius, steady displacement, angle on the disk. The arrays cannot be written."""
     angle = np.asarray(system.blade_angles, dtype=float)
     orders = np.multiply.outer(np.asarray(system.surface.order, dtype=float), angle)
     return frozen(
@@ -126,10 +130,11 @@ def node_radii(curve: CasingSurface, nodes: int) -> FloatArray:
 
 
 def chord_bounds(corners: FloatArray, bend: float) -> tuple[float, float]:
-    """How far chords between nodes of these radii lie inside the smooth curve at most, and their largest |dr/dpsi|.
+    """The largest distance of chords between nodes inside the smooth curve, m, and their largest |dr/dpsi|.
 
-    Both meet at the nodes, so they differ by at most h^2 / 8 times the largest second derivative of the difference:
-    `bend` of the curve plus r + 2 r'^2 / r of a straight line, whose |r'| is largest at its ends.
+    Both meet at the nodes. They differ by at most h^2 / 8 times the largest second derivative of the difference: `bend`
+    of the curve plus r + 2 r'^2 / r of a straight line, whose |r'| is largest at its ends. `corners` (nodes,) are the
+    radii of the nodes, m.
     """
     step, next_values = 2 * np.pi / len(corners), np.roll(corners, -1)
     at_start = corners / np.tan(step) - corners**2 / (next_values * np.sin(step))
@@ -140,7 +145,7 @@ def chord_bounds(corners: FloatArray, bend: float) -> tuple[float, float]:
 
 
 def liner_of(spec: LinerSpec | None, radius: float) -> Liner:
-    """The liner of that specification, without bins where there is none; `radius` (m) turns angles into lengths."""
+    """The liner of a specification, without bins for None; `radius` (m) turns angles into lengths."""
     if spec is None:
         return Liner(bins=0, thickness=0.0, rate=0.0, area=1.0)
     area = spec.width_m * radius * 2 * np.pi / spec.bins
@@ -148,19 +153,24 @@ def liner_of(spec: LinerSpec | None, radius: float) -> Liner:
 
 
 def unworn(liner: Liner) -> Wear:
-    """The state of a liner before anything has touched it."""
+    """The state of a liner before any contact."""
     return Wear(depth=np.zeros(liner.bins), earlier=np.zeros((2, liner.bins)), sums=np.zeros(2))
 
 
 def gap_and_foot(
     surface: Surface, q_casing: FloatArray, point: FloatArray, opening: float = 0.0, worn: FloatArray | None = None
 ) -> FloatArray:
-    """Gap, foot parameter psi and the tangent's X and Y (4,) of an inertial point (2,) near the deformed surface.
+    """Gap, foot parameter psi and the tangent's X and Y (4,) of an inertial point near the deformed surface.
 
-    Gap in m, positive inside the casing, along the inward normal of the deformed curve; psi in rad is the polar angle
-    of the foot on the undeformed curve. `opening` in m widens the surface; `worn` (bins,) are the coefficients of a
-    liner's worn depth in m. The point must lie much nearer to the
-    surface than the radius of curvature.
+    The gap in m is positive inside the casing, along the inward normal of the deformed curve. psi in rad is the polar
+    angle of the foot on the undeformed curve. Valid where the point is much nearer to the surface than the radius of
+    curvature.
+
+    - surface: the casing's surface.
+    - q_casing (n_casing,): the casing's coordinates.
+    - point (2,): X and Y, m.
+    - opening: added to the radius of the surface, m.
+    - worn (bins,): coefficients of a liner's worn depth, m; unworn with None.
     """
     depth = np.zeros(0) if worn is None else worn
     psi, gap, tx, ty = foot_of(surface, depth, q_casing, opening, float(point[0]), float(point[1]), np.zeros(8))

@@ -16,8 +16,8 @@ def solve_complementarity(W: FloatArray, b: FloatArray) -> FloatArray:
     """Lam (m,) with 0 <= lam _|_ b + W lam >= 0.
 
     `W` (m, m) need not be symmetric. Where its symmetric part is positive definite (friction up to about 0.3) the
-    solution is unique and comes from projected Gauss-Seidel to 1e-14 of the largest multiplier, otherwise from Lemke's
-    pivoting. Raises LcpUnsolvedError when both fail.
+    solution is unique. Projected Gauss-Seidel finds it to 1e-14 of the largest multiplier. In all other cases Lemke's
+    pivoting is used. Raises LcpUnsolvedError where both fail.
     """
     m = b.shape[0]
     lam = np.zeros(m)

@@ -1,4 +1,4 @@
-"""The card of a data set: what it is, how to load it, what every column means, as the README.md that hubs read."""
+"""The card of a data set: content, loading, and the meaning of every column, as the README.md of hubs."""
 
 import json
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from rubgen.io.parquet.compact_records import RECORD_COLUMNS
 
 
 def write_card(layout: Layout, identity: Identity, status: dict[str, int]) -> None:
-    """Write README.md; its bytes follow from the recipe and from how the runs ended."""
+    """Write README.md. Its bytes depend on the recipe and on the numbers of runs by `status`."""
     write_text(layout.card, card(identity, status))
 
 
@@ -80,7 +80,7 @@ published machine are not known and were chosen. Simulated data: learn from it, 
 
 
 def _record(recipe: dict[str, Any]) -> str:
-    """What labels and signals come from."""
+    """What labels and signals are computed from."""
     steady = recipe["operation"]["profile"] == "steady"
     record = f"{recipe['simulation']['record_turns']} turns" if steady else "the whole record, `duration_s`"
     return f"The labels come from {record}; the signals are\nthe last {recipe['output']['signal_seconds']:g} s of it."

@@ -1,4 +1,4 @@
-"""The data set's description in Croissant 1.0 (JSON-LD), which machine-learning tools load."""
+"""The data set's description in Croissant 1.0 (JSON-LD), for machine-learning tools."""
 
 import re
 from typing import Any
@@ -116,5 +116,5 @@ def _field(record_set: str, column: Column, source: dict[str, Any]) -> dict[str,
 
 
 def _semantic(version: str) -> str:
-    """The three leading numbers of a version, which is all that Croissant allows."""
+    """The three leading numbers of a version: Croissant allows no more."""
     return ".".join([*re.findall(r"\d+", version), "0", "0"][:3])

@@ -1,4 +1,4 @@
-"""Small files of a data set, and what keeps its directory clean."""
+"""Small files of a data set, and files that do not belong to it."""
 
 import hashlib
 import json
@@ -12,31 +12,31 @@ SYSTEM_FILES = (
     "Thumbs.db", "ehthumbs.db", "desktop.ini", "$RECYCLE.BIN", "System Volume Information",  # Windows
     "lost+found", ".directory", ".Trash-*", ".nfs*", ".fuse_hidden*", "@eaDir",  # Linux, file servers
 )  # fmt: skip
-"""What systems put into any directory; in whatever case. It is no content."""
+"""Files of operating systems in any directory, in any case. They are ignored."""
 
 
 def is_system_file(name: str) -> bool:
-    """Whether a file or folder of that name is of the system and not of whoever uses the directory."""
+    """Whether a file or folder of that name belongs to the operating system."""
     return any(fnmatch(name.lower(), pattern.lower()) for pattern in SYSTEM_FILES)
 
 
 def write_text(path: Path, text: str) -> None:
-    """A text file, durably; UTF-8, line ends as given."""
+    """Write a text file durably; UTF-8, line ends as given."""
     write_durably(path, lambda part: part.write_bytes(text.encode()))
 
 
 def write_json(path: Path, values: object) -> None:
-    """A JSON file, durably; keys in their order, numbers with all their bits."""
+    """Write a JSON file durably; keys in their order, numbers with all their bits."""
     write_text(path, json_text(values))
 
 
 def json_text(values: object) -> str:
-    """JSON as rubgen writes it."""
+    """JSON in the form of rubgen's files."""
     return json.dumps(values, indent=2, ensure_ascii=False) + "\n"
 
 
 def remove_parts(directory: Path) -> None:
-    """Remove what a killed run left half-written in this folder."""
+    """Remove incomplete files of a killed run from this folder."""
     for path in directory.glob(f"*{PART}*"):
         if path.is_file():
             path.unlink(missing_ok=True)

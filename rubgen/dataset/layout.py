@@ -1,4 +1,4 @@
-"""Where the files of a data set stand."""
+"""Paths of the files of a data set."""
 
 import math
 from collections.abc import Iterable
@@ -8,7 +8,7 @@ from pathlib import Path
 from rubgen.formats import format_of
 
 SPLIT = "train"
-"""Splits go by machine, never by run; a recipe has one machine, hence one split."""
+"""The only split: splits go by machine, never by run, and a recipe has one machine."""
 RUNS_PER_SHARD = 256
 """About 160 MB of signals of one second."""
 RUNS_PER_ROW_GROUP = 8
@@ -64,7 +64,7 @@ class Layout:
 
     @property
     def identity(self) -> Path:
-        """What an unfinished set is made from."""
+        """The identity of an unfinished set."""
         return self.staging / "identity.json"
 
     def staged(self, run_id: str) -> Path:
@@ -72,24 +72,24 @@ class Layout:
         return self.staging / "runs" / f"{run_id}.parquet"
 
     def staged_section(self, run_id: str) -> Path:
-        """What is kept of a finished run."""
+        """The compact record of a finished run."""
         return self.staging / "sections" / f"{run_id}.parquet"
 
     @property
     def sections(self) -> Path:
-        """Folder of what is kept of each run, from which labels can be made again."""
+        """Folder of the compact records, from which labels can be made again."""
         return self.root / "sections"
 
     def section_shard(self, number: int, count: int) -> Path:
-        """A file of the sections of as many runs as a data file has."""
+        """A file of the compact records of as many runs as a data file has."""
         return self.sections / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
 
     def export(self, kind: str, run_id: str) -> Path:
-        """The file of a run in the format of that name, which is its folder and its ending too."""
+        """The file of a run in a format. The format's name is its folder and its ending."""
         return self.root / kind / f"{run_id}.{kind}"
 
     def folders(self, names: Iterable[str]) -> list[Path]:
-        """The folders of these formats: `data` for Parquet, else the one of their name."""
+        """The folders of these formats: `data` for Parquet, else the folder of its name."""
         return [self.root / name if format_of(name).one_file_a_run else self.data for name in names]
 
     def shard(self, number: int, count: int) -> Path:
@@ -97,9 +97,9 @@ class Layout:
         return self.data / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
 
     def number_of_shards(self, good_runs: int) -> int:
-        """Data files of a set with so many runs that ended well, and files of sections: one at least."""
+        """Number of data files, and of files of sections, for this number of good runs: at least one."""
         return max(1, math.ceil(good_runs / RUNS_PER_SHARD))
 
     def shards(self) -> list[Path]:
-        """The data files that are there, in order."""
+        """The existing data files, in order."""
         return sorted(self.data.glob("*.parquet"))

@@ -1,4 +1,4 @@
-"""The manifest: what a data set is made from, and the sha256 of what it holds."""
+"""The manifest: the origin of a data set, and the sha256 of its files."""
 
 import hashlib
 import platform
@@ -26,7 +26,7 @@ FORMAT: Literal["rubgen data set 1"] = "rubgen data set 1"
 MAKE_AGAIN = "make the set again in a new directory: rubgen generate RECIPE --out NEW"
 _STRICT = ConfigDict(extra="forbid", frozen=True)
 InnerPath = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*(/[A-Za-z0-9][A-Za-z0-9._-]*)*$")]
-"""The path of a file within the set: no other place can be named."""
+"""The path of a file within the set. No other path is allowed."""
 
 
 class FileEntry(BaseModel):
@@ -39,7 +39,7 @@ class FileEntry(BaseModel):
 
 
 class Identity(BaseModel):
-    """All that decides the bytes of a data set on one machine: recipe, the machine and sensors it names, versions."""
+    """Everything that decides the bytes of a data set on one machine: recipe, its machine and sensors, versions."""
 
     model_config = _STRICT
     recipe: dict[str, Any]
@@ -48,17 +48,20 @@ class Identity(BaseModel):
     packages: dict[str, str]
 
     def same_recipe(self, other: "Identity") -> bool:
-        """Whether both describe the same data set, whatever the versions."""
+        """Whether both describe the same data set, ignoring versions."""
         return (self.recipe, self.machine, self.sensors) == (other.recipe, other.machine, other.sensors)
 
     def checked(self, source: str) -> "Identity":
-        """The same with every key in its place; UserError, beginning with `source`, where it is no identity."""
+        """The same with every key in its place. Raises UserError, beginning with `source`, for anything else."""
         if "rubgen" not in self.packages:
             raise UserError(f"{source}: identity.packages names no rubgen; {MAKE_AGAIN}")
         return _identity(self.recorded(f"{source}: identity"), self.packages)
 
     def recorded(self, source: str = "manifest") -> Recipe:
-        """The recipe with machine and sensors as they were; UserError, beginning with `source`, for an unknown one."""
+        """The recipe with its recorded machine and sensors.
+
+        Raises UserError, beginning with `source`, for an unknown one.
+        """
         return recorded_recipe(self.recipe, self.machine, self.sensors, source)
 
     @property
@@ -68,9 +71,9 @@ class Identity(BaseModel):
 
 
 class Manifest(BaseModel):
-    """The content of manifest.json; `derived` lists files that may differ in their bytes and can be made again.
+    """The content of manifest.json. `derived` lists files whose bytes may differ and that can be made again.
 
-    Their digests are of one writing and stand in derived.json: two makings of a set have the same manifest.
+    Their digests are in derived.json, so that making a set twice makes the same manifest.
     """
 
     model_config = _STRICT
@@ -85,7 +88,7 @@ class Manifest(BaseModel):
     derived: tuple[InnerPath, ...]
 
     def listed(self, folder: str) -> list[str]:
-        """The paths below `folder` of the set, in order: what the set consists of, whatever else lies there."""
+        """The paths of the set below `folder`, in order; other files there are ignored."""
         names = [*(entry.path for entry in self.files), *self.derived]
         return sorted(name for name in names if name.startswith(f"{folder}/"))
 
@@ -105,7 +108,12 @@ def _identity(recipe: Recipe, packages: dict[str, str]) -> Identity:
 
 
 def write_manifest(layout: Layout, identity: Identity, status: dict[str, int]) -> Manifest:
-    """Hash every file of the finished set; write the digests of the derived ones, the manifest, then its digest."""
+    """Hash every file of the finished set. Write the digests of derived files, the manifest, then its digest.
+
+    - layout: of the set.
+    - identity: its origin.
+    - status: number of runs by status.
+    """
     recipe = identity.recipe
     hashed, derived = content_of(layout, recipe["output"]["formats"])
     manifest = Manifest(
@@ -125,7 +133,7 @@ def write_manifest(layout: Layout, identity: Identity, status: dict[str, int]) -
 
 
 def read_manifest(layout: Layout) -> Manifest:
-    """The manifest of a finished set; UserError where there is none, or it is damaged or of no set of rubgen."""
+    """The manifest of a finished set. Raises UserError where there is none, or it is damaged or not of rubgen."""
     if not layout.manifest.exists():
         raise UserError(f"{layout.root}: no finished data set of rubgen: {_why_none(layout)}")
     try:
@@ -156,7 +164,7 @@ def _why_none(layout: Layout) -> str:
 
 
 def _checked(manifest: Manifest, path: Path) -> Manifest:
-    """The manifest with its identity complete; UserError where the two say different things."""
+    """The manifest with its identity complete. Raises UserError where the two contradict each other."""
     identity = manifest.identity.checked(str(path))
     for key in ("name", "license", "seed", "runs"):
         if getattr(manifest, key) != identity.recipe[key]:
@@ -167,9 +175,9 @@ def _checked(manifest: Manifest, path: Path) -> Manifest:
 
 
 def content_of(layout: Layout, formats: Sequence[str]) -> tuple[list[Path], list[Path]]:
-    """The files whose sha256 the manifest holds, and those that it names alone, each in its order.
+    """The files whose sha256 is in the manifest, and the files that it only names, each in order.
 
-    They follow from `runs.parquet` and the formats. Whatever else lies in the folders is no content.
+    They follow from `runs.parquet` and the formats. Other files in the folders are ignored.
     """
     rows = read_table(layout.runs, ["run_id", "status"]).to_pylist()
     good = [row["run_id"] for row in rows if row["status"] == "ok"]
@@ -182,12 +190,12 @@ def content_of(layout: Layout, formats: Sequence[str]) -> tuple[list[Path], list
 
 
 def entry_of(path: Path, root: Path) -> FileEntry:
-    """A file as it is now."""
+    """The entry of a file from its present content."""
     return FileEntry(path=path.relative_to(root).as_posix(), bytes=path.stat().st_size, sha256=sha256_of(path))
 
 
 def write_derived(layout: Layout, names: Sequence[str]) -> bool:
-    """Write sizes and digests of the derived files, where there are any; whether that changed the file."""
+    """Write sizes and digests of the derived files, where there are any. Return whether the file changed."""
     if not names:
         return False
     text = _derived_text(tuple(entry_of(layout.root / name, layout.root) for name in names))
@@ -198,7 +206,7 @@ def write_derived(layout: Layout, names: Sequence[str]) -> bool:
 
 
 def read_derived(layout: Layout) -> dict[str, FileEntry]:
-    """The derived files as they were written, by path; UserError where their digests are missing or damaged."""
+    """The derived files as they were written, by path. Raises UserError where their digests are missing or damaged."""
     try:
         check_regular(layout.derived)
         content = layout.derived.read_bytes()
@@ -214,7 +222,7 @@ def read_derived(layout: Layout) -> dict[str, FileEntry]:
 
 
 def _derived_text(entries: tuple[FileEntry, ...]) -> str:
-    """The entries and the sha256 of their JSON: a flipped bit anywhere makes it another text."""
+    """The entries and the sha256 of their JSON: any flipped bit is detected."""
     files = [entry.model_dump() for entry in entries]
     return json_text({"files": files, "sha256": hashlib.sha256(json_text(files).encode()).hexdigest()})
 

@@ -1,4 +1,4 @@
-"""Rows of single runs out of Parquet files that hold many."""
+"""Rows of single runs from Parquet files of many runs."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
@@ -16,12 +16,12 @@ from rubgen.scenario.costs import stored_bytes
 
 
 def asked_bytes(recipe: Recipe) -> float:
-    """Bytes that a row group of this recipe's set unpacks to, for its channels and states."""
+    """Unpacked size in bytes of a row group of this recipe's set, with its channels and states."""
     return RUNS_PER_ROW_GROUP * max(map(stored_bytes, recipe.corners()))
 
 
 class Place(NamedTuple):
-    """Where the row of a run stands."""
+    """Where the row of a run is."""
 
     file: Path
     group: int
@@ -29,15 +29,15 @@ class Place(NamedTuple):
 
 
 class RunRows:
-    """The rows of these files, one a run; files are opened when a row is asked for."""
+    """The rows of these files, one a run. Files are opened on demand."""
 
     def __init__(self, files: Sequence[Path], types: pa.Schema, asked_bytes: float) -> None:
-        """`asked_bytes` is what a row group holds by the recipe."""
+        """`types` is the schema of the files, `asked_bytes` the unpacked size of a row group by the recipe."""
         self.files, self.types, self._asked_bytes = files, types, asked_bytes
 
     @cached_property
     def places(self) -> dict[str, Place]:
-        """The place of every run; UserError where a file is missing or damaged."""
+        """The place of every run. Raises UserError where a file is missing or damaged."""
         places: dict[str, Place] = {}
         for path in self.files:
             with open_parquet(path, self._asked_bytes) as file:
@@ -47,10 +47,10 @@ class RunRows:
         return places
 
     def each(self, run_ids: Iterable[str], columns: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
-        """Name and row of each run, in that order, these columns alone.
+        """Name and row of each run, in that order, with only these columns.
 
-        A file is opened once, and a group read once, for runs that follow one another in it.
-        Raises UserError that names file and run where a page is damaged, or a run lacks a value.
+        A file is opened once, and a group read once, for successive runs in it. Raises UserError that names file and
+        run where a page is damaged, or a run lacks a value.
         """
         run_ids = list(run_ids)
         lost = [run_id for run_id in run_ids if run_id not in self.places]

@@ -1,4 +1,4 @@
-"""The schemas of what users write and read, and the tables of labels in a document.
+"""The schemas of what users write and read, and the tables of labels in docs/labels.md.
 
 `python -m rubgen.dataset.schemas DIRECTORY PAGE` writes the schemas into the directory and the tables into the page.
 """

@@ -30,9 +30,9 @@ GAUSS_POINTS = 8
 class BeamMatrices:
     """One blade: dense (n, n) matrices and (n,) load, n = 6 (elements + 1), nodes from root to tip.
 
-    The blade's share of the equation of motion in the turning frame at spin speed Omega is
-    M q'' + 2 Omega G q' + (K + Omega^2 (K_sigma - S)) q = Omega^2 f_c. `root_pull` is the axial force at the root at
-    1 rad/s, in N s^2: the rest of the machine carries it, and its geometric stiffness is theirs.
+    The blade's share of the equation of motion in the turning frame at spin speed Omega is M q'' + 2 Omega G q' + (K +
+    Omega^2 (K_sigma - S)) q = Omega^2 f_c. `root_pull` is the axial force at the root at 1 rad/s, in N s^2. The rest of
+    the machine carries it and has its geometric stiffness.
     """
 
     M: FloatArray
@@ -47,19 +47,21 @@ class BeamMatrices:
 def blade_matrices(blades: BladeRow, root_radius: float) -> BeamMatrices:
     """Matrices of one blade, assembled from exact-statics two-node elements.
 
-    Stiffness: the internal forces of an element in equilibrium are b(x) F with F the forces at its outer end; with
-    the cross-section stiffness D the flexibility is f = int b^T D^-1 b dx and K = Gamma^T f^-1 Gamma, Gamma q the outer
-    node's motion relative to the inner one carried rigidly. The displacement that belongs to it gives the shape
-    functions N(x) of every other matrix: statics are exact at the nodes for any taper and twist, nothing locks.
-    Frequencies converge with order 4 where bending rules, with order 2 where shear, torsion or extension do.
+    `root_radius` is the radius of the root in m.
+
+    Stiffness: the internal forces of an element in equilibrium are b(x) F with F the forces at its outer end. With the
+    cross-section stiffness D the flexibility is f = int b^T D^-1 b dx. K = Gamma^T f^-1 Gamma, with Gamma q the outer
+    node's motion relative to a rigid body on the inner node. The displacement of this element is the shape function
+    N(x) of every other matrix. Statics are exact at the nodes for any taper and twist, without locking. Frequencies
+    converge with order 4 where bending dominates, with order 2 where shear, torsion or extension does.
 
     M = int rho N^T N, G = int rho N^T (e_z x N), S = int rho N^T (1 - e_z e_z^T) N, f_c = int rho N^T r_perp over the
-    volume, so with rotary inertia; f_c holds the propeller moment -rho I_yz about x. K_sigma, at 1 rad/s, is twice
-    the energy per length of P (u_y'^2 + u_z'^2) / 2 + P I_p / A th_x'^2 / 2 + E2, P(x) = int_x^L rho A r dr, where
-    E2 = rho [I_y2 (th_x^2 + th_z^2) - I_yz th_y th_z] / 2 is the work of the centrifugal load on the second-order
+    volume, so with rotary inertia. f_c contains the propeller moment -rho I_yz about x. K_sigma, at 1 rad/s, is twice
+    the energy per length of P (u_y'^2 + u_z'^2) / 2 + P I_p / A th_x'^2 / 2 + E2, P(x) = int_x^L rho A r dr, where E2 =
+    rho [I_y2 (th_x^2 + th_z^2) - I_yz th_y th_z] / 2 is the work of the centrifugal load on the second-order
     displacement th x (th x s) / 2 of the cross-section.
 
-    Not in it: warping, the coupling of extension with twist, the geometric stiffness of the steady twisting moment.
+    Left out: warping, the coupling of extension with twist, the geometric stiffness of the steady twisting moment.
     Checked against closed forms, shooting and published rotating beams in tests/fem/test_beam*.py.
     """
     elements = blades.elements
@@ -137,7 +139,7 @@ def _equilibrium(arm: FloatArray) -> FloatArray:
 
 
 def _rigid(x: FloatArray) -> FloatArray:
-    """Motion at x of a body that is carried by the node at 0: u + th x (x e_x)."""
+    """Motion at x of a rigid body on the node at 0: u + th x (x e_x)."""
     return np.swapaxes(_equilibrium(x), -1, -2)
 
 
@@ -182,10 +184,16 @@ def root_strain_row(blades: BladeRow, root_radius: float, beam: BeamMatrices) ->
 def held_root_strain(
     blades: BladeRow, root_radius: float, beam: BeamMatrices, *, speed: float, stiffness: float = 1.0
 ) -> tuple[FloatArray, FloatArray]:
-    """Strain of `root_strain_row` per displacement of the tip (3,) and of the root (6,), inertia apart, at `speed`.
+    """Strain of `root_strain_row` per displacement of the tip (3,) and of the root (6,), without inertia.
 
-    Between them the blade takes the shape of least energy under K + Omega^2 (K_sigma - S), K times `stiffness`: at rest
-    the cubic of a tip load, at speed flatter with more curvature near the root.
+    Between tip and root the blade has the shape of least energy under K + Omega^2 (K_sigma - S). At rest this is the
+    cubic of a tip load; at speed it is flatter, with more curvature near the root.
+
+    - blades: the blade row.
+    - root_radius: radius of the root, m.
+    - beam: matrices of one blade.
+    - speed: Omega, rad/s.
+    - stiffness: factor of K of a mistuned blade.
     """
     n = len(beam.f_c)
     K = stiffness * beam.K + speed**2 * (beam.K_sigma - beam.S)

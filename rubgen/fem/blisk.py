@@ -32,43 +32,52 @@ class BliskModel:
     """Full model: M q'' + 2 Omega G q' + (K + Omega^2 (K_sigma - S)) q = Omega^2 f_c + loads, K without supports.
 
     DoFs, six a node: O_d, the disk's nodes in o-xyz, then each blade's nodes from root to tip along the blade's own
-    axes. Matrices are (n, n), f_c (n,). `K_apart` is K before the blades are joined to the rim. `disk_size` counts the
-    DoFs of O_d and the disk; `rim`, `roots`, `tips` (blades, 6) are DoFs; `angles` (blades,) the polar angles of the
-    blades in rad, `blade_radius` the radii of a blade's nodes in m; `penalty` is k_p. `held` solves static problems
-    with O_d held laterally. `plate` and `beam` are the matrices of the disk and of one blade without mistuning;
-    blade k has the stiffness `blade_stiffness` (blades,)[k] times that one's.
+    axes. Matrices are (n, n).
     """
 
     M: SparseMatrix
     G: SparseMatrix
     K: SparseMatrix
     K_apart: SparseMatrix
+    """K before the blades are joined to the rim."""
     S: SparseMatrix
     K_sigma: SparseMatrix
     f_c: FloatArray
+    """Centrifugal load at 1 rad/s (n,)."""
     disk_size: int
+    """Number of DoFs of O_d and the disk."""
     rim: IntArray
+    """DoFs of the rim node of each blade (blades, 6)."""
     roots: IntArray
+    """DoFs of each blade's root (blades, 6)."""
     tips: IntArray
+    """DoFs of each blade's tip (blades, 6)."""
     angles: FloatArray
+    """Polar angle of each blade (blades,), rad."""
     blade_radius: FloatArray
+    """Radii of a blade's nodes, m."""
     penalty: float
+    """Penalty stiffness k_p."""
     held: HeldStiffness
+    """Solves static problems with O_d fixed laterally."""
     plate: DiskModel
+    """Matrices of the disk."""
     beam: BeamMatrices
+    """Matrices of one blade without mistuning."""
     blade_stiffness: FloatArray
+    """Stiffness of each blade over the stiffness of `beam` (blades,)."""
 
 
 def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskModel:
-    """Full model of the blisk, 14,478 DoFs in the preset; supports serve the centrifugal stress alone.
+    """Full model of the blisk, 14,478 DoFs in the preset. The supports only affect the centrifugal stress.
 
-    The steady state at 1 rad/s, blades pulling at the rim and the bore held by the rigid link, gives the disk's plane
-    stress, the forces in the link and the link's geometric term. So K_sigma - S on rigid-body motions is -m, -m, 0,
-    I_p - I_d, I_p - I_d, 0: tests/fem/test_blisk_assembly.py. A mistuned blade has (1 + deviation) K and nothing else
-    of its own: E scales every term of K, the shape functions depend on ratios of stiffness alone, and its pull on the
+    In the steady state at 1 rad/s the blades pull at the rim and the rigid link fixes the bore. It determines the
+    disk's plane stress, the forces in the link and the link's geometric term. K_sigma - S on rigid-body motions is then
+    -m, -m, 0, I_p - I_d, I_p - I_d, 0: tests/fem/test_blisk_assembly.py. A mistuned blade differs only by (1 +
+    deviation) K: E scales every term of K, the shape functions depend only on ratios of stiffness, and its pull on the
     rim follows from its mass.
 
-    Raises UserError when blades do not meet corner nodes of the rim, for a single blade, whose pull is no symmetric
+    Raises UserError where blades do not meet corner nodes of the rim, for a single blade, whose pull is not a symmetric
     load, and for a bore outside the rim.
     """
     problem = pitch_problem(disk, blades)
@@ -136,7 +145,7 @@ def blisk_frequencies(model: BliskModel, support: DiskSupport, modes: int) -> Fl
 
 
 def rigid_motions(model: BliskModel) -> FloatArray:
-    """Displacements (n, 6) of the blisk turned and moved as a whole by unit u, v, w (m), th_x, th_y, th_z (rad)."""
+    """Displacements (n, 6) of the blisk moved as a rigid body by unit u, v, w (m), th_x, th_y, th_z (rad)."""
     plate = model.plate.mesh.nodes
     x, y = np.concatenate([[0.0], plate[:, 0]]), np.concatenate([[0.0], plate[:, 1]])
     parts = [_rigid_nodes(x, y)]
@@ -162,7 +171,7 @@ def _dof(nodes: IntArray) -> IntArray:
 def _blocks(
     plate: SparseMatrix, blade: FloatArray, scale: FloatArray, centre: FloatArray | None = None
 ) -> SparseMatrix:
-    """diag(O_d, disk, scale_0 blade, scale_1 blade, ...); O_d has no matrix of its own but the link's."""
+    """diag(O_d, disk, scale_0 blade, scale_1 blade, ...). O_d has only the matrix of the link."""
     first = np.zeros((6, 6)) if centre is None else centre
     one = sp.coo_array(blade)
     blocks = [sp.coo_array(first), plate, *[factor * one for factor in scale]]

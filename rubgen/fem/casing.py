@@ -22,7 +22,7 @@ class CasingModel:
     """The casing in the inertial frame: 3 DoF a node (u along X, v along Y, phi about Z), node after node.
 
     `angles` (nodes,) are the polar angles in rad, equal steps from 0; `nodes_xy` (nodes, 2) the ring's centre line in
-    m. `M`, `K_ring` and `K_supports` are (3 nodes, 3 nodes); the springs to ground stand apart from the ring.
+    m. `M`, `K_ring` and `K_supports` are (3 nodes, 3 nodes). `K_supports` are the springs to ground.
     """
 
     angles: FloatArray
@@ -40,14 +40,14 @@ class CasingModel:
 def assemble_casing(machine: Machine, *, any_nodes: bool = False) -> CasingModel:
     """Full model of the casing at rest.
 
-    The centre line lies half a thickness outside the undeformed inner surface of `machine.casing`; its nodes stand at
-    equal steps of polar angle, straight uniform elements between them (exact statics, Friedman and Kosmatka 1993:
-    nothing locks), Cowper's shear coefficient, rotary inertia. The springs act at each node along e_r and e_theta of
-    its polar angle. A beam's E holds, not E / (1 - nu^2) of a wide shell: the ring is the published kind of model.
+    The centre line lies half a thickness outside the undeformed inner surface of `machine.casing`. Its nodes are at
+    equal steps of polar angle, with straight uniform elements between them (exact statics, Friedman and Kosmatka 1993,
+    without locking), Cowper's shear coefficient and rotary inertia. The springs act at each node along e_r and e_theta
+    of its polar angle. The modulus is E of a beam, not E / (1 - nu^2) of a wide shell: the published model uses a beam.
 
-    Raises UserError when the nodes are not divisible by 4 and by the number of lobes: any other mesh breaks the
-    symmetry of the surface and puts orders into the response that the machine does not have. `any_nodes` lets an
-    experiment do so.
+    Raises UserError where the nodes are not divisible by 4 and by the number of lobes: any other mesh breaks the
+    symmetry of the surface and adds orders to the response that the machine does not have. `any_nodes` allows this for
+    experiments.
     """
     casing = machine.casing
     problem = None if any_nodes else node_problem(casing)
@@ -77,6 +77,9 @@ def element_matrices(
 
     With Phi = 12 E I / (kappa G A L^2) the static shape functions of a uniform Timoshenko beam interpolate v and phi,
     linear ones u; I = width thickness^3 / 12 (bending in the plane of the ring).
+
+    - width, thickness: of the cross-section, m.
+    - lengths (elements,): m.
     """
     area, inertia = width * thickness, width * thickness**3 / 12
     E, rho = material.youngs_modulus_pa, material.density_kg_per_m3

@@ -23,9 +23,13 @@ def rigid_rows(arm: FloatArray) -> FloatArray:
 
 
 def rigid_link(arm: FloatArray, node_dof: IntArray, centre_dof: IntArray, size: int) -> SparseMatrix:
-    """Constraint rows T (6 n, size) of O_d at `centre_dof` (6,) and the nodes with DoFs `node_dof` (n, 6).
+    """Constraint rows T (6 n, size) of a rigid link between O_d and n nodes.
 
     The penalty stiffness is k_p T^T T, and the force of the link on node i is -k_p T_i q.
+
+    - arm (n, 2): X and Y of the nodes from O_d, m.
+    - node_dof (n, 6), centre_dof (6,): DoFs of the nodes and of O_d.
+    - size: number of all DoFs.
     """
     rows = rigid_rows(arm)
     columns = np.concatenate([np.broadcast_to(centre_dof, node_dof.shape), node_dof], axis=1)
@@ -35,9 +39,9 @@ def rigid_link(arm: FloatArray, node_dof: IntArray, centre_dof: IntArray, size: 
 def link_stress_stiffness(arm: FloatArray, force: FloatArray) -> FloatArray:
     """Stiffness (6, 6) of O_d from the steady forces in a rigid link, the second order of its rotation.
 
-    The link pushes node i with F_i (`force` (n, 3) in N) at the arm r_i (`arm` (n, 2) in m). Turned by th it carries
-    the arm's end by th x r + th x (th x r) / 2, so the second-order energy is E2 = sum F_i . th x (th x r_i) / 2 and
-    K = sum [(F r^T + r F^T) / 2 - (F . r) I] on the rotations. Without it the gyroscopic terms of the whole are wrong.
+    The link pushes node i with F_i (`force` (n, 3) in N) at the arm r_i (`arm` (n, 2) in m). A rotation th moves the
+    arm's end by th x r + th x (th x r) / 2. The second-order energy is E2 = sum F_i . th x (th x r_i) / 2, and K = sum
+    [(F r^T + r F^T) / 2 - (F . r) I] on the rotations. Without it the gyroscopic terms of the whole blisk are wrong.
     """
     r = np.column_stack([arm, np.zeros(len(arm))])
     product = force.T @ r
@@ -47,16 +51,20 @@ def link_stress_stiffness(arm: FloatArray, force: FloatArray) -> FloatArray:
 
 
 def blade_rotation(angle: float) -> FloatArray:
-    """T_k (6, 6), which turns DoFs in the axes of a blade at polar `angle` (rad) to o-xyz."""
+    """T_k (6, 6), from DoFs in the axes of a blade at polar `angle` (rad) to o-xyz."""
     c, s = np.cos(angle), np.sin(angle)
     R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     return np.kron(np.eye(2), R)
 
 
 def rim_joint(angle: FloatArray, rim_dof: IntArray, root_dof: IntArray, size: int) -> SparseMatrix:
-    """Constraint rows (6 n, size) that join blade roots (n, 6) to rim nodes (n, 6): q_rim - T_k q_root = 0.
+    """Constraint rows (6 n, size) that join blade roots to rim nodes: q_rim - T_k q_root = 0.
 
     The penalty stiffness is k_p [I -T_k]^T [I -T_k] (Zeng et al. 2019).
+
+    - angle (n,): polar angles of the blades, rad.
+    - rim_dof, root_dof (n, 6): DoFs of rim nodes and blade roots.
+    - size: number of all DoFs.
     """
     rows = np.stack([np.hstack([np.eye(6), -blade_rotation(a)]) for a in angle])
     return _sparse_rows(rows, np.concatenate([rim_dof, root_dof], axis=1), size)
@@ -84,17 +92,17 @@ def support_stiffness(support: DiskSupport) -> FloatArray:
 
 
 def on_springs(K: SparseMatrix, stiffness: FloatArray) -> SparseMatrix:
-    """K with the springs of `stiffness` (6,) on its first six DoFs, those of O_d."""
+    """K with the springs of `stiffness` (6,) on its first six DoFs, the DoFs of O_d."""
     diagonal = np.zeros(K.shape[0])
     diagonal[:6] = stiffness
     return (K + sp.diags_array(diagonal)).tocsr()
 
 
 class HeldStiffness:
-    """K on its axial, tilt and torsion springs, with O_d x and y held at zero: factorised once.
+    """K on its axial, tilt and torsion springs, with O_d x and y fixed at zero; factorised once.
 
-    By symmetry the centrifugal load of two or more equal blades does not push O_d sideways, so the steady state is the
-    same for any lateral stiffness.
+    By symmetry the centrifugal load of two or more equal blades does not push O_d sideways. The steady state is
+    therefore the same for any lateral stiffness.
     """
 
     def __init__(self, K: SparseMatrix, support: DiskSupport) -> None:

@@ -12,10 +12,10 @@ from rubgen.machine import Disk
 
 @dataclass(frozen=True, kw_only=True)
 class DiskModel:
-    """Matrices (6 n, 6 n) of the disk alone, free: M mass, K elastic, G Coriolis (skew), S spin softening; f_c (6 n,).
+    """Matrices (6 n, 6 n) of the free disk: M mass, K elastic, G Coriolis (skew), S spin softening; f_c (6 n,).
 
-    The equations are M q'' + 2 Omega G q' + (K - Omega^2 S) q = Omega^2 f_c + loads; the centrifugal stress comes on
-    top. `bore` (2 c,) are the nodes at the bore, `rim` (c,) the corner nodes at the rim, counter-clockwise from +x.
+    The equations are M q'' + 2 Omega G q' + (K - Omega^2 S) q = Omega^2 f_c + loads, and the centrifugal stress is
+    added. `bore` (2 c,) are the nodes at the bore, `rim` (c,) the corner nodes at the rim, counter-clockwise from +x.
     """
 
     mesh: ShellMesh
@@ -29,9 +29,9 @@ class DiskModel:
 
 
 def assemble_disk(disk: Disk) -> DiskModel:
-    """Shell model of the disk, 7 x 72 elements in the preset; rotary inertia enters M, G and S.
+    """Shell model of the disk, 7 x 72 elements in the preset; M, G and S contain rotary inertia.
 
-    f_c = int rho N^T r_perp is S r, exactly, for the element holds the field r_perp.
+    f_c = int rho N^T r_perp equals S r exactly, because the element represents the field r_perp.
     """
     mesh = annular_mesh(disk)
     inertia = shell_inertia(mesh, disk.material)
@@ -53,7 +53,8 @@ def assemble_disk(disk: Disk) -> DiskModel:
 def annular_mesh(disk: Disk) -> ShellMesh:
     """Mesh of the annulus, rings from the bore outwards, all nodes on true circles.
 
-    Rings of corner nodes have two nodes an element (corner, midside), rings between them one (the corners' angles).
+    Rings of corner nodes have two nodes an element (corner, midside); rings between them have one (at the corners'
+    angles).
     """
     n_r, n_c = disk.radial_elements, disk.circumferential_elements
     radii = np.linspace(disk.bore_radius_m, disk.rim_radius_m, 2 * n_r + 1)

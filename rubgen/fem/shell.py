@@ -1,8 +1,8 @@
 """Eight-node Mindlin-Reissner shell element, flat in the plane z = 0, six DoFs a node (u, v, w, th_x, th_y, th_z).
 
-A point at height z moves by (u + z th_y, v - z th_x, w). Everything is integrated at once for all elements that are no
-turned copies of others (`ShellMesh.around`). Against shear locking th_x and th_y have a bubble besides the eight nodes
-(the heterosis idea of Hughes and Cohen 1978), which follows the nodes as in statics: q_54 = T q_48 in every matrix.
+A point at height z moves by (u + z th_y, v - z th_x, w). All elements are integrated at once, except turned copies of
+others (`ShellMesh.around`). Against shear locking th_x and th_y have a bubble besides the eight nodes (the heterosis
+idea of Hughes and Cohen 1978). The bubble follows the nodes statically: q_54 = T q_48 in every matrix.
 """
 
 from dataclasses import dataclass
@@ -52,7 +52,7 @@ def shell_stiffness(mesh: ShellMesh, material: Material) -> SparseMatrix:
 def shell_inertia(mesh: ShellMesh, material: Material) -> ShellInertia:
     """Consistent inertia: rho h on translations, rho h^3/12 on th_x and th_y, none on th_z.
 
-    M = int rho N^T N; S = int rho N^T (1 - e_z e_z^T) N leaves w out; G = int rho N^T (e_z x N) = (e_z x) S.
+    M = int rho N^T N; S = int rho N^T (1 - e_z e_z^T) N, without w; G = int rho N^T (e_z x N) = (e_z x) S.
     """
     points, T = quadrature(mesh.firsts, 3), _following(_element_stiffness(mesh.firsts, material))
     rho_area = material.density_kg_per_m3 * points.area
@@ -66,10 +66,10 @@ def shell_inertia(mesh: ShellMesh, material: Material) -> ShellInertia:
 
 
 def shell_stress_stiffness(mesh: ShellMesh, material: Material, displacement: FloatArray) -> SparseMatrix:
-    """Stiffness (6 n, 6 n) from the plane stress that the membrane part of `displacement` (6 n,) in m causes.
+    """Stiffness (6 n, 6 n) from the plane stress of the membrane part of `displacement` (6 n,) in m.
 
-    Energy h grad(d)^T sigma grad(d) / 2 for d = u, v, w, and the same of th_x, th_y with h^3/12, per area; sigma at
-    the 3 x 3 points of the membrane stiffness, so that it balances the loads of those points exactly.
+    Energy h grad(d)^T sigma grad(d) / 2 for d = u, v, w, and the same for th_x, th_y with h^3/12, per area. sigma is
+    taken at the 3 x 3 points of the membrane stiffness, so that it balances the loads of these points exactly.
     """
     points, T = quadrature(mesh, 3), mesh.turned(_following(_element_stiffness(mesh.firsts, material)))
     nodal = displacement.reshape(-1, 6)[mesh.elements].reshape(len(mesh.elements), 48)
@@ -109,7 +109,7 @@ def _quadratic(B: FloatArray, D: FloatArray, weight: FloatArray) -> FloatArray:
 
 
 def _following(K: FloatArray) -> FloatArray:
-    """T (e, 54, 48): the bubble follows the nodes as in statics."""
+    """T (e, 54, 48): the bubble follows the nodes statically."""
     T = np.zeros((len(K), ELEMENT_DOFS, 48))
     T[:, :48] = np.eye(48)
     T[:, BUBBLE_DOFS] = -np.linalg.solve(K[:, BUBBLE_DOFS[:, None], BUBBLE_DOFS], K[:, BUBBLE_DOFS, :48])
@@ -125,7 +125,7 @@ def _by_direction(*blocks: FloatArray) -> FloatArray:
 
 
 def _on_nodes(T: FloatArray, matrices: FloatArray) -> FloatArray:
-    """T^T X T (e, 48, 48): on the nodes alone."""
+    """T^T X T (e, 48, 48): on the nodes only."""
     nodal: FloatArray = T.swapaxes(1, 2) @ matrices @ T
     return nodal
 

@@ -17,9 +17,10 @@ BUBBLE_DOFS = np.array([51, 52])
 
 @dataclass(frozen=True)
 class ShellMesh:
-    """Nodes (n, 2) in m, elements (e, 8) as in the order of serendipity nodes, thickness in m at points (..., 2).
+    """Nodes (n, 2) in m, elements (e, 8) in the order of serendipity nodes, thickness in m at points (..., 2).
 
-    Of every `around` elements the others are the first one turned about the origin by 2 pi / around, 4 pi / around, ...
+    In every group of `around` elements, the others are the first one turned about the origin by 2 pi / around, 4 pi /
+    around, ...
     """
 
     nodes: FloatArray
@@ -29,11 +30,11 @@ class ShellMesh:
 
     @property
     def firsts(self) -> "ShellMesh":
-        """The elements that are no turned ones."""
+        """The mesh of the first element of each group."""
         return ShellMesh(self.nodes, self.elements[:: self.around], self.thickness)
 
     def turned(self, firsts: FloatArray) -> FloatArray:
-        """Matrices (e, 6 a, 6 b) of all elements from those of `firsts`: Z_j X Z_j^T, Z_j turning each node's DoFs."""
+        """Matrices (e, 6 a, 6 b) of all elements from the first ones: Z_j X Z_j^T, Z_j turns each node's DoFs."""
         if self.around == 1:
             return firsts
         angle = (2 * np.pi * np.arange(self.around) / self.around)[:, None, None]
@@ -51,7 +52,7 @@ class ShellMesh:
 class Quadrature:
     """Values at the points q of every element e: N (q, 9), dN/d(x, y) (e, q, 9, 2), h (e, q), dA (e, q).
 
-    The ninth function is the bubble (1 - xi^2)(1 - eta^2), which the rotations alone have.
+    The ninth function is the bubble (1 - xi^2)(1 - eta^2); only the rotations have it.
     """
 
     N: FloatArray

@@ -1,8 +1,8 @@
-"""The blocks into which a system's matrices fall, found from the matrices themselves.
+"""The blocks of a system's matrices, found from the matrices themselves.
 
-Blades that are all alike couple only within one nodal diameter, so harmonics over the blades split the blisk into small
-blocks. Nothing is assumed: the blocks are the connected sets of coordinates that no matrix couples. With mistuned
-blades one large block is left, and everything works as before.
+Equal blades couple only within one nodal diameter, so harmonics over the blades divide the blisk into small blocks.
+Nothing is assumed: the blocks are the sets of coordinates that the matrices connect. Mistuned blades make one large
+block, with the same code.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from rubgen.linalg.vector_kernels import LANES
 
 COUPLING_TOLERANCE = 1e-9
 """An entry couples when it exceeds this share of the geometric mean of its row's and its column's largest entry.
-Rounding of the reduction leaves 1e-12 to 1e-10 between nodal diameters; a mistuned blade couples far above."""
+Rounding of the reduction is 1e-12 to 1e-10 between nodal diameters; a mistuned blade couples far above."""
 
 ROUNDING = 1e-14
-"""What is less than this share of that mean is rounding in a matrix of differences, as K - K^T is."""
+"""Entries below this share of that mean are rounding in a matrix of differences, such as K - K^T."""
 
 
 def aligned(array: FloatArray) -> FloatArray:
-    """A C-contiguous copy that begins at a cache line: rows of eight that straddle two lines load half as fast."""
+    """A C-contiguous copy that begins at a cache line: rows of eight across two lines load half as fast."""
     buffer = np.zeros(array.size + LANES)
     start = (-buffer.ctypes.data // 8) % LANES
     out = buffer[start : start + array.size].reshape(array.shape)
@@ -58,7 +58,7 @@ def coupled(matrix: FloatArray) -> BoolArray:
 
 
 def scale_of(matrix: FloatArray) -> FloatArray:
-    """For each entry the geometric mean of its row's and its column's largest."""
+    """For each entry the geometric mean of its row's and its column's largest entry."""
     size = np.abs(matrix)
     scale = np.sqrt(np.maximum(size.max(axis=0), size.max(axis=1)))
     return np.asarray(np.multiply.outer(scale, scale))
@@ -66,25 +66,26 @@ def scale_of(matrix: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Blocks:
-    """Blocks of coordinates and where they stand in z.
-
-    `transform` T (n, n) is orthonormal, q = T y. `lanes` are arrays (8, m) of the coordinates of up to eight blocks of
-    one size, -1 where there is none: coordinate i of all eight is one row of z. `single` are arrays (m,): one block,
-    whose coordinates follow one another. `place` (n,) is the number of z of each y.
-    """
+    """Blocks of coordinates and their places in z."""
 
     transform: FloatArray
+    """T (n, n), orthonormal, q = T y."""
     lanes: list[IntArray]
+    """Arrays (8, m) of the coordinates of up to eight blocks of one size, -1 without a block. Coordinate i of all eight
+    is one row of z."""
     single: list[IntArray]
+    """Arrays (m,) of the coordinates of one block, which follow one another in z."""
     place: IntArray
+    """Index in z of each y (n,)."""
     rows: int
+    """Number of rows of eight in z."""
 
     def product(self, matrix: FloatArray) -> Product:
-        """A physical matrix (n, n) in blocks; what couples different blocks is dropped."""
+        """A physical matrix (n, n) in blocks. Entries between different blocks are dropped."""
         return self._packed(self.transform.T @ matrix @ self.transform, triangle=False)
 
     def without_zeros(self, matrix: FloatArray, like: FloatArray) -> Product:
-        """The same without what is rounding beside the matrix `like` (n, n), and without lines of zeros."""
+        """The same without rounding relative to the matrix `like` (n, n), and without lines of zeros."""
         Y = self.transform.T @ matrix @ self.transform
         size = ROUNDING * scale_of(self.transform.T @ like @ self.transform)
         product = self._packed(np.where(np.abs(Y) > size, Y, 0.0), triangle=False)
@@ -96,8 +97,8 @@ class Blocks:
     def damping(self, matrix: FloatArray, *, whole: bool = False) -> Product:
         """The lower triangle of the symmetric part with half its diagonal: d^T C d = 2 d^T (triangle d).
 
-        Within a block, Coriolis forces couple what dampers do not: what the symmetric part leaves uncoupled is left
-        out, unless the `whole` triangle is asked for.
+        Within a block, Coriolis forces couple more coordinates than dampers. Entries that the symmetric part does not
+        couple are left out, unless `whole`.
         """
         Y = self.transform.T @ matrix @ self.transform
         Y = (Y + Y.T) / 2
@@ -114,13 +115,13 @@ class Blocks:
         return np.sort(np.concatenate(found))
 
     def vector(self, y: FloatArray) -> FloatArray:
-        """Numbers y (n,) as z."""
+        """Y (n,) as z."""
         z = np.zeros(self.rows * LANES)
         z[self.place] = y
         return aligned(z)
 
     def to_z(self, q: FloatArray) -> FloatArray:
-        """Z of physical coordinates."""
+        """Z of physical coordinates (n,)."""
         return self.vector(self.transform.T @ q)
 
     def to_q(self, z: FloatArray) -> FloatArray:
@@ -128,9 +129,9 @@ class Blocks:
         return np.asarray(self.transform @ z[self.place])
 
     def _packed(self, Y: FloatArray, *, triangle: bool, coupling: BoolArray | None = None) -> Product:
-        """Lines and entries of a matrix in y; of a triangle, no more columns than its rows of results have.
+        """Lines and entries of a matrix in y. A triangle has only the columns up to its rows of results.
 
-        Of blocks side by side only the entries of a triangle that `coupling` (n, n) connects.
+        In blocks side by side only the entries of a triangle that `coupling` (n, n) connects.
         """
         lines: list[tuple[int, int, int, int, int]] = []
         entries: list[FloatArray] = []
@@ -160,7 +161,7 @@ class Blocks:
 
 
 def parts_of(rows: int) -> list[slice]:
-    """Rows of results in parts of nearly one size, none more than a line may give."""
+    """Rows of results in parts of nearly equal size, none larger than a line allows."""
     count = -(-rows // MOST_ROWS)
     ends = [part * (rows // count) + min(part, rows % count) for part in range(count + 1)]
     return [slice(start, end) for start, end in pairwise(ends)]
@@ -173,9 +174,10 @@ def _coupling_of(bundle: IntArray, coupling: BoolArray) -> BoolArray:
 
 
 def _triangle_parts(coupling: BoolArray) -> list[tuple[slice, slice]]:
-    """Rows and columns of the lower triangle (m, m) in blocks that cover what is connected.
+    """Rows and columns of the lower triangle (m, m) in blocks that cover all connected entries.
 
-    A connected set falls into runs of neighbours; every run is a block with itself and with each of the set before it.
+    A connected set consists of runs of neighbours. Each run makes a block with itself and with each run of the set
+    before it.
     """
     label = connected_components(coupling | coupling.T, directed=False)[1]
     ends = [*(np.flatnonzero(np.diff(label)) + 1).tolist(), len(label)]
@@ -195,7 +197,7 @@ def _append(
     place: tuple[int, int, int],
     part: FloatArray,
 ) -> None:
-    """Add a line with entries (count, rows, 8); `place` tells whether it is scaled, its ROW and its START."""
+    """Add a line with entries (count, rows, 8); `place` is whether it is scaled, its ROW and its START."""
     (scaled, row, start), (count, rows, _) = place, part.shape
     lines.append((line_kind(rows, scaled=bool(scaled)), row, sum(map(len, entries)), start, count))
     entries.append(part.reshape(-1, LANES))
@@ -224,7 +226,7 @@ def find_blocks(matrices: list[FloatArray], blades: int) -> Blocks:
 
 
 def _arranged(parts: list[IntArray]) -> tuple[list[IntArray], list[IntArray]]:
-    """Blocks of one size side by side in lanes where that is less work than one by one."""
+    """Blocks of one size side by side in lanes where this is less work than one by one."""
     lanes: list[IntArray] = []
     single: list[IntArray] = []
     for size in sorted({len(part) for part in parts}, reverse=True):
@@ -242,18 +244,21 @@ def _arranged(parts: list[IntArray]) -> tuple[list[IntArray], list[IntArray]]:
 
 
 def half_turn(blades: int) -> int:
-    """How many blades stand for all: half of an even number, as harmonics keep or change their sign by half a turn."""
+    """Number of blades that determine all: half of an even number, else all.
+
+    Harmonics of an even number of blades keep or change their sign after half a turn.
+    """
     return blades // 2 if blades % 2 == 0 else blades
 
 
 def share_width(blades: int) -> int:
-    """Numbers that the recovery of tips needs for each of three coordinates: the sums over the harmonics by halves."""
+    """Numbers for the recovery of tips for each of three coordinates: the sums over the harmonics by halves."""
     half = half_turn(blades)
     return blades // half * padded(half)
 
 
 def system_harmonics(blocks: Blocks, blades: int) -> Harmonics:
-    """The harmonics of a system's blades, and where they stand in z."""
+    """The harmonics of a system's blades, and their places in z."""
     width, n, half = padded(blades), len(blocks.place), half_turn(blades)
     order = np.arange(blades)
     if half < blades:  # those of even nodal diameters first

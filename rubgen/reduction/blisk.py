@@ -18,27 +18,30 @@ from rubgen.scenario import Reduction
 
 @dataclass(frozen=True, kw_only=True)
 class ReducedBlisk:
-    """Blisk with n DoFs: tips' translations along the blades' axes, O_d x and y, modes. No supports in it.
-
-    M, K elastic, G Coriolis (skew), A = K_sigma - S at 1 rad/s: (n, n). `euler` f_t (n,) is M times the rotation by
-    1 rad, the load of an angular acceleration of -1 rad/s2. `centre` T (6, n) recovers all six DoFs of O_d, `roots`
-    (blades, 6, n) those of each blade's root along its axes. `growth` is the tips' steady centrifugal displacement.
-    `rigid_inertia` (6,) is m, m, m, I_d, I_d, I_p of the whole in kg, kg m2; `blade_frequency` the first one of a blade
-    without mistuning clamped at its root, in rad/s;
-    `full_size` the number of DoFs of the full model.
-    """
+    """Blisk with n DoFs without supports: tips' translations along the blades' axes, O_d x and y, modes."""
 
     M: FloatArray
+    """Mass (n, n)."""
     K: FloatArray
+    """Elastic stiffness (n, n)."""
     G: FloatArray
+    """Coriolis matrix (n, n), skew."""
     A: FloatArray
+    """K_sigma - S at 1 rad/s (n, n)."""
     euler: FloatArray
+    """f_t (n,): M times the rotation by 1 rad, the load of an angular acceleration of -1 rad/s2."""
     centre: FloatArray
+    """T (6, n): all six DoFs of O_d."""
     roots: FloatArray
+    """All six DoFs of each blade's root along its axes (blades, 6, n)."""
     growth: CentrifugalGrowth
+    """The tips' steady centrifugal displacement."""
     rigid_inertia: FloatArray
+    """m, m, m, I_d, I_d, I_p of the whole (6,), kg, kg m2."""
     blade_frequency: float
+    """First frequency of a blade clamped at its root, without mistuning, rad/s."""
     full_size: int
+    """Number of DoFs of the full model."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,16 +63,18 @@ class _Joined:
 def reduce_blisk(
     disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction, *, cyclic: bool = True
 ) -> ReducedBlisk:
-    """Reduced blisk, the same for every lateral stiffness, for that acts on masters alone.
+    """Reduced blisk. It does not depend on the lateral stiffness, which acts only on masters.
 
-    Step 1: each blade keeps root, tip and `blade_modes` fixed-interface modes, the disk keeps O_d, the rim nodes that
-    carry blades and `disk_modes`; blades and rim are joined by penalty. Step 2, on the axial, tilt and torsion
-    springs: the tips' translations and O_d x, y stay, with `blisk_modes`. Coriolis and centrifugal matrices are
-    projected on this basis of rest, which serves better than one of the spinning blisk. A number of disk modes that
-    cuts a pair in two, as 4 does in the preset, splits frequency pairs by up to 1e-5.
+    Step 1: each blade keeps root, tip and `blade_modes` fixed-interface modes. The disk keeps O_d, the rim nodes with
+    blades and `disk_modes`. Penalties join blades and rim. Step 2, on the axial, tilt and torsion springs: the tips'
+    translations and O_d x, y remain, with `blisk_modes`. Coriolis and centrifugal matrices are projected on this basis
+    of rest, which is more accurate than a basis of the spinning blisk. A number of disk modes that divides a pair, as 4
+    does in the preset, splits frequency pairs by up to 1e-5.
 
-    One sector of the disk stands for all (`cyclic`), and one blade, mistuned or not; without `cyclic` the sparse
-    matrices of the whole disk do, in twice the time and to the same 1e-9.
+    - disk, blades, support: the machine's.
+    - reduction: numbers of modes.
+    - cyclic: use one sector of the disk for all. False uses the sparse matrices of the whole disk, in twice the time
+      and with the same result to 1e-9.
     """
     model = assemble_blisk(disk, blades, support)
     joined = _join_components(model, reduction, _turning(disk, blades) if cyclic else None)

@@ -1,4 +1,4 @@
-"""The reduced blisk on disk, by a hash of everything that enters it and of the code that makes it."""
+"""The reduced blisk in a cache on disk, by a hash of all its inputs and of its code."""
 
 import hashlib
 import io
@@ -26,14 +26,14 @@ _ARRAYS = ("M", "K", "G", "A", "euler", "centre", "roots", "rigid_inertia")
 _NUMBERS = ("blade_frequency", "full_size")
 _GROWTH = ("K", "A", "f", "tips", "moment")
 PATIENCE_S = 120.0
-"""So long is waited for a process that makes the same blisk; it may be stopped."""
+"""Longest wait for another process that makes the same blisk; it may have been stopped."""
 
 
 def cached_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> ReducedBlisk:
-    """`reduce_blisk` from the cache, or made and kept there: the same bits either way.
+    """`reduce_blisk` from the cache, or made and stored there, with the same bits. Parameters as there.
 
-    Lateral stiffness and the number of casing modes do not enter, so runs that vary them share one file. A damaged
-    file is made anew; where nothing can be kept, that costs time, not the run. Several processes make it once.
+    Lateral stiffness and the number of casing modes are no inputs, so runs that vary them share one file. A damaged
+    file is made again. Where nothing can be stored, each process makes the blisk. Several processes make it once.
     """
     folder = cache_folder("reduction")
     if folder is None:
@@ -52,7 +52,7 @@ def cached_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: 
 
 @contextmanager
 def _lock(path: Path) -> Iterator[None]:
-    """One process makes the file at `path`; where files cannot be locked in time, several may, to the same bytes."""
+    """One process makes the file at `path`. Where files cannot be locked in time, several may make the same bytes."""
     lock = FileLock(path.with_suffix(".lock"), timeout=PATIENCE_S)
     try:
         lock.acquire()
@@ -83,7 +83,7 @@ def _key(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reductio
 
 @cache
 def _digest_of_code(package: Path) -> bytes:
-    """Of all sources that a reduced blisk comes from, read once in a process."""
+    """Digest of all sources of a reduced blisk, read once in a process."""
     digest = hashlib.sha256()
     for folder in ("fem", "reduction", "machine"):
         for source in sorted((package / folder).glob("*.py")):

@@ -19,17 +19,17 @@ DEGENERATE = 1e-8
 
 @dataclass(frozen=True, kw_only=True)
 class ReducedCasing:
-    """The first modes of the casing on its springs.
-
-    `frequencies_hz` (n,) ascending; `modes_xy` (nodes, 2, n) the X and Y displacements of the mass-normalised modes
-    (in kg^-1/2) at nodes that stand at equal steps of polar angle from 0, `rotations` (nodes, n) the rotation of the
-    cross-section about Z there (in m^-1 kg^-1/2); `surface` the undeformed inner surface.
-    """
+    """The first modes of the casing on its springs."""
 
     frequencies_hz: FloatArray
+    """Frequencies (n,) in Hz, ascending."""
     modes_xy: FloatArray
+    """X and Y displacement of the mass-normalised modes (nodes, 2, n), kg^-1/2; nodes at equal steps of polar angle
+    from 0."""
     rotations: FloatArray
+    """Rotation of the cross-section about Z (nodes, n), m^-1 kg^-1/2."""
     surface: CasingSurface
+    """The undeformed inner surface."""
 
 
 def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
@@ -39,8 +39,8 @@ def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
     to the lobe axis, where a symmetric mode is radial and an antisymmetric one tangential. Of two modes of the same
     frequency the second has no radial displacement there.
 
-    Raises UserError for more modes than DoFs, when the modes do not carry the order of the casing's lobes in full
-    (`carried_orders`), or for a mesh that `assemble_casing` refuses.
+    Raises UserError for more modes than DoFs, for modes that do not include the order of the casing's lobes in full
+    (`carried_orders`), and for a mesh that `assemble_casing` refuses.
     """
     problem = casing_problem(machine, modes)
     if problem:
@@ -52,7 +52,7 @@ def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
 
 @dataclass(frozen=True, kw_only=True)
 class _Asked:
-    """All of a machine that its casing's modes come from: runs that vary the rest share them."""
+    """All inputs of a casing's modes: runs that vary other values share them."""
 
     casing: Casing
     mean_radius: float
@@ -91,7 +91,7 @@ def _lowest_modes(model: CasingModel, modes: int) -> tuple[FloatArray, FloatArra
 def _oriented(
     displacements: FloatArray, rotations: FloatArray, eigenvalues: FloatArray, angles: FloatArray, lobe_angle: float
 ) -> tuple[FloatArray, FloatArray]:
-    """The same modes with pairs of equal frequency turned to the lobe axis and every sign fixed."""
+    """The same modes, with pairs of equal frequency turned to the lobe axis and every sign fixed."""
     oriented, turned = np.array(displacements), np.array(rotations)
     node = round(lobe_angle / (angles[1] - angles[0])) % angles.size
     e_r = np.array([np.cos(angles[node]), np.sin(angles[node])])

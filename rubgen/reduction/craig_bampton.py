@@ -15,28 +15,23 @@ DENSE_LIMIT = 1000
 # A mode whose mass is below this share of the largest one's (mass over stiffness) moves no mass: it is static.
 MASSLESS = 1e-13
 FIRST = 12
-"""Masters that are solved for: O_d and the rim node of blade 0."""
+"""Number of masters that are solved for: O_d and the rim node of blade 0."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Turning:
-    """Turns of the disk by whole blade pitches, its DoFs O_d first, then six a node: one sector stands for all others.
-
-    A turn Q by one blade pitch moves the disk onto itself, so every matrix X of it commutes with Q. The static shape
-    that a unit displacement of rim node k causes is that of node 0, turned: Psi_k = Q^k Psi_0 R_k^T (R_k turns the six
-    DoFs of a node). A projection V^T X V on such shapes repeats its first block column, P_l,k = R_k P_(l-k),0 R_k^T.
-    Twelve solves thus stand for 6 + 6 N, whatever the blades are like. Tests: tests/reduction/test_cyclic.py, against
-    the full path.
-
-    `place` (blades, nodes + 1): turned by k pitches, node i comes to where node place[k, i] was. `rotation`
-    (blades, 6, 6) is R_k.
-    """
+    """Turns of the disk by whole blade pitches. Its DoFs are O_d first, then six a node."""
 
     place: IntArray
+    """(blades, nodes + 1): after a turn by k pitches, node i is where node place[k, i] was."""
     rotation: FloatArray
+    """R_k (blades, 6, 6)."""
 
     def copy_columns(self, V: FloatArray) -> None:
-        """Fill the columns of V (n, 6 + 6 blades + any) of the rim nodes 1, 2, ... with turned copies of node 0's."""
+        """Fill the columns of V (n, 6 + 6 blades + any) of the rim nodes 1, 2, ...
+
+        with turned copies of node 0's columns.
+        """
         first = V[:, 6:FIRST].reshape(-1, 6, 6)
         for k in range(1, len(self.place)):
             R = self.rotation[k]
@@ -60,7 +55,7 @@ class Turning:
 
 
 def disk_turning(rings: IntArray, blades: int) -> Turning:
-    """Turns of a disk whose nodes stand in rings of `rings` (any,) nodes each, multiples of the number of blades."""
+    """Turns of a disk with rings of `rings` (any,) nodes each, multiples of the number of blades."""
     starts = 1 + np.concatenate([[0], np.cumsum(rings)[:-1]])
     place = np.zeros((blades, 1 + int(rings.sum())), dtype=np.int64)
     for start, count in zip(starts, rings, strict=True):
@@ -76,11 +71,16 @@ def craig_bampton(
 ) -> FloatArray:
     """Basis (n, masters + modes) of constraint modes and mass-normalised fixed-interface modes.
 
-    q = V p with V = [[I, 0], [-K_ss^-1 K_sm, Phi]], Phi the lowest modes of K_ss Phi = M_ss Phi omega^2
-    (Craig and Bampton 1968). p holds the masters' own displacements first. K_ss must be positive definite, M_ss may be
-    singular: massless directions follow statically. Signs are fixed by the largest entry of each mode. Raises
-    UserError when more modes are asked for than carry mass. With `turning` the first twelve masters are solved for, and
-    the others' shapes are turned copies (`Turning`). Tests: tests/reduction/test_craig_bampton.py.
+    q = V p with V = [[I, 0], [-K_ss^-1 K_sm, Phi]], Phi the lowest modes of K_ss Phi = M_ss Phi omega^2 (Craig and
+    Bampton 1968). p begins with the masters' own displacements. K_ss must be positive definite. M_ss may be singular:
+    massless directions follow statically. The largest entry of each mode is positive.
+
+    - M, K (n, n): mass and stiffness.
+    - masters: their DoFs.
+    - modes: number of fixed-interface modes.
+    - turning: solve only for the first twelve masters, and turn copies of their shapes (`cyclic`).
+
+    Raises UserError where more modes are asked for than carry mass. Tests: tests/reduction/test_craig_bampton.py.
     """
     slaves = np.setdiff1d(np.arange(K.shape[0]), masters)
     K_ss, M_ss = K[slaves][:, slaves], M[slaves][:, slaves]

@@ -28,7 +28,7 @@ S6 = np.kron(np.eye(2), np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 
 class ReducedModel:
     """A machine reduced to n DoFs: the blisk in its turning frame, then the casing's modes.
 
-    `springs` and `dampers` (6,) stand at O_d in the inertial frame, `beta` (s) is the blisk's elastic damping.
+    `springs` and `dampers` (6,) act on O_d in the inertial frame. `beta` (s) is the blisk's elastic damping.
     """
 
     machine: Machine
@@ -57,12 +57,12 @@ class ReducedModel:
     def at_speed(self, speed: float, acceleration: float = 0.0) -> SpinningSystem:
         """The system at `speed` (rad/s, positive) and `acceleration` (rad/s2): matrices of the turning frame.
 
-        Blisk: C = 2 Omega G + C_s + beta K_e, K = K_e + K_s + Omega^2 (K_sigma - S) + Omega H_s, with
-        C_s = T^T C T and H_s = T^T C S6 T of the dampers C = diag(c) in the inertial frame, which act on the absolute
-        velocity (S6 is e_z x). The term Omega H_s makes K unsymmetric. Casing modes: 1, 2 zeta omega, omega^2.
-        Each unbalance acts with Omega^2 U outward, on O_d or on a tip, that of uneven growth (mistuned blades) on O_d.
-        A changing speed adds Omega' G to K and -Omega' (f_t + e_z x U) to the forces (Euler term); what acceleration
-        and change of the tips' steady growth bring is left out, a share Omega' / Omega^2 of it at most.
+        Blisk: C = 2 Omega G + C_s + beta K_e, K = K_e + K_s + Omega^2 (K_sigma - S) + Omega H_s, with C_s = T^T C T and
+        H_s = T^T C S6 T. The dampers C = diag(c) are in the inertial frame and act on the absolute velocity (S6 is e_z
+        x). The term Omega H_s makes K unsymmetric. Casing modes: 1, 2 zeta omega, omega^2. Each unbalance acts with
+        Omega^2 U outward, on O_d or on a tip. The unbalance of uneven growth (mistuned blades) acts on O_d. A changing
+        speed adds Omega' G to K and -Omega' (f_t + e_z x U) to the forces (Euler term). Acceleration and change of the
+        tips' steady growth are left out, a share of at most Omega' / Omega^2 of it.
         """
         with threadpool_limits(1, user_api="blas"):
             return self._assemble(speed, acceleration)
@@ -104,9 +104,9 @@ class ReducedModel:
     def root_strain(self, blade: int, speed: float) -> FloatArray:
         """Spanwise strain at a blade's root per unit of each of the blisk's DoFs, (blisk DoFs,), at `speed` (rad/s).
 
-        Tip and root come from the reduced basis; the blade between them stands as statics at that speed want it
-        (`held_root_strain`), for the basis of rest alone underrates it by 37 % at 8,500 rev/min in the preset. What
-        inertia bends between tip and root is not in it.
+        Tip and root come from the reduced basis. The blade between them has its static shape at that speed
+        (`held_root_strain`). The basis of rest alone underestimates the strain by 37 % at 8,500 rev/min in the preset.
+        Bending by inertia between tip and root is left out.
         """
         blades, rim = self.machine.blades, self.machine.disk.rim_radius_m
         stiffness = 1 + blades.stiffness_deviations[blade]
@@ -135,7 +135,7 @@ class ReducedModel:
         return float(shift @ self.blisk.M @ shift)
 
     def _turning_forces(self) -> TurningForces | None:
-        """What of supports and gravity turns against the blisk or is not linear; None without any."""
+        """The forces of supports and gravity that turn against the blisk or are not linear; None without any."""
         support, g = self.machine.disk_support, self.machine.gravity_m_per_s2
         stiffness = float(self.springs[0]) * support.lateral_stiffness_anisotropy
         damping = float(self.dampers[0]) * support.lateral_damping_anisotropy
@@ -172,8 +172,8 @@ class ReducedModel:
     def blisk_frequencies_hz(self, speed: float = 0.0) -> FloatArray:
         """Undamped natural frequencies (blisk DoFs,) in Hz of the turning frame at `speed` (rad/s), ascending.
 
-        An inertial-frame whirl at omega shows at omega - Omega (forward) or omega + Omega (backward), without sign.
-        Above a critical speed the stiffness is indefinite, so the quadratic problem is solved as it stands.
+        An inertial-frame whirl at omega appears at omega - Omega (forward) or omega + Omega (backward), without sign.
+        Above a critical speed the stiffness is indefinite, so the quadratic problem is solved directly.
         """
         M, K = self.blisk.M, self.stiffness(speed)
         with threadpool_limits(1, user_api="blas"):
@@ -195,7 +195,7 @@ class ReducedModel:
     def critical_speed_rpm(self) -> float:
         """Speed in rev/min at which forward lateral whirl is synchronous with the rotation, undamped.
 
-        There K_e + K_s + Omega^2 (K_sigma - S) is singular: an unbalance, static in the turning frame, meets no
+        There K_e + K_s + Omega^2 (K_sigma - S) is singular: an unbalance, static in the turning frame, acts against no
         stiffness. Of all such speeds it is the one with the largest share of energy in the lateral springs.
         """
         with threadpool_limits(1, user_api="blas"):
@@ -207,10 +207,10 @@ class ReducedModel:
 
 
 def rigid_shifts(blades: int, size: int) -> FloatArray:
-    """Coordinates (size, 2) of the reduced blisk moved as a whole by 1 m along x and along y.
+    """Coordinates (size, 2) of the reduced blisk moved as a rigid body by 1 m along x and along y.
 
-    Exact: the constraint modes hold every rigid motion that does not strain the springs of the basis, and lateral
-    shifts strain none, so the modes take no part.
+    Exact: constraint modes represent every rigid motion that does not strain the springs of the basis. Lateral shifts
+    strain none, so the modes are zero.
     """
     angle = 2 * np.pi * np.arange(blades) / blades
     shifts = np.zeros((size, 2))
@@ -223,7 +223,7 @@ def rigid_shifts(blades: int, size: int) -> FloatArray:
 def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:
     """The reduced model of `machine`: two-step Craig-Bampton for the blisk, modes for the casing.
 
-    The blisk comes from the cache where it can; the result has the same bits then, and with any number of BLAS
+    The blisk comes from the cache where possible. The result has the same bits then, and with any number of BLAS
     threads. Raises UserError for meshes, mode numbers or lobes that do not fit, for more memory than a reduction may
     take, and for matrices that cannot be factorised.
     """
@@ -255,7 +255,7 @@ def _first_line(error: Exception) -> str:
 
 
 def _materials(machine: Machine) -> str:
-    """Modulus and density of each part, as its keys say them."""
+    """Modulus and density of each part, as in its keys."""
     parts = {"disk": machine.disk.material, "blades": machine.blades.material, "casing": machine.casing.material}
     return ", ".join(
         f"{part} {each.youngs_modulus_pa:g} Pa and {each.density_kg_per_m3:g} kg/m3" for part, each in parts.items()

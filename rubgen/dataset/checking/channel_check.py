@@ -14,19 +14,19 @@ from rubgen.solver.response import WINDOW_TURNS
 
 Row = dict[str, Any]
 LEAST_TURNS = 2
-"""Fewer whole turns leave no weights without orders: nothing is said."""
+"""Least number of whole turns: fewer allow no weights without orders, and nothing is checked."""
 SIGMAS = 6.5
 """A Gaussian number lies beyond it once in 1e10 times."""
 STOP_BAND = 10 ** (-85 / 20)
-"""What the anti-alias filter lets pass beyond half the sample rate (`sensors/chain.py`)."""
+"""Gain of the anti-alias filter beyond half the sample rate (`sensors/chain.py`)."""
 ROUNDING = 1e-9
-"""Of the label: sums in another order."""
+"""Tolerance as a share of the label: the sums have another order."""
 COMPARED_ORDERS = 10
-"""At most: those within the anti-alias filter's pass band."""
+"""Largest number of compared orders; they are within the anti-alias filter's pass band."""
 NOISE_PEAK = 6.5
 """Gaussian noise of 1e6 samples stays below 6.5 times its rms."""
 ORDER_TOLERANCE = 0.01
-"""Of the largest amplitude."""
+"""Tolerance as a share of the largest amplitude."""
 
 
 def windows_fit(row: Row) -> bool:
@@ -39,7 +39,7 @@ def windows_fit(row: Row) -> bool:
 
 
 def duty_fits(row: Row) -> bool:
-    """Whether the duty is the mean of its windows, each weighted with its turns; true of turns of unequal length."""
+    """Whether the duty is the mean of its windows, weighted with their turns; True where turns have unequal length."""
     turns, values = _window_turns(row), row["window_contact_duty"]
     if row["change_times_s"] or len(values) != turns.size:
         return bool(row["change_times_s"])
@@ -48,7 +48,7 @@ def duty_fits(row: Row) -> bool:
 
 
 def window_times_fit(row: Row) -> bool:
-    """Whether windows begin after whole turns, at the run's speed; true of a changing speed."""
+    """Whether windows begin after whole turns, at the run's speed; True at a changing speed."""
     if row["change_times_s"]:
         return True
     starts = np.arange(0, row["record_turns"], WINDOW_TURNS) * 60 / row["speed_rpm"]
@@ -60,7 +60,7 @@ def window_times_fit(row: Row) -> bool:
 
 
 def exponents_fit(row: Row) -> bool:
-    """Whether the exponent by the second is the one by the turn over a turn's time; true of a changing speed."""
+    """Whether the exponent in 1/s is the exponent in 1/turn over the time of a turn; True at a changing speed."""
     by_turn, by_second = row["lyapunov_per_turn"], row["lyapunov_per_second"]
     if row["change_times_s"] or (by_turn is None and by_second is None):
         return True
@@ -69,10 +69,14 @@ def exponents_fit(row: Row) -> bool:
 
 
 def impulse_problems(row: Row, force: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
-    """What contradicts between the impulse label of a period-1 run in contact and its force channel in N.
+    """Contradictions between the impulse label of a period-1 run in contact and its force channel.
 
-    The channel's mean over whole turns times the time of one is the impulse a turn. `noise_rms` and `step` (ADC) are in
-    N. Silent where fewer than LEAST_TURNS turns are recorded, or the label contradicts its windows.
+    The impulse a turn is the channel's mean over whole turns times the time of a turn. None where fewer than
+    LEAST_TURNS turns are recorded, or the label contradicts its windows.
+
+    - row: the run's labels.
+    - force (samples,): the channel in N.
+    - noise_rms, step: noise and ADC step in N.
     """
     weights = whole_turn_weights(force.size, samples_per_turn(row))
     if weights is None or not windows_fit(row):
@@ -91,9 +95,9 @@ def samples_per_turn(row: Row) -> float:
 def whole_turn_weights(samples: int, turn: float) -> FloatArray | None:
     """Weights (samples,) of a mean over all m whole turns of `turn` samples; None below LEAST_TURNS.
 
-    A boxcar of one turn convolved with one of m - 1 turns: every order k >= 1 falls out, wherever the samples stand in
-    the turn and although a turn is no whole number of samples. A plain mean would keep up to half a sample at its edge,
-    where a blade may touch.
+    A boxcar of one turn convolved with one of m - 1 turns. It removes every order k >= 1, wherever the samples lie in
+    the turn, although a turn is not a whole number of samples. A plain mean would include up to half a sample at its
+    edge, where a blade may touch.
     """
     turns = math.floor(samples / turn)
     if turns < LEAST_TURNS:
@@ -105,18 +109,18 @@ def whole_turn_weights(samples: int, turn: float) -> FloatArray | None:
 
 
 def resolved_impulse(row: Row, weights: FloatArray, noise_rms: float, step: float) -> float:
-    """The least difference of impulse a turn, in N s, that the channel can tell; four errors that are known.
+    """The smallest difference of impulse a turn, in N s, that the channel can show: the sum of four known errors.
 
     - Noise of rms s and ADC steps d: the weighted mean has the standard error sqrt((s^2 + d^2 / 12) sum w^2).
-    - The ADC's bias where noise does not dither it. The mean error of a rounded Gaussian is the series
-      (d / pi) sum_k (+-1 / k) q^(k^2) sin(2 pi k x / d), q = exp(-2 (pi s / d)^2) (Widrow, Kollar: Quantization Noise):
-      at most -(d / pi) ln(1 - q), and never more than d / 2.
-    - Sampling: a force that only pushes has orders of at most twice its mean F. With N samples a turn, those below half
-      the rate alias into the mean by 4 F / (pi^2 N (m - 1)), for the weights' spectrum falls as 1 / (pi^2 f^2 (m - 1))
-      with f in orders. Those beyond it come back through the filter's stop band, by one image for each sample period
-      that the steps resolve: 2 F STOP_BAND a step in a sample.
-    - Turns that are not all alike: the scatter of the windows of the record's second half, from which period-1 is told,
-      is that of means over WINDOW_TURNS turns. It gives the standard error of a mean over the recorded turns.
+    - The ADC's bias where noise does not dither it. The mean error of a rounded Gaussian is the series (d / pi) sum_k
+      (+-1 / k) q^(k^2) sin(2 pi k x / d), q = exp(-2 (pi s / d)^2) (Widrow, Kollar: Quantization Noise): at most -(d /
+      pi) ln(1 - q), and never more than d / 2.
+    - Sampling: a force that only pushes has orders of at most twice its mean F. With N samples a turn, orders below
+      half the rate alias into the mean by 4 F / (pi^2 N (m - 1)), because the weights' spectrum falls as 1 / (pi^2 f^2
+      (m - 1)) with f in orders. Higher orders come back through the filter's stop band, by one image for each sample
+      period that the steps resolve: 2 F STOP_BAND a step in a sample.
+    - Unequal turns: the scatter of the windows of the record's second half, which decide period-1. A window is a mean
+      over WINDOW_TURNS turns. The result is the standard error of a mean over the recorded turns.
     """
     turn_seconds, turn = 60 / row["speed_rpm"], samples_per_turn(row)
     turns = math.floor(weights.size / turn)
@@ -133,14 +137,14 @@ def _adc_bias(noise_rms: float, step: float) -> float:
 
 
 def _scatter_of_turns(row: Row, turns: int) -> float:
-    """Standard error of the mean impulse over so many turns, as the record's turns scatter."""
+    """Standard error of the mean impulse over `turns` turns, from the scatter of the record's windows."""
     whole = np.asarray(row["window_impulse_per_turn_n_s"])[: row["record_turns"] // WINDOW_TURNS]
     late = whole[whole.size // 2 :]
     return float(np.std(late, ddof=1) * math.sqrt(WINDOW_TURNS / turns)) if late.size > 1 else 0.0
 
 
 def _share_of_covered_windows(row: Row, weights: FloatArray) -> float:
-    """Impulse of the windows that the channel covers over that of all: where the record begins with a transient."""
+    """Impulse of the windows in the channel over the impulse of all windows: the record may begin with a transient."""
     times = row["signal_start_s"] + np.arange(weights.size) / row["sample_rate_hz"]
     number = np.searchsorted(np.asarray(row["window_starts_s"]), times, side="right") - 1
     values = np.asarray(row["window_impulse_per_turn_n_s"])
@@ -149,15 +153,20 @@ def _share_of_covered_windows(row: Row, weights: FloatArray) -> float:
 
 
 def _window_turns(row: Row) -> FloatArray:
-    """Turns of each window: WINDOW_TURNS, and what is left."""
+    """Number of turns of each window: WINDOW_TURNS, and the rest."""
     starts = np.arange(0, row["record_turns"], WINDOW_TURNS)
     return np.asarray(np.minimum(WINDOW_TURNS, row["record_turns"] - starts), dtype=np.float64)
 
 
 def order_problems(row: Row, tap: str, values: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
-    """What contradicts between the orders of a true signal and the channel (samples,) of it, at a steady speed.
+    """Contradictions between the orders of a true signal and its channel, at a steady speed.
 
-    Silent where fewer turns are recorded than the label has.
+    - row: the run's labels.
+    - tap: name of the true signal.
+    - values (samples,): the channel.
+    - noise_rms, step: noise and ADC step, in the channel's unit.
+
+    None where the channel has fewer turns than the label.
     """
     turns = min(SPECTRUM_TURNS, row["record_turns"])
     turns_per_sample = row["speed_rpm"] / 60 / row["sample_rate_hz"]
@@ -189,11 +198,11 @@ def _turned(values: Float32Array, turns_per_sample: float) -> ComplexArray:
 
 
 def _of_unseen_end(row: Row, values: Float32Array, samples: int, turns_per_sample: float) -> FloatArray:
-    """How far each amplitude may differ because the channel ends before the label's window does, by half a filter.
+    """Largest difference of each amplitude because the channel ends half a filter before the label's window.
 
-    The label has d samples at its end that the channel has not, and lacks d that the channel has at its beginning. Both
-    pieces together change an amplitude by at most twice that of the largest piece: as large as the largest of all
-    pieces of the recording, for any motion. One more sample stands for the whole number that is no whole turn.
+    The label has d samples at its end that the channel has not, and lacks d samples of the channel's beginning. Both
+    pieces together change an amplitude by at most twice the amplitude of the largest piece of the recording, for any
+    motion. One more sample stands for the fraction of a turn.
     """
     end = row["record_turns"] / turns_per_sample
     last = row["signal_start_s"] * row["sample_rate_hz"] + values.size - 1
@@ -203,7 +212,7 @@ def _of_unseen_end(row: Row, values: Float32Array, samples: int, turns_per_sampl
 
 
 def _spectral_floor(noise_rms: float, step: float, samples: int) -> float:
-    """Largest amplitude that noise and ADC steps put into a line: white where the noise dithers the steps."""
+    """Largest amplitude of a line from noise and ADC steps. The steps are white where the noise dithers them."""
     if noise_rms < step / 2:
         return step
     return NOISE_PEAK * math.sqrt((noise_rms**2 + step**2 / 12) * 2 / samples)

@@ -1,4 +1,4 @@
-"""Whether labels, parameters and recorded signals of a run fit each other."""
+"""Whether labels, parameters and recorded signals of a run agree."""
 
 import dataclasses
 import math
@@ -30,12 +30,12 @@ REGULARITY = [motion.value for motion in Motion]
 SHARE_TOLERANCE = 1e-9
 PULSE_TOLERANCE = 1e-9
 IMPULSE_TOLERANCE = 1e-5
-"""Touches are kept in single precision."""
+"""Touches are stored in single precision."""
 ENERGY_TOLERANCE = 1e-8
 
 
 def label_problems(row: Row) -> Iterator[str]:
-    """What contradicts itself in the labels of a valid run."""
+    """Contradictions among the labels of a valid run."""
     rules = {
         "contact_duty outside [0, 1]": 0 <= row["contact_duty"] <= 1,
         "rub and contact_duty": row["rub"] == (row["contact_duty"] > 0),
@@ -72,9 +72,13 @@ def label_problems(row: Row) -> Iterator[str]:
 
 
 def signal_problems(row: Row, signals: dict[str, Float32Array], sensing: Sensing) -> Iterator[str]:
-    """What contradicts itself between the labels of a valid run and its channels, recorded as `sensing` says.
+    """Contradictions between the labels of a valid run and its channels.
 
-    Compared with the labels are channels that did not reach their range, of sensors without faults but noise.
+    - row: the run's parameters and labels.
+    - signals: its channels by name.
+    - sensing: of the run.
+
+    Only channels that did not reach their range are compared, of sensors without faults except noise.
     """
     lengths = {values.size for values in signals.values()}
     if len(lengths) > 1:
@@ -91,7 +95,7 @@ def signal_problems(row: Row, signals: dict[str, Float32Array], sensing: Sensing
 
 
 def is_faultless(sensor: SampledSensor, sensing: Sensing) -> bool:
-    """Whether a sensor, in SI units, gives the truth but for noise, range and ADC."""
+    """Whether a sensor, in SI units, records the truth except for noise, range and ADC."""
     usual = dataclasses.asdict(dataclasses.replace(sensor, range=None, noise_rms=0.0, adc_bits=None))
     plain = {field.name: field.default for field in dataclasses.fields(SampledSensor) if field.name in usual}
     differs = [key for key, value in plain.items() if key not in ("name", "unit") and usual[key] != value]

@@ -1,4 +1,4 @@
-"""The files of a data set beside what its manifest lists: whole, damaged, missing, or not of the set."""
+"""The files of a data set compared with its manifest: good, damaged, missing, or not of the set."""
 
 import os
 import stat
@@ -14,12 +14,12 @@ from rubgen.errors import UserError
 
 REPORT = "report.html"
 REPORT_MARK = b'<meta name="generator" content="rubgen report">'
-"""In the head of a page that `rubgen report` wrote."""
+"""In the head of every page of `rubgen report`."""
 HEAD_BYTES = 2000
 
 
 class Kind(Enum):
-    """What a finding asks for."""
+    """The remedy of a finding."""
 
     DATA = "make the set again"
     DERIVED = "rubgen repair"
@@ -28,7 +28,7 @@ class Kind(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """Something wrong with a set, in one line that names the file or the run."""
+    """A problem of a set, in one line that names the file or the run."""
 
     text: str
     kind: Kind = Kind.DATA
@@ -39,7 +39,7 @@ class Finding:
 
 
 def file_findings(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
-    """What is wrong with the files that the manifest lists."""
+    """Problems of the files that the manifest lists."""
     remade = {layout.card.name, layout.croissant.name}
     for entry in manifest.files:
         kind = Kind.DERIVED if entry.path in remade else Kind.DATA
@@ -51,7 +51,7 @@ def file_findings(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
 
 
 def derived_digests(layout: Layout, manifest: Manifest) -> tuple[dict[str, FileEntry], list[Finding]]:
-    """The derived files as they were written, by path, and what is wrong with that list."""
+    """The derived files as they were written, by path, and the problems of that list."""
     name = layout.derived.name
     if not manifest.derived:
         return {}, []
@@ -78,7 +78,7 @@ def _entry_findings(root: Path, name: str, entry: FileEntry | None, where: str, 
 
 
 def _check_within(root: Path, path: Path) -> int:
-    """Size of a regular file that stands in the set itself; UserError or OSError for anything else."""
+    """Size of a regular file in the set itself. Raises UserError or OSError for anything else."""
     try:
         real = path.resolve(strict=True)
     except RuntimeError:
@@ -100,11 +100,10 @@ def _reason(error: OSError | UserError) -> str:
 
 
 def strangers(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
-    """Files and folders below the set that neither the manifest nor rubgen's other commands account for.
+    """Files and folders below the set that belong neither to the manifest nor to rubgen's other commands.
 
-    What systems leave in any directory is no content. `.staging` and its lock stay where the making was stopped at its
-    very end; the next `generate` removes them.
-    A page of `rubgen report` is known by its name and its mark.
+    Files of the operating system are ignored. `.staging` and its lock remain where `generate` was stopped at its very
+    end; the next `generate` removes them. A page of `rubgen report` is recognised by its name and its mark.
     """
     known = {entry.path for entry in manifest.files} | set(manifest.derived)
     known |= {layout.manifest.name, layout.digest.name}

@@ -24,7 +24,7 @@ RELATIVE, ABSOLUTE = 1e-9, 1e-12
 
 @dataclass(frozen=True)
 class Difference:
-    """A label of a run: as it stands in `runs.parquet`, and made again."""
+    """A label of a run that differs: in `runs.parquet`, and made again."""
 
     run_id: str
     label: str
@@ -34,7 +34,7 @@ class Difference:
 
 @dataclass(frozen=True, kw_only=True)
 class Relabelled:
-    """How many runs and labels were made again, and where they differ."""
+    """Number of runs and labels that were made again, and the differences."""
 
     runs: int
     labels: int
@@ -42,7 +42,7 @@ class Relabelled:
 
 
 def relabel(directory: Path) -> Relabelled:
-    """Make the labels of every good run again, all but those of orders, which need the signals at every step.
+    """Make the labels of every good run again, except orders, which need the signals at every step.
 
     The data set is only read. Raises UserError where `directory` holds no finished data set, or one without sections.
     """
@@ -73,7 +73,7 @@ def _good_rows(layout: Layout) -> Iterator[dict[str, Any]]:
 
 
 def _remade(layout: Layout, names: list[str], asked: float) -> Iterator[tuple[str, dict[str, object]]]:
-    """Name and labels of each run with a section."""
+    """Name and labels of each run with a compact record."""
     if not names:
         raise UserError(f"{layout.root}: no sections/ to make labels from; generate the set again with this rubgen")
     for path in (layout.root / name for name in names):
@@ -95,7 +95,7 @@ def _labels_of(table: pa.Table, row: int, path: Path) -> dict[str, object]:
 
 
 def equal(one: object, other: object) -> bool:
-    """Whether two labels are the same, numbers but for rounding."""
+    """Whether two labels are equal. Numbers may differ by rounding."""
     if isinstance(one, list) and isinstance(other, list):
         return len(one) == len(other) and all(map(equal, one, other))
     if isinstance(one, float) and isinstance(other, float):

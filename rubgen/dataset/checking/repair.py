@@ -1,4 +1,4 @@
-"""What is made from the data files of a set, made again where it is lost or damaged."""
+"""Files made from the data files of a set, made again where they are lost or damaged."""
 
 import hashlib
 from collections.abc import Iterator
@@ -20,19 +20,19 @@ from rubgen.formats import format_of
 
 @dataclass(frozen=True, kw_only=True)
 class Repaired:
-    """Paths of the files that were made again, and what is still wrong."""
+    """Paths of the files that were made again, and the remaining problems."""
 
     made: tuple[str, ...]
     left: tuple[Finding, ...]
 
 
 def repair(directory: Path) -> Repaired:
-    """Make README.md, croissant.json, .rrd files and their digests again where they are not as they were written.
+    """Make README.md, croissant.json, .rrd files and their digests again where they are damaged or missing.
 
-    README.md and croissant.json come out with the bytes that the manifest lists, or stay as they are. An .rrd file is
-    made from its MCAP file where that is whole, else the run is simulated again, which takes the versions that made the
-    set. No other file is changed and none is deleted.
-    Raises UserError where `directory` holds no finished data set, its manifest is damaged, or it cannot be written.
+    README.md and croissant.json are written only with the bytes that the manifest lists. An .rrd file is made from its
+    MCAP file where that is good. Else the run is simulated again, which needs the versions that made the set. No other
+    file is changed and none is deleted. Raises UserError where `directory` holds no finished data set, its manifest is
+    damaged, or it cannot be written.
     """
     layout = Layout(directory)
     manifest = read_manifest(layout)
@@ -45,7 +45,7 @@ def repair(directory: Path) -> Repaired:
 
 
 def _texts(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[str]:
-    """README.md and croissant.json, each only where it comes out as the manifest lists it."""
+    """README.md and croissant.json, each only where its bytes agree with the manifest."""
     listed = {entry.path: entry.sha256 for entry in manifest.files}
     texts = {}
     if layout.card.name in wrong:
@@ -59,7 +59,7 @@ def _texts(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[str]
 
 
 def _recordings(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[str]:
-    """The .rrd files that are not proven whole, and then their digests."""
+    """The .rrd files that are not proven good, then their digests."""
     data, left = DataSet(layout.root), False
     for name in manifest.derived:
         if name in wrong or layout.derived.name in wrong:
@@ -71,7 +71,7 @@ def _recordings(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator
 
 
 def _make_recording(data: DataSet, name: str, wrong: set[str]) -> bool:
-    """Make one .rrd file again; whether that could be done."""
+    """Make one .rrd file again. Return whether that was possible."""
     from rubgen.viz.replay import replay_of
 
     remake = format_of(Path(name).parts[0]).remake

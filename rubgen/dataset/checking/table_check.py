@@ -20,15 +20,19 @@ from rubgen.scenario import Sensing
 
 NO_PARQUET = "damaged or no Parquet file of rubgen"
 MOST_NAMED = 4
-"""Runs or columns that a line lists one by one."""
+"""Number of runs or columns that a line lists one by one."""
 CLOSED: list[tuple[pa.Table | None, list[str]]] = [(None, [])]
-"""What is known of a file that must not be opened."""
+"""The content of a file that must not be opened: unknown."""
 UNCOMPARABLE = (TypeError, ValueError, LookupError, AttributeError, ArithmeticError)
-"""What values of a wrong kind or number raise where they are compared."""
+"""Errors from comparing values of a wrong type or number."""
 
 
 def table_problems(layout: Layout, manifest: Manifest, closed: set[str]) -> Iterator[str]:
-    """What is wrong in `runs.parquet`, in sections and data files, but for those that must stay `closed`."""
+    """Problems in `runs.parquet`, in `sections/` and in the data files.
+
+    - layout, manifest: of the set.
+    - closed: files that must not be opened.
+    """
     identity = manifest.identity
     recorded = identity.recorded(str(layout.manifest))
     asked = asked_bytes(recorded)
@@ -50,7 +54,7 @@ def table_problems(layout: Layout, manifest: Manifest, closed: set[str]) -> Iter
 
 
 def _run_problems(name: str, rows: dict[str, Row], manifest: Manifest) -> Iterator[str]:
-    """What `runs.parquet` has in another way than the manifest."""
+    """Differences between `runs.parquet` and the manifest."""
     expected = (f"run-{index:06d}" for index in range(len(rows)))
     if len(rows) != manifest.runs or any(run_id != next(expected) for run_id in rows):
         yield f"{name}: {len(rows)} runs, the manifest has {manifest.runs}"
@@ -59,7 +63,7 @@ def _run_problems(name: str, rows: dict[str, Row], manifest: Manifest) -> Iterat
 
 
 def _list_problems(manifest: Manifest, formats: Sequence[str], good: set[str]) -> Iterator[str]:
-    """Files of single runs that the manifest lists without a good run, or does not list for one."""
+    """Files of single runs that the manifest lists without a good run, or does not list for a good run."""
     for kind in (each.name for each in run_formats()):
         listed = set(manifest.listed(kind))
         expected = {f"{kind}/{name}.{kind}" for name in good} if kind in formats else set()
@@ -109,13 +113,13 @@ def _row_problems(
 
 
 def _difference(seen: set[str], good: set[str], has: str, lacks: str, *, whole: bool) -> Iterator[str]:
-    """Runs that have something and are not good, and good ones that lack it; only of files read to the end."""
+    """Runs that have something without being good, and good runs that lack it; only for files read to the end."""
     for name in sorted(seen ^ good if whole else set(), key=str):
         yield f"{name}: {f'has {has}, but is not ok' if name in seen else f'is ok, but has {lacks}'}"
 
 
 def _compared(run_id: str, problems: Callable[[], list[str]]) -> Iterator[str]:
-    """The problems of a run; values that cannot even be compared are one."""
+    """The problems of a run. Values that cannot be compared are a problem too."""
     try:
         yield from (f"{run_id}: {problem}" for problem in problems())
     except UNCOMPARABLE as error:
@@ -125,7 +129,7 @@ def _compared(run_id: str, problems: Callable[[], list[str]]) -> Iterator[str]:
 def _groups(
     layout: Layout, name: str, types: pa.Schema, name_of: Callable[[int], str], asked: float
 ) -> Iterator[tuple[pa.Table | None, list[str]]]:
-    """Each row group of a file, or None with what is wrong with it; `name_of` gives the run of a row."""
+    """Each row group of a file, or None with its problems; `name_of` is the run of a row."""
     path, first = layout.root / name, 0
     try:
         with open_parquet(path, asked) as file:
@@ -146,7 +150,7 @@ def _groups(
 
 
 def _namer(good: list[str], shard: int) -> Callable[[int], str]:
-    """The run of a row in that file of a folder: files hold the good runs in their order."""
+    """The run of a row in that file of a folder: files have the good runs in their order."""
 
     def name_of(row: int) -> str:
         place = shard * RUNS_PER_SHARD + row
@@ -164,7 +168,7 @@ def _runs_of(file: ParquetSource, group: int) -> list[str]:
 
 
 def _few(names: Sequence[str]) -> str:
-    """The names, of many the first and the last."""
+    """The names; of many names the first and the last."""
     return ", ".join(names) if len(names) <= MOST_NAMED else f"{names[0]} to {names[-1]}"
 
 

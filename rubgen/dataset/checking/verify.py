@@ -11,19 +11,19 @@ from rubgen.formats import run_formats
 
 
 def verify(directory: Path) -> list[str]:
-    """Every problem of the data set in `directory`, one line each; empty when there is none.
+    """Every problem of the data set in `directory`, one line each; empty without problems.
 
-    Checked: format and digest of the manifest; presence, size and sha256 of every file that it lists, the .rrd files
-    by derived.json; that nothing else lies there and no link leads out; pages of every Parquet file, with the runs of
-    a damaged row group; CRCs of every MCAP file; that MCAP and .rrd files are of the run in their name; schemas and
-    row counts; labels against each other; labels against the recorded channels. Only regular files are opened.
-    Raises UserError where `directory` holds no finished data set, or its manifest is damaged.
+    Checked: format and digest of the manifest; presence, size and sha256 of every listed file, and of .rrd files by
+    derived.json; that there is nothing else and no link leads out; pages of every Parquet file, with the runs of a
+    damaged row group; CRCs of every MCAP file; that MCAP and .rrd files belong to the run in their name; schemas and
+    row counts; labels against each other; labels against the recorded channels. Only regular files are opened. Raises
+    UserError where `directory` holds no finished data set, or its manifest is damaged.
     """
     return [finding.text for finding in findings(directory)]
 
 
 def findings(directory: Path) -> list[Finding]:
-    """The problems of `verify`, each with what it asks for."""
+    """The problems of `verify`, each with its kind."""
     layout = Layout(directory)
     manifest = read_manifest(layout)
     found = list(file_findings(layout, manifest))
@@ -34,7 +34,7 @@ def findings(directory: Path) -> list[Finding]:
 
 
 def _format_findings(layout: Layout, manifest: Manifest, closed: set[str], wrong: set[str]) -> Iterator[Finding]:
-    """What is wrong inside the files of single runs. Of derived ones those are read that are not `wrong` already."""
+    """Problems inside the files of single runs. Derived files are read only where they are not `wrong` already."""
     proven = set(derived_digests(layout, manifest)[0])
     for each in run_formats():
         kind = Kind.DERIVED if each.remake else Kind.DATA
@@ -49,7 +49,7 @@ def _format_findings(layout: Layout, manifest: Manifest, closed: set[str], wrong
 
 
 def advice(directory: Path, found: list[Finding]) -> str:
-    """What to do about these findings; nothing whole is to be deleted."""
+    """The remedy for these findings. It never deletes a good file."""
     kinds = {finding.kind for finding in found}
     sentences = {
         Kind.DATA: (

@@ -21,7 +21,7 @@ ROWS_PER_TABLE_GROUP = 4096
 
 
 def assemble(recipe: Recipe, layout: Layout) -> Counter[str]:
-    """Write `runs.parquet`, data files and sections from the staged runs; gives how many ended with which status."""
+    """Write `runs.parquet`, data files and sections from the staged runs. Return the number of runs by status."""
     staged = [layout.staged(f"run-{index:06d}") for index in range(recipe.runs)]
     sensors, asked = recipe.sensing.set, asked_bytes(recipe)
     status = _write_runs(staged, layout, schema(signals=False, sensors=sensors), asked)
@@ -60,7 +60,7 @@ def _write_shards(
     types: pa.Schema,
     asked: float,
 ) -> None:
-    """Files of staged tables of one row; `rows` are the staged runs that they belong to."""
+    """Write files of staged tables of one row; `rows` are the staged runs that they belong to."""
     shards = list(_batches(list(zip(staged, rows, strict=True)), RUNS_PER_SHARD)) or [[]]
     for number, shard in enumerate(shards):
         groups = (_joined(group, types, asked) for group in _batches(shard, RUNS_PER_ROW_GROUP))
@@ -72,7 +72,7 @@ def _joined(group: Sequence[tuple[Path, Path]], types: pa.Schema, asked: float) 
 
 
 def _read(path: Path, row: Path, names: list[str], asked: float) -> pa.Table:
-    """A staged table; where it is damaged its run counts no more as finished, and the next call makes it again."""
+    """A staged table. Where it is damaged its run no longer counts as finished, and the next call makes it again."""
     try:
         return read_table(path, names, asked)
     except UserError as error:

@@ -1,4 +1,4 @@
-"""Whose an output directory is: empty, ours and unfinished, ours and finished, or not ours."""
+"""State of an output directory: empty, unfinished, finished, or of something else."""
 
 import errno
 import json
@@ -19,13 +19,13 @@ from rubgen.io.files import PART, sync_directory
 _STAGED = ("runs", "sections")
 """Folders of `.staging`."""
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EINVAL)
-"""What file systems answer that have no locks, as NFS without its lock daemon."""
+"""Errors of file systems without locks, such as NFS without its lock daemon."""
 
 
 def acquired(path: Path) -> BaseFileLock | None:
     """The lock at `path`, or None where another process has it.
 
-    Where the file system has no locks, a file that only one process can make is the lock, and a remark says so.
+    Where the file system has no locks, a file that only one process can make is the lock, with a remark.
     """
     try:
         return _acquired(FileLock(path, timeout=0))
@@ -41,7 +41,7 @@ def acquired(path: Path) -> BaseFileLock | None:
 
 
 def soft_lock(path: Path) -> Path:
-    """The file that stands for the lock at `path` where there are no locks."""
+    """The file that replaces the lock at `path` where there are no locks."""
     return path.with_name(f"{path.name}.soft")
 
 
@@ -54,7 +54,7 @@ def _acquired(lock: BaseFileLock) -> BaseFileLock | None:
 
 
 def finished(layout: Layout, identity: Identity) -> bool:
-    """Whether the directory already holds this very data set; UserError where it is the one of another recipe."""
+    """Whether the directory holds this data set already. Raises UserError where it holds the set of another recipe."""
     if layout.manifest.exists() and layout.digest.exists():
         check_same(layout, read_manifest(layout).identity, identity)
         return True
@@ -63,9 +63,9 @@ def finished(layout: Layout, identity: Identity) -> bool:
 
 @contextmanager
 def claimed(layout: Layout, identity: Identity) -> Iterator[None]:
-    """Hold the directory for this process alone; what was seen before may have changed.
+    """A context in which this process alone has the directory. Checks before it may be outdated.
 
-    Raises UserError where the directory is not ours, cannot be made, or another process holds it.
+    Raises UserError where the directory has other content, cannot be made, or another process has it.
     """
     root = layout.root
     _check_place(layout)
@@ -92,10 +92,10 @@ def claimed(layout: Layout, identity: Identity) -> Iterator[None]:
 
 @contextmanager
 def begun(layout: Layout, identity: Identity) -> Iterator[None]:
-    """The folders of the set, made or found, within `claimed`. What was left half-written is removed.
+    """A context, within `claimed`, in which the folders of the set exist. Incomplete files are removed.
 
-    `.staging` appears in one step with the identity in it: whenever the work stops, the same recipe goes on. What the
-    user must mend before the first run is finished leaves nothing behind.
+    `.staging` appears in one step with the identity in it: whenever the work stops, the same recipe can continue. An
+    error that the user must correct before the first run is finished leaves no files.
     """
     if not layout.identity.exists():
         _begin(layout, identity)
@@ -120,7 +120,7 @@ def has_remains(layout: Layout) -> bool:
 
 
 def remove_staging(layout: Layout) -> None:
-    """Remove the finished runs of a set that is complete, and what a stop left of their folder."""
+    """Remove the staged runs of a complete set, and remains of their folder."""
     for folder in (layout.staging, _unborn(layout)):
         if folder.exists():
             shutil.rmtree(folder)
@@ -153,7 +153,7 @@ def _lock(layout: Layout) -> Path:
 
 
 def _check_place(layout: Layout) -> None:
-    """Raise UserError, before anything is written, where the directory is surely not ours."""
+    """Raise UserError, before anything is written, where the directory surely has other content."""
     root = layout.root
     if "\0" in str(root):
         raise UserError(f"--out {str(root)!r}: has a NUL character in it; give another directory")
@@ -175,7 +175,7 @@ def _not_ours(layout: Layout) -> UserError:
 
 
 def _holds_nothing(layout: Layout) -> bool:
-    """Whether there is nothing but what systems leave anywhere, and what a stop in the first moments leaves."""
+    """Whether the directory has only files of the operating system, and remains of a stop in the first moments."""
     try:
         return all(_is_nothing(layout, path) for path in layout.root.iterdir())
     except FileNotFoundError:  # it vanished meanwhile: another rubgen is at work, the lock will tell
@@ -209,9 +209,11 @@ def _read_identity(layout: Layout) -> Identity:
 
 
 def check_same(layout: Layout, there: Identity, asked: Identity, *, versions: bool = False) -> None:
-    """Raise UserError, with the first key that differs, where the directory is of another recipe.
+    """Raise UserError, with the first different key, where the directory holds the set of another recipe.
 
-    With `versions` the packages must be the same too.
+    - layout: of the directory.
+    - there, asked: identities of its set and of the wanted set.
+    - versions: compare the packages too.
     """
     if not there.same_recipe(asked):
         key, old, new = _first_difference(there, asked)
@@ -246,6 +248,6 @@ def _flat(values: dict[str, object], prefix: str = "") -> dict[str, object]:
 
 
 def _by_name(listed: list[object]) -> object:
-    """A list of tables by their names or numbers; any other list as it is."""
+    """A list of tables by their names or numbers; any other list unchanged."""
     tables = [each for each in listed if isinstance(each, dict)]
     return {str(each.get("name", i)): each for i, each in enumerate(tables)} if len(tables) == len(listed) else listed

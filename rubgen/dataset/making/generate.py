@@ -1,4 +1,4 @@
-"""A recipe becomes a data set: every run made once, whatever stops the work in between."""
+"""From a recipe to a data set. Every run is made once, even where the work is interrupted."""
 
 from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager, suppress
@@ -25,23 +25,25 @@ from rubgen.scenario.recipe import check_recipe, checked_runs
 
 KEPT = "finished runs are kept"
 LOOKED_AT = 16
-"""First runs of which one must be able to rub; a recipe in which none can rubs rarely at best."""
+"""Number of first runs of which one must be able to rub. A recipe without any rubs rarely at best."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Generated:
-    """What `generate` left behind: `made` of the `runs` are new, `status` counts how all of them ended.
-
-    `outcome` counts rub and classes of motion and tells why runs failed. `verified` says that nothing was to do and the
-    whole set was verified; a set that was made or put together in this call is not.
-    """
+    """The result of `generate`."""
 
     directory: Path
+    """Directory of the set."""
     runs: int
+    """Number of its runs."""
     made: int
+    """Number of runs made by this call."""
     status: dict[str, int]
+    """Number of runs by status."""
     outcome: Outcome
+    """Counts of rub and classes of motion, and reasons of failures."""
     verified: bool = False
+    """True where the set was finished before and this call verified it."""
 
 
 def generate(
@@ -52,16 +54,22 @@ def generate(
     workers: int | None = None,
     progress: Report | bool | None = None,
 ) -> Generated:
-    """Make the data set of `recipe` (a recipe, its TOML values, its file; None: the embedded one) in `out`.
+    """Make the data set of a recipe in a directory.
 
-    Each run is simulated alone, in `workers` processes (one for each usable core; 1 works in this process), and kept as
-    soon as it is finished: the same call after an interruption makes what is missing, to the same bytes. The number
-    of runs belongs to the recipe (`runs` overrides it): another one is another data set and needs another directory.
-    Failed runs are listed with their reason. A finished set is verified and left alone. `progress` is called with the
-    numbers of finished and of all runs; True shows it on stderr, None does so on a terminal or in a notebook.
+    - recipe: a recipe, its TOML values, its file, or None for the default recipe.
+    - out: the directory.
+    - runs: overrides the recipe's number of runs. The number belongs to the recipe: another number is another data set
+      and needs another directory.
+    - workers: number of processes, by default one for each usable core; 1 works in this process.
+    - progress: called with the numbers of finished and of all runs. True shows them on stderr, None only on a terminal
+      or in a notebook.
+
+    Each run is simulated alone and stored as soon as it is finished. The same call after an interruption makes the
+    missing runs, with the same bytes. Failed runs are listed with their reason. A finished set is verified and not
+    changed.
 
     Works from a script without a main guard, a notebook, a pipe or a thread: workers do not import the main module.
-    Raises UserError, one line, for bad input, a directory that is not ours or not writable, and a full disk;
+    Raises UserError, one line, for bad input, a directory with other content or not writable, and a full disk;
     RubgenError where a worker process dies or the system fails elsewhere.
     """
     recipe = _recipe(recipe, runs)
@@ -147,7 +155,7 @@ def _make_missing(recipe: Recipe, layout: Layout, workers: int, progress: Report
 
 
 def _see_end(ended: Iterable[str], done: int, runs: int, progress: Report | None) -> None:
-    """Tell of every run that ends; `done` were there before."""
+    """Report every run that ends; `done` runs were finished before."""
     with step("simulate", "runs", long=True):
         count(done, runs)
         for now, _status in enumerate(ended, start=done + 1):

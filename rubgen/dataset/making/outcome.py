@@ -1,4 +1,4 @@
-"""How the runs of a set ended: counts of rub and of classes of motion, and why some failed."""
+"""The outcome of a set's runs: counts of rub and of classes of motion, and the reasons of failures."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -16,25 +16,30 @@ COLUMNS = ["run_id", "status", "reason", "rub", "motion"]
 
 @dataclass(frozen=True, kw_only=True)
 class Failure:
-    """The runs that failed in one way; `reason` is the shortest of theirs, `run_id` the run that has it."""
+    """The runs with one status of failure."""
 
     status: str
+    """The status."""
     count: int
+    """Number of runs with it."""
     run_id: str
+    """The run with the shortest reason."""
     reason: str
+    """That reason."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """Of the runs with status ok: how many `rub`, how many do not, and how many have which class of `motion`.
-
-    `failures` has one entry for each other status, the most frequent first.
-    """
+    """Counts of the runs with status ok, and the failures."""
 
     rub: int
+    """Number of runs with rub."""
     no_rub: int
+    """Number of runs without rub."""
     motion: dict[str, int]
+    """Number of runs with each class of motion."""
     failures: tuple[Failure, ...]
+    """One entry for each other status, the most frequent first."""
 
 
 def outcome_of(layout: Layout) -> Outcome:
@@ -63,7 +68,7 @@ def _failures(rows: Iterable[dict[str, Any]]) -> list[Failure]:
 
 @dataclass(frozen=True, kw_only=True)
 class Unfinished:
-    """Name and number of runs of its recipe, and how many runs are kept."""
+    """Name and number of runs of its recipe, and the number of finished runs."""
 
     name: str
     runs: int
@@ -71,12 +76,12 @@ class Unfinished:
 
 
 def finished_runs(out: Path | str) -> int:
-    """How many runs of an unfinished set are kept."""
+    """Number of finished runs of an unfinished set."""
     return len(list((Layout(Path(out)).staging / "runs").glob("run-*[0-9].parquet")))
 
 
 def unfinished(directory: Path) -> Unfinished | None:
-    """What an interrupted `generate` left in `directory`; None where it left nothing or the set is finished.
+    """The unfinished set of an interrupted `generate` in `directory`; None without one, or where the set is finished.
 
     Raises UserError where it cannot be read.
     """

@@ -1,4 +1,4 @@
-"""One run of a data set: simulated, and its files written so that they are complete or not there."""
+"""One run of a data set: simulated, and its files written completely or not at all."""
 
 from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
@@ -15,9 +15,14 @@ WARM_UP_TURNS = 40
 
 
 def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
-    """Simulate one run and write its files; gives its status. The staged row comes last: it proves the others.
+    """Simulate one run and write its files. Return its status.
 
-    A run that cannot be made of the values that were drawn is recorded as refused, with the reason.
+    The staged row is written last: it proves the other files. A run that is not possible with the drawn values is
+    recorded as refused, with the reason.
+
+    - scenario: the run.
+    - root: directory of the set.
+    - formats: names of its formats.
     """
     from rubgen.io.parquet.compact_records import write_record
     from rubgen.io.parquet.write import run_table, write_table
@@ -38,9 +43,12 @@ def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
 
 
 def is_staged(layout: Layout, index: int, formats: tuple[str, ...], asked_bytes: float) -> bool:
-    """Whether the run and all its files are there; a row that cannot be read, or whose files are lost, is not.
+    """Whether the run and all its files are there and its row can be read.
 
-    `asked_bytes` is what the recipe lets its row unpack to.
+    - layout: of the set.
+    - index: number of the run.
+    - formats: names of its formats.
+    - asked_bytes: unpacked size of its row by the recipe.
     """
     from rubgen.io.parquet.read import read_table
 
@@ -56,12 +64,14 @@ def is_staged(layout: Layout, index: int, formats: tuple[str, ...], asked_bytes:
 
 
 def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple[Scenario, ...]) -> list[str]:
-    """Reduce the machine at the extremes of `[vary]`, then run a few turns.
+    """Reduce the machine at the extremes of `[vary]`, then run a few turns. Return warnings.
 
-    Gives what to warn of: what a worker found wrong in caches, and that none of the first runs can be made or can
-    rub.
+    Impossible recipes fail here, before any run. Kernels are then compiled and the reduced model cached for the
+    workers. The warnings are problems of a worker with caches, and that none of the first runs can be made or can rub.
 
-    What cannot be done fails before any run; kernels are compiled and the reduced model cached before workers start.
+    - scenario: its machine is reduced and run.
+    - corners: scenarios at the extremes.
+    - first_runs: the first runs of the recipe.
     """
     from rubgen.pipeline import simulate
     from rubgen.reduction import reduce
@@ -79,7 +89,7 @@ def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple
 
 
 def warming_up() -> AbstractContextManager[None]:
-    """The step to show while `warm_up` works here or in a worker."""
+    """The progress of `warm_up`, here or in a worker."""
     from rubgen.jit import kernels_are_compiled
 
     compiled = kernels_are_compiled()

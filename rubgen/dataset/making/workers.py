@@ -1,4 +1,4 @@
-"""Worker processes that stop when they are told to, and when the process that started them is gone."""
+"""Worker processes, which end on request and when the process that started them has ended."""
 
 import math
 import multiprocessing
@@ -29,16 +29,16 @@ _ONE_START = threading.Lock()
 
 
 def usable_cores(root: Path = Path("/")) -> int:
-    """Cores that this process may use: its affinity and its container's CPU quota, rounded up, where there are any.
+    """Number of cores that this process may use: its affinity and its container's CPU quota, rounded up.
 
-    `root` is where the system's own files begin: /proc/self/cgroup and, of either version, /sys/fs/cgroup.
+    `root` is the root of the system's own files: /proc/self/cgroup and, of either version, /sys/fs/cgroup.
     """
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return max(1, min([cores, *(math.ceil(quota) for quota in _cpu_quotas(root))]))
 
 
 def _cpu_quotas(root: Path) -> Iterator[float]:
-    """The quota in cores of every control group that this process is in, the inner and the outer ones."""
+    """The quota in cores of every control group of this process, inner and outer."""
     base = root / "sys/fs/cgroup"
     for line in _text(root / "proc/self/cgroup").splitlines():
         _number, controllers, inner = [*line.split(":", 2), "", ""][:3]
@@ -50,7 +50,7 @@ def _cpu_quotas(root: Path) -> Iterator[float]:
 
 
 def _quota(folder: Path) -> float | None:
-    """Cores of one control group: `cpu.max` of version 2, `cpu.cfs_*` of version 1; None where nothing is limited."""
+    """Cores of one control group: `cpu.max` of version 2, `cpu.cfs_*` of version 1; None without a limit."""
     limit = _text(folder / "cpu.max") or f"{_text(folder / 'cpu.cfs_quota_us')} {_text(folder / 'cpu.cfs_period_us')}"
     match limit.split():
         case [quota, period] if quota.isdecimal() and period.isdecimal() and int(period) > 0:
@@ -67,9 +67,9 @@ def _text(path: Path) -> str:
 
 @contextmanager
 def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor | None]:
-    """A pool of fresh processes with one thread of BLAS each; left early, its processes are ended at once.
+    """A pool of new processes with one thread of BLAS each. When the block ends early, its processes are ended at once.
 
-    None, for `unordered` to work in this process, for one worker and, with a remark, where no process can be started.
+    None for one worker and, with a remark, where no process can be started: `unordered` then works in this process.
     Raises RubgenError where a process dies or memory runs out.
     """
     context = _OwnMain()
@@ -96,7 +96,13 @@ def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor | None]:
 def unordered(
     pool: ProcessPoolExecutor | None, workers: int, work: Callable[..., R], jobs: Iterable[tuple[object, ...]]
 ) -> Iterator[R]:
-    """Results of `work(*job)` as they come; only a few jobs are in flight, whatever their number."""
+    """Results of `work(*job)` as they finish. Only a few jobs are submitted at a time.
+
+    - pool: from `worker_pool`; None works in this process.
+    - workers: number of its processes.
+    - work: a function that can be pickled.
+    - jobs: its arguments.
+    """
     if pool is None:
         yield from (work(*job) for job in jobs)
         return
@@ -117,7 +123,7 @@ class _Worker(SpawnProcess):
     """A process that does not import the user's main module, which would run a script a second time."""
 
     def start(self) -> None:
-        """Start it while the main module is one without a file: nothing that workers do comes from there."""
+        """Start it while the main module has no file: workers need nothing of it."""
         with _ONE_START:
             main = sys.modules["__main__"]
             sys.modules["__main__"] = ModuleType("__main__")
@@ -128,13 +134,13 @@ class _Worker(SpawnProcess):
 
 
 class _OwnMain(SpawnContext):
-    """Makes such processes and remembers them."""
+    """A context that makes such processes and remembers them."""
 
     def __init__(self) -> None:
         self.workers: list[_Worker] = []
 
     def Process(self, *args: Any, **kwargs: Any) -> _Worker:  # type: ignore[override]
-        """A process of this context, as the pool asks for it."""
+        """A process of this context, called by the pool."""
         self.workers.append(_Worker(*args, **kwargs))
         return self.workers[-1]
 
@@ -168,7 +174,7 @@ def _end(pool: ProcessPoolExecutor | None, context: _OwnMain) -> None:
 
 
 def _how_it_ended(context: _OwnMain) -> str:
-    """What the system knows of the process that broke the pool; the pool ends the others by SIGTERM."""
+    """How the process ended that broke the pool, from the system. The pool ends the others by SIGTERM."""
     codes = [process.exitcode for process in context.workers if process.exitcode is not None]
     if not codes:
         return "ended, and the system does not say how"
@@ -187,7 +193,7 @@ def _start_worker() -> None:
 
 
 def _end_with_parent() -> None:
-    """A worker whose parent was killed would wait for jobs for ever."""
+    """End with the parent: a worker whose parent was killed would wait for jobs for ever."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         connection.wait([parent.sentinel])
@@ -196,10 +202,10 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _interrupts_held() -> Iterator[None]:
-    """Ctrl-C and a polite kill wait until the end of the block.
+    """Delay Ctrl-C and SIGTERM to the end of the block.
 
-    A process that is being started needs its parent to finish. The mask is for the new processes, which inherit it
-    until they are ready to ignore Ctrl-C; the handlers are for this one, where a signal may reach another thread.
+    A process that is being started needs its parent until it has started. The mask is for the new processes, which
+    inherit it until they ignore Ctrl-C. The handlers are for this process, where a signal may reach another thread.
     """
     held: list[int] = []
     mask = _set_mask("SIG_BLOCK", {signal.SIGINT})
@@ -220,7 +226,7 @@ def _interrupts_held() -> Iterator[None]:
 
 
 def _set_mask(how: str, signals: Iterable[int]) -> set[signal.Signals | int]:
-    """The mask of signals before; Windows has none."""
+    """Set the mask of signals; return the mask before. Windows has none."""
     set_mask = getattr(signal, "pthread_sigmask", None)
     return set(set_mask(getattr(signal, how), signals)) if set_mask else set()
 

@@ -1,1 +1,1 @@
-"""A finished data set is read: runs, signals, touches, replays."""
+"""Reading a finished data set: runs, signals, touches, replays."""

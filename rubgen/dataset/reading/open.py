@@ -1,4 +1,4 @@
-"""A finished data set, read when it is asked for."""
+"""A finished data set, read on demand."""
 
 from __future__ import annotations
 
@@ -33,19 +33,19 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST_SHOWN = 5
-"""Runs that a notebook shows of a set."""
+"""Number of runs of a set that a notebook shows."""
 PULSES = "once_per_rev_s"
 
 
 class DataSet:
-    """The data set in a directory; what is not asked for is not read.
+    """The data set in a directory. Only what is asked for is read.
 
-    `len(data)` counts its runs, failed ones too, `data[run_id]` is one of them, and iteration gives their names.
-    The set is what its manifest lists, whatever else lies in the directory.
+    `len(data)` is the number of its runs, failed ones too. `data[run_id]` is one of them, and iteration yields their
+    names. The set consists of what its manifest lists; other files in the directory are ignored.
     """
 
     def __init__(self, directory: Path) -> None:
-        """Raise UserError where `directory` holds no finished data set; read the manifest alone."""
+        """Read the manifest. Raises UserError where `directory` holds no finished data set."""
         self.layout = Layout(directory)
         self.manifest: Manifest = read_manifest(self.layout)
 
@@ -59,7 +59,7 @@ class DataSet:
         return run_id in self._numbers
 
     def __getitem__(self, run_id: str) -> StoredRun:
-        """The run of that name; UserError where there is none."""
+        """The run of that name. Raises UserError where there is none."""
         return stored_run(self, self.row(run_id))
 
     @cached_property
@@ -74,13 +74,13 @@ class DataSet:
 
     @cached_property
     def units(self) -> dict[str, str]:
-        """The unit of each recorded channel by its name, of the clean ones too where the set keeps them."""
+        """Unit of each recorded channel by its name, with the clean channels where the set has them."""
         columns = signal_columns(self._sensing.set, clean=self._sensing.keep_clean)
         return {column.name: column.unit for column in columns if column.kind == "signal"}
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Names of the recorded channels, of the clean ones too where the set keeps them."""
+        """Names of the recorded channels, with the clean channels where the set has them."""
         return tuple(self.units)
 
     @property
@@ -89,17 +89,17 @@ class DataSet:
         return self._sensing.sample_rate_hz
 
     def row(self, run_id: str) -> dict[str, Any]:
-        """One run's parameters and labels by column, as plain values; UserError where there is no such run."""
+        """One run's parameters and labels by column, as plain values. Raises UserError where there is no such run."""
         if run_id not in self:
             raise UserError(f"{self.layout.root}: {self._no_such_run(run_id)}")
         row: dict[str, Any] = self._table.slice(self._numbers[run_id], 1).to_pylist()[0]
         return row
 
     def signals(self, run_id: str, channels: Sequence[str] | None = None) -> dict[str, Float32Array]:
-        """The recorded channels of a run, each (n_samples,) in its unit of `units`, sample i at i / sample_rate_hz.
+        """The recorded channels of a run, each (n_samples,) in its unit of `units`. Sample i is at i / sample_rate_hz.
 
-        `channels` names those that are wanted; no other is decoded. Raises UserError where there is no such run or
-        channel, the run failed, a file is damaged, or the set has neither Parquet data nor MCAP files.
+        With `channels` only the named channels are decoded. Raises UserError where there is no such run or channel, the
+        run failed, a file is damaged, or the set has neither Parquet data nor MCAP files.
         """
         names = self._known(channels)
         self.check_has_signals(run_id)
@@ -119,7 +119,7 @@ class DataSet:
     def each_channel(self, name: str) -> Iterator[tuple[str, Float32Array, FloatArray]]:
         """Name of the run, samples of one channel and arrival times (s) of the pulses, run by run.
 
-        Only what is asked for is read. Raises UserError where that channel was not recorded.
+        Only these are read. Raises UserError where that channel was not recorded.
         """
         names = self._known([name])
         for run_id, table in self._tables(list(self.ok.index), names):

@@ -1,4 +1,4 @@
-"""Runs to look at: out of a data set, an MCAP file, or made again from their scenario."""
+"""Replays of runs: from a data set, from an MCAP file, or simulated again from their scenario."""
 
 import re
 from collections.abc import Iterable
@@ -27,24 +27,28 @@ ONLY_READ: dict[str, bool | int | float | str | list[str]] = {
     "enable_external_access": False,
     "lock_configuration": True,
 }
-"""A condition sees the table of runs alone: no file, no setting."""
+"""Settings of duckdb: a condition can read only the table of runs, no file and no setting."""
 MOST_MEANT = 5
-"""Columns that a mistaken condition is answered with."""
+"""Number of similar columns in the message about a mistaken condition."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class FoundReplay:
-    """A replay, and what its reader should know: where it comes from, what of it is lost."""
+    """A replay and remarks for its reader: where it comes from, what is lost."""
 
     replay: Replay
     remarks: tuple[str, ...] = ()
 
 
 def find_replay(source: Path, run_id: str | None = None, where: str | None = None) -> FoundReplay:
-    """The run of an MCAP file, or of a data set: the named one, the first that meets `where`, else the first good one.
+    """The replay of a run.
 
-    `where` is a condition in duckdb's SQL on the columns of `runs.parquet`. Raises UserError where there is no such
-    source or run, no run meets the condition, or it cannot be understood.
+    - source: an MCAP file, or the directory of a data set.
+    - run_id: name of the run in the set.
+    - where: a condition in duckdb's SQL on the columns of `runs.parquet`; the first good run that meets it is taken.
+
+    Without both it is the first good run. Raises UserError where there is no such source or run, no run meets the
+    condition, or it cannot be understood.
     """
     if source.is_dir():
         return _from_data_set(source, run_id, where)
@@ -56,7 +60,7 @@ def find_replay(source: Path, run_id: str | None = None, where: str | None = Non
 
 
 def replay_of_mcap(path: Path) -> FoundReplay:
-    """The run in an MCAP file, as far as it can be read."""
+    """The replay of an MCAP file, as far as it can be read."""
     from rubgen.io.mcap.read import salvage_mcap
 
     run, lost = salvage_mcap(path)
@@ -65,7 +69,7 @@ def replay_of_mcap(path: Path) -> FoundReplay:
 
 
 def replay_of_recorded(run: McapRun, *, source: str = "the file") -> Replay:
-    """A run read from an MCAP file as a replay; UserError where its scenario is not one of this rubgen."""
+    """The replay of a run from an MCAP file. Raises UserError where this rubgen cannot read its scenario."""
     try:
         scenario = TypeAdapter(Scenario).validate_python(run.scenario)
     except ValidationError as error:
@@ -92,7 +96,7 @@ def replay_of_recorded(run: McapRun, *, source: str = "the file") -> Replay:
 def find_runs(data: DataSet, where: str) -> list[str]:
     """Names of the good runs that meet a condition on the columns of `runs.parquet`, in order.
 
-    Raises UserError, with columns of like names, for a condition that duckdb does not understand.
+    Raises UserError, with similar columns, for a condition that duckdb does not understand.
     """
     import duckdb
 
@@ -109,7 +113,7 @@ def find_runs(data: DataSet, where: str) -> list[str]:
 
 
 def _meant(where: str, columns: Iterable[str]) -> str:
-    """Names of columns near the words of a condition that are none, to say: a set has hundreds."""
+    """Names of columns similar to the unknown words of a condition, because a set has hundreds of columns."""
     known = set(columns)
     words = [word for word in re.findall(r"[A-Za-z_]\w+", where) if word not in known]
     near = [name for word in words for name in get_close_matches(word, known, n=3)]

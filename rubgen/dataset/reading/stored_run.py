@@ -1,4 +1,4 @@
-"""One run of a data set, as it stands in the files."""
+"""One run of a data set, from its files."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     from rubgen.dataset.reading.open import DataSet
 
 SHOWN = ("rub", "motion", "contact_duty", "contact_impulse_per_turn_n_s", "blades_touched", "contact_zones", "whirl")
-"""Labels that a run is shown with."""
+"""Labels in the short form of a run."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class StoredRun:
-    """A run of a data set: parameters and labels as plain values; signals and touches are read when asked for."""
+    """A run of a data set: parameters and labels as plain values; signals and touches are read on demand."""
 
     run_id: str
     status: str

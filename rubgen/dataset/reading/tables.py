@@ -34,11 +34,11 @@ UNITS = {
 
 
 def runs_frame(table: pa.Table, sensors: SensorSet) -> pd.DataFrame:
-    """The table of all runs, failed ones too, with `run_id` as the index and as no column.
+    """The table of all runs, failed ones too, with `run_id` as the index and not as a column.
 
-    Flags are pandas "boolean", integers "Int64", text "string": a failed run has <NA> there, and a flag still selects
-    rows. Numbers are float64 with NaN. Lists are numpy arrays, None where a run has none. `attrs["units"]` and
-    `attrs["meanings"]` map each column to its unit and to what it means.
+    Flags are pandas "boolean", integers "Int64", text "string". A failed run has <NA> there, and a flag can still
+    select rows. Numbers are float64 with NaN. Lists are numpy arrays, None where a run has none. `attrs["units"]` and
+    `attrs["meanings"]` map each column to its unit and its meaning.
     """
     frame: pd.DataFrame = table.to_pandas(types_mapper=_nullable)
     frame = frame.set_index("run_id")
@@ -58,7 +58,10 @@ def _nullable(kind: pa.DataType) -> Any:
 
 
 def check_runs(table: pa.Table, manifest: Manifest, path: Path) -> None:
-    """Raise UserError, one line with file and run, where the table's values are not those of the set."""
+    """Raise UserError, one line with file and run, where the values of `table` do not fit the manifest.
+
+    `path` is its file.
+    """
     names = table["run_id"].to_pylist()
     if names != [f"run-{index:06d}" for index in range(manifest.runs)]:
         raise UserError(f"{path}: its runs are not the {manifest.runs} of the manifest; generate the set again")
@@ -78,11 +81,15 @@ def check_runs(table: pa.Table, manifest: Manifest, path: Path) -> None:
 
 
 def touches_frame(table: pa.Table, sensing: Sensing, seconds: float) -> pd.DataFrame:
-    """One row a touch of a blade, in order of its start, from the row of a run in `sections/`.
+    """One row a touch of a blade, in order of its start.
 
-    `start_s` and `end_s` count from the first sample of the signals, which last `seconds`: touches before it have
-    negative times. `angle_rad` is the polar angle on the casing, mean by impulse; the works are <= 0. `attrs["units"]`
-    maps each column to its unit.
+    - table: the row of a run in `sections/`.
+    - sensing: of the run.
+    - seconds: length of the signals.
+
+    `start_s` and `end_s` count from the first sample of the signals: earlier touches have negative times. `angle_rad`
+    is the polar angle on the casing, mean by impulse. The works are <= 0. `attrs["units"]` maps each column to its
+    unit.
     """
     import pandas as pd
 
