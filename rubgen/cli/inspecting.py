@@ -77,7 +77,8 @@ def _tell(directory: Path, found: list[Finding], more: dict[str, object], *, as_
     if as_json:
         print_json({"ok": not found, **more, "problems": [each.text for each in found], "advice": what_to_do})
     elif found:
-        say("\n".join([*(each.text for each in found), what_to_do]))
+        for line in (*(each.text for each in found), what_to_do):
+            say(line)
     else:
         say(f"{directory}: nothing wrong")
     return 1 if found else 0

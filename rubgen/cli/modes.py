@@ -38,7 +38,8 @@ def modes_command(machine: str, *, as_json: bool) -> int:
 
 
 def _table(title: str, frequencies: list[float], published: dict[int, float]) -> None:
-    say(f"\n{title:<8}{'Hz':>10}{'published':>12}{'deviation':>12}" if published else f"\n{title:<8}{'Hz':>10}")
+    say("")
+    say(f"{title:<8}{'Hz':>10}{'published':>12}{'deviation':>12}" if published else f"{title:<8}{'Hz':>10}")
     for mode, hz in enumerate(frequencies, start=1):
         if not published:
             say(f"{mode:<8}{hz:>10.3f}")

@@ -10,13 +10,18 @@ from rubgen.errors import UserError, write_problems
 
 
 def say(text: str) -> None:
-    """One or more lines on stdout."""
-    sys.stdout.write(f"{text}\n")
+    """One line on stdout; a name in it may have control characters."""
+    sys.stdout.write(f"{printable(text)}\n")
+
+
+def printable(text: str) -> str:
+    """The text with control characters, which a terminal would obey, and line breaks as escapes."""
+    return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
 
 
 def print_json(values: dict[str, object]) -> None:
     """One JSON document on stdout; what is not a number becomes null."""
-    say(json.dumps(_plain(values), indent=2, allow_nan=False))
+    sys.stdout.write(f"{json.dumps(_plain(values), indent=2, allow_nan=False)}\n")
 
 
 def print_pairs(values: dict[str, object]) -> None:

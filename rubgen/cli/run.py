@@ -10,6 +10,7 @@ from cyclopts import CycloptsError
 
 from rubgen.cli.app import app
 from rubgen.cli.mistakes import mistake
+from rubgen.cli.printing import printable
 from rubgen.errors import RubgenError, RubgenWarning, UserError, os_reason
 from rubgen.progress import shown
 
@@ -57,9 +58,9 @@ def _show_warning(message: Warning | str, category: type[Warning], *_where: Any,
 
 
 def _one_line(error: Exception | str) -> str:
-    return " ".join(str(error).split()).rstrip(".")
+    return printable(" ".join(str(error).split())).rstrip(".")
 
 
 def _fail(message: str, code: int) -> NoReturn:
-    sys.stderr.write(f"rubgen: {message}\n")
+    sys.stderr.write(f"rubgen: {printable(message)}\n")
     sys.exit(code)

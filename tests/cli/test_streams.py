@@ -6,6 +6,8 @@ import sys
 
 import pytest
 
+from rubgen.cli.printing import say
+
 COMMAND = [sys.executable, "-c", "from rubgen.cli import main; main(['modes', 'no-such-machine'])"]
 OPENED = """
 import os, sys
@@ -30,3 +32,13 @@ def test_a_closed_stream_costs_no_traceback_and_no_file(closed, tmp_path):
     command = [sys.executable, "-c", OPENED, tmp_path / "file"]
     assert subprocess.run(command, capture_output=True, preexec_fn=close, check=False).returncode == 0
     assert (tmp_path / "file").read_bytes() == b""
+
+
+@pytest.mark.parametrize("name", ["red\x1b[31m", "new\nline", "bell\a"])
+def test_a_name_with_control_characters_stays_one_line_that_no_terminal_obeys(run, tmp_path, capsys, name):
+    code, _, told = run("info", str(tmp_path / name))
+    assert code == 2
+    say(f"{name}: 1.5 µm, 90° ± 1")
+    for text in (told, capsys.readouterr().out):
+        assert text.removesuffix("\n").isprintable()
+    assert text.endswith(": 1.5 µm, 90° ± 1\n")
