@@ -1,4 +1,4 @@
-"""Blade tip timing: when each blade passes each probe, and the tip deflections that follow from it."""
+"""Blade tip timing: passages of the blades at each probe, and the tip deflections from them."""
 
 from dataclasses import dataclass
 
@@ -12,24 +12,28 @@ from rubgen.solver.response import TipArrivals
 
 @dataclass(frozen=True, kw_only=True)
 class TipTimes:
-    """What one probe recorded, in order of time; all arrays (n_arrivals,), times in s from the first sample.
-
-    `time` is what the probe gives; `blade` and `true_displacement` (m, of the tip's chord along the rotation) are known
-    because this is a simulation.
-    """
+    """The record of one probe in order of time; all arrays (n_arrivals,)."""
 
     time: FloatArray
+    """Times as recorded by the probe, s from the first sample."""
     blade: IntArray
+    """Number of the blade, known because this is a simulation."""
     true_displacement: FloatArray
+    """True displacement of the tip's chord along the rotation, m."""
 
 
 def tick(time: FloatArray, clock_hz: float) -> FloatArray:
-    """Times as a counter of that frequency gives them; exact at 0."""
+    """Times in the resolution of a counter of that frequency; exact for 0."""
     return np.asarray(np.floor(time * clock_hz) / clock_hz) if clock_hz else time
 
 
 def blurred(sensor: TimingProbe | OncePerRev, time: FloatArray, noise: float, rng: np.random.Generator) -> FloatArray:
-    """Times with the jitter, scaled by `noise`, and the counter of a sensor."""
+    """Times with the jitter and the counter of a sensor.
+
+    - time: exact times, s.
+    - noise: factor of the jitter.
+    - rng: random numbers.
+    """
     jitter = noise * sensor.jitter_s
     shaken = time + jitter * rng.standard_normal(time.size) if jitter else time
     return tick(shaken, sensor.clock_hz)
@@ -45,9 +49,15 @@ def tip_times(
     noise: float,
     rng: np.random.Generator,
 ) -> TipTimes:
-    """The passages within `seconds` from `start`, the time of the first sample from the start of the record.
+    """The passages of a probe within a recording, with jitter, counter and clock offset. Missed ones are left out.
 
-    Each is blurred by jitter and counter and shifted by the clock's offset; missed ones are left out.
+    - probe: the sensor.
+    - arrivals: the true passages in steps.
+    - dt: time step, s.
+    - start: time of the first sample from the start of the record, s.
+    - seconds: length of the recording.
+    - noise: factor of the jitter.
+    - rng: random numbers.
     """
     true = arrivals.step * dt - start
     seen = (true >= 0) & (true < seconds)
@@ -65,9 +75,13 @@ def tip_times(
 def tip_deflections(times: TipTimes, once_per_rev: FloatArray, tip_radius: float) -> FloatArray:
     """Tip deflections (n_arrivals,) in m along the rotation, without each blade's mean, from arrival times alone.
 
-    Angle of arrival AoA = Omega (t - t_0) from the pulse t_0 before, Omega = 2 pi over the turn's time; deflection
-    x = R (mean AoA of that blade - AoA): early is positive (S. Heath, M. Imregun, Int. J. Mech. Sci. 38, 1996). Those
-    before the first pulse or after the last are NaN.
+    The angle of arrival is AoA = Omega (t - t_0) from the last pulse t_0, Omega = 2 pi over the turn's time. The
+    deflection is x = R (mean AoA of that blade - AoA): early is positive (S. Heath, M. Imregun, Int. J. Mech. Sci. 38,
+    1996). Arrivals before the first pulse or after the last are NaN.
+
+    - times: the probe's record.
+    - once_per_rev (pulses,): times of the pulses, s.
+    - tip_radius: R, m.
     """
     turn = np.searchsorted(once_per_rev, times.time, side="right") - 1
     inside = (turn >= 0) & (turn < once_per_rev.size - 1)

@@ -1,4 +1,4 @@
-"""The measuring chain that every channel passes: anti-alias filter and resampling, then noise, range and ADC."""
+"""The measuring chain of every channel: anti-alias filter and resampling, then noise, range and ADC."""
 
 from functools import lru_cache
 
@@ -11,12 +11,12 @@ from rubgen.scenario import Sensing
 PASS_BAND_SHARE = 2 / 2.56
 """End of the pass band as a share of the Nyquist frequency: sample rate / 2.56, as in dynamic signal analysers."""
 ATTENUATION_DB = 90.0
-"""Attenuation the Kaiser window is designed for; at least 85 dB is kept at the Nyquist frequency and beyond."""
+"""Design attenuation of the Kaiser window. At and above the Nyquist frequency it is at least 85 dB."""
 KAISER_BETA = 0.1102 * (ATTENUATION_DB - 8.7)
 """Kaiser's formula for attenuations above 50 dB (Kaiser 1974)."""
 PHASES = 512
-"""Positions between two steps for which the weights are tabulated. Linear in between, they err by less than -109 dB,
-even where steps are fewest."""
+"""Positions between two steps for which weights are tabulated. With linear interpolation their error is below -109 dB,
+even with the fewest steps."""
 
 
 def half_width_seconds(sample_rate_hz: float) -> float:
@@ -29,23 +29,32 @@ def half_width_seconds(sample_rate_hz: float) -> float:
 
 
 def late_seconds(sensing: Sensing, seconds: float, *, sign: int = 1) -> float:
-    """How late, in s, the latest clock of the set takes a sample within `seconds`; how early for sign = -1."""
+    """How late, in s, the latest clock of the set takes a sample within `seconds`.
+
+    With `sign` = -1, how early the earliest clock takes one.
+    """
     clocks = [(each.clock_offset_s, 1e-6 * each.clock_ppm * seconds) for each in sensing.set.sampled]
     return max([0.0, *(sign * (offset + share * slow) for offset, slow in clocks for share in (0, 1))])
 
 
 def start_seconds(sensing: Sensing, seconds: float, *, steps: int, dt: float) -> float:
-    """When the first sample of `seconds` is taken, in s from the start of a record of so many steps of `dt` s."""
+    """Time of the first sample, in s from the start of the record.
+
+    - sensing: of the run.
+    - seconds: length of the recording.
+    - steps: number of steps of the record.
+    - dt: time step, s.
+    """
     rate = sensing.sample_rate_hz
     end = (steps - 1) * dt - half_width_seconds(rate)
     return float(end - (late_seconds(sensing, seconds) + (round(seconds * rate) - 1) / rate))
 
 
 def margin_seconds(sensing: Sensing, seconds: float = 0.0) -> float:
-    """Signal that a recording of `seconds` needs beyond itself, in s: half the filter's length on either side.
+    """Signal in s that a recording of `seconds` needs beyond itself: half the filter's length on either side.
 
-    Clocks that run early or late need more, and sensors with dynamics what their filters remember. Two sample periods
-    are added, so that rounding to whole steps and samples never falls short.
+    Early or late clocks need more, and the filters of sensors with dynamics need their memory. Two sample periods are
+    added, so that rounding to whole steps and samples is always covered.
     """
     margin = 2 * half_width_seconds(sensing.sample_rate_hz) + 2 / sensing.sample_rate_hz
     margin += max((memory_seconds(each) for each in sensing.set.sampled), default=0.0)
@@ -53,9 +62,10 @@ def margin_seconds(sensing: Sensing, seconds: float = 0.0) -> float:
 
 
 def impulse_response(time: FloatArray, sample_rate_hz: float) -> FloatArray:
-    """h(t) of the anti-alias filter in 1/s: sinc cut off midway in the transition band, under a Kaiser window.
+    """h(t) of the anti-alias filter in 1/s at `time` (any,) in s.
 
-    h(t) = 2 f_c sinc(2 f_c t) I0(beta sqrt(1 - (t/W)^2)) / I0(beta) for |t| < W, else 0: even, hence without delay.
+    A sinc, cut off midway in the transition band, with a Kaiser window: h(t) = 2 f_c sinc(2 f_c t) I0(beta sqrt(1 -
+    (t/W)^2)) / I0(beta) for |t| < W, else 0. It is even, hence without delay.
     """
     half_width = half_width_seconds(sample_rate_hz)
     cut_off = sample_rate_hz / 4 * (1 + PASS_BAND_SHARE)
@@ -78,11 +88,16 @@ def filter_bank(dt: float, sample_rate_hz: float) -> FloatArray:
 
 
 def band_limit(signals: FloatArray, positions: FloatArray, *, dt: float, sample_rate_hz: float) -> FloatArray:
-    """Band-limited signals (samples, channels) at fractional step positions of `signals` (steps, channels).
+    """Band-limited signals (samples, channels) at fractional step positions.
 
     Filter and interpolation in one: y(t) = sum_j h(t - j dt) x_j dt, with the weights' sum set to 1. The gain is 1
-    within 1e-4 up to sample_rate / 2.56 and below 1e-4 from sample_rate / 2 on; there is no delay. The step rate must
+    within 1e-4 up to sample_rate / 2.56 and below 1e-4 from sample_rate / 2 on. There is no delay. The step rate must
     be at least 2.56 sample rates, and all positions at least half a filter length inside.
+
+    - signals (steps, channels): at every step.
+    - positions (samples,): in steps.
+    - dt: time step, s.
+    - sample_rate_hz: of the samples.
     """
     from rubgen.measurement.resampling_kernels import (  # compiled: those who read data need no numba
         ABREAST,
@@ -101,14 +116,14 @@ def band_limit(signals: FloatArray, positions: FloatArray, *, dt: float, sample_
 
 
 def adc_step(range_min: float, range_max: float, bits: int) -> float:
-    """Size of one ADC step: the range divided by 2^bits."""
+    """Size of one ADC step: the range divided by 2^bits, in the unit of the range."""
     return float((range_max - range_min) / 2**bits)
 
 
 def digitise(signal: FloatArray, *, range_min: float, range_max: float, bits: int) -> FloatArray:
-    """The signal as the ADC gives it: clipped to its range, rounded to range_min + code * step, code 0 .. 2^bits - 1.
+    """The signal after the ADC: clipped to its range, rounded to range_min + code * step, code 0 .. 2^bits - 1.
 
-    The highest value is thus one step below range_max. float32 holds at most 24 bits: finer steps are lost on storage.
+    The highest value is one step below range_max. float32 has at most 24 bits: finer steps are lost in files.
     """
     step = adc_step(range_min, range_max, bits)
     code = np.clip(np.rint((signal - range_min) / step), 0, 2**bits - 1)

@@ -1,4 +1,4 @@
-"""What a virtual sensor records, and a preview of it in equal bins that keeps every spike."""
+"""The record of a virtual sensor, and a preview of it in equal bins with every spike."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -34,26 +34,27 @@ class Channel:
 
 
 def quantity_key(quantity: str) -> str:
-    """A quantity as a part of topics and entity paths, which take no blanks."""
+    """A quantity in topics and entity paths, which allow no blanks."""
     return quantity.replace(" ", "_")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Recording:
-    """All channels of one run over the last `signal_seconds` of its record.
-
-    Sample i stands at time i / sample_rate_hz. `rotation_angle` is the blisk's angle theta at the first sample, in
-    [0, 2 pi); `once_per_rev` (n_pulses,) are the arrival times in s at which theta passes 0 mod 2 pi, as the sensor of
-    that kind gives them (exact where there is none). `start_seconds` is the first sample's time from the start of the
-    record, `tip_timing` what each timing probe saw, by its name.
-    """
+    """All channels of one run over the last `signal_seconds` of its record. Sample i is at time i / sample_rate_hz."""
 
     sample_rate_hz: float
+    """Sample rate of all channels."""
     rotation_angle: float
+    """Angle theta of the blisk at the first sample, in [0, 2 pi)."""
     channels: dict[str, Channel]
+    """Channels by name."""
     once_per_rev: FloatArray
+    """Times in s at which theta passes 0 mod 2 pi (n_pulses,), as recorded by the sensor of that kind; exact without
+    one."""
     start_seconds: float = 0.0
+    """Time of the first sample from the start of the record."""
     tip_timing: dict[str, TipTimes] = field(default_factory=dict)
+    """Record of each timing probe by its name."""
 
     __repr__ = brief
 
@@ -63,7 +64,7 @@ class Recording:
         return next(iter(self.channels.values())).values.size
 
     def by_quantity(self) -> dict[str, list[Channel]]:
-        """Channels by the key of what they measure, in one unit each, both in the order of the recording."""
+        """Channels by the key of their quantity, in one unit each, both in the order of the recording."""
         groups: dict[str, list[Channel]] = {}
         for channel in self.channels.values():
             key = quantity_key(channel.quantity)

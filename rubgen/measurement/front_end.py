@@ -1,4 +1,4 @@
-"""What a sensor does to a signal: its dynamics and saturation before the anti-alias filter, its faults after it."""
+"""Dynamics and saturation of a sensor before the anti-alias filter, and its faults after it."""
 
 import numpy as np
 
@@ -6,14 +6,18 @@ from rubgen.arrays import FloatArray
 from rubgen.sensors.sensor import SampledSensor
 
 FORGOTTEN = np.log(1e4)
-"""A filter's start has died to 1e-4 after so many time constants."""
+"""Number of time constants after which a filter's start has decayed to 1e-4."""
 
 
 def resonance(frequency_hz: float, damping: float, dt: float) -> tuple[FloatArray, FloatArray]:
     """Digital filter b, a of a seismic mass on its mounting, w^2 / (s^2 + 2 d w s + w^2), exact at its resonance.
 
-    Below it the gain rises as 1 / (1 - (f / f_r)^2), as it does in a data sheet (ISO 5348, mounted resonance). Bilinear
-    with the frequency prewarped; 2.56 steps a period at least.
+    Below the resonance the gain rises as 1 / (1 - (f / f_r)^2), as in data sheets (ISO 5348, mounted resonance).
+    Bilinear with the frequency prewarped; needs at least 2.56 steps a period.
+
+    - frequency_hz: of the resonance.
+    - damping: ratio d.
+    - dt: time step, s.
     """
     from scipy.signal import bilinear  # slow to import, and only needed where a sensor has dynamics
 
@@ -23,7 +27,10 @@ def resonance(frequency_hz: float, damping: float, dt: float) -> tuple[FloatArra
 
 
 def front_end(sensor: SampledSensor, signal: FloatArray, dt: float) -> FloatArray:
-    """The signal (steps,) behind bandwidth, resonance and saturation; the filters start at rest on its first value."""
+    """The signal (steps,) after bandwidth, resonance and saturation of a sensor.
+
+    The filters start at rest on its first value. `dt` is the time step in s.
+    """
     if sensor.bandwidth_hz is not None or sensor.resonance_hz is not None:
         signal = _behind_filters(sensor, signal, dt)
     if sensor.saturation is not None:
@@ -45,7 +52,7 @@ def _behind_filters(sensor: SampledSensor, signal: FloatArray, dt: float) -> Flo
 
 
 def memory_seconds(sensor: SampledSensor) -> float:
-    """How long the sensor's filters remember, in s: what the signal must have before the first sample."""
+    """Memory of the sensor's filters in s: the signal that is needed before the first sample."""
     seconds = 0.0
     if sensor.bandwidth_hz is not None:
         seconds += float(FORGOTTEN / (2 * np.pi * sensor.bandwidth_hz * np.sqrt(0.5)))
@@ -55,7 +62,13 @@ def memory_seconds(sensor: SampledSensor) -> float:
 
 
 def miscalibrate(sensor: SampledSensor, signal: FloatArray, *, zero: float, sample_rate_hz: float) -> FloatArray:
-    """Zero + (1 + gain error) (x - zero) + offset + drift t: `zero` is what the sensor gives at rest."""
+    """Zero + (1 + gain error) (x - zero) + offset + drift t, in the sensor's unit.
+
+    - sensor: with its errors.
+    - signal (samples,): x.
+    - zero: value of the sensor at rest.
+    - sample_rate_hz: of the samples.
+    """
     if not (sensor.gain_error or sensor.offset or sensor.drift_per_s):
         return signal
     time = np.arange(signal.size) / sample_rate_hz
@@ -66,10 +79,16 @@ def miscalibrate(sensor: SampledSensor, signal: FloatArray, *, zero: float, samp
 def noise(
     sensor: SampledSensor, samples: int, sample_rate_hz: float, scale: float, rng: np.random.Generator
 ) -> FloatArray:
-    """Gaussian noise (samples,) times `scale`: white of `noise_rms`, and of the one-sided density D^2 (1 + f_c / f).
+    """Gaussian noise (samples,): white of `noise_rms`, and of the one-sided density D^2 (1 + f_c / f).
 
-    The second is white noise shaped in the frequency domain, its mean zero; it repeats after the recording's length,
-    as every spectrum of it does.
+    The second is white noise shaped in the frequency domain. Its mean is zero, and it repeats after the recording's
+    length.
+
+    - sensor: with its noise, in its unit.
+    - samples: their number.
+    - sample_rate_hz: of the samples.
+    - scale: factor of the noise.
+    - rng: random numbers.
     """
     total = scale * sensor.noise_rms * rng.standard_normal(samples)
     if sensor.noise_density > 0:
@@ -79,7 +98,7 @@ def noise(
 
 
 def noise_level(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> float:
-    """Rms of the noise of a recording."""
+    """Rms of the noise of a recording of `samples` samples, in the sensor's unit."""
     if sensor.noise_density == 0:
         return sensor.noise_rms
     shape = _shape(sensor, samples, sample_rate_hz)
@@ -99,7 +118,7 @@ def _shape(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> FloatA
 def drop_out(sensor: SampledSensor, values: FloatArray, sample_rate_hz: float, rng: np.random.Generator) -> FloatArray:
     """The samples (n,) with gaps at random times. In a gap the last good value repeats.
 
-    The starts of the gaps are a Poisson process of rate `dropouts_per_s`; each lasts `dropout_s`.
+    The starts of the gaps are a Poisson process of rate `dropouts_per_s` of the sensor; each lasts `dropout_s`.
     """
     if sensor.dropouts_per_s == 0:
         return values

@@ -18,11 +18,16 @@ from rubgen.solver.response import Response
 
 
 def measure(response: Response, sensing: Sensing, *, seconds: float, rng: np.random.Generator) -> Recording:
-    """The channels and events of a run over `seconds` (> 0) at the end of its record, by the sensors of `sensing.set`.
+    """The channels and events of a run by the sensors of `sensing.set`.
 
-    The last sample stands half a filter length before the end of the tail, so that no sample sees an edge. The step
-    after the tail's last one would have theta = 0 mod 2 pi. Each sensor has its own child of `rng`, by its place in the
-    set: its noise depends on nothing but the state of `rng` and its own length.
+    The last sample is half a filter length before the end of the tail, so that no sample is affected by its edge. The
+    step after the tail's last one has theta = 0 mod 2 pi. Each sensor has its own child of `rng`, by its place in the
+    set: its noise depends only on the state of `rng` and its own length.
+
+    - response: true response with the taps of all sensors.
+    - sensing: sensors, sample rate, noise and ADC.
+    - seconds: length of the recording, > 0, at the end of the record.
+    - rng: random numbers.
 
     Raises UserError where the tail is too short for `seconds` and the filter, or the step rate is below 2.56 sample
     rates.
@@ -55,7 +60,7 @@ def measure(response: Response, sensing: Sensing, *, seconds: float, rng: np.ran
 
 
 def sample_positions(response: Response, sensing: Sensing, seconds: float) -> FloatArray:
-    """Times of the samples, counted in steps from the start of the tail; round(seconds * sample rate) of them."""
+    """Times of the samples in steps from the start of the tail; round(seconds * sample rate) of them."""
     dt, rate = response.dt, sensing.sample_rate_hz
     if dt * rate * STEPS_PER_SAMPLE > 1 + 1e-9:
         highest = 1 / dt / STEPS_PER_SAMPLE

@@ -1,4 +1,4 @@
-"""Touches and the motion of the whole machine in the time of a recording."""
+"""Touches and the motion of the whole machine during a recording."""
 
 from dataclasses import dataclass
 
@@ -9,32 +9,34 @@ from rubgen.measurement.channel import Recording
 from rubgen.solver.response import Response
 
 COARSE_FRAMES = 48
-"""Most frames outside the dense turns: what keeps a file small whatever its length."""
+"""Largest number of frames outside the dense turns: it limits the size of files."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class MotionFrames:
-    """True positions at `time` (frames,) in s after the first sample, ascending.
-
-    `angle` (frames,) is the blisk's in [0, 2 pi); the disk centre `centre` (frames, 2) and the tips' displacements
-    `tips` (frames, n_blades, 3) (radial, tangential, axial, steady growth included) are in its turning frame, in m.
-    `casing` (frames, n_casing) are amplitudes of `casing_modes` (nodes, 2, n_casing), X and Y at equal steps of polar
-    angle from 0. `dense` marks the frames about the hardest touch; between the others lies a turn or more.
-    """
+    """True positions of the machine, frame by frame."""
 
     time: FloatArray
+    """Time of each frame after the first sample (frames,), s, ascending."""
     angle: FloatArray
+    """Angle of the blisk (frames,) in [0, 2 pi)."""
     centre: FloatArray
+    """Disk centre in its turning frame (frames, 2), m."""
     tips: FloatArray
+    """Radial, tangential and axial displacement of the tips in the turning frame, with steady growth (frames, n_blades,
+    3), m."""
     casing: FloatArray
+    """Amplitudes of the casing modes (frames, n_casing)."""
     dense: IntArray
+    """1 for the frames around the hardest touch; between other frames lies at least a turn (frames,)."""
     casing_modes: FloatArray
+    """X and Y of each casing mode at nodes at equal steps of polar angle from 0 (nodes, 2, n_casing)."""
 
 
 def motion_frames(response: Response, recording: Recording) -> MotionFrames | None:
-    """The frames of a run that lie within its recording: its replay track, and sections once a turn or more rarely.
+    """The frames of a run within its recording: its replay track, and Poincare sections once a turn or less often.
 
-    None where the response kept no track.
+    None where the response has no track.
     """
     track, starts = response.track, _turn_steps(response)
     if track is None:
@@ -69,7 +71,7 @@ def _turn_steps(response: Response) -> IntArray:
 
 
 def _angle(step: IntArray, response: Response) -> FloatArray:
-    """Of the blisk at steps, in [0, 2 pi)."""
+    """Angle of the blisk at steps, in [0, 2 pi)."""
     if response.changing_speed is not None:
         return np.asarray(np.mod(response.changing_speed.rotation.angle(step * response.dt), 2 * np.pi))
     steps = response.steps_per_turn
@@ -86,26 +88,29 @@ def _inside(step: IntArray, response: Response, recording: Recording) -> IntArra
 
 
 def _even_choice(starts: IntArray, response: Response, recording: Recording) -> IntArray:
-    """Numbers of the turns that begin inside, at most `COARSE_FRAMES`, equally far apart."""
+    """Numbers of the turns that begin inside, at most `COARSE_FRAMES`, at equal distances."""
     inside = _inside(starts, response, recording)
     return np.asarray(inside[:: max(1, -(-inside.size // COARSE_FRAMES))], dtype=np.int64)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ContactIntervals:
-    """Touches that overlap a recording, in order of their end; all arrays (n_events,).
-
-    `start` and `duration` are in s, time 0 being the first sample (a touch may have begun before it); `angle` is the
-    polar angle on the casing in rad, `impulse` the normal impulse in N s, the losses are works in J, <= 0.
-    """
+    """Touches that overlap a recording, in order of their end; all arrays (n_events,)."""
 
     blade: IntArray
+    """Number of the blade."""
     start: FloatArray
+    """Start in s after the first sample; negative where it began before."""
     duration: FloatArray
+    """Duration in s."""
     angle: FloatArray
+    """Polar angle on the casing, rad."""
     impulse: FloatArray
+    """Normal impulse, N s."""
     friction_loss: FloatArray
+    """Work of friction, J, <= 0."""
     normal_loss: FloatArray
+    """Work lost along the normal, J, <= 0."""
 
 
 def contact_intervals(response: Response, recording: Recording) -> ContactIntervals:

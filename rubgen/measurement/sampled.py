@@ -17,11 +17,14 @@ from rubgen.solver.response import Response
 
 @dataclass(frozen=True)
 class Feed:
-    """What one sensor gives the filter, in its unit at every step (steps,): as an ideal one, and as it is."""
+    """Input of the filter from one sensor."""
 
     sensor: SampledSensor
+    """The sensor."""
     ideal: FloatArray
+    """Signal of an ideal sensor, in the sensor's unit at every step (steps,)."""
     real: FloatArray
+    """Signal of the sensor with its dynamics (steps,)."""
 
     @property
     def clock(self) -> tuple[float, float]:

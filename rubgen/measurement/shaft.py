@@ -1,4 +1,4 @@
-"""Where the shaft stands: its angle over the steps of a tail, and the pulse once per revolution at theta = 0."""
+"""The shaft: its angle over the steps of a tail, and the pulse once per revolution at theta = 0."""
 
 import math
 from typing import Any
@@ -11,7 +11,7 @@ from rubgen.measurement.channel import Channel
 from rubgen.solver.response import Response
 
 NOTCH_ANGLE = np.pi / 6
-"""Angle of the notch in rad: every pulse holds at least one sample while the sample rate is 12 f_r or more."""
+"""Angle of the notch in rad: every pulse has at least one sample where the sample rate is 12 f_r or more."""
 
 
 def pulse_channel(angle: FloatArray, name: str = "once_per_rev", *, keep_clean: bool = False) -> Channel:
@@ -41,7 +41,7 @@ def arrival_times(first_angle: float, speed: float, seconds: float) -> FloatArra
 
 
 def shaft_angle(response: Response, positions: npt.NDArray[np.floating] | npt.NDArray[np.integer]) -> FloatArray:
-    """Theta in [0, 2 pi) at positions, counted in steps from the start of the tail; exact at a changing speed too."""
+    """Theta in [0, 2 pi) at positions in steps from the start of the tail; exact at a changing speed too."""
     back = positions - response.tail_steps
     if response.changing_speed is None:
         return in_turn(back * (2 * np.pi / response.steps_per_turn))
@@ -49,9 +49,12 @@ def shaft_angle(response: Response, positions: npt.NDArray[np.floating] | npt.ND
 
 
 def pulse_times(response: Response, first_angle: float, start: float, seconds: float) -> FloatArray:
-    """Exact times (any,) in [0, seconds) at which theta passes 0 mod 2 pi, in s from `start` of the record.
+    """Exact times (any,) in [0, seconds) at which theta passes 0 mod 2 pi, in s.
 
-    `first_angle` is theta at time 0.
+    - response: of the run.
+    - first_angle: theta at time 0, rad.
+    - start: time 0 from the start of the record, s.
+    - seconds: length of the recording.
     """
     if response.changing_speed is None:
         return arrival_times(first_angle, 2 * np.pi / response.turn_seconds, seconds)

@@ -69,16 +69,17 @@ def disk_turning(rings: IntArray, blades: int) -> Turning:
 def craig_bampton(
     M: SparseMatrix, K: SparseMatrix, masters: IntArray, modes: int, turning: Turning | None = None
 ) -> FloatArray:
-    """Basis (n, masters + modes) of constraint modes and mass-normalised fixed-interface modes.
+    """Basis V (n, masters + modes) of constraint modes and mass-normalised fixed-interface modes.
 
-    q = V p with V = [[I, 0], [-K_ss^-1 K_sm, Phi]], Phi the lowest modes of K_ss Phi = M_ss Phi omega^2 (Craig and
-    Bampton 1968). p begins with the masters' own displacements. K_ss must be positive definite. M_ss may be singular:
-    massless directions follow statically. The largest entry of each mode is positive.
+    q = V p, its rows in the order of the DoFs. For the masters V is [I, 0], for all other DoFs [-K_ss^-1 K_sm, Phi],
+    with Phi the lowest modes of K_ss Phi = M_ss Phi omega^2 (Craig and Bampton 1968). p begins with the masters' own
+    displacements. K_ss must be positive definite. M_ss may be singular: massless directions follow statically. The
+    entry of a mode with the largest size is positive.
 
     - M, K (n, n): mass and stiffness.
     - masters: their DoFs.
     - modes: number of fixed-interface modes.
-    - turning: solve only for the first twelve masters, and turn copies of their shapes (`cyclic`).
+    - turning: solve only for the first twelve masters, and turn copies of their shapes.
 
     Raises UserError where more modes are asked for than carry mass. Tests: tests/reduction/test_craig_bampton.py.
     """

@@ -1,1 +1,1 @@
-"""Virtual sensors as users describe them: their kinds, and sets of them."""
+"""Virtual sensors in recipes: their kinds, and sets of them."""

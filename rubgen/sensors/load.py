@@ -1,4 +1,4 @@
-"""Sensor sets from TOML files: those that come with rubgen, and the user's own of the same form."""
+"""Sensor sets from TOML files: the sets of rubgen, and the user's own in the same form."""
 
 from functools import cache
 from pathlib import Path
@@ -17,11 +17,11 @@ from rubgen.sensors.sensor_set import SensorSet
 SETS = Path(__file__).parent / "sets"
 DEFAULT_SET = "default"
 OF_ONE = ("name", "kind")
-"""Keys that no sensor has from its kind."""
+"""Keys that belong to one sensor and not to its kind."""
 
 
 def sensor_set_names() -> list[str]:
-    """Names of the sets that come with rubgen, sorted."""
+    """Names of the sets of rubgen, sorted."""
     return sorted(path.stem for path in SETS.glob("*.toml"))
 
 
@@ -32,10 +32,10 @@ def default_sensor_set() -> SensorSet:
 
 
 def load_sensor_set(name_or_path: str, folder: Path | None = None) -> SensorSet:
-    """The set of that name, or the one in that TOML file; relative paths start from `folder`.
+    """The set of that name, or the set in that TOML file; relative paths start from `folder`.
 
-    A table `[kinds.<kind>]` gives values to all sensors of a kind that do not set them. Raises UserError with file,
-    key, value and what is allowed when there is none, or when it is not a valid set.
+    A table `[kinds.<kind>]` has default values for all sensors of a kind. Raises UserError with file, key, value and
+    what is allowed where there is none or it is not a valid set.
     """
     if name_or_path in sensor_set_names():
         return parse_sensor_set(SETS / f"{name_or_path}.toml")
@@ -68,7 +68,7 @@ def parse_sensor_set(path: Path) -> SensorSet:
 
 
 def _kinds(path: Path, kinds: Any) -> dict[str, dict[str, Any]]:
-    """The tables `[kinds.<kind>]`, each with values for all sensors of a kind."""
+    """The tables `[kinds.<kind>]`, each with default values for all sensors of a kind."""
     if not isinstance(kinds, dict):
         raise UserError(f"{path}: kinds = {toml_text(kinds):.60}: must be tables; write [kinds.proximity], say")
     for kind, table in kinds.items():
@@ -82,7 +82,7 @@ def _kinds(path: Path, kinds: Any) -> dict[str, dict[str, Any]]:
 
 
 def _check_used(path: Path, kinds: dict[str, dict[str, Any]], listed: list[Any]) -> None:
-    """Raise UserError for a table that gives values to no sensor."""
+    """Raise UserError for a table of a kind without sensors."""
     used = [each.get("kind") for each in listed if isinstance(each, dict)]
     for kind in kinds:
         if kind not in used:

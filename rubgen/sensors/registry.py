@@ -29,4 +29,4 @@ AnySensor = Annotated[
     Field(discriminator="kind"),
 ]
 SENSOR_KINDS: tuple[str, ...] = tuple(sensor.kind for sensor in get_args(get_args(AnySensor)[0]))
-"""Their names in a sensor set."""
+"""The names of the kinds in a sensor set."""

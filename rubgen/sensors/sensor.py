@@ -1,4 +1,4 @@
-"""What a sensor is: its values, the true signal that it takes, and the description of its channel."""
+"""Sensors: their values, their true signal, and the description of their channel."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass as plain_dataclass
@@ -51,7 +51,7 @@ def runout(angle: FloatArray, shaft: tuple[RunoutOrder, ...]) -> FloatArray:
 
 @plain_dataclass(frozen=True, kw_only=True)
 class Description:
-    """What a channel measures, along which axis, and where."""
+    """Quantity, axis and location of a channel."""
 
     quantity: str
     axis: str
@@ -60,21 +60,21 @@ class Description:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Sensor:
-    """A sensor. Its channel or topic has its name. Its place in the set decides which random numbers it gets."""
+    """A sensor. Its channel or topic has its name. Its random numbers depend on its place in the set."""
 
     name: Annotated[str, Field(pattern=CHANNEL_NAME)]
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class SampledSensor(Sensor, ABC):
-    """A sensor with a measuring chain. Every value stands in the sensor's `unit`; the defaults are without fault.
+    """A sensor with a measuring chain. Every value is in the sensor's `unit`; the defaults are without fault.
 
     In the order of the chain (docs/sensors.md): `bandwidth_hz` of a second-order Butterworth low-pass, `resonance_hz`
     with `resonance_damping`, `saturation` before the anti-alias filter; `gain_error` as a share, `offset`,
     `drift_per_s` from the first sample on; `noise_rms` white in the recorded band, `noise_density` per sqrt(Hz), whose
-    power rises as 1/f below `noise_corner_hz`; `range` and `adc_bits` of the converter (None takes the kind's and the
-    recipe's); `dropouts_per_s` gaps of `dropout_s` each, in which the last value repeats. The sensor's own clock runs
-    late by `clock_offset_s` and slow by `clock_ppm`.
+    power rises as 1/f below `noise_corner_hz`; `range` and `adc_bits` of the converter (None is the value of the kind
+    and the recipe); `dropouts_per_s` gaps of `dropout_s` each, in which the last value repeats. The sensor's own clock
+    is late by `clock_offset_s` and slow by `clock_ppm`.
     """
 
     UNITS: ClassVar[dict[str, float]] = {}
@@ -115,18 +115,18 @@ class SampledSensor(Sensor, ABC):
 
     @property
     def front_end_hz(self) -> float:
-        """The highest frequency that the sensor's own dynamics name, 0 without any."""
+        """The highest frequency of the sensor's own dynamics, 0 without any."""
         return max(self.bandwidth_hz or 0.0, self.resonance_hz or 0.0)
 
     @property
     @abstractmethod
     def tap(self) -> Tap:
-        """The true signal that the sensor takes."""
+        """The true signal of the sensor."""
 
     @property
     @abstractmethod
     def description(self) -> Description:
-        """What its channel measures."""
+        """The description of its channel."""
 
     @property
     def scale(self) -> tuple[float, float]:
@@ -134,7 +134,7 @@ class SampledSensor(Sensor, ABC):
         return self.UNITS[self.unit], 0.0
 
     def disturbed(self, signal: FloatArray, _angle: FloatArray, _shaft: tuple[RunoutOrder, ...]) -> FloatArray:
-        """What the sensor takes in place of the true `signal` (steps,), in the SI unit: the signal itself, by default.
+        """The input of the sensor for the true `signal` (steps,), in the SI unit: the signal itself, by default.
 
         `angle` (steps,) is the shaft's angle theta in rad, `shaft` its profile.
         """
@@ -142,7 +142,7 @@ class SampledSensor(Sensor, ABC):
 
     @property
     def full_range(self) -> tuple[float, float]:
-        """The range in the sensor's unit: its own, or the kind's."""
+        """The range in the sensor's unit: its own, or the range of its kind."""
         factor, zero = self.scale
         low, high = self.RANGE
         return self.range or (zero + factor * low, zero + factor * high)

@@ -43,11 +43,11 @@ class SensorSet:
 
     @property
     def front_end_hz(self) -> float:
-        """The highest frequency that any sensor's own dynamics name, 0 without any."""
+        """The highest frequency of any sensor's own dynamics, 0 without any."""
         return max((sensor.front_end_hz for sensor in self.sampled), default=0.0)
 
     @property
     def taps(self) -> tuple[Tap, ...]:
-        """The true signals of a run, each once: first what every run has, then what further sensors take."""
+        """The true signals of a run, each once: first the default taps, then the taps of further sensors."""
         sampled = dict.fromkeys([*DEFAULT_TAPS, *(sensor.tap for sensor in self.sampled)])
         return (*sampled, *(sensor.tap for sensor in self.sensors if isinstance(sensor, TimingProbe)))

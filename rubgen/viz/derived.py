@@ -1,4 +1,4 @@
-"""What pictures show of a recording: order spectra along a run, the orbit of the disk centre, sectors of the casing."""
+"""Quantities for pictures of a recording: order spectra, the orbit of the disk centre, sectors of the casing."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ BLOCK_TURNS = 16
 SAMPLES_PER_TURN = 256
 HIGHEST_ORDER = 12
 LEAST_SINE = 0.5
-"""Two directions are a pair where they stand at 30 degrees or more: noise grows by two at most."""
+"""Two directions are a pair where the angle between them is at least 30 degrees: noise at most doubles."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,12 +28,17 @@ class OrderMap:
 def order_map(
     values: Float32Array, sample_rate_hz: float, pulses: FloatArray, *, turns: int = BLOCK_TURNS, most_blocks: int = 60
 ) -> OrderMap:
-    """Spectra of a channel over blocks of `turns` turns (fewer in a shorter recording), at most `most_blocks`.
+    """Spectra of a channel over successive blocks of `turns` turns, at the orders 1/turns, 2/turns, ..., 12.
 
-    `pulses` (any,) are the times in s at which turns begin. The samples are read by linear interpolation at 256 equal
-    angles of each turn, so that orders stay sharp while the speed changes; |2 X / n| under no window, for each block
-    holds whole turns. Blocks with lost samples are left out, and without two pulses there is none. Valid up to order
-    12 while the sample rate is some 50 times the rotation frequency.
+    The samples are interpolated linearly at 256 equal angles of each turn, so that orders stay sharp while the speed
+    changes. Amplitudes are |2 X / n|, without a window, because each block is a whole number of turns. Valid up to
+    order 12 where the sample rate is at least some 50 times the rotation frequency.
+
+    - values (samples,): the channel; blocks with NaN are left out.
+    - sample_rate_hz: of the channel.
+    - pulses (any,): times in s at which turns begin; the last ends the last turn. Fewer than two make an empty map.
+    - turns: turns of a block; fewer in a shorter recording.
+    - most_blocks: of more blocks, every second, third, ... is taken.
     """
     length = min(turns, pulses.size - 1)
     if length < 1:
@@ -55,10 +60,10 @@ def order_map(
 
 
 def shaft_orbit(replay: Replay) -> FloatArray | None:
-    """X and Y of the disk centre (2, samples) in um as the first pair of probes saw it; None without a pair.
+    """X and Y of the disk centre (2, samples) in um from the first pair of probes; None without a pair.
 
-    A probe at angle phi reads u = x cos(phi) + y sin(phi); two readings are solved for x and y. Readings in V lose
-    their bias and are divided by the sensitivity.
+    A probe at angle phi reads u = x cos(phi) + y sin(phi). Two readings are solved for x and y. For readings in V the
+    bias is subtracted and the rest divided by the sensitivity.
     """
     channels = replay.recording.channels
     sensors = replay.scenario.sensing.set.sensors
@@ -88,6 +93,6 @@ def _micrometres(probe: Proximity, values: Float32Array) -> FloatArray:
 
 
 def sector_of(angle: FloatArray, sectors: int) -> IntArray:
-    """Number of the sector, of so many equal ones, in which each polar angle (rad) lies; sector 0 lies about 0."""
+    """Number of the sector, of `sectors` equal ones, of each polar angle (rad). Sector 0 is centred at 0."""
     width = 2 * np.pi / sectors
     return np.floor(np.mod(angle + width / 2, 2 * np.pi) / width).astype(np.int64) % sectors

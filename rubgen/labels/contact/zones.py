@@ -121,13 +121,13 @@ def _zone(share: FloatArray, first: int, count: int) -> tuple[float, float, floa
 
 
 def turn_imbalance(events: ContactEvents, centres: FloatArray, steps_per_turn: int) -> float:
-    """Rms over turns of a zone's impulse less the mean over all zones and turns, over that mean.
+    """Standard deviation of the impulses of all zones in all turns, over their mean.
 
     Symmetric motion, q(t + T/N) = q(t), has equal impulses of all zones in each turn: 0. An event belongs to the zone
     with the nearest centre. Turns are cut where there is least contact, so that no touch of a periodic rub changes from
-    one turn to the next. The cut first and last turn are left out.
+    one turn to the next. The incomplete first and last turn are left out where there are more than two turns.
 
-    - events: the touches of the record.
+    - events: the touches of the record, at least one.
     - centres (zones,): centres of the zones, rad.
     - steps_per_turn: number of steps in a turn.
     """

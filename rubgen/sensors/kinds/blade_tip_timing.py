@@ -1,4 +1,4 @@
-"""Probe of blade tip timing: when each blade passes it."""
+"""Probe of blade tip timing: the passage of each blade."""
 
 from typing import Literal
 
@@ -13,8 +13,8 @@ from rubgen.taps import TipTiming
 class TimingProbe(Sensor):
     """Arrival times of the blades at a place on the casing, `axial_m` from the middle of the tips' chords.
 
-    `jitter_s` rms and a counter of `clock_hz` (0 is exact) blur each time, `clock_offset_s` shifts all, `missed` is the
-    share of passages that the probe does not see.
+    `jitter_s` (rms) and a counter of `clock_hz` (0 is exact) blur each time. `clock_offset_s` shifts all times.
+    `missed` is the share of passages that the probe misses.
     """
 
     kind: Literal["blade_tip_timing"] = "blade_tip_timing"

@@ -1,4 +1,4 @@
-"""The contact force, recorded as if a probe could: it is the cause of everything else."""
+"""The contact force, recorded although no probe can measure it: it is the cause of everything else."""
 
 from typing import ClassVar, Literal
 

@@ -1,4 +1,4 @@
-"""Torque on the blisk: of its drive, as a torque flange measures it, or of the contact, which no sensor measures."""
+"""Torque on the blisk: of its drive, as measured by a torque flange, or of the contact, which no sensor measures."""
 
 from typing import ClassVar, Literal
 
