@@ -24,8 +24,8 @@ from typing import Any
 from unittest.mock import patch
 
 import rubgen
-from rubgen.solver.observers import companion
-from rubgen.solver.scheme import stepper
+from rubgen.solver.observers.companion_kernels import run_companion
+from rubgen.solver.scheme.turn_kernels import run_turn
 
 RUBGEN = str(Path(sys.executable).with_name("rubgen"))
 RECIPE = """
@@ -100,8 +100,8 @@ def _counted(out: Path, runs: int) -> tuple[float, float]:
     recipe = out.with_suffix(".toml")
     recipe.write_text(RECIPE.format(runs=runs), encoding="utf-8")
     with (
-        patch.object(stepper, "run_turn", timed(stepper.run_turn)),
-        patch.object(companion, "run_companion", timed(companion.run_companion)),
+        patch("rubgen.solver.scheme.stepper.run_turn", timed(run_turn)),
+        patch("rubgen.solver.observers.companion.run_companion", timed(run_companion)),
     ):
         begun = time.process_time()
         rubgen.generate(recipe, out, workers=1)

@@ -54,6 +54,7 @@ def machine(size: str, rng: np.random.Generator) -> tuple[Machine, float]:
             rim_radius_m=rim,
             bore_thickness_m=rim * rng.uniform(0.2, 0.5),
             rim_thickness_m=rim * rng.uniform(0.1, 0.3),
+            circumferential_elements=2 * count,
         ),
         blades=replace(
             PRESET.blades,
