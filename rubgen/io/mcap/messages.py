@@ -18,89 +18,89 @@ TYPES = {
     "uint32": descriptor_pb2.FieldDescriptorProto.TYPE_UINT32,
     "string": descriptor_pb2.FieldDescriptorProto.TYPE_STRING,
     "bytes": descriptor_pb2.FieldDescriptorProto.TYPE_BYTES,
-    TIMESTAMP: descriptor_pb2.FieldDescriptorProto.TYPE_MESSAGE,
 }
+"""Any other type is a message of a file that is imported."""
 
 
 @dataclass(frozen=True)
-class _Field:
+class Field:
     """One field. Its number is its position in the message."""
 
     type: str
     name: str
-    comment: str
+    comment: str = ""
     repeated: bool = False
 
 
-_TIME = _Field(TIMESTAMP, "timestamp", "time after the first sample of the file")
-MESSAGES: dict[str, tuple[str, list[_Field]]] = {
+_TIME = Field(TIMESTAMP, "timestamp", "time after the first sample of the file")
+MESSAGES: dict[str, tuple[str, list[Field]]] = {
     "SampleBlock": (
         "Consecutive samples of one channel; unit and range stand in the metadata of the MCAP channel.",
         [
-            _Field(TIMESTAMP, "timestamp", "time of the first sample of the block"),
-            _Field("double", "sample_rate", "Hz"),
-            _Field("uint64", "first_index", "index of the first sample of the block in the channel"),
-            _Field("float", "values", "samples, in the unit of the channel", repeated=True),
+            Field(TIMESTAMP, "timestamp", "time of the first sample of the block"),
+            Field("double", "sample_rate", "Hz"),
+            Field("uint64", "first_index", "index of the first sample of the block in the channel"),
+            Field("float", "values", "samples, in the unit of the channel", repeated=True),
         ],
     ),
     "Contact": (
         "One uninterrupted touch of a blade and the casing.",
         [
             _TIME,
-            _Field("double", "start_s", "beginning after the first sample, s; negative if it began earlier"),
-            _Field("double", "duration_s", "s"),
-            _Field("uint32", "blade", "number of the blade, from 0"),
-            _Field("double", "angle_rad", "polar angle on the casing, mean weighted by impulse"),
-            _Field("double", "impulse_n_s", "normal impulse, N s"),
-            _Field("double", "friction_loss_j", "work of friction, J, <= 0"),
-            _Field("double", "normal_loss_j", "work lost along the normal, J, <= 0"),
+            Field("double", "start_s", "beginning after the first sample, s; negative if it began earlier"),
+            Field("double", "duration_s", "s"),
+            Field("uint32", "blade", "number of the blade, from 0"),
+            Field("double", "angle_rad", "polar angle on the casing, mean weighted by impulse"),
+            Field("double", "impulse_n_s", "normal impulse, N s"),
+            Field("double", "friction_loss_j", "work of friction, J, <= 0"),
+            Field("double", "normal_loss_j", "work lost along the normal, J, <= 0"),
         ],
     ),
     "MotionLabel": (
         "Class of the motion from this time on.",
         [
             _TIME,
-            _Field("string", "motion", "of the system: the less regular of blisk and casing"),
-            _Field("string", "motion_blisk", ""),
-            _Field("string", "motion_casing", ""),
-            _Field("uint32", "period", "turns after which the motion repeats; 0 where it does not"),
+            Field("string", "motion", "of the system: the less regular of blisk and casing"),
+            Field("string", "motion_blisk", ""),
+            Field("string", "motion_casing", ""),
+            Field("uint32", "period", "turns after which the motion repeats; 0 where it does not"),
         ],
     ),
     "BladePassage": (
         "A blade passes a timing probe.",
         [
             _TIME,
-            _Field("double", "time_s", "time after the first sample as the probe gives it, s"),
-            _Field("uint32", "blade", "number of the blade, from 0"),
-            _Field("double", "true_displacement_m", "of the blade's tip along the rotation at that time, known, m"),
+            Field("double", "time_s", "time after the first sample as the probe gives it, s"),
+            Field("uint32", "blade", "number of the blade, from 0"),
+            Field("double", "true_displacement_m", "of the blade's tip along the rotation at that time, known, m"),
         ],
     ),
     "MotionFrame": (
         "The machine at one moment; the blisk in its turning frame.",
         [
             _TIME,
-            _Field("double", "time_s", "time after the first sample, s"),
-            _Field("double", "angle_rad", "of the blisk, in [0, 2 pi)"),
-            _Field("float", "centre_m", "displacement of the disk centre, x and y", repeated=True),
-            _Field(
+            Field("double", "time_s", "time after the first sample, s"),
+            Field("double", "angle_rad", "of the blisk, in [0, 2 pi)"),
+            Field("float", "centre_m", "displacement of the disk centre, x and y", repeated=True),
+            Field(
                 "float", "tips_m", "radial, tangential, axial displacement of each blade's tip in turn", repeated=True
             ),
-            _Field("float", "casing", "amplitudes of the casing's modes", repeated=True),
-            _Field("uint32", "dense", "1 about the hardest touch, 0 where a turn or more lies between frames"),
+            Field("float", "casing", "amplitudes of the casing's modes", repeated=True),
+            Field("uint32", "dense", "1 about the hardest touch, 0 where a turn or more lies between frames"),
         ],
     ),
     "CasingModes": (
         "Shapes of the casing's modes at nodes at equal steps of polar angle from 0.",
         [
             _TIME,
-            _Field("uint32", "nodes", ""),
-            _Field("uint32", "modes", ""),
-            _Field("float", "values", "node by node, X and Y of every mode", repeated=True),
+            Field("uint32", "nodes", ""),
+            Field("uint32", "modes", ""),
+            Field("float", "values", "node by node, X and Y of every mode", repeated=True),
         ],
     ),
     "OncePerRev": (
         "The blisk passes angle 0.",
-        [_TIME, _Field("double", "time_s", "time after the first sample, s"), _Field("uint64", "turn", "from 0")],
+        [_TIME, Field("double", "time_s", "time after the first sample, s"), Field("uint64", "turn", "from 0")],
     ),
 }
 
@@ -118,20 +118,52 @@ def proto_text() -> str:
     return "\n".join(lines) + "\n"
 
 
+def proto_file(path: str, package: str, messages: dict[str, list[Field]]) -> descriptor_pb2.FileDescriptorProto:
+    """A .proto file with these messages; other messages among their fields are imported from their files."""
+    file = descriptor_pb2.FileDescriptorProto(name=path, package=package, syntax="proto3")
+    for name, fields in messages.items():
+        message = file.message_type.add(name=name)
+        for number, field in enumerate(fields, start=1):
+            proto = message.field.add(name=field.name, number=number)
+            proto.type = TYPES.get(field.type, proto.TYPE_MESSAGE)
+            proto.label = proto.LABEL_REPEATED if field.repeated else proto.LABEL_OPTIONAL
+            if field.type not in TYPES:
+                proto.type_name = f".{field.type}"
+                place = f"{field.type.replace('.', '/')}.proto"
+                place = "google/protobuf/timestamp.proto" if field.type == TIMESTAMP else place
+                file.dependency.extend([] if place in file.dependency else [place])
+    return file
+
+
+def descriptor_set(files: list[descriptor_pb2.FileDescriptorProto]) -> bytes:
+    """Serialised FileDescriptorSet of these files behind that of timestamps, as MCAP embeds it."""
+    return descriptor_pb2.FileDescriptorSet(file=_with_timestamp(files)).SerializeToString(deterministic=True)
+
+
+def class_of(files: list[descriptor_pb2.FileDescriptorProto], name: str) -> Any:
+    """The generated class of the message of that full name in these files."""
+    pool = descriptor_pool.DescriptorPool()
+    for file in _with_timestamp(files):
+        pool.Add(file)
+    return message_factory.GetMessageClass(pool.FindMessageTypeByName(name))
+
+
+def _with_timestamp(files: list[descriptor_pb2.FileDescriptorProto]) -> list[descriptor_pb2.FileDescriptorProto]:
+    timestamps = descriptor_pb2.FileDescriptorProto()
+    timestamp_pb2.DESCRIPTOR.CopyToProto(timestamps)
+    return [timestamps, *files]
+
+
 @cache
 def file_descriptor_set() -> bytes:
-    """Serialised FileDescriptorSet with every message and its imports, as MCAP embeds it."""
-    timestamp, own = _timestamp_file(), _own_file()
-    return descriptor_pb2.FileDescriptorSet(file=[timestamp, own]).SerializeToString(deterministic=True)
+    """Serialised FileDescriptorSet with every message of rubgen and its imports."""
+    return descriptor_set([_own_file()])
 
 
 @cache
 def message_class(name: str) -> Any:
     """The generated class of the message of that name."""
-    pool = descriptor_pool.DescriptorPool()
-    for file in (_timestamp_file(), _own_file()):
-        pool.Add(file)
-    return message_factory.GetMessageClass(pool.FindMessageTypeByName(f"{PACKAGE}.{name}"))
+    return class_of([_own_file()], f"{PACKAGE}.{name}")
 
 
 def timestamp(time_ns: int) -> dict[str, int]:
@@ -165,42 +197,12 @@ def read_sample_block(data: bytes) -> tuple[int, float, int, Float32Array]:
     return time_ns, block.sample_rate, block.first_index, np.frombuffer(block.values, dtype="<f4")
 
 
-def _timestamp_file() -> descriptor_pb2.FileDescriptorProto:
-    file = descriptor_pb2.FileDescriptorProto()
-    timestamp_pb2.DESCRIPTOR.CopyToProto(file)
-    return file
-
-
 def _own_file() -> descriptor_pb2.FileDescriptorProto:
-    file = descriptor_pb2.FileDescriptorProto(
-        name="rubgen/v1.proto", package=PACKAGE, syntax="proto3", dependency=["google/protobuf/timestamp.proto"]
-    )
-    for name, (_, fields) in MESSAGES.items():
-        _add_message(file, name, fields)
-    return file
-
-
-def _add_message(file: descriptor_pb2.FileDescriptorProto, name: str, fields: list[_Field]) -> None:
-    message = file.message_type.add(name=name)
-    for number, field in enumerate(fields, start=1):
-        proto = message.field.add(name=field.name, number=number, type=TYPES[field.type])
-        proto.label = proto.LABEL_REPEATED if field.repeated else proto.LABEL_OPTIONAL
-        if field.type == TIMESTAMP:
-            proto.type_name = f".{TIMESTAMP}"
+    return proto_file("rubgen/v1.proto", PACKAGE, {name: fields for name, (_, fields) in MESSAGES.items()})
 
 
 @cache
 def _bytes_block() -> Any:
-    """SampleBlock with its packed floats as one bytes field; never written into a file's schema."""
-    fields = [_Field("bytes", "values", "") if field.repeated else field for field in MESSAGES["SampleBlock"][1]]
-    file = descriptor_pb2.FileDescriptorProto(
-        name="rubgen/bytes.proto",
-        package=PACKAGE,
-        syntax="proto3",
-        dependency=["google/protobuf/timestamp.proto"],
-    )
-    _add_message(file, "SampleBlock", fields)
-    pool = descriptor_pool.DescriptorPool()
-    pool.Add(_timestamp_file())
-    pool.Add(file)
-    return message_factory.GetMessageClass(pool.FindMessageTypeByName(f"{PACKAGE}.SampleBlock"))
+    """SampleBlock whose packed floats are one bytes field. It never enters the schema of a file."""
+    fields = [Field("bytes", "values") if field.repeated else field for field in MESSAGES["SampleBlock"][1]]
+    return class_of([proto_file("rubgen/bytes.proto", PACKAGE, {"SampleBlock": fields})], f"{PACKAGE}.SampleBlock")
