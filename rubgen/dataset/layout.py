@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 
 from rubgen.formats import format_of
@@ -16,56 +15,31 @@ RUNS_PER_ROW_GROUP = 8
 20 ms (35 with 16, 6 with 1)."""
 
 
-@dataclass(frozen=True)
 class Layout:
     """Paths in the directory `root` of a data set."""
 
-    root: Path
-
-    @property
-    def manifest(self) -> Path:
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self.manifest = root / "manifest.json"
         """Recipe, seed, versions and the sha256 of every file."""
-        return self.root / "manifest.json"
-
-    @property
-    def digest(self) -> Path:
+        self.digest = root / "manifest.json.sha256"
         """The sha256 of the manifest."""
-        return self.root / "manifest.json.sha256"
-
-    @property
-    def derived(self) -> Path:
+        self.derived = root / "derived.json"
         """Sizes and sha256 of the derived files, of this writing."""
-        return self.root / "derived.json"
-
-    @property
-    def runs(self) -> Path:
+        self.runs = root / "runs.parquet"
         """All runs, failed ones too, without signals."""
-        return self.root / "runs.parquet"
-
-    @property
-    def card(self) -> Path:
+        self.card = root / "README.md"
         """The data-set card."""
-        return self.root / "README.md"
-
-    @property
-    def croissant(self) -> Path:
+        self.croissant = root / "croissant.json"
         """The description for machine-learning tools."""
-        return self.root / "croissant.json"
-
-    @property
-    def data(self) -> Path:
+        self.data = root / "data"
         """Folder of the Parquet files with signals."""
-        return self.root / "data"
-
-    @property
-    def staging(self) -> Path:
+        self.sections = root / "sections"
+        """Folder of the compact records, from which labels can be made again."""
+        self.staging = root / ".staging"
         """Finished runs until the set is complete."""
-        return self.root / ".staging"
-
-    @property
-    def identity(self) -> Path:
+        self.identity = self.staging / "identity.json"
         """The identity of an unfinished set."""
-        return self.staging / "identity.json"
 
     def staged(self, run_id: str) -> Path:
         """The finished run: its existence proves that all its files are complete."""
@@ -74,11 +48,6 @@ class Layout:
     def staged_section(self, run_id: str) -> Path:
         """The compact record of a finished run."""
         return self.staging / "sections" / f"{run_id}.parquet"
-
-    @property
-    def sections(self) -> Path:
-        """Folder of the compact records, from which labels can be made again."""
-        return self.root / "sections"
 
     def section_shard(self, number: int, count: int) -> Path:
         """A file of the compact records of as many runs as a data file has."""
