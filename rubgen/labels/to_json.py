@@ -13,6 +13,8 @@ from rubgen.labels.label import label
 from rubgen.labels.labels import Labels
 from rubgen.labels.registry import LABELS, TAP_LABELS
 
+MOTION_LABELS = ("motion", "motion_blisk", "motion_casing")
+
 
 def labels_to_json(labels: Labels) -> dict[str, object]:
     """The labels of one run by their public names, as JSON-ready Python values.
@@ -58,3 +60,21 @@ def _plain(kind: str, value: Any) -> object:
         return _SINGLE[kind](value)
     each: Iterable[Any] = value.tolist() if isinstance(value, np.ndarray) else value
     return [_SINGLE[kind.removesuffix("s")](one) for one in each]
+
+
+def motion_classes(labels: Labels, start: float, seconds: float) -> list[tuple[float, dict[str, str]]]:
+    """Classes of motion by the names of their labels, each with the time in s after `start` from which it is valid.
+
+    One class of a steady run; at a changing speed those within `seconds` from `start`, a time of the record in s.
+    """
+    if labels.history is None:
+        stretches = [(0.0, labels.motion, labels.motion_blisk, labels.motion_casing)]
+    else:
+        changes = labels.history.changes
+        times = [change.time - start for change in changes]
+        stretches = [
+            (max(time, 0.0), change.motion, change.blisk, change.casing)
+            for time, after, change in zip(times, [*times[1:], math.inf], changes, strict=True)
+            if after > 0 and time < seconds
+        ]
+    return [(time, dict(zip(MOTION_LABELS, map(str, found), strict=True))) for time, *found in stretches]

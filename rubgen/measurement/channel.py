@@ -33,6 +33,10 @@ class Channel:
     __repr__ = brief
 
 
+TEXTS, NUMBERS = ("unit", "quantity", "axis", "location"), ("range_min", "range_max", "resolution", "noise_rms")
+"""Fields of a channel that files keep beside its samples."""
+
+
 def quantity_key(quantity: str) -> str:
     """A quantity in topics and entity paths, which allow no blanks."""
     return quantity.replace(" ", "_")

@@ -78,7 +78,7 @@ def render_report(directory: Path) -> str:
         failed=data.runs[data.runs["status"] != "ok"].head(MOST_FAILED).reset_index().to_dict("records"),
         failed_more=max(0, len(data.runs) - len(good) - MOST_FAILED),
         examples=[_example(data.row(run_id), replay) for run_id, replay in replays.items()],
-        channels=_channels(first),
+        channels=list(first.recording.channels.values()),
         loading=[{"name": name, "code": code} for name, code in loading(data, first).items()],
         problems=verify(directory),
         files=len(data.manifest.files),
@@ -162,21 +162,6 @@ def _example(row: dict[str, Any], replay: Replay) -> dict[str, str]:
         "text": f"{float(row['speed_rpm']):,.0f} rev/min, {contact}",
         "picture": as_data_url(figure),
     }
-
-
-def _channels(replay: Replay) -> list[dict[str, str]]:
-    return [
-        {
-            "name": channel.name,
-            "quantity": channel.quantity,
-            "axis": channel.axis,
-            "location": channel.location,
-            "unit": channel.unit,
-            "range": f"{channel.range_min:g} to {channel.range_max:g}",
-            "noise": f"{channel.noise_rms:g}",
-        }
-        for channel in replay.recording.channels.values()
-    ]
 
 
 def loading(data: DataSet, replay: Replay) -> dict[str, str]:

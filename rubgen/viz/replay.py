@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.labels.to_json import labels_to_json
+from rubgen.labels.to_json import MOTION_LABELS, labels_to_json, motion_classes
 from rubgen.measurement.channel import Recording
 from rubgen.measurement.motion import ContactIntervals, MotionFrames, contact_intervals, motion_frames
 from rubgen.scenario import Scenario
 from rubgen.units import rev_per_min
 
 if TYPE_CHECKING:
-    from rubgen.labels.labels import Labels
     from rubgen.pipeline import Run
 
 
@@ -73,34 +72,17 @@ def replay_of(run: Run) -> Replay:
     """A run in memory as a replay; raises ValueError for a run without a recording."""
     if run.recording is None or run.labels is None:
         raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to show")
-    touches = contact_intervals(run.response, run.recording)
+    touches, recording = contact_intervals(run.response, run.recording), run.recording
+    seconds = recording.samples / recording.sample_rate_hz
+    classes = motion_classes(run.labels, recording.start_seconds, seconds)
     return Replay(
         scenario=run.scenario,
         labels=labels_to_json(run.labels),
         recording=run.recording,
         touches=sorted_touches(touches),
         frames=motion_frames(run.response, run.recording),
-        motion_classes=_motion_classes(run.labels, run.recording),
+        motion_classes={name: [(time, names[name]) for time, names in classes] for name in MOTION_LABELS},
     )
-
-
-def _motion_classes(labels: Labels, recording: Recording) -> dict[str, list[tuple[float, str]]]:
-    """Those of the whole record, or where the speed changes of each change within the recording."""
-    stretches = [(0.0, labels.motion, labels.motion_blisk, labels.motion_casing)]
-    if labels.history is not None:
-        changes = labels.history.changes
-        times = [change.time - recording.start_seconds for change in changes]
-        last = recording.samples / recording.sample_rate_hz
-        stretches = [
-            (max(time, 0.0), change.motion, change.blisk, change.casing)
-            for time, after, change in zip(times, [*times[1:], np.inf], changes, strict=True)
-            if after > 0 and time < last
-        ]
-    return {
-        "motion": [(time, motion.value) for time, motion, _, _ in stretches],
-        "motion_blisk": [(time, blisk.value) for time, _, blisk, _ in stretches],
-        "motion_casing": [(time, casing.value) for time, _, _, casing in stretches],
-    }
 
 
 def sorted_touches(touches: ContactIntervals) -> ContactIntervals:

@@ -14,10 +14,11 @@ from rubgen.arrays import FloatArray
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.reading.open import DataSet
 from rubgen.errors import UserError
+from rubgen.io.mcap.messages import CONTACT_FIELDS
 from rubgen.io.mcap.read import McapRun
 from rubgen.io.parquet.read import read_table
 from rubgen.measurement.blade_tip_timing import TipTimes
-from rubgen.measurement.channel import Channel, Recording
+from rubgen.measurement.channel import NUMBERS, TEXTS, Channel, Recording
 from rubgen.measurement.motion import ContactIntervals
 from rubgen.scenario import Scenario
 from rubgen.scenario.recipe import check_recipe
@@ -157,20 +158,10 @@ def _choose(data: DataSet, run_id: str | None, where: str | None) -> tuple[str, 
 
 
 def _channel(name: str, values: Any, run: McapRun) -> Channel:
-    facts = run.channels[name]
-    return Channel(
-        name=name,
-        unit=facts["unit"],
-        quantity=facts["quantity"],
-        axis=facts["axis"],
-        location=facts["location"],
-        range_min=float(facts["range_min"]),
-        range_max=float(facts["range_max"]),
-        resolution=float(facts["resolution"]),
-        noise_rms=float(facts.get("noise_rms", "0")),
-        values=values,
-        clean=run.clean.get(name),
-    )
+    described = run.channels[name]
+    facts: dict[str, Any] = {key: described[key] for key in TEXTS}
+    facts |= {key: float(described.get(key, "0")) for key in NUMBERS}
+    return Channel(name=name, values=values, clean=run.clean.get(name), **facts)
 
 
 def _timing(columns: dict[str, FloatArray]) -> TipTimes:
@@ -182,14 +173,5 @@ def _timing(columns: dict[str, FloatArray]) -> TipTimes:
 
 
 def _touches(contacts: dict[str, FloatArray]) -> ContactIntervals:
-    return sorted_touches(
-        ContactIntervals(
-            blade=contacts["blade"].astype(np.int64),
-            start=contacts["start_s"],
-            duration=contacts["duration_s"],
-            angle=contacts["angle_rad"],
-            impulse=contacts["impulse_n_s"],
-            friction_loss=contacts["friction_loss_j"],
-            normal_loss=contacts["normal_loss_j"],
-        )
-    )
+    values: dict[str, Any] = {field: contacts[name] for name, field in CONTACT_FIELDS.items()}
+    return sorted_touches(ContactIntervals(**values | {"blade": contacts["blade"].astype(np.int64)}))

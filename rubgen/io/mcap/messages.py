@@ -105,6 +105,13 @@ MESSAGES: dict[str, tuple[str, list[Field]]] = {
 }
 
 
+CONTACT_FIELDS = {
+    "blade": "blade", "start_s": "start", "duration_s": "duration", "angle_rad": "angle", "impulse_n_s": "impulse",
+    "friction_loss_j": "friction_loss", "normal_loss_j": "normal_loss",
+}  # fmt: skip
+"""The field of `ContactIntervals` of each field of the message Contact."""
+
+
 def proto_text() -> str:
     """The messages as a .proto file, as under `schemas/`."""
     lines = ['syntax = "proto3";', "", f"package {PACKAGE};", "", 'import "google/protobuf/timestamp.proto";']

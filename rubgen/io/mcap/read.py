@@ -24,11 +24,11 @@ from rubgen.io.mcap.content import (
 from rubgen.io.mcap.messages import read_sample_block
 from rubgen.io.mcap.records import DamageError, damage_found
 from rubgen.labels.labels import Motion
+from rubgen.labels.to_json import MOTION_LABELS
 from rubgen.measurement.channel import Float32Array
 from rubgen.measurement.motion import MotionFrames
 from rubgen.scenario import Scenario
 
-MOTION_LABELS = ("motion", "motion_blisk", "motion_casing")
 MOST_NAMED = 3
 FRAMES, MODES = "/motion/frames", "/motion/casing_modes"
 

@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from operator import itemgetter
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from mcap.writer import Writer
 
 from rubgen.io.files import write_durably
 from rubgen.io.mcap.check import check_mcap
 from rubgen.io.mcap.content import TIMING
 from rubgen.io.mcap.foxglove import SCHEMA, SCHEMA_NAME, TRANSFORM, multi_arrays, transform, transform_descriptor_set
-from rubgen.io.mcap.messages import MESSAGES, PACKAGE, file_descriptor_set, message_class, sample_block, timestamp
+from rubgen.io.mcap.messages import (
+    CONTACT_FIELDS,
+    MESSAGES,
+    PACKAGE,
+    file_descriptor_set,
+    message_class,
+    sample_block,
+    timestamp,
+)
 from rubgen.io.mcap.read import McapRun, read_mcap
-from rubgen.labels.to_json import labels_to_json
+from rubgen.labels.to_json import labels_to_json, motion_classes
 from rubgen.measurement.blade_tip_timing import TipTimes
-from rubgen.measurement.channel import Channel, Float32Array, Preview, Recording, preview
+from rubgen.measurement.channel import NUMBERS, TEXTS, Channel, Float32Array, Preview, Recording, preview
 from rubgen.measurement.motion import MotionFrames, contact_intervals, motion_frames
 from rubgen.scenario.scenario import scenario_dict
 
@@ -101,7 +108,7 @@ def _write_messages(writer: Writer, run: Run, recording: Recording, labels: Labe
     frames = motion_frames(run.response, recording)
     if frames is not None:
         add("/motion/frames", schemas["MotionFrame"], _frames(frames))
-        add("/motion/casing_modes", schemas["CasingModes"], iter([_casing_modes(frames)]))
+        add("/motion/casing_modes", schemas["CasingModes"], _casing_modes(frames))
         add("/tf", writer.register_schema(TRANSFORM, "protobuf", transform_descriptor_set()), _transforms(frames))
     for time, channel_id, sequence, data in sorted(merged, key=itemgetter(0, 1, 2)):
         writer.add_message(channel_id, time, data, publish_time=time, sequence=sequence)
@@ -109,17 +116,8 @@ def _write_messages(writer: Writer, run: Run, recording: Recording, labels: Labe
 
 def _describe(channel: Channel) -> dict[str, str]:
     """The meaning of the channel's numbers. Samples are in `unit` already, so their sensitivity is 1."""
-    return {
-        "unit": channel.unit,
-        "quantity": channel.quantity,
-        "axis": channel.axis,
-        "location": channel.location,
-        "range_min": repr(float(channel.range_min)),
-        "range_max": repr(float(channel.range_max)),
-        "resolution": repr(float(channel.resolution)),
-        "noise_rms": repr(float(channel.noise_rms)),
-        "sensitivity": "1.0",
-    }
+    texts = {key: str(getattr(channel, key)) for key in TEXTS}
+    return texts | {key: repr(float(getattr(channel, key))) for key in NUMBERS} | {"sensitivity": "1.0"}
 
 
 def _blocks(values: Float32Array, sample_rate_hz: float) -> Iterator[Stamped]:
@@ -133,30 +131,24 @@ def _arrays(shown: Preview, sample_rate_hz: float) -> Iterator[Stamped]:
     return zip(times, multi_arrays(shown.names, shown.values), strict=True)
 
 
+def _messages(name: str, rows: Iterable[tuple[float, dict[str, Any]]]) -> Iterator[Stamped]:
+    """Messages rubgen.v1.`name` with these fields, each at its time in s, or at 0 where that is negative."""
+    message = message_class(name)
+    for seconds, fields in rows:
+        time = max(0, nanoseconds(seconds))
+        yield time, message(timestamp=timestamp(time), **fields).SerializeToString(deterministic=True)
+
+
 def _contacts(run: Run, recording: Recording) -> Iterator[Stamped]:
     touches = contact_intervals(run.response, recording)
-    message = message_class("Contact")
-    for row in range(touches.blade.size):
-        time = max(0, nanoseconds(touches.start[row]))
-        contact = message(
-            timestamp=timestamp(time),
-            start_s=touches.start[row],
-            duration_s=touches.duration[row],
-            blade=int(touches.blade[row]),
-            angle_rad=touches.angle[row],
-            impulse_n_s=touches.impulse[row],
-            friction_loss_j=touches.friction_loss[row],
-            normal_loss_j=touches.normal_loss[row],
-        )
-        yield time, contact.SerializeToString(deterministic=True)
+    columns = {name: getattr(touches, field).tolist() for name, field in CONTACT_FIELDS.items()}
+    rows = [dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True)]
+    return _messages("Contact", ((row["start_s"], row) for row in rows))
 
 
 def _pulses(recording: Recording) -> Iterator[Stamped]:
-    message = message_class("OncePerRev")
-    for turn, time_s in enumerate(recording.once_per_rev.tolist()):
-        time = nanoseconds(time_s)
-        pulse = message(timestamp=timestamp(time), time_s=time_s, turn=turn)
-        yield time, pulse.SerializeToString(deterministic=True)
+    times = recording.once_per_rev.tolist()
+    return _messages("OncePerRev", ((time, {"time_s": time, "turn": turn}) for turn, time in enumerate(times)))
 
 
 def _describe_probe(run: Run, name: str) -> dict[str, str]:
@@ -167,60 +159,35 @@ def _describe_probe(run: Run, name: str) -> dict[str, str]:
 
 
 def _passages(seen: TipTimes) -> Iterator[Stamped]:
-    message = message_class("BladePassage")
-    for time_s, blade, true in zip(
-        seen.time.tolist(), seen.blade.tolist(), seen.true_displacement.tolist(), strict=True
-    ):
-        time = max(0, nanoseconds(time_s))
-        passage = message(timestamp=timestamp(time), time_s=time_s, blade=blade, true_displacement_m=true)
-        yield time, passage.SerializeToString(deterministic=True)
+    columns = zip(seen.time.tolist(), seen.blade.tolist(), seen.true_displacement.tolist(), strict=True)
+    rows = ((t, {"time_s": t, "blade": blade, "true_displacement_m": true}) for t, blade, true in columns)
+    return _messages("BladePassage", rows)
 
 
 def _motions(labels: Labels, recording: Recording) -> Iterator[Stamped]:
     """The class from the first sample on, and at a changing speed each later class within the recording."""
-    message = message_class("MotionLabel")
-    if labels.history is None:
-        stretches = [(0, labels.motion, labels.motion_blisk, labels.motion_casing, labels.period or 0)]
-    else:
-        last = recording.samples / recording.sample_rate_hz
-        times = [change.time - recording.start_seconds for change in labels.history.changes]
-        stretches = [
-            (max(0, nanoseconds(time)), change.motion, change.blisk, change.casing, 0)
-            for time, after, change in zip(times, [*times[1:], np.inf], labels.history.changes, strict=True)
-            if after > 0 and time < last
-        ]
-    for time, system, blisk, casing, period in stretches:
-        label = message(
-            timestamp=timestamp(time),
-            motion=system.value,
-            motion_blisk=blisk.value,
-            motion_casing=casing.value,
-            period=period,
-        )
-        yield time, label.SerializeToString(deterministic=True)
+    classes = motion_classes(labels, recording.start_seconds, recording.samples / recording.sample_rate_hz)
+    period = labels.period or 0 if labels.history is None else 0
+    return _messages("MotionLabel", ((time, {**names, "period": period}) for time, names in classes))
 
 
 def _frames(frames: MotionFrames) -> Iterator[Stamped]:
-    message = message_class("MotionFrame")
     for row, time_s in enumerate(frames.time.tolist()):
-        time = nanoseconds(time_s)
-        frame = message(
-            timestamp=timestamp(time),
-            time_s=time_s,
-            angle_rad=frames.angle[row],
-            centre_m=frames.centre[row].tolist(),
-            tips_m=frames.tips[row].ravel().tolist(),
-            casing=frames.casing[row].tolist(),
-            dense=int(frames.dense[row]),
-        )
-        yield time, frame.SerializeToString(deterministic=True)
+        fields = {
+            "time_s": time_s,
+            "angle_rad": frames.angle[row],
+            "centre_m": frames.centre[row].tolist(),
+            "tips_m": frames.tips[row].ravel().tolist(),
+            "casing": frames.casing[row].tolist(),
+            "dense": int(frames.dense[row]),
+        }
+        yield from _messages("MotionFrame", [(time_s, fields)])
 
 
-def _casing_modes(frames: MotionFrames) -> Stamped:
+def _casing_modes(frames: MotionFrames) -> Iterator[Stamped]:
     nodes, _, modes = frames.casing_modes.shape
     values = frames.casing_modes.ravel().tolist()
-    shapes = message_class("CasingModes")(timestamp=timestamp(0), nodes=nodes, modes=modes, values=values)
-    return 0, shapes.SerializeToString(deterministic=True)
+    return _messages("CasingModes", [(0.0, {"nodes": nodes, "modes": modes, "values": values})])
 
 
 def _transforms(frames: MotionFrames) -> Iterator[Stamped]:

@@ -36,9 +36,8 @@ def dataset_overview(runs: pd.DataFrame) -> Figure:
     for panel, y in zip(axes, others, strict=False):
         parameter_plane(panel, shown, x, y)
     parameter_plane(axes[-1], shown, x, "contact_impulse_per_turn_n_s")
-    figure.legend(
-        handles=motion_legend(shown), loc="outside lower center", ncols=6 if others else 3, frameon=False, fontsize=9
-    )
+    marks = motion_legend(shown["motion"], hollow=not shown["rub"].all())
+    figure.legend(handles=marks, loc="outside lower center", ncols=6 if others else 3, frameon=False, fontsize=9)
     return figure
 
 

@@ -1,10 +1,8 @@
 """The look that all figures share: plain axes with units, one colour and one marker for each class of motion."""
 
-from __future__ import annotations
-
+from collections.abc import Iterable
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -13,9 +11,6 @@ from matplotlib.lines import Line2D
 
 from rubgen.labels.labels import Motion
 from rubgen.viz.colors import GREY, MOTION_COLORS
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 INK = "#222222"
 MOTION_MARKERS = {
@@ -58,12 +53,11 @@ def note(axes: Axes, text: str) -> None:
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=11, color=GREY)
 
 
-def motion_legend(runs: pd.DataFrame) -> list[Line2D]:
-    """Marks of the classes that occur, and a hollow one where some runs have no contact."""
-    present = [motion for motion in Motion if (runs["motion"] == motion.value).any()]
-    marks = [(motion.value, MOTION_COLORS[motion], MOTION_MARKERS[motion], MOTION_COLORS[motion]) for motion in present]
-    if not runs["rub"].all():
-        marks.append(("hollow: no contact", INK, "o", "none"))
+def motion_legend(motions: Iterable[str], marker: str | None = None, *, hollow: bool = False) -> list[Line2D]:
+    """Marks of the classes in `motions`, all with `marker` if given; with `hollow` another for runs without contact."""
+    present = [motion for motion in Motion if motion.value in set(motions)]
+    marks = [(each.value, MOTION_COLORS[each], marker or MOTION_MARKERS[each], MOTION_COLORS[each]) for each in present]
+    marks += [("hollow: no contact", INK, "o", "none")] if hollow else []
     return [
         Line2D([], [], linestyle="none", label=name, color=color, marker=marker, markerfacecolor=fill)
         for name, color, marker, fill in marks

@@ -4,12 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from rubgen.arrays import FloatArray
 from rubgen.labels.labels import Motion
 from rubgen.viz.colors import GREY, MOTION_COLORS
-from rubgen.viz.figures.style import MOTION_MARKERS, label_axes, new_figure
+from rubgen.viz.figures.style import MOTION_MARKERS, label_axes, motion_legend, new_figure
 
 DECIBELS = 80.0
 
@@ -28,7 +27,7 @@ def bifurcation(
         axes.plot(np.full(section.size, value), section, ".", color=color, markersize=3, markeredgewidth=0)
     label_axes(axes, x, y)
     axes.margins(x=0.01)
-    dots = _classes(motions, "o")
+    dots = motion_legend(motions, "o")
     figure.legend(handles=dots, loc="outside lower center", ncols=len(dots), frameon=False, fontsize=9)
     return figure
 
@@ -51,18 +50,8 @@ def exponent_sweep(
         )  # fmt: skip
     label_axes(axes, x, "Largest Lyapunov exponent, 1/turn")
     axes.margins(x=0.01)
-    figure.legend(handles=_classes(motions), loc="outside lower center", ncols=5, frameon=False, fontsize=9)
+    figure.legend(handles=motion_legend(motions), loc="outside lower center", ncols=5, frameon=False, fontsize=9)
     return figure
-
-
-def _classes(motions: Sequence[str], marker: str | None = None) -> list[Line2D]:
-    """Marks of the classes that occur, all with one marker where one is given."""
-    present = [motion for motion in Motion if motion.value in motions]
-    return [
-        Line2D([], [], linestyle="none", marker=marker or MOTION_MARKERS[each], color=MOTION_COLORS[each],
-               label=each.value)
-        for each in present
-    ]  # fmt: skip
 
 
 def spectrum_cascade(values: FloatArray, orders: FloatArray, amplitudes: FloatArray, *, y: str, unit: str) -> Figure:
