@@ -68,7 +68,3 @@ class Layout:
     def number_of_shards(self, good_runs: int) -> int:
         """Number of data files, and of files of sections, for this number of good runs: at least one."""
         return max(1, math.ceil(good_runs / RUNS_PER_SHARD))
-
-    def shards(self) -> list[Path]:
-        """The existing data files, in order."""
-        return sorted(self.data.glob("*.parquet"))

@@ -10,7 +10,7 @@ import pyarrow as pa
 
 from rubgen.dataset.layout import RUNS_PER_ROW_GROUP
 from rubgen.errors import UserError
-from rubgen.io.parquet.read import damage_named, open_parquet
+from rubgen.io.parquet.read import ParquetSource, damage_named
 from rubgen.scenario import Recipe
 from rubgen.scenario.costs import stored_bytes
 
@@ -40,7 +40,7 @@ class RunRows:
         """The place of every run. Raises UserError where a file is missing or damaged."""
         places: dict[str, Place] = {}
         for path in self.files:
-            with open_parquet(path, self._asked_bytes) as file:
+            with ParquetSource(path, self._asked_bytes) as file:
                 for group in range(file.num_row_groups):
                     names = file.read_row_group(group, columns=["run_id"])["run_id"].to_pylist()
                     places |= {name: Place(path, group, row) for row, name in enumerate(names)}
@@ -59,7 +59,7 @@ class RunRows:
             raise UserError(f"{lost[0]}: has no row in {folder}; generate the set again")
         types = pa.schema([self.types.field(name) for name in columns])
         for path, names in groupby(run_ids, key=lambda run_id: self.places[run_id].file):
-            with open_parquet(path, self._asked_bytes) as file:
+            with ParquetSource(path, self._asked_bytes) as file:
                 for group, members in groupby(names, key=lambda run_id: self.places[run_id].group):
                     runs = list(members)
                     try:

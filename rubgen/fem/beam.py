@@ -83,11 +83,11 @@ def blade_matrices(blades: BladeRow, root_radius: float) -> BeamMatrices:
 
     load = rho * np.einsum("g,egif,egi->ef", weights, shape, cross_section_load(sections, radius))
     return BeamMatrices(
-        M=_symmetric(integral(shape, rho * cross_section_mass(sections))),
-        K=_symmetric(integral(strain, cross_section_stiffness(blades, sections))),
-        G=_skew(integral(shape, rho * cross_section_coriolis(sections))),
-        S=_symmetric(integral(shape, rho * cross_section_spin(sections))),
-        K_sigma=_symmetric(
+        M=symmetric(integral(shape, rho * cross_section_mass(sections))),
+        K=symmetric(integral(strain, cross_section_stiffness(blades, sections))),
+        G=skew(integral(shape, rho * cross_section_coriolis(sections))),
+        S=symmetric(integral(shape, rho * cross_section_spin(sections))),
+        K_sigma=symmetric(
             integral(gradient, cross_section_pull(sections))
             + integral(shape, rho * cross_section_second_order(sections))
         ),
@@ -158,12 +158,14 @@ def _assemble_vector(blocks: FloatArray) -> FloatArray:
     return vector
 
 
-def _symmetric(matrix: FloatArray) -> FloatArray:
-    return (matrix + matrix.T) / 2
+def symmetric(matrix: FloatArray) -> FloatArray:
+    """The symmetric part of a matrix."""
+    return np.ascontiguousarray((matrix + matrix.T) / 2)
 
 
-def _skew(matrix: FloatArray) -> FloatArray:
-    return (matrix - matrix.T) / 2
+def skew(matrix: FloatArray) -> FloatArray:
+    """The skew part of a matrix."""
+    return np.ascontiguousarray((matrix - matrix.T) / 2)
 
 
 def root_strain_row(blades: BladeRow, root_radius: float, beam: BeamMatrices) -> FloatArray:

@@ -7,7 +7,7 @@ import scipy.sparse as sp
 from scipy.linalg import block_diag, eigh
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.fem.beam import BeamMatrices
+from rubgen.fem.beam import BeamMatrices, skew, symmetric
 from rubgen.fem.blisk import BliskModel, assemble_blisk, rigid_motions
 from rubgen.fem.constraints import on_springs, rim_joint, support_stiffness
 from rubgen.machine import BladeRow, Disk, DiskSupport
@@ -83,10 +83,10 @@ def reduce_blisk(
     V = craig_bampton(sp.csr_array(joined.M), held, masters, reduction.blisk_modes)
     R = rigid_motions(model)
     return ReducedBlisk(
-        M=_symmetric(V.T @ joined.M @ V),
-        K=_symmetric(V.T @ joined.K @ V),
-        G=_skew(V.T @ joined.G @ V),
-        A=_symmetric(V.T @ joined.A @ V),
+        M=symmetric(V.T @ joined.M @ V),
+        K=symmetric(V.T @ joined.K @ V),
+        G=skew(V.T @ joined.G @ V),
+        A=symmetric(V.T @ joined.A @ V),
         euler=V.T @ joined.euler,
         centre=np.ascontiguousarray(V[:6]),
         roots=np.ascontiguousarray(V[joined.roots]),
@@ -144,11 +144,3 @@ def _join_components(model: BliskModel, reduction: Reduction, turning: Turning |
 def _clamped_frequency(beam: BeamMatrices) -> float:
     squares: FloatArray = eigh(beam.K[6:, 6:], beam.M[6:, 6:], eigvals_only=True)
     return float(np.sqrt(squares[0]))
-
-
-def _symmetric(X: FloatArray) -> FloatArray:
-    return np.ascontiguousarray((X + X.T) / 2)
-
-
-def _skew(X: FloatArray) -> FloatArray:
-    return np.ascontiguousarray((X - X.T) / 2)

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import asdict
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import scipy
@@ -108,16 +109,7 @@ def _load(path: Path) -> ReducedBlisk | None:
 
 
 def _restore(file: Mapping[str, FloatArray]) -> ReducedBlisk:
-    return ReducedBlisk(
-        M=file["M"],
-        K=file["K"],
-        G=file["G"],
-        A=file["A"],
-        euler=file["euler"],
-        centre=file["centre"],
-        roots=file["roots"],
-        rigid_inertia=file["rigid_inertia"],
-        blade_frequency=float(file["blade_frequency"]),
-        full_size=int(file["full_size"]),
-        growth=CentrifugalGrowth(**{name: file[f"growth_{name}"] for name in _GROWTH}),
-    )
+    fields: dict[str, Any] = {name: file[name] for name in _ARRAYS}
+    growth = CentrifugalGrowth(**{name: file[f"growth_{name}"] for name in _GROWTH})
+    numbers = {"blade_frequency": float(file["blade_frequency"]), "full_size": int(file["full_size"])}
+    return ReducedBlisk(growth=growth, **fields, **numbers)

@@ -9,7 +9,7 @@ import pytest
 from mutations import mutated
 
 from rubgen.errors import UserError
-from rubgen.io.parquet.read import open_parquet, read_table, row_groups
+from rubgen.io.parquet.read import ParquetSource, read_table, row_groups
 from rubgen.io.parquet.write import run_table, write_table
 
 WORD, MANY = "x" * 1_000_000, 40_000_000
@@ -61,7 +61,7 @@ def test_every_way_of_reading_names_the_file(file, tmp_path):
     refusal(path)
     with pytest.raises(UserError, match=r"bad\.parquet: damaged"):
         list(row_groups(path))
-    with open_parquet(path) as source:
+    with ParquetSource(path) as source:
         name = "".join(column.path_in_schema.split(".")[:1])
         source.read_row_group(0)
         assert source.read_row_group(1, ["run_id"]).num_rows == 1

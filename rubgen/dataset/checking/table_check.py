@@ -14,7 +14,7 @@ from rubgen.dataset.rows import asked_bytes
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
 from rubgen.io.parquet.compact_records import SCHEMA
-from rubgen.io.parquet.read import ParquetSource, open_parquet
+from rubgen.io.parquet.read import ParquetSource
 from rubgen.io.parquet.write import schema
 from rubgen.scenario import Sensing
 
@@ -132,7 +132,7 @@ def _groups(
     """Each row group of a file, or None with its problems; `name_of` is the run of a row."""
     path, first = layout.root / name, 0
     try:
-        with open_parquet(path, asked) as file:
+        with ParquetSource(path, asked) as file:
             if not file.schema_arrow.equals(types):
                 yield None, [f"{name}: its columns are not those of this rubgen"]
                 return

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from mcap.writer import Writer
 
 from rubgen.io.files import write_durably
-from rubgen.io.mcap.check import check_mcap
 from rubgen.io.mcap.content import TIMING
 from rubgen.io.mcap.foxglove import SCHEMA, SCHEMA_NAME, TRANSFORM, multi_arrays, transform, transform_descriptor_set
 from rubgen.io.mcap.messages import (
@@ -23,7 +22,6 @@ from rubgen.io.mcap.messages import (
     sample_block,
     timestamp,
 )
-from rubgen.io.mcap.read import McapRun, read_mcap
 from rubgen.labels.to_json import labels_to_json, motion_classes
 from rubgen.measurement.blade_tip_timing import TipTimes
 from rubgen.measurement.channel import NUMBERS, TEXTS, Channel, Float32Array, Preview, Recording, preview
@@ -33,8 +31,6 @@ from rubgen.scenario.scenario import scenario_dict
 if TYPE_CHECKING:  # Run carries the solver's imports; who reads or checks a file needs none of them
     from rubgen.labels.labels import Labels
     from rubgen.pipeline import Run
-
-__all__ = ["McapRun", "check_mcap", "read_mcap", "write_mcap"]
 
 LIBRARY = "rubgen"  # no version: the same run gives the same bytes
 BLOCK_SAMPLES = 1024

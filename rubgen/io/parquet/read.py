@@ -99,33 +99,22 @@ class ParquetSource:
             raise UserError(f"{self.path}: would unpack to {unpacked:,} bytes; that is no file of rubgen")
 
 
-def open_parquet(path: Path, asked_bytes: float = 0.0) -> ParquetSource:
-    """The file with only its footer read.
-
-    Raises UserError where it is missing, damaged or not a Parquet file of rubgen.
-
-    The unpacked size of a row group is limited by the general bounds and `asked_bytes`, the size by the recipe of the
-    set.
-    """
-    return ParquetSource(path, asked_bytes)
-
-
 def read_table(path: Path, columns: Sequence[str] | None = None, asked_bytes: float = 0.0) -> pa.Table:
     """The rows of a Parquet file, every page checked.
 
     - path: of the file.
     - columns: names of the columns; all with None.
-    - asked_bytes: as in `open_parquet`.
+    - asked_bytes: as in `ParquetSource`.
 
     Raises UserError where the file is missing, damaged or lacks a column.
     """
-    with open_parquet(path, asked_bytes) as file:
+    with ParquetSource(path, asked_bytes) as file:
         return file.read(columns)
 
 
 def row_groups(path: Path, asked_bytes: float = 0.0) -> Iterator[pa.Table]:
     """One row group after another, every page checked. Raises UserError where the file is missing or damaged."""
-    with open_parquet(path, asked_bytes) as file:
+    with ParquetSource(path, asked_bytes) as file:
         for group in range(file.num_row_groups):
             yield file.read_row_group(group)
 

@@ -17,7 +17,6 @@ import pyarrow.parquet as pq
 from rubgen.arrays import FloatArray
 from rubgen.io.columns import Column, scalar_columns, signal_columns
 from rubgen.io.files import write_durably
-from rubgen.io.parquet.read import open_parquet, read_table, row_groups
 from rubgen.labels.to_json import labels_to_json, window_amplitudes
 from rubgen.measurement.channel import Recording
 from rubgen.measurement.motion import contact_intervals
@@ -27,8 +26,6 @@ from rubgen.sensors.sensor_set import SensorSet
 
 if TYPE_CHECKING:  # Run carries the solver's imports; who reads a file needs none of them
     from rubgen.pipeline import Run
-
-__all__ = ["open_parquet", "read_table", "row_groups", "run_table", "schema", "write_parquet", "write_table"]
 
 TYPES = {
     "text": pa.string(),
