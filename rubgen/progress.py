@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Protocol
 
 Report = Callable[[int, int], None]
@@ -78,8 +79,8 @@ def _way(wanted: bool | None) -> Show | None:
     if sys.stderr is not None and sys.stderr.isatty():
         return _bar
     if _NOTEBOOK in sys.modules:
-        return _in_place
-    return _lines if wanted else None
+        return partial(_written, SOON_S, "\r{:<78}", f"\r{'':<78}\r")
+    return partial(_written, EVERY_S, "rubgen: {}\n", "") if wanted else None
 
 
 def _nothing(_done: int, _total: int) -> None:
@@ -110,21 +111,6 @@ def _bar(text: str, unit: str, *, long: bool) -> Iterator[Report]:
         timer.cancel()
         timer.join()
         bar.stop()
-
-
-@contextmanager
-def _lines(text: str, unit: str, *, long: bool) -> Iterator[Report]:
-    """A line every minute; for a long step the first comes at once."""
-    with _written_regularly(_SoFar(text, unit), EVERY_S, long=long, line="rubgen: {}\n") as report:
-        yield report
-
-
-@contextmanager
-def _in_place(text: str, unit: str, *, long: bool) -> Iterator[Report]:
-    """One line of a notebook. It is rewritten every second and cleared when the step ends."""
-    with _written_regularly(_SoFar(text, unit), SOON_S, long=long, line="\r{:<78}") as report:
-        yield report
-    sys.stderr.write(f"\r{'':<78}\r")
 
 
 @dataclass
@@ -160,8 +146,12 @@ class _SoFar:
 
 
 @contextmanager
-def _written_regularly(so_far: _SoFar, every: float, *, long: bool, line: str) -> Iterator[Report]:
-    """Write `line` to stderr every `every` seconds, from a thread: the step may report nothing for a long time."""
+def _written(every: float, line: str, end: str, text: str, unit: str, *, long: bool) -> Iterator[Report]:
+    """Write `line` to stderr every `every` seconds, a long step at once too, and `end` when the step ends.
+
+    A thread writes: the step may report nothing for a long time. In a notebook the line is rewritten and then cleared.
+    """
+    so_far = _SoFar(text, unit)
     ended = threading.Event()
     stream = sys.stderr
 
@@ -184,6 +174,7 @@ def _written_regularly(so_far: _SoFar, every: float, *, long: bool, line: str) -
     finally:
         ended.set()
         thread.join()
+        stream.write(end)
 
 
 def _duration(seconds: float) -> str:
