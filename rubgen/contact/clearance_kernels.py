@@ -1,7 +1,5 @@
 """Bounds of tip clearance and of casing displacement. They only save work: no result depends on them."""
 
-from __future__ import annotations
-
 import math
 
 from rubgen.arrays import FloatArray

@@ -5,8 +5,6 @@ B = B_n + mu B_tau is the whole force. Both matrices have entries only at three 
 each contact.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Coulomb friction of a sliding tip."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import FloatArray

@@ -1,7 +1,5 @@
 """Direction of sliding friction on a blade tip."""
 
-from __future__ import annotations
-
 import math
 
 from rubgen.jit import allocation_free_kernel

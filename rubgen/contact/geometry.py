@@ -1,7 +1,5 @@
 """The casing surface and the blade tips as the contact kernels take them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import FloatArray, frozen

@@ -5,8 +5,6 @@ displacement, interpolated between the nodes by periodic cubic Hermite polynomia
 curve is smooth; as an option it is the polygon through the nodes, and worn where there is a liner.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The complementarity problem of one contact step."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import FloatArray

@@ -1,7 +1,5 @@
 """The linear complementarity problem of one step: 0 <= lam _|_ b + W lam >= 0."""
 
-from __future__ import annotations
-
 import math
 
 from rubgen.arrays import FloatArray, IntArray

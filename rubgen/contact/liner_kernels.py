@@ -1,7 +1,5 @@
 """The worn depth of an abradable liner over the polar angle: a periodic cubic spline whose coefficients only grow."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Wear of the liner by the contacts of one step."""
 
-from __future__ import annotations
-
 from rubgen.contact.contact_kernels import ContactWork
 from rubgen.contact.liner_kernels import WORK, Liner, Wear, remove, worn_depth
 from rubgen.jit import allocation_free_kernel, inlined_kernel

@@ -4,8 +4,6 @@ Every label except the orders is computed from the compact record, most of it in
 record read back from a file are therefore equal.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any

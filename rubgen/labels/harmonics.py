@@ -1,7 +1,5 @@
 """Amplitudes and phases of the taps at multiples of the rotation frequency, and orders above the noise."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 

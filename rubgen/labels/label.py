@@ -1,7 +1,5 @@
 """All labels of one run."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from rubgen.labels.compact_record import in_record_precision

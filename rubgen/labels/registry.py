@@ -5,8 +5,6 @@ of a DataFrame and the tables of docs/labels.md come from here. A new label is o
 Meanings stand in the files: another wording changes their bytes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum

@@ -1,7 +1,5 @@
 """Labels of a run whose speed changes: of the whole record, and from window to window."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Labels as a dictionary for JSON, by the names in every file and command."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable
 from typing import Any

@@ -1,7 +1,5 @@
 """Labels of short windows of a record, for users who cut its signals."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 

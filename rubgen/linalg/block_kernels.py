@@ -4,8 +4,6 @@ They act on z: the blade tips as harmonics over the blades (nodal diameters), th
 arranged block by block (`linalg.blocks`).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray

@@ -5,8 +5,6 @@ Nothing is assumed: the blocks are the sets of coordinates that the matrices con
 block, with the same code.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """From z to physical coordinates and back: blade tips are harmonics over the blades, the others are unchanged."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray

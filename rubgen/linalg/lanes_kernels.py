@@ -4,8 +4,6 @@ Each function stands twice, as plain Python and in vector code (`vector_kernels`
 float64 of any shape, read as rows of eight or as single numbers. Products are fused with the sums.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

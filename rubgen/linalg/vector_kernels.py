@@ -4,8 +4,6 @@ A function for registers stands twice: as plain Python, and as the same in LLVM'
 take instead (`compile_as`). Arrays are C-contiguous. The compiled order of a sum is fixed, on every processor.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

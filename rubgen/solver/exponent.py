@@ -1,7 +1,5 @@
 """The largest Lyapunov exponent from the growth of the distance to a companion trajectory."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """One run: from the rub-free motion through the closing of the clearance to the record."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

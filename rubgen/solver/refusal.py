@@ -1,7 +1,5 @@
 """Runs that cannot be integrated: the reason, known before the run, and the response."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """The result of the integration of one run."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from enum import StrEnum
 

@@ -1,7 +1,5 @@
 """What is integrated, and what the response records."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Protocol
 

@@ -1,7 +1,5 @@
 """How much the blades touch: counts, friction work, each blade's share, severity, partial or full annular."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import StrEnum
 

@@ -1,7 +1,5 @@
 """Where on the casing the blades touch."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

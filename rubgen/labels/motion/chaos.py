@@ -1,7 +1,5 @@
 """The 0-1 test on the parts of a Poincare section."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.linalg import eigh
 

@@ -1,7 +1,5 @@
 """Class of the steady motion of blisk, casing and both, and further facts of the section."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from rubgen.arrays import FloatArray

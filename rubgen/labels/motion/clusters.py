@@ -1,7 +1,5 @@
 """Whether the points of a Poincare section repeat after some turns."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

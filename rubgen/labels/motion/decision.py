@@ -1,7 +1,5 @@
 """The class of a motion from three indicators: clusters of the section, the 0-1 test, the Lyapunov exponent."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from math import erf, exp, lcm, sqrt
 

@@ -1,7 +1,5 @@
 """Motion that switches between regular and irregular."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Points of the Poincare section of blisk and casing, over the size of their motion."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import FloatArray

@@ -1,7 +1,5 @@
 """Whether a motion has the symmetry of the casing: q(t + T/N) = q(t), seen in the turning frame."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.labels.motion.clusters import EXCURSION

@@ -1,7 +1,5 @@
 """Direction of the disk centre's whirl: forward, with the rotation, or backward."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import StrEnum
 

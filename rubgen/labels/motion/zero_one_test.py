@@ -1,7 +1,5 @@
 """The 0-1 test for chaos (Gottwald, Melbourne 2009, SIAM J. Appl. Dyn. Syst. 8, 129), by correlation."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

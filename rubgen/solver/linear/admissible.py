@@ -1,7 +1,5 @@
 """Checks of a system before it is integrated. Each problem is one line."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Growth or decay of small disturbances of the rub-free motion, with uneven supports or a squeeze film."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

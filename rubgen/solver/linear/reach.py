@@ -1,7 +1,5 @@
 """Whether a blade can reach the casing at all, from the rub-free motions before any run."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """The rub-free motion: static in the turning frame, or periodic where supports are uneven or gravity acts."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Eigenvalues of the linear system, its stable step, and the turns in which its transients decay."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

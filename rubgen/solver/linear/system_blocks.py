@@ -1,7 +1,5 @@
 """The blocks into which the matrices of systems decompose."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.linalg.blocks import Blocks, find_blocks

@@ -1,7 +1,5 @@
 """Which observers a run has."""
 
-from __future__ import annotations
-
 import math
 
 from rubgen.scenario.rotation import Rotation

@@ -1,7 +1,5 @@
 """A companion trajectory beside the run. The growth of their distance is the largest Lyapunov exponent."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -3,8 +3,6 @@
 The largest Lyapunov exponent is the mean growth of the distance (Benettin, Galgani, Giorgilli, Strelcyn 1980).
 """
 
-from __future__ import annotations
-
 import math
 
 from rubgen.arrays import FloatArray

@@ -1,7 +1,5 @@
 """How fast a diverging run has grown, and what to change."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The balance of the scheme's energy identity over a run."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

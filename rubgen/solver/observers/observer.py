@@ -1,7 +1,5 @@
 """The protocol of all observers of a run."""
 
-from __future__ import annotations
-
 from typing import Any, Protocol
 
 from rubgen.solver.speed.turn import Turn

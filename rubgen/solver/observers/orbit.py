@@ -1,7 +1,5 @@
 """Means of the disk centre's motion."""
 
-from __future__ import annotations
-
 from collections import deque
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Orders of rotation of each turn, over its angle."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

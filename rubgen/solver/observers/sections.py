@@ -1,7 +1,5 @@
 """State, impulse and number of steps with contact, once a turn."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

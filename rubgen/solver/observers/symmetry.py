@@ -1,7 +1,5 @@
 """The state after each Nth of a turn. A motion with the symmetry of the casing has N equal states."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Taps and passages under timing probes of the last turns."""
 
-from __future__ import annotations
-
 from collections import deque
 from typing import Any
 

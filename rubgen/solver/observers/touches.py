@@ -1,7 +1,5 @@
 """Touches of blades."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The replay track: the whole motion, frame by frame, over the few turns about the hardest touch."""
 
-from __future__ import annotations
-
 from collections import deque
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The liner at the end of a run."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.contact.liner_kernels import REMOVED, Liner, Wear, worn_depth

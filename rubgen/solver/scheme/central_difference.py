@@ -1,7 +1,5 @@
 """Matrices of the central difference scheme with Lagrange multipliers, for the kernels."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.linalg as la
 

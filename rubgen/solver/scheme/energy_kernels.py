@@ -4,8 +4,6 @@ E_n+1/2 = v^T M v / 2 + q_n+1^T K_sym q_n / 2,   v = (q_n+1 - q_n) / dt
 dE      = f.d - (C v_c).d - (K_skew q_n).d + lam^T B^T d,   d = (q_n+1 - q_n-1) / 2,   v_c = d / dt
 """
 
-from __future__ import annotations
-
 from rubgen.arrays import FloatArray
 from rubgen.contact.contact_kernels import contact_slip
 from rubgen.contact.geometry_kernels import casing_rows, tip_position

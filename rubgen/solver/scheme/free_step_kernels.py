@@ -1,7 +1,5 @@
 """The step of the scheme without contact, in blocks."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray

@@ -1,7 +1,5 @@
 """The constants of a run, and its first state."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import FloatArray, frozen

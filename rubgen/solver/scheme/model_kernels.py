@@ -1,7 +1,5 @@
 """The constants of a step: laws, tables over the angle, the model."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray

@@ -1,7 +1,5 @@
 """The coordinates at one step: all in blocks, and the physical coordinates that contact needs."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray

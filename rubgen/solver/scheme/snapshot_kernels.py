@@ -1,7 +1,5 @@
 """States that a turn leaves behind at chosen steps."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray

@@ -1,7 +1,5 @@
 """The part of the scheme that follows the speed."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray

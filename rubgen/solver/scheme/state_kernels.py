@@ -1,7 +1,5 @@
 """The state of a run, which every step changes, and the room in which a step works."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray

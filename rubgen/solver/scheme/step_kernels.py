@@ -8,8 +8,6 @@
 Contact is solved in physical coordinates.
 """
 
-from __future__ import annotations
-
 import math
 
 from rubgen.arrays import FloatArray

@@ -1,7 +1,5 @@
 """A model, its state, and the output of a turn."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -3,8 +3,6 @@
 Every tap except the clearances is a linear functional. A row of `Taps.sums` holds eight of them.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

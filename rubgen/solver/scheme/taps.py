@@ -1,7 +1,5 @@
 """Taps as the kernels take them. A new kind of sampled tap is one function and one line in `TAP_ROWS`."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any

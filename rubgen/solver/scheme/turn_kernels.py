@@ -1,7 +1,5 @@
 """One turn of the blisk in one call: steps, works, taps, touches."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

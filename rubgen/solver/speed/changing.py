@@ -1,7 +1,5 @@
 """A stepper prepared for a changing speed."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.reduction.model import SpinningSystem

@@ -1,7 +1,5 @@
 """Drivers run a stepper turn by turn: at a steady speed in one call a turn, at a changing speed in short parts."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

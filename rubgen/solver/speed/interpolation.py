@@ -4,8 +4,6 @@ All numbers of the kernels are smooth functions of the speed Omega and linear in
 computed exactly at a few Chebyshev speeds, by the same code as for a steady speed, and interpolated between them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How a run starts: in the rub-free motion, with the surface opened so that nothing touches."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The result of one turn."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

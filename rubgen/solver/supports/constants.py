@@ -1,7 +1,5 @@
 """Turning forces as the kernels of the scheme take them."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.linalg as la
 

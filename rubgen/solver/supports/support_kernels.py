@@ -10,8 +10,6 @@ u_n+1 = u* + Y f with Y = E^T A^-1 E leaves two equations. In the contact proble
 works of D are therefore never positive where D is positive semidefinite, whatever the contact does in the same step.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray

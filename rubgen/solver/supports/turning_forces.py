@@ -3,8 +3,6 @@
 `support_kernels` applies the same law in the steps of a run.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from rubgen.arrays import AnyArray, FloatArray
