@@ -110,6 +110,5 @@ def _load(path: Path) -> ReducedBlisk | None:
 
 def _restore(file: Mapping[str, FloatArray]) -> ReducedBlisk:
     fields: dict[str, Any] = {name: file[name] for name in _ARRAYS}
-    growth = CentrifugalGrowth(**{name: file[f"growth_{name}"] for name in _GROWTH})
-    numbers = {"blade_frequency": float(file["blade_frequency"]), "full_size": int(file["full_size"])}
-    return ReducedBlisk(growth=growth, **fields, **numbers)
+    fields |= {"blade_frequency": float(file["blade_frequency"]), "full_size": int(file["full_size"])}
+    return ReducedBlisk(growth=CentrifugalGrowth(**{name: file[f"growth_{name}"] for name in _GROWTH}), **fields)

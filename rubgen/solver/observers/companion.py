@@ -10,6 +10,7 @@ from rubgen.contact.liner_kernels import REMOVED
 from rubgen.errors import UserError
 from rubgen.solver.exponent import is_settled
 from rubgen.solver.observers.companion_kernels import distance, run_companion
+from rubgen.solver.observers.observer import Observer
 from rubgen.solver.scheme.model import new_state, turned
 from rubgen.solver.scheme.motion_kernels import recover
 from rubgen.solver.scheme.step_kernels import OK
@@ -40,7 +41,7 @@ def piece_ends(steps: int) -> list[int]:
     return [round(steps * piece / pieces) for piece in range(1, pieces + 1)]
 
 
-class CompanionGrowth:
+class CompanionGrowth(Observer):
     """The growth of a companion's distance in each turn of a record; with `stops` until it settles the exponent."""
 
     def __init__(self, stepper: Stepper, *, stops: bool) -> None:

@@ -6,17 +6,15 @@ from typing import Any
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.solver.observers.observer import Observer
 from rubgen.solver.speed.turn import Turn
 
 
-class Orbit:
+class Orbit(Observer):
     """Means of the orbit over each of the last `turns` turns of the record; over all turns with None."""
 
     def __init__(self, turns: int | None) -> None:
         self.means: deque[FloatArray] = deque(maxlen=turns)
-
-    def start(self) -> None:
-        """Nothing to do."""
 
     def turn(self, turn: Turn) -> None:
         """Keep the means of a turn."""

@@ -5,12 +5,13 @@ from typing import Any
 import numpy as np
 
 from rubgen.arrays import ComplexArray, FloatArray
+from rubgen.solver.observers.observer import Observer
 from rubgen.solver.response import ORDERS, WINDOW_TURNS, ChangingSpeed
 from rubgen.solver.speed.driver import SpeedDriver
 from rubgen.solver.speed.turn import Turn
 
 
-class WindowOrders:
+class WindowOrders(Observer):
     """Complex amplitudes of a steady run's taps, window by window.
 
     A window's amplitude is the amplitude of the mean of its turns.
@@ -24,9 +25,6 @@ class WindowOrders:
         angle = 2 * np.pi / steps * np.multiply.outer(np.arange(steps), np.arange(1, ORDERS + 1))
         self.wave = 2 / steps * np.concatenate([np.cos(angle), -np.sin(angle)], axis=1)
         self.windows: list[ComplexArray] = []
-
-    def start(self) -> None:
-        """Nothing to do."""
 
     def turn(self, turn: Turn) -> None:
         """Add the next turn of the record."""
@@ -50,15 +48,12 @@ class WindowOrders:
         self.sum[:], self.turns = 0.0, 0
 
 
-class ChangingOrders:
+class ChangingOrders(Observer):
     """Speed and orders of each turn of a record at a changing speed."""
 
     def __init__(self, driver: SpeedDriver, record: int) -> None:
         self.driver, self.record = driver, record
         self.orders: list[ComplexArray] = []
-
-    def start(self) -> None:
-        """Nothing to do."""
 
     def turn(self, turn: Turn) -> None:
         """Add the orders of a turn of the record."""

@@ -4,19 +4,17 @@ from typing import Any
 
 import numpy as np
 
+from rubgen.solver.observers.observer import Observer
 from rubgen.solver.speed.turn import Turn
 
 
-class Sections:
+class Sections(Observer):
     """The Poincare section, and the sums of each turn, of a record of `record` turns with `size` coordinates."""
 
     def __init__(self, record: int, size: int) -> None:
         self.section = np.zeros((record, 2, size))
         self.impulse = np.zeros(record)
         self.contact_steps = np.zeros(record, dtype=np.int64)
-
-    def start(self) -> None:
-        """Nothing to do."""
 
     def turn(self, turn: Turn) -> None:
         """Add section, impulse and number of steps with contact."""

@@ -7,8 +7,8 @@ import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.reduction.model import SpinningSystem
+from rubgen.solver.observers.observer import Observer
 from rubgen.solver.scheme.stepper import Stepper
-from rubgen.solver.speed.turn import Turn
 
 
 def lobes_of(system: SpinningSystem) -> int:
@@ -31,7 +31,7 @@ def turned_back(modes: FloatArray, share: float) -> FloatArray:
     return np.asarray(np.linalg.lstsq(flat, turned.reshape(2 * nodes, -1))[0])
 
 
-class Symmetry:
+class Symmetry(Observer):
     """The states after 1/N, 2/N, ... 1 of the last turn. A turn must leave snapshots at `steps`."""
 
     def __init__(self, stepper: Stepper) -> None:
@@ -40,12 +40,6 @@ class Symmetry:
         self.shares = [part / lobes for part in range(1, lobes + 1)]
         self.places = [part * steps / lobes for part in range(1, lobes + 1)]
         self.steps = sorted({min(math.ceil(place), steps) for place in self.places})
-
-    def start(self) -> None:
-        """Nothing to do."""
-
-    def turn(self, turn: Turn) -> None:
-        """Nothing to do: the stepper has the snapshots of its last turn."""
 
     def result(self) -> dict[str, Any]:
         """`symmetry_states` (N, 2, n), q and v, linear between two steps; v is their difference over dt."""

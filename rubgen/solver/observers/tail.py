@@ -6,22 +6,20 @@ from typing import Any
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.solver.observers.observer import Observer
 from rubgen.solver.response import TipArrivals
 from rubgen.solver.scheme.taps import sampled_taps, timing_taps
 from rubgen.solver.speed.turn import Turn
 from rubgen.taps import Tap
 
 
-class Tail:
+class Tail(Observer):
     """All taps, and all passages under timing probes, of the last `turns` turns."""
 
     def __init__(self, taps: tuple[Tap, ...], turns: int) -> None:
         self.wanted = taps
         self.taps: deque[FloatArray] = deque(maxlen=turns)
         self.arrivals: deque[FloatArray] = deque(maxlen=turns)
-
-    def start(self) -> None:
-        """Nothing to do: the tail may reach back into the settling."""
 
     def turn(self, turn: Turn) -> None:
         """Add the taps of a turn that recorded them."""

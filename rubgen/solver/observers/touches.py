@@ -5,13 +5,14 @@ from typing import Any
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.solver.observers.observer import Observer
 from rubgen.solver.response import ContactEvents
 from rubgen.solver.scheme.stepper import Stepper
 from rubgen.solver.scheme.turn_kernels import BLADE, COSINE, FRICTION_LOSS, IMPULSE, NORMAL_LOSS, SINE, START, STEPS
 from rubgen.solver.speed.turn import Turn
 
 
-class TouchKeeper:
+class TouchKeeper(Observer):
     """The touches of a record of `record` turns."""
 
     def __init__(self, stepper: Stepper, record: int) -> None:

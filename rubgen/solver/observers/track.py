@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.solver.observers.observer import Observer
 from rubgen.solver.response import Track
 from rubgen.solver.scheme.turn_kernels import IMPULSE
 from rubgen.solver.speed.driver import SpeedDriver
@@ -14,7 +15,7 @@ from rubgen.solver.speed.turn import Turn, TurnFrames
 TRACK_TURNS = 8
 
 
-class TrackKeeper:
+class TrackKeeper(Observer):
     """The frames of the eight turns around the hardest touch. The memory does not grow with the turns.
 
     Turns of the record before `first_turn` are left out. Without any touch the first eight turns are recorded.
@@ -26,9 +27,6 @@ class TrackKeeper:
         self.growth: list[FloatArray] = []
         self.frames: deque[TurnFrames] = deque(maxlen=TRACK_TURNS)
         self.touches: deque[float] = deque(maxlen=TRACK_TURNS)
-
-    def start(self) -> None:
-        """Nothing to do: the track may reach back into the settling."""
 
     def turn(self, turn: Turn) -> None:
         """Add the frames of a turn."""
