@@ -1,4 +1,4 @@
-"""`rubgen doctor`: whether this machine can do the main job, and with what."""
+"""`rubgen doctor`: whether this machine can run rubgen."""
 
 import os
 import platform
@@ -21,7 +21,7 @@ _SOFTWARE_DRIVER = "lvp_icd"
 
 
 def doctor_command(*, as_json: bool) -> int:
-    """Print what is found; 1 where a package is missing or outside of the versions that rubgen declares, else 0."""
+    """Print the state. Return 1 where a package is missing or outside of the versions that rubgen declares, else 0."""
     root = wanted_root()
     problem = problem_of(root)
     needed = _needed()
@@ -48,7 +48,7 @@ def doctor_command(*, as_json: bool) -> int:
 
 
 def _needed() -> list[Requirement]:
-    """What rubgen declares to need to run, extras left out."""
+    """The declared requirements of rubgen, without extras."""
     declared = map(Requirement, requires("rubgen") or [])
     return [each for each in declared if each.marker is None or each.marker.evaluate({"extra": ""})]
 
@@ -62,7 +62,7 @@ def _version(requirement: Requirement) -> str | None:
 
 
 def _problem(requirement: Requirement, found: str | None) -> str:
-    """What is wrong with a package; empty where nothing is."""
+    """The problem of a package; empty without one."""
     name, allowed = requirement.name, requirement.specifier
     if found is None:
         return f"{name}: not installed; install rubgen again"
@@ -83,7 +83,7 @@ def _folder(folder: Path) -> dict[str, object]:
 
 
 def _vulkan() -> str:
-    """What may draw pictures without a screen: hardware, software or none, as far as files of drivers say."""
+    """How pictures can be drawn without a screen: hardware, software or none, from the files of drivers."""
     named = os.environ.get("VK_DRIVER_FILES") or os.environ.get("VK_ICD_FILENAMES")
     files = [Path(each) for each in named.split(os.pathsep)] if named else []
     files = files or [each for folder in _VULKAN_DRIVERS for each in Path(folder).glob("*.json")]

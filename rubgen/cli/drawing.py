@@ -10,7 +10,7 @@ ENDINGS = (".png", ".svg", ".pdf")
 
 
 def figure_command(name: str, source: Path | None, out: Path, choice: Choice, *, force: bool) -> int:
-    """Draw and write."""
+    """Draw a figure and write it."""
     from rubgen.viz.figures import save_figure
 
     check_new_file("--out", out, ENDINGS, force=force)

@@ -16,7 +16,7 @@ from rubgen.formats import run_formats
 
 
 def generate_command(recipe: Path | None, out: Path, runs: int | None, workers: int | None, *, as_json: bool) -> int:
-    """Generate, and say what was made; a Ctrl-C says how to go on."""
+    """Generate, and print a summary. After Ctrl-C, print how to continue."""
     try:
         with terminable():
             made = generate(recipe, out, runs=runs, workers=workers, progress=not as_json)
@@ -39,7 +39,7 @@ def _report(made: Generated, *, as_json: bool) -> None:
 
 
 def _what_was_made(made: Generated) -> Iterator[str]:
-    """Counts of runs, rub and classes, then each way in which runs failed with its shortest reason."""
+    """Counts of runs, rub and classes, then each kind of failure with its shortest reason."""
     outcome = made.outcome
     status = ", ".join(f"{made.status[name]} {name}" for name in sorted(made.status, key=lambda name: name != "ok"))
     done = "nothing to do, verified" if made.verified else f"{made.made} new"
@@ -51,7 +51,7 @@ def _what_was_made(made: Generated) -> Iterator[str]:
 
 
 def _ways_to_look(directory: Path) -> Iterator[str]:
-    """What stands where, and the command that shows it."""
+    """The places of the files, and the command that shows them."""
     yield f"  {directory}/runs.parquet, data/: parameters, labels, signals; for pandas, polars, datasets"
     for each in run_formats():
         files = sorted((directory / each.name).glob(f"*{each.suffix}"))
@@ -63,5 +63,5 @@ def _ways_to_look(directory: Path) -> Iterator[str]:
 
 
 def _command(name: str) -> str:
-    """How to call a program of this environment from here: by name where the shell finds it, else by path."""
+    """The call of a program of this environment: by name where the shell finds it, else by path."""
     return name if which(name) else os.path.relpath(Path(sys.executable).with_name(name))

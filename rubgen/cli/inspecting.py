@@ -1,4 +1,4 @@
-"""`rubgen info`, `label`, `verify`, `repair`: what a data set holds, whether it is true, whether it is whole."""
+"""`rubgen info`, `label`, `verify`, `repair`: content and state of a data set."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def info_command(directory: Path, *, as_json: bool) -> int:
-    """Count runs; of a set that was interrupted, those that are kept."""
+    """Count runs; of an interrupted set, its finished runs."""
     begun = unfinished(directory)
     if begun is not None:
         return _tell_unfinished(directory, begun, as_json=as_json)
@@ -53,14 +53,14 @@ def _tell_unfinished(directory: Path, begun: Unfinished, *, as_json: bool) -> in
 
 
 def verify_command(directory: Path, *, as_json: bool) -> int:
-    """Check, list the problems; 1 where there are any."""
+    """Verify and list the problems. Return 1 where there are any."""
     with step("verify"):
         found = findings(directory)
     return _tell(directory, found, {}, as_json=as_json)
 
 
 def repair_command(directory: Path, *, as_json: bool) -> int:
-    """Make again what is derived, say what was made and what is still wrong; 1 where anything is."""
+    """Make derived files again, list them and the remaining problems. Return 1 where there are any."""
     from rubgen.dataset.checking.repair import repair
 
     with step("repair"):
@@ -72,7 +72,7 @@ def repair_command(directory: Path, *, as_json: bool) -> int:
 
 
 def _tell(directory: Path, found: list[Finding], more: dict[str, object], *, as_json: bool) -> int:
-    """The problems and what to do about them; 1 where there are any."""
+    """Print the problems and the remedy. Return 1 where there are any."""
     what_to_do = advice(directory, found) if found else ""
     if as_json:
         print_json({"ok": not found, **more, "problems": [each.text for each in found], "advice": what_to_do})
@@ -85,7 +85,7 @@ def _tell(directory: Path, found: list[Finding], more: dict[str, object], *, as_
 
 
 def label_command(directory: Path, *, as_json: bool) -> int:
-    """Make labels again, say where they differ; 1 where they do."""
+    """Make labels again and list differences. Return 1 where there are any."""
     with step("make labels again"):
         done = relabel(directory)
     if as_json:
@@ -100,6 +100,6 @@ def label_command(directory: Path, *, as_json: bool) -> int:
 
 
 def _counts(values: pd.Series[Any], expected: Iterable[str] = ()) -> dict[str, int]:
-    """How often each value occurs, the expected ones even if never; runs without a value (failed) are not counted."""
+    """Number of occurrences of each value, also of expected ones that never occur. Failed runs are left out."""
     counts = values.dropna().astype(str).str.lower().value_counts()
     return {name: int(counts.get(name, 0)) for name in [*expected, *sorted(set(counts.index) - set(expected))]}

@@ -1,4 +1,4 @@
-"""Ctrl-C and a polite kill, which end every command in the same way."""
+"""Ctrl-C and SIGTERM end every command in the same way."""
 
 import signal
 import sys
@@ -11,11 +11,11 @@ from typing import Any
 
 @contextmanager
 def terminable() -> Iterator[None]:
-    """A polite kill raises KeyboardInterrupt, and so does Ctrl-C where the shell has switched it off.
+    """A context in which SIGTERM raises KeyboardInterrupt, and Ctrl-C too where the shell has switched it off.
 
-    Compiled code of other libraries may swallow the exception or print it, and fail later with one of its own: nothing
-    is printed after an interrupt, and what is raised is that interrupt. Signals can be handled in the main thread
-    alone; elsewhere nothing changes.
+    Compiled code of other libraries may swallow the exception or print it, and fail later with another one. Nothing is
+    therefore printed after an interrupt, and the interrupt is raised. Signals can be handled only in the main thread;
+    elsewhere nothing changes.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

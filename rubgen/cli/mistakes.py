@@ -1,4 +1,4 @@
-"""What is wrong with a command line, in one line: the word, what is allowed, what was perhaps meant."""
+"""A mistake in a command line, in one line: the word, what is allowed, what was perhaps meant."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TYPE_NAMES = {float: "a number", int: "a whole number", bool: "true or false", P
 
 
 def mistake(error: CycloptsError, app: App) -> str:
-    """The line for a command line that cannot be understood."""
+    """The line for a command line with a mistake."""
     command = " ".join(["rubgen", *(error.command_chain or ())])
     see = f"see {command} --help"
     match error:
@@ -60,6 +60,6 @@ def _allowed(error: CoercionError) -> str:
 
 
 def meant(word: str, known: Iterable[str]) -> str:
-    """` did you mean ...?` where a known name is near, else nothing."""
+    """` did you mean ...?` where a known name is similar, else nothing."""
     close = get_close_matches(word, list(known), n=1)
     return f" did you mean {close[0]}?" if close else ""

@@ -12,7 +12,7 @@ SHOWN_BLISK_MODES = 42
 
 
 def modes_command(machine: str, *, as_json: bool) -> int:
-    """Reduce the machine at rest and print; deviations from the paper are relative."""
+    """Reduce the machine at rest and print it. Deviations from the paper are relative."""
     loaded = load_machine(machine)
     with file_named(machine):
         model = reduce(loaded, Reduction())

@@ -10,7 +10,7 @@ from rubgen.errors import UserError, write_problems
 
 
 def say(text: str) -> None:
-    """One line on stdout; a name in it may have control characters."""
+    """Print one or more lines on stdout."""
     sys.stdout.write(f"{printable(text)}\n")
 
 
@@ -20,12 +20,12 @@ def printable(text: str) -> str:
 
 
 def print_json(values: dict[str, object]) -> None:
-    """One JSON document on stdout; what is not a number becomes null."""
+    """Print one JSON document on stdout; NaN becomes null."""
     sys.stdout.write(f"{json.dumps(_plain(values), indent=2, allow_nan=False)}\n")
 
 
 def print_pairs(values: dict[str, object]) -> None:
-    """Names and values in two columns."""
+    """Print names and values in two columns."""
     width = max(map(len, values), default=0)
     for name, value in values.items():
         say(f"{name:<{width}}  {_text(value)}")
@@ -54,7 +54,13 @@ def _plain(value: object) -> object:
 
 
 def check_new_file(option: str, path: Path, endings: tuple[str, ...], *, force: bool = False) -> None:
-    """Raise UserError for another ending, a folder that does not exist, or a file that does, unless by `force`."""
+    """Raise UserError where a file cannot be written as asked.
+
+    - option: for the message.
+    - path: of the file.
+    - endings: allowed endings; the folder must exist.
+    - force: allow an existing file.
+    """
     if path.suffix not in endings:
         allowed = endings[0] if len(endings) == 1 else f"{', '.join(endings[:-1])} or {endings[-1]}"
         raise UserError(f"{option} {path}: unknown kind of file; end the name in {allowed}")
@@ -67,7 +73,7 @@ def check_new_file(option: str, path: Path, endings: tuple[str, ...], *, force: 
 
 
 def write_file(option: str, path: Path, write: Callable[[Path], object]) -> None:
-    """Write under a temporary name, then rename: a file that was there stays whole until then."""
+    """Write under a temporary name, then rename: an old file stays whole until then. `option` is for messages."""
     from rubgen.io.files import write_durably
 
     with write_problems(path, named=f"{option} {path}"):

@@ -14,7 +14,7 @@ from rubgen.viz.viewer import has_screen, open_viewer
 
 @dataclass(frozen=True, kw_only=True)
 class Showing:
-    """How a replay is shown: as files where any is named, else in the viewer or, with `web`, in the browser."""
+    """The ways of showing a replay: as files where any is named, else in the viewer or, with `web`, in the browser."""
 
     save: Path | None = None
     gif: Path | None = None
@@ -25,7 +25,7 @@ class Showing:
     force: bool = False
 
     def check(self) -> None:
-        """Raise UserError, before any work, where a file exists or cannot be, or there is nothing to show it with."""
+        """Raise UserError, before any work, where a file exists or is not possible, or nothing can show the replay."""
         for option, path, ending in (
             ("--save", self.save, ".rrd"),
             ("--gif", self.gif, ".gif"),
@@ -42,7 +42,7 @@ class Showing:
 
 
 def replay_command(source: Path, run_id: str | None, where: str | None, showing: Showing) -> int:
-    """Find the run, say what there is to know of it, and show it."""
+    """Find the run, print remarks, and show it."""
     showing.check()
     from rubgen.dataset.reading.replaying import find_replay
 
@@ -54,7 +54,7 @@ def replay_command(source: Path, run_id: str | None, where: str | None, showing:
 
 
 def show(replay: Replay, showing: Showing) -> None:
-    """Write the files that are asked for, or open the viewer and wait until it is closed."""
+    """Write the requested files, or open the viewer and wait until it is closed."""
     from rubgen.viz.rerun import write_replay
 
     if showing.save:

@@ -19,7 +19,7 @@ DONE, WANTING, MISTAKE, INTERRUPTED = 0, 1, 2, 130
 
 
 def main(arguments: list[str] | None = None) -> NoReturn:
-    """Run the command line with `arguments`, by default those of the process. It never returns."""
+    """Run the command line with `arguments`, by default the arguments of the process. It never returns."""
     warnings.simplefilter("always", RubgenWarning)
     warnings.showwarning = _show_warning
     for stream in (sys.stdout, sys.stderr):
@@ -52,7 +52,7 @@ def main(arguments: list[str] | None = None) -> NoReturn:
 
 
 def _show_warning(message: Warning | str, category: type[Warning], *_where: Any, **_how: Any) -> None:
-    """Write a warning in one line, without the place in the code: a user cannot use that."""
+    """Write a warning in one line, without its place in the code, which is of no use to a user."""
     name = "warning" if issubclass(category, RubgenWarning) else category.__name__
     sys.stderr.write(f"rubgen: {name}: {_one_line(message)}\n")
 

@@ -28,15 +28,15 @@ from rubgen.units import rev_per_min
 from rubgen.viz.replay import replay_of
 
 LABEL_NAMES = (*(label.name for label in LABELS), "contact_force_orders", "blisk_x_orders")
-"""Labels that programs find as null where a run failed."""
+"""Labels that are null in JSON where a run failed."""
 MOST_ZONES = 4
-"""Zones that are listed one by one."""
+"""Number of zones that are listed one by one."""
 
 
 def simulate_command(
     options: dict[str, Any], out: Path | None, *, replay: bool = False, force: bool = False, as_json: bool
 ) -> int:
-    """Simulate, print, write and show; 1 where the run failed."""
+    """Simulate, print, write and show. Return 1 where the run failed."""
     if replay:
         Showing().check()
     if out:
@@ -131,7 +131,7 @@ def _zones_word(labels: Labels) -> str:
 
 
 def _zones(labels: Labels) -> str:
-    """Centre and width of each, in degrees on the casing from +X."""
+    """Centre and width of each zone, in degrees on the casing from +X."""
     zones = zip(labels.contact_zone_centres, labels.contact_zone_widths, strict=True)
     texts = [f"{math.degrees(centre):.1f}° ({math.degrees(width):.1f}° wide)" for centre, width in zones]
     more = f" and {len(texts) - MOST_ZONES} more" if len(texts) > MOST_ZONES else ""

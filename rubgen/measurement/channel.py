@@ -104,7 +104,7 @@ def preview(channels: Sequence[Channel], sample_rate_hz: float, rate_hz: float =
 def min_max(values: Float32Array, samples_per_bin: int) -> tuple[Float32Array, Float32Array]:
     """Minima and maxima of `values` (n,) in bins of `samples_per_bin`, each (ceil(n / samples_per_bin),).
 
-    The last bin may hold fewer samples. An empty signal gives empty arrays.
+    The last bin may have fewer samples. An empty signal has empty arrays.
     """
     if values.size == 0:
         return values.copy(), values.copy()

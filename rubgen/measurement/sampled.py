@@ -34,7 +34,7 @@ class Feed:
 
 @dataclass(frozen=True)
 class Samples:
-    """Band-limited samples (n,) of a sensor: of an ideal one (None where not asked for), and of the sensor as it is."""
+    """Band-limited samples (n,): of an ideal sensor (None where not asked for), and of the sensor itself."""
 
     ideal: FloatArray | None
     real: FloatArray

@@ -1,1 +1,1 @@
-"""What people look at of a data set, a run or a machine: figures, and one page."""
+"""Figures of a data set, a run or a machine, and one page."""

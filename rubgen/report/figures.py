@@ -40,7 +40,13 @@ Make = Callable[[Path | None, Choice], Figure]
 
 
 def make_figure(name: str, source: Path | None, choice: Choice) -> Figure:
-    """The figure of that name; UserError for an unknown one, a source that does not fit, a missing column."""
+    """The figure of that name.
+
+    - source: a machine, a data set or an MCAP file.
+    - choice: what is drawn of it.
+
+    Raises UserError for an unknown figure, a source that does not fit, a missing column.
+    """
     if name not in FIGURES:
         raise UserError(f"figure {name!r}: {nearest(name, list(FIGURES))}")
     try:
@@ -87,13 +93,13 @@ def _waveform(replay: Replay, choice: Choice) -> Figure:
 
 
 def _channel(choice: Choice, usual: str, recorded: Iterable[str]) -> str:
-    """The channel that is asked for; else the usual one, or the first of a sensor set that has no such channel."""
+    """The requested channel; else the usual one, or the first of a sensor set without it."""
     names = list(recorded)
     return choice.channel or (usual if usual in names else names[0])
 
 
 def _bifurcation(data: DataSet, choice: Choice) -> Figure:
-    """The channel at each pulse about the mean of each run: k points for period k, whatever the orbit's size."""
+    """The channel at each pulse less the mean of each run: k points for period k, for any size of the orbit."""
     key, name = _parameter(data, choice), choice.channel or _without_noise(data, _channel(choice, CHANNEL, data.units))
     unit = data.units.get(name, "")
     scale, unit = SHOWN_UNIT.get(unit, (1.0, unit))
@@ -175,4 +181,4 @@ FIGURES: dict[str, Make] = {
     "exponent": _of_set(_exponent),
     "overview": _of_set(lambda data, _choice: figures.dataset_overview(data.runs)),
 }
-"""Every figure that the command line can draw: a new one is one entry."""
+"""Every figure of the command line: a new one is one entry."""

@@ -1,4 +1,4 @@
-"""One page that shows a data set to people: `rubgen report DIR`."""
+"""One page about a data set: `rubgen report DIR`."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 EXAMPLES, MOST_FAILED = 6, 30
 DPI = 90
-"""Few dots: a page takes about a megabyte. All colours are kept, for they tell the classes."""
+"""A low resolution: a page takes about a megabyte. All colours are kept, because they show the classes."""
 RUBGEN = """import rubgen
 
 data = rubgen.open("DIR")
@@ -40,11 +40,11 @@ signal = data.signals("RUN")["CHANNEL"]"""
 
 
 def write_report(directory: Path, path: Path) -> None:
-    """Write the page of the data set in `directory` to `path`: one file, which needs nothing else.
+    """Write the page of the data set in `directory` to `path`, as one file without other files.
 
-    What the set is, balance of classes, coverage of parameters, failed runs and why, six examples with pictures, the
-    channels, how to load it, and which checks it passed. Raises UserError where there is no finished data set, no good
-    run, or the file cannot be written.
+    Content of the set, balance of classes, coverage of parameters, failed runs and reasons, six examples with pictures,
+    the channels, how to load it, and its checks. Raises UserError where there is no finished data set, no good run, or
+    the file cannot be written.
     """
     html = render_report(directory)
     with write_problems(path):
@@ -109,7 +109,7 @@ def example_runs(good: pd.DataFrame) -> list[str]:
 
 
 def as_data_url(figure: Figure) -> str:
-    """The figure as a PNG inside an address."""
+    """The figure as a PNG in a data URL."""
     picture = io.BytesIO()
     figure.savefig(picture, dpi=DPI, format="png", metadata={"Software": None})
     return f"data:image/png;base64,{base64.b64encode(picture.getvalue()).decode('ascii')}"
@@ -165,7 +165,7 @@ def _example(row: dict[str, Any], replay: Replay) -> dict[str, str]:
 
 
 def loading(data: DataSet, replay: Replay) -> dict[str, str]:
-    """Ways to load the set, each a few lines of Python in which DIR stands for its directory."""
+    """Ways to load the set, each a few lines of Python; DIR is its directory."""
     formats = data.manifest.identity.recipe["output"]["formats"]
     ways = {"rubgen": RUBGEN}
     for name in FORMAT_NAMES:

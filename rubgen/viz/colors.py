@@ -1,4 +1,4 @@
-"""Colours that people with colour-blindness tell apart (Okabe, Ito 2008), the same in every picture."""
+"""Colours that colour-blind people can distinguish (Okabe, Ito 2008), the same in every picture."""
 
 import numpy as np
 import numpy.typing as npt
@@ -24,7 +24,7 @@ MOTION_COLORS = {
 }
 
 IMPULSE_COLORS = np.array([0xFFE8A0FF, 0xFFD166FF, 0xF4A340FF, 0xE6752BFF, 0xD55E00FF, 0xA63A00FF], dtype=np.uint32)
-"""From a light touch to a hard one: lightness falls evenly, so that it can be read in grey."""
+"""From a light touch to a hard one: lightness falls evenly, so that it is readable in grey."""
 
 
 def impulse_color(share: FloatArray) -> UInt32Array:
@@ -34,5 +34,5 @@ def impulse_color(share: FloatArray) -> UInt32Array:
 
 
 def rgba(color: str) -> int:
-    """An opaque colour `#rrggbb` as the number 0xrrggbbff that Rerun takes."""
+    """An opaque colour `#rrggbb` as the number 0xrrggbbff for Rerun."""
     return int(f"{color.lstrip('#')}ff", 16)

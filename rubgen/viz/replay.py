@@ -1,4 +1,4 @@
-"""What a replay shows, from memory or from a file."""
+"""The content of a replay, from memory or from a file."""
 
 from __future__ import annotations
 
@@ -20,22 +20,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Replay:
-    """One run to look at: labels by their public names, touches in order of their beginning, frames of the motion.
-
-    `frames` is None where a file holds none: there is no 3D scene then. `motion_classes` maps each of `motion`,
-    `motion_blisk`, `motion_casing` to its classes with the times in s from which on they hold.
-    """
+    """One run for display."""
 
     scenario: Scenario
     labels: dict[str, object]
+    """Labels by their public names."""
     recording: Recording
     touches: ContactIntervals
+    """Touches in order of their start."""
     frames: MotionFrames | None
+    """Frames of the motion; None where a file has none. Then there is no 3D scene."""
     motion_classes: dict[str, list[tuple[float, str]]]
+    """For each of `motion`, `motion_blisk`, `motion_casing`, its classes with the times in s from which they are
+    valid."""
 
     @property
     def title(self) -> str:
-        """Run, machine and speed, or the speeds between which the run goes."""
+        """Run, machine and speed, or the speeds of the run."""
         rotation = self.scenario.operation.rotation
         start, end = (f"{rev_per_min(speed):,.0f}" for speed in (rotation.start, rotation.end))
         speed = start if start == end else f"{start} to {end}"
@@ -69,7 +70,7 @@ class Replay:
 
 
 def replay_of(run: Run) -> Replay:
-    """A run in memory as a replay; raises ValueError for a run without a recording."""
+    """The replay of a run in memory. Raises ValueError for a run without a recording."""
     if run.recording is None or run.labels is None:
         raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to show")
     touches, recording = contact_intervals(run.response, run.recording), run.recording

@@ -35,9 +35,9 @@ def write_replay(replay: Replay, path: Path, *, full: bool = False) -> None:
 
     The machine in 3D with its contact points; every channel as minimum and maximum (`/preview/<quantity>`) and at full
     rate over 20 turns around the hardest touch (`/detail/<quantity>`; the middle without contact); touches, orbit,
-    order spectra, motion classes, labels and scenario as text and as properties. About a megabyte for whatever length;
-    `full` writes every sample and every touch. Times are ns from the first sample. The bytes differ from writing to
-    writing, the content does not. Raises OSError when the file cannot be written.
+    order spectra, motion classes, labels and scenario as text and as properties. About a megabyte for any length;
+    `full` writes every sample and every touch. Times are ns from the first sample. Two writings differ in their bytes,
+    not in their content. Raises OSError when the file cannot be written.
     """
     from rerun_bindings import flush_and_cleanup_orphaned_recordings
 
@@ -84,7 +84,7 @@ def _recorded(replay: Replay, *, full: bool) -> bytes:
 def _send_blueprint(stream: RecordingStream, blueprint: Blueprint) -> None:
     """Make `blueprint` the recording's default.
 
-    Step by step what Rerun's own `send_blueprint` does, but its stream is disconnected: Rerun 0.41 forgets that, and
+    The same steps as Rerun's own `send_blueprint`, but its stream is disconnected. Rerun 0.41 does not do that, and
     keeps two threads and 3 MB a blueprint for ever.
     """
     import rerun_bindings as bindings
@@ -114,9 +114,9 @@ def check_rrd(path: Path, run_id: str | None = None) -> list[str]:
 
 
 def content_problems(path: Path, run_id: str | None = None) -> list[str]:
-    """What `write_rrd` promises and the recording at `path` has not; it must be of the named run, where one is named.
+    """What the recording at `path` lacks of a recording by `write_rrd`, and whether it is of the named run.
 
-    Decodes in this process: for files of which is known that their bytes are those that were written.
+    Decodes in this process: only for files whose bytes are proven to be as written.
     """
     from rerun.chunk import RrdReader
 

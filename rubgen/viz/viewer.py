@@ -1,4 +1,4 @@
-"""Rerun's viewer on one replay, until it is closed."""
+"""Rerun's viewer for one replay, until it is closed."""
 
 import os
 import socket
@@ -15,13 +15,16 @@ from rubgen.viz.replay import Replay
 HOST = "127.0.0.1"
 OPENING_TRIES = 100
 PROGRAMS = ("rerun", "rerun.exe", "Rerun.app/Contents/MacOS/Rerun")
-"""Where the package rerun_cli keeps the viewer's program, on one system or another."""
+"""Paths of the viewer's program in the package rerun_cli on different systems."""
 ELSEWHERE = "give --save FILE.rrd and open that file elsewhere"
 SCREENS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
 def open_viewer(replay: Replay, *, web: bool = False, full: bool = False) -> None:
-    """Show a replay in the viewer, or with `web` in the browser of this machine alone, and wait until it is closed.
+    """Show a replay in the viewer, and wait until it is closed.
+
+    - web: in the browser of this machine only.
+    - full: with every sample and every touch.
 
     Raises UserError where the viewer ends with an error, OSError where its file cannot be written.
     """
@@ -34,12 +37,12 @@ def open_viewer(replay: Replay, *, web: bool = False, full: bool = False) -> Non
 
 
 def has_screen() -> bool:
-    """Whether a window can be opened; other systems than Linux have one."""
+    """Whether a window can be opened; always on systems other than Linux."""
     return not sys.platform.startswith("linux") or any(os.environ.get(name) for name in SCREENS)
 
 
 def _first_moment(replay: Replay) -> float:
-    """Where the turns about the hardest touch begin."""
+    """Time of the first turn around the hardest touch, s."""
     frames = replay.frames
     if frames is None or not frames.dense.any():
         return replay.hardest_touch
@@ -47,7 +50,7 @@ def _first_moment(replay: Replay) -> float:
 
 
 def _open(path: Path, moment: float, *, web: bool) -> None:
-    """Rerun's viewer at a moment (s), or its web viewer for this machine alone, until it is closed."""
+    """Open Rerun's viewer at a moment (s), or its web viewer for this machine only, until it is closed."""
     with socket.socket() as free:
         free.bind((HOST, 0))
         port = free.getsockname()[1]
@@ -66,7 +69,7 @@ def _open(path: Path, moment: float, *, web: bool) -> None:
 
 
 def _started(command: list[str]) -> subprocess.Popen[bytes]:
-    """The viewer's process; UserError where its program is missing or cannot be executed, or no process starts."""
+    """The viewer's process. Raises UserError where its program is missing, cannot be executed, or does not start."""
     package = find_spec("rerun_cli")
     folder = Path(package.origin if package and package.origin else "rerun_cli/__init__.py").parent
     named = os.environ.get("RERUN_CLI_PATH")  # which rerun follows
@@ -83,7 +86,7 @@ def _started(command: list[str]) -> subprocess.Popen[bytes]:
 
 
 def _go_to(moment: float, port: int, viewer: subprocess.Popen[bytes]) -> None:
-    """Put the cursor there, as a file cannot say where it begins; a viewer that does not answer is left as it is."""
+    """Put the cursor at a moment, because a file cannot set it. A viewer that does not answer is ignored."""
     from rerun.experimental import ViewerClient
 
     for _ in range(OPENING_TRIES):

@@ -1,4 +1,4 @@
-"""How the Rerun viewer arranges a replay."""
+"""The arrangement of a replay in the Rerun viewer."""
 
 import numpy as np
 import rerun as rr
@@ -13,11 +13,11 @@ from rubgen.viz.replay import Replay
 
 NEAR_TURNS, ORBIT_TURNS = 4.0, 10.0
 SHADE = np.uint32(0x80808066)
-"""Of the preview behind the samples."""
+"""Colour of the preview behind the samples."""
 MOST_NAMES = 8
-"""Longer legends hide the lines that they explain."""
+"""Longer legends hide the lines."""
 PLAYBACK = 0.02
-"""A turn of 6 ms takes 0.3 s."""
+"""Speed of playback: a turn of 6 ms takes 0.3 s."""
 
 
 def arrangement(replay: Replay) -> rrb.Blueprint:
@@ -41,7 +41,7 @@ def _has_frames(replay: Replay) -> bool:
 
 
 def _near(replay: Replay, before: float, after: float = 0.0) -> tuple[rr.TimeRangeBoundary, rr.TimeRangeBoundary]:
-    """So many turns before and after the cursor."""
+    """Range of time from `before` turns before to `after` turns after the cursor."""
     turn = replay.turn_seconds
     return (
         rrb.TimeRangeBoundary.cursor_relative(seconds=-before * turn),
@@ -50,7 +50,7 @@ def _near(replay: Replay, before: float, after: float = 0.0) -> tuple[rr.TimeRan
 
 
 def _machine(replay: Replay) -> list[rrb.Tabs]:
-    """The same machine seen from the ground and from the turning blisk."""
+    """The machine in the inertial frame and in the turning frame."""
     machine = replay.scenario.machine
     factor = drawing_factor(machine, replay.frames)
     start, end = _near(replay, 1.0)
@@ -79,7 +79,7 @@ def _motion() -> rrb.StateTimelineView:
 
 
 def _signals(replay: Replay) -> list[rrb.Tabs]:
-    """Whole run above; below a few turns about the cursor, every sample about the hardest touch, else the preview."""
+    """The whole run above; below a few turns around the cursor, with every sample around the hardest touch."""
     start, end = _near(replay, NEAR_TURNS, NEAR_TURNS)
     near = rrb.TimeAxis(view_range=rrb.TimeRange(start=start, end=end))
     groups = {name: group for name, group in replay.recording.by_quantity().items() if name != UNSHOWN}
@@ -108,7 +108,7 @@ def _signals(replay: Replay) -> list[rrb.Tabs]:
 
 
 def _legend(group: list[Channel], lines: int) -> rrb.PlotLegend | None:
-    """None for the viewer's own, hidden where it would be long; names appear under the cursor in any case."""
+    """None for the viewer's own legend; hidden where it would be long, because names also appear under the cursor."""
     return rrb.PlotLegend(visible=False) if len(group) * lines > MOST_NAMES else None
 
 
@@ -136,7 +136,7 @@ def _timing(replay: Replay) -> list[rrb.TimeSeriesView]:
 
 
 def _orbits(replay: Replay) -> rrb.Tabs:
-    """The orbit of the last turns with all points once a turn, and these alone, enlarged."""
+    """The orbit of the last turns with all points once a turn, and these points enlarged."""
     start, end = _near(replay, ORBIT_TURNS)
     orbit = rrb.Spatial2DView(
         origin="/orbit",
@@ -155,7 +155,7 @@ def _orbits(replay: Replay) -> rrb.Tabs:
 
 
 def _square(bounds: Bounds) -> rrb.VisualBounds2D:
-    """Y points downwards in the viewer."""
+    """Bounds with Y upward: in the viewer it points downward."""
     x, y, half = bounds.x, -bounds.y, bounds.half
     return rrb.VisualBounds2D(x_range=[x - half, x + half], y_range=[y - half, y + half])
 
@@ -194,7 +194,7 @@ def _texts() -> rrb.Tabs:
 
 
 def _time_panel(replay: Replay) -> rrb.TimePanel:
-    """Paused at the beginning of the dense turns, which play in a loop, slowly."""
+    """Paused at the start of the dense turns, which play slowly in a loop."""
     frames = replay.frames
     if frames is None or not frames.dense.any():
         return rrb.TimePanel(state="collapsed", timeline=TIMELINE)

@@ -1,1 +1,1 @@
-"""What the viewer shows of a run, as Rerun entities."""
+"""A run as Rerun entities for the viewer."""

@@ -13,11 +13,11 @@ from rubgen.viz.replay import Replay
 MOST_TOUCHES = 2000
 SECTORS = 72
 MOST_PASSAGES = 4000
-"""Most passages of all probes together, 90 kB."""
+"""Largest number of passages of all probes, 90 kB."""
 
 
 def shown_touches(replay: Replay, *, full: bool) -> IntArray:
-    """Numbers of the touches that are drawn one by one: all, or the 2,000 with the largest impulse."""
+    """Numbers of the touches that are drawn one by one: all (`full`), or the 2,000 with the largest impulse."""
     impulse = replay.touches.impulse
     if full or impulse.size <= MOST_TOUCHES:
         return np.arange(impulse.size)
@@ -25,7 +25,7 @@ def shown_touches(replay: Replay, *, full: bool) -> IntArray:
 
 
 def send_touches(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
-    """Angle, impulse and blade of touches at their beginning, and their map; nothing without contact."""
+    """Angle, impulse and blade of touches at their start, and their map; nothing without contact."""
     touches, shown = replay.touches, shown_touches(replay, full=full)
     if not shown.size:
         return
@@ -44,7 +44,7 @@ def send_touches(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> N
 
 
 def contact_map(replay: Replay) -> FloatArray:
-    """Normal impulse (SECTORS, n_blades) in mN s by sector of the casing, the first about 0, and blade."""
+    """Normal impulse (SECTORS, n_blades) in mN s by blade and sector of the casing. Sector 0 is centred at 0."""
     touches, blades = replay.touches, replay.scenario.machine.blades.count
     place = sector_of(touches.angle, SECTORS) * blades + touches.blade.astype(np.int64)
     total = np.bincount(place, weights=touches.impulse, minlength=SECTORS * blades)
@@ -52,9 +52,9 @@ def contact_map(replay: Replay) -> FloatArray:
 
 
 def send_tip_timing(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
-    """Deflections that follow from each probe's arrival times, in um, as points at those times.
+    """Deflections from each probe's arrival times, in um, as points at these times.
 
-    All (`full`), or where they are many those about the hardest touch and every few of the others.
+    All (`full`), or where they are many, the ones around the hardest touch and every few of the others.
     """
     recording, radius = replay.recording, replay.scenario.machine.tip_radius_m
     most = MOST_PASSAGES // max(len(recording.tip_timing), 1)
@@ -70,7 +70,7 @@ def send_tip_timing(stream: rr.RecordingStream, replay: Replay, *, full: bool) -
 
 
 def _chosen(time: FloatArray, replay: Replay, most: int) -> IntArray:
-    """Numbers of at most `most` of ascending times: half of them nearest to the hardest touch, half evenly spread."""
+    """Numbers of at most `most` of ascending times: half nearest to the hardest touch, half at equal distances."""
     number = np.arange(time.size)
     if time.size <= most:
         return number

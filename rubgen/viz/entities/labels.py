@@ -13,15 +13,15 @@ from rubgen.viz.entities.signals import time_column
 from rubgen.viz.replay import Replay
 
 MOST_SHOWN = 12
-"""Longer lists are counted in the text; all values stand in the properties."""
+"""The text shows only the length of longer lists; the properties have all values."""
 PARTS = {"system": "motion", "blisk": "motion_blisk", "casing": "motion_casing"}
 
 
 def send_labels(stream: rr.RecordingStream, replay: Replay) -> None:
-    """Properties `labels` and `scenario`, both as text, lanes of motion.
+    """Properties `labels` and `scenario`, both as text, and lanes of motion.
 
-    As properties stand the labels that are one value for the whole run, and all as `json`: each property costs the
-    file up to a kilobyte, half of it in the index at its end.
+    Labels with one value for the whole run are properties, and all labels are in `json`: each property takes up to a
+    kilobyte of the file, half of it in the index at its end.
     """
     plain, scenario = replay.labels, scenario_dict(replay.scenario)
     stream.send_property("labels", rr.AnyValues(**_single(plain), json=json.dumps(plain)))
@@ -34,7 +34,7 @@ def send_labels(stream: rr.RecordingStream, replay: Replay) -> None:
 
 
 def _single(labels: dict[str, object]) -> dict[str, Any]:
-    """The labels of one value that belong to no single tap."""
+    """The labels with one value that belong to no single tap."""
     taps = tuple(key.removesuffix("orders") for key in labels if key.endswith("_orders"))
     return {
         key: value
@@ -44,7 +44,7 @@ def _single(labels: dict[str, object]) -> dict[str, Any]:
 
 
 def _send_motion(stream: rr.RecordingStream, part: str, classes: list[tuple[float, str]]) -> None:
-    """A lane of the classes from their times (s) on, every class in its colour."""
+    """A lane of the classes from their times (s) on, each class in its colour."""
     named = rr.StateConfiguration(
         values=[each.value for each in Motion],
         labels=[f"{part}: {each.value}" for each in Motion],

@@ -1,8 +1,8 @@
-"""The machine as triangles and lines, its small deviations drawn larger than they are.
+"""The machine as triangles and lines, with its small deviations enlarged.
 
-One rule keeps contact true to the eye: the circle of the tip radius is drawn to scale, and all that departs from it
-(lobes, clearance, deflection of the casing, motion of tips and disk) is multiplied by one factor. Tips and casing that
-touch in the run touch in the picture.
+The circle of the tip radius is drawn to scale. All deviations from it (lobes, clearance, deflection of the casing,
+motion of tips and disk) are multiplied by one factor. Tips and casing that touch in the run therefore also touch in the
+picture.
 """
 
 import math
@@ -15,11 +15,11 @@ from rubgen.machine import BladeRow, Disk, Machine, Unbalance
 from rubgen.measurement.motion import MotionFrames
 
 DRAWN_SHARE = 0.12
-"""The largest deviation is drawn at most as this share of the tip radius."""
+"""Largest drawn deviation as a share of the tip radius."""
 STATIONS = 72
-"""Plates around the casing; five degrees each, a wave of order nine still has eight."""
+"""Plates around the casing; of five degrees each. A wave of order nine has eight."""
 PLATE_SHARE = 0.012
-"""Drawn thickness of the casing over the tip radius; the true one would not be seen."""
+"""Drawn thickness of the casing over the tip radius; the true one would be invisible."""
 ROUND = 72
 BLADE_CROSS_SECTIONS = 24
 COILS, COIL_WIDTH_M = 5, 0.01
@@ -36,7 +36,7 @@ class Mesh:
 
 
 def drawing_factor(machine: Machine, frames: MotionFrames | None) -> float:
-    """1, 2 or 5 times a power of ten by which deviations from the tip circle are multiplied."""
+    """Factor of deviations from the tip circle: 1, 2 or 5 times a power of ten."""
     largest = max(machine.casing.ovality_m / 2, machine.casing.clearance_m)
     if frames is not None and frames.time.size:
         largest = max(largest, float(np.abs(frames.tips).max()), float(np.abs(frames.centre).max()))
@@ -58,7 +58,11 @@ def casing_radius(machine: Machine, angle: FloatArray) -> FloatArray:
 
 
 def casing_curve(machine: Machine, frames: MotionFrames, angle: FloatArray, factor: float) -> FloatArray:
-    """Drawn points (frames, stations, 2) of the casing's inner surface; nodes are joined linearly."""
+    """Drawn points (frames, stations, 2) of the casing's inner surface. Nodes are joined linearly.
+
+    - angle (stations,): polar angles, rad.
+    - factor: of deviations.
+    """
     nodes = frames.casing_modes.shape[0]
     place = np.mod(angle, 2 * np.pi) * nodes / (2 * np.pi)
     low, share = np.floor(place).astype(int) % nodes, place - np.floor(place)
@@ -69,13 +73,13 @@ def casing_curve(machine: Machine, frames: MotionFrames, angle: FloatArray, fact
 
 
 def undeformed_curve(machine: Machine, angle: FloatArray, factor: float) -> FloatArray:
-    """Drawn points (stations, 2) of the casing at rest."""
+    """Drawn points (stations, 2) of the casing at rest, at polar angles `angle` (rad), deviations times `factor`."""
     radius = machine.tip_radius_m + factor * (casing_radius(machine, angle) - machine.tip_radius_m)
     return np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
 
 
 def plate_mesh() -> Mesh:
-    """A box of side 1 that stands on x = 0: x outward, y along the casing, z its width."""
+    """A box of side 1 on x = 0: x outward, y along the casing, z along its width."""
     faces = []
     for axis in range(3):
         for side in (-0.5, 0.5):
@@ -88,7 +92,7 @@ def plate_mesh() -> Mesh:
 
 
 def plate_shapes(machine: Machine, factor: float) -> FloatArray:
-    """Matrices (stations, 3, 3) that make of `plate_mesh` the plates of the casing at rest."""
+    """Matrices (stations, 3, 3) from `plate_mesh` to the plates of the casing at rest."""
     curve = undeformed_curve(machine, casing_angles(), factor)
     chord = (np.roll(curve, -1, axis=0) - np.roll(curve, 1, axis=0)) / 2
     length = np.linalg.norm(chord, axis=1)
@@ -123,7 +127,7 @@ def shaft_mesh(disk: Disk, reach: float) -> Mesh:
 
 
 def revolved(profile: list[tuple[float, float]]) -> Mesh:
-    """A closed profile of points (radius, z), counter-clockwise, turned about Z; every side flat across its profile."""
+    """A closed profile of points (radius, z), counter-clockwise, revolved about Z; sides are flat across it."""
     angle = 2 * np.pi * np.arange(ROUND) / ROUND
     parts = []
     for (r1, z1), (r2, z2) in zip(profile, profile[1:] + profile[:1], strict=True):
@@ -185,13 +189,13 @@ def joined(parts: list[Mesh]) -> Mesh:
 
 
 def unbalances(machine: Machine) -> list[Unbalance]:
-    """All that are not zero, the machine's own first."""
+    """All unbalances that are not zero, the machine's own first."""
     own = Unbalance(kg_m=machine.unbalance_kg_m, angle_deg=machine.unbalance_angle_deg)
     return [each for each in (own, *machine.unbalances) if each.kg_m > 0]
 
 
 def unbalance_text(unbalance: Unbalance) -> str:
-    """What is written beside it."""
+    """The text beside an unbalance."""
     return f"unbalance {1e3 * unbalance.kg_m:.3g} g m"
 
 
@@ -201,16 +205,16 @@ def blade_angles(blades: BladeRow) -> FloatArray:
 
 
 def blade_placements(machine: Machine) -> FloatArray:
-    """Where each blade's root stands in the blisk's turning frame, (n_blades, 3)."""
+    """Place of each blade's root in the blisk's turning frame, (n_blades, 3)."""
     angle = blade_angles(machine.blades)
     rim = machine.disk.rim_radius_m
     return np.column_stack([rim * np.cos(angle), rim * np.sin(angle), np.zeros_like(angle)])
 
 
 def blade_leanings(machine: Machine, frames: MotionFrames, factor: float) -> FloatArray:
-    """Matrices (frames, n_blades, 3, 3) that turn a blade into place and lean it so that its drawn tip is right.
+    """Matrices (frames, n_blades, 3, 3) that turn a blade into place and lean it, so that its drawn tip is right.
 
-    R_k (I + s d e_x^T / L), d the tip's displacement against the disk centre: a straight lean from root to tip.
+    R_k (I + s d e_x^T / L), d the tip's displacement relative to the disk centre: a straight lean from root to tip.
     """
     angle = blade_angles(machine.blades)
     cosine, sine = np.cos(angle), np.sin(angle)

@@ -50,17 +50,17 @@ class Bounds:
 
 
 def orbit_bounds(replay: Replay) -> Bounds:
-    """What holds the whole recorded path."""
+    """Bounds of the whole recorded path."""
     return _bounds(shaft_orbit(replay), least=1.0)
 
 
 def section_bounds(replay: Replay) -> Bounds:
-    """What holds the points once a turn."""
+    """Bounds of the points once a turn."""
     return _bounds(section(replay), least=0.1)
 
 
 def _bounds(places: FloatArray | None, least: float) -> Bounds:
-    """About places (2, any), um; about 0 without any."""
+    """Bounds of places (2, any), um; around 0 without any."""
     if places is None or not places.size:
         return Bounds(0.0, 0.0, least)
     low, high = np.nanmin(places, axis=1).tolist(), np.nanmax(places, axis=1).tolist()
@@ -69,7 +69,7 @@ def _bounds(places: FloatArray | None, least: float) -> Bounds:
 
 
 def _send_scale(stream: rr.RecordingStream, name: str, bounds: Bounds) -> None:
-    """A bar of a round length in the lower left corner, for the viewer's planes have no axes."""
+    """A bar of a round length in the lower left corner, because the viewer's planes have no axes."""
     wanted = 0.6 * bounds.half
     power = 10.0 ** np.floor(np.log10(wanted))
     length = max(step * power for step in (1, 2, 5) if step * power <= wanted)

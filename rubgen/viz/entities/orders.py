@@ -1,4 +1,4 @@
-"""Order spectra as Rerun entities: the one at the cursor as bars, all of them as a waterfall."""
+"""Order spectra as Rerun entities: the spectrum at the cursor as bars, all spectra as a waterfall."""
 
 import numpy as np
 import pyarrow as pa
@@ -13,13 +13,13 @@ from rubgen.viz.replay import Replay
 
 MOST_BLOCKS = 32
 FIRST = ("contact_force", "casing_acc_0", "proximity_x", "blisk_x")
-"""What is looked at first; each spectrum costs the file up to 50 kB, so they are made of these alone."""
+"""Channels with spectra. Each spectrum takes up to 50 kB of the file, so there are no others."""
 FLOOR = 1e-5
 """The waterfall shows 100 dB below the largest amplitude."""
 
 
 def spectrum_channels(replay: Replay) -> dict[str, Channel]:
-    """Those of `FIRST` that were recorded, else the first channel that is no pulse, by name."""
+    """The recorded channels of `FIRST`, else the first channel that is no pulse, by name."""
     channels = replay.recording.channels
     names = [name for name in FIRST if name in channels]
     names = names or [name for name, channel in channels.items() if channel.quantity != UNSHOWN][:1]
@@ -40,7 +40,7 @@ def send_orders(stream: rr.RecordingStream, replay: Replay) -> None:
 
 
 class _Spectra:
-    """Rows of values as the column of tensors that bars are made of."""
+    """Rows of values as the column of tensors for bars."""
 
     def __init__(self, rows: Float32Array) -> None:
         self.rows = rows
@@ -58,7 +58,14 @@ def send_bars(
     left: FloatArray,
     color: int,
 ) -> None:
-    """Bars of equal width from `left` (n,) on, their heights `values` (rows, n) at the times of `index`."""
+    """Bars of equal width over time.
+
+    - stream, entity: where they are sent.
+    - index: times of the rows.
+    - values (rows, n): heights.
+    - left (n,): left edges.
+    - color: of the bars.
+    """
     width = np.full(left.size, left[1] - left[0] if left.size > 1 else 1.0)
     whole = rr.BarChart(values[0], abscissa=left, widths=width, color=color).as_component_batches()
     heights = [batch for batch in whole if str(batch.component_descriptor()).endswith(":values")]

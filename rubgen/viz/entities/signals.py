@@ -1,4 +1,4 @@
-"""Signals of a replay as Rerun entities: a preview of all, every sample about the hardest touch."""
+"""Signals of a replay as Rerun entities: a preview of all, every sample around the hardest touch."""
 
 import numpy as np
 import numpy.typing as npt
@@ -12,16 +12,16 @@ from rubgen.viz.replay import Replay
 TIMELINE = "time"
 DETAIL_TURNS = 20
 DETAIL_VALUES = 28_000
-"""Most full-rate values of all channels together: 224 kB, whatever the speed and the number of channels."""
+"""Largest number of full-rate values of all channels: 224 kB, for any speed and number of channels."""
 PREVIEW_VALUES = 24_000
-"""Most preview values of all channels together: 192 kB, whatever the length."""
+"""Largest number of preview values of all channels: 192 kB, for any length."""
 UNSHOWN = "pulse"
-"""The quantity of the pulses, which are seen as points of the orbit: left out, unless all is wanted."""
+"""The quantity of the pulses. They are shown as points of the orbit, and left out here unless all is wanted."""
 Nanoseconds = npt.NDArray[np.timedelta64]
 
 
 def shown_channels(replay: Replay) -> int:
-    """Number of channels of which a file of moderate size holds signals."""
+    """Number of channels with signals in a file of moderate size."""
     return sum(channel.quantity != UNSHOWN for channel in replay.recording.channels.values())
 
 
@@ -46,13 +46,13 @@ def time_column(seconds: FloatArray) -> list[rr.TimeColumn]:
 
 
 def preview_rate(replay: Replay) -> float:
-    """Bins a second of the preview: as many as stay within its values, at most 1024."""
+    """Bins a second of the preview: as many as its values allow, at most 1024."""
     columns = 2 * shown_channels(replay)
     return min(PREVIEW_RATE_HZ, PREVIEW_VALUES / (columns * replay.seconds))
 
 
 def send_signals(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
-    """Every channel as preview and at full rate over the detail window (all of it: `full`), one entity a quantity.
+    """Every channel as preview and at full rate over the detail window (`full`: all of it), one entity a quantity.
 
     Minimum and maximum have the colour of their channel.
     """
@@ -75,7 +75,7 @@ def send_signals(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> N
 def _send_scalars(
     stream: rr.RecordingStream, entity: str, times: FloatArray, values: FloatArray, names: list[str], colors: list[int]
 ) -> None:
-    """Lines of one entity: `values` (n, len(names)). Spikes survive zooming out."""
+    """Lines of one entity: `values` (n, len(names)). Spikes remain when zooming out."""
     policy = rr.components.AggregationPolicy.MinMax
     lines = rr.SeriesLines(names=names, colors=np.array(colors, np.uint32), aggregation_policy=policy)
     stream.log(entity, lines, static=True)

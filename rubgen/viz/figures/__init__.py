@@ -1,4 +1,4 @@
-"""Figures: functions that return a matplotlib Figure, in one house style, and touch no global state."""
+"""Figures: functions that return a matplotlib Figure, in one style, without global state."""
 
 from rubgen.viz.figures.data_set import dataset_overview
 from rubgen.viz.figures.machine import campbell, mode_shapes

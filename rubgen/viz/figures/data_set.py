@@ -1,4 +1,4 @@
-"""A data set at a glance: what was drawn against what came out."""
+"""A data set at a glance: drawn parameters and results."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 FIRST = ("speed_rpm", "clearance_m", "casing_support_stiffness_n_per_m")
-"""The parameters that are looked at first, where they vary."""
+"""The parameters that are shown first, where they vary."""
 FOLLOWING = ("end_speed_rpm", "duration_s")
 LOGARITHMIC_SPAN = 5.0
 LABEL_LETTERS = 40
@@ -42,9 +42,9 @@ def dataset_overview(runs: pd.DataFrame) -> Figure:
 
 
 def varied_keys(runs: pd.DataFrame) -> list[str]:
-    """The keys of `[vary]` that take more than one value, those of `FIRST` first.
+    """The keys of `[vary]` with more than one value, the keys of `FIRST` first.
 
-    At steady speed the duration and the speed at the end follow from the speed and are none of their own.
+    At steady speed the duration and the end speed follow from the speed and are left out.
     """
     follow = FOLLOWING if _is_steady(runs) else ()
     known = [entry.key for entry in PARAMETERS if entry.key in runs and entry.key not in follow]
@@ -59,7 +59,7 @@ def _is_steady(runs: pd.DataFrame) -> bool:
 
 
 def parameter_plane(axes: Axes, runs: pd.DataFrame, x: str, y: str) -> None:
-    """Runs over two columns, coloured and shaped by class of motion, hollow without contact."""
+    """Draw runs over two columns `x` and `y`, coloured and shaped by class of motion, hollow without contact."""
     for motion, color in MOTION_COLORS.items():
         for rub, inside in ((True, color), (False, "none")):
             chosen = runs[(runs["motion"] == motion.value) & (runs["rub"] == rub)]
@@ -79,12 +79,12 @@ def parameter_plane(axes: Axes, runs: pd.DataFrame, x: str, y: str) -> None:
 
 
 def scale_of(key: str) -> float:
-    """By what a column is multiplied to be shown: small lengths stand in mm."""
+    """Factor of a column for display: small lengths are shown in mm."""
     return 1e3 if key.endswith("_m") and not key.endswith(("per_m", "kg_m")) else 1.0
 
 
 def axis_text(key: str) -> str:
-    """What a column means, with the unit in which it is shown."""
+    """Meaning of a column, with the displayed unit."""
     if key == "contact_impulse_per_turn_n_s":
         return "Contact impulse a turn, N s"
     entry = next(entry for entry in PARAMETERS if entry.key == key)

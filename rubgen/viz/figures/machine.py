@@ -1,4 +1,4 @@
-"""Figures of a machine: natural frequencies over the speed, with the orders that meet them, and the first modes."""
+"""Figures of a machine: natural frequencies over the speed, with the exciting orders, and the first modes."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,16 +16,16 @@ BLISK_MODES, CASING_MODES = 12, 11
 HIGHEST_ORDER = 8
 SHOWN = 6
 DRAWN = 0.18
-"""The largest displacement over the radius."""
+"""Largest drawn displacement over the radius."""
 DIRECTIONS = ("radial", "tangential", "axial")
 
 
 def campbell(model: ReducedModel) -> Figure:
-    """Campbell diagrams of the blisk, in its turning frame, and of the casing, in the ground's.
+    """Campbell diagrams of the blisk in its turning frame and of the casing in the inertial frame.
 
-    In the turning frame the unbalance stands still: the critical speed is where a frequency reaches zero. What stands
-    on the ground turns past with -f_r, so a casing of N lobes excites the blisk at orders kN; the blisk passes the
-    casing likewise. Lines without damping and without contact.
+    In the turning frame the unbalance is static: the critical speed is where a frequency reaches zero. Anything fixed
+    in the inertial frame rotates at -f_r there, so a casing of N lobes excites the blisk at orders kN. The blisk
+    excites the casing likewise. Lines are without damping and without contact.
     """
     speeds = np.linspace(1.0, HIGHEST_RPM, SPEEDS)
     if model.critical_speed_rpm < HIGHEST_RPM:  # there a frequency is zero, in a corner that a grid would cut
@@ -53,7 +53,7 @@ def _blisk(axes: Axes, model: ReducedModel, speeds: FloatArray) -> None:
 
 
 def _casing(axes: Axes, model: ReducedModel, speeds: FloatArray) -> None:
-    """Frequencies are constant; points where an order of the lobes meets one of its modes."""
+    """Constant frequencies, with points where an order of the lobes crosses one of its modes."""
     hertz = model.casing_frequencies_hz[:CASING_MODES]
     lobes = model.machine.casing.lobes
     top = 1.08 * float(hertz.max())
@@ -84,10 +84,9 @@ def _finish(axes: Axes, speeds: FloatArray, top: float, text: str) -> None:
 
 
 def mode_shapes(model: ReducedModel) -> Figure:
-    """The first modes at rest: casing above; below the tips, moved outward by their largest component.
+    """The first modes at rest: the casing above, the tips below, displaced outward by their largest component.
 
-    The component that is drawn is named, and its nodal diameters (ND). The tips' rings come from
-    the reduced model, without damping.
+    The drawn component is named, with its nodal diameters (ND). The tips come from the reduced model, without damping.
     """
     figure = new_figure(10.0, 4.4)
     rows = figure.subplots(2, SHOWN)

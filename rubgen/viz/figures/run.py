@@ -90,7 +90,7 @@ def _unit(channel: Channel) -> str:
 
 
 def _floor(amplitudes: FloatArray) -> float:
-    """The lower end of a logarithmic axis of amplitudes: 100 dB below the largest, or half of what is noise."""
+    """The lower end of a logarithmic axis of amplitudes: 100 dB below the largest, or half of the noise."""
     return max(float(np.percentile(amplitudes, 1)) / 2, float(amplitudes.max()) * 1e-5)
 
 
@@ -187,7 +187,7 @@ def waveform_orders(replay: Replay, name: str = "casing_acc_0") -> Figure:
 
 
 def channel_of(replay: Replay, name: str) -> Channel:
-    """The recorded channel of that name; ValueError, with the names there are, where there is none."""
+    """The recorded channel of that name. Raises ValueError, with the recorded names, where there is none."""
     channels = replay.recording.channels
     if name not in channels:
         raise ValueError(f"no channel {name!r}; {nearest(name, list(channels))}")
@@ -197,7 +197,12 @@ def channel_of(replay: Replay, name: str) -> Channel:
 def contact_map(axes: PolarAxes, angle: FloatArray, impulse: FloatArray, turns: float) -> None:
     """Draw the normal impulse a turn, in mN s, of touches at polar angles of the casing, in sectors of 4 degrees.
 
-    `angle` (touches,) is in rad, `impulse` (touches,) in N s over all `turns`. A sector lies about 0.
+    - axes: polar axes.
+    - angle (touches,): rad.
+    - impulse (touches,): N s, over all turns.
+    - turns: their number.
+
+    Sector 0 is centred at 0.
     """
     width = 2 * np.pi / SECTORS
     per_turn = 1e3 * np.bincount(sector_of(angle, SECTORS), weights=impulse, minlength=SECTORS) / turns

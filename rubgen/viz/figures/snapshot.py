@@ -45,7 +45,7 @@ ARC = 360
 
 @dataclass(frozen=True)
 class _Scene:
-    """What does not change from moment to moment."""
+    """The constant part of a scene."""
 
     replay: Replay
     frames: MotionFrames
@@ -55,7 +55,7 @@ class _Scene:
 def picture(replay: Replay, time: float | None = None) -> Figure:
     """The machine along its axis, the orbit and the contact force about `time` (s), by default the hardest touch.
 
-    The machine stands as in the frame nearest to `time`, whose time is written in the picture. Raises ValueError for
+    The machine is drawn in the frame nearest to `time`; the picture shows the time of that frame. Raises ValueError for
     a replay without frames, or a time outside the recording.
     """
     scene = _scene(replay)
@@ -78,7 +78,7 @@ def write_gif(replay: Replay, path: Path) -> None:
 
 
 def _palette(images: list[Image.Image]) -> Image.Image:
-    """Colours for all frames from some: drawn towards means of clusters, so that rare ones stay what they are."""
+    """Colours for all frames from some: moved towards means of clusters, so that rare colours remain."""
     from PIL import Image
 
     width, height = images[0].size
@@ -124,13 +124,13 @@ def _drawn(scene: _Scene, row: int) -> Figure:
 
 
 def _motion_at(replay: Replay, time: float) -> Motion:
-    """The class that holds at a time, s."""
+    """The class of motion at a time, s."""
     known = [name for start, name in replay.motion_classes.get("motion", []) if start <= time]
     return Motion(known[-1] if known else str(replay.labels["motion"]))
 
 
 def machine_along_axis(axes: Axes, replay: Replay, row: int, factor: float) -> None:
-    """Frame number `row` seen along the axis of rotation; deviations from the tip circle times `factor`."""
+    """Draw frame number `row` along the axis of rotation; deviations from the tip circle times `factor`."""
     machine, frames = replay.scenario.machine, replay.frames
     assert frames is not None  # noqa: S101 - the caller has looked
     time, angle = float(frames.time[row]), float(frames.angle[row])
@@ -181,7 +181,7 @@ def _blisk(axes: Axes, replay: Replay, centre: FloatArray, angle: float, tips: F
 
 
 def _unbalance(axes: Axes, each: Unbalance, centre: FloatArray, angle: float, place: FloatArray | float) -> None:
-    """A mark near the rim, `place` its radius, or at the tip of its blade, `place` the tips; with its size within."""
+    """A mark near the rim, `place` its radius, or at the tip of its blade, `place` the tips; with its size inside."""
     if isinstance(place, float):
         turned = angle + np.radians(each.angle_deg or 0.0)
         mark = centre + 0.88 * place * np.array([np.cos(turned), np.sin(turned)])
@@ -195,7 +195,7 @@ def _unbalance(axes: Axes, each: Unbalance, centre: FloatArray, angle: float, pl
 
 
 def _contacts(axes: Axes, replay: Replay, frames: MotionFrames, row: int, curve: FloatArray) -> None:
-    """Touches of the last turn, those of this frame large; both by impulse."""
+    """Touches of the last turn, in this frame large; both by impulse."""
     touches = replay.touches
     if not touches.impulse.size:
         return
@@ -214,7 +214,7 @@ def _contacts(axes: Axes, replay: Replay, frames: MotionFrames, row: int, curve:
 
 
 def _orbit(axes: Axes, scene: _Scene, row: int) -> None:
-    """The recorded path of the last turns, points once a turn, and where the disk centre is."""
+    """The recorded path of the last turns, points once a turn, and the present disk centre."""
     replay, time = scene.replay, float(scene.frames.time[row])
     label_axes(axes, "Disk centre $x$, µm", "Disk centre $y$, µm")
     orbit = shaft_orbit(replay)

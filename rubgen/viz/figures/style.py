@@ -1,4 +1,4 @@
-"""The look that all figures share: plain axes with units, one colour and one marker for each class of motion."""
+"""The style of all figures: plain axes with units, one colour and one marker for each class of motion."""
 
 from collections.abc import Iterable
 from io import BytesIO
@@ -33,14 +33,14 @@ class ShownFigure(Figure):
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """An empty figure, sizes in inches, that no global state touches."""
+    """An empty figure without global state, sizes in inches."""
     figure = ShownFigure(figsize=(width, height), layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
     return figure
 
 
 def label_axes(axes: Axes, x: str, y: str) -> None:
-    """Labels, which name their units, and a light frame."""
+    """Set the labels `x` and `y`, with their units, and a light frame."""
     axes.set_xlabel(x, fontsize=10, color=INK)
     axes.set_ylabel(y, fontsize=10, color=INK)
     axes.tick_params(labelsize=9, colors=INK)
@@ -49,7 +49,7 @@ def label_axes(axes: Axes, x: str, y: str) -> None:
 
 
 def note(axes: Axes, text: str) -> None:
-    """A grey word in the middle of an empty panel."""
+    """A grey text in the middle of an empty panel."""
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=11, color=GREY)
 
 
@@ -65,12 +65,12 @@ def motion_legend(motions: Iterable[str], marker: str | None = None, *, hollow: 
 
 
 def save_png(figure: Figure, path: Path, *, dpi: int = 110) -> None:
-    """Write `figure` as PNG without a date or version in it: the same figure gives the same bytes."""
+    """Write `figure` as PNG without a date or version: the same figure always makes the same bytes."""
     figure.savefig(path, dpi=dpi, metadata={"Software": None})
 
 
 def save_figure(figure: Figure, path: Path) -> None:
-    """Write `figure` in the format that the name ends in: .png, .svg or .pdf, without dates."""
+    """Write `figure` in the format of its ending: .png, .svg or .pdf, without dates."""
     if path.suffix == ".png":
         save_png(figure, path, dpi=150)
     else:

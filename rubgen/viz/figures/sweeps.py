@@ -1,4 +1,4 @@
-"""Sweeps: where the motion is once a turn, how fast neighbours part, and order spectra as a map."""
+"""Sweeps: the motion once a turn, the Lyapunov exponent, and order spectra as a map."""
 
 from collections.abc import Sequence
 
@@ -16,9 +16,14 @@ DECIBELS = 80.0
 def bifurcation(
     values: FloatArray, sections: Sequence[FloatArray], motions: Sequence[str], *, x: str, y: str
 ) -> Figure:
-    """The section of each run over its parameter: `sections[i]` (any,) at `values[i]`, `motions[i]` its class.
+    """The Poincare section of each run over its parameter: one point for a motion that repeats every turn.
 
-    `x`, `y` label the axes, with units. One point for a motion that repeats every turn, k for period k.
+    A motion of period k has k points.
+
+    - values (runs,): of the parameter.
+    - sections: an array (any,) for each run.
+    - motions: class of each run.
+    - x, y: labels of the axes, with units.
     """
     figure = new_figure(9.0, 4.8)
     axes = figure.subplots()
@@ -37,7 +42,11 @@ def exponent_sweep(
 ) -> Figure:
     """The largest Lyapunov exponent of each run over its parameter, 1/turn, with its standard error.
 
-    Above zero neighbours part, which is chaos; a forced system has no exponent that must be zero.
+    Above zero neighbouring trajectories separate: chaos. A forced system has no exponent that must be zero.
+
+    - values, exponents, errors (runs,): of the runs.
+    - motions: class of each run.
+    - x: label of the parameter, with its unit.
     """
     figure = new_figure(9.0, 4.2)
     axes = figure.subplots()
@@ -57,7 +66,7 @@ def exponent_sweep(
 def spectrum_cascade(values: FloatArray, orders: FloatArray, amplitudes: FloatArray, *, y: str, unit: str) -> Figure:
     """Amplitudes (runs, orders) over order and `values` (runs,) as shade, in dB below the largest.
 
-    Orders are in one row of equal steps; `y` labels the values, `unit` is that of the amplitudes.
+    Orders have equal steps. `y` is the label of the values, `unit` the unit of the amplitudes.
     """
     figure = new_figure(9.0, 5.0)
     axes = figure.subplots()
