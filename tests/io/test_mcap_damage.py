@@ -19,6 +19,12 @@ def test_a_good_file_has_no_problems(good):
     assert check_mcap(good) == []
 
 
+def test_a_file_of_another_run_is_found(good, rub_run):
+    own = rub_run.scenario.index
+    assert check_mcap(good, f"run-{own:06d}") == []
+    assert check_mcap(good, f"run-{own + 1:06d}") == [f"holds run-{own:06d}"]
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_any_flipped_bit_is_found(good, seed):
     data = bytearray(good.read_bytes())

@@ -37,3 +37,13 @@ def test_blocks_are_thinned_and_keep_their_times():
 def test_a_recording_without_turns_has_no_spectrum():
     for pulses in (np.zeros(0), np.array([0.01])):
         assert order_map(np.zeros(100, np.float32), RATE, pulses).amplitude.size == 0
+
+
+def test_blocks_with_lost_samples_are_left_out():
+    turns, pulses = swept()
+    values = np.cos(2 * np.pi * turns).astype(np.float32)
+    whole = order_map(values, RATE, pulses)
+    values[np.searchsorted(turns, 3 * 16 + 5.0)] = np.nan  # in the fourth block of sixteen turns
+    found = order_map(values, RATE, pulses)
+    np.testing.assert_array_equal(found.time, np.delete(whole.time, 3))
+    np.testing.assert_array_equal(found.amplitude, np.delete(whole.amplitude, 3, axis=0))
