@@ -35,7 +35,12 @@ class Showing:
                 check_new_file(option, path, (ending,), force=self.force)
         if self.time is not None and self.png is None:
             raise UserError(f"--time {self.time:g}: goes with --png FILE; name the file")
-        if not (self.save or self.gif or self.png or self.web) and not has_screen():
+        files = bool(self.save or self.gif or self.png)
+        if self.web and files:
+            raise UserError("--web: opens the browser where no file is named; leave it out, or --save, --gif and --png")
+        if self.full and files and self.save is None:
+            raise UserError("--full: goes with the viewer or --save FILE; leave it out, or name that file")
+        if not (files or self.web) and not has_screen():
             raise UserError(
                 "there is no screen for the viewer (DISPLAY is not set); give --save FILE.rrd, --web, --png or --gif"
             )

@@ -36,6 +36,8 @@ class Choice:
     channel: str | None = None
 
 
+OPTIONS = {"run_id": "run", "where": "--where", "parameter": "--over", "channel": "--channel"}
+"""Names of the fields of a choice on the command line."""
 Make = Callable[[Path | None, Choice], Figure]
 
 
@@ -56,7 +58,8 @@ def make_figure(name: str, source: Path | None, choice: Choice) -> Figure:
 
 
 def _of_machine(draw: Callable[[ReducedModel], Figure]) -> Make:
-    def make(source: Path | None, _choice: Choice) -> Figure:
+    def make(source: Path | None, choice: Choice) -> Figure:
+        _refuse_others(choice, ())
         name = str(source or DEFAULT_MACHINE)
         with file_named(name):
             return draw(reduce(load_machine(name), Reduction()))
@@ -64,15 +67,17 @@ def _of_machine(draw: Callable[[ReducedModel], Figure]) -> Make:
     return make
 
 
-def _of_run(draw: Callable[[Replay, Choice], Figure]) -> Make:
+def _of_run(draw: Callable[[Replay, Choice], Figure], *options: str) -> Make:
     def make(source: Path | None, choice: Choice) -> Figure:
+        _refuse_others(choice, ("run_id", "where", *options))
         return draw(find_replay(_needed(source), choice.run_id, choice.where).replay, choice)
 
     return make
 
 
-def _of_set(draw: Callable[[DataSet, Choice], Figure]) -> Make:
+def _of_set(draw: Callable[[DataSet, Choice], Figure], *options: str) -> Make:
     def make(source: Path | None, choice: Choice) -> Figure:
+        _refuse_others(choice, options)
         directory = _needed(source)
         data = DataSet(directory)
         if data.ok.empty:
@@ -80,6 +85,14 @@ def _of_set(draw: Callable[[DataSet, Choice], Figure]) -> Make:
         return draw(data, choice)
 
     return make
+
+
+def _refuse_others(choice: Choice, used: tuple[str, ...]) -> None:
+    """UserError for an option that the figure would ignore."""
+    for option, name in OPTIONS.items():
+        value = getattr(choice, option)
+        if value is not None and option not in used:
+            raise UserError(f"{name} {value}: this figure has no such option; leave it out")
 
 
 def _needed(source: Path | None) -> Path:
@@ -175,10 +188,10 @@ FIGURES: dict[str, Make] = {
     "modes": _of_machine(figures.mode_shapes),
     "orbit": _of_run(lambda replay, _choice: figures.orbit_section(replay)),
     "contact": _of_run(lambda replay, _choice: figures.contact_distribution(replay)),
-    "waveform": _of_run(_waveform),
-    "bifurcation": _of_set(_bifurcation),
-    "cascade": _of_set(_cascade),
-    "exponent": _of_set(_exponent),
+    "waveform": _of_run(_waveform, "channel"),
+    "bifurcation": _of_set(_bifurcation, "parameter", "channel"),
+    "cascade": _of_set(_cascade, "parameter", "channel"),
+    "exponent": _of_set(_exponent, "parameter"),
     "overview": _of_set(lambda data, _choice: figures.dataset_overview(data.runs)),
 }
 """Every figure of the command line: a new one is one entry."""

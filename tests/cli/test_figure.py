@@ -187,3 +187,19 @@ def test_a_set_without_a_good_run_has_no_figure(run, monkeypatch, tmp_path, name
 def test_a_parameter_to_draw_over_is_named(made_set, tmp_path, name, message):
     with pytest.raises(UserError, match=message.replace("?", r"\?")):
         make_figure("exponent", tmp_path, Choice(parameter=name))
+
+
+@pytest.mark.parametrize(
+    ("name", "choice", "option"),
+    [
+        ("overview", Choice(parameter="clearance"), "--over clearance"),
+        ("overview", Choice(run_id="run-000000"), "run run-000000"),
+        ("exponent", Choice(channel="proximity_x"), "--channel proximity_x"),
+        ("cascade", Choice(where="rub"), "--where rub"),
+        ("orbit", Choice(parameter="speed_rpm"), "--over speed_rpm"),
+        ("campbell", Choice(channel="proximity_x"), "--channel proximity_x"),
+    ],
+)
+def test_an_option_that_a_figure_would_ignore_is_refused(name, choice, option, tmp_path):
+    with pytest.raises(UserError, match=f"^{option}: this figure has no such option; leave it out"):
+        make_figure(name, tmp_path, choice)

@@ -184,6 +184,8 @@ def test_the_viewer_begins_at_the_turns_about_the_hardest_touch(run, rub_run, mc
         (("{mcap}", "--save", "{tmp}/no/a.rrd"), "there is no directory"),
         (("{mcap}", "--png", "{tmp}/a.png", "--time", "9"), "lies outside the recording; give 0 to 0.3"),
         (("{mcap}", "--time", "0.1"), "goes with --png FILE"),
+        (("{mcap}", "--web", "--save", "{tmp}/a.rrd"), "--web: opens the browser where no file is named; leave it out"),
+        (("{mcap}", "--full", "--png", "{tmp}/a.png"), "--full: goes with the viewer or --save FILE; leave it out"),
         (("{mcap}",), "give --save FILE.rrd, --web, --png or --gif"),
         (("{tmp}/there.rrd", "--save", "{tmp}/a.rrd"), "for the Rerun viewer alone; open it with: rerun"),
         (("{tmp}/none.rrd", "--save", "{tmp}/a.rrd"), "none.rrd: cannot be read (No such file or directory)"),

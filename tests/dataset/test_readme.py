@@ -1,6 +1,7 @@
 """The Python of the README works as it is written, each block in a session of its own."""
 
 import re
+import runpy
 from pathlib import Path
 
 import pytest
@@ -20,7 +21,8 @@ def test_each_block_works(block, shown_set, rub_run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "demo").symlink_to(shown_set)
-    exec(block, {})
+    (tmp_path / "block.py").write_text(block, encoding="utf-8")
+    runpy.run_path(str(tmp_path / "block.py"))
     if asked:
         assert (asked[0].operation.speed_rpm, shown) == (8500, [rub_run])
         assert (tmp_path / "run.mcap").stat().st_size > 10_000
