@@ -3,7 +3,7 @@
 import numpy as np
 
 from rubgen.arrays import FloatArray, frozen
-from rubgen.contact.geometry_kernels import Surface, Tips, foot_of
+from rubgen.contact.geometry_kernels import Surface, Tips
 from rubgen.contact.liner_kernels import Liner, Wear
 from rubgen.errors import UserError
 from rubgen.reduction.model import CasingSurface, SpinningSystem
@@ -153,23 +153,3 @@ def liner_of(spec: LinerSpec | None, radius: float) -> Liner:
 def unworn(liner: Liner) -> Wear:
     """The state of a liner before any contact."""
     return Wear(depth=np.zeros(liner.bins), earlier=np.zeros((2, liner.bins)), sums=np.zeros(2))
-
-
-def gap_and_foot(
-    surface: Surface, q_casing: FloatArray, point: FloatArray, opening: float = 0.0, worn: FloatArray | None = None
-) -> FloatArray:
-    """Gap, foot parameter psi and the tangent's X and Y (4,) of an inertial point near the deformed surface.
-
-    The gap in m is positive inside the casing, along the inward normal of the deformed curve. psi in rad is the polar
-    angle of the foot on the undeformed curve. Valid where the point is much nearer to the surface than the radius of
-    curvature.
-
-    - surface: the casing's surface.
-    - q_casing (n_casing,): the casing's coordinates.
-    - point (2,): X and Y, m.
-    - opening: added to the radius of the surface, m.
-    - worn (bins,): coefficients of a liner's worn depth, m; unworn with None.
-    """
-    depth = np.zeros(0) if worn is None else worn
-    psi, gap, tx, ty = foot_of(surface, depth, q_casing, opening, float(point[0]), float(point[1]), np.zeros(8))
-    return np.array([gap, psi, tx, ty])

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import LinearOperator, eigsh
 
 from rubgen.arrays import FloatArray, IntArray, SparseMatrix
 from rubgen.errors import UserError
@@ -12,12 +11,9 @@ from rubgen.fem.beam import BeamMatrices, blade_matrices
 from rubgen.fem.constraints import (
     HeldStiffness,
     blade_rotation,
-    factorize,
     link_stress_stiffness,
-    on_springs,
     rigid_link,
     rim_joint,
-    support_stiffness,
 )
 from rubgen.fem.disk import DiskModel, assemble_disk
 from rubgen.fem.shell import shell_stress_stiffness
@@ -122,26 +118,6 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
         beam=beam,
         blade_stiffness=stiffness,
     )
-
-
-def blisk_frequencies(model: BliskModel, support: DiskSupport, modes: int) -> FloatArray:
-    """Lowest natural frequencies (modes,) in Hz of the full blisk at rest on its supports, undamped."""
-    K = on_springs(model.K, support_stiffness(support))
-    factor = factorize(K)
-    inverse = LinearOperator(K.shape, matvec=factor.solve, dtype=np.float64)
-    start = np.sin(1.0 + np.arange(K.shape[0]))
-    squares = eigsh(
-        K,
-        k=modes,
-        M=model.M,
-        sigma=0.0,
-        OPinv=inverse,
-        v0=start,
-        return_eigenvectors=False,
-        tol=1e-12,
-        ncv=2 * modes + 20,
-    )
-    return np.sqrt(np.sort(squares)) / (2 * np.pi)
 
 
 def rigid_motions(model: BliskModel) -> FloatArray:

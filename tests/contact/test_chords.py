@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from test_contact_geometry import NODES, RADIUS, ring
 
-from rubgen.contact import blade_tips, casing_surface, gap_and_foot
+from rubgen.contact import blade_tips, casing_surface
 from rubgen.contact.clearance_kernels import (
     clearance_bounds,
     deformation_bounds,
@@ -14,6 +14,7 @@ from rubgen.contact.clearance_kernels import (
 from rubgen.contact.geometry import with_zeros
 from rubgen.contact.geometry_kernels import chord_radius, undeformed_radius
 from rubgen.scenario import ContactLaw
+from tests.contact_calls import gap_and_foot
 
 CHORDS = ContactLaw(surface="chords")
 STEP = 2 * np.pi / NODES

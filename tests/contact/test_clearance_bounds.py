@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from test_contact_geometry import NODES, RADIUS, ring
 
-from rubgen.contact import blade_tips, casing_surface, gap_and_foot
+from rubgen.contact import blade_tips, casing_surface
 from rubgen.contact.clearance_kernels import (
     clearance_bounds,
     deformation_bounds,
@@ -19,6 +19,7 @@ from rubgen.contact.geometry import with_zeros
 from rubgen.contact.geometry_kernels import tip_position, undeformed_radius
 from rubgen.scenario import ContactLaw
 from rubgen.solver.scheme.model import CASING_LIMIT_SHARE, TIP_LIMIT_SHARE, bounds_hold, relative_tip_shift
+from tests.contact_calls import gap_and_foot
 
 TIP_LIMIT = TIP_LIMIT_SHARE * RADIUS
 CASING_LIMIT = CASING_LIMIT_SHARE * RADIUS

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from rubgen.contact import sliding_friction
+from tests.contact_calls import sliding_friction
 
 
 def test_friction_is_tangent_unit_and_opposes_slip_at_random_angles():

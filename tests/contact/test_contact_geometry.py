@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from rubgen.contact import blade_tips, casing_surface, gap_and_foot
+from rubgen.contact import blade_tips, casing_surface
 from rubgen.contact.clearance_kernels import (
     angle_error,
     casing_displacement_bound,
@@ -15,6 +15,7 @@ from rubgen.contact.clearance_kernels import (
 from rubgen.contact.contact_kernels import largest_approach
 from rubgen.contact.geometry import periodic_derivative, with_zeros
 from rubgen.reduction.model import CasingSurface, SpinningSystem
+from tests.contact_calls import gap_and_foot
 
 NODES, RADIUS = 60, 0.4
 

@@ -5,9 +5,10 @@ import pytest
 from kernel_arrays import contact_work
 from test_contact_geometry import RADIUS, ring
 
-from rubgen.contact import blade_tips, casing_surface, gap_and_foot
+from rubgen.contact import blade_tips, casing_surface
 from rubgen.contact.contact_kernels import build_casing_response, build_compliance, find_near, gap_at
 from rubgen.contact.geometry import with_zeros
+from tests.contact_calls import gap_and_foot
 
 BLADES, MODES, THETA, OPENING = 9, 3, 0.9, 1e-4
 START = 3 * BLADES + 2

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from test_contact_geometry import RADIUS, ring
 
-from rubgen.contact import casing_surface, gap_and_foot
+from rubgen.contact import casing_surface
 from rubgen.contact.geometry import unworn
 from rubgen.contact.liner_kernels import REMOVED, remove, worn_depth
 from rubgen.scenario import ContactLaw, Liner
+from tests.contact_calls import gap_and_foot
 
 SPEC = Liner(thickness_m=5e-4, wear_m2_per_n=1e-11, width_m=0.03, bins=120)
 

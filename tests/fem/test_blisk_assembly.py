@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from rubgen.errors import UserError
-from rubgen.fem.blisk import assemble_blisk, blisk_frequencies, rigid_motions
+from rubgen.fem.blisk import assemble_blisk, rigid_motions
 from rubgen.fem.constraints import blade_rotation, link_stress_stiffness, rigid_rows
 from rubgen.machine import load_machine
+from validation.full_blisk import blisk_frequencies
 
 
 @pytest.fixture(scope="module")

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from rubgen.arrays import frozen
-from rubgen.contact import gap_and_foot
 from rubgen.contact.contact_kernels import build_rows
 from rubgen.contact.geometry_kernels import casing_rows
 from rubgen.scenario import ContactLaw
 from rubgen.solver.scheme.energy_kernels import CONTACT, FRICTION, NORMAL, add_contact_works
 from rubgen.solver.scheme.state_kernels import Coordinates
 from rubgen.solver.speed.start import rub_free_stepper
+from tests.contact_calls import gap_and_foot
 
 MU, THETA, BLADE = 0.3, 0.7, 2
 

@@ -4,12 +4,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rubgen.contact import gap_and_foot
 from rubgen.scenario import ContactLaw
 from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
 from rubgen.solver.observers.divergence import ADVICE
 from rubgen.solver.speed.start import closing_ramp, rub_free_stepper
+from tests.contact_calls import gap_and_foot
 
 
 @pytest.fixture(scope="module")

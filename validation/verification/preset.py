@@ -16,13 +16,14 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq
 
-from rubgen.fem.blisk import assemble_blisk, blisk_frequencies, rigid_motions
+from rubgen.fem.blisk import assemble_blisk, rigid_motions
 from rubgen.fem.casing import assemble_casing
 from rubgen.machine import Damping, Machine, load_machine
 from rubgen.machine.published import BLISK_HZ, CASING_HZ
 from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import Reduction
 from rubgen.units import rad_per_s
+from validation.full_blisk import blisk_frequencies
 from validation.onset import END_OF_RUB_RPM, tip_growth
 from validation.verification.row import Row, relative, within
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from rubgen.contact import gap_and_foot
 from rubgen.contact.clearance_kernels import casing_displacement_bound
 from rubgen.scenario import ContactLaw
 from rubgen.solver.scheme.state_kernels import Coordinates
 from rubgen.solver.scheme.step_kernels import OK, advance, has_diverged, previous_gap, starting_margin
 from rubgen.solver.speed.start import rub_free_stepper
+from tests.contact_calls import gap_and_foot
 
 STEPS = 96
 

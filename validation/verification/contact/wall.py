@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.contact import LcpUnsolvedError
 from rubgen.linalg.blocks import aligned, find_blocks
 from rubgen.solver.scheme.central_difference import scheme
 from validation.verification.contact.wall_kernels import WallWork, steps_against_wall
@@ -36,5 +35,5 @@ class Wall:
         """Advance by one step for each entry of `force` (steps,) on q_0; the contact force at each (steps,)."""
         contact_force = np.zeros(len(force))
         if not steps_against_wall(self.scheme, self.restitution, force, self._work, contact_force):
-            raise LcpUnsolvedError("no contact force found at the wall")
+            raise ArithmeticError("no contact force found at the wall")
         return contact_force
