@@ -61,6 +61,7 @@ def label(response: Response) -> Labels:
         zero_one_k=parts.indicators[0].growth if parts.indicators else None,
         stray_blisk=parts.indicators[0].stray if parts.indicators else None,
         stray_casing=parts.indicators[1].stray if len(parts.indicators) > 1 else None,
+        motion_settling=parts.settling,
         segment_starts=tuple(segment.start * turn for segment in parts.segments),
         segment_periods=tuple(segment.period for segment in parts.segments),
         history=history,

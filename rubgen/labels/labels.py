@@ -86,6 +86,8 @@ class Labels:
     """Distance of the blisk's section points from where they should return to, over the motion."""
     stray_casing: float | None = None
     """The same of the casing; None where it rests."""
+    motion_settling: bool = False
+    """The motion still settles in the second half of the record."""
     segment_starts: tuple[float, ...] = ()
     """Starts of the stretches of an intermittent motion, s from the record's start; else empty."""
     segment_periods: tuple[int, ...] = ()

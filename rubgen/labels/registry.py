@@ -155,6 +155,7 @@ MOTION = (
         "q(t + T/N) = q(t) for N lobes; null unless period-1 in contact",
         lambda x: x.motion_symmetric,
     ),
+    _flag("motion_settling", "the motion still settles in the second half of the record", lambda x: x.motion_settling),
     _flag("motion_intermittent", "the motion switches between regular and irregular", lambda x: bool(x.segment_starts)),
     _numbers(
         "motion_segment_starts_s", "s", "starts of its stretches, from the record's start", lambda x: x.segment_starts

@@ -7,7 +7,7 @@ from rubgen.errors import UserError
 from rubgen.labels import Motion
 from rubgen.labels.motion.chaos import chaos_indicator
 from rubgen.labels.motion.classify import motion
-from rubgen.labels.motion.clusters import cluster_distances, cluster_period, stray
+from rubgen.labels.motion.clusters import cluster_distances, cluster_period, settles, stray
 from rubgen.labels.motion.decision import Indicators, MotionClass, combined, decide
 from rubgen.solver.response import Response
 
@@ -219,3 +219,20 @@ def test_fewer_than_32_turns_are_refused(respond: Respond) -> None:
     with pytest.raises(UserError, match=r"record_turns = 31: .*at least 32"):
         motion(respond(turns=31))
     assert motion(respond(turns=32, contact=False)).system == period(1)
+
+
+@pytest.mark.parametrize(
+    ("decay_turns", "start", "expected"),
+    [(80, 1.0, True), (80, 0.05, False), (1e6, 1.0, False)],  # a transient, one below the scale, a torus
+)
+def test_a_motion_settles_while_its_transient_is_above_the_scale(decay_turns, start, expected) -> None:
+    points = section(1 + start * np.exp(-TURN / decay_turns) * np.cos(2 * np.pi * GOLDEN * TURN), 0 * TURN)
+    assert settles(points) is expected
+    assert settles(section(logistic(4.0))) is False
+    assert settles(points[:32]) is False
+
+
+def test_a_motion_that_settles_is_not_quasi_periodic() -> None:
+    torus = {"period": None, "stray": 0.1, "growth": 0.0, "exponent": None}
+    assert decide(Indicators(**torus)).motion is Motion.QUASI_PERIODIC
+    assert decide(Indicators(**torus, settling=True)).motion is Motion.UNDECIDED

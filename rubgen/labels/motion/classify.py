@@ -6,7 +6,7 @@ from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
 from rubgen.labels.labels import Motion
 from rubgen.labels.motion.chaos import chaos_indicator
-from rubgen.labels.motion.clusters import cluster_distances, cluster_period, stray
+from rubgen.labels.motion.clusters import cluster_distances, cluster_period, settles, stray
 from rubgen.labels.motion.decision import AT_REST, FORCED, Indicators, MotionClass, combined, decide
 from rubgen.labels.motion.intermittency import Segment, is_intermittent, segments
 from rubgen.labels.motion.section import blisk_points, casing_points, casing_rests
@@ -37,6 +37,11 @@ class Motions:
     """Whether the tips do not repeat while disk centre and casing do."""
     segments: tuple[Segment, ...] = ()
     """Segments of an `intermittent` motion; else empty."""
+
+    @property
+    def settling(self) -> bool:
+        """Whether the motion still settles in the second half of the record."""
+        return any(part.settling for part in self.indicators)
 
     @property
     def intermittent(self) -> bool:
@@ -76,8 +81,9 @@ def indicators(parts: list[FloatArray], exponent: Exponent | None) -> tuple[Indi
     periods = [cluster_period(part) for part in parts]
     strays = [stray(part, period) for part, period in zip(parts, periods, strict=True)]
     growth = max(chaos_indicator(part) for part in parts)
+    settling = any(settles(part) for part in parts)
     return tuple(
-        Indicators(period=period, stray=size, growth=growth, exponent=exponent)
+        Indicators(period=period, stray=size, growth=growth, exponent=exponent, settling=settling)
         for period, size in zip(periods, strays, strict=True)
     )
 

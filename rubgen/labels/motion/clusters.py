@@ -87,6 +87,18 @@ def off_cluster(points: FloatArray, period: int) -> FloatArray:
     return residual
 
 
+def settles(points: FloatArray) -> bool:
+    """Whether the points (turns, groups, values) still approach a steady motion.
+
+    In the second half of the record, the rms distance from the clusters falls by more than half from the first quarter
+    to the last, from above CLUSTER_RADIUS. The clusters are those of the k <= 16 with the smallest distance.
+    """
+    late = _late(points)
+    distances = [cluster_distances(late, k) / math.sqrt(1 - k / len(late)) for k in range(1, _longest(late) + 1)]
+    first, *_, last = (rms(quarter) for quarter in np.array_split(min(distances, key=rms), 4))
+    return first > 2 * last and first > CLUSTER_RADIUS
+
+
 def rms(values: FloatArray) -> float:
     """Root of the mean square."""
     return float(np.sqrt(np.mean(values**2)))

@@ -29,6 +29,8 @@ class Indicators:
     """K of the 0-1 test, the largest of all parts: contact couples the parts."""
     exponent: Exponent | None
     """Exponent of the whole system; None where it is not known."""
+    settling: bool = False
+    """Whether any part still settles."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,6 +58,7 @@ def decide(seen: Indicators) -> MotionClass:
       quasi-periodic. Anything else is undecided: a negative exponent belongs to a periodic motion that is still
       settling, or that repeats after more than 16 turns.
     - Without an exponent clusters decide, then K.
+    - A motion that still settles is never quasi-periodic.
     """
     motion = _class_of(seen)
     if motion is Motion.UNDECIDED:
@@ -73,10 +76,10 @@ def _class_of(seen: Indicators) -> Motion:
             return Motion.UNDECIDED
         return Motion.PERIOD_1 if seen.period == 1 else Motion.PERIOD_K
     if exponent is None:
-        return Motion.CHAOTIC if chaotic else Motion.QUASI_PERIODIC
+        return Motion.CHAOTIC if chaotic else Motion.UNDECIDED if seen.settling else Motion.QUASI_PERIODIC
     if chaotic and exponent.is_positive:
         return Motion.CHAOTIC
-    if not chaotic and not exponent.is_positive and not exponent.is_negative:
+    if not chaotic and not exponent.is_positive and not exponent.is_negative and not seen.settling:
         return Motion.QUASI_PERIODIC
     return Motion.UNDECIDED
 
