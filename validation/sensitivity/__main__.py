@@ -36,6 +36,8 @@ HALVING, RECIPES = "halving", "recipes"
 QUICK_SETTLE, QUICK_RECORD = 60, 64
 QUICK_SPEEDS = SPEEDS_RPM[36::20]
 QUICK_RUNS = 1
+BLOCK = 80
+"""Runs of recipes that are made with both steps before the next ones."""
 
 
 @dataclass(frozen=True)
@@ -127,9 +129,11 @@ def _compute(finished: Finished, names: Sequence[str], workers: int) -> None:
         later = [next_record(pair, finished.shorten) for pair in finished.pairs() if not pair.equal]
         finished.store.compute(map(run_piece, later), workers, count)
     if RECIPES in names:
-        finished.store.compute((run.piece(STEPS) for run in finished.runs), workers, count)
-        again = rubbing(finished.found, finished.runs)
-        finished.store.compute((run.piece(2 * STEPS) for run in again), workers, count)
+        for first in range(0, len(finished.runs), BLOCK):  # so that a study that is stopped has pairs
+            block = finished.runs[first : first + BLOCK]
+            finished.store.compute((run.piece(STEPS) for run in block), workers, count)
+            again = rubbing(finished.found, block)
+            finished.store.compute((run.piece(2 * STEPS) for run in again), workers, count)
 
 
 def _write(finished: Finished, out: Path, pictures: Path) -> None:

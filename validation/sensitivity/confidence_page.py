@@ -16,10 +16,10 @@ TEXT = """
 
 `motion_confidence` says how surely a run keeps its class of motion with half the step.
 `python -m validation.sensitivity recipes` makes this page from runs of the recipes with a steady speed, with 1,024 and
-with 2,048 steps a turn, for two seeds of each recipe. The constants of the confidence come from the runs of the first
-seed ("fit"). The second seed ("check") shows what the confidence is worth. Only runs that rub are compared: without
-contact the class cannot change. At a changing speed the motion of a run with contact is always `undecided`. A class is
-kept if class and period of the whole system are equal.
+with 2,048 steps a turn, for two seeds of each recipe. Constants of the confidence may be fitted to the runs of the
+first seed ("fit") only. The second seed ("check") shows what the confidence is worth. Only runs that rub are compared:
+without contact the class cannot change. At a changing speed the motion of a run with contact is always `undecided`. A
+class is kept if class and period of the whole system are equal.
 
 ![Reliability of the confidence](confidence.png)
 """

@@ -25,9 +25,9 @@ DATASETS = Path(__file__).parents[2] / "datasets"
 RECIPES = ("zeng2019-mini", "thousand", "rig", "speed-sweep", "three-lobes")
 """Those with a steady speed. At a changing speed the motion of a run with contact is always undecided."""
 SEEDS = {"fit": 101, "check": 202}
-"""The constants of the confidence are fitted on the first; the second shows what it is worth."""
-RUNS = 48
-"""Runs of each recipe and seed."""
+"""Constants of the confidence may be fitted to the first only; the second shows what the confidence is worth."""
+RUNS = 32
+"""Runs of each recipe and seed: 320, some ten minutes of CPU time."""
 Found = Callable[[Piece], Arrays | None]
 """The arrays of a piece; None where it has not been made."""
 
