@@ -73,4 +73,4 @@ def rows() -> Iterator[Row]:
     found_loss = 2 * fine.friction_loss - coarse.friction_loss
     yield relative("annular rub: friction loss a turn, J", "2 pi mu N c", loss, found_loss, 4e-5)
     quantity = "annular rub: residual of the energy balance"
-    yield within(quantity, "exact but for rounding", 0.0, coarse.energy_residual, 1e-8)
+    yield within(quantity, "exact except for rounding", 0.0, coarse.energy_residual, 1e-8)

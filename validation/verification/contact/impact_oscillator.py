@@ -142,6 +142,8 @@ def rows() -> Iterator[Row]:
     yield within(f"{name}: phase of the impact, rad", source, phase, found.phase, 5e-4)
     yield relative(f"{name}: speed of the impact", source, speed, found.speed, 5e-4)
     modulus = float(np.abs(np.linalg.eigvals(found.derivative)).max())
-    yield relative(f"{name}: modulus of the complex multipliers", "r: flight keeps areas", RESTITUTION, modulus, 1e-3)
+    yield relative(
+        f"{name}: modulus of the complex multipliers", "r: free flight preserves areas", RESTITUTION, modulus, 1e-3
+    )
     quantity = "impact oscillator, r = 0.8: omega where the orbit doubles its period"
     yield within(quantity, "multiplier -1 in closed form", DOUBLING, doubling_frequency(), 3e-4)

@@ -88,7 +88,9 @@ def _wear() -> Iterator[Row]:
     exact = solve_ivp(rate, (0, seconds), [start], rtol=1e-10, atol=1e-15).y[0, -1] - start
     source = "Archard's law, quasi-static rub in closed form"
     yield relative(f"liner: depth worn in {MEASURED} turns, m", source, exact, gained, 2e-4)
-    yield relative("liner: volume in the profile, m3", "sum of what contacts took", fine.removed, fine.volume, 1e-12)
+    yield relative(
+        "liner: volume in the profile, m3", "sum of the volumes removed by contacts", fine.removed, fine.volume, 1e-12
+    )
     force = annular_rub(CLEARANCE + start + exact / 2).force
     expected = force * exact * LINER.bins * SELF_OVERLAP
     yield relative("liner: work on the receding surface, J", "151/315 of the wear of a bin", expected, fine.work, 5e-3)

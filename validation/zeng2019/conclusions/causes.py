@@ -86,23 +86,24 @@ def _odd_orders(runs: dict[str, Outcome]) -> Sequence[Statement]:
             verdict=AGREES if asked["as it is"] < PURE else DIFFERS,
             found=f"largest odd over largest even order at the point {asked['as it is']:.3g}; of the half sum of "
             f"opposite points {halves[0]:.1g}; largest even over largest odd of their half difference {halves[1]:.1g}",
-            why="The odd orders belong to the odd shapes (translation, three and five waves), the even to the even.",
+            why="The odd orders belong to the odd shapes (translation, three and five waves), the even orders to the "
+            "even shapes.",
         ),
         Statement(
             statement="Without the casing's odd shapes the point shows even orders only.",
             verdict=AGREES if asked["even shapes only"] < PURE else DIFFERS,
-            found=f"largest odd over largest even order {asked['even shapes only']:.1g}, the motion being "
+            found=f"largest odd over largest even order {asked['even shapes only']:.1g}, of a motion that is "
             + runs["even shapes only"].label,
             experiment=True,
-            why="So the odd shapes are the cause: a paper that shows none has a casing, or a channel, without them.",
+            why="The odd shapes are therefore the cause. The paper's casing, or its channel, has none.",
         ),
         Statement(
-            statement="An odd number of casing nodes (181) is what puts the odd orders there.",
+            statement="An odd number of casing nodes (181) causes these odd orders.",
             verdict=AGREES if asked["181 nodes"] > MORE * asked["as it is"] else DIFFERS,
             found=f"largest odd over largest even order at the point {asked['181 nodes']:.3g} with 181 nodes "
             f"({nodes.label}), {asked['as it is']:.3g} with 180",
             experiment=True,
-            why="The undeformed surface is smooth with any number: only the deformed shape feels the odd mesh.",
+            why="The undeformed surface is smooth with any number: only the deformed shape depends on the odd mesh.",
         ),
         Statement(
             statement="Chords between 181 nodes put odd orders into the contact force.",
@@ -111,7 +112,7 @@ def _odd_orders(runs: dict[str, Outcome]) -> Sequence[Statement]:
             + ", ".join(f"{name} {force[name]:.2g} ({runs[name].label})" for name in force),
             experiment=True,
             why="Chords of a polygon lie up to 60 um inside the curve, a fifth of the clearance. Where a run is not "
-            "period-1, broken symmetry adds odd orders of its own.",
+            "period-1, broken symmetry adds further odd orders.",
         ),
     ]
 
@@ -121,11 +122,11 @@ def _by_modes(runs: dict[int, Outcome]) -> Statement:
     told = ", ".join(f"{share:.2g} with {count} ({runs[count].label})" for count, share in shares.items())
     gone = any(share < PURE for share in shares.values())
     return Statement(
-        statement="Another number of casing modes than eta_c = 11 takes the odd orders from the point.",
+        statement="Another number of casing modes than eta_c = 11 removes the odd orders from the point.",
         verdict=UNKNOWABLE if not shares else AGREES if gone else DIFFERS,
         found=f"largest odd over largest even order at the point: {told or 'every run diverged'}",
         experiment=True,
-        why="Already the first five modes hold the translation of the ring, an odd shape.",
+        why="The first five modes already contain the translation of the ring, an odd shape.",
     )
 
 
@@ -142,7 +143,7 @@ def _second_crossing(found: Found) -> Sequence[Statement]:
         )
     ]
     for name, words in (
-        ("mixed", "Blades in turning axes joined to a disk in standing ones have"),
+        ("mixed", "Blades in turning axes joined to a disk in inertial axes have"),
         ("halved", "The same with half the blades' Coriolis matrix has"),
     ):
         off = max((abs(k / c - 1) for k, c in zip(met[name], CROSSINGS, strict=False)), default=1.0)
@@ -151,8 +152,8 @@ def _second_crossing(found: Found) -> Sequence[Statement]:
                 statement=f"{words} the paper's two crossings, 1.3e8 and 1.5e8 N/m.",
                 verdict=by_deviation(off) if len(met[name]) == len(CROSSINGS) else DIFFERS,
                 found=f"{len(met[name])} crossings, at {told[name]} N/m: off by up to {100 * off:.1f} %",
-                why="The blades' Coriolis forces split the lateral frequency in two where nothing else turns; the "
-                "paper writes disk matrices in the inertial and blade matrices in turning axes.",
+                why="The blades' Coriolis forces split the lateral frequency in two where only the blades' matrices "
+                "are in turning axes; the paper writes disk matrices in inertial and blade matrices in turning axes.",
                 experiment=True,
             )
         )

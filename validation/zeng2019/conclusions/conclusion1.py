@@ -45,14 +45,14 @@ def statements(size: Size, found: Found) -> Sequence[Statement]:
     pairs = [(one, other) for modes in MORE.values() for one, other in zip(few, runs(modes), strict=True)]
     casing = list(zip(few, runs(CASING), strict=True))
     return [
-        _equal("More modes of blade, disk and blisk leave the class of motion as it is.", pairs),
+        _equal("More modes of blade, disk and blisk do not change the class of motion.", pairs),
         _orders(pairs),
-        _equal("Four more casing modes (15 instead of 11) leave the class of motion as it is.", casing, CASING_WHY),
+        _equal("Four more casing modes (15 instead of 11) do not change the class of motion.", casing, CASING_WHY),
     ]
 
 
 CASING_WHY = (
-    "Tips pass at 419 m/s, waves of the ring travel at 66 to 153 m/s: contact feeds each wave that is added. The "
+    "Tips pass at 419 m/s, waves of the ring travel at 66 to 153 m/s: contact excites each additional wave. The "
     "number of casing modes belongs to the machine's definition."
 )
 
@@ -71,7 +71,7 @@ def _orders(pairs: list[tuple[Outcome, Outcome]]) -> Statement:
     small = int(np.sum(np.all(np.abs(changes[:, [0, 2]]) < 0.05, axis=1)))
     worst = np.abs(changes).max(axis=0) if len(changes) else np.zeros(3)
     return Statement(
-        statement="More such modes leave regular motion its orders, f_r of the blisk and 2 f_r of the force, to 5 %.",
+        statement="More such modes change f_r of the blisk and 2 f_r of the force in regular motion by at most 5 %.",
         verdict=by_share(small, len(regular)),
         found=f"{counted(small, len(regular), 'period-1 pairs')}; largest changes: f_r {100 * worst[0]:.2f} %, 3 f_r "
         f"{100 * worst[1]:.0f} %, 2 f_r of the force {100 * worst[2]:.2f} %",

@@ -57,8 +57,8 @@ def statements(size: Size, found: Found) -> Sequence[Statement]:
             statement="The fundamental frequency of the casing's vibration is f_r times the number of zones.",
             verdict=by_share(point, len(rub)),
             found=f"at the point of the minor axis {counted(point, len(rub))}",
-            why="Whatever the load's fundamental, a point moves with shapes of all orders; those near the casing's own "
-            "181 Hz, which is f_r at 10,860 rev/min, ring most.",
+            why="A point moves with shapes of all orders, whatever the fundamental of the load. Shapes near the "
+            "casing's own 181 Hz, which is f_r at 10,860 rev/min, have the largest amplitudes.",
         ),
     ]
 

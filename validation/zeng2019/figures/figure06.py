@@ -92,7 +92,7 @@ def _sizes(found: Found) -> Sequence[Statement]:
             why="36 tips x 3, two of the disk centre, 4 blisk modes, 11 casing modes.",
         ),
         Statement(
-            statement="The reduction takes away 99.17 % of the degrees of freedom.",
+            statement="The reduction removes 99.17 % of the degrees of freedom.",
             verdict=yes_or_no(round(1 - dof / full_dof, 4) == REDUCTION),
             found=f"{100 * (1 - dof / full_dof):.2f} %",
         ),
@@ -120,7 +120,7 @@ def _convergence(found: Found) -> Sequence[Statement]:
             f"{REFERENCE} modes of the blisk give its first {COMPARED} frequencies.",
             most[:COMPARED],
             f"{_held(most)} With eight modes a blade in the first step instead of four the largest deviation is "
-            f"{100 * more:.2f} %: it is the {limit} step that limits.",
+            f"{100 * more:.2f} %: the {limit} step limits the accuracy.",
         ),
         _accurate(f"Four modes of the blisk give its first {FIRST} frequencies.", four[:FIRST]),
         Statement(
@@ -157,7 +157,7 @@ def _diagram(size: Size, found: Found) -> Sequence[Statement]:
             f"{100 * apart[:, :4].max():.2f} %",
             why="Against the full model the first 42 are off by up to "
             + ", ".join(f"{100 * error:.1f} % at {speed:,.0f} rev/min" for speed, error in of_full.items())
-            + ": a basis of the blisk at rest does not hold all of the blades' stiffening.",
+            + ": a basis of the blisk at rest does not contain all of the blades' stiffening.",
         ),
         Statement(
             statement="Region III (8,100 to 8,910 rev/min) lies at the critical speed.",

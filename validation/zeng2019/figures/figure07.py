@@ -46,11 +46,11 @@ def statements(_size: Size, found: Found) -> Sequence[Statement]:
         Statement(
             statement="The modes fall into two kinds, led by the disk and led by the blades.",
             verdict=yes_or_no(bool((share[band] > 0.5).all()) and led == LAST_IN_BAND - FIRST_IN_BAND + 1),
-            found=f"{led} of the first 42 have more than half their kinetic energy in the blades: those from "
+            found=f"{led} of the first 42 have more than half their kinetic energy in the blades: modes "
             f"{FIRST_IN_BAND} to {LAST_IN_BAND}",
         ),
         Statement(
-            statement=f"The modes that blades lead lie between {low} and {high} Hz.",
+            statement=f"The modes led by the blades lie between {low} and {high} Hz.",
             verdict=by_deviation(max(abs(inside[0] / low - 1), abs(inside[-1] / high - 1)), 0.02),
             found=f"{inside[0]:.2f} to {inside[-1]:.2f} Hz in the full model (nearest outside: "
             f"{outside[outside < inside[0]].max():.2f} and {outside[outside > inside[-1]].min():.2f} Hz)",
@@ -62,7 +62,7 @@ def statements(_size: Size, found: Found) -> Sequence[Statement]:
             verdict=yes_or_no(stirred in ([0, 1], [1])),
             found=f"moved by more than {100 * COUPLED:.0f} % from one clamped blade's frequency: nodal diameters "
             f"{', '.join(map(str, stirred)) or 'none'}",
-            why="Only these move the hub against its springs; on higher ones the thick disk stands still.",
+            why="Only these move the hub against its springs. For higher ones the thick disk is at rest.",
         ),
         _families(modes["blade_hz"]),
     ]
@@ -74,7 +74,7 @@ def _families(blade_hz: np.ndarray) -> Statement:
         statement="Only the first two bending modes of a blade are coupled with the disk.",
         verdict=UNKNOWABLE,
         found=f"one clamped blade: {first}, ... Hz",
-        why="The range of frequencies in the figure is lost with it: coupling of further families cannot be compared.",
+        why="The range of frequencies is lost with the figure: coupling of further families cannot be compared.",
     )
 
 

@@ -49,7 +49,7 @@ def statements(_size: Size, found: Found) -> Sequence[Statement]:
         statement="The drawn shapes of the blisk's six modes.",
         verdict=UNKNOWABLE,
         found="; ".join(f"{mode}: {name}" for mode, name in NAMES.items()),
-        why="The scan holds the frequencies and not the drawings.",
+        why="The scan contains the frequencies but not the drawings.",
     )
     return [*frequencies, shapes]
 

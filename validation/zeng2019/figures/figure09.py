@@ -42,7 +42,7 @@ def statements(_size: Size, found: Found) -> Sequence[Statement]:
             statement="The drawn shapes of the casing's eleven modes.",
             verdict=UNKNOWABLE,
             found="circumferential orders " + ", ".join(str(order) for order in modes["order"]),
-            why="The scan holds the frequencies and not the drawings.",
+            why="The scan contains the frequencies but not the drawings.",
         ),
     ]
 

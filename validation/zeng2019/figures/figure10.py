@@ -65,7 +65,7 @@ def _region_one(runs: dict[float, Outcome]) -> Sequence[Statement]:
         Statement(
             statement="Region I: the blisk is in period-1 motion and shows f_r alone.",
             verdict=by_share(sum(alone), len(free)),
-            found=f"so do {counted(sum(alone), len(free))}, no other order being above {SILENT:g} of f_r",
+            found=f"so do {counted(sum(alone), len(free))}, and no other order is above {SILENT:g} of f_r",
         ),
         Statement(
             statement="Region I: the casing stands still.",
@@ -89,7 +89,7 @@ def _regions(runs: dict[float, Outcome]) -> Statement:
     met = [bool(edges) and min(abs(edge - one) for edge in edges) <= EDGE_RPM for one in asked]
     stretches = "; ".join(f"{name} {first:,.0f} to {last:,.0f}" for name, first, last in found)
     return Statement(
-        statement="Beyond the onset the regions II to V are parted near 8,040, 8,925 and 11,160 rev/min.",
+        statement="Beyond the onset the regions II to V are separated near 8,040, 8,925 and 11,160 rev/min.",
         verdict=by_share(sum(met), len(asked)),
         found=f"{sum(met)} of these {len(asked)} edges lie within {EDGE_RPM:.0f} rev/min of one of ours, where the "
         f"class of at least {STRETCH} runs in a row changes; the casing: {stretches}",
@@ -113,8 +113,8 @@ def _orders(runs: dict[float, Outcome]) -> Sequence[Statement]:
             verdict=by_share(sum(point), len(rub)),
             found=f"at the point the strongest order is even in {counted(sum(point), len(rub), 'rubbing runs')}, of "
             f"the contact force in {counted(sum(even), len(rub), 'runs')}",
-            why="Symmetry gives even orders to the force and to even circumferential shapes, odd ones to odd shapes "
-            f"(true of {counted(sum(shapes), len(rub), 'runs')}); a point shows both. See `causes`.",
+            why="By symmetry the force and even circumferential shapes have even orders, and odd shapes have odd "
+            f"orders (true of {counted(sum(shapes), len(rub), 'runs')}). A point shows both. See `causes`.",
         ),
     ]
 

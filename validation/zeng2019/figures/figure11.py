@@ -56,7 +56,7 @@ def statements(size: Size, found: Found) -> Sequence[Statement]:
             statement="The waveform of the disk centre at 8,820 rev/min over the last 49 turns.",
             verdict=UNKNOWABLE,
             found=f"{x.min():.0f} to {x.max():.0f} um; the {len(points)} points span {np.ptp(points):.1f} um",
-            why="The scan holds no values of the drawing.",
+            why="The scan contains no values of the drawing.",
         )
     ]
 

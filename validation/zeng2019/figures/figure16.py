@@ -93,7 +93,7 @@ def _blades(rub: list[Outcome]) -> Sequence[Statement]:
             statement="The neighbour of a rubbing blade may touch at the same time.",
             verdict=yes_or_no(beside >= SEEN * len(rub)),
             found=f"at some time in {counted(beside, len(rub), 'rubbing runs')}",
-            why="Elsewhere blades that touch at once are not neighbours.",
+            why="In the other runs, blades that touch at the same time are not neighbours.",
         ),
     ]
 
@@ -106,7 +106,7 @@ def zones_and_motion(rub: Sequence[Outcome]) -> Sequence[Statement]:
     uneven = f"{100 * float(np.median([unevenness(run) for run in chaotic])):.1f} %" if chaotic else "nothing"
     why = (
         "Zones are called symmetric by the impulse of each turn. Summed over 49 turns, as the paper draws them, the "
-        f"two halves of the casing are apart by {uneven} of the whole (median of these runs)."
+        f"two halves of the casing differ by {uneven} of the whole (median of these runs)."
     )
     return [
         Statement(

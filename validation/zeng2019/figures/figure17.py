@@ -66,7 +66,7 @@ def _trip(runs: dict[float, Outcome]) -> Statement:
         statement="Below the alternating region the casing's points jump at one stiffness, 1.4e8 N/m.",
         verdict=by_deviation(found / TRIP - 1),
         found=f"they change fastest at {power(found)} N/m",
-        why="At the resonance the phase of the whirl turns by 180 degrees, and with it the point that a turn shows.",
+        why="At the resonance the phase of the whirl turns by 180 degrees, and so does the point of each turn.",
     )
 
 
@@ -126,7 +126,7 @@ def _end(runs: dict[float, Outcome]) -> Sequence[Statement]:
             statement="Rubbing ends at 6.75e8 N/m.",
             verdict=by_deviation(first / END_OF_RUB[1] - 1),
             found=f"contact at {power(last)}, none from {power(first)} N/m on",
-            why="Unbalance and clearance were fitted to it, with 1 um of air left at 6.75e8 N/m.",
+            why="Unbalance and clearance were fitted to it, with a clearance of 1 um at 6.75e8 N/m.",
             used_for_fitting=True,
         ),
         Statement(

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 FIGURES = {"12": "II", "13": "III", "14": "IV", "15": "V"}
 Judge = Callable[[str, dict[float, Outcome], list[Outcome], bool], Sequence[Statement]]
 """Of a region's name, its runs, all runs, and whether its classes were fitted."""
-MASS = "How much of a sweep is chaotic hangs on the casing's mass, which is not published."
+MASS = "How much of a sweep is chaotic depends on the casing's mass, which is not published."
 
 
 def _second(where: str, runs: dict[float, Outcome], every: list[Outcome], fitted: bool) -> Sequence[Statement]:
