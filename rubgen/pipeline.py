@@ -98,6 +98,7 @@ def simulate(scenario: Scenario) -> Run:
                     sample_rate_hz=sensing.fastest_hz,
                     taps=sensing.set.taps,
                     companion=scenario.labelling.lyapunov and operation.profile == "steady",
+                    repeats_free_turn=True,
                 ),
             )
         if response.status is not Status.OK:

@@ -12,7 +12,7 @@ from rubgen.scenario import ContactLaw, Operation
 from rubgen.scenario.profiles import profile_problem
 from rubgen.solver.exponent import changed_after, lyapunov
 from rubgen.solver.linear.admissible import check_system
-from rubgen.solver.linear.rub_free import free_penetration, rub_free_motion
+from rubgen.solver.linear.rub_free import free_penetration, never_touches, rub_free_motion
 from rubgen.solver.linear.stability import settle_turns, steps_per_turn
 from rubgen.solver.observers.chosen import chosen_observers, tail_turns
 from rubgen.solver.observers.companion import check_turns
@@ -24,6 +24,7 @@ from rubgen.solver.response import Response, Status
 from rubgen.solver.scheme.step_kernels import CONTACT_UNSOLVED, DIVERGED, ENERGY, FILM_CLOSED, OK
 from rubgen.solver.speed.changing import ChangingSystem
 from rubgen.solver.speed.driver import SpeedDriver, SteadyDriver
+from rubgen.solver.speed.repeated import RepeatedDriver
 from rubgen.solver.speed.start import Closing, rub_free_stepper, start_opening
 from rubgen.solver.wants import SpeedModel, Wants
 
@@ -81,25 +82,24 @@ def integrate(
 
 def _steady(system: SpinningSystem, operation: Operation, contact: ContactLaw, wants: Wants) -> Response:
     steps = steps_per_turn(system, operation.steps_per_turn, wants.sample_rate_hz)
-    refusal, decay = film_refusal(system, steps), None
-    if not refusal:
-        refusal, decay = stability(system)
+    refusal = film_refusal(system, steps)
+    if refusal:
+        return refused_response(system, operation, steps, refusal)
+    refusal, decay = stability(system)
     if refusal:
         return refused_response(system, operation, steps, refusal)
     settle = settle_turns(system, operation, decay)
-    response = _integrated(system, operation, contact, wants, (steps, settle))
+    stepper = rub_free_stepper(system, contact, steps, taps=wants.taps)
+    surface = stepper.model.surface
+    penetration = free_penetration(rub_free_motion(system, steps), surface, stepper.model.tips)
+    if wants.repeats_free_turn and never_touches(system, surface, penetration):
+        return Integration(RepeatedDriver(stepper, settle, decay), system, operation, wants, penetration).response()
+    response = Integration(SteadyDriver(stepper, settle), system, operation, wants, penetration).response()
     if _settled_too_soon(response):
-        response = _integrated(system, operation, contact, replace(wants, companion_stops=False), (steps, settle))
+        driver = SteadyDriver(rub_free_stepper(system, contact, steps, taps=wants.taps), settle)
+        throughout = replace(wants, companion_stops=False)
+        response = Integration(driver, system, operation, throughout, penetration).response()
     return response
-
-
-def _integrated(
-    system: SpinningSystem, operation: Operation, contact: ContactLaw, wants: Wants, turn: tuple[int, int]
-) -> Response:
-    """A run of so many steps a turn and turns before the record."""
-    steps, settle = turn
-    driver = SteadyDriver(rub_free_stepper(system, contact, steps, taps=wants.taps), settle)
-    return Integration(driver, system, operation, wants).response()
 
 
 def _settled_too_soon(response: Response) -> bool:
@@ -120,9 +120,20 @@ def _changing(changing: ChangingSystem, operation: Operation, contact: ContactLa
 
 
 class Integration:
-    """One run in progress: speed driver, observers and status. `start` is the system at the first instant."""
+    """One run in progress: speed driver, observers and status.
 
-    def __init__(self, driver: SpeedDriver, start: SpinningSystem, operation: Operation, wants: Wants) -> None:
+    `start` is the system at the first instant, `free_penetration` that of the response.
+    """
+
+    def __init__(
+        self,
+        driver: SpeedDriver,
+        start: SpinningSystem,
+        operation: Operation,
+        wants: Wants,
+        free_penetration: float = math.nan,
+    ) -> None:
+        self.free_penetration = free_penetration
         self.driver, self.stepper, self.record = driver, driver.stepper, operation.recorded_turns
         opening = start_opening(start, self.stepper.model.surface.inset)
         self.closing = Closing(opening, min(operation.closing_turns, driver.settle))
@@ -157,10 +168,6 @@ class Integration:
         """Run, and return the response."""
         self.run()
         stepper, rotation, system = self.stepper, self.driver.rotation, self.stepper.system
-        penetration = float("nan")
-        if rotation.is_steady:
-            motion = rub_free_motion(system, stepper.steps)
-            penetration = free_penetration(motion, stepper.model.surface, stepper.model.tips)
         kept = {name: value for observer in self.observers for name, value in observer.result().items()}
         return Response(
             status=self.status,
@@ -174,9 +181,9 @@ class Integration:
             n_casing=system.n_casing,
             worn=worn_liner(stepper.model.surface.liner, stepper.state.wear),
             blisk_mass=system.recovery.blisk_mass if system.recovery else float("nan"),
-            free_penetration=penetration,
+            free_penetration=self.free_penetration,
             **kept,
-            **self.energy.result(),
+            **self.energy.result(self.driver.times if isinstance(self.driver, RepeatedDriver) else 1.0),
         )
 
     def _reason(self, number: int, step: int) -> str:

@@ -27,5 +27,7 @@ class Wants:
     """Whether a companion trajectory runs beside the record, for the Lyapunov exponent; at a steady speed only."""
     companion_stops: bool = True
     """Whether it stops once it has settled the exponent."""
+    repeats_free_turn: bool = False
+    """Whether a run that never touches may be made from one turn of its rub-free motion: equal but for rounding."""
     taps: tuple[Tap, ...] = DEFAULT_TAPS
     """The taps (`rubgen.taps`); the response holds each by its name."""

@@ -24,6 +24,10 @@ CLEARANCE_PLACES = 1440
 """Places of a turn at which the clearance is evaluated: every quarter of a degree. The error is at most |r''| (pi /
 1440)^2 / 2, 40 nm in an oval of 8 mm, 1 um with chords."""
 
+CLEARANCE_MARGIN = 1e-5
+"""What a run that never touches leaves between tips and casing at least, m, beyond what those places can miss. Chords
+miss 1 um; the motion itself is exact but for rounding."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class RubFreeMotion:
@@ -59,6 +63,18 @@ def free_penetration(motion: RubFreeMotion, surface: Surface, tips: Tips) -> flo
     turn = np.exp(1j * np.multiply.outer(theta, np.arange(len(motion.harmonics))))
     states = np.ascontiguousarray((turn @ motion.harmonics).real)
     return -float(least_clearance(surface, tips, states, theta))
+
+
+def never_touches(system: SpinningSystem, surface: Surface, penetration: float) -> bool:
+    """Whether a run at steady speed, which starts from its rub-free motion with this `penetration`, keeps to it.
+
+    The supports must be linear, so that the motion is the only one, and the surface unlined. Uneven supports, gravity
+    and mistuned blades are linear; a squeeze film is not.
+    """
+    if (system.turning is not None and system.turning.film is not None) or surface.liner.bins:
+        return False
+    bend = float(np.sum(np.abs(system.surface.amplitude) * np.square(system.surface.order)))
+    return penetration < -(CLEARANCE_MARGIN + bend * (np.pi / CLEARANCE_PLACES) ** 2 / 2)
 
 
 def steady_state(system: SpinningSystem) -> FloatArray:

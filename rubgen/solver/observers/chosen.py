@@ -3,7 +3,7 @@
 import math
 
 from rubgen.scenario.rotation import Rotation
-from rubgen.solver.observers.companion import CompanionGrowth, piece_ends
+from rubgen.solver.observers.companion import CompanionGrowth, DecayGrowth, piece_ends
 from rubgen.solver.observers.observer import Observer
 from rubgen.solver.observers.orbit import Orbit
 from rubgen.solver.observers.orders import ChangingOrders, WindowOrders
@@ -13,6 +13,7 @@ from rubgen.solver.observers.tail import Tail
 from rubgen.solver.observers.touches import TouchKeeper
 from rubgen.solver.observers.track import TrackKeeper
 from rubgen.solver.speed.driver import SpeedDriver
+from rubgen.solver.speed.repeated import RepeatedDriver
 from rubgen.solver.wants import Wants
 
 LEAST_TAIL_TURNS = 100
@@ -32,7 +33,9 @@ def chosen_observers(driver: SpeedDriver, record: int, wants: Wants) -> list[Obs
         return [*observers, ChangingOrders(driver, record)]
     symmetry = Symmetry(stepper)
     observers += [WindowOrders(*stepper.result.taps.shape), symmetry]
-    if wants.companion:
+    if wants.companion and isinstance(driver, RepeatedDriver):
+        observers.append(DecayGrowth(driver.decay * stepper.dt * stepper.steps, record))
+    elif wants.companion:
         observers.append(CompanionGrowth(stepper, stops=wants.companion_stops))
     pieces = piece_ends(stepper.steps) if wants.companion else ()
     stepper.take_snapshots(sorted({*symmetry.steps, *pieces}))

@@ -8,7 +8,7 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.contact.liner_kernels import REMOVED
 from rubgen.errors import UserError
-from rubgen.solver.exponent import is_settled
+from rubgen.solver.exponent import ASKED_FROM, is_settled
 from rubgen.solver.observers.companion_kernels import distance, run_companion
 from rubgen.solver.observers.observer import Observer
 from rubgen.solver.scheme.model import new_state, turned
@@ -69,6 +69,19 @@ class CompanionGrowth(Observer):
     def result(self) -> dict[str, Any]:
         """`companion_growth` (turns that the companion ran,)."""
         return {"companion_growth": np.array(self.growth)}
+
+
+class DecayGrowth(Observer):
+    """The growth beside a motion that never touches: every turn the distance shrinks by the slowest decay."""
+
+    def __init__(self, decay_per_turn: float, record: int) -> None:
+        growth = np.full(record, -decay_per_turn)
+        settled = record >= ASKED_FROM and is_settled(growth[:ASKED_FROM].tolist())
+        self.growth = growth[:ASKED_FROM] if settled else growth
+
+    def result(self) -> dict[str, Any]:
+        """`companion_growth`, of as many turns as a companion would have run."""
+        return {"companion_growth": self.growth}
 
 
 class Companion:

@@ -1,0 +1,54 @@
+"""A run that provably never touches: one turn of its exact rub-free motion, handed out again and again."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from rubgen.solver.scheme.stepper import Stepper
+from rubgen.solver.scheme.turn_kernels import TurnResult
+from rubgen.solver.speed.driver import Opening, SteadyDriver
+from rubgen.solver.speed.turn import Turn, TurnFrames
+
+
+class RepeatedDriver(SteadyDriver):
+    """A constant speed at which a stepper in its rub-free motion never touches: it makes one turn, and repeats it.
+
+    A turn that is recorded while the clearance still closes is integrated. `decay` in 1/s is the slowest decay of the
+    system, by which every trajectory beside this one comes nearer.
+    """
+
+    def __init__(self, stepper: Stepper, settle: int, decay: float) -> None:
+        super().__init__(stepper, settle)
+        self.decay = decay
+        self.once: Turn | None = None
+        self.integrated, self.repeated = 0, 0
+
+    @property
+    def times(self) -> float:
+        """Turns of the run over those that were integrated: what the works of the stepper stand for."""
+        return (self.integrated + self.repeated) / self.integrated
+
+    def run_turn(self, number: int, opening: Opening, *, recording: bool) -> Turn:
+        """The turn of that number."""
+        if recording and opening(np.array([float(number + self.settle)]))[0] > 0:
+            self.integrated += 1
+            return super().run_turn(number, opening, recording=True)
+        if self.once is None:
+            self.integrated += 1
+            turn = super().run_turn(number, np.zeros_like, recording=True)
+            self.once = replace(turn, result=TurnResult(*(part.copy() for part in turn.result)))
+            return replace(self.once, recording=recording)
+        self.repeated += 1
+        once, first = self.once, self.first_step(number)
+        shift = first - once.first_step
+        arrivals = once.arrivals.copy()
+        arrivals[:, 2] += shift
+        return replace(
+            once,
+            number=number,
+            first_step=first,
+            end_step=first + self.stepper.steps,
+            recording=recording,
+            arrivals=arrivals,
+            frames=TurnFrames(once.frames.step + shift, once.frames.z),
+        )
