@@ -54,7 +54,7 @@ pictures: $(VENV)/.installed-dev
 	$(BIN)/python docs/pictures.py
 
 schemas: $(VENV)/.installed-dev
-	$(BIN)/python -m rubgen.dataset.schemas schemas docs/labels.md
+	$(BIN)/python -m schemas.make schemas docs/labels.md
 
 clean:
 	rm -rf $(VENV) out build *.egg-info

@@ -11,11 +11,11 @@ import pytest
 
 import rubgen
 from rubgen.cli.app import app
-from rubgen.dataset.schemas import with_tables
 from rubgen.labels.registry import LABELS, TAP_ENDINGS
 from rubgen.labels.to_json import labels_to_json
 from rubgen.scenario import load_recipe, parse_recipe
 from rubgen.solver import Status
+from schemas.make import with_tables
 from tests.default_columns import CHANNELS, SCALARS
 
 ROOT = Path(__file__).parents[1]

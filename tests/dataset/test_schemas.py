@@ -6,7 +6,7 @@ import jsonschema
 import pyarrow.parquet as pq
 import pytest
 
-from rubgen.dataset.schemas import schemas, write_schemas
+from schemas.make import schemas, write_schemas
 
 ROOT = Path(__file__).parents[2]
 

@@ -14,11 +14,12 @@ from pydantic import TypeAdapter
 from rerun.chunk import McapReader as RerunReader
 
 from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
-from rubgen.io.mcap.messages import message_class, proto_text, read_sample_block, sample_block, timestamp
+from rubgen.io.mcap.messages import message_class, read_sample_block, sample_block, timestamp
 from rubgen.labels.to_json import labels_to_json
 from rubgen.measurement import measure
 from rubgen.measurement.motion import contact_intervals
 from rubgen.scenario import Scenario, Sensing
+from schemas.make import proto_text
 
 SCHEMA = Path(__file__).parents[2] / "schemas" / "rubgen.v1.proto"
 

@@ -41,7 +41,7 @@ def test_names_are_unique_and_say_their_unit():
 
 
 def test_the_schema_knows_the_words_of_a_text():
-    from rubgen.dataset.schemas import schemas
+    from schemas.make import schemas
 
     properties = schemas()["run.schema.json"]["properties"]
     jsonschema.validate("partial", properties["rub_extent"])

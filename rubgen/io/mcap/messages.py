@@ -1,4 +1,4 @@
-"""The protobuf messages of rubgen's MCAP files, defined once. Classes, descriptor and .proto text follow from it."""
+"""The protobuf messages of MCAP files of rubgen, defined once: classes, descriptor and .proto file come from here."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -110,19 +110,6 @@ CONTACT_FIELDS = {
     "friction_loss_j": "friction_loss", "normal_loss_j": "normal_loss",
 }  # fmt: skip
 """The field of `ContactIntervals` of each field of the message Contact."""
-
-
-def proto_text() -> str:
-    """The messages as a .proto file, as under `schemas/`."""
-    lines = ['syntax = "proto3";', "", f"package {PACKAGE};", "", 'import "google/protobuf/timestamp.proto";']
-    for name, (comment, fields) in MESSAGES.items():
-        lines += ["", f"// {comment}", f"message {name} {{"]
-        for number, field in enumerate(fields, start=1):
-            kind = f"repeated {field.type}" if field.repeated else field.type
-            note = f"  // {field.comment}" if field.comment else ""
-            lines.append(f"  {kind} {field.name} = {number};{note}")
-        lines.append("}")
-    return "\n".join(lines) + "\n"
 
 
 def proto_file(path: str, package: str, messages: dict[str, list[Field]]) -> descriptor_pb2.FileDescriptorProto:

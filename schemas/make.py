@@ -1,6 +1,6 @@
 """The schemas of what users write and read, and the tables of labels in docs/labels.md.
 
-`python -m rubgen.dataset.schemas DIRECTORY PAGE` writes the schemas into the directory and the tables into the page.
+`python -m schemas.make DIRECTORY PAGE` writes the schemas into the directory and the tables into the page.
 """
 
 import re
@@ -14,7 +14,7 @@ from rubgen.dataset.card import column_table
 from rubgen.dataset.files import write_json, write_text
 from rubgen.dataset.manifest import Manifest
 from rubgen.io.columns import Column, label_columns, scalar_columns, tap_columns
-from rubgen.io.mcap.messages import proto_text
+from rubgen.io.mcap.messages import MESSAGES, PACKAGE
 from rubgen.labels import registry
 from rubgen.machine import Machine
 from rubgen.scenario import Recipe
@@ -51,6 +51,19 @@ def write_schemas(directory: Path) -> None:
     for name, document in schemas().items():
         write_json(directory / name, document)
     write_text(directory / "rubgen.v1.proto", proto_text())
+
+
+def proto_text() -> str:
+    """The messages as a .proto file, as under `schemas/`."""
+    lines = ['syntax = "proto3";', "", f"package {PACKAGE};", "", 'import "google/protobuf/timestamp.proto";']
+    for name, (comment, fields) in MESSAGES.items():
+        lines += ["", f"// {comment}", f"message {name} {{"]
+        for number, field in enumerate(fields, start=1):
+            kind = f"repeated {field.type}" if field.repeated else field.type
+            note = f"  // {field.comment}" if field.comment else ""
+            lines.append(f"  {kind} {field.name} = {number};{note}")
+        lines.append("}")
+    return "\n".join(lines) + "\n"
 
 
 def with_tables(page: str) -> str:
