@@ -113,15 +113,9 @@ def _changing_speed(record: CompactRecord, turns: int) -> ChangingSpeed | None:
 
 
 def _touches(record: CompactRecord) -> ContactEvents:
-    return ContactEvents(
-        blade=record["blade"].astype(np.int64),
-        start_step=record["start_step"].astype(np.int64),
-        steps=record["steps"].astype(np.int64),
-        angle=record["angle"].astype(np.float64),
-        impulse=record["impulse"].astype(np.float64),
-        friction_loss=record["friction_loss"].astype(np.float64),
-        normal_loss=record["normal_loss"].astype(np.float64),
-    )
+    wide = {name: np.int64 if np.issubdtype(kind, np.integer) else np.float64 for name, kind in TOUCHES.items()}
+    fields: dict[str, npt.NDArray[Any]] = {name: record[name].astype(kind) for name, kind in wide.items()}
+    return ContactEvents(**fields)
 
 
 def _narrow(q: FloatArray, v: FloatArray, response: Response) -> npt.NDArray[np.float32]:

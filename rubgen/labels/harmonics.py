@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TypeVar
 
 import numpy as np
 from scipy.fft import rfft
@@ -9,6 +10,7 @@ from scipy.fft import rfft
 from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.solver.response import Response
 
+Array = TypeVar("Array", FloatArray, ComplexArray)
 HIGHEST_ORDER = 20
 SPECTRUM_TURNS = 100
 FRACTIONS = tuple(Fraction(text) for text in ("1/4", "1/3", "1/2", "2/3", "3/4", "4/3", "3/2", "5/3", "5/2"))
@@ -67,11 +69,15 @@ def harmonics(response: Response) -> dict[str, TapOrders]:
     `casing_even` and `casing_odd` are the parts of the casing's radial acceleration at 0 degrees with even and with odd
     circumferential order, (a(0) +- a(pi)) / 2. They are present where both accelerations were recorded.
     """
-    taps = dict(response.taps)
-    if OPPOSITE_TAP in taps:
-        first, second = taps[MARKED_TAP], taps[OPPOSITE_TAP]
-        taps |= {"casing_even": (first + second) / 2, "casing_odd": (first - second) / 2}
-    return {name: tap_orders(tap, response) for name, tap in taps.items()}
+    return {name: tap_orders(tap, response) for name, tap in with_casing_fields(response.taps).items()}
+
+
+def with_casing_fields(taps: dict[str, Array]) -> dict[str, Array]:
+    """The taps, and the even and odd part of the casing's acceleration as in `harmonics` where both are recorded."""
+    if OPPOSITE_TAP not in taps:
+        return taps
+    first, second = taps[MARKED_TAP], taps[OPPOSITE_TAP]
+    return taps | {"casing_even": (first + second) / 2, "casing_odd": (first - second) / 2}
 
 
 def tap_orders(tap: FloatArray, response: Response) -> TapOrders:

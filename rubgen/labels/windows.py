@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from rubgen.arrays import ComplexArray, FloatArray, IntArray
-from rubgen.labels.harmonics import MARKED_TAP, OPPOSITE_TAP
+from rubgen.labels.harmonics import with_casing_fields
 from rubgen.solver.response import WINDOW_TURNS, ChangingSpeed, Response
 
 
@@ -41,11 +41,11 @@ def windows(response: Response) -> Windows:
     if changing is None:
         steps = response.steps_per_turn * np.diff(edges)
         orders = dict(zip(response.taps, response.window_orders.transpose(1, 0, 2), strict=False))
-        means, scatter = {tap: np.abs(each) for tap, each in _with_fields(orders).items()}, {}
+        means, scatter = {tap: np.abs(each) for tap, each in with_casing_fields(orders).items()}, {}
     else:
         steps = np.diff(changing.turn_steps[edges])
         parts = [slice(first, last) for first, last in pairwise(edges.tolist())]
-        turns = _with_fields({tap: changing.orders[:, i] for i, tap in enumerate(response.taps)})
+        turns = with_casing_fields({tap: changing.orders[:, i] for i, tap in enumerate(response.taps)})
         means = {tap: np.abs([x[part].mean(axis=0) for part in parts]) for tap, x in turns.items()}
         scatter = {tap: np.array([_standard_error(x[part]) for part in parts]) for tap, x in turns.items()}
     return Windows(
@@ -64,14 +64,6 @@ def turn_times(response: Response, changing: ChangingSpeed | None) -> FloatArray
     if changing is None:
         return np.asarray(response.turn_seconds * np.array(turns))
     return np.array([changing.rotation.time_of(2 * np.pi * turn) for turn in turns])
-
-
-def _with_fields(taps: dict[str, ComplexArray]) -> dict[str, ComplexArray]:
-    """Adds the even and the odd part of the casing's acceleration, as in `harmonics`."""
-    if OPPOSITE_TAP not in taps:
-        return taps
-    first, second = taps[MARKED_TAP], taps[OPPOSITE_TAP]
-    return taps | {"casing_even": (first + second) / 2, "casing_odd": (first - second) / 2}
 
 
 def _standard_error(amplitudes: ComplexArray) -> FloatArray:

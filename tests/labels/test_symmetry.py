@@ -6,7 +6,7 @@ import pytest
 
 from rubgen.labels import Motion
 from rubgen.labels.motion.classify import motion
-from rubgen.labels.motion.symmetry import asymmetry, is_symmetric
+from rubgen.labels.motion.section import asymmetry, is_symmetric
 from rubgen.solver.response import Response
 
 Respond = Callable[..., Response]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rubgen.labels.motion.zero_one_test import FREQUENCIES, growth_correlation
+from rubgen.labels.motion.chaos import FREQUENCIES, growth_correlation
 from validation.verification.chaos.chaos_indicators import henon
 
 GOLDEN = (np.sqrt(5) - 1) / 2

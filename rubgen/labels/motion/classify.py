@@ -9,8 +9,7 @@ from rubgen.labels.motion.chaos import chaos_indicator
 from rubgen.labels.motion.clusters import cluster_distances, cluster_period, settles, stray
 from rubgen.labels.motion.decision import AT_REST, FORCED, Indicators, MotionClass, combined, decide
 from rubgen.labels.motion.intermittency import Segment, is_intermittent, segments
-from rubgen.labels.motion.section import blisk_points, casing_points, casing_rests
-from rubgen.labels.motion.symmetry import is_symmetric
+from rubgen.labels.motion.section import blisk_points, casing_points, casing_rests, is_symmetric
 from rubgen.solver.exponent import Exponent
 from rubgen.solver.response import Response
 

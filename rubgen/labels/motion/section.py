@@ -1,8 +1,9 @@
-"""Points of the Poincare section of blisk and casing, over the size of their motion."""
+"""Points of the Poincare section of blisk and casing, and whether the motion has the symmetry of the lobes."""
 
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.labels.motion.clusters import EXCURSION
 from rubgen.solver.response import Response
 
 REST_ENERGY = 5e-12
@@ -58,3 +59,24 @@ def casing_rests(response: Response) -> bool:
     half = response.section_q.shape[0] // 2
     states = _casing(response, response.section_q[half:], response.section_v[half:])
     return bool(np.sum(states**2, axis=1).max() / 2 < REST_ENERGY)
+
+
+def asymmetry(response: Response) -> float | None:
+    """Largest distance between the states after each Nth of the last turn, over the part's motion; None without lobes.
+
+    For the blisk it is the largest distance of disk centre and tips, as in the clusters. The casing is turned back by
+    the angle that the blisk turned.
+    """
+    q, v = response.symmetry_states[:, 0], response.symmetry_states[:, 1]
+    if len(q) < 2:
+        return None
+    parts = [blisk_states(response, q, v)]
+    if not casing_rests(response):
+        parts.append(casing_states(response, q, v))
+    return max(float(np.linalg.norm(points - points[-1], axis=2).max()) for points in parts)
+
+
+def is_symmetric(response: Response) -> bool | None:
+    """Whether the states differ by at most EXCURSION, 3 %; None without lobes."""
+    found = asymmetry(response)
+    return None if found is None else found <= EXCURSION

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.labels.motion.zero_one_test import growth_correlation
+from rubgen.labels.motion.chaos import growth_correlation
 from validation.verification.row import Row, within
 
 TITLE = "0-1 test for chaos"
