@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rubgen.scenario import ContactLaw
-from rubgen.solver.observers.divergence import ADVICE, Growth, trend
+from rubgen.solver.observers.divergence import ADVICE, Growth, trend, what_diverged
 from rubgen.solver.speed.start import rub_free_stepper
 
 
@@ -67,6 +67,20 @@ def test_amplitudes_that_are_no_numbers_are_left_out():
     assert found.turns == 2
     assert found.size == pytest.approx(np.exp(-0.5))
     assert trend(np.array([1.0, np.nan])) is None
+
+
+@pytest.mark.parametrize("tip", [0.03, -0.03, np.nan])
+def test_a_tip_beyond_its_limit_or_no_number_is_the_blade_s_and_else_it_is_the_casing(stepper, tip):
+    limit, q = stepper.model.laws.tip_limit, np.zeros(len(stepper.system.M))
+    q[3 * 4 + 1] = tip
+    stepper.state.motions[2].z[:] = stepper.blocks.to_z(q)
+    assert limit < 0.03
+    branch, text = what_diverged(stepper)
+    assert branch == "blade"
+    assert text.endswith(f"bent beyond {1e3 * limit:.3g} mm")
+    assert text.startswith("blade 4") or np.isnan(tip)  # in blocks NaN spreads over all blades
+    stepper.state.motions[2].z[:] = stepper.blocks.to_z(np.minimum(np.nan_to_num(np.abs(q)), 0.9 * limit))
+    assert what_diverged(stepper)[0] == "casing"
 
 
 def test_the_advice_counts_what_the_page_of_the_model_counts():

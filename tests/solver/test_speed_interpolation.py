@@ -14,6 +14,8 @@ def test_lagrange_weights_give_back_a_polynomial():
     nodes = chebyshev_speeds(300.0, 900.0)
     assert nodes[0] == 300
     assert nodes[-1] == 900
+    assert np.all(np.diff(nodes) > 0)
+    assert np.diff(nodes)[0] < 0.5 * np.diff(nodes).max()  # densest at the ends
     curve = np.polynomial.Polynomial(np.random.default_rng(1).normal(size=nodes.size), domain=[300, 900])
     at = np.linspace(300, 900, 37)
     np.testing.assert_allclose(lagrange_weights(nodes, at) @ curve(nodes), curve(at), atol=1e-12)

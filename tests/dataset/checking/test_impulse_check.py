@@ -68,6 +68,16 @@ def test_no_good_channel_is_called_wrong_and_two_percent_are_found(speed_rpm, se
             )
 
 
+def test_images_that_the_anti_alias_filter_lets_pass_are_no_contradiction():
+    """Blows have images of twice their mean at each multiple of the sample rate; the filter leaves 85 dB less."""
+    seconds, row = 4.0, row_of(6000.0, record_turns=400)
+    images = row["steps_per_turn"] / samples_per_turn(row)
+    mean = row["contact_impulse_per_turn_n_s"] * row["speed_rpm"] / 60
+    force = np.full(round(seconds * RATE), mean * (1 + images * 2 * 10 ** (-85 / 20)))
+    assert list(impulse_problems(row, force, 0.0, 1e-12)) == []
+    assert list(impulse_problems(row, 1.01 * force, 0.0, 1e-12)) != []
+
+
 def test_a_plain_mean_over_all_samples_would_be_wrong_by_more():
     row = row_of(9111.1)
     weights = whole_turn_weights(1280, samples_per_turn(row))
