@@ -10,12 +10,16 @@ import socket
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+from matplotlib.figure import Figure
 from PIL import Image
 
 import rubgen
 from rubgen.report.figures import Choice, make_figure
+from rubgen.scenario.surroundings import Surroundings, Tone
 from rubgen.viz.figures import dataset_overview, overview, save_png
 from rubgen.viz.replay import Replay, replay_of
 from rubgen.viz.rerun import write_replay
@@ -38,10 +42,30 @@ def main() -> None:
         save_png(overview(run), DOCS / f"{name}.png")
         if name == "overview":
             save_viewer(replay_of(run), DOCS / "replay.png")
+    save_png(surroundings_figure(), DOCS / "surroundings.png")
     rubgen.generate(None, OUT / "demo")
     save_png(dataset_overview(rubgen.open(OUT / "demo").runs), DOCS / "data-set.png")
     rubgen.generate(DOCS.parent / "datasets" / "speed-sweep.toml", OUT / "speed-sweep")
     save_png(make_figure("bifurcation", OUT / "speed-sweep", Choice()), DOCS / "bifurcation.png")
+
+
+def surroundings_figure() -> Figure:
+    """Spectra of an accelerometer on the casing with and without a rub, in silence and in a plant."""
+    figure = Figure(figsize=(9, 6), layout="constrained")
+    silent = rubgen.make_scenario("zeng2019", speed_rpm=10_500)
+    plant = Surroundings(background_m_per_s2=30, blade_passing_m_per_s2=20, tones=(Tone(order=3.2, level_m_per_s2=10),))
+    free = rubgen.make_scenario("zeng2019", speed_rpm=10_500, clearance_m=2e-3)
+    for axes, scenario, name in zip(figure.subplots(2, sharex=True), (silent, free), ("rub", "no rub"), strict=True):
+        for around, label in ((plant, "in a plant"), (None, "in silence")):
+            run = rubgen.simulate(replace(scenario, surroundings=around))
+            values = run.recording.channels["casing_acc_0"].values if run.recording else np.zeros(1)
+            window = np.hanning(values.size)
+            amplitude = 2 * np.abs(np.fft.rfft(values * window)) / window.sum()
+            axes.semilogy(np.arange(amplitude.size) / 1e3, amplitude, linewidth=0.6, label=label)
+        axes.set(title=name, ylabel="m/s2, peak", ylim=(1e-3, None))
+        axes.legend(loc="upper right")
+    axes.set(xlabel="kHz")
+    return figure
 
 
 def save_viewer(replay: Replay, path: Path) -> None:

@@ -104,7 +104,9 @@ def simulate(scenario: Scenario) -> Run:
         if response.status is not Status.OK:
             return Run(scenario=scenario, response=response, recording=None, labels=None)
         rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(scenario.index,)))
-        recording = measure(response, sensing, seconds=scenario.signal_seconds, rng=rng)
+        recording = measure(
+            response, sensing, seconds=scenario.signal_seconds, rng=rng, surroundings=scenario.surroundings
+        )
         return Run(scenario=scenario, response=response, recording=recording, labels=label(response))
 
 

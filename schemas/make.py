@@ -85,11 +85,13 @@ def with_tables(page: str) -> str:
 
 def _run_schema() -> dict[str, Any]:
     columns, endings = scalar_columns(default_sensor_set()), "|".join(registry.TAP_ENDINGS)
+    around = scalar_columns(default_sensor_set(), surroundings=True)[len(columns) :]
     return {
         "title": "Run",
-        "description": "One row of runs.parquet. Labels are null where a run failed or has no such value.",
+        "description": "One row of runs.parquet. Labels are null where a run failed or has no such value; levels of "
+        "surroundings are there where the recipe has them.",
         "type": "object",
-        "properties": {column.name: _property(column) for column in columns},
+        "properties": {column.name: _property(column) for column in (*columns, *around)},
         "required": [column.name for column in columns],
         "patternProperties": {f"^[A-Za-z]\\w*({endings})$": {"description": "of a further true signal"}},
         "additionalProperties": False,

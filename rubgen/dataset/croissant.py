@@ -56,7 +56,7 @@ def croissant(layout: Layout, identity: Identity) -> dict[str, Any]:
         "sha256": sha256_of(layout.runs),
     }
     distribution = [runs_file]
-    scalars = scalar_columns(identity.sensor_set)
+    scalars = scalar_columns(identity.sensor_set, surroundings="surroundings" in recipe)
     records = [_record_set("runs", scalars, {"fileObject": {"@id": "runs.parquet"}})]
     if "parquet" in recipe["output"]["formats"]:
         includes = f"data/{SPLIT}-*.parquet"

@@ -6,6 +6,7 @@ from enum import StrEnum
 
 from rubgen.errors import UserError
 from rubgen.labels.registry import LABELS, TAP_LABELS, Label
+from rubgen.scenario.surroundings import SURROUNDINGS
 from rubgen.scenario.vary import PARAMETERS
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
 from rubgen.sensors.kinds.once_per_rev import OncePerRev
@@ -107,15 +108,27 @@ def _touches() -> list[Column]:
     ]
 
 
+def _surroundings() -> list[Column]:
+    return [
+        *(Column(each.key, "number", each.unit, each.meaning) for each in SURROUNDINGS),
+        Column("tones_order", "numbers", "1", "frequency of each tone over that of the rotation at speed_rpm"),
+        Column("tones_m_per_s2", "numbers", "m/s2", "rms acceleration of each tone on the casing"),
+    ]
+
+
 def _ordered_taps(sensors: SensorSet) -> tuple[Tap, ...]:
     """The true signals that have orders."""
     return (*(tap for tap in sensors.taps if not isinstance(tap, TipTiming)), *FIELDS)
 
 
-def scalar_columns(sensors: SensorSet) -> tuple[Column, ...]:
-    """Columns of `runs.parquet` for runs with these sensors. Each true signal of a sensor has its orders."""
+def scalar_columns(sensors: SensorSet, *, surroundings: bool = False) -> tuple[Column, ...]:
+    """Columns of `runs.parquet` for runs with these sensors. Each true signal of a sensor has its orders.
+
+    Runs of a recipe with `surroundings` have their levels at the end.
+    """
     orders = [column for tap in _ordered_taps(sensors) for column in tap_columns(tap.name, tap.UNIT)]
-    return (*_identity(), *_parameters(), *_operation(), *label_columns(), *orders, *_energy())
+    around = _surroundings() if surroundings else []
+    return (*_identity(), *_parameters(), *_operation(), *label_columns(), *orders, *_energy(), *around)
 
 
 def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
@@ -148,7 +161,7 @@ def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
 
 
 def _check_names(sensors: SensorSet, columns: list[Column]) -> None:
-    taken = [column.name for column in (*scalar_columns(sensors), *columns)]
+    taken = [column.name for column in (*scalar_columns(sensors, surroundings=True), *columns)]
     for name in taken:
         if taken.count(name) > 1:
             raise UserError(f"sensor set {sensors.name}: two columns would be called {name}; rename that sensor")

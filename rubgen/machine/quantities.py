@@ -199,3 +199,12 @@ Bias = Annotated[
 MissedShare = Annotated[float, _real(ge=0, lt=1, usual=Usual(0, 0.9, "hardly a blade is seen", PERCENT))]
 RunoutHarmonic = Annotated[int, _whole(ge=1, le=1000)]
 AdcBits = Annotated[int, _whole(ge=8, le=32)]
+
+# Surroundings.
+BackgroundLevel = Annotated[
+    float,
+    _real(ge=0, le=1e9, usual=Usual(0, 1e4, "machines shake with 0.1 to 1,000", (("mm/s2", 1e-3),), "m/s2")),
+]
+SpectralSlope = Annotated[float, _real(ge=0, le=4)]
+SpeedExponent = Annotated[float, _real(ge=0, le=10)]
+Order = Annotated[float, _real(gt=0, le=10_000)]

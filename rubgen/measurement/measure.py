@@ -8,26 +8,40 @@ from rubgen.measurement.blade_tip_timing import TipTimes, blurred, tip_times
 from rubgen.measurement.chain import half_width_seconds, late_seconds, start_seconds
 from rubgen.measurement.channel import Channel, Recording
 from rubgen.measurement.sampled import feed_of, filtered, recorded
-from rubgen.measurement.shaft import pulse_channel, pulse_times, shaft_angle
+from rubgen.measurement.shaft import pulse_channel, pulse_times, shaft_angle, shaft_speed
+from rubgen.measurement.surroundings import Felt, Tail
 from rubgen.scenario import Sensing
 from rubgen.scenario.costs import STEPS_PER_SAMPLE
+from rubgen.scenario.surroundings import Surroundings
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
 from rubgen.sensors.kinds.once_per_rev import OncePerRev
 from rubgen.sensors.sensor import SampledSensor
 from rubgen.solver.response import Response
 
+SURROUNDINGS_STREAM = 2**32 - 1
+"""The child of a run's random numbers that its surroundings have: far beyond those of sensors."""
 
-def measure(response: Response, sensing: Sensing, *, seconds: float, rng: np.random.Generator) -> Recording:
+
+def measure(
+    response: Response,
+    sensing: Sensing,
+    *,
+    seconds: float,
+    rng: np.random.Generator,
+    surroundings: Surroundings | None = None,
+) -> Recording:
     """The channels and events of a run by the sensors of `sensing.set`.
 
     The last sample is half a filter length before the end of the tail, so that no sample is affected by its edge. The
     step after the tail's last one has theta = 0 mod 2 pi. Each sensor has its own child of `rng`, by its place in the
-    set: its noise depends only on the state of `rng` and its own length.
+    set: its noise depends only on the state of `rng` and its own length. The surroundings have another child: they do
+    not depend on the set.
 
     - response: true response with the taps of all sensors.
     - sensing: sensors, sample rate, noise and ADC.
     - seconds: length of the recording, > 0, at the end of the record.
     - rng: random numbers.
+    - surroundings: what sensors feel beside the motion; nothing with None.
 
     Raises UserError where the tail is too short for `seconds` and the filter, or the step rate is below 2.56 sample
     rates.
@@ -39,7 +53,8 @@ def measure(response: Response, sensing: Sensing, *, seconds: float, rng: np.ran
     start = start_seconds(sensing, seconds, steps=response.record_steps, dt=response.dt)
     pulses = pulse_times(response, float(angle[0]), start, covered)
     streams = dict(zip((sensor.name for sensor in sensors), rng.spawn(len(sensors)), strict=True))
-    channels = _channels(response, sensing, positions, angle, streams)
+    felt = _felt(surroundings, response, positions, rng) if surroundings else None
+    channels = _channels(response, sensing, positions, angle, streams, felt)
     timing: dict[str, TipTimes] = {}
     for sensor in sensors:
         if isinstance(sensor, OncePerRev):
@@ -88,10 +103,11 @@ def _channels(
     positions: FloatArray,
     angle: FloatArray,
     streams: dict[str, np.random.Generator],
+    felt: Felt | None,
 ) -> dict[str, Channel]:
     """The sampled channels and the pulse, in the order of the set."""
     shaft = shaft_angle(response, np.arange(response.tail_steps))
-    feeds = [feed_of(sensor, response, shaft, sensing.set) for sensor in sensing.set.sampled]
+    feeds = [feed_of(sensor, response, shaft, sensing.set, felt) for sensor in sensing.set.sampled]
     samples = filtered(feeds, positions, dt=response.dt, sensing=sensing)
     channels: dict[str, Channel] = {}
     for sensor in sensing.set.sensors:
@@ -100,3 +116,19 @@ def _channels(
         if isinstance(sensor, OncePerRev):
             channels[sensor.name] = pulse_channel(angle, sensor.name, keep_clean=sensing.keep_clean)
     return channels
+
+
+def _felt(surroundings: Surroundings, response: Response, positions: FloatArray, rng: np.random.Generator) -> Felt:
+    """What the surroundings add to the taps over the tail of `response`."""
+    steps = np.arange(response.tail_steps)
+    tail = Tail(
+        dt=response.dt,
+        angle=shaft_angle(response, steps),
+        speed=shaft_speed(response, steps),
+        first_sample=float(positions[0]) * response.dt,
+        seconds=float(positions[-1] - positions[0]) * response.dt,
+        blades=response.n_blades,
+    )
+    own = rng.bit_generator.seed_seq
+    stream = np.random.SeedSequence(own.entropy, spawn_key=(*own.spawn_key, SURROUNDINGS_STREAM))  # type: ignore[attr-defined]
+    return Felt(surroundings, tail, np.random.default_rng(stream))

@@ -9,6 +9,7 @@ from rubgen.arrays import FloatArray
 from rubgen.measurement.chain import adc_step, band_limit, digitise
 from rubgen.measurement.channel import Channel
 from rubgen.measurement.front_end import drop_out, front_end, miscalibrate, noise, noise_level
+from rubgen.measurement.surroundings import Felt
 from rubgen.scenario import Sensing
 from rubgen.sensors.sensor import SampledSensor
 from rubgen.sensors.sensor_set import SensorSet
@@ -40,15 +41,21 @@ class Samples:
     real: FloatArray
 
 
-def feed_of(sensor: SampledSensor, response: Response, angle: FloatArray, sensors: SensorSet) -> Feed:
-    """The true signal in the sensor's unit, and what the sensor makes of it; `angle` (steps,) is theta at each step."""
+def feed_of(
+    sensor: SampledSensor, response: Response, angle: FloatArray, sensors: SensorSet, felt: Felt | None
+) -> Feed:
+    """The true signal in the sensor's unit, and what the sensor makes of it; `angle` (steps,) is theta at each step.
+
+    The sensor takes the true signal and what is `felt` of the surroundings; the ideal signal is without these.
+    """
     true = response.taps[sensor.tap.name]
+    added = felt.by(sensor.tap) if felt else None
     factor, zero = sensor.scale
 
     def in_unit(signal: FloatArray) -> FloatArray:
         return signal if (factor, zero) == (1.0, 0.0) else zero + factor * signal
 
-    ideal, seen = in_unit(true), sensor.disturbed(true, angle, sensors.shaft_runout)
+    ideal, seen = in_unit(true), sensor.disturbed(true if added is None else true + added, angle, sensors.shaft_runout)
     return Feed(sensor, ideal, front_end(sensor, ideal if seen is true else in_unit(seen), response.dt))
 
 

@@ -48,6 +48,14 @@ def shaft_angle(response: Response, positions: npt.NDArray[np.floating] | npt.ND
     return in_turn(response.changing_speed.rotation.angle((response.record_steps + back) * response.dt))
 
 
+def shaft_speed(response: Response, positions: npt.NDArray[np.floating] | npt.NDArray[np.integer]) -> FloatArray:
+    """Spin speed in rad/s at positions, counted in steps from the start of the tail."""
+    if response.changing_speed is None:
+        return np.full(positions.size, response.speed)
+    time = (response.record_steps + positions - response.tail_steps) * response.dt
+    return np.asarray(response.changing_speed.rotation.speed(time), dtype=np.float64)
+
+
 def pulse_times(response: Response, first_angle: float, start: float, seconds: float) -> FloatArray:
     """Exact times (any,) in [0, seconds) at which theta passes 0 mod 2 pi, in s.
 

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from functools import wraps
 from inspect import signature
 from pathlib import Path
@@ -25,6 +26,7 @@ TABLES = {
     "sensors": ("sample_rate_hz",),
     "output": ("signal_seconds",),
     "labels": ("lyapunov",),
+    "surroundings": ("background_m_per_s2", "blade_passing_m_per_s2", "runout_m"),
 }
 """The tables of a recipe with keys that are not drawn."""
 _RECIPE = TypeAdapter(Recipe)
@@ -61,6 +63,9 @@ def make_scenario(
     support_anisotropy: float | None = None,
     gravity_m_per_s2: float | None = None,
     unbalance_angle_deg: float | None = None,
+    background_m_per_s2: float | None = None,
+    blade_passing_m_per_s2: float | None = None,
+    runout_m: float | None = None,
     profile: ProfileName = "steady",
     end_speed_rpm: float | None = None,
     duration_s: float | None = None,
@@ -91,6 +96,9 @@ def make_scenario(
     - `support_anisotropy`: (k_X - k_Y) / (k_X + k_Y) of the disk support, above -1 and below 1
     - `gravity_m_per_s2`: gravity along -Y on the blisk in m/s2, >= 0; 0 for a vertical axis
     - `unbalance_angle_deg`: angle of the unbalance from blade 0 in degrees, -360 to 360
+    - `background_m_per_s2`: rms of the casing's broadband background at 10,000 rev/min in m/s2, >= 0
+    - `blade_passing_m_per_s2`: rms of the casing's answer to the blades' pressure at 10,000 rev/min in m/s2, >= 0
+    - `runout_m`: amplitude of order 1 of the shaft's runout in m, >= 0; orders 2 and 3 have 1/2 and 1/3 of it
     - `profile`: of the speed: "steady", "run-up", "coast-down" or "fluctuating"
     - `end_speed_rpm`: speed at the end of a run-up or coast-down in rev/min, > 0; these two profiles need it
     - `duration_s`: duration of a record whose speed changes in s, > 0; every profile but "steady" needs it
@@ -115,7 +123,7 @@ def _checked_scenario(given: dict[str, Any]) -> Scenario:
     values, varied = _recipe_values(given), {key: given[key] for key in KEYS if key in given}
     recipe = validated("", values, _RECIPE, _key_alone)
     check_used("", {**values, "vary": varied}, _key_alone)
-    scenario = vary(recipe.base, varied)
+    scenario = vary(replace(recipe.base, surroundings=recipe.surroundings_of(0)), varied)
     with recipe.machine_named():
         check_feasible(scenario)
     warn_of([scenario])
@@ -126,10 +134,11 @@ def _recipe_values(given: dict[str, Any]) -> dict[str, Any]:
     """The values of a recipe of one run: all given keys except the keys of `[vary]`."""
     values: dict[str, Any] = {"name": "run", "runs": 1}
     for table, keys in TABLES.items():
-        values[table] = {key: given[key] for key in keys if key in given}
+        used = {key: given[key] for key in keys if key in given}
+        values |= {table: used} if used else {}
     values |= {key: _text(given[key]) for key in ("machine", "seed") if key in given}
     if "sensors" in given:
-        values["sensors"]["set"] = _text(given["sensors"])
+        values["sensors"] = {**values.get("sensors", {}), "set": _text(given["sensors"])}
     return values
 
 

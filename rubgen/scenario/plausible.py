@@ -103,6 +103,9 @@ def shares(scenario: Scenario) -> Iterator[Share]:
     if film:
         key = "disk_support.squeeze_film.clearance_m"
         yield Share(key, film.clearance_m, 0.05, film.radius_m, "the radius of the journal")
+    for key in ("runout_m", "shaft_drift_m") if scenario.surroundings else ():
+        value = getattr(scenario.surroundings, key)
+        yield Share(f"surroundings.{key}", value, 0.02, machine.disk.bore_radius_m, "the radius of the disk's bore")
     for number, part in enumerate(scenario.sensing.set.shaft_runout):
         key = f"shaft_runout.{number}.amplitude_m"
         yield Share(key, part.amplitude_m, 0.02, machine.disk.bore_radius_m, "the radius of the disk's bore")

@@ -36,6 +36,7 @@ from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.profiles import check_used
 from rubgen.scenario.scenario import ContactLaw, Labelling, Operation, ProfileName, Reduction, Scenario, Sensing
+from rubgen.scenario.surroundings import Surroundings, SurroundingsTable, drawn, extremes
 from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, sobol_point, vary
 from rubgen.sensors.load import DEFAULT_SET, load_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
@@ -111,6 +112,7 @@ class Recipe(BaseModel):
     machine: Annotated[str, Field(min_length=1)]
     license: Annotated[str, Field(min_length=1)] = "CC-BY-4.0"
     vary: Vary = Vary()
+    surroundings: SurroundingsTable | None = None
     operation: Profile = Profile()
     simulation: Simulation = Simulation()
     sensors: Sensors = Sensors()
@@ -168,18 +170,24 @@ class Recipe(BaseModel):
     def scenario(self, index: int) -> Scenario:
         """Run number `index`, complete. It depends on no other run and not on the number of runs."""
         point = sobol_point(self.seed, index)
-        drawn = {entry.key: distribution.quantile(point[entry.key]) for entry, distribution in self.distributions()}
-        return vary(replace(self.base, index=index), drawn)
+        values = {entry.key: distribution.quantile(point[entry.key]) for entry, distribution in self.distributions()}
+        return vary(replace(self.base, index=index, surroundings=self.surroundings_of(index)), values)
+
+    def surroundings_of(self, index: int) -> Surroundings | None:
+        """The surroundings of run number `index`; None where the recipe has none."""
+        return drawn(self.surroundings, self.seed, index) if self.surroundings else None
 
     def corners(self, source: str = "") -> Iterator[Scenario]:
         """Scenarios at the extreme values of each key, the other keys at their first value. Checks use them.
 
         Raises UserError, beginning with `source`, where an extreme value is not allowed.
         """
-        extremes = {entry.key: distribution.extremes() for entry, distribution in self.distributions()}
-        first = vary(self.base, {key: values[0] for key, values in extremes.items()}, source, ("vary",))
+        ends = {entry.key: distribution.extremes() for entry, distribution in self.distributions()}
+        first = vary(self.base, {key: values[0] for key, values in ends.items()}, source, ("vary",))
         yield first
-        for key, values in extremes.items():
+        for around in extremes(self.surroundings, source) if self.surroundings else ():
+            yield replace(first, surroundings=around)
+        for key, values in ends.items():
             for value in values[1:]:
                 yield vary(first, {key: value}, source, ("vary",))
 

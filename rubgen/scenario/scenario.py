@@ -33,6 +33,7 @@ from rubgen.machine.quantities import (
     WearRate,
 )
 from rubgen.scenario.rotation import Rotation
+from rubgen.scenario.surroundings import Surroundings
 from rubgen.sensors.load import default_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
 from rubgen.units import rad_per_s
@@ -185,6 +186,7 @@ class Scenario:
     reduction: Reduction = Reduction()
     sensing: Sensing = Field(default_factory=Sensing)
     labelling: Labelling = Labelling()
+    surroundings: Surroundings | None = None
     signal_seconds: Duration = 1.0
     seed: Seed = 0
     index: Seed = 0
@@ -205,6 +207,10 @@ class Scenario:
 def scenario_dict(scenario: Scenario) -> dict[str, object]:
     """The scenario as nested JSON-ready Python values, keys as in the dataclasses, complete with its machine.
 
-    `TypeAdapter(Scenario).validate_python(scenario_dict(s)) == s`: every float keeps all its bits in JSON.
+    `TypeAdapter(Scenario).validate_python(scenario_dict(s)) == s`: every float keeps all its bits in JSON. A
+    run without surroundings has no such key.
     """
-    return cast("dict[str, object]", TypeAdapter(Scenario).dump_python(scenario, mode="json"))
+    values = cast("dict[str, object]", TypeAdapter(Scenario).dump_python(scenario, mode="json"))
+    if scenario.surroundings is None:
+        del values["surroundings"]
+    return values

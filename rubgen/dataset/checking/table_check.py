@@ -15,8 +15,8 @@ from rubgen.errors import UserError
 from rubgen.formats import run_formats
 from rubgen.io.parquet.compact_records import SCHEMA
 from rubgen.io.parquet.read import ParquetSource
-from rubgen.io.parquet.write import schema
-from rubgen.scenario import Sensing
+from rubgen.io.parquet.write import recipe_schema
+from rubgen.scenario import Recipe, Sensing
 
 NO_PARQUET = "damaged or no Parquet file of rubgen"
 MOST_NAMED = 4
@@ -38,7 +38,7 @@ def table_problems(layout: Layout, manifest: Manifest, closed: set[str]) -> Iter
     asked = asked_bytes(recorded)
     rows: dict[str, Row] = {}
     if layout.runs.name not in closed:
-        types = schema(signals=False, sensors=identity.sensor_set)
+        types = recipe_schema(recorded, signals=False)
         for table, problem in _groups(layout, layout.runs.name, types, "run-{:06d}".format, asked):
             yield from problem
             rows |= {row["run_id"]: row for row in (table.to_pylist() if table is not None else ())}
@@ -49,8 +49,7 @@ def table_problems(layout: Layout, manifest: Manifest, closed: set[str]) -> Iter
     yield from _list_problems(manifest, recorded.output.formats, set(good))
     yield from _section_problems(layout, manifest.listed("sections"), closed, list(good), asked)
     if "parquet" in recorded.output.formats:
-        sensing = Sensing(set=identity.sensor_set, **recorded.sensors.model_dump(exclude={"set"}))
-        yield from _data_problems(layout, manifest.listed("data"), closed, sensing, good, asked)
+        yield from _data_problems(layout, manifest.listed("data"), closed, recorded, good, asked)
 
 
 def _run_problems(name: str, rows: dict[str, Row], manifest: Manifest) -> Iterator[str]:
@@ -87,9 +86,9 @@ def _section_problems(
 
 
 def _data_problems(
-    layout: Layout, names: list[str], closed: set[str], sensing: Sensing, good: dict[str, Row], asked: float
+    layout: Layout, names: list[str], closed: set[str], recipe: Recipe, good: dict[str, Row], asked: float
 ) -> Iterator[str]:
-    types = schema(signals=True, clean=sensing.keep_clean, sensors=sensing.set)
+    types, sensing = recipe_schema(recipe, signals=True), recipe.sensing
     scalars = [field.name for field in types if not is_signal(field)]
     seen: set[str] = set()
     whole = bool(names)

@@ -13,7 +13,7 @@ from rubgen.errors import RubgenError, UserError
 from rubgen.io.files import sync_directory
 from rubgen.io.parquet.compact_records import SCHEMA
 from rubgen.io.parquet.read import read_table
-from rubgen.io.parquet.write import schema, write_table
+from rubgen.io.parquet.write import recipe_schema, write_table
 from rubgen.scenario import Recipe
 
 T = TypeVar("T")
@@ -23,12 +23,11 @@ ROWS_PER_TABLE_GROUP = 4096
 def assemble(recipe: Recipe, layout: Layout) -> Counter[str]:
     """Write `runs.parquet`, data files and sections from the staged runs. Return the number of runs by status."""
     staged = [layout.staged(f"run-{index:06d}") for index in range(recipe.runs)]
-    sensors, asked = recipe.sensing.set, asked_bytes(recipe)
-    status = _write_runs(staged, layout, schema(signals=False, sensors=sensors), asked)
+    asked = asked_bytes(recipe)
+    status = _write_runs(staged, layout, recipe_schema(recipe, signals=False), asked)
     valid = _valid(staged, asked)
     if "parquet" in recipe.output.formats:
-        types = schema(signals=True, clean=recipe.sensors.keep_clean, sensors=sensors)
-        _write_shards(valid, valid, layout.shard, types, asked)
+        _write_shards(valid, valid, layout.shard, recipe_schema(recipe, signals=True), asked)
         sync_directory(layout.data)
     _write_shards([layout.staged_section(path.stem) for path in valid], valid, layout.section_shard, SCHEMA, asked)
     sync_directory(layout.sections)

@@ -24,7 +24,7 @@ from rubgen.errors import UserError
 from rubgen.io.columns import signal_columns
 from rubgen.io.parquet.compact_records import SCHEMA
 from rubgen.io.parquet.read import damage_named, read_table
-from rubgen.io.parquet.write import schema
+from rubgen.io.parquet.write import recipe_schema
 from rubgen.machine.problems import nearest
 from rubgen.measurement.channel import Float32Array
 from rubgen.scenario import Recipe, Sensing
@@ -142,7 +142,7 @@ class DataSet:
 
     @cached_property
     def _table(self) -> pa.Table:
-        types = schema(signals=False, sensors=self._sensing.set)
+        types = recipe_schema(self._recipe, signals=False)
         table = read_table(self.layout.runs, types.names)
         with damage_named(self.layout.runs):
             table = table.cast(types)
@@ -156,7 +156,7 @@ class DataSet:
 
     @cached_property
     def _data(self) -> RunRows:
-        types = schema(signals=True, clean=self._sensing.keep_clean, sensors=self._sensing.set)
+        types = recipe_schema(self._recipe, signals=True)
         return RunRows(
             [self.layout.root / name for name in self.manifest.listed("data")], types, asked_bytes(self._recipe)
         )

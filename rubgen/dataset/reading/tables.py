@@ -42,7 +42,7 @@ def runs_frame(table: pa.Table, sensors: SensorSet) -> pd.DataFrame:
     """
     frame: pd.DataFrame = table.to_pandas(types_mapper=_nullable)
     frame = frame.set_index("run_id")
-    columns = {column.name: column for column in scalar_columns(sensors) if column.name in frame}
+    columns = {column.name: column for column in scalar_columns(sensors, surroundings=True) if column.name in frame}
     frame.attrs = {
         "units": {name: column.unit for name, column in columns.items()},
         "meanings": {name: column.meaning for name, column in columns.items()},

@@ -20,6 +20,8 @@ from rubgen.io.files import write_durably
 from rubgen.labels.to_json import labels_to_json, window_amplitudes
 from rubgen.measurement.channel import Recording
 from rubgen.measurement.motion import contact_intervals
+from rubgen.scenario import Recipe
+from rubgen.scenario.surroundings import surroundings_values
 from rubgen.scenario.vary import varied_values
 from rubgen.sensors.load import default_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
@@ -39,16 +41,25 @@ TYPES = {
 COMPRESSION_LEVEL = 3
 
 
-def schema(*, signals: bool, clean: bool = False, sensors: SensorSet | None = None) -> pa.Schema:
+def schema(
+    *, signals: bool, clean: bool = False, sensors: SensorSet | None = None, surroundings: bool = False
+) -> pa.Schema:
     """The Arrow schema of `runs.parquet`; with `signals`, of the data files. Each field has its unit and meaning.
 
     - signals: include the channels.
     - clean: include the clean channels.
     - sensors: the sensor set of the runs; the default set with None.
+    - surroundings: include their levels.
     """
     used = sensors or default_sensor_set()
-    columns = scalar_columns(used) + (signal_columns(used, clean=clean) if signals else ())
+    columns = scalar_columns(used, surroundings=surroundings) + (signal_columns(used, clean=clean) if signals else ())
     return pa.schema([_field(column) for column in columns])
+
+
+def recipe_schema(recipe: Recipe, *, signals: bool) -> pa.Schema:
+    """The same of the set that a recipe makes."""
+    sensing, around = recipe.sensing, recipe.surroundings
+    return schema(signals=signals, clean=sensing.keep_clean, sensors=sensing.set, surroundings=around is not None)
 
 
 def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Table:
@@ -57,7 +68,10 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
     `split` is the split of the data set. A failed run has null labels, energies and signals. Raises ValueError where a
     label has no column.
     """
+    around = run.scenario.surroundings
     row = _identity(run, split) | varied_values(run.scenario) | _operation(run)
+    if around:
+        row |= surroundings_values(around, run.scenario.operation.rotation_frequency_hz)
     if run.labels is not None:
         row |= labels_to_json(run.labels)
         energy = run.response.energy
@@ -66,7 +80,7 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
     if signals and run.recording is not None and run.labels is not None:
         row |= _signals(run.recording) | _touches(run, run.recording) | window_amplitudes(run.labels)
     sensing = run.scenario.sensing
-    types = schema(signals=signals, clean=sensing.keep_clean, sensors=sensing.set)
+    types = schema(signals=signals, clean=sensing.keep_clean, sensors=sensing.set, surroundings=around is not None)
     unknown = sorted(set(row) - set(types.names))
     if unknown:
         raise ValueError(f"no column for {', '.join(unknown)}")

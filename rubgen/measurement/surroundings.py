@@ -1,0 +1,135 @@
+"""The signals that the surroundings add to what sensors feel. The motion and its labels know nothing of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from rubgen.arrays import ComplexArray, FloatArray
+from rubgen.scenario.surroundings import Surroundings
+from rubgen.scenario.vary import DEFAULT_SPEED_RPM
+from rubgen.taps import CasingAcceleration, CentreDisplacement, Tap
+from rubgen.units import rad_per_s
+
+FELT = (CasingAcceleration, CentreDisplacement)
+"""The kinds of taps to which surroundings add."""
+BAND_HZ = (10.0, 20_000.0)
+"""Band of the background."""
+HIGHEST_CIRCUMFERENTIAL = 6
+"""Circumferential orders 0 to 6 of the casing share the power of background and tones: sensors less than some 50
+degrees apart feel nearly the same."""
+BLADE_PASSING_HARMONICS = 3
+RUNOUT_ORDERS = 3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tail:
+    """The steps that are measured: their number, their length in s, theta (steps,) and speed (steps,) in rad/s."""
+
+    dt: float
+    angle: FloatArray
+    speed: FloatArray
+    first_sample: float
+    """When the first sample is taken, in s from the first step."""
+    seconds: float
+    """Length of the recording in s."""
+    blades: int
+
+    @property
+    def time(self) -> FloatArray:
+        """Time (steps,) in s."""
+        return np.asarray(self.dt * np.arange(self.angle.size), dtype=np.float64)
+
+
+class Felt:
+    """What one run's surroundings add to each tap; the random numbers of all parts are drawn at once, in fixed order.
+
+    Acceleration at the polar angle phi of the casing, x_n and y_n independent with equal power:
+
+    - background and tones: sum over n = 0..6 of x_n cos(n phi) + y_n sin(n phi), so that near sensors agree
+    - blade passing: sum over k = 1..3 of cos(k N_b (theta - phi) + psi_k) / k, a pattern that turns with the blades
+    """
+
+    def __init__(self, surroundings: Surroundings, tail: Tail, rng: np.random.Generator):
+        self.surroundings, self.tail = surroundings, tail
+        level = (tail.speed / rad_per_s(DEFAULT_SPEED_RPM)) ** surroundings.speed_exponent
+        self.level = np.asarray(level, dtype=np.float64)
+        tones, runout, passing, drift, background = rng.spawn(5)
+        orders = 2 * HIGHEST_CIRCUMFERENTIAL + 1
+        self._tones = _complex_normal(tones, (len(surroundings.tones), orders))
+        self._runout = runout.uniform(0, 2 * np.pi, RUNOUT_ORDERS)
+        self._passing = passing.uniform(0, 2 * np.pi, BLADE_PASSING_HARMONICS)
+        self._drift = float(drift.uniform(0, 2 * np.pi))
+        self._background = background
+
+    def by(self, tap: Tap) -> FloatArray | None:
+        """What is added to the true signal (steps,) of a tap, in its unit; None where nothing is."""
+        if isinstance(tap, CasingAcceleration):
+            return self._on_the_casing(tap)
+        return self._under_a_probe(tap) if isinstance(tap, CentreDisplacement) else None
+
+    def _on_the_casing(self, tap: CasingAcceleration) -> FloatArray:
+        around = np.deg2rad(tap.angle_deg)
+        added = np.zeros(self.tail.angle.size)
+        if self.surroundings.background_m_per_s2:
+            added += self.level * self._broadband(around)
+        if self.surroundings.blade_passing_m_per_s2:
+            added += self.level * self._blade_passing(around)
+        for tone, parts in zip(self.surroundings.tones, self._tones, strict=True):
+            fixed = 2 * np.pi * (tone.frequency_hz or 0.0) * self.tail.time
+            phase = fixed if tone.order is None else tone.order * np.unwrap(self.tail.angle)
+            added += tone.level_m_per_s2 * np.sqrt(2) * np.real(_at(parts, around) * np.exp(1j * phase))
+        return added
+
+    @cached_property
+    def _lines(self) -> tuple[int, slice, ComplexArray]:
+        """Length of the transform, its lines in the band, and their amplitudes (2 n + 1, lines): one draw for all."""
+        from scipy.fft import next_fast_len  # slow to import
+
+        length = int(next_fast_len(self.tail.angle.size, real=True))
+        resolution = 1 / (length * self.tail.dt)
+        lines = slice(int(np.ceil(BAND_HZ[0] / resolution)), min(int(BAND_HZ[1] / resolution), length // 2 - 1) + 1)
+        power = np.arange(lines.start, lines.stop, dtype=np.float64) ** -self.surroundings.background_slope
+        rms = self.surroundings.background_m_per_s2 * np.sqrt(power / power.sum())
+        orders = 2 * HIGHEST_CIRCUMFERENTIAL + 1
+        return length, lines, rms * _complex_normal(self._background, (orders, power.size))
+
+    def _broadband(self, around: float) -> FloatArray:
+        """The background at a polar angle. A line of rms r is r sqrt(2) Re(z exp(i w t)), |z| = 1 in the mean."""
+        from scipy.fft import irfft
+
+        length, lines, amplitudes = self._lines
+        spectrum = np.zeros(length // 2 + 1, dtype=np.complex128)
+        spectrum[lines] = _at(amplitudes, around) * (length / np.sqrt(2))
+        return np.asarray(irfft(spectrum, length)[: self.tail.angle.size])
+
+    def _blade_passing(self, around: float) -> FloatArray:
+        order = np.arange(1, BLADE_PASSING_HARMONICS + 1)
+        shares = np.sqrt(2) / order / np.sqrt(np.sum(1 / order**2))
+        turned = self.tail.blades * (self.tail.angle - around)
+        waves = (share * np.cos(k * turned + psi) for k, share, psi in zip(order, shares, self._passing, strict=True))
+        return np.asarray(self.surroundings.blade_passing_m_per_s2 * sum(waves))
+
+    def _under_a_probe(self, tap: CentreDisplacement) -> FloatArray:
+        """Runout at phi - theta, amplitudes falling as 1/order, and the slow drift along one direction."""
+        around = np.deg2rad(tap.angle_deg)
+        seen = around - self.tail.angle
+        orders = np.arange(1, RUNOUT_ORDERS + 1)
+        profile = sum(np.cos(m * seen - phase) / m for m, phase in zip(orders, self._runout, strict=True))
+        share = (self.tail.time - self.tail.first_sample) / self.tail.seconds
+        drift = self.surroundings.shaft_drift_m * np.cos(around - self._drift) * share
+        return np.asarray(self.surroundings.runout_m * profile + drift)
+
+
+def _complex_normal(rng: np.random.Generator, shape: tuple[int, ...]) -> ComplexArray:
+    """Complex normal numbers with a mean square of 1."""
+    return np.asarray((rng.standard_normal(shape) + 1j * rng.standard_normal(shape)) / np.sqrt(2))
+
+
+def _at(parts: ComplexArray, around: float) -> ComplexArray:
+    """A field of circumferential orders (2 n + 1, ...) at a polar angle, with the mean square of its parts."""
+    n = np.arange(1, HIGHEST_CIRCUMFERENTIAL + 1)
+    weights = np.concatenate([[1.0], np.cos(n * around), np.sin(n * around)]) / np.sqrt(HIGHEST_CIRCUMFERENTIAL + 1)
+    return np.asarray(np.tensordot(weights, parts, axes=1))

@@ -1,0 +1,89 @@
+"""`[surroundings]` of a recipe: what is drawn, and what is refused."""
+
+import numpy as np
+import pytest
+
+from rubgen.errors import RubgenWarning, UserError
+from rubgen.scenario import make_scenario, parse_recipe
+from rubgen.scenario.scenario import scenario_dict
+from rubgen.scenario.surroundings import Surroundings, Tone
+
+BASE = {"name": "around", "runs": 4, "machine": "zeng2019"}
+DRAWN = {
+    "background_m_per_s2": {"log_uniform": [1, 300]},
+    "runout_m": {"uniform": [1e-6, 9e-6]},
+    "tones": [{"order": {"uniform": [2, 4]}, "level_m_per_s2": {"uniform": [1, 9]}}],
+}
+
+
+def recipe(**surroundings):
+    return parse_recipe({**BASE, "surroundings": surroundings}, source="r.toml")
+
+
+def drawn(**surroundings) -> list[Surroundings]:
+    made = recipe(**surroundings)
+    return [made.scenario(index).surroundings for index in range(40)]
+
+
+def test_values_fill_their_ranges():
+    values = np.log([each.background_m_per_s2 for each in drawn(**DRAWN)])
+    assert 0 <= values.min() < 0.2 * np.log(300)
+    assert 0.8 * np.log(300) < values.max() <= np.log(300)
+    orders = [each.tones[0].order for each in drawn(**DRAWN)]
+    assert 2 <= min(orders) < 2.4
+    assert 3.6 < max(orders) <= 4
+
+
+def test_a_key_changes_no_other_and_no_drawn_value_of_vary():
+    alone = drawn(runout_m=DRAWN["runout_m"])
+    assert [each.runout_m for each in alone] == [each.runout_m for each in drawn(**DRAWN)]
+    vary = {"clearance_m": {"uniform": [2e-4, 3e-4]}}
+    silent = parse_recipe({**BASE, "vary": vary}).scenario(3)
+    around = parse_recipe({**BASE, "vary": vary, "surroundings": DRAWN}).scenario(3)
+    assert around.machine == silent.machine
+    assert len({each.runout_m for each in alone}) == len(alone)
+
+
+def test_a_silent_recipe_says_nothing_of_surroundings():
+    silent = parse_recipe(BASE)
+    assert "surroundings" not in silent.model_dump(mode="json", exclude_none=True)
+    assert "surroundings" not in scenario_dict(silent.scenario(0))
+    assert scenario_dict(recipe(runout_m=1e-6).scenario(0))["surroundings"]["runout_m"] == 1e-6
+
+
+def test_a_single_run_takes_the_same_keys():
+    scenario = make_scenario(background_m_per_s2=50, runout_m=2e-6)
+    assert scenario.surroundings == Surroundings(background_m_per_s2=50, runout_m=2e-6)
+    assert make_scenario().surroundings is None
+
+
+@pytest.mark.parametrize(
+    ("surroundings", "words"),
+    [
+        ({"background_m_per_s2": {"uniform": [-1, 5]}}, "surroundings.background_m_per_s2 = -1"),
+        ({"background_m_per_s2": {"uniform": [1, 1e12]}}, "surroundings.background_m_per_s2 = 1e+12"),
+        ({"runout_m": [1e-6, 2e-6]}, "a range is written"),
+        ({"backgrund_m_per_s2": 3}, "did you mean background_m_per_s2?"),
+        ({"tones": [{"level_m_per_s2": 3}]}, "either an order or a frequency_hz"),
+        ({"tones": [{"order": 2, "frequency_hz": 50, "level_m_per_s2": 3}]}, "either an order or a frequency_hz"),
+        ({"tones": [{"order": 2}]}, "level_m_per_s2"),
+        ({"tones": [{"order": 0, "level_m_per_s2": 3}]}, "surroundings.tones.0.order = 0"),
+        ({"tones": [{"order": 2, "level_m_per_s2": 3}] * 17}, "surroundings.tones"),
+        ({"background_slope": 9}, "surroundings.background_slope = 9"),
+    ],
+)
+def test_mistakes_are_one_line_with_the_key(surroundings, words):
+    with pytest.raises(UserError) as error:
+        recipe(**surroundings)
+    assert str(error.value).startswith("r.toml: surroundings")
+    assert words in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_a_level_in_another_unit_is_asked_about():
+    with pytest.warns(RubgenWarning, match="background_m_per_s2 = 300000: .* were mm/s2 meant, 300 m/s2"):
+        recipe(background_m_per_s2={"uniform": [1, 300000]})
+
+
+def test_a_tone_at_a_fixed_frequency_has_an_order_of_the_run():
+    assert Tone(frequency_hz=50, level_m_per_s2=1).order_at(200) == 0.25
