@@ -101,11 +101,9 @@ def open(directory: Path | str) -> DataSet:  # noqa: A001
 
     Raises UserError where the directory holds no finished data set.
     """
-    from pathlib import Path
-
     from rubgen.dataset.reading.open import DataSet
 
-    return DataSet(Path(directory))
+    return DataSet(directory)
 
 
 def verify(directory: Path | str) -> list[str]:
@@ -113,8 +111,6 @@ def verify(directory: Path | str) -> list[str]:
 
     Raises UserError where the directory holds no finished data set.
     """
-    from pathlib import Path
-
     from rubgen.dataset.checking.verify import verify
 
-    return verify(Path(directory))
+    return verify(directory)

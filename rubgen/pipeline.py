@@ -11,6 +11,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rubgen.brief import counted, html_table, number, table
+from rubgen.errors import UserError
 from rubgen.jit import kernels_are_compiled
 from rubgen.labels import Labels, label
 from rubgen.measurement import Recording, margin_seconds, measure
@@ -85,6 +86,8 @@ def simulate(scenario: Scenario) -> Run:
     and with or without the cache of reduced models. A run that fails is returned with its status and without labels.
     Raises UserError for a machine that cannot be modelled, reduced or run as asked.
     """
+    if not isinstance(scenario, Scenario):
+        raise UserError(f"{scenario!r:.200}: is no scenario; give rubgen.make_scenario(...) or recipe.scenario(0)")
     operation, sensing = scenario.operation, scenario.sensing
     with threadpool_limits(1, user_api="blas"):
         model = reduce(scenario.machine, scenario.reduction)

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable
 from pathlib import Path
 
+from rubgen.errors import UserError
 from rubgen.formats import format_of
 
 SPLIT = "train"
@@ -18,7 +19,14 @@ RUNS_PER_ROW_GROUP = 8
 class Layout:
     """Paths in the directory `root` of a data set."""
 
-    def __init__(self, root: Path) -> None:
+    def __init__(self, root: Path | str) -> None:
+        """Raise UserError for what is no path."""
+        try:
+            root = Path(root)
+        except TypeError:
+            raise UserError(
+                f"{root!r:.200}: is no path; give the directory of a data set as a text or a Path"
+            ) from None
         self.root = root
         self.manifest = root / "manifest.json"
         """Recipe, seed, versions and the sha256 of every file."""

@@ -18,7 +18,7 @@ from validation.reliability.disks import full_disk_row, read_only_row, shut_out_
 from validation.reliability.fuzz import fuzz_rows, repeat
 from validation.reliability.hostile.inputs import SHARES, kind_of
 from validation.reliability.kills import signal_row
-from validation.reliability.rows import Row, write_page
+from validation.reliability.rows import Row, commit_here, write_page
 from validation.reliability.sets import Truth, undisturbed
 from validation.reliability.stops import error_row, stop_row
 from validation.reliability.together import together_row
@@ -55,10 +55,10 @@ def main() -> int:
     if given.seed is not None:
         print(f"{kind_of(given.seed)}: {repeat(given.seed)}")
         return 0
-    good = True
+    good, commit = True, commit_here()
     for row in rows(quick=given.quick, only=given.only):
         print(f"{'ok  ' if row.good else 'FAIL'} {row.fault}: {row.skipped or row.tries}, {row.seconds} s", flush=True)
-        replace_rows(given.out, [asdict(row)], by="fault")
+        replace_rows(given.out, [asdict(row) | {"commit": commit}], by="fault")
         good = good and row.good
     if given.out == OUT and not given.quick:
         write_page(OUT)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 import time
 from collections.abc import Iterator, Sequence
@@ -14,7 +15,7 @@ from validation.markdown import table
 from validation.rows import read_rows
 
 PAGE = Path("docs/reliability.md")
-COLUMNS = ("fault", "tries", "lost", "differing", "missed", "tracebacks", "seconds")
+COLUMNS = ("fault", "tries", "lost", "differing", "missed", "tracebacks", "seconds", "commit")
 BEGIN, END = "<!-- table of faults -->", "<!-- end of table -->"
 
 
@@ -58,6 +59,17 @@ def timed(row: Row) -> Iterator[Row]:
     row.seconds = round(row.seconds + time.perf_counter() - start, 1)
 
 
+def commit_here() -> str:
+    """The commit of the sources that are tried, with "+" where they were changed since; empty without git."""
+    git = ["git", "describe", "--always", "--abbrev=7", "--exclude=*", "--dirty=+"]
+    try:
+        return subprocess.run(
+            git, cwd=Path(__file__).parent, capture_output=True, text=True, check=False
+        ).stdout.strip()
+    except OSError:
+        return ""
+
+
 def write_page(out: Path, page: Path = PAGE) -> None:
     """Put the table of `out` into the page; its other lines stay."""
     text = page.read_text(encoding="utf-8")
@@ -74,4 +86,4 @@ def table_of(rows: Sequence[dict[str, Any]]) -> str:
 def _cells(row: dict[str, Any]) -> list[str]:
     if row["skipped"]:
         return [row["fault"], row["skipped"]]
-    return [f"{row[name]:,.0f}" if name == "seconds" else f"{row[name]}" for name in COLUMNS]
+    return [f"{row[name]:,.0f}" if name == "seconds" else f"{row.get(name, '')}" for name in COLUMNS]

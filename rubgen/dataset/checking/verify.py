@@ -10,7 +10,7 @@ from rubgen.dataset.manifest import Manifest, read_manifest
 from rubgen.formats import run_formats
 
 
-def verify(directory: Path) -> list[str]:
+def verify(directory: Path | str) -> list[str]:
     """Every problem of the data set in `directory`, one line each; empty without problems.
 
     Checked: format and digest of the manifest; presence, size and sha256 of every listed file, and of .rrd files by
@@ -22,7 +22,7 @@ def verify(directory: Path) -> list[str]:
     return [finding.text for finding in findings(directory)]
 
 
-def findings(directory: Path) -> list[Finding]:
+def findings(directory: Path | str) -> list[Finding]:
     """The problems of `verify`, each with its kind."""
     layout = Layout(directory)
     manifest = read_manifest(layout)

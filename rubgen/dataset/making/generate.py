@@ -75,7 +75,7 @@ def generate(
     recipe = _recipe(recipe, runs)
     workers = _workers(workers)
     signal_columns(recipe.sensing.set, clean=recipe.sensing.keep_clean)  # refuses names that columns have
-    layout, identity = Layout(Path(out)), identity_of(recipe)
+    layout, identity = Layout(out), identity_of(recipe)
     with write_problems(layout.root, advice="give a directory that you may write to", kept=KEPT):
         if not finished(layout, identity):
             with claimed(layout, identity):
@@ -96,7 +96,7 @@ def _recipe(recipe: Recipe | Mapping[str, object] | Path | str | None, runs: int
 
 
 def _workers(workers: int | None) -> int:
-    if workers is not None and workers < 1:
+    if workers is not None and (isinstance(workers, bool) or not isinstance(workers, int) or workers < 1):
         raise UserError(f"--workers {workers}: must be at least 1; give a number of processes")
     return workers or usable_cores()
 

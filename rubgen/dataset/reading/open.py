@@ -44,7 +44,7 @@ class DataSet:
     names. The set consists of what its manifest lists; other files in the directory are ignored.
     """
 
-    def __init__(self, directory: Path) -> None:
+    def __init__(self, directory: Path | str) -> None:
         """Read the manifest. Raises UserError where `directory` holds no finished data set."""
         self.layout = Layout(directory)
         self.manifest: Manifest = read_manifest(self.layout)
@@ -56,7 +56,7 @@ class DataSet:
         return iter(self._numbers)
 
     def __contains__(self, run_id: object) -> bool:
-        return run_id in self._numbers
+        return isinstance(run_id, str) and run_id in self._numbers
 
     def __getitem__(self, run_id: str) -> StoredRun:
         """The run of that name. Raises UserError where there is none."""
@@ -190,10 +190,14 @@ class DataSet:
     def _known(self, channels: Sequence[str] | None) -> tuple[str, ...]:
         if isinstance(channels, str):
             raise UserError(f"channels = {channels!r}: give a list of names, [{channels!r}]")
-        for name in channels or ():
-            if name not in self.units:
-                raise UserError(f"{self.layout.root}: no channel {name!r}; {nearest(name, list(self.channels))}")
-        return self.channels if channels is None else tuple(channels)
+        try:
+            names = self.channels if channels is None else tuple(channels)
+        except TypeError:
+            raise UserError(f"channels = {channels!r:.200}: give a list of names") from None
+        for name in names:
+            if name not in self.channels:
+                raise UserError(f"{self.layout.root}: no channel {name!r}; {nearest(str(name), list(self.channels))}")
+        return tuple(dict.fromkeys(names))
 
     def _no_such_run(self, run_id: object) -> str:
         digits = re.sub(r"[^0-9]", "", str(run_id))[:9]
