@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, TypeAdapter, ValidationError, create_model
 
 from rubgen.brief import counted
@@ -168,7 +169,9 @@ class Recipe(BaseModel):
                 yield entry, distribution
 
     def scenario(self, index: int) -> Scenario:
-        """Run number `index`, complete. It depends on no other run and not on the number of runs."""
+        """Run number `index` from 0, complete. It depends on no other run and not on the number of runs."""
+        if isinstance(index, bool) or not isinstance(index, int | np.integer) or not 0 <= index < MOST_RUNS:
+            raise UserError(f"index = {index!r:.100}: give the number of a run, from 0 to below {MOST_RUNS:,}")
         point = sobol_point(self.seed, index)
         values = {entry.key: distribution.quantile(point[entry.key]) for entry, distribution in self.distributions()}
         return vary(replace(self.base, index=index, surroundings=self.surroundings_of(index)), values)
@@ -263,6 +266,9 @@ def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | 
     - source: beginning of messages.
     - data: the TOML values of the recipe; without them, fields that are set count as given.
     """
+    validated(
+        source, recipe.model_dump(mode="json", warnings=False), TypeAdapter(Recipe)
+    )  # it may be a copy with other values
     if not recipe._checked:
         _check_used(recipe, source, data)
     if len(set(recipe.output.formats)) != len(recipe.output.formats):

@@ -80,6 +80,20 @@ def test_a_recipe_built_of_objects_warns_once_and_takes_all_keys_of_a_manifest()
         check_recipe(Recipe(**Recipe(**MINIMAL).model_dump()))
 
 
+@pytest.mark.parametrize("index", [-1, 1_000_000, 10**12, "0", 1.5, True, None])
+def test_what_is_no_number_of_a_run_is_refused(index):
+    with pytest.raises(UserError, match="give the number of a run, from 0 to below 1,000,000"):
+        parse_recipe(MINIMAL).scenario(index)
+
+
+@pytest.mark.parametrize("changes", [{"runs": 0}, {"seed": -3}, {"runs": "2"}, {"name": "a/b"}])
+def test_a_copy_with_other_values_is_checked(tmp_path, changes):
+    (key,) = changes
+    with pytest.raises(UserError, match=f"recipe: {key} = "):
+        rubgen.generate(parse_recipe(MINIMAL).model_copy(update=changes), tmp_path / "set")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_runs_override_changes_no_run():
     few, many = load_recipe(runs=2), load_recipe(runs=40)
     assert (few.runs, many.runs) == (2, 40)
