@@ -8,8 +8,10 @@ from rubgen.errors import UserError
 from rubgen.scenario import ContactLaw, Liner, parse_recipe
 from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
+from rubgen.solver.scheme.energy_kernels import CONTACT, FRICTION, NORMAL
 from rubgen.solver.speed.start import closing_ramp, rub_free_stepper, start_opening
 from rubgen.solver.wants import Wants
+from rubgen.taps import DEFAULT_TAPS, ContactTorque
 
 LINER = Liner(thickness_m=1e-3, wear_m2_per_n=4e-12, width_m=0.02, bins=240)
 LAWS = {
@@ -19,8 +21,8 @@ LAWS = {
 }
 
 
-def run_turns(system, law, steps=256, turns=12, screen=True):
-    stepper = rub_free_stepper(system, law, steps, screen=screen)
+def run_turns(system, law, steps=256, turns=12, screen=True, taps=DEFAULT_TAPS):
+    stepper = rub_free_stepper(system, law, steps, screen=screen, taps=taps)
     opening, impulse = start_opening(system, stepper.model.surface.inset), []
     for turn in range(turns):
         assert stepper.run_turn(opening * closing_ramp((turn + np.arange(-1, steps + 1) / steps) / 6))[0] == 0
@@ -97,13 +99,15 @@ def test_volume_follows_from_force_and_sliding(small_system):
 def test_the_drive_pays_for_wear_as_for_other_losses(small_system):
     """Contact less normal, friction and wear losses tends to the drive's limit with the step."""
     law = ContactLaw(liner=Liner(thickness_m=5e-3, wear_m2_per_n=2e-10, width_m=0.02, bins=120))
-    apart, wears = [], []
+    apart, wears, torque = [], [], (ContactTorque(name="contact_torque"),)
     for steps in (1024, 2048, 4096):
-        stepper, _ = run_turns(small_system(speed=500.0, casing_damping=0.4), law, steps=steps, turns=6)
+        stepper, _ = run_turns(small_system(speed=500.0, casing_damping=0.4), law, steps=steps, turns=6, taps=torque)
         stepper.state.works[:], stepper.state.wear.sums[:] = 0, 0  # until now the closing surface did work
+        limit, laws = 0.0, stepper.model.laws
         for _ in range(3):
             stepper.run_turn()
-        contact, normal, rubbing, limit = stepper.state.works[3:7]
+            limit -= laws.speed * laws.dt * stepper.result.taps[0].sum()
+        contact, normal, rubbing = (stepper.state.works[work] for work in (CONTACT, NORMAL, FRICTION))
         wears.append(stepper.state.wear.sums[WORK])
         apart.append(contact - normal - rubbing + wears[-1] - limit)
     assert wears[2] == pytest.approx(wears[1], rel=0.1)

@@ -75,7 +75,8 @@ class ParquetSource:
         there = self.schema_arrow.names
         missing = [name for name in columns or () if name not in there]
         if missing:
-            raise UserError(f"{self.path}: has no column {missing[0]!r}; it is of another rubgen, generate it again")
+            unlike = f"damaged or of another rubgen: it has no column {missing[0]!r}"
+            raise UserError(f"{self.path}: {unlike}; run rubgen verify on its set")
         return list(there if columns is None else columns)
 
     def _check_size(self, group: int) -> None:
