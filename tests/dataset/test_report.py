@@ -92,8 +92,16 @@ def test_a_failed_run_is_listed_with_its_reason(small_set, tmp_path, monkeypatch
     monkeypatch.setattr("rubgen.report.page.verify", lambda _directory: ["data: broken"])
     write_report(small_set.directory, tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert " more.</p>" not in text
     assert "<td>run-000003</td><td>diverged</td><td>blade 3 &lt;bent&gt; in turn 7</td>" in text
     assert "1 problems" in text
+    runs.loc["run-000002", ["status", "reason"]] = "refused", "too fast"
+    monkeypatch.setattr("rubgen.report.page.MOST_FAILED", 1)
+    write_report(small_set.directory, tmp_path / "report.html")
+    text = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "<td>run-000002</td><td>refused</td>" in text
+    assert "<td>run-000003</td><td>diverged</td>" not in text
+    assert "<p>and 1 more.</p>" in text
 
 
 def test_a_flipped_bit_of_an_mcap_stands_on_the_page_and_costs_no_page(shown_set, copied_shown_set, tmp_path):

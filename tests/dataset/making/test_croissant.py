@@ -4,6 +4,8 @@ import json
 from dataclasses import replace
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 import rubgen
@@ -32,6 +34,15 @@ def test_valid_and_loaded_to_the_bit(mlcroissant, small_set):
         np.testing.assert_array_equal(loaded, signals["contact_force"])
     speeds = [row["runs/speed_rpm"] for row in described.records("runs")]
     assert speeds == data.runs["speed_rpm"].tolist()
+
+
+def test_columns_that_are_lists_are_repeated(small_set):
+    described = json.loads((small_set.directory / "croissant.json").read_text())
+    files = {"runs": "runs.parquet", "signals": "data/*.parquet"}
+    for records in described["recordSet"]:
+        types = pq.read_schema(next(small_set.directory.glob(files[records["name"]])))
+        lists = {each.name for each in types if pa.types.is_list(each.type)}
+        assert {field["name"] for field in records["field"] if field.get("repeated")} == lists != set()
 
 
 def test_failed_runs_have_empty_labels(mlcroissant, make_synthetic_run, short_records, tmp_path, monkeypatch):
