@@ -32,11 +32,12 @@ from rubgen.machine.quantities import (
 )
 from rubgen.machine.sentences import FILE_NAME
 from rubgen.machine.toml_file import check_kind, read_toml, toml_path
+from rubgen.scenario.contact_laws.contact_law import ContactLaw
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.profiles import check_used
-from rubgen.scenario.scenario import ContactLaw, Labelling, Operation, ProfileName, Reduction, Scenario, Sensing
+from rubgen.scenario.scenario import Labelling, Operation, ProfileName, Reduction, Scenario, Sensing
 from rubgen.scenario.surroundings import Surroundings, SurroundingsTable, drawn, extremes
 from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, sobol_point, vary
 from rubgen.sensors.load import DEFAULT_SET, load_sensor_set

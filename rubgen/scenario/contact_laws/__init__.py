@@ -1,0 +1,1 @@
+"""Contact between blades and casing."""

@@ -1,0 +1,41 @@
+"""What happens where a blade touches the casing."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic.dataclasses import dataclass
+
+from rubgen.machine.quantities import STRICT, Friction, Length, LinerBins, Restitution, Switch, WearRate
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Liner:
+    """An abradable lining of the casing that wears at the contact (Archard 1953): volume = wear force sliding.
+
+    `wear_m2_per_n` is the volume worn for each newton and metre of sliding. `width_m` is the axial width of the track,
+    over which the depth is constant. `bins` is the number of equal steps of polar angle of the depth. Below
+    `thickness_m` the casing does not wear.
+    """
+
+    thickness_m: Length
+    wear_m2_per_n: WearRate
+    width_m: Length
+    bins: LinerBins = 360
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class ContactLaw:
+    """Unilateral contact with sliding Coulomb friction; restitution 0 is a plastic impact.
+
+    With `half_thickness` contact acts on the casing's inner surface, half the ring's thickness inside its centre line.
+    Friction then also turns the ring's cross-section, and the surface moves with that rotation. `surface` "chords"
+    joins the casing's nodes by straight lines instead of the smooth curve through them. A `liner` wears where blades
+    touch.
+    """
+
+    friction: Friction = 0.0
+    restitution: Restitution = 0.0
+    half_thickness: Switch = False
+    surface: Literal["smooth", "chords"] = "smooth"
+    liner: Liner | None = None
