@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from rubgen.errors import UserError
-from rubgen.labels.registry import LABELS, TAP_LABELS, Label
+from rubgen.labels.registry import ENERGY_LABELS, LABELS, TAP_LABELS, WINDOW_LABELS, Label
 from rubgen.scenario.surroundings import SURROUNDINGS
 from rubgen.scenario.vary import PARAMETERS
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
@@ -73,11 +73,7 @@ def tap_columns(name: str, unit: str) -> list[Column]:
 
 
 def _energy() -> list[Column]:
-    return [
-        Column("energy_residual", "number", "1", "error of the energy identity, share of all absolute works", True),
-        Column("normal_loss_j", "number", "J", "energy lost in normal impacts, <= 0", True),
-        Column("friction_loss_j", "number", "J", "energy lost in friction, <= 0", True),
-    ]
+    return [Column(x.name, "number", x.unit, x.meaning, True) for x in ENERGY_LABELS]
 
 
 def _channel(sensor: SampledSensor | OncePerRev) -> tuple[str, str]:
@@ -145,13 +141,9 @@ def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
     columns += [Column(name, "signal", *fact) for name, fact in facts.items()]
     columns += _touches()
     columns += [
-        Column(
-            f"{tap.name}_window_amplitudes",
-            "numbers",
-            tap.UNIT,
-            "amplitudes at k f_r, twenty a window, the last ones",
-        )
+        Column(f"{tap.name}_{x.ending}", "numbers", tap.UNIT, x.meaning)
         for tap in _ordered_taps(sensors)
+        for x in WINDOW_LABELS
     ]
     if clean:
         columns += [Column(f"{name}_clean", "signal", unit, f"{text}, clean") for name, (unit, text) in facts.items()]

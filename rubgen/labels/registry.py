@@ -9,10 +9,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
+import numpy as np
+
+from rubgen.arrays import FloatArray
 from rubgen.labels.contact.amounts import RubExtent
 from rubgen.labels.harmonics import FRACTIONS, TapOrders
 from rubgen.labels.labels import Labels, Motion
 from rubgen.labels.motion.whirl import WhirlDirection
+from rubgen.solver.response import EnergyBalance
 from rubgen.units import rev_per_min
 
 
@@ -46,6 +50,26 @@ class TapLabel:
     """None for the unit of the tap."""
     meaning: str
     value: Callable[[TapOrders], object]
+
+
+@dataclass(frozen=True)
+class WindowLabel:
+    """One label of each true signal in windows, a column of data files alone; the name is made as for a `TapLabel`."""
+
+    ending: str
+    meaning: str
+    value: Callable[[FloatArray], object]
+    """Its value from amplitudes (windows, 20) in the unit of the tap."""
+
+
+@dataclass(frozen=True)
+class EnergyLabel:
+    """One energy term of a run, a number in Parquet files alone; null where the run failed."""
+
+    name: str
+    unit: str
+    meaning: str
+    value: Callable[[EnergyBalance], float]
 
 
 _Value = Callable[[Labels], object]
@@ -273,3 +297,17 @@ TAP_LABELS = (
 )
 TAP_ENDINGS = tuple(f"_{label.ending}" for label in TAP_LABELS)
 """Ends of the names of the labels that each true signal has."""
+WINDOW_LABELS = (
+    WindowLabel(
+        "window_amplitudes",
+        "amplitudes at k f_r, twenty a window, the last ones",
+        lambda windows: windows.astype(np.float32).ravel().tolist(),  # in single precision they compress
+    ),
+)
+ENERGY_LABELS = (
+    EnergyLabel(
+        "energy_residual", "1", "error of the energy identity, share of all absolute works", lambda x: x.residual
+    ),
+    EnergyLabel("normal_loss_j", "J", "energy lost in normal impacts, <= 0", lambda x: x.normal_loss),
+    EnergyLabel("friction_loss_j", "J", "energy lost in friction, <= 0", lambda x: x.friction_loss),
+)

@@ -9,7 +9,7 @@ import numpy as np
 from rubgen.labels.compact_record import CompactRecord, response_of
 from rubgen.labels.label import label
 from rubgen.labels.labels import Labels
-from rubgen.labels.registry import LABELS, TAP_LABELS
+from rubgen.labels.registry import LABELS, TAP_LABELS, WINDOW_LABELS
 
 MOTION_LABELS = ("motion", "motion_blisk", "motion_casing")
 
@@ -32,13 +32,10 @@ def remade_labels(record: CompactRecord) -> dict[str, object]:
     return {name: value for name, value in values.items() if name not in FROM_TAPS}
 
 
-def window_amplitudes(labels: Labels) -> dict[str, list[float]]:
-    """`<tap>_window_amplitudes`: the twenty amplitudes of the first window, then of the second, and so on.
-
-    They are rounded to single precision, so that a Parquet file compresses them.
-    """
+def window_labels(labels: Labels) -> dict[str, object]:
+    """The labels of each true signal in windows, by their public names: `<tap>_window_amplitudes`."""
     orders = labels.windows.orders
-    return {f"{tap}_window_amplitudes": values.astype(np.float32).ravel().tolist() for tap, values in orders.items()}
+    return {f"{tap}_{each.ending}": each.value(values) for tap, values in orders.items() for each in WINDOW_LABELS}
 
 
 def _number(value: float) -> float | None:

@@ -10,7 +10,7 @@ from rubgen.labels import label
 from rubgen.labels.compact_record import compact_record
 from rubgen.labels.labels import Motion
 from rubgen.labels.speed_history import by_angle, speed_history
-from rubgen.labels.to_json import labels_to_json, remade_labels, window_amplitudes
+from rubgen.labels.to_json import labels_to_json, remade_labels, window_labels
 from rubgen.labels.windows import windows
 from rubgen.scenario.rotation import Rotation
 from rubgen.solver.observers.orders import turn_orders
@@ -105,7 +105,7 @@ def test_the_labels_of_the_record_hold_its_course(ramp):
     assert plain["change_rub"] == [0, 1, 0]
     assert plain["onset_speed_rpm"] == pytest.approx(rev_per_min(labels.history.onset_speed))
     assert plain["window_rub"] == [0, 1, 1, 1, 0]
-    amplitudes = np.reshape(window_amplitudes(labels)["casing_acc_0_window_amplitudes"], (5, 20))
+    amplitudes = np.reshape(window_labels(labels)["casing_acc_0_window_amplitudes"], (5, 20))
     np.testing.assert_allclose(amplitudes, labels.windows.orders["casing_acc_0"], rtol=1e-7)
 
 

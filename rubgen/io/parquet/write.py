@@ -17,7 +17,8 @@ import pyarrow.parquet as pq
 from rubgen.arrays import FloatArray
 from rubgen.io.columns import Column, scalar_columns, signal_columns
 from rubgen.io.files import write_durably
-from rubgen.labels.to_json import labels_to_json, window_amplitudes
+from rubgen.labels.registry import ENERGY_LABELS
+from rubgen.labels.to_json import labels_to_json, window_labels
 from rubgen.measurement.channel import Recording
 from rubgen.measurement.motion import contact_intervals
 from rubgen.scenario import Recipe
@@ -74,11 +75,9 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
         row |= surroundings_values(around, run.scenario.operation.rotation_frequency_hz)
     if run.labels is not None:
         row |= labels_to_json(run.labels)
-        energy = run.response.energy
-        row |= {"energy_residual": energy.residual, "normal_loss_j": energy.normal_loss}
-        row |= {"friction_loss_j": energy.friction_loss}
+        row |= {each.name: each.value(run.response.energy) for each in ENERGY_LABELS}
     if signals and run.recording is not None and run.labels is not None:
-        row |= _signals(run.recording) | _touches(run, run.recording) | window_amplitudes(run.labels)
+        row |= _signals(run.recording) | _touches(run, run.recording) | window_labels(run.labels)
     sensing = run.scenario.sensing
     types = schema(signals=signals, clean=sensing.keep_clean, sensors=sensing.set, surroundings=around is not None)
     unknown = sorted(set(row) - set(types.names))
