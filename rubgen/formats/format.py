@@ -8,11 +8,24 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+import numpy.typing as npt
+
+from rubgen.arrays import FloatArray
 from rubgen.format_names import FORMAT_NAMES
 
 if TYPE_CHECKING:
     from rubgen.pipeline import Run
     from rubgen.viz.replay import Replay
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunSignals:
+    """What a file of one run holds of its signals: the run's number, channels by their columns, and pulses in s."""
+
+    index: int
+    channels: dict[str, npt.NDArray[np.float32]]
+    once_per_rev: FloatArray
 
 
 def _no_problem(_path: Path, _run_id: str, _proven: bool) -> Sequence[str]:
@@ -37,6 +50,9 @@ class Format:
     """Writes one run to a file, complete or not at all; raises OSError where it cannot be written."""
     problems: Callable[[Path, str, bool], Iterable[str]] = _no_problem
     """(path, run_id, proven): what is wrong in a file of that run; `proven` if its sha256 in derived.json is right."""
+    signals: Callable[[Path, Sequence[str]], RunSignals] | None = None
+    """(path, names): signals of a file with the channels of these names, where a data set can be read from such files.
+    Raises UserError for a file that cannot be read."""
     remake: Callable[[Replay, Path], None] | None = None
     """Writes the file again from a replay. A format with it is a derived view: its bytes may differ between writings,
     its digests stand in derived.json, and `rubgen repair` makes it again."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rubgen.formats.format import Format
+from rubgen.formats.format import Format, RunSignals
 
 if TYPE_CHECKING:
     from rubgen.pipeline import Run
@@ -15,6 +16,14 @@ def _write(run: Run, path: Path) -> None:
     from rubgen.io.mcap import write_mcap
 
     write_mcap(run, path)
+
+
+def _signals(path: Path, names: Sequence[str]) -> RunSignals:
+    from rubgen.io.mcap import read_mcap
+
+    run = read_mcap(path, channels=names)
+    clean = {f"{name}_clean": values for name, values in run.clean.items()}
+    return RunSignals(index=run.scenario.get("index", 0), channels=run.signals | clean, once_per_rev=run.once_per_rev)
 
 
 def _problems(path: Path, run_id: str, _proven: bool) -> list[str]:
@@ -40,4 +49,5 @@ labels = run.labels"""
     look="for Foxglove:   {folder}/",
     write=_write,
     problems=_problems,
+    signals=_signals,
 )

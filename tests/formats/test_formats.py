@@ -1,5 +1,6 @@
 """Every format of FORMAT_NAMES is whole: it writes a run, finds nothing wrong in it, and finds what is wrong."""
 
+import numpy as np
 import pytest
 
 from rubgen import UserError
@@ -27,6 +28,17 @@ def test_a_file_of_another_run_and_a_cut_one_are_found(rub_run, tmp_path, each):
     assert list(each.problems(path, path.stem, True)) == [f"holds {rub_run.scenario.run_id}"]
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
     assert list(each.problems(path, path.stem, False)) != []
+
+
+@pytest.mark.parametrize("each", [each for each in run_formats() if each.signals], ids=lambda each: each.name)
+def test_signals_of_a_file_are_those_of_its_run(rub_run, tmp_path, each):
+    path, recording = tmp_path / f"run{each.suffix}", rub_run.recording
+    save(rub_run, path)
+    name = next(iter(recording.channels))
+    found = each.signals(path, [name])
+    assert (found.index, list(found.channels)) == (rub_run.scenario.index, [name])
+    np.testing.assert_array_equal(found.channels[name], recording.channels[name].values)
+    np.testing.assert_allclose(found.once_per_rev, recording.once_per_rev, rtol=0, atol=1e-9)
 
 
 def test_the_folder_of_a_format_is_its_name_but_data_for_parquet(tmp_path):

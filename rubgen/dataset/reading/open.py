@@ -21,6 +21,7 @@ from rubgen.dataset.reading.stored_run import StoredRun, stored_run
 from rubgen.dataset.reading.tables import COLUMNS, check_runs, runs_frame, touches_frame
 from rubgen.dataset.rows import RunRows, asked_bytes
 from rubgen.errors import UserError
+from rubgen.formats import run_formats
 from rubgen.io.columns import signal_columns
 from rubgen.io.parquet.compact_records import SCHEMA
 from rubgen.io.parquet.read import damage_named, read_table
@@ -168,24 +169,24 @@ class DataSet:
         )
 
     def _tables(self, run_ids: Sequence[str], names: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
-        """Channels and pulses of each run, from Parquet where the set has it, else from MCAP."""
+        """Channels and pulses of each run, from Parquet where the set has it, else from files of single runs."""
         if self._data.files:
             yield from self._data.each(run_ids, [*names, PULSES])
             return
-        from rubgen.io.mcap import read_mcap
-
-        listed = self.manifest.listed("mcap")
+        readers = [(each.signals, each.name) for each in run_formats() if each.signals]
+        listed = {name for _, folder in readers for name in self.manifest.listed(folder)}
         for run_id in run_ids:
-            if f"mcap/{run_id}.mcap" not in listed:
+            paths = [(read, self.layout.export(name, run_id)) for read, name in readers]
+            found = [each for each in paths if each[1].relative_to(self.layout.root).as_posix() in listed]
+            if not found:
                 raise UserError(
                     f"{self.layout.root}: has no files with signals; generate it with formats parquet or mcap"
                 )
-            path = self.layout.export("mcap", run_id)
-            run = read_mcap(path, channels=names)
-            if run_id != f"run-{run.scenario.get('index'):06d}":
-                raise UserError(f"{path}: holds the run of index {run.scenario.get('index')}; run rubgen verify")
-            found = run.signals | {f"{name}_clean": values for name, values in run.clean.items()}
-            yield run_id, pa.table({name: [found[name]] for name in names} | {PULSES: [run.once_per_rev]})
+            read, path = found[0]
+            run = read(path, names)
+            if run_id != f"run-{run.index:06d}":
+                raise UserError(f"{path}: holds the run of index {run.index}; run rubgen verify")
+            yield run_id, pa.table({name: [run.channels[name]] for name in names} | {PULSES: [run.once_per_rev]})
 
     def _known(self, channels: Sequence[str] | None) -> tuple[str, ...]:
         if isinstance(channels, str):
