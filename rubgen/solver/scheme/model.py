@@ -44,7 +44,7 @@ def bounds_hold(surface: Surface, tip_shift: float, casing_limit: float) -> bool
 
     They are valid where a tip is less than a quarter of its radius from its place at rest, and where the radius of the
     deformed surface is nowhere below 0.9 of its mean. Bladed machines are far inside these limits. A Jeffcott rotor,
-    whose one "tip" stands on the axis, is not. Tests: tests/solver/test_screening.py.
+    whose one "tip" stands on the axis, is not. Tests: tests/solver/scheme/test_screening.py.
 
     - tip_shift: `relative_tip_shift`.
     - casing_limit: largest displacement of the casing, m.

@@ -19,7 +19,7 @@ NODES = 12
 """Number of Chebyshev speeds.
 
 C and K are polynomials in Omega, and Omega dt is small in A = M / dt^2 + C / (2 dt). From 3,000 to 12,000 rev/min the
-preset's interpolated matrices are exact except for rounding (tests/solver/test_speed_interpolation.py)."""
+preset's interpolated matrices are exact except for rounding (tests/solver/speed/test_speed_interpolation.py)."""
 
 
 SUPPORT = ("columns", "compliance", "rows", "tip_columns", "tip_rows")

@@ -14,7 +14,7 @@ from rubgen.scenario import Labelling, load_recipe, make_scenario, parse_recipe
 from rubgen.solver.linear.reach import deepest, no_rub
 from rubgen.solver.refusal import no_run
 
-DATASETS = Path(__file__).parents[2] / "datasets"
+DATASETS = Path(__file__).parents[3] / "datasets"
 SLOW = {
     "name": "slow",
     "runs": 2,
