@@ -15,7 +15,12 @@ from rubgen.io.parquet.compact_records import RECORD_COLUMNS
 
 
 def write_card(layout: Layout, identity: Identity, status: dict[str, int]) -> None:
-    """Write README.md. Its bytes depend on the recipe and on the numbers of runs by `status`."""
+    """Write README.md. Its bytes depend only on these inputs.
+
+    - layout: of the set.
+    - identity: its origin.
+    - status: number of runs by status.
+    """
     write_text(layout.card, card(identity, status))
 
 

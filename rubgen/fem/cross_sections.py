@@ -49,10 +49,14 @@ def rectangle_torsion_constant(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def cross_sections(blades: BladeRow, root_radius: float, x: FloatArray) -> CrossSections:
-    """Cross-section properties at distances `x` (m) from the root, which stands at `root_radius` (m).
+    """Properties of the cross-sections of a blade.
 
     Chord, thickness and angle are linear in x. The chord points along cos(angle) e_y + sin(angle) e_z, the thickness
     normal along -sin(angle) e_y + cos(angle) e_z: at angle 0 the blade lies flat in the plane of the disk.
+
+    - blades: the blade row.
+    - root_radius: radius of the root, m.
+    - x (any): distances from the root, m.
     """
     chord = _linear(blades.root_chord_m, blades.tip_chord_m, blades.length_m)
     thickness = _linear(blades.root_thickness_m, blades.tip_thickness_m, blades.length_m)

@@ -91,7 +91,12 @@ class Preview:
 
 
 def preview(channels: Sequence[Channel], sample_rate_hz: float, rate_hz: float = PREVIEW_RATE_HZ) -> Preview:
-    """Minimum and maximum of channels (one at least) of the same length in about `rate_hz` bins a second."""
+    """Minimum and maximum of channels of the same length, at least one, in bins.
+
+    - channels: in the order of the columns.
+    - sample_rate_hz: of the channels.
+    - rate_hz: about so many bins a second.
+    """
     samples_per_bin = max(1, round(sample_rate_hz / rate_hz))
     ends = [end for channel in channels for end in min_max(channel.values, samples_per_bin)]
     return Preview(

@@ -98,7 +98,7 @@ def noise(
 
 
 def noise_level(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> float:
-    """Rms of the noise of a recording of `samples` samples, in the sensor's unit."""
+    """Rms of the noise of a recording of `samples` samples at `sample_rate_hz`, in the sensor's unit."""
     if sensor.noise_density == 0:
         return sensor.noise_rms
     shape = _shape(sensor, samples, sample_rate_hz)
@@ -116,9 +116,14 @@ def _shape(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> FloatA
 
 
 def drop_out(sensor: SampledSensor, values: FloatArray, sample_rate_hz: float, rng: np.random.Generator) -> FloatArray:
-    """The samples (n,) with gaps at random times. In a gap the last good value repeats.
+    """The samples with gaps at random times. In a gap the last good value repeats.
 
     The starts of the gaps are a Poisson process of rate `dropouts_per_s` of the sensor; each lasts `dropout_s`.
+
+    - sensor: with its dropouts.
+    - values (n,): samples.
+    - sample_rate_hz: of the samples.
+    - rng: random numbers.
     """
     if sensor.dropouts_per_s == 0:
         return values

@@ -75,7 +75,12 @@ def measure(
 
 
 def sample_positions(response: Response, sensing: Sensing, seconds: float) -> FloatArray:
-    """Times of the samples in steps from the start of the tail; round(seconds * sample rate) of them."""
+    """Times of the samples (samples,) in steps from the start of the tail; round(seconds * sample rate) of them.
+
+    - response: with the tail.
+    - sensing: sample rate and filter.
+    - seconds: length of the recording.
+    """
     dt, rate = response.dt, sensing.sample_rate_hz
     if dt * rate * STEPS_PER_SAMPLE > 1 + 1e-9:
         highest = 1 / dt / STEPS_PER_SAMPLE

@@ -44,9 +44,13 @@ class Samples:
 def feed_of(
     sensor: SampledSensor, response: Response, angle: FloatArray, sensors: SensorSet, felt: Felt | None
 ) -> Feed:
-    """The true signal in the sensor's unit, and what the sensor makes of it; `angle` (steps,) is theta at each step.
+    """The input of the filter from one sensor. The real signal includes the surroundings, the ideal signal does not.
 
-    The sensor takes the true signal and what is `felt` of the surroundings; the ideal signal is without these.
+    - sensor: the sensor.
+    - response: true response with the sensor's tap.
+    - angle (steps,): theta at each step, rad.
+    - sensors: the set, with the shaft's profile.
+    - felt: the surroundings at the sensors; None without any.
     """
     true = response.taps[sensor.tap.name]
     added = felt.by(sensor.tap) if felt else None
@@ -60,9 +64,14 @@ def feed_of(
 
 
 def filtered(feeds: Sequence[Feed], positions: FloatArray, *, dt: float, sensing: Sensing) -> dict[str, Samples]:
-    """Every feed through the anti-alias filter: one pass for all that share a clock.
+    """Every feed after the anti-alias filter, by the sensor's name. Sensors with one clock share one pass.
 
     Sample i of a sensor whose clock is late by o and slow by p ppm is taken at o + (1 + 1e-6 p) i / rate.
+
+    - feeds: inputs at every step.
+    - positions (samples,): times of the samples without clock errors, in steps.
+    - dt: time step, s.
+    - sensing: sample rate, and whether clean channels are recorded.
     """
     rate = sensing.sample_rate_hz
     time = np.arange(positions.size) / rate
@@ -83,7 +92,13 @@ def filtered(feeds: Sequence[Feed], positions: FloatArray, *, dt: float, sensing
 
 
 def recorded(sensor: SampledSensor, samples: Samples, sensing: Sensing, rng: np.random.Generator) -> Channel:
-    """The channel of a sensor: calibration errors, noise, range, ADC and dropouts on its samples."""
+    """The channel of a sensor: calibration errors, noise, range, ADC and dropouts on its samples.
+
+    - sensor: the sensor.
+    - samples: its band-limited samples.
+    - sensing: sample rate, noise and ADC.
+    - rng: the sensor's random numbers.
+    """
     about, rate = sensor.description, sensing.sample_rate_hz
     low, high = sensor.full_range
     bits = sensor.adc_bits or sensing.adc_bits

@@ -64,7 +64,12 @@ def no_response(
 
 
 def refused_response(system: SpinningSystem, operation: Operation, steps: int, refusal: Refusal) -> Response:
-    """The response of a system that is not integrated. `steps` are the steps a turn, `refusal` is status and reason."""
+    """The response of a system that is not integrated.
+
+    - system, operation: of the run.
+    - steps: steps a turn.
+    - refusal: status and reason.
+    """
     return no_response(
         *refusal,
         speed=float(system.speed),

@@ -53,7 +53,7 @@ def record_table(run_id: str, response: Response) -> pa.Table:
 
 
 def write_record(run_id: str, response: Response, path: Path) -> None:
-    """Write a compact record as a file of its own, complete or not at all."""
+    """Write the compact record of the response of run `run_id` to `path`, complete or not at all."""
     write_table([record_table(run_id, response)], SCHEMA, path)
 
 

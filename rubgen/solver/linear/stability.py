@@ -16,7 +16,7 @@ from rubgen.units import rev_per_min
 STEP_SAFETY = 0.95
 """The step stays below this share of the stability limit 2 / omega_max."""
 TRANSIENT_DECAY = 100.0
-"""Transients have died when they have fallen by this factor."""
+"""Transients have decayed when they are smaller by this factor."""
 MOST_STEPS_PER_TURN = 2**22
 FLOQUET_STEPS = 1024
 """Least number of steps a turn for the transition over one period of a system with uneven supports."""

@@ -1,4 +1,4 @@
-"""How a run starts: in the rub-free motion, with the surface opened so that nothing touches."""
+"""The start of a run: in the rub-free motion, with the surface opened so that nothing touches."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from rubgen.solver.scheme.stepper import Stepper
 from rubgen.taps import DEFAULT_TAPS, Tap
 
 START_CLEARANCE_SHARE = 2.5e-4
-"""The start leaves at least this share of the tip radius between tips and casing."""
+"""Least clearance between tips and casing at the start, as a share of the tip radius."""
 
 
 def rub_free_stepper(
@@ -24,7 +24,10 @@ def rub_free_stepper(
     screen: bool = True,
     taps: tuple[Tap, ...] = DEFAULT_TAPS,
 ) -> Stepper:
-    """A stepper at the beginning of a turn of the scheme's own rub-free motion; parameters and errors of `Stepper`."""
+    """A stepper at the beginning of a turn of the scheme's own rub-free motion.
+
+    Parameters and errors as for `Stepper`; `start_angle` is theta at the beginning of the turn, rad.
+    """
     stepper = Stepper(system, contact, steps, start_angle=start_angle, screen=screen, taps=taps)
     set_motion(stepper, rub_free_motion(system, steps), start_angle)
     return stepper
@@ -36,7 +39,7 @@ def set_motion(stepper: Stepper, motion: RubFreeMotion, start_angle: float = 0.0
 
 
 def start_opening(system: SpinningSystem, inset: float = 0.0) -> float:
-    """How far the surface must be opened, m, to keep every tip of the rub-free motion the start clearance away.
+    """The opening of the surface, m, that leaves the start clearance to every tip of the rub-free motion.
 
     `inset` (m) is how far the surface may lie inside the smooth curve.
     """
@@ -55,7 +58,7 @@ def closing_ramp(share: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Closing:
-    """How the surface, opened at the start of a run, closes."""
+    """The closing of the surface that is opened at the start of a run."""
 
     opening: float
     """Opening at the start, m."""
@@ -63,7 +66,7 @@ class Closing:
     """Turns after which it is closed."""
 
     def after(self, turns: FloatArray) -> FloatArray:
-        """Opening in m so many turns, which rise, after the start."""
+        """Opening in m after `turns` turns from the start; they must rise."""
         if turns[0] >= self.turns:
             return np.zeros(len(turns))
         return self.opening * closing_ramp(turns / self.turns)

@@ -25,7 +25,10 @@ def shown_touches(replay: Replay, *, full: bool) -> IntArray:
 
 
 def send_touches(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
-    """Angle, impulse and blade of touches at their start, and their map; nothing without contact."""
+    """Angle, impulse and blade of touches at their start, and their map; with `full` all touches.
+
+    Nothing without contact.
+    """
     touches, shown = replay.touches, shown_touches(replay, full=full)
     if not shown.size:
         return
