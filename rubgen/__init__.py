@@ -8,14 +8,13 @@ from __future__ import annotations
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
     from pathlib import Path
 
-    from rubgen.dataset.making.generate import Generated
+    from rubgen.dataset.making.generate import generate
     from rubgen.dataset.reading.open import DataSet
     from rubgen.errors import RubgenError, UserError
     from rubgen.pipeline import Run
-    from rubgen.scenario import Recipe, Scenario, make_scenario
+    from rubgen.scenario import Scenario, load_recipe, make_scenario
 
 __all__ = [
     "RubgenError",
@@ -31,17 +30,23 @@ __all__ = [
 __version__ = "0.1.0"
 
 
+_HOMES = {
+    "RubgenError": "rubgen.errors",
+    "UserError": "rubgen.errors",
+    "generate": "rubgen.dataset.making.generate",
+    "load_recipe": "rubgen.scenario",
+    "make_scenario": "rubgen.scenario",
+}
+"""The modules of names that are imported on first use."""
+
+
 def __getattr__(name: str) -> object:
-    """`make_scenario` and the errors, imported on first use."""
-    if name == "make_scenario":
-        from rubgen.scenario import make_scenario
+    """The name from its module."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
 
-        return make_scenario
-    if name in ("RubgenError", "UserError"):
-        from rubgen import errors
-
-        return getattr(errors, name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)
 
 
 def __dir__() -> list[str]:
@@ -59,41 +64,6 @@ def simulate(scenario: Scenario) -> Run:
 
     with shown():
         return simulate(scenario)
-
-
-def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> Recipe:
-    """The recipe in that TOML file, or the default recipe of rubgen; `runs` overrides its number of runs.
-
-    Raises UserError with file, key, value and what is allowed.
-    """
-    from rubgen.scenario import load_recipe
-
-    return load_recipe(path, runs=runs)
-
-
-def generate(
-    recipe: Recipe | Mapping[str, object] | Path | str | None,
-    out: Path | str,
-    *,
-    runs: int | None = None,
-    workers: int | None = None,
-    progress: Callable[[int, int], None] | bool | None = None,
-) -> Generated:
-    """The data set of a recipe in the directory `out`. A set that was begun there is completed.
-
-    - recipe: a Recipe, its TOML values, the path of its file, or None for the default recipe.
-    - out: directory of the data set; made where it is missing.
-    - runs: overrides the recipe's number of runs.
-    - workers: number of processes; one for each usable core with None.
-    - progress: None shows it on a terminal and in a notebook, True everywhere, False nowhere. A function is called with
-      the numbers of finished and of all runs.
-
-    See `rubgen.dataset.making.generate`. Raises UserError for bad input, a directory that has other content or cannot
-    be written, and a full disk; RubgenError where a worker process dies.
-    """
-    from rubgen.dataset.making.generate import generate
-
-    return generate(recipe, out, runs=runs, workers=workers, progress=progress)
 
 
 def open(directory: Path | str) -> DataSet:  # noqa: A001
