@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check bench verification sensitivity confusion contact faults fuzz zeng2019 zeng2019-fit pictures schemas clean
+.PHONY: setup demo test check bench verification sensitivity confusion contact difficulty faults fuzz zeng2019 zeng2019-fit pictures schemas clean
 
 setup: $(VENV)/.installed-dev
 
@@ -34,6 +34,9 @@ confusion: $(VENV)/.installed-dev
 
 contact: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.contact_options
+
+difficulty: $(VENV)/.installed-dev
+	$(BIN)/python -m validation.difficulty
 
 faults: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.reliability
