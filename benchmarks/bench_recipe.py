@@ -19,13 +19,21 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
+import numpy as np
+
 import rubgen
+from benchmarks.cpu_time import cpu_time
+from rubgen import pipeline
+from rubgen.scenario import load_recipe
+from rubgen.solver import integrate
 from rubgen.solver.observers.companion_kernels import run_companion
 from rubgen.solver.scheme.turn_kernels import run_turn
+from rubgen.solver.wants import Wants
 
 RUBGEN = str(Path(sys.executable).with_name("rubgen"))
 RECIPE = """
@@ -44,6 +52,7 @@ record_turns = 500
 formats = ["parquet"]
 """
 ALL_RUNS, RUNS = 1000, 40
+SHORTENED_RUNS, ROUNDS = 12, 3
 FEW_RUNS, COUNTED_RUNS = 2, 12
 
 
@@ -53,6 +62,7 @@ def measure() -> list[dict[str, object]]:
         _generate(Path(folder) / "warm", 2)  # compiles, and fills the cache of machines
         seconds, spent = _generate(Path(folder) / "set", runs)
         share, each = _kernel_share(Path(folder))
+        shortened = _shortened(Path(folder))
     factor = ALL_RUNS / runs
     how = "made" if runs == ALL_RUNS else f"from {runs}"
     rows = (
@@ -61,7 +71,30 @@ def measure() -> list[dict[str, object]]:
         ("a run of 600 turns with all that follows, CPU", each, "s", "recorded"),
         ("share of CPU time in the kernels", share, "1", ">= 0.8"),
     )
-    return [{"name": name, "value": value, "unit": unit, "target": target} for name, value, unit, target in rows]
+    every = [*rows, *((f"{name}, CPU", value, "s", target) for name, value, target in shortened)]
+    return [{"name": name, "value": value, "unit": unit, "target": target} for name, value, unit, target in every]
+
+
+def _shortened(folder: Path) -> list[tuple[str, float, str]]:
+    """Mean CPU time a run of `simulate`, as it is and with all integrated: of rubs, of other runs, of all."""
+    path = folder / "shortened.toml"
+    path.write_text(RECIPE.format(runs=SHORTENED_RUNS), encoding="utf-8")
+    recipe = load_recipe(path)
+    integrated = patch.object(pipeline, "Wants", partial(Wants, companion_stops=False))
+    repeated = patch.object(integrate, "never_touches", return_value=False)
+    times: dict[str, list[tuple[float, float]]] = {"rubs": [], "no contact": []}
+    for number in range(SHORTENED_RUNS):
+        scenario, pairs = recipe.scenario(number), []
+        for _ in range(ROUNDS):
+            short = cpu_time(partial(rubgen.simulate, scenario))
+            with integrated, repeated:
+                pairs.append((short, cpu_time(partial(rubgen.simulate, scenario))))
+        rub = rubgen.simulate(scenario).response.contact_steps_per_turn.any()
+        times["rubs" if rub else "no contact"].append(tuple(np.median(pairs, axis=0)))
+    every = [pair for pairs in times.values() for pair in pairs]
+    means = {f"{len(pairs)} runs, {name}": np.mean(pairs, axis=0) for name, pairs in [*times.items(), ("all", every)]}
+    found = [(f"{name}: simulate", float(short), "recorded") for name, (short, _) in means.items()]
+    return found + [(f"{name}: all integrated", float(full), "recorded") for name, (_, full) in means.items()]
 
 
 def _generate(out: Path, runs: int) -> tuple[float, float]:
