@@ -14,7 +14,8 @@ import rubgen
 from rubgen.dataset.checking.inventory import strangers
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.making import generate as generating
-from rubgen.dataset.manifest import read_manifest
+from rubgen.dataset.making.claim import check_same
+from rubgen.dataset.manifest import Identity, read_manifest
 from rubgen.errors import RubgenWarning, UserError
 
 RECIPE = {"name": "fake", "runs": 2, "machine": "zeng2019", "output": {"signal_seconds": 0.1, "formats": ["mcap"]}}
@@ -241,3 +242,19 @@ def test_a_staged_run_that_lost_a_file_or_is_damaged_is_made_again(tmp_path, mon
         assert make(tmp_path / "set").made == 1
         assert tree(tmp_path / "set") == tree(tmp_path / "whole")
         shutil.rmtree(tmp_path / "set")
+
+
+def test_another_recipe_is_told_by_the_name_of_the_sensor_that_differs(tmp_path):
+    """Not by its place, which a sensor that is added before it changes."""
+
+    def identity(*sensors):
+        return Identity(recipe={"runs": 4}, machine={}, sensors={"sensors": list(sensors)}, packages={})
+
+    x, y = {"name": "x", "range": [0, 1]}, {"name": "y", "range": [0, 2]}
+    check_same(Layout(tmp_path), identity(x, y), identity(x, y))
+    for asked, difference in (
+        (identity(x, y | {"range": [0, 3]}), r"sensors\.sensors\.y\.range = \[0, 2\], asked for \[0, 3\]"),
+        (identity({"name": "new"}, x, y), r"sensors\.sensors\.new\.name = None, asked for 'new'"),
+    ):
+        with pytest.raises(UserError, match=rf"holds the output of another recipe \({difference}\)"):
+            check_same(Layout(tmp_path), identity(x, y), asked)
