@@ -9,11 +9,11 @@ import hashlib
 import os
 import pickle
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache, cached_property
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, ParamSpec, TypeVar, cast
+from typing import Any, Concatenate, ParamSpec, TypeVar, cast
 
 import numba
 import numba.core.caching
@@ -34,15 +34,16 @@ LAST_COMPILED = "turn_kernels.run_turn-*.nbc"
 def kernel_key() -> str:
     """A hash of everything that determines compiled kernels, except the processor.
 
-    It covers kernel sources, Python, numba, llvmlite, numpy and numba's environment variables. The number of threads,
-    which workers set, is left out. Numba's own index distinguishes processors.
+    It covers sources of kernels and laws, Python, numba, llvmlite, numpy and numba's environment variables. The number
+    of threads, which workers set, is left out. Numba's own index distinguishes processors.
     """
     made_by = [sys.version, numba.__version__, version("llvmlite"), np.__version__]
     settings = sorted(
         item for item in os.environ.items() if item[0].startswith("NUMBA_") and item[0] != "NUMBA_NUM_THREADS"
     )
     digest = hashlib.sha256(repr((made_by, settings)).encode())
-    for source in [*sorted(PACKAGE.rglob("*_kernels.py")), Path(__file__)]:
+    laws = PACKAGE.rglob("*_laws/*.py")
+    for source in [*sorted(PACKAGE.rglob("*_kernels.py")), *sorted(laws), Path(__file__)]:
         digest.update(source.relative_to(PACKAGE).as_posix().encode())
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
@@ -81,10 +82,30 @@ def inlined_kernel(function: Callable[P, R]) -> Callable[P, R]:
     return _compiled(function, _nrt=False, forceinline=True)
 
 
-def _compiled(function: Callable[P, R], **options: bool) -> Callable[P, R]:
+def switch(functions: Sequence[Callable[P, R]]) -> Callable[Concatenate[int, P], R]:
+    """An `inlined_kernel` that calls one of `functions`, by its number, with the arguments behind the number.
+
+    The functions are plain Python in files of a room `*_laws`. A call costs a comparison of integers for each function
+    before the one that is called; a number behind the last calls the last.
+    """
+    first: Any = inlined_kernel(functions[0])
+    others: Any = switch(functions[1:]) if len(functions) > 1 else None
+
+    def only(_number: int, *arguments: Any) -> Any:
+        return first(*arguments)
+
+    def chosen(number: int, *arguments: Any) -> Any:
+        return first(*arguments) if number == 0 else others(number - 1, *arguments)
+
+    choice = _compiled(chosen if others else only, kept=False, _nrt=False, forceinline=True)
+    return cast("Callable[Concatenate[int, P], R]", choice)
+
+
+def _compiled(function: Callable[P, R], *, kept: bool = True, **options: bool) -> Callable[P, R]:
+    """The kernel; not `kept` in the cache where it encloses other kernels, whose names differ between processes."""
     njit: Any = numba.njit
     dispatcher = njit(nogil=True, error_model="numpy", **options)(function)
-    if dispatcher is not function:  # NUMBA_DISABLE_JIT gives the function back
+    if kept and dispatcher is not function:  # NUMBA_DISABLE_JIT gives the function back
         dispatcher._cache = _KernelCache(function)
     return cast("Callable[P, R]", dispatcher)
 

@@ -96,12 +96,12 @@ def test_workers_with_one_thread_share_the_kernels(monkeypatch):
 
 def test_kernels_import_only_kernels():
     """The key is made of the sources of kernels: nothing else of rubgen may enter what they compile."""
-    allowed = ("rubgen.jit", "rubgen.arrays")
+    allowed = ("rubgen.jit", "rubgen.arrays")  # and registries in rooms of laws, which the key covers
     for source in PACKAGE.rglob("*_kernels.py"):
         for line in source.read_text(encoding="utf-8").splitlines():
             if line.lstrip().startswith(("from rubgen", "import rubgen")):
                 module = line.split()[1]
-                assert module in allowed or module.endswith("_kernels"), f"{source}: {line}"
+                assert module in allowed or module.endswith("_kernels") or "_laws." in module, f"{source}: {line}"
 
 
 @pytest.fixture

@@ -6,13 +6,13 @@ from rubgen.machine.machine import (
     Casing,
     Damping,
     Disk,
-    DiskSupport,
     Machine,
     Material,
     Mistuning,
-    SqueezeFilm,
     Unbalance,
 )
+from rubgen.machine.support_laws.disk_support import DiskSupport
+from rubgen.machine.support_laws.squeeze_film import SqueezeFilm
 
 __all__ = [
     "BladeRow",

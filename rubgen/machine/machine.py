@@ -14,7 +14,6 @@ from rubgen.brief import brief
 from rubgen.machine.quantities import (
     STRICT,
     Angle,
-    Anisotropy,
     BladeCount,
     BladeElements,
     BladeNumber,
@@ -34,8 +33,8 @@ from rubgen.machine.quantities import (
     Stiffness,
     StiffnessDeviation,
     UnbalanceSize,
-    Viscosity,
 )
+from rubgen.machine.support_laws.disk_support import DiskSupport
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -153,48 +152,6 @@ class Casing:
     radial_support_stiffness_n_per_m: Stiffness
     circumferential_support_stiffness_n_per_m: Stiffness
     nodes: CasingNodes = 180
-
-
-@dataclass(frozen=True, kw_only=True, config=STRICT)
-class SqueezeFilm:
-    """Short squeeze film damper beside the lateral spring: a centred journal that does not turn, in a full film of oil.
-
-    The Reynolds equation of a short bearing (Ocvirk), integrated over the whole film, without cavitation. The force on
-    the journal is F = -C v with v its velocity in the inertial frame. Along and across its eccentricity e = epsilon c,
-
-        C_rr = C_0 (1 + 2 epsilon^2) / (1 - epsilon^2)^(5/2),   C_tt = C_0 / (1 - epsilon^2)^(3/2),
-        C_0  = pi mu R (L / c)^3
-
-    (Barrett, Gunter 1975, NASA CR-2548, with the whole circle as the range of the integrals). A cavitated film has
-    about half of C_0 and a stiffness of its own. Fluid inertia, supply grooves and end seals are left out.
-    """
-
-    radius_m: Length
-    length_m: Length
-    clearance_m: Length
-    viscosity_pa_s: Viscosity
-
-    @property
-    def centred_damping_n_s_per_m(self) -> float:
-        """C_0 = pi mu R (L / c)^3, in N s/m."""
-        return float(np.pi * self.viscosity_pa_s * self.radius_m * (self.length_m / self.clearance_m) ** 3)
-
-
-@dataclass(frozen=True, kw_only=True, config=STRICT)
-class DiskSupport:
-    """Springs between the disk centre and the inertial frame.
-
-    `lateral_stiffness_n_per_m` is the mean of X and Y. `lateral_stiffness_anisotropy` is (k_X - k_Y) / (k_X + k_Y), and
-    `lateral_damping_anisotropy` is the same ratio of the dampers beside them. Tilt springs and dampers are isotropic.
-    """
-
-    lateral_stiffness_n_per_m: Stiffness
-    axial_stiffness_n_per_m: Stiffness
-    tilt_stiffness_nm_per_rad: Stiffness
-    torsion_stiffness_nm_per_rad: Stiffness
-    lateral_stiffness_anisotropy: Anisotropy = 0.0
-    lateral_damping_anisotropy: Anisotropy = 0.0
-    squeeze_film: SqueezeFilm | None = None
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)

@@ -17,6 +17,7 @@ from filelock import FileLock
 from rubgen.arrays import FloatArray
 from rubgen.cache_root import cache_folder, keep, kept
 from rubgen.machine import BladeRow, Disk, DiskSupport
+from rubgen.machine.support_laws.disk_support import SUPPORT_LAWS
 from rubgen.progress import step
 from rubgen.reduction.blisk import ReducedBlisk, reduce_blisk
 from rubgen.reduction.growth import CentrifugalGrowth
@@ -74,9 +75,8 @@ def _made(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reducti
 def _key(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> str:
     springs, modes = asdict(support), asdict(reduction)
     del modes["casing_modes"]
-    for lateral in (
-        "lateral_stiffness_n_per_m", "lateral_stiffness_anisotropy", "lateral_damping_anisotropy", "squeeze_film"
-    ):  # fmt: skip
+    lateral_keys = ("lateral_stiffness_n_per_m", "lateral_stiffness_anisotropy", "lateral_damping_anisotropy")
+    for lateral in (*lateral_keys, *SUPPORT_LAWS):
         del springs[lateral]
     what = [asdict(disk), asdict(blades), springs, modes, np.__version__, scipy.__version__]
     return hashlib.sha256(json.dumps(what, sort_keys=True).encode() + _digest_of_code(_PACKAGE)).hexdigest()[:32]

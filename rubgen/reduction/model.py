@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from rubgen.arrays import FloatArray
-from rubgen.machine import SqueezeFilm
+from rubgen.machine.support_laws.law import SupportLaw
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,16 +48,16 @@ class TurningForces:
     """Forces on the blisk that turn against it or depend on its state: no constant matrix contains them.
 
     On O_d, with u its displacement and v_abs = v + Omega e_z x u its absolute velocity in the turning frame:
-    -k_a Q u - c_a Q v_abs - C(u) v_abs, Q = [[cos 2 theta, -sin 2 theta], [-sin 2 theta, -cos 2 theta]].
-    On all of the blisk: -g M T (sin theta, cos theta), with T the rigid motions along x and y.
+    -k_a Q u - c_a Q v_abs, Q = [[cos 2 theta, -sin 2 theta], [-sin 2 theta, -cos 2 theta]], and the laws of the
+    support. On all of the blisk: -g M T (sin theta, cos theta), with T the rigid motions along x and y.
     """
 
     stiffness: float = 0.0
     """k_a = (k_X - k_Y) / 2, N/m."""
     damping: float = 0.0
     """c_a = (c_X - c_Y) / 2, N s/m."""
-    film: SqueezeFilm | None = None
-    """The squeeze film damper with the damping C(u)."""
+    laws: tuple[SupportLaw, ...] = ()
+    """Laws of the support, functions of u and v_abs."""
     weight: FloatArray | None = None
     """g M T (n, 2), N."""
 

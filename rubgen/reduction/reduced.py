@@ -139,13 +139,11 @@ class ReducedModel:
         support, g = self.machine.disk_support, self.machine.gravity_m_per_s2
         stiffness = float(self.springs[0]) * support.lateral_stiffness_anisotropy
         damping = float(self.dampers[0]) * support.lateral_damping_anisotropy
-        if not (stiffness or damping or support.squeeze_film or g):
+        if not (stiffness or damping or support.laws or g):
             return None
         weight = np.zeros((self.reduced_dof, 2))
         weight[: len(self.blisk.M)] = g * self.blisk.M @ rigid_shifts(self.machine.blades.count, len(self.blisk.M))
-        return TurningForces(
-            stiffness=stiffness, damping=damping, film=support.squeeze_film, weight=weight if g else None
-        )
+        return TurningForces(stiffness=stiffness, damping=damping, laws=support.laws, weight=weight if g else None)
 
     def _add_unbalances(self, force: FloatArray, scale: float) -> None:
         """Add each unbalance times `scale` along its own direction, on O_d or on a tip."""

@@ -83,8 +83,8 @@ def refused_response(system: SpinningSystem, operation: Operation, steps: int, r
 
 
 def film_refusal(system: SpinningSystem, steps: int) -> Refusal | None:
-    """The refusal where a squeeze film has no rub-free motion at `steps` steps a turn; else None."""
-    if system.turning is None or system.turning.film is None:
+    """The refusal where no rub-free motion fits the laws of the support at `steps` steps a turn; else None."""
+    if system.turning is None or not system.turning.laws:
         return None
     missing = rub_free_motion(system, steps).residual
     if missing <= MOTION_TOLERANCE:

@@ -86,8 +86,8 @@ class EnergyBalance:
     """Work of the circulatory stiffness."""
     anisotropy: float
     """Work of uneven springs and dampers beyond their mean."""
-    film: float
-    """Work of the squeeze film."""
+    support_laws: float
+    """Work of the squeeze film and of other laws of the support."""
     gravity: float
     """Work of the weight."""
     contact: float
@@ -98,8 +98,8 @@ class EnergyBalance:
     """Energy that contacts dissipate along the normal, <= 0."""
     friction_loss: float
     """Energy that contacts dissipate by friction, <= 0."""
-    film_loss: float
-    """Energy that the squeeze film turns into heat, <= 0."""
+    support_laws_loss: float
+    """Work of these laws in the inertial frame: the energy that a squeeze film turns into heat, <= 0."""
     speed_change: float
     """Energy added by the stiffness as it follows a changing speed."""
     absolute_work: float

@@ -32,7 +32,7 @@ def test_the_system_has_what_the_machine_asks_for(preset, model):
     forces = system.turning
     assert forces.stiffness == pytest.approx(0.2 * 1e8)
     assert forces.damping == pytest.approx(-0.5 * system.lateral_damping)
-    assert forces.film == FILM
+    assert forces.laws == (FILM,)
     assert system.lateral_stiffness == 1e8
     plain = reduce(preset, Reduction()).at_speed(700.0)
     assert plain.turning is None
@@ -59,7 +59,7 @@ def test_keys_of_vary_set_anisotropy_and_gravity():
 
 def test_the_preset_sags_by_its_weight_over_the_stiffness_along_y(model):
     system = replace(model.at_speed(700.0), force=np.zeros(125))
-    forces = replace(system.turning, film=None, damping=0.0)
+    forces = replace(system.turning, laws=(), damping=0.0)
     motion = rub_free_motion(replace(system, turning=forces))
     u = motion.at(0.0)[system.centre : system.centre + 2]
     sag = 9.81 * model.blisk.rigid_inertia[0] / (1e8 * (1 - 0.2))

@@ -138,7 +138,9 @@ def build_turning(
     weight = np.zeros((len(system.M), 2))
     start = system.casing_start
     weight[:start] = gravity * system.M[:start, :start] @ rigid_shifts(system.n_blades, start)
-    forces = TurningForces(stiffness=stiffness, damping=damping, film=film, weight=weight if gravity else None)
+    forces = TurningForces(
+        stiffness=stiffness, damping=damping, laws=(film,) if film else (), weight=weight if gravity else None
+    )
     return replace(system, turning=forces)
 
 

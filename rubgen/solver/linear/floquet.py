@@ -14,7 +14,7 @@ from rubgen.solver.supports.turning_forces import force_derivatives
 
 
 def linearised(system: SpinningSystem) -> SpinningSystem:
-    """The system with its squeeze film linearised at the rub-free motion, for a static rub-free motion.
+    """The system with the laws of its support linearised at the rub-free motion, for a static rub-free motion.
 
     C += -d f / d v and K += -d f / d u on O_d. The result has no turning forces.
     """
@@ -34,9 +34,9 @@ def floquet_exponents(system: SpinningSystem, steps: int) -> ComplexArray:
     """Exponents ln(mu) / T in 1/s of the coordinates that O_d moves, and eigenvalues of all others.
 
     mu are the eigenvalues of the transition over one period T: M q'' + C q' + K q = E (f_u u + f_v v), with the
-    derivatives of the turning forces along the rub-free motion. T is half a turn, or a whole turn with film or gravity.
-    The transition uses the scheme's own steps, `steps` a turn (even). Imaginary parts are known up to a multiple of 2
-    pi / T.
+    derivatives of the turning forces along the rub-free motion. T is half a turn, or a whole turn with laws of the
+    support. The transition uses the scheme's own steps, `steps` a turn (even). Imaginary parts are known up to a
+    multiple of 2 pi / T.
     """
     forces = system.turning
     if forces is None:
@@ -45,7 +45,7 @@ def floquet_exponents(system: SpinningSystem, steps: int) -> ComplexArray:
     inside = blocks.connected(np.array([system.centre, system.centre + 1]))
     others = np.setdiff1d(np.arange(len(system.M)), inside)
     y = [blocks.transform.T @ matrix @ blocks.transform for matrix in (system.M, system.C, system.K)]
-    count = steps if forces.film else steps // 2
+    count = steps if forces.laws else steps // 2
     transition = _transition(system, forces, [matrix[np.ix_(inside, inside)] for matrix in y], inside, count, steps)
     multipliers = la.eigvals(transition).astype(np.complex128)
     period = 2 * math.pi / system.speed * count / steps
@@ -91,7 +91,7 @@ def _derivatives(
 ) -> tuple[FloatArray, FloatArray]:
     """Derivatives f_u and f_v (count, 2, 2) at each step along the rub-free motion."""
     theta = 2 * np.pi * np.arange(count) / steps
-    if forces.film is None:  # linear: the motion does not matter, and an undamped one may be infinite
+    if not forces.laws:  # linear: the motion does not matter, and an undamped one may be infinite
         return force_derivatives(forces, system.speed, theta, *np.zeros((2, count, 2)))
     centre = slice(system.centre, system.centre + 2)
     q = rub_free_motion(system).harmonics[:, centre]

@@ -1,5 +1,6 @@
 """The rub-free motion: static in the turning frame, or periodic where supports are uneven or gravity acts."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,8 +18,8 @@ TAIL = 1e-12
 """The last two harmonics are small below this share of the motion of O_d."""
 NEWTON_STEPS = 60
 NEWTON_TOLERANCE = 1e-13
-FILM_RANGE = 0.999
-"""Newton's steps are shortened so that the eccentricity stays below this share of the film's clearance."""
+LAW_RANGE = 0.999
+"""Newton's steps are shortened so that the eccentricity stays below this share of the limit of a law."""
 TURN_PLACES = 64
 CLEARANCE_PLACES = 1440
 """Places of a turn at which the clearance is evaluated: every quarter of a degree. The error is at most |r''| (pi /
@@ -69,9 +70,9 @@ def never_touches(system: SpinningSystem, surface: Surface, penetration: float) 
     """Whether a run at steady speed, which starts from its rub-free motion with this `penetration`, keeps to it.
 
     The supports must be linear, so that the motion is the only one, and the surface unlined. Uneven supports, gravity
-    and mistuned blades are linear; a squeeze film is not.
+    and mistuned blades are linear; laws of the support are not.
     """
-    if (system.turning is not None and system.turning.film is not None) or surface.liner.bins:
+    if (system.turning is not None and system.turning.laws) or surface.liner.bins:
         return False
     bend = float(np.sum(np.abs(system.surface.amplitude) * np.square(system.surface.order)))
     return penetration < -(CLEARANCE_MARGIN + bend * (np.pi / CLEARANCE_PLACES) ** 2 / 2)
@@ -91,8 +92,8 @@ def rub_free_motion(system: SpinningSystem, steps: float = 0) -> RubFreeMotion:
     M q'' + C q' + K q = force + weight(theta) + E f(theta, u, v). Each harmonic of f on O_d moves the blisk by the
     receptance of that harmonic. This leaves a small system for u alone, solved at equal places of a turn by Newton's
     method (one step where it is linear). For the scheme's motion 2 (cos m phi - 1) / dt^2 replaces -(m Omega)^2 and i
-    sin(m phi) / dt replaces i m Omega, phi = 2 pi / steps: a run that starts from it keeps it. A squeeze film may have
-    more than one motion. The iteration starts from the film's centre.
+    sin(m phi) / dt replaces i m Omega, phi = 2 pi / steps: a run that starts from it keeps it. With laws of the support
+    there may be more than one motion. The iteration starts from the centre.
     """
     forces = system.turning
     if forces is None:
@@ -171,9 +172,9 @@ class _Balance:
         return goal, new, float(np.abs(goal - u).max())
 
     def _shortened(self, u: FloatArray, step: FloatArray) -> FloatArray:
-        """U + step, or as much of the step as the film allows."""
-        film = self.forces.film
-        while film is not None and np.hypot(*(u + step).T).max() >= FILM_RANGE * film.clearance_m:
+        """U + step, or as much of the step as the laws allow."""
+        limit = min((law.limit_m for law in self.forces.laws), default=math.inf)
+        while np.hypot(*(u + step).T).max() >= LAW_RANGE * limit:
             step = step / 2
         return u + step
 

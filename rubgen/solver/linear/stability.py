@@ -25,13 +25,13 @@ FLOQUET_STEPS = 1024
 def eigenvalues(system: SpinningSystem) -> ComplexArray:
     """All 2 n eigenvalues s in 1/s of M q'' + C q' + K q = 0, blisk and casing apart.
 
-    A squeeze film is linearised at the rub-free motion. With uneven supports, which turn against the blisk, these are
-    Floquet exponents, whose imaginary parts are known up to a multiple of 2 Omega (Omega with a film).
+    Laws of the support are linearised at the rub-free motion. With uneven supports, which turn against the blisk, these
+    are Floquet exponents, whose imaginary parts are known up to a multiple of 2 Omega (Omega with laws).
     """
     forces = system.turning
-    if forces and (forces.stiffness or forces.damping or (forces.film and forces.weight is not None)):
+    if forces and (forces.stiffness or forces.damping or (forces.laws and forces.weight is not None)):
         return floquet_exponents(system, steps_per_turn(system, FLOQUET_STEPS))
-    constant = linearised(system) if forces and forces.film else system
+    constant = linearised(system) if forces and forces.laws else system
     parts = (slice(0, system.casing_start), slice(system.casing_start, None))
     return np.concatenate(
         [quadratic_eigenvalues(*(X[part, part] for X in (constant.M, constant.C, constant.K))) for part in parts]

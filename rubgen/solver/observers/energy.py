@@ -17,7 +17,7 @@ from rubgen.solver.scheme.energy_kernels import (
     UNBALANCE,
 )
 from rubgen.solver.scheme.stepper import Stepper
-from rubgen.solver.supports.support_kernels import ANISOTROPY, FILM, FILM_LOSS, GRAVITY
+from rubgen.solver.supports.support_kernels import ANISOTROPY, GRAVITY, LAWS, LAWS_LOSS
 
 ROUNDING_SHARE = 1e-6
 """Energies below this share of their summed absolute terms are rounding errors."""
@@ -40,7 +40,7 @@ class EnergyIdentity:
         works, energy = self.stepper.state.works, self.stepper.energy()
         self.largest_energy = max(self.largest_energy, abs(energy))
         done = works[UNBALANCE] + works[DAMPING] + works[CIRCULATORY] + works[CONTACT] + works[SPEED_CHANGE]
-        done += self.stepper.state.support.works[:FILM_LOSS].sum()
+        done += self.stepper.state.support.works[:LAWS_LOSS].sum()
         scale = max(float(works[ABSOLUTE]), self.largest_energy, self.rounding_energy)
         return abs(energy - self.start_energy - float(done)) / scale if scale > 0 else 0.0
 
@@ -56,13 +56,13 @@ class EnergyIdentity:
             damping=works[DAMPING],
             circulatory=works[CIRCULATORY],
             anisotropy=support[ANISOTROPY],
-            film=support[FILM],
+            support_laws=support[LAWS],
             gravity=support[GRAVITY],
             contact=works[CONTACT],
             normal_loss=works[NORMAL],
             friction_loss=works[FRICTION],
             wear_loss=wear,
-            film_loss=support[FILM_LOSS],
+            support_laws_loss=support[LAWS_LOSS],
             speed_change=works[SPEED_CHANGE],
             absolute_work=works[ABSOLUTE],
             residual=self.residual(),

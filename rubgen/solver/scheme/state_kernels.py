@@ -47,7 +47,7 @@ class State(NamedTuple):
     contact: ContactWork
     """Gaps that steps have left, and the contacts of the last step."""
     support: SupportState
-    """Forces of uneven supports and of a squeeze film, and their works."""
+    """Forces of uneven supports and of laws of the support, and their works."""
     wear: Wear
     """The liner's worn depth."""
     works: FloatArray

@@ -5,6 +5,8 @@ import scipy.linalg as la
 
 from rubgen.arrays import AnyArray, FloatArray
 from rubgen.linalg.blocks import Blocks, aligned
+from rubgen.machine.support_laws.disk_support import SUPPORT_LAWS
+from rubgen.machine.support_laws.law import SupportLaw
 from rubgen.reduction.model import SpinningSystem, TurningForces
 from rubgen.solver.supports.support_kernels import Support
 
@@ -44,7 +46,7 @@ def _support(
     **arrays: FloatArray,
 ) -> Support:
     """The kernels' record; arrays that are not given are empty."""
-    film, none = forces.film, np.zeros(0, dtype=np.int64)
+    none = np.zeros(0, dtype=np.int64)
     empty = np.zeros((0, 2))
     names = ("columns", "weight", "compliance", "rows", "tip_columns", "tip_rows")
     given = {name: aligned(arrays.get(name, empty)) for name in names}
@@ -52,9 +54,17 @@ def _support(
         active=active,
         stiffness=forces.stiffness,
         damping=forces.damping,
-        film=film.centred_damping_n_s_per_m if film else 0.0,
-        clearance=film.clearance_m if film else np.inf,
+        laws=law_rows(forces.laws),
+        limit=min((law.limit_m for law in forces.laws), default=np.inf),
         centre=none if centre is None else centre,
         places=none if places is None else places,
         **given,
     )
+
+
+def law_rows(laws: tuple[SupportLaw, ...]) -> FloatArray:
+    """A row for each law: its place in the registry, its numbers, and zeros behind."""
+    places = list(SUPPORT_LAWS.values())
+    rows = [(float(places.index(type(law))), *law.numbers) for law in laws]
+    width = max((len(row) for row in rows), default=1)
+    return np.array([[*row, *[0.0] * (width - len(row))] for row in rows]).reshape(len(rows), width)

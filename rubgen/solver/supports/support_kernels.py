@@ -1,25 +1,29 @@
-"""Forces that no constant matrix contains: uneven supports, a squeeze film damper, gravity.
+"""Forces that no constant matrix contains: uneven supports, laws of the support, gravity.
 
 On O_d, in the turning frame and at the time of step n,
 
-    f = -k_a Q(theta_n) u_n - D v_abs,   D = c_a Q(theta_n) + C(u_n)
+    f = -k_a Q(theta_n) u_n + s(u_n) - D v_abs,   D = c_a Q(theta_n) + D(u_n)
     v_abs = (u_n+1 - u_n-1) / (2 dt) + Omega e_z x u_n
 
-(`reduction.model.TurningForces`). It is linear in the velocity and implicit in it, like the scheme's own dampers:
-u_n+1 = u* + Y f with Y = E^T A^-1 E leaves two equations. In the contact problem A + E D E^T / (2 dt) replaces A. The
-works of D are therefore never positive where D is positive semidefinite, whatever the contact does in the same step.
+with s(u) and D(u) the sums over the laws (`reduction.model.TurningForces`). f is linear in the velocity and implicit in
+it, like the scheme's own dampers: u_n+1 = u* + Y f with Y = E^T A^-1 E leaves two equations. In the contact problem
+A + E D E^T / (2 dt) replaces A. The works of D are therefore never positive where D is positive semidefinite, whatever
+the contact does in the same step.
 """
 
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.contact_kernels import ContactWork
-from rubgen.jit import inlined_kernel
+from rubgen.jit import inlined_kernel, switch
 from rubgen.linalg.lanes_kernels import dot_rows
 from rubgen.linalg.vector_kernels import LANES
+from rubgen.machine.support_laws.disk_support import SUPPORT_LAWS
 
-ANISOTROPY, FILM, GRAVITY, FILM_LOSS = range(4)
+ANISOTROPY, LAWS, GRAVITY, LAWS_LOSS = range(4)
 SUPPORT_WORKS = 4
+law_terms = switch([law.terms for law in SUPPORT_LAWS.values()])
+"""`SupportLaw.terms` of the law with the number that stands first."""
 
 
 class Support(NamedTuple):
@@ -31,10 +35,10 @@ class Support(NamedTuple):
     """k_a, N/m."""
     damping: float
     """c_a, N s/m."""
-    film: float
-    """C_0 of the squeeze film, N s/m; 0 without one."""
-    clearance: float
-    """Clearance of the squeeze film, m."""
+    laws: FloatArray
+    """A row for each law that acts (any, any): its place in the registry, and what its `SupportLaw.terms` takes."""
+    limit: float
+    """The eccentricity at which one of them ends, m."""
     centre: IntArray
     """Numbers of z of O_d x, y (2,)."""
     places: IntArray
@@ -63,7 +67,7 @@ class SupportState(NamedTuple):
     force: FloatArray
     """f without contact and with it (2, 2), N."""
     works: FloatArray
-    """Works so far (4,), J, at ANISOTROPY, FILM, GRAVITY, FILM_LOSS."""
+    """Works so far (4,), J, at ANISOTROPY, LAWS, GRAVITY, LAWS_LOSS."""
 
 
 @inlined_kernel
@@ -76,21 +80,22 @@ def turned(cosine: float, sine: float, x: float, y: float) -> tuple[float, float
 @inlined_kernel
 def build_drag(
     support: Support, cosine: float, sine: float, x: float, y: float, dt: float, state: SupportState
-) -> None:
-    """`state.drag` D at u = (x, y) and `yielding` (1 + D Y / 2 dt)^-1 D / 2 dt."""
+) -> tuple[float, float]:
+    """`state.drag` D at u = (x, y) and `yielding` (1 + D Y / 2 dt)^-1 D / 2 dt; the force s(u) of the laws' springs."""
     D, Y = state.drag, support.compliance
     for i in range(2):
         D[0, i], D[1, i] = turned(cosine, sine, 1.0 - i, float(i))
         D[0, i] *= support.damping
         D[1, i] *= support.damping
-    if support.film > 0.0:
-        rest = 1.0 - (x * x + y * y) / (support.clearance * support.clearance)
-        even = support.film / (rest * rest**0.5)
-        along = 3.0 * even / (rest * support.clearance * support.clearance)
-        D[0, 0] += even + along * x * x
-        D[0, 1] += along * x * y
-        D[1, 0] += along * x * y
-        D[1, 1] += even + along * y * y
+    spring_x, spring_y = 0.0, 0.0
+    for law in range(support.laws.shape[0]):
+        s_x, s_y, xx, xy, yx, yy = law_terms(int(support.laws[law, 0]), support.laws[law, 1:], x, y)
+        spring_x += s_x
+        spring_y += s_y
+        D[0, 0] += xx
+        D[0, 1] += xy
+        D[1, 0] += yx
+        D[1, 1] += yy
     a = 1.0 + (D[0, 0] * Y[0, 0] + D[0, 1] * Y[1, 0]) / (2 * dt)
     b = (D[0, 0] * Y[0, 1] + D[0, 1] * Y[1, 1]) / (2 * dt)
     c = (D[1, 0] * Y[0, 0] + D[1, 1] * Y[1, 0]) / (2 * dt)
@@ -99,6 +104,7 @@ def build_drag(
     for i in range(2):
         state.yielding[0, i] = scale * (d * D[0, i] - b * D[1, i])
         state.yielding[1, i] = scale * (a * D[1, i] - c * D[0, i])
+    return spring_x, spring_y
 
 
 @inlined_kernel
@@ -113,20 +119,22 @@ def push_supports(
     after: FloatArray,
     state: SupportState,
 ) -> bool:
-    """Add the effect of f and gravity at step n to q* in `after`. Return False where O_d is beyond the film.
+    """Add the effect of f and gravity at step n to q* in `after`. Return False where O_d is beyond a law's limit.
 
     `before`, `now` and `after` are z at steps n - 1, n and n + 1. `cosine` and `sine` are of theta at step n.
     """
     i, j = support.centre[0], support.centre[1]
     x, y = now[i], now[j]
-    if support.film > 0.0 and not x * x + y * y < support.clearance * support.clearance:
+    if not x * x + y * y < support.limit * support.limit:
         return False
-    build_drag(support, cosine, sine, x, y, dt, state)
+    laws_x, laws_y = build_drag(support, cosine, sine, x, y, dt, state)
     force, weight = state.force, support.columns
     for a in range(support.places.shape[0]):
         after[support.places[a]] += sine * weight[a, 2] + cosine * weight[a, 3]
-    # f = (1 + D Y / 2 dt)^-1 [-k_a Q u_n - D (v* + Omega e_z x u_n)]: the spring is added to the bracket.
+    # f = (1 + D Y / 2 dt)^-1 [s - k_a Q u_n - D (v* + Omega e_z x u_n)]: the springs are added to the bracket.
     spring_x, spring_y = turned(cosine, sine, -support.stiffness * x, -support.stiffness * y)
+    spring_x += laws_x
+    spring_y += laws_y
     way_x = after[i] - before[i] - 2 * dt * speed * y
     way_y = after[j] - before[j] + 2 * dt * speed * x
     Y, S = support.compliance, state.yielding
@@ -183,8 +191,8 @@ def add_support_works(
 ) -> float:
     """Add the works of one step to `state.works`. Return the sum of their absolute values, J.
 
-    Works of uneven springs and dampers, of the film, and of gravity are each force times d. The film's loss is force
-    times dt v_abs, <= 0. `now` and `change` (d) are in z.
+    Works of uneven springs and dampers, of the laws, and of gravity are each force times d. LAWS_LOSS is the force of
+    the laws times dt v_abs. `now` and `change` (d) are in z.
     """
     x, y = now[support.centre[0]], now[support.centre[1]]
     dx, dy = change[support.centre[0]], change[support.centre[1]]
@@ -195,15 +203,15 @@ def add_support_works(
         gravity -= weight * change[support.places[a]]
     k, c = support.stiffness, support.damping / dt
     uneven_x, uneven_y = turned(cosine, sine, -k * x - c * way_x, -k * y - c * way_y)
-    film_x, film_y = state.force[1, 0] - uneven_x, state.force[1, 1] - uneven_y
-    uneven, film = uneven_x * dx + uneven_y * dy, 0.0
-    if support.film > 0.0:
-        film = film_x * dx + film_y * dy
-        state.works[FILM_LOSS] += film_x * way_x + film_y * way_y
+    laws_x, laws_y = state.force[1, 0] - uneven_x, state.force[1, 1] - uneven_y
+    uneven, laws = uneven_x * dx + uneven_y * dy, 0.0
+    if support.laws.shape[0] > 0:
+        laws = laws_x * dx + laws_y * dy
+        state.works[LAWS_LOSS] += laws_x * way_x + laws_y * way_y
     else:
         uneven = state.force[1, 0] * dx + state.force[1, 1] * dy
     state.works[ANISOTROPY] += uneven
-    state.works[FILM] += film
+    state.works[LAWS] += laws
     state.works[GRAVITY] += gravity
-    total: float = abs(uneven) + abs(film) + abs(gravity)
+    total: float = abs(uneven) + abs(laws) + abs(gravity)
     return total

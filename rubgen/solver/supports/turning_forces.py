@@ -1,4 +1,4 @@
-"""Forces that no constant matrix contains: uneven supports, a squeeze film damper, gravity. The law in plain numpy.
+"""Forces that no constant matrix contains: uneven supports, laws of the support, gravity. In plain numpy.
 
 `support_kernels` applies the same law in the steps of a run.
 """
@@ -12,9 +12,7 @@ from rubgen.reduction.model import TurningForces
 def turning_force(forces: TurningForces, speed: float, theta: AnyArray, u: AnyArray, v: AnyArray) -> AnyArray:
     """Force (..., 2) in N on O_d in the turning frame.
 
-    -k_a Q u - c_a Q v_abs - C(u) v_abs, C = C_0 (1 - eps^2)^(-3/2) [1 + 3 u u^T / (c^2 (1 - eps^2))]. The values of C
-    along and across u are the C_rr and C_tt of `machine.SqueezeFilm`. The function is analytic, so complex steps
-    differentiate it.
+    -k_a Q u - c_a Q v_abs and the laws of the support. The function is analytic, so complex steps differentiate it.
 
     - forces: constants of the forces.
     - speed: Omega, rad/s.
@@ -23,11 +21,8 @@ def turning_force(forces: TurningForces, speed: float, theta: AnyArray, u: AnyAr
     """
     absolute = v + speed * np.stack([-u[..., 1], u[..., 0]], axis=-1)
     f = -_uneven(theta, forces.stiffness * u + forces.damping * absolute)
-    if forces.film is not None:
-        square = forces.film.clearance_m**2
-        rest = 1 - np.sum(u * u, axis=-1, keepdims=True) / square
-        along = 3 * u * np.sum(u * absolute, axis=-1, keepdims=True) / (square * rest)
-        f = f - forces.film.centred_damping_n_s_per_m * rest**-1.5 * (absolute + along)
+    for law in forces.laws:
+        f = f + law.force(u, absolute)
     return np.asarray(f)
 
 

@@ -9,11 +9,12 @@ import pytest
 from kernel_arrays import contact_work
 
 from rubgen.linalg.blocks import aligned
+from rubgen.machine.support_laws.disk_support import SUPPORT_LAWS
 from rubgen.solver.supports.support_kernels import (
     ANISOTROPY,
-    FILM,
-    FILM_LOSS,
     GRAVITY,
+    LAWS,
+    LAWS_LOSS,
     Support,
     SupportState,
     add_support_works,
@@ -51,10 +52,12 @@ class Step:
         self.weight[PLACES] = rng.normal(size=(8, 2)) * 80
         inverse = np.linalg.inv(self.A)
         constants = {"stiffness": 0.0, "damping": 0.0, "film": 0.0} | CASES[case]
+        film = constants.pop("film")
         self.support = Support(
             active=True,
             **constants,
-            clearance=CLEARANCE if constants["film"] else np.inf,
+            laws=np.array([[list(SUPPORT_LAWS).index("squeeze_film"), film, CLEARANCE]] if film else np.zeros((0, 1))),
+            limit=CLEARANCE if film else np.inf,
             centre=CENTRE,
             places=PLACES,
             columns=aligned((inverse @ np.column_stack([E, -self.weight]))[PLACES]),
@@ -159,11 +162,11 @@ def test_works_are_each_force_times_the_way(case):
     velocity, way = step.absolute_velocity(after), change[CENTRE]
     expected = np.zeros(4)
     expected[ANISOTROPY] = (step.spring - step.uneven @ velocity) @ way
-    expected[FILM] = -(step.squeeze @ velocity) @ way
+    expected[LAWS] = -(step.squeeze @ velocity) @ way
     expected[GRAVITY] = -(step.weight @ [SINE, COSINE]) @ change
-    expected[FILM_LOSS] = -DT * velocity @ step.squeeze @ velocity
+    expected[LAWS_LOSS] = -DT * velocity @ step.squeeze @ velocity
     np.testing.assert_allclose(step.state.works, expected, rtol=1e-8, atol=1e-12)
     assert sizes == pytest.approx(np.abs(expected[:3]).sum(), rel=1e-8)
-    assert (step.state.works[FILM_LOSS] < 0) == ("film" in CASES[case])
+    assert (step.state.works[LAWS_LOSS] < 0) == ("film" in CASES[case])
     add_support_works(step.support, SPEED, DT, COSINE, SINE, step.now, change, step.state)
     np.testing.assert_allclose(step.state.works, 2 * expected, rtol=1e-8, atol=1e-12)

@@ -35,14 +35,14 @@ def test_the_rub_happens_and_every_work_is_booked(rub):
     assert run.impulse_per_turn.min() > 0.1
     balance = run.energy
     works = balance.unbalance + balance.damping + balance.circulatory + balance.contact
-    works += balance.anisotropy + balance.film + balance.gravity
+    works += balance.anisotropy + balance.support_laws + balance.gravity
     assert balance.residual < 1e-11
     assert abs(balance.end - balance.start - works) <= 1e-11 * balance.absolute_work
     share = 1e-7 * balance.absolute_work
     assert (abs(balance.gravity) > share) is (case in ("gravity", "all"))
     assert (abs(balance.anisotropy) > share) is (case in ("springs", "dampers", "all"))
-    assert (abs(balance.film) > share) is (case in ("film", "all"))
-    assert (balance.film_loss < -share) is (case in ("film", "all"))
+    assert (abs(balance.support_laws) > share) is (case in ("film", "all"))
+    assert (balance.support_laws_loss < -share) is (case in ("film", "all"))
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -111,7 +111,7 @@ def test_film_coefficients_are_the_integrals_of_the_short_bearings_pressure(shar
     direction = np.array([np.cos(1.1), np.sin(1.1)])
     across = np.array([-direction[1], direction[0]])
     velocity = 0.03 * direction - 0.02 * across
-    found = turning_force(TurningForces(film=film), 0.0, np.zeros(()), e * direction, velocity)
+    found = turning_force(TurningForces(laws=(film,)), 0.0, np.zeros(()), e * direction, velocity)
     expected = -0.03 * coefficient(np.cos) * direction + 0.02 * coefficient(np.sin) * across
     np.testing.assert_allclose(found, expected, rtol=1e-9)
 

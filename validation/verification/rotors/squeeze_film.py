@@ -93,7 +93,7 @@ def rows() -> Iterator[Row]:
     for share in ECCENTRICITIES:
         for name, direction in (("C_rr", np.array([1.0, 0.0])), ("C_tt", np.array([0.0, 1.0]))):
             u = np.array([share * FILM.clearance_m, 0.0])
-            found = -turning_force(TurningForces(film=FILM), 0.0, np.zeros(()), u, direction) @ direction
+            found = -turning_force(TurningForces(laws=(FILM,)), 0.0, np.zeros(()), u, direction) @ direction
             expected = by_quadrature(share, along=name == "C_rr")
             quantity = f"squeeze film: {name} at eccentricity {share:g}, N s/m"
             yield relative(quantity, "quadrature of the short bearing's pressure", expected, found, 1e-9)
@@ -118,13 +118,13 @@ def heat() -> Iterator[Row]:
     rpm, half = rev_per_min(speed), turns // 2
     operation = Operation(speed_rpm=rpm, settle_turns=half, record_turns=half, closing_turns=5)
     system = rigid_rotor(
-        speed, mass=MASS, stiffness=STIFFNESS, damping=DAMPING, unbalance=UNBALANCE, forces=TurningForces(film=FILM)
+        speed, mass=MASS, stiffness=STIFFNESS, damping=DAMPING, unbalance=UNBALANCE, forces=TurningForces(laws=(FILM,))
     )
     response = integrate(system, operation, ContactLaw())
     e = orbit(speed)
     expected = -(tangential(e) - DAMPING) * (e * speed) ** 2 * 2 * np.pi / speed
     quantity, source = "squeeze film: heat of a turn, J", "C_tt (e Omega)^2 T"
-    yield relative(quantity, source, expected, response.energy.film_loss / turns, 1e-5)
+    yield relative(quantity, source, expected, response.energy.support_laws_loss / turns, 1e-5)
 
 
 def centred_decay() -> Iterator[Row]:

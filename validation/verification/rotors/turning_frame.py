@@ -80,6 +80,7 @@ def system_of(case: Case, clearance: float) -> SpinningSystem:
     weight[:2], weight[3:5] = GRAVITY * LINK_MASS * np.eye(2), GRAVITY * DISK_MASS * np.eye(2)
     force = np.zeros(7)
     force[3] = case.unbalance * SPEED**2
+    laws = (case.film,) if case.film else ()
     return replace(
         ring,
         M=block_diag(M, ring.M[5:, 5:]),
@@ -89,7 +90,7 @@ def system_of(case: Case, clearance: float) -> SpinningSystem:
         surface=replace(ring.surface, mean_radius=clearance),
         lateral_stiffness=DISK_STIFFNESS,
         lateral_damping=DISK_DAMPING,
-        turning=TurningForces(stiffness=case.stiffness, damping=case.damping, film=case.film, weight=weight),
+        turning=TurningForces(stiffness=case.stiffness, damping=case.damping, laws=laws, weight=weight),
     )
 
 

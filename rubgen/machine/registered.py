@@ -1,0 +1,19 @@
+"""Laws that are registered as keys of a record."""
+
+from typing import Any, get_args, get_type_hints
+
+
+def registered(record: Any, law: Any) -> dict[str, Any]:
+    """The keys of the class `record` that may have a `law` as their value, each with the class of its law."""
+    return {
+        key: kind
+        for key, hint in get_type_hints(record).items()
+        for kind in get_args(hint)
+        if isinstance(kind, type) and issubclass(kind, law)
+    }
+
+
+def given(record: Any, law: Any) -> dict[str, Any]:
+    """The laws that a record has, by their keys."""
+    values = {key: getattr(record, key) for key in registered(type(record), law)}
+    return {key: value for key, value in values.items() if value is not None}

@@ -1,0 +1,34 @@
+"""The support of the disk centre, and the registry of its laws: one key of `DiskSupport` each."""
+
+from pydantic.dataclasses import dataclass
+
+from rubgen.machine.quantities import STRICT, Anisotropy, Stiffness
+from rubgen.machine.registered import given, registered
+from rubgen.machine.support_laws.law import SupportLaw
+from rubgen.machine.support_laws.squeeze_film import SqueezeFilm
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class DiskSupport:
+    """Springs between the disk centre and the inertial frame, and laws that act beside them.
+
+    `lateral_stiffness_n_per_m` is the mean of X and Y. `lateral_stiffness_anisotropy` is (k_X - k_Y) / (k_X + k_Y), and
+    `lateral_damping_anisotropy` is the same ratio of the dampers beside them. Tilt springs and dampers are isotropic.
+    """
+
+    lateral_stiffness_n_per_m: Stiffness
+    axial_stiffness_n_per_m: Stiffness
+    tilt_stiffness_nm_per_rad: Stiffness
+    torsion_stiffness_nm_per_rad: Stiffness
+    lateral_stiffness_anisotropy: Anisotropy = 0.0
+    lateral_damping_anisotropy: Anisotropy = 0.0
+    squeeze_film: SqueezeFilm | None = None
+
+    @property
+    def laws(self) -> tuple[SupportLaw, ...]:
+        """The laws that are given."""
+        return tuple(given(self, SupportLaw).values())
+
+
+SUPPORT_LAWS: dict[str, type[SupportLaw]] = registered(DiskSupport, SupportLaw)
+"""Every law by its key; kernels know a law by its place."""
