@@ -5,7 +5,7 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.contact.friction_kernels import friction_direction, slip_velocity
 from rubgen.contact.geometry_kernels import Surface, foot_of
-from rubgen.contact.lcp_kernels import SOLVED, solve_lcp
+from rubgen.contact.lcp_kernels import RIGID, SOLVED, solve_normal
 
 
 def gap_and_foot(
@@ -54,6 +54,7 @@ def solve_complementarity(W: FloatArray, b: FloatArray) -> FloatArray:
     m = b.shape[0]
     lam = np.zeros(m)
     work = np.zeros((m, m)), np.zeros((m, 2 * m + 2)), np.zeros(m, dtype=np.int64)
-    if solve_lcp(np.ascontiguousarray(W), np.ascontiguousarray(b), m, lam, *work) != SOLVED:
+    matrix, gap = np.ascontiguousarray(W), np.ascontiguousarray(b)
+    if solve_normal(np.array([RIGID]), matrix, gap, m, lam, *work) != SOLVED:
         raise ArithmeticError(f"no contact forces found for {m} contacts")
     return lam

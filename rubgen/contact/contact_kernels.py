@@ -58,11 +58,11 @@ class ContactWork(NamedTuple):
     rows: FloatArray
     """Scratch: X and Y displacement of a point per unit of each casing mode (2, n_casing)."""
     square: FloatArray
-    """Scratch of `solve_lcp` (n_blades, n_blades)."""
+    """Scratch of `solve_normal` (n_blades, n_blades)."""
     tableau: FloatArray
-    """Scratch of `solve_lcp` (n_blades, 2 n_blades + 2)."""
+    """Scratch of `solve_normal` (n_blades, 2 n_blades + 2)."""
     basis: IntArray
-    """Scratch of `solve_lcp` (n_blades,)."""
+    """Scratch of `solve_normal` (n_blades,)."""
 
 
 @inlined_kernel

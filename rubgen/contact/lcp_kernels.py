@@ -1,14 +1,19 @@
-"""The linear complementarity problem of one step: 0 <= lam _|_ b + W lam >= 0."""
+"""The normal forces of one step: of rigid contact, the complementarity problem 0 <= lam _|_ b + W lam >= 0."""
 
 import math
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.jit import allocation_free_kernel
+from rubgen.jit import allocation_free_kernel, switch
+from rubgen.scenario.contact_laws.contact_law import NORMAL_LAWS
 
 SOLVED = 0
 UNSOLVED = 1
 SWEEPS = 400
 TOLERANCE = 1e-14
+RIGID = 0.0
+"""The place of rigid contact in the registry."""
+respond = switch([law.respond for law in NORMAL_LAWS])
+"""`NormalLaw.respond` of the law with the number that stands first."""
 
 
 @allocation_free_kernel
@@ -29,8 +34,14 @@ def is_positive_definite(W: FloatArray, m: int, work: FloatArray) -> bool:
 
 
 @allocation_free_kernel
-def projected_gauss_seidel(W: FloatArray, b: FloatArray, m: int, lam_out: FloatArray) -> int:
-    """Sweeps from zero until no multiplier moves by more than 1e-14 of the largest; SOLVED or UNSOLVED."""
+def projected_gauss_seidel(
+    law: FloatArray, W: FloatArray, b: FloatArray, before: FloatArray, m: int, lam_out: FloatArray
+) -> int:
+    """Sweeps from zero until no multiplier moves by more than 1e-14 of the largest; SOLVED or UNSOLVED.
+
+    `law` is the place of the law of the normal force and its numbers; `before` (m,) are the gaps at step n - 1.
+    """
+    place, numbers = int(law[0]), law[1:]
     for i in range(m):
         lam_out[i] = 0.0
     for _ in range(SWEEPS):
@@ -39,7 +50,7 @@ def projected_gauss_seidel(W: FloatArray, b: FloatArray, m: int, lam_out: FloatA
             residual = b[i]
             for j in range(m):
                 residual += W[i, j] * lam_out[j]
-            value = max(0.0, lam_out[i] - residual / W[i, i])
+            value = respond(place, numbers, lam_out[i], residual, W[i, i], before[i])
             change = max(change, abs(value - lam_out[i]))
             largest = max(largest, value)
             lam_out[i] = value
@@ -123,7 +134,8 @@ def lemke(W: FloatArray, b: FloatArray, m: int, lam_out: FloatArray, tableau: Fl
 
 
 @allocation_free_kernel
-def solve_lcp(
+def solve_normal(
+    law: FloatArray,
     W: FloatArray,
     b: FloatArray,
     m: int,
@@ -132,11 +144,12 @@ def solve_lcp(
     tableau: FloatArray,
     basis: IntArray,
 ) -> int:
-    """The multipliers of the leading m contacts, into `lam_out`; SOLVED or UNSOLVED.
+    """The normal forces of the leading m contacts, into `lam_out`; SOLVED or UNSOLVED.
 
     W positive definite (symmetric part): the solution is unique and projected Gauss-Seidel is tried first; in every
-    other case Lemke's pivoting.
+    other case of rigid contact Lemke's pivoting. `law` is the place of the law and its numbers. The first row of the
+    scratch `tableau` holds the gaps at step n - 1 where the law regards the rate.
     """
-    if is_positive_definite(W, m, square) and projected_gauss_seidel(W, b, m, lam_out) == SOLVED:
+    if is_positive_definite(W, m, square) and projected_gauss_seidel(law, W, b, tableau[0], m, lam_out) == SOLVED:
         return SOLVED
-    return lemke(W, b, m, lam_out, tableau, basis)
+    return lemke(W, b, m, lam_out, tableau, basis) if law[0] == RIGID else UNSOLVED

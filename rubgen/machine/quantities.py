@@ -84,7 +84,7 @@ def _whole(*, usual: Usual | None = None, **bounds: Any) -> Any:
     return field
 
 
-def _real(**bounds: Any) -> Any:
+def real(**bounds: Any) -> Any:
     """Bounds of a finite number, as `_whole`."""
     return _whole(allow_inf_nan=False, **bounds)
 
@@ -96,58 +96,58 @@ MOST_MODES = 500
 PERCENT = (("%", 0.01),)
 Switch = Annotated[bool, Field(strict=True)]
 Seed = Annotated[int, _whole(ge=0, le=2**63 - 1)]
-Finite = Annotated[float, _real()]
-Positive = Annotated[float, _real(gt=0)]
+Finite = Annotated[float, real()]
+Positive = Annotated[float, real(gt=0)]
 """`Finite` and `Positive` are parts of a distribution: the drawn key has its own bounds."""
 
 # Lengths, places and angles.
-Length = Annotated[float, _real(ge=1e-7, le=100)]
-Height = Annotated[float, _real(ge=0, le=100)]
-AxialPlace = Annotated[float, _real(ge=-100, le=100)]
-Angle = Annotated[float, _real(ge=-360, le=360)]
-Direction = Annotated[float, _real(ge=0, lt=360)]
+Length = Annotated[float, real(ge=1e-7, le=100)]
+Height = Annotated[float, real(ge=0, le=100)]
+AxialPlace = Annotated[float, real(ge=-100, le=100)]
+Angle = Annotated[float, real(ge=-360, le=360)]
+Direction = Annotated[float, real(ge=0, lt=360)]
 """Polar angle in the inertial frame, in degrees."""
 
 # Materials, springs, dampers, masses.
 Modulus = Annotated[
     float,
-    _real(
+    real(
         ge=1,
         le=1e15,
         usual=Usual(1e9, 1.3e12, "no solid of a machine has it", (("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3)), "Pa"),
     ),
 ]
 """Usual from plastics to diamond."""
-PoissonRatio = Annotated[float, _real(gt=-1, lt=0.5, usual=Usual(0, 0.5, "metals have 0.25 to 0.35"))]
+PoissonRatio = Annotated[float, real(gt=-1, lt=0.5, usual=Usual(0, 0.5, "metals have 0.25 to 0.35"))]
 Density = Annotated[
     float,
-    _real(
+    real(
         ge=1e-3,
         le=1e6,
         usual=Usual(500, 23_000, "no solid of a machine has it", (("g/cm3", 1e3), ("t/mm3", 1e12)), "kg/m3"),
     ),
 ]
 """Usual from foam to osmium."""
-Stiffness = Annotated[float, _real(ge=1e-3, le=1e16)]
+Stiffness = Annotated[float, real(ge=1e-3, le=1e16)]
 Anisotropy = Annotated[
-    float, _real(gt=-1, lt=1, usual=Usual(-0.9, 0.9, "one direction has less than a 19th of the other", PERCENT))
+    float, real(gt=-1, lt=1, usual=Usual(-0.9, 0.9, "one direction has less than a 19th of the other", PERCENT))
 ]
-DampingRatio = Annotated[float, _real(ge=0, lt=1, usual=Usual(0, 0.6, "machines have 0.001 to 0.3", PERCENT))]
+DampingRatio = Annotated[float, real(ge=0, lt=1, usual=Usual(0, 0.6, "machines have 0.001 to 0.3", PERCENT))]
 Viscosity = Annotated[
-    float, _real(gt=0, le=1e4, usual=Usual(1e-5, 10, "oils have 0.001 to 1", (("mPa s", 1e-3),), "Pa s"))
+    float, real(gt=0, le=1e4, usual=Usual(1e-5, 10, "oils have 0.001 to 1", (("mPa s", 1e-3),), "Pa s"))
 ]
 StiffnessDeviation = Annotated[
-    float, _real(gt=-1, le=1, usual=Usual(-0.5, 0.5, "blades of a row differ by a few percent", PERCENT))
+    float, real(gt=-1, le=1, usual=Usual(-0.5, 0.5, "blades of a row differ by a few percent", PERCENT))
 ]
 DeviationSpread = Annotated[
-    float, _real(ge=0, lt=1, usual=Usual(0, 0.2, "blades of a row differ by a few percent", PERCENT))
+    float, real(ge=0, lt=1, usual=Usual(0, 0.2, "blades of a row differ by a few percent", PERCENT))
 ]
-UnbalanceSize = Annotated[float, _real(ge=0, le=1e7)]
-Gravity = Annotated[float, _real(ge=0, le=1e4, usual=Usual(0, 20, "the earth has 9.81", (("mm/s2", 1e-3),), "m/s2"))]
-Friction = Annotated[float, _real(ge=0, le=0.3)]
-Restitution = Annotated[float, _real(ge=0, le=1)]
+UnbalanceSize = Annotated[float, real(ge=0, le=1e7)]
+Gravity = Annotated[float, real(ge=0, le=1e4, usual=Usual(0, 20, "the earth has 9.81", (("mm/s2", 1e-3),), "m/s2"))]
+Friction = Annotated[float, real(ge=0, le=0.3)]
+Restitution = Annotated[float, real(ge=0, le=1)]
 WearRate = Annotated[
-    float, _real(gt=0, le=1, usual=Usual(1e-18, 1e-7, "linings wear 1e-14 to 1e-9", (("mm3/(N m)", 1e-9),), "m2/N"))
+    float, real(gt=0, le=1, usual=Usual(1e-18, 1e-7, "linings wear 1e-14 to 1e-9", (("mm3/(N m)", 1e-9),), "m2/N"))
 ]
 
 # Numbers of parts, of the mesh and of modes.
@@ -164,28 +164,28 @@ CasingModeCount = Annotated[int, _whole(ge=1, le=MOST_MODES)]
 RunCount = Annotated[int, _whole(ge=1, le=MOST_RUNS)]
 
 # Speeds, turns and times.
-Speed = Annotated[float, _real(ge=1e-3, le=1e6)]
-SpeedSwing = Annotated[float, _real(ge=0, le=1e6)]
+Speed = Annotated[float, real(ge=1e-3, le=1e6)]
+SpeedSwing = Annotated[float, real(ge=0, le=1e6)]
 TurnCount = Annotated[
     int, _whole(ge=1, le=1_000_000, usual=Usual(1, 50_000, "a run of so many turns takes from minutes to hours"))
 ]
 StepCount = Annotated[int, _whole(ge=32, le=MOST_STEPS)]
-Duration = Annotated[float, _real(gt=0, le=1e5)]
-ClockOffset = Annotated[float, _real(ge=-1, le=1)]
-ClockDrift = Annotated[float, _real(ge=-1000, le=1000)]
-Jitter = Annotated[float, _real(ge=0, le=1)]
+Duration = Annotated[float, real(gt=0, le=1e5)]
+ClockOffset = Annotated[float, real(ge=-1, le=1)]
+ClockDrift = Annotated[float, real(ge=-1000, le=1000)]
+Jitter = Annotated[float, real(ge=0, le=1)]
 
 # Measuring chains. A reading stands in the sensor's unit.
-Rate = Annotated[float, _real(gt=0, le=1e9)]
-RateOrNone = Annotated[float, _real(ge=0, le=1e9)]
-Reading = Annotated[float, _real(ge=-1e9, le=1e9)]
-Level = Annotated[float, _real(ge=0, le=1e9)]
-NoiseScale = Annotated[float, _real(ge=0, le=1e6, usual=Usual(0, 100, "1 is the noise that each sensor has"))]
-GainError = Annotated[float, _real(gt=-1, le=10, usual=Usual(-0.5, 0.5, "sensors err by a few percent", PERCENT))]
-ResonanceDamping = Annotated[float, _real(gt=0, lt=1)]
+Rate = Annotated[float, real(gt=0, le=1e9)]
+RateOrNone = Annotated[float, real(ge=0, le=1e9)]
+Reading = Annotated[float, real(ge=-1e9, le=1e9)]
+Level = Annotated[float, real(ge=0, le=1e9)]
+NoiseScale = Annotated[float, real(ge=0, le=1e6, usual=Usual(0, 100, "1 is the noise that each sensor has"))]
+GainError = Annotated[float, real(gt=-1, le=10, usual=Usual(-0.5, 0.5, "sensors err by a few percent", PERCENT))]
+ResonanceDamping = Annotated[float, real(gt=0, lt=1)]
 Sensitivity = Annotated[
     float,
-    _real(
+    real(
         gt=0,
         le=1e9,
         usual=Usual(
@@ -194,17 +194,17 @@ Sensitivity = Annotated[
     ),
 ]
 Bias = Annotated[
-    float, _real(ge=-1000, le=1000, usual=Usual(-30, 30, "drivers are supplied with 24 V", (("mV", 1e-3),), "V"))
+    float, real(ge=-1000, le=1000, usual=Usual(-30, 30, "drivers are supplied with 24 V", (("mV", 1e-3),), "V"))
 ]
-MissedShare = Annotated[float, _real(ge=0, lt=1, usual=Usual(0, 0.9, "hardly a blade is seen", PERCENT))]
+MissedShare = Annotated[float, real(ge=0, lt=1, usual=Usual(0, 0.9, "hardly a blade is seen", PERCENT))]
 RunoutHarmonic = Annotated[int, _whole(ge=1, le=1000)]
 AdcBits = Annotated[int, _whole(ge=8, le=32)]
 
 # Surroundings.
 BackgroundLevel = Annotated[
     float,
-    _real(ge=0, le=1e9, usual=Usual(0, 1e4, "machines shake with 0.1 to 1,000", (("mm/s2", 1e-3),), "m/s2")),
+    real(ge=0, le=1e9, usual=Usual(0, 1e4, "machines shake with 0.1 to 1,000", (("mm/s2", 1e-3),), "m/s2")),
 ]
-SpectralSlope = Annotated[float, _real(ge=0, le=4)]
-SpeedExponent = Annotated[float, _real(ge=0, le=10)]
-Order = Annotated[float, _real(gt=0, le=10_000)]
+SpectralSlope = Annotated[float, real(ge=0, le=4)]
+SpeedExponent = Annotated[float, real(ge=0, le=10)]
+Order = Annotated[float, real(gt=0, le=10_000)]

@@ -3,7 +3,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from rubgen.contact.lcp_kernels import SOLVED, UNSOLVED, is_positive_definite, lemke, projected_gauss_seidel
+from rubgen.contact.lcp_kernels import RIGID, SOLVED, UNSOLVED, is_positive_definite, lemke, projected_gauss_seidel
 from tests.contact_calls import solve_complementarity
 
 
@@ -41,7 +41,7 @@ def test_gauss_seidel_and_lemke_agree():
         W, b = unsymmetric_positive_definite(rng, m), rng.normal(size=m)
         pivoted, swept = np.zeros(m), np.zeros(m)
         assert lemke(W, b, m, pivoted, np.zeros((m, 2 * m + 2)), np.zeros(m, dtype=np.int64)) == SOLVED
-        if projected_gauss_seidel(W, b, m, swept) == SOLVED:
+        if projected_gauss_seidel(np.array([RIGID]), W, b, b, m, swept) == SOLVED:
             np.testing.assert_allclose(swept, pivoted, atol=1e-11)
 
 

@@ -1,12 +1,14 @@
-"""What happens where a blade touches the casing."""
+"""What happens where a blade touches the casing, and the registry of its laws: one key of `ContactLaw` each."""
 
-from __future__ import annotations
+from typing import Literal, Self
 
-from typing import Literal
-
+from pydantic import model_validator
 from pydantic.dataclasses import dataclass
 
 from rubgen.machine.quantities import STRICT, Friction, Length, LinerBins, Restitution, Switch, WearRate
+from rubgen.machine.registered import given, registered
+from rubgen.scenario.contact_laws.law import NormalLaw
+from rubgen.scenario.contact_laws.rigid import Rigid
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -26,7 +28,7 @@ class Liner:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class ContactLaw:
-    """Unilateral contact with sliding Coulomb friction; restitution 0 is a plastic impact.
+    """Unilateral contact with sliding Coulomb friction. It is rigid, and restitution 0 is a plastic impact.
 
     With `half_thickness` contact acts on the casing's inner surface, half the ring's thickness inside its centre line.
     Friction then also turns the ring's cross-section, and the surface moves with that rotation. `surface` "chords"
@@ -39,3 +41,20 @@ class ContactLaw:
     half_thickness: Switch = False
     surface: Literal["smooth", "chords"] = "smooth"
     liner: Liner | None = None
+
+    @model_validator(mode="after")
+    def _one_normal_law(self) -> Self:
+        keys = [*given(self, NormalLaw), *(["restitution"] if self.restitution else [])]
+        if len(keys) > 1:
+            raise ValueError(f"{' and '.join(keys)}: only one of them can make the normal force; remove the others")
+        return self
+
+    @property
+    def normal(self) -> NormalLaw:
+        """The law of the normal force: the one that is given, else rigid contact."""
+        laws: list[NormalLaw] = [*given(self, NormalLaw).values(), Rigid()]
+        return laws[0]
+
+
+NORMAL_LAWS: tuple[type[NormalLaw], ...] = (Rigid, *registered(ContactLaw, NormalLaw).values())
+"""Every law of the normal force; kernels know a law by its place."""

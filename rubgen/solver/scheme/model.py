@@ -10,6 +10,7 @@ from rubgen.contact.geometry_kernels import Surface, Tips
 from rubgen.linalg.blocks import Blocks, aligned, padded, share_width, system_harmonics
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw
+from rubgen.scenario.contact_laws.contact_law import NORMAL_LAWS
 from rubgen.solver.scheme.central_difference import compliances, energy_terms, scheme
 from rubgen.solver.scheme.energy_kernels import WORKS
 from rubgen.solver.scheme.model_kernels import Angles, Laws, Model
@@ -72,16 +73,19 @@ def build_model(
     surface, tips = casing_surface(system, contact), blade_tips(system)
     limits = CASING_LIMIT_SHARE * system.tip_radius, TIP_LIMIT_SHARE * system.tip_radius
     tip_shift = relative_tip_shift(tips, limits[1])
+    regards_rate = contact.restitution > 0 or contact.normal.REGARDS_RATE
     laws = Laws(
         speed=float(system.speed),
         dt=float(dt),
         friction=contact.friction,
         restitution=contact.restitution,
+        normal=np.array([NORMAL_LAWS.index(type(contact.normal)), *contact.normal.numbers(dt)], dtype=np.float64),
+        regards_rate=regards_rate,
         margin=CANDIDATE_MARGIN_SHARE * system.tip_radius,
         casing_limit=limits[0],
         tip_limit=limits[1],
         tip_shift=tip_shift,
-        lasting=contact.restitution > 0 or contact.liner is not None,
+        lasting=regards_rate or contact.liner is not None,
         screen=screen and bounds_hold(surface, tip_shift, limits[0]),
     )
     theta = start_angle + 2 * np.pi * (np.arange(steps + 1) % steps) / steps  # the last step is the first exactly

@@ -21,6 +21,10 @@ class Laws(NamedTuple):
     """Coefficient of Coulomb friction."""
     restitution: float
     """Coefficient of restitution of the contact."""
+    normal: FloatArray
+    """The law of the normal force: its place in the registry, and what its `NormalLaw.respond` takes."""
+    regards_rate: bool
+    """Whether contact takes gaps at step n - 1: with restitution, and with a law that regards the rate."""
     margin: float
     """The least distance within which blades are solved together, m."""
     casing_limit: float
@@ -30,7 +34,7 @@ class Laws(NamedTuple):
     tip_shift: float
     """Largest distance of a tip from its place at rest along either axis before it diverges, tip radii."""
     lasting: bool
-    """Whether gaps are needed again in later steps where no blade touches: with restitution, and with a liner."""
+    """Whether gaps are needed again in later steps where no blade touches: `regards_rate`, or a liner."""
     screen: bool
     """Whether bounds of the clearance are taken before gaps."""
 

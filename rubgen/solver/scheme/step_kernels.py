@@ -29,7 +29,7 @@ from rubgen.contact.contact_kernels import (
     largest_approach,
 )
 from rubgen.contact.geometry_kernels import Surface, Tips
-from rubgen.contact.lcp_kernels import SOLVED, solve_lcp
+from rubgen.contact.lcp_kernels import SOLVED, solve_normal
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.block_kernels import Product, multiply
 from rubgen.linalg.harmonic_kernels import recover_all, spread_tip_force
@@ -120,15 +120,17 @@ def solve_contacts(
         )  # fmt: skip
         build_casing_response(m, model.casing_compliance, work)
         work.b[m] = work.gap[k]
-        if laws.restitution > 0.0:
-            work.b[m] += laws.restitution * previous_gap(
+        if laws.regards_rate:
+            before = previous_gap(
                 surface, tips, state.wear.depth, k, coordinates, opening[step], angles.cosine[back],
                 angles.sine[back], work,
             )  # fmt: skip
+            work.tableau[0, m] = before
+            work.b[m] += laws.restitution * before
     build_compliance(count, model.tip_compliance, work)
     if model.support.active:
         yield_to_contacts(count, model.support, state.support, work)
-    return solve_lcp(work.W, work.b, count, work.lam, work.square, work.tableau, work.basis)
+    return solve_normal(laws.normal, work.W, work.b, count, work.lam, work.square, work.tableau, work.basis)
 
 
 @inlined_kernel

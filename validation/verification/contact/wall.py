@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.contact.lcp_kernels import RIGID
 from rubgen.linalg.blocks import aligned, find_blocks
 from rubgen.solver.scheme.central_difference import scheme
 from validation.verification.contact.wall_kernels import WallWork, steps_against_wall
@@ -27,7 +28,7 @@ class Wall:
         one = np.zeros((1, 1))
         self._work = WallWork(
             before=before, now=now, after=after, response=blocks.to_z(np.linalg.inv(M / dt**2)[0]),
-            W=one.copy(), b=np.zeros(1), lam=np.zeros(1), square=one, tableau=np.zeros((1, 4)),
+            law=np.array([RIGID]), W=one.copy(), b=np.zeros(1), lam=np.zeros(1), square=one, tableau=np.zeros((1, 4)),
             basis=np.zeros(1, dtype=np.int64),
         )  # fmt: skip
 

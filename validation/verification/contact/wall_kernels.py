@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.contact.lcp_kernels import SOLVED, solve_lcp
+from rubgen.contact.lcp_kernels import SOLVED, solve_normal
 from rubgen.jit import allocation_free_kernel
 from rubgen.solver.scheme.free_step_kernels import Scheme, free_step
 
@@ -17,6 +17,7 @@ class WallWork(NamedTuple):
     now: FloatArray
     after: FloatArray
     response: FloatArray
+    law: FloatArray
     W: FloatArray
     b: FloatArray
     lam: FloatArray
@@ -38,7 +39,7 @@ def steps_against_wall(
     for step in range(force.shape[0]):
         free_step(scheme, work.before, work.now, work.after)
         work.b[0] = work.after[0] + force[step] * work.response[0] + restitution * work.before[0]
-        if solve_lcp(work.W, work.b, 1, work.lam, work.square, work.tableau, work.basis) != SOLVED:
+        if solve_normal(work.law, work.W, work.b, 1, work.lam, work.square, work.tableau, work.basis) != SOLVED:
             return False
         contact_force_out[step] = work.lam[0]
         for i in range(n):

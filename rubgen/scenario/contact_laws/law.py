@@ -1,0 +1,35 @@
+"""What a law of the normal contact force is."""
+
+from abc import ABC, abstractmethod
+from typing import ClassVar
+
+from rubgen.arrays import FloatArray
+
+
+class NormalLaw(ABC):
+    """How the normal force of a contact follows from its gap.
+
+    The fields of a law are its keys in the table `[contact]` of a recipe. All energy terms follow from the force.
+    """
+
+    REGARDS_RATE: ClassVar[bool] = False
+    """Whether `respond` takes the earlier gap."""
+
+    @abstractmethod
+    def numbers(self, dt: float) -> tuple[float, ...]:
+        """The numbers that `respond` takes, for time steps of `dt` (s)."""
+
+    @staticmethod
+    @abstractmethod
+    def respond(numbers: FloatArray, force: float, gap: float, compliance: float, before: float) -> float:
+        """The force of one contact in N, >= 0, while the forces of all others stay.
+
+        `gap` (m, negative where the tip is in the casing) is the gap at the end of the step with the present `force`.
+        It grows by `compliance` (m/N, > 0) for each newton more: the law must hold between the force that is returned
+        and gap + compliance (returned - force). The force must not grow with the gap, and be 0 where the gap is
+        positive. `before` is the gap two steps earlier, where the law regards the rate. Without contact forces may not
+        act, so a law may not pull.
+
+        The solver compiles this function and calls it in every sweep over the contacts of a step. It may use
+        arithmetic, `math` and constants of its own file.
+        """

@@ -1,0 +1,20 @@
+"""Rigid contact."""
+
+from dataclasses import dataclass
+
+from rubgen.arrays import FloatArray
+from rubgen.scenario.contact_laws.law import NormalLaw
+
+
+@dataclass(frozen=True)
+class Rigid(NormalLaw):
+    """No tip enters the casing: 0 <= force, 0 <= gap, one of them 0 (Signorini)."""
+
+    def numbers(self, _dt: float) -> tuple[float, ...]:
+        """None."""
+        return ()
+
+    @staticmethod
+    def respond(_numbers: FloatArray, force: float, gap: float, compliance: float, _before: float) -> float:
+        """The force that closes the gap, or none."""
+        return max(0.0, force - gap / compliance)
