@@ -145,7 +145,7 @@ def deformation_bounds(surface: Surface, q_casing: FloatArray, tip_shift: float)
 
 
 @inlined_kernel
-def inward_displacement(surface: Surface, casing: FloatArray, angle: float) -> float:
+def radial_displacement(surface: Surface, casing: FloatArray, angle: float) -> float:
     """u_r of the casing at a polar angle, linear between the nodes.
 
     `casing` (a multiple of eight,) holds the casing's coordinates and zeros.
@@ -155,8 +155,8 @@ def inward_displacement(surface: Surface, casing: FloatArray, angle: float) -> f
     first = math.floor(position)
     at = int(first % nodes)
     after = at + 1 if at + 1 < nodes else 0
-    inward: float = blended_product(surface.radial, at, after, position - first, casing)
-    return inward
+    outward: float = blended_product(surface.radial, at, after, position - first, casing)
+    return outward
 
 
 @inlined_kernel
@@ -181,8 +181,9 @@ def tighten(
 ) -> bool:
     """Replace every clearance bound of at most `far` by one to the deformed surface.
 
-    Return True if all replaced bounds are positive. A tip whose new bound exceeds `radial_margin(margin, limits)` is
-    inside the deformed surface and farther than the margin from it.
+    Return True if all replaced bounds are positive. Then no tip touches, provided that `far` is at least the bound of
+    the casing's displacement plus limits[0]. A tip whose new bound exceeds `radial_margin(margin, limits)`, for any
+    margin in m, is inside the deformed surface and farther than the margin from it.
 
     - casing (a multiple of eight,): the casing's coordinates, then zeros.
     - displacement (2 or more, any): radial and tangential displacement of each blade's tip, m.
@@ -197,7 +198,7 @@ def tighten(
         while near != 0:
             k = LANES * row + lowest_bit(near)
             near &= near - 1
-            inward = inward_displacement(surface, casing, tip_angle(tips, k, displacement, theta))
-            bounds[k] += inward - limits[0]
+            outward = radial_displacement(surface, casing, tip_angle(tips, k, displacement, theta))
+            bounds[k] += outward - limits[0]
             positive = positive and bounds[k] > 0.0
     return positive

@@ -82,7 +82,7 @@ class SpinningSystem:
     K: FloatArray
     """Stiffness matrix (n, n) with centrifugal, support and circulatory terms."""
     force: FloatArray
-    """Force of the unbalance (n,), N: on O_d x. Unevenly mistuned blades add a little on O_d x and y."""
+    """Constant force (n,), N: unbalances, uneven growth on O_d, the Euler force of a changing speed."""
     n_blades: int
     """Number of blades."""
     n_casing: int

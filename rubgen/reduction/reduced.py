@@ -57,10 +57,11 @@ class ReducedModel:
     def at_speed(self, speed: float, acceleration: float = 0.0) -> SpinningSystem:
         """The system at `speed` (rad/s, positive) and `acceleration` (rad/s2): matrices of the turning frame.
 
-        Blisk: C = 2 Omega G + C_s + beta K_e, K = K_e + K_s + Omega^2 (K_sigma - S) + Omega H_s, with C_s = T^T C T and
-        H_s = T^T C S6 T. The dampers C = diag(c) are in the inertial frame and act on the absolute velocity (S6 is e_z
-        x). The term Omega H_s makes K unsymmetric. Casing modes: 1, 2 zeta omega, omega^2. Each unbalance acts with
-        Omega^2 U outward, on O_d or on a tip. The unbalance of uneven growth (mistuned blades) acts on O_d. A changing
+        Blisk: C = 2 Omega G + C_s + beta K_e, K = K_e + K_s + Omega^2 (K_sigma - S) + Omega H_s, with C_s = T^T D T and
+        H_s = T^T D S6 T. T (6, n) gives the motion of O_d. The dampers D = diag(c) are in the inertial frame and act on
+        the absolute velocity (S6 is e_z x). The term Omega H_s makes K unsymmetric. Casing modes: 1, 2 zeta omega,
+        omega^2. Each unbalance acts with Omega^2 U outward, on O_d or on a tip. The unbalance of uneven growth
+        (mistuned blades) acts on O_d. Uneven supports, laws of the support and gravity are in `turning`. A changing
         speed adds Omega' G to K and -Omega' (f_t + e_z x U) to the forces (Euler term). Acceleration and change of the
         tips' steady growth are left out, a share of at most Omega' / Omega^2 of it.
         """

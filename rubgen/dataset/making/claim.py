@@ -65,7 +65,9 @@ def finished(layout: Layout, identity: Identity) -> bool:
 def claimed(layout: Layout, identity: Identity) -> Iterator[None]:
     """A context in which this process alone has the directory. Checks before it may be outdated.
 
-    Raises UserError where the directory has other content, cannot be made, or another process has it.
+    A directory that it made is removed if it stays empty, its parents are not. Sets of another recipe are refused by
+    `finished` and `begun`, not here. Raises UserError where the directory has content that is no data set, or another
+    process has it; OSError where it cannot be made.
     """
     root = layout.root
     _check_place(layout)

@@ -40,10 +40,15 @@ class ContactZones:
 def contact_zones(events: ContactEvents, *, steps_per_turn: int) -> ContactZones:
     """The contact zones of a record.
 
-    A zone is a connected arc of the impulse histogram. Gaps of more than 10 deg separate zones. Specks, 2 % of the
-    impulse, are left out. A zone's centre is its mean angle by impulse. Its width is the arc from its first to its last
-    bin. A circle without such a gap is one zone of width 2 pi. Zones are symmetric where their widths, their spacings
-    and their impulses in each turn are equal. Over many turns even a chaotic rub has equal mean impulses.
+    A zone is a connected arc of the impulse histogram. Gaps of more than 10 deg separate zones. The lightest bins, 2 %
+    of the impulse in all, and then zones with less than 2 % are left out; `imbalance` counts them. A zone's centre is
+    its mean angle by impulse. Its width is the arc from its first to its last bin. A circle without such a gap is one
+    zone of width 2 pi. Zones are symmetric where their widths and spacings are equal within 3 deg and their impulses
+    in each turn within 5 % (rms). A single zone is symmetric only as the whole circle. Over many turns even a chaotic
+    rub has equal mean impulses.
+
+    - events: touches, in steps of equal angle.
+    - steps_per_turn: number of such steps in a turn.
     """
     density = impulse_histogram(events, steps_per_turn)
     if density.sum() <= 0:

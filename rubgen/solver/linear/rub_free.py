@@ -93,7 +93,8 @@ def rub_free_motion(system: SpinningSystem, steps: float = 0) -> RubFreeMotion:
     receptance of that harmonic. This leaves a small system for u alone, solved at equal places of a turn by Newton's
     method (one step where it is linear). For the scheme's motion 2 (cos m phi - 1) / dt^2 replaces -(m Omega)^2 and i
     sin(m phi) / dt replaces i m Omega, phi = 2 pi / steps: a run that starts from it keeps it. With laws of the support
-    there may be more than one motion. The iteration starts from the centre.
+    there may be more than one motion. The iteration starts from the motion without f, shortened to within the range of
+    the laws. Where it finds none, nothing is raised: `residual` is large.
     """
     forces = system.turning
     if forces is None:
