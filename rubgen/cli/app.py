@@ -90,7 +90,7 @@ def simulate(
     sample_rate_hz: Annotated[float, _option("Samples a second of the recorded channels.")] = 25600.0,
     sensors: Annotated[str, _option("Sensor set: default, rig, or the path of a TOML.")] = "default",
     signal_seconds: Annotated[float, _option("Length of the recorded signals: the end of the record.")] = 1.0,
-    seed: Annotated[int, _whole_number("Seed of the sensor noise.")] = 0,
+    seed: Annotated[int, _whole_number("Seed of the sensor noise and the surroundings.")] = 0,
     lyapunov: Annotated[bool | None, _option("Whether to compute the exponent of a steady run; on by default.")] = None,
     out: Annotated[Path | None, _option(f"File to write: {ENDINGS}.")] = None,
     force: Force = False,

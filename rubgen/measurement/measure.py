@@ -53,7 +53,7 @@ def measure(
     start = start_seconds(sensing, seconds, steps=response.record_steps, dt=response.dt)
     pulses = pulse_times(response, float(angle[0]), start, covered)
     streams = dict(zip((sensor.name for sensor in sensors), rng.spawn(len(sensors)), strict=True))
-    felt = _felt(surroundings, response, positions, rng) if surroundings else None
+    felt = _felt(surroundings, response, seconds, rng) if surroundings else None
     channels = _channels(response, sensing, positions, angle, streams, felt)
     timing: dict[str, TipTimes] = {}
     for sensor in sensors:
@@ -123,15 +123,14 @@ def _channels(
     return channels
 
 
-def _felt(surroundings: Surroundings, response: Response, positions: FloatArray, rng: np.random.Generator) -> Felt:
+def _felt(surroundings: Surroundings, response: Response, seconds: float, rng: np.random.Generator) -> Felt:
     """What the surroundings add to the taps over the tail of `response`."""
     steps = np.arange(response.tail_steps)
     tail = Tail(
         dt=response.dt,
         angle=shaft_angle(response, steps),
         speed=shaft_speed(response, steps),
-        first_sample=float(positions[0]) * response.dt,
-        seconds=float(positions[-1] - positions[0]) * response.dt,
+        seconds=seconds,
         blades=response.n_blades,
     )
     own = rng.bit_generator.seed_seq

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.scenario.surroundings import Surroundings
@@ -13,13 +14,15 @@ from rubgen.scenario.vary import DEFAULT_SPEED_RPM
 from rubgen.taps import CasingAcceleration, CentreDisplacement, Tap
 from rubgen.units import rad_per_s
 
-FELT = (CasingAcceleration, CentreDisplacement)
+DISTURBED_TAPS = (CasingAcceleration, CentreDisplacement)
 """The kinds of taps to which surroundings add."""
 BAND_HZ = (10.0, 20_000.0)
 """Band of the background."""
 HIGHEST_CIRCUMFERENTIAL = 6
-"""Circumferential orders 0 to 6 of the casing share the power of background and tones: sensors less than some 50
-degrees apart feel nearly the same."""
+"""Circumferential orders 0 to 6 of the casing share the power of background and tones: signals at places 15 degrees
+apart have the correlation 0.61, at places 30 degrees apart none."""
+PERIOD_MARGIN_S = 0.5
+"""The background repeats after the recorded seconds and this margin, whatever tail the sensors need."""
 BLADE_PASSING_HARMONICS = 3
 RUNOUT_ORDERS = 3
 
@@ -31,20 +34,28 @@ class Tail:
     dt: float
     angle: FloatArray
     speed: FloatArray
-    first_sample: float
-    """When the first sample is taken, in s from the first step."""
     seconds: float
     """Length of the recording in s."""
     blades: int
 
     @property
     def time(self) -> FloatArray:
-        """Time (steps,) in s."""
-        return np.asarray(self.dt * np.arange(self.angle.size), dtype=np.float64)
+        """Time (steps,) in s before the step after the last one: it does not depend on how long the tail is."""
+        return np.asarray(self.dt * np.arange(-self.angle.size, 0), dtype=np.float64)
+
+    @cached_property
+    def turned(self) -> FloatArray:
+        """Angle (steps,) in rad before the step after the last one, at which theta is 0; without jumps."""
+        angle = np.unwrap(self.angle)
+        return np.asarray(angle - angle[-1] + self.angle[-1] - 2 * np.pi)
+
+    def resolved(self, order: float) -> npt.NDArray[np.bool_]:
+        """Whether an order of the rotation has two steps a period (steps,). What has fewer is left out."""
+        return np.asarray(order * self.speed * self.dt < np.pi)
 
 
 class Felt:
-    """What one run's surroundings add to each tap; the random numbers of all parts are drawn at once, in fixed order.
+    """What one run's surroundings add to each tap; each part, and each tone, has random numbers of its own.
 
     Acceleration at the polar angle phi of the casing, x_n and y_n independent with equal power:
 
@@ -57,8 +68,7 @@ class Felt:
         level = (tail.speed / rad_per_s(DEFAULT_SPEED_RPM)) ** surroundings.speed_exponent
         self.level = np.asarray(level, dtype=np.float64)
         tones, runout, passing, drift, background = rng.spawn(5)
-        orders = 2 * HIGHEST_CIRCUMFERENTIAL + 1
-        self._tones = _complex_normal(tones, (len(surroundings.tones), orders))
+        self._tones = [_tone_field(each) for each in tones.spawn(len(surroundings.tones))]
         self._runout = runout.uniform(0, 2 * np.pi, RUNOUT_ORDERS)
         self._passing = passing.uniform(0, 2 * np.pi, BLADE_PASSING_HARMONICS)
         self._drift = float(drift.uniform(0, 2 * np.pi))
@@ -78,38 +88,44 @@ class Felt:
         if self.surroundings.blade_passing_m_per_s2:
             added += self.level * self._blade_passing(around)
         for tone, parts in zip(self.surroundings.tones, self._tones, strict=True):
-            fixed = 2 * np.pi * (tone.frequency_hz or 0.0) * self.tail.time
-            phase = fixed if tone.order is None else tone.order * np.unwrap(self.tail.angle)
-            added += tone.level_m_per_s2 * np.sqrt(2) * np.real(_at(parts, around) * np.exp(1j * phase))
+            if tone.order is None:
+                frequency = 2 * np.pi * (tone.frequency_hz or 0.0)
+                phase, heard = frequency * self.tail.time, np.asarray(frequency * self.tail.dt < np.pi)
+            else:
+                phase, heard = tone.order * self.tail.turned, self.tail.resolved(tone.order)
+            wave = np.sqrt(2) * np.real(_at(parts, around) * np.exp(1j * phase))
+            added += heard * tone.level_m_per_s2 * wave
         return added
 
     @cached_property
     def _lines(self) -> tuple[int, slice, ComplexArray]:
         """Length of the transform, its lines in the band, and their amplitudes (2 n + 1, lines): one draw for all."""
-        from scipy.fft import next_fast_len  # slow to import
-
-        length = int(next_fast_len(self.tail.angle.size, real=True))
+        length = round((self.tail.seconds + PERIOD_MARGIN_S) / self.tail.dt)
         resolution = 1 / (length * self.tail.dt)
-        lines = slice(int(np.ceil(BAND_HZ[0] / resolution)), min(int(BAND_HZ[1] / resolution), length // 2 - 1) + 1)
-        power = np.arange(lines.start, lines.stop, dtype=np.float64) ** -self.surroundings.background_slope
+        first, end = int(np.ceil(BAND_HZ[0] / resolution)), int(BAND_HZ[1] / resolution) + 1
+        power = np.arange(first, end, dtype=np.float64) ** -self.surroundings.background_slope
         rms = self.surroundings.background_m_per_s2 * np.sqrt(power / power.sum())
-        orders = 2 * HIGHEST_CIRCUMFERENTIAL + 1
-        return length, lines, rms * _complex_normal(self._background, (orders, power.size))
+        amplitudes = rms * _complex_normal(self._background, (2 * HIGHEST_CIRCUMFERENTIAL + 1, power.size))
+        lines = slice(first, min(end, (length + 1) // 2))  # the steps show no higher ones
+        return length, lines, amplitudes[:, : lines.stop - lines.start]
 
     def _broadband(self, around: float) -> FloatArray:
         """The background at a polar angle. A line of rms r is r sqrt(2) Re(z exp(i w t)), |z| = 1 in the mean."""
-        from scipy.fft import irfft
+        from scipy.fft import irfft  # slow to import
 
         length, lines, amplitudes = self._lines
         spectrum = np.zeros(length // 2 + 1, dtype=np.complex128)
         spectrum[lines] = _at(amplitudes, around) * (length / np.sqrt(2))
-        return np.asarray(irfft(spectrum, length)[: self.tail.angle.size])
+        return np.asarray(irfft(spectrum, length)[np.arange(-self.tail.angle.size, 0) % length])
 
     def _blade_passing(self, around: float) -> FloatArray:
         order = np.arange(1, BLADE_PASSING_HARMONICS + 1)
         shares = np.sqrt(2) / order / np.sqrt(np.sum(1 / order**2))
         turned = self.tail.blades * (self.tail.angle - around)
-        waves = (share * np.cos(k * turned + psi) for k, share, psi in zip(order, shares, self._passing, strict=True))
+        waves = (
+            share * np.cos(k * turned + psi) * self.tail.resolved(float(k * self.tail.blades))
+            for k, share, psi in zip(order, shares, self._passing, strict=True)
+        )
         return np.asarray(self.surroundings.blade_passing_m_per_s2 * sum(waves))
 
     def _under_a_probe(self, tap: CentreDisplacement) -> FloatArray:
@@ -118,9 +134,17 @@ class Felt:
         seen = around - self.tail.angle
         orders = np.arange(1, RUNOUT_ORDERS + 1)
         profile = sum(np.cos(m * seen - phase) / m for m, phase in zip(orders, self._runout, strict=True))
-        share = (self.tail.time - self.tail.first_sample) / self.tail.seconds
+        share = 1 + self.tail.time / self.tail.seconds
         drift = self.surroundings.shaft_drift_m * np.cos(around - self._drift) * share
         return np.asarray(self.surroundings.runout_m * profile + drift)
+
+
+def _tone_field(rng: np.random.Generator) -> ComplexArray:
+    """The parts of a tone (2 n + 1,): drawn, and scaled to a mean square of 1 over the circumference."""
+    parts = _complex_normal(rng, (2 * HIGHEST_CIRCUMFERENTIAL + 1,))
+    square = np.abs(parts) ** 2
+    mean = (square[0] + square[1:].sum() / 2) / (HIGHEST_CIRCUMFERENTIAL + 1)
+    return np.asarray(parts / np.sqrt(mean))
 
 
 def _complex_normal(rng: np.random.Generator, shape: tuple[int, ...]) -> ComplexArray:

@@ -17,6 +17,7 @@ from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.profiles import check_used
 from rubgen.scenario.recipe import Recipe
 from rubgen.scenario.scenario import ProfileName, Scenario
+from rubgen.scenario.surroundings import Surroundings
 from rubgen.scenario.vary import KEYS, vary
 
 P = ParamSpec("P")
@@ -26,10 +27,11 @@ TABLES = {
     "sensors": ("sample_rate_hz",),
     "output": ("signal_seconds",),
     "labels": ("lyapunov",),
-    "surroundings": ("background_m_per_s2", "blade_passing_m_per_s2", "runout_m"),
 }
 """The tables of a recipe with keys that are not drawn."""
+SURROUNDINGS_KEYS = ("background_m_per_s2", "blade_passing_m_per_s2", "runout_m")
 _RECIPE = TypeAdapter(Recipe)
+_SURROUNDINGS = TypeAdapter(Surroundings)
 
 
 def _known_keys(function: Callable[P, Scenario]) -> Callable[P, Scenario]:
@@ -110,7 +112,7 @@ def make_scenario(
     - `sample_rate_hz`: samples a second of the recorded channels, > 0
     - `sensors`: sensor set, "default", "rig" or the path of a TOML
     - `signal_seconds`: length of the recorded signals in s, the end of the record, at most all of it
-    - `seed`: seed of the sensor noise, >= 0
+    - `seed`: seed of the sensor noise and the surroundings, >= 0
     - `lyapunov`: whether to compute the Lyapunov exponent of a steady run, half as long again; yes when not given
 
     Warns (RubgenWarning) of values that are allowed but hardly intended. Raises UserError for an unknown machine or
@@ -123,7 +125,9 @@ def _checked_scenario(given: dict[str, Any]) -> Scenario:
     values, varied = _recipe_values(given), {key: given[key] for key in KEYS if key in given}
     recipe = validated("", values, _RECIPE, _key_alone)
     check_used("", {**values, "vary": varied}, _key_alone)
-    scenario = vary(replace(recipe.base, surroundings=recipe.surroundings_of(0)), varied)
+    levels = {key: given[key] for key in SURROUNDINGS_KEYS if key in given}
+    around = validated("", levels, _SURROUNDINGS) if levels else None
+    scenario = vary(replace(recipe.base, surroundings=around), varied)
     with recipe.machine_named():
         check_feasible(scenario)
     warn_of([scenario])

@@ -111,6 +111,17 @@ def shares(scenario: Scenario) -> Iterator[Share]:
         yield Share(key, part.amplitude_m, 0.02, machine.disk.bore_radius_m, "the radius of the disk's bore")
 
 
+def _tones(scenario: Scenario) -> Iterator[str]:
+    """Tones above half the sample rate, which no channel shows."""
+    limit, speed = scenario.sensing.sample_rate_hz / 2, scenario.operation.rotation_frequency_hz
+    for number, tone in enumerate(scenario.surroundings.tones if scenario.surroundings else ()):
+        hertz = tone.order_at(speed) * speed
+        if hertz > limit:
+            key = "frequency_hz" if tone.order is None else "order"
+            value = tone.frequency_hz if tone.order is None else tone.order
+            yield f"surroundings.tones.{number}.{key} = {value:g}: at {hertz:g} Hz; channels show at most {limit:g} Hz"
+
+
 def _shares(scenario: Scenario) -> Iterator[str]:
     for each in shares(scenario):
         if each.value > each.most * each.whole:
@@ -252,7 +263,7 @@ def _chains(scenario: Scenario) -> Iterator[str]:
             yield f"dropouts_per_s of {sensor.name} = {sensor.dropouts_per_s:g}: {lost}"
 
 
-CHECKS = (_usual, _shares, _sizes, _supports, _unbalance, _speed, _rate, _angles, _arrivals, _chains)
+CHECKS = (_usual, _shares, _sizes, _supports, _unbalance, _speed, _rate, _angles, _arrivals, _chains, _tones)
 
 
 def unbalances(machine: Machine) -> Iterator[tuple[str, float]]:

@@ -38,7 +38,7 @@ from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.profiles import check_used
 from rubgen.scenario.scenario import Labelling, Operation, ProfileName, Reduction, Scenario, Sensing
-from rubgen.scenario.surroundings import Surroundings, SurroundingsTable, drawn, extremes
+from rubgen.scenario.surroundings import SurroundingsTable, drawn, extremes
 from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, sobol_point, vary
 from rubgen.sensors.load import DEFAULT_SET, load_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
@@ -175,11 +175,8 @@ class Recipe(BaseModel):
             raise UserError(f"index = {index!r:.100}: give the number of a run, from 0 to below {MOST_RUNS:,}")
         point = sobol_point(self.seed, index)
         values = {entry.key: distribution.quantile(point[entry.key]) for entry, distribution in self.distributions()}
-        return vary(replace(self.base, index=index, surroundings=self.surroundings_of(index)), values)
-
-    def surroundings_of(self, index: int) -> Surroundings | None:
-        """The surroundings of run number `index`; None where the recipe has none."""
-        return drawn(self.surroundings, self.seed, index) if self.surroundings else None
+        around = drawn(self.surroundings, self.seed, index) if self.surroundings else None
+        return vary(replace(self.base, index=index, surroundings=around), values)
 
     def corners(self, source: str = "") -> Iterator[Scenario]:
         """Scenarios at the extreme values of each key, the other keys at their first value. Checks use them.

@@ -55,6 +55,13 @@ def test_a_single_run_takes_the_same_keys():
     scenario = make_scenario(background_m_per_s2=50, runout_m=2e-6)
     assert scenario.surroundings == Surroundings(background_m_per_s2=50, runout_m=2e-6)
     assert make_scenario().surroundings is None
+    with pytest.raises(UserError, match=r"^background_m_per_s2 = "):
+        make_scenario(background_m_per_s2={"uniform": [1, 2]})
+
+
+def test_a_tone_above_half_the_sample_rate_is_warned_of():
+    with pytest.warns(RubgenWarning, match=r"tones\.0\.order = 100: at 16666\.7 Hz; channels show at most 12800 Hz"):
+        recipe(tones=[{"order": 100, "level_m_per_s2": 1}])
 
 
 @pytest.mark.parametrize(

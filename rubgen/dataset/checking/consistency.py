@@ -21,7 +21,7 @@ from rubgen.labels.harmonics import FLOOR, MARKED_TAP, RATIO
 from rubgen.labels.labels import Motion
 from rubgen.measurement.channel import Float32Array
 from rubgen.measurement.shaft import NOTCH_ANGLE
-from rubgen.measurement.surroundings import FELT
+from rubgen.measurement.surroundings import DISTURBED_TAPS
 from rubgen.scenario import Sensing
 from rubgen.sensors.kinds.once_per_rev import OncePerRev
 from rubgen.sensors.kinds.proximity import Proximity
@@ -107,7 +107,7 @@ def is_faultless(sensor: SampledSensor, sensing: Sensing) -> bool:
 
 def _shows_the_motion(sensor: SampledSensor, sensing: Sensing, row: Row) -> bool:
     """Whether a sensor gives the true motion but for noise: neither faults nor surroundings disturb it."""
-    surrounded = "background_m_per_s2" in row and isinstance(sensor.tap, FELT)
+    surrounded = "background_m_per_s2" in row and isinstance(sensor.tap, DISTURBED_TAPS)
     return not surrounded and is_faultless(sensor, sensing)
 
 
