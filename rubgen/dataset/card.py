@@ -88,7 +88,11 @@ def _record(recipe: dict[str, Any]) -> str:
     """What labels and signals are computed from."""
     steady = recipe["operation"]["profile"] == "steady"
     record = f"{recipe['simulation']['record_turns']} turns" if steady else "the whole record, `duration_s`"
-    return f"The labels come from {record}; the signals are\nthe last {recipe['output']['signal_seconds']:g} s of it."
+    text = f"The labels come from {record}; the signals are\nthe last {recipe['output']['signal_seconds']:g} s of it."
+    if "surroundings" in recipe:
+        felt = "Accelerometers on the casing and proximity probes also feel surroundings"
+        text += f"\n{felt}; labels and clean channels do not."
+    return text
 
 
 def _limits(recipe: dict[str, Any]) -> str:

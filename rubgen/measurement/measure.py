@@ -9,7 +9,7 @@ from rubgen.measurement.chain import half_width_seconds, late_seconds, start_sec
 from rubgen.measurement.channel import Channel, Recording
 from rubgen.measurement.sampled import feed_of, filtered, recorded
 from rubgen.measurement.shaft import pulse_channel, pulse_times, shaft_angle, shaft_speed
-from rubgen.measurement.surroundings import Felt, Tail
+from rubgen.measurement.surroundings import Disturbances, Tail
 from rubgen.scenario import Sensing
 from rubgen.scenario.costs import STEPS_PER_SAMPLE
 from rubgen.scenario.surroundings import Surroundings
@@ -53,8 +53,8 @@ def measure(
     start = start_seconds(sensing, seconds, steps=response.record_steps, dt=response.dt)
     pulses = pulse_times(response, float(angle[0]), start, covered)
     streams = dict(zip((sensor.name for sensor in sensors), rng.spawn(len(sensors)), strict=True))
-    felt = _felt(surroundings, response, seconds, rng) if surroundings else None
-    channels = _channels(response, sensing, positions, angle, streams, felt)
+    disturbances = _disturbances(surroundings, response, seconds, rng) if surroundings else None
+    channels = _channels(response, sensing, positions, angle, streams, disturbances)
     timing: dict[str, TipTimes] = {}
     for sensor in sensors:
         if isinstance(sensor, OncePerRev):
@@ -108,11 +108,11 @@ def _channels(
     positions: FloatArray,
     angle: FloatArray,
     streams: dict[str, np.random.Generator],
-    felt: Felt | None,
+    disturbances: Disturbances | None,
 ) -> dict[str, Channel]:
     """The sampled channels and the pulse, in the order of the set."""
     shaft = shaft_angle(response, np.arange(response.tail_steps))
-    feeds = [feed_of(sensor, response, shaft, sensing.set, felt) for sensor in sensing.set.sampled]
+    feeds = [feed_of(sensor, response, shaft, sensing.set, disturbances) for sensor in sensing.set.sampled]
     samples = filtered(feeds, positions, dt=response.dt, sensing=sensing)
     channels: dict[str, Channel] = {}
     for sensor in sensing.set.sensors:
@@ -123,7 +123,9 @@ def _channels(
     return channels
 
 
-def _felt(surroundings: Surroundings, response: Response, seconds: float, rng: np.random.Generator) -> Felt:
+def _disturbances(
+    surroundings: Surroundings, response: Response, seconds: float, rng: np.random.Generator
+) -> Disturbances:
     """What the surroundings add to the taps over the tail of `response`."""
     steps = np.arange(response.tail_steps)
     tail = Tail(
@@ -135,4 +137,4 @@ def _felt(surroundings: Surroundings, response: Response, seconds: float, rng: n
     )
     own = rng.bit_generator.seed_seq
     stream = np.random.SeedSequence(own.entropy, spawn_key=(*own.spawn_key, SURROUNDINGS_STREAM))  # type: ignore[attr-defined]
-    return Felt(surroundings, tail, np.random.default_rng(stream))
+    return Disturbances(surroundings, tail, np.random.default_rng(stream))

@@ -9,7 +9,7 @@ from rubgen.arrays import FloatArray
 from rubgen.measurement.chain import adc_step, band_limit, digitise
 from rubgen.measurement.channel import Channel
 from rubgen.measurement.front_end import drop_out, front_end, miscalibrate, noise, noise_level
-from rubgen.measurement.surroundings import Felt
+from rubgen.measurement.surroundings import Disturbances
 from rubgen.scenario import Sensing
 from rubgen.sensors.sensor import SampledSensor
 from rubgen.sensors.sensor_set import SensorSet
@@ -42,7 +42,7 @@ class Samples:
 
 
 def feed_of(
-    sensor: SampledSensor, response: Response, angle: FloatArray, sensors: SensorSet, felt: Felt | None
+    sensor: SampledSensor, response: Response, angle: FloatArray, sensors: SensorSet, disturbances: Disturbances | None
 ) -> Feed:
     """The input of the filter from one sensor. The real signal includes the surroundings, the ideal signal does not.
 
@@ -50,10 +50,10 @@ def feed_of(
     - response: true response with the sensor's tap.
     - angle (steps,): theta at each step, rad.
     - sensors: the set, with the shaft's profile.
-    - felt: the surroundings at the sensors; None without any.
+    - disturbances: the surroundings at the sensors; None without any.
     """
     true = response.taps[sensor.tap.name]
-    added = felt.by(sensor.tap) if felt else None
+    added = disturbances.by(sensor.tap) if disturbances else None
     factor, zero = sensor.scale
 
     def in_unit(signal: FloatArray) -> FloatArray:

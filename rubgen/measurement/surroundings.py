@@ -54,7 +54,7 @@ class Tail:
         return np.asarray(order * self.speed * self.dt < np.pi)
 
 
-class Felt:
+class Disturbances:
     """What one run's surroundings add to each tap; each part, and each tone, has random numbers of its own.
 
     Acceleration at the polar angle phi of the casing, x_n and y_n independent with equal power:

@@ -45,7 +45,7 @@ class EnergyIdentity:
         return abs(energy - self.start_energy - float(done)) / scale if scale > 0 else 0.0
 
     def result(self, times: float = 1.0) -> dict[str, Any]:
-        """The `EnergyBook` of a run that repeats the stepper's turns so many times."""
+        """The `EnergyBalance` of a run that repeats the stepper's turns so many times."""
         works = [times * float(work) for work in self.stepper.state.works]
         support = [times * float(work) for work in self.stepper.state.support.works]
         wear = 0.0 - float(self.stepper.state.wear.sums[WORK])

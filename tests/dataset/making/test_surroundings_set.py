@@ -16,7 +16,7 @@ RECIPE = {
     "vary": {"speed_rpm": 10000},
     "labels": {"lyapunov": False},
     "sensors": {"keep_clean": True},
-    "output": {"signal_seconds": 0.2, "formats": ["parquet", "mcap"]},
+    "output": {"signal_seconds": 1.0, "formats": ["parquet", "mcap"]},
 }
 SURROUNDINGS = {
     "background_m_per_s2": 80,
@@ -52,6 +52,9 @@ def test_channels_differ_and_clean_ones_do_not(sets):
 def test_nothing_is_wrong_with_it_and_its_files_say_what_was_added(sets):
     _, plant = sets
     assert verify(plant.layout.root) == []
-    assert "background_m_per_s2" in plant.layout.card.read_text()
+    card = plant.layout.card.read_text()
+    assert "`background_m_per_s2`" in card
+    assert "also feel surroundings" in card
+    assert "surroundings" not in sets[0].layout.card.read_text()
     fields = json.loads(plant.layout.croissant.read_text())["recordSet"][0]["field"]
     assert "runs/runout_m" in [field["@id"] for field in fields]
