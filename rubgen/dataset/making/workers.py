@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -25,6 +26,7 @@ ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "RAYON_NUM_THREADS"), "1"
 )
 WAITING_PER_WORKER = 2
+EXIT_CODE_TRIES = 100
 _ONE_START = threading.Lock()
 
 
@@ -169,13 +171,11 @@ def _end(pool: ProcessPoolExecutor | None, context: _OwnMain) -> None:
         if process.pid is not None:
             process.terminate()
             process.join()
-    if pool is not None:
-        pool.shutdown(wait=True)  # its thread has seen the processes end, and gives back what they shared
 
 
 def _how_it_ended(context: _OwnMain) -> str:
     """How the process ended that broke the pool, from the system. The pool ends the others by SIGTERM."""
-    codes = [process.exitcode for process in context.workers if process.exitcode is not None]
+    codes = [code for process in context.workers if (code := _exit_code(process)) is not None]
     if not codes:
         return "ended, and the system does not say how"
     first = next((code for code in codes if code != -signal.SIGTERM), -signal.SIGTERM)
@@ -183,6 +183,15 @@ def _how_it_ended(context: _OwnMain) -> str:
         return f"ended with exit code {first}"
     names = {number.value: number.name for number in signal.Signals}
     return f"was ended by {names.get(-first, f'signal {-first}')}"
+
+
+def _exit_code(process: _Worker) -> int | None:
+    """The exit code of an ended process. The system gives it to one thread only; wait until that one has noted it."""
+    for _ in range(EXIT_CODE_TRIES):
+        if process.exitcode is not None:
+            break
+        time.sleep(0.01)
+    return process.exitcode
 
 
 def _start_worker() -> None:

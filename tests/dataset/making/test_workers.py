@@ -43,6 +43,22 @@ def test_a_worker_that_is_killed_is_told_by_its_signal():
         list(unordered(pool, 1, _kill_this_process, [()]))
 
 
+class _LateProcess:
+    """A process whose exit code another thread notes after some questions."""
+
+    def __init__(self, code, late):
+        self.codes = iter([None] * late + [code] * 9)
+
+    @property
+    def exitcode(self):
+        return next(self.codes)
+
+
+def test_the_pool_s_own_signal_is_not_named_while_the_first_code_is_being_noted():
+    processes = [_LateProcess(-signal.SIGKILL, late=3), _LateProcess(-signal.SIGTERM, late=0)]
+    assert workers._how_it_ended(SimpleNamespace(workers=processes)) == "was ended by SIGKILL"
+
+
 def test_workers_start_where_signals_cannot_be_masked(monkeypatch):
     there = {name: value for name, value in vars(signal).items() if name != "pthread_sigmask"}
     monkeypatch.setattr(workers, "signal", SimpleNamespace(**there))
