@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rubgen.cli.printing import check_new_file, say, write_file
+from rubgen.cli.printing import REPORT, check_new_file, say, write_file
 from rubgen.progress import step
 from rubgen.report.figures import Choice, make_figure
 
@@ -25,7 +25,7 @@ def report_command(directory: Path, out: Path | None, *, force: bool) -> int:
     """Write the page."""
     from rubgen.report.page import write_report
 
-    path = out or directory / "report.html"
+    path = out or directory / REPORT
     if directory.is_dir():
         check_new_file("--out", path, (".html",), force=force)
     with step("draw the page", "examples"):

@@ -10,7 +10,7 @@ import pytest
 
 import rubgen
 from rubgen.cli.app import app, simulate
-from rubgen.cli.printing import write_file
+from rubgen.cli.printing import check_new_file, write_file
 from rubgen.errors import UserError
 from rubgen.io.mcap import read_mcap
 from rubgen.scenario.vary import KEYS
@@ -257,6 +257,19 @@ def test_a_file_stays_whole_where_its_replacement_cannot_be_written(tmp_path):
         write_file("--out", path, fail)
     assert path.read_bytes() == b"mine"
     assert [file.name for file in tmp_path.iterdir()] == ["run.mcap"]
+
+
+def test_no_file_is_written_into_a_data_set(tmp_path):
+    for name in ("manifest.json", "manifest.json.sha256"):
+        (tmp_path / name).write_bytes(b"")
+    folder = tmp_path / "data"
+    folder.mkdir()
+    said = rf"^--out {folder}/run.mcap: lies in the data set {tmp_path}, which lists its own; choose another place$"
+    with pytest.raises(UserError, match=said):
+        check_new_file("--out", folder / "run.mcap", (".mcap",), force=True)
+    check_new_file("--out", tmp_path / "report.html", (".html",))
+    (tmp_path / "manifest.json.sha256").unlink()  # the manifest of something else
+    check_new_file("--out", folder / "run.mcap", (".mcap",))
 
 
 def test_a_folder_is_never_replaced(run, tmp_path):
