@@ -73,7 +73,7 @@ def check_new_file(option: str, path: Path, endings: tuple[str, ...], *, force: 
         raise UserError(f"{option} {path}: there is no directory {path.parent}; make it first")
     data_set = next((folder for folder in path.resolve().parents if _is_data_set(folder)), None)
     if data_set and path.name != REPORT:
-        raise UserError(f"{option} {path}: lies in the data set {data_set}, which lists its own; choose another place")
+        raise UserError(f"{option} {path}: lies in the data set {data_set}; choose a place outside of it")
     if path.exists() and not path.is_file():
         raise UserError(f"{option} {path}: exists already and is no file; choose another name")
     if path.exists() and not force:

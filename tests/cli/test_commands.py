@@ -264,7 +264,7 @@ def test_no_file_is_written_into_a_data_set(tmp_path):
         (tmp_path / name).write_bytes(b"")
     folder = tmp_path / "data"
     folder.mkdir()
-    said = rf"^--out {folder}/run.mcap: lies in the data set {tmp_path}, which lists its own; choose another place$"
+    said = rf"^--out {folder}/run.mcap: lies in the data set {tmp_path}; choose a place outside of it$"
     with pytest.raises(UserError, match=said):
         check_new_file("--out", folder / "run.mcap", (".mcap",), force=True)
     check_new_file("--out", tmp_path / "report.html", (".html",))
