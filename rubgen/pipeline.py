@@ -88,7 +88,7 @@ def simulate(scenario: Scenario) -> Run:
     """
     if not isinstance(scenario, Scenario):
         raise UserError(f"{scenario!r:.200}: is no scenario; give rubgen.make_scenario(...) or recipe.scenario(0)")
-    operation, sensing = scenario.operation, scenario.sensing
+    operation, sensing, seconds = scenario.operation, scenario.sensing, scenario.signal_seconds
     with threadpool_limits(1, user_api="blas"):
         model = reduce(scenario.machine, scenario.reduction)
         with _shown_step():
@@ -97,7 +97,7 @@ def simulate(scenario: Scenario) -> Run:
                 operation,
                 scenario.contact,
                 Wants(
-                    tail_seconds=scenario.signal_seconds + margin_seconds(sensing, scenario.signal_seconds),
+                    tail_seconds=seconds + margin_seconds(sensing, seconds, scenario.frame),
                     sample_rate_hz=sensing.fastest_hz,
                     taps=sensing.set.taps,
                     companion=scenario.labelling.lyapunov and operation.profile == "steady",
@@ -108,7 +108,7 @@ def simulate(scenario: Scenario) -> Run:
             return Run(scenario=scenario, response=response, recording=None, labels=None)
         rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(scenario.index,)))
         recording = measure(
-            response, sensing, seconds=scenario.signal_seconds, rng=rng, surroundings=scenario.surroundings
+            response, sensing, seconds=seconds, rng=rng, surroundings=scenario.surroundings, frame=scenario.frame
         )
         return Run(scenario=scenario, response=response, recording=recording, labels=label(response))
 

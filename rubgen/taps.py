@@ -51,6 +51,17 @@ class SupportForce(Tap):
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
+class HousingAcceleration(Tap):
+    """Acceleration of the bearing housing along a direction, in m/s2: of the frame, from the force on the support.
+
+    It is no tap of the solver. `rubgen.measurement.frame` makes it from the taps of the force.
+    """
+
+    UNIT: ClassVar[str] = "m/s2"
+    angle_deg: Direction
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
 class ContactForce(Tap):
     """Sum of the normal contact forces, in N; peaks go as 1/dt."""
 

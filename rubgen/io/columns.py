@@ -107,7 +107,8 @@ def _touches() -> list[Column]:
 def _surroundings() -> list[Column]:
     return [
         *(Column(each.key, "number", each.unit, each.meaning) for each in SURROUNDINGS),
-        Column("tones_order", "numbers", "1", "frequency of each tone over that of the rotation at speed_rpm"),
+        Column("tones_order", "numbers", "1", "order of each tone; 0 where its frequency is fixed"),
+        Column("tones_frequency_hz", "numbers", "Hz", "fixed frequency of each tone; 0 where it has an order"),
         Column("tones_m_per_s2", "numbers", "m/s2", "rms acceleration of each tone on the casing"),
     ]
 

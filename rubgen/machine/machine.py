@@ -4,13 +4,14 @@ All lengths in m, stiffness in N/m or N m/rad, density in kg/m3. Values are chec
 """
 
 import math
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 from pydantic.dataclasses import dataclass
 
 from rubgen.brief import brief
+from rubgen.machine.frame import Frame
 from rubgen.machine.quantities import (
     STRICT,
     Angle,
@@ -197,7 +198,7 @@ class Machine:
 
     `unbalance_kg_m` is on the disk at `unbalance_angle_deg` from blade 0, in the sense of rotation. `unbalances` are
     further ones. Gravity acts along -Y, only on the blisk; the casing's own sag is part of its shape. 0 is a vertical
-    axis.
+    axis. The `frame` takes forces of the disk's support to sensors; without one they feel no such forces.
     """
 
     name: Annotated[str, Field(min_length=1)]
@@ -210,6 +211,7 @@ class Machine:
     unbalance_angle_deg: Angle = 0.0
     unbalances: tuple[Unbalance, ...] = ()
     gravity_m_per_s2: Gravity = 0.0
+    frame: Frame | None = None
 
     __repr__ = brief
 
@@ -220,6 +222,12 @@ class Machine:
                 last = self.blades.count - 1
                 raise ValueError(f"unbalances: there is no blade {each.blade}; give 0 to {last}")
         return self
+
+    @model_serializer(mode="wrap")
+    def _without_absent_parts(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """The values without parts that the machine does not have: a key that is new changes no old machine's JSON."""
+        values: dict[str, Any] = handler(self)
+        return {key: value for key, value in values.items() if key != "frame" or value is not None}
 
     @property
     def tip_radius_m(self) -> float:

@@ -150,6 +150,21 @@ WearRate = Annotated[
     float, real(gt=0, le=1, usual=Usual(1e-18, 1e-7, "linings wear 1e-14 to 1e-9", (("mm3/(N m)", 1e-9),), "m2/N"))
 ]
 
+# Frame between support and casing.
+FRAME_HZ, MODAL_KG = (10.0, 1e6), (1e-6, 1e9)
+FrameFrequency = Annotated[
+    float,
+    real(
+        ge=FRAME_HZ[0],
+        le=FRAME_HZ[1],
+        usual=Usual(100, 20_000, "frames have modes at 300 to 8,000 Hz", (("kHz", 1e3),), "Hz"),
+    ),
+]
+FrameDamping = Annotated[float, real(ge=1e-3, lt=1, usual=Usual(0.002, 0.2, "frames have 0.01 to 0.03", PERCENT))]
+ModalMass = Annotated[float, real(ge=MODAL_KG[0], le=MODAL_KG[1])]
+CasingShare = Annotated[float, real(ge=-1e3, le=1e3, usual=Usual(-10, 10, "casing and bearing move about equally"))]
+FrameOrder = Annotated[int, _whole(ge=0, le=100)]
+
 # Numbers of parts, of the mesh and of modes.
 BladeCount = Annotated[int, _whole(ge=1, le=1000)]
 BladeElements = Annotated[int, _whole(ge=1, le=200)]
@@ -204,6 +219,10 @@ AdcBits = Annotated[int, _whole(ge=8, le=32)]
 BackgroundLevel = Annotated[
     float,
     real(ge=0, le=1e9, usual=Usual(0, 1e4, "machines shake with 0.1 to 1,000", (("mm/s2", 1e-3),), "m/s2")),
+]
+PathGain = Annotated[float, real(ge=0, le=1e6, usual=Usual(0, 100, "1 is the machine's own frame"))]
+Spread = Annotated[
+    float, real(ge=0, le=1, usual=Usual(0, 0.3, "machines of one kind differ by a few percent", PERCENT))
 ]
 SpectralSlope = Annotated[float, real(ge=0, le=4)]
 SpeedExponent = Annotated[float, real(ge=0, le=10)]

@@ -5,6 +5,8 @@ from functools import lru_cache
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.machine.frame import Frame
+from rubgen.measurement.frame import frame_memory_seconds
 from rubgen.measurement.front_end import memory_seconds
 from rubgen.scenario import Sensing
 
@@ -50,14 +52,15 @@ def start_seconds(sensing: Sensing, seconds: float, *, steps: int, dt: float) ->
     return float(end - (late_seconds(sensing, seconds) + (round(seconds * rate) - 1) / rate))
 
 
-def margin_seconds(sensing: Sensing, seconds: float = 0.0) -> float:
+def margin_seconds(sensing: Sensing, seconds: float = 0.0, frame: Frame | None = None) -> float:
     """Signal in s that a recording of `seconds` needs beyond itself: half the filter's length on either side.
 
-    Early or late clocks need more, and the filters of sensors with dynamics need their memory. Two sample periods are
-    added, so that rounding to whole steps and samples is always covered.
+    Early or late clocks need more. The filters of sensors with dynamics and the modes of the `frame` that sensors feel
+    need their memory. Two sample periods are added, so that rounding to whole steps and samples is always covered.
     """
     margin = 2 * half_width_seconds(sensing.sample_rate_hz) + 2 / sensing.sample_rate_hz
     margin += max((memory_seconds(each) for each in sensing.set.sampled), default=0.0)
+    margin += frame_memory_seconds(frame) if frame else 0.0
     return margin + late_seconds(sensing, seconds) + late_seconds(sensing, seconds, sign=-1)
 
 

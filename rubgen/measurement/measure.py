@@ -4,10 +4,12 @@ import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
+from rubgen.machine.frame import Frame
 from rubgen.measurement.blade_tip_timing import TipTimes, blurred, tip_times
 from rubgen.measurement.chain import half_width_seconds, late_seconds, start_seconds
 from rubgen.measurement.channel import Channel, Recording
-from rubgen.measurement.sampled import feed_of, filtered, recorded
+from rubgen.measurement.frame import FrameMotion, spread
+from rubgen.measurement.sampled import Source, feed_of, filtered, recorded
 from rubgen.measurement.shaft import pulse_channel, pulse_times, shaft_angle, shaft_speed
 from rubgen.measurement.surroundings import Disturbances, Tail
 from rubgen.scenario import Sensing
@@ -20,6 +22,8 @@ from rubgen.solver.response import Response
 
 SURROUNDINGS_STREAM = 2**32 - 1
 """The child of a run's random numbers that its surroundings have: far beyond those of sensors."""
+FRAME_STREAM = SURROUNDINGS_STREAM - 1
+"""The child that draws the frame."""
 
 
 def measure(
@@ -29,6 +33,7 @@ def measure(
     seconds: float,
     rng: np.random.Generator,
     surroundings: Surroundings | None = None,
+    frame: Frame | None = None,
 ) -> Recording:
     """The channels and events of a run by the sensors of `sensing.set`.
 
@@ -42,9 +47,10 @@ def measure(
     - seconds: length of the recording, > 0, at the end of the record.
     - rng: random numbers.
     - surroundings: what sensors feel beside the motion; nothing with None.
+    - frame: of the machine, which takes the force of the disk's support to sensors.
 
-    Raises UserError where the tail is too short for `seconds` and the filter, or the step rate is below 2.56 sample
-    rates.
+    Raises UserError where the tail is too short for `seconds` and the filter, where the step rate is below 2.56 sample
+    rates, and where a sensor or the surroundings need a frame and there is none.
     """
     rate, sensors = sensing.sample_rate_hz, sensing.set.sensors
     positions = sample_positions(response, sensing, seconds)
@@ -53,8 +59,10 @@ def measure(
     start = start_seconds(sensing, seconds, steps=response.record_steps, dt=response.dt)
     pulses = pulse_times(response, float(angle[0]), start, covered)
     streams = dict(zip((sensor.name for sensor in sensors), rng.spawn(len(sensors)), strict=True))
-    disturbances = _disturbances(surroundings, response, seconds, rng) if surroundings else None
-    channels = _channels(response, sensing, positions, angle, streams, disturbances)
+    motion = _frame_motion(frame, response, surroundings, rng) if frame else None
+    disturbances = _disturbances(surroundings, response, seconds, rng, motion) if surroundings else None
+    source = Source(response, shaft_angle(response, np.arange(response.tail_steps)), motion, disturbances)
+    channels = _channels(source, sensing, positions, angle, streams)
     timing: dict[str, TipTimes] = {}
     for sensor in sensors:
         if isinstance(sensor, OncePerRev):
@@ -103,17 +111,15 @@ def sample_positions(response: Response, sensing: Sensing, seconds: float) -> Fl
 
 
 def _channels(
-    response: Response,
+    source: Source,
     sensing: Sensing,
     positions: FloatArray,
     angle: FloatArray,
     streams: dict[str, np.random.Generator],
-    disturbances: Disturbances | None,
 ) -> dict[str, Channel]:
     """The sampled channels and the pulse, in the order of the set."""
-    shaft = shaft_angle(response, np.arange(response.tail_steps))
-    feeds = [feed_of(sensor, response, shaft, sensing.set, disturbances) for sensor in sensing.set.sampled]
-    samples = filtered(feeds, positions, dt=response.dt, sensing=sensing)
+    feeds = [feed_of(sensor, source, sensing.set) for sensor in sensing.set.sampled]
+    samples = filtered(feeds, positions, dt=source.response.dt, sensing=sensing)
     channels: dict[str, Channel] = {}
     for sensor in sensing.set.sensors:
         if isinstance(sensor, SampledSensor):
@@ -123,8 +129,21 @@ def _channels(
     return channels
 
 
+def _frame_motion(
+    frame: Frame, response: Response, surroundings: Surroundings | None, rng: np.random.Generator
+) -> FrameMotion:
+    """The motion of the run's own frame under the force on the disk's support."""
+    own = spread(frame, surroundings.frame_spread, _stream(rng, FRAME_STREAM)) if surroundings else frame
+    force = (response.taps["support_force_x"], response.taps["support_force_y"])
+    return FrameMotion(frame=own, force=force, dt=response.dt)
+
+
 def _disturbances(
-    surroundings: Surroundings, response: Response, seconds: float, rng: np.random.Generator
+    surroundings: Surroundings,
+    response: Response,
+    seconds: float,
+    rng: np.random.Generator,
+    motion: FrameMotion | None,
 ) -> Disturbances:
     """What the surroundings add to the taps over the tail of `response`."""
     steps = np.arange(response.tail_steps)
@@ -135,6 +154,11 @@ def _disturbances(
         seconds=seconds,
         blades=response.n_blades,
     )
+    return Disturbances(surroundings, tail, _stream(rng, SURROUNDINGS_STREAM), motion)
+
+
+def _stream(rng: np.random.Generator, child: int) -> np.random.Generator:
+    """A child of the run's random numbers, whatever other children there are."""
     own = rng.bit_generator.seed_seq
-    stream = np.random.SeedSequence(own.entropy, spawn_key=(*own.spawn_key, SURROUNDINGS_STREAM))  # type: ignore[attr-defined]
-    return Disturbances(surroundings, tail, np.random.default_rng(stream))
+    sequence = np.random.SeedSequence(own.entropy, spawn_key=(*own.spawn_key, child))  # type: ignore[attr-defined]
+    return np.random.default_rng(sequence)

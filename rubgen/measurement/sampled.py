@@ -6,14 +6,38 @@ from dataclasses import dataclass
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.errors import UserError
 from rubgen.measurement.chain import adc_step, band_limit, digitise
 from rubgen.measurement.channel import Channel
+from rubgen.measurement.frame import FrameMotion
 from rubgen.measurement.front_end import drop_out, front_end, miscalibrate, noise, noise_level
 from rubgen.measurement.surroundings import Disturbances
 from rubgen.scenario import Sensing
 from rubgen.sensors.sensor import SampledSensor
 from rubgen.sensors.sensor_set import SensorSet
 from rubgen.solver.response import Response
+from rubgen.taps import HousingAcceleration, Tap
+
+
+@dataclass(frozen=True)
+class Source:
+    """What the sensors of a run may feel."""
+
+    response: Response
+    angle: FloatArray
+    """Theta at each step of the tail (steps,), rad."""
+    frame: FrameMotion | None
+    """Motion of the machine's frame; None without one."""
+    disturbances: Disturbances | None
+    """The surroundings at the sensors; None without any."""
+
+    def truth(self, tap: Tap) -> FloatArray:
+        """The true signal (steps,) of a tap. Raises UserError where it needs a frame and there is none."""
+        if not isinstance(tap, HousingAcceleration):
+            return self.response.taps[tap.name]
+        if self.frame is None:
+            raise UserError(f"{tap.name}: feels only the machine's [frame], which is missing")
+        return self.frame.of_housing(tap.angle_deg)
 
 
 @dataclass(frozen=True)
@@ -41,26 +65,23 @@ class Samples:
     real: FloatArray
 
 
-def feed_of(
-    sensor: SampledSensor, response: Response, angle: FloatArray, sensors: SensorSet, disturbances: Disturbances | None
-) -> Feed:
+def feed_of(sensor: SampledSensor, source: Source, sensors: SensorSet) -> Feed:
     """The input of the filter from one sensor. The real signal includes the surroundings, the ideal signal does not.
 
     - sensor: the sensor.
-    - response: true response with the sensor's tap.
-    - angle (steps,): theta at each step, rad.
+    - source: true response with the sensor's tap, and all else that it feels.
     - sensors: the set, with the shaft's profile.
-    - disturbances: the surroundings at the sensors; None without any.
     """
-    true = response.taps[sensor.tap.name]
-    added = disturbances.by(sensor.tap) if disturbances else None
+    true = source.truth(sensor.tap)
+    added = source.disturbances.by(sensor.tap) if source.disturbances else None
     factor, zero = sensor.scale
 
     def in_unit(signal: FloatArray) -> FloatArray:
         return signal if (factor, zero) == (1.0, 0.0) else zero + factor * signal
 
-    ideal, seen = in_unit(true), sensor.disturbed(true if added is None else true + added, angle, sensors.shaft_runout)
-    return Feed(sensor, ideal, front_end(sensor, ideal if seen is true else in_unit(seen), response.dt))
+    felt = true if added is None else true + added
+    ideal, seen = in_unit(true), sensor.disturbed(felt, source.angle, sensors.shaft_runout)
+    return Feed(sensor, ideal, front_end(sensor, ideal if seen is true else in_unit(seen), source.response.dt))
 
 
 def filtered(feeds: Sequence[Feed], positions: FloatArray, *, dt: float, sensing: Sensing) -> dict[str, Samples]:

@@ -9,12 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from rubgen.arrays import ComplexArray, FloatArray
+from rubgen.errors import UserError
+from rubgen.measurement.frame import FrameMotion
 from rubgen.scenario.surroundings import Surroundings
 from rubgen.scenario.vary import DEFAULT_SPEED_RPM
-from rubgen.taps import CasingAcceleration, CentreDisplacement, Tap
+from rubgen.taps import CasingAcceleration, CentreDisplacement, HousingAcceleration, Tap
 from rubgen.units import rad_per_s
 
-DISTURBED_TAPS = (CasingAcceleration, CentreDisplacement)
+DISTURBED_TAPS = (CasingAcceleration, CentreDisplacement, HousingAcceleration)
 """The kinds of taps to which surroundings add."""
 BAND_HZ = (10.0, 20_000.0)
 """Band of the background."""
@@ -61,9 +63,17 @@ class Disturbances:
 
     - background and tones: sum over n = 0..6 of x_n cos(n phi) + y_n sin(n phi), so that near sensors agree
     - blade passing: sum over k = 1..3 of cos(k N_b (theta - phi) + psi_k) / k, a pattern that turns with the blades
+    - the motion of the machine's frame
+
+    A bearing housing moves as one body: it feels the part n = 1 of background and tones, with their whole power.
     """
 
-    def __init__(self, surroundings: Surroundings, tail: Tail, rng: np.random.Generator):
+    def __init__(
+        self, surroundings: Surroundings, tail: Tail, rng: np.random.Generator, frame: FrameMotion | None = None
+    ):
+        if surroundings.path_gain and frame is None:
+            raise UserError("surroundings.path_gain: needs the machine's [frame], which is missing")
+        self.frame = frame
         self.surroundings, self.tail = surroundings, tail
         level = (tail.speed / rad_per_s(DEFAULT_SPEED_RPM)) ** surroundings.speed_exponent
         self.level = np.asarray(level, dtype=np.float64)
@@ -77,23 +87,31 @@ class Disturbances:
     def by(self, tap: Tap) -> FloatArray | None:
         """What is added to the true signal (steps,) of a tap, in its unit; None where nothing is."""
         if isinstance(tap, CasingAcceleration):
-            return self._on_the_casing(tap)
+            return self._on_the_casing(np.deg2rad(tap.angle_deg), tap.angle_deg)
+        if isinstance(tap, HousingAcceleration):
+            return self._shaking(_rigid(np.deg2rad(tap.angle_deg)))
         return self._under_a_probe(tap) if isinstance(tap, CentreDisplacement) else None
 
-    def _on_the_casing(self, tap: CasingAcceleration) -> FloatArray:
-        around = np.deg2rad(tap.angle_deg)
-        added = np.zeros(self.tail.angle.size)
-        if self.surroundings.background_m_per_s2:
-            added += self.level * self._broadband(around)
+    def _on_the_casing(self, around: float, angle_deg: float) -> FloatArray:
+        added = self._shaking(_elastic(around))
         if self.surroundings.blade_passing_m_per_s2:
             added += self.level * self._blade_passing(around)
+        if self.surroundings.path_gain and self.frame is not None:
+            added += self.surroundings.path_gain * self.frame.of_casing(angle_deg)
+        return added
+
+    def _shaking(self, weights: FloatArray) -> FloatArray:
+        """Background and tones (steps,) where the parts of the fields have these weights (2 n + 1,)."""
+        added = np.zeros(self.tail.angle.size)
+        if self.surroundings.background_m_per_s2:
+            added += self.level * self._broadband(weights)
         for tone, parts in zip(self.surroundings.tones, self._tones, strict=True):
             if tone.order is None:
                 frequency = 2 * np.pi * (tone.frequency_hz or 0.0)
                 phase, heard = frequency * self.tail.time, np.asarray(frequency * self.tail.dt < np.pi)
             else:
                 phase, heard = tone.order * self.tail.turned, self.tail.resolved(tone.order)
-            wave = np.sqrt(2) * np.real(_at(parts, around) * np.exp(1j * phase))
+            wave = np.sqrt(2) * np.real(weights @ parts * np.exp(1j * phase))
             added += heard * tone.level_m_per_s2 * wave
         return added
 
@@ -109,13 +127,16 @@ class Disturbances:
         lines = slice(first, min(end, (length + 1) // 2))  # the steps show no higher ones
         return length, lines, amplitudes[:, : lines.stop - lines.start]
 
-    def _broadband(self, around: float) -> FloatArray:
-        """The background at a polar angle. A line of rms r is r sqrt(2) Re(z exp(i w t)), |z| = 1 in the mean."""
+    def _broadband(self, weights: FloatArray) -> FloatArray:
+        """The background where its parts have these weights.
+
+        A line of rms r is r sqrt(2) Re(z exp(i w t)), |z| = 1 in the mean.
+        """
         from scipy.fft import irfft  # slow to import
 
         length, lines, amplitudes = self._lines
         spectrum = np.zeros(length // 2 + 1, dtype=np.complex128)
-        spectrum[lines] = _at(amplitudes, around) * (length / np.sqrt(2))
+        spectrum[lines] = np.tensordot(weights, amplitudes, axes=1) * (length / np.sqrt(2))
         return np.asarray(irfft(spectrum, length)[np.arange(-self.tail.angle.size, 0) % length])
 
     def _blade_passing(self, around: float) -> FloatArray:
@@ -152,8 +173,15 @@ def _complex_normal(rng: np.random.Generator, shape: tuple[int, ...]) -> Complex
     return np.asarray((rng.standard_normal(shape) + 1j * rng.standard_normal(shape)) / np.sqrt(2))
 
 
-def _at(parts: ComplexArray, around: float) -> ComplexArray:
-    """A field of circumferential orders (2 n + 1, ...) at a polar angle, with the mean square of its parts."""
+def _elastic(around: float) -> FloatArray:
+    """Weights (2 n + 1,) of a field's parts at a polar angle of the casing, in rad; their mean square is 1."""
     n = np.arange(1, HIGHEST_CIRCUMFERENTIAL + 1)
-    weights = np.concatenate([[1.0], np.cos(n * around), np.sin(n * around)]) / np.sqrt(HIGHEST_CIRCUMFERENTIAL + 1)
-    return np.asarray(np.tensordot(weights, parts, axes=1))
+    parts = [[1.0], np.cos(n * around), np.sin(n * around)]
+    return np.asarray(np.concatenate(parts) / np.sqrt(HIGHEST_CIRCUMFERENTIAL + 1))
+
+
+def _rigid(along: float) -> FloatArray:
+    """Weights (2 n + 1,) of a field's parts in the motion of one body along a direction, in rad: order 1 alone."""
+    weights = np.zeros(2 * HIGHEST_CIRCUMFERENTIAL + 1)
+    weights[1], weights[1 + HIGHEST_CIRCUMFERENTIAL] = np.cos(along), np.sin(along)
+    return weights

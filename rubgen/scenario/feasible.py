@@ -123,6 +123,17 @@ def _axial_problem(scenario: Scenario) -> str | None:
     return None
 
 
+def _frame_problem(scenario: Scenario) -> str | None:
+    """A sensor or a level that needs the machine's frame, where it has none."""
+    if scenario.machine.frame is not None:
+        return None
+    remedy = "the machine has no [frame]; give it one, or leave this out"
+    if scenario.sensing.set.on_housing:
+        return f"sensors.set: kind = 'housing_accelerometer' of {scenario.sensing.set.on_housing[0].name}: {remedy}"
+    gain = scenario.surroundings.path_gain if scenario.surroundings else 0.0
+    return f"surroundings.path_gain = {gain:g}: {remedy}" if gain else None
+
+
 def _size_problem(scenario: Scenario) -> str | None:
     """Impossible sizes: an oval larger than the radius, a ring without a bore, a blisk beside its axis."""
     for each in shares(scenario):
@@ -149,4 +160,4 @@ PROBLEMS = (
     _rate_problem,
     _size_problem,
 )
-SENSOR_PROBLEMS = (_front_end_problem, _blade_problem, _axial_problem)
+SENSOR_PROBLEMS = (_front_end_problem, _blade_problem, _axial_problem, _frame_problem)

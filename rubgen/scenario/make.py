@@ -29,7 +29,7 @@ TABLES = {
     "labels": ("lyapunov",),
 }
 """The tables of a recipe with keys that are not drawn."""
-SURROUNDINGS_KEYS = ("background_m_per_s2", "blade_passing_m_per_s2", "runout_m")
+SURROUNDINGS_KEYS = ("background_m_per_s2", "blade_passing_m_per_s2", "runout_m", "path_gain")
 _RECIPE = TypeAdapter(Recipe)
 _SURROUNDINGS = TypeAdapter(Surroundings)
 
@@ -68,6 +68,7 @@ def make_scenario(
     background_m_per_s2: float | None = None,
     blade_passing_m_per_s2: float | None = None,
     runout_m: float | None = None,
+    path_gain: float | None = None,
     profile: ProfileName = "steady",
     end_speed_rpm: float | None = None,
     duration_s: float | None = None,
@@ -101,6 +102,7 @@ def make_scenario(
     - `background_m_per_s2`: rms of the casing's broadband background at 10,000 rev/min in m/s2, >= 0
     - `blade_passing_m_per_s2`: rms of the casing's answer to the blades' pressure at 10,000 rev/min in m/s2, >= 0
     - `runout_m`: amplitude of order 1 of the shaft's runout in m, >= 0; orders 2 and 3 have 1/2 and 1/3 of it
+    - `path_gain`: share of the motion of the machine's frame that the casing's sensors feel, >= 0; 1 is all of it
     - `profile`: of the speed: "steady", "run-up", "coast-down" or "fluctuating"
     - `end_speed_rpm`: speed at the end of a run-up or coast-down in rev/min, > 0; these two profiles need it
     - `duration_s`: duration of a record whose speed changes in s, > 0; every profile but "steady" needs it
@@ -110,7 +112,7 @@ def make_scenario(
     - `record_turns`: turns from which the labels of a steady run come, >= 500; 500 when not given
     - `steps_per_turn`: least number of integration steps in a turn, at most 16384
     - `sample_rate_hz`: samples a second of the recorded channels, > 0
-    - `sensors`: sensor set, "default", "rig" or the path of a TOML
+    - `sensors`: sensor set, "default", "rig", "field" or the path of a TOML
     - `signal_seconds`: length of the recorded signals in s, the end of the record, at most all of it
     - `seed`: seed of the sensor noise and the surroundings, >= 0
     - `lyapunov`: whether to compute the Lyapunov exponent of a steady run, half as long again; yes when not given
@@ -123,10 +125,10 @@ def make_scenario(
 
 def _checked_scenario(given: dict[str, Any]) -> Scenario:
     values, varied = _recipe_values(given), {key: given[key] for key in KEYS if key in given}
-    recipe = validated("", values, _RECIPE, _key_alone)
-    check_used("", {**values, "vary": varied}, _key_alone)
     levels = {key: given[key] for key in SURROUNDINGS_KEYS if key in given}
     around = validated("", levels, _SURROUNDINGS) if levels else None
+    recipe = validated("", values | ({"surroundings": levels} if levels else {}), _RECIPE, _key_alone)
+    check_used("", {**values, "vary": varied}, _key_alone)
     scenario = vary(replace(recipe.base, surroundings=around), varied)
     with recipe.machine_named():
         check_feasible(scenario)

@@ -136,8 +136,13 @@ class Recipe(BaseModel):
 
     @cached_property
     def base(self) -> Scenario:
-        """The scenario before `[vary]`: the machine of the file, at the default speed."""
+        """The scenario before `[vary]`: the machine of the file, at the default speed.
+
+        Its frame is left out where no sensor feels it: the machine has the same digits and JSON as one without.
+        """
         machine = self._machine or load_machine(self.machine, self._folder)
+        if not self.feels_frame:
+            machine = replace(machine, frame=None)
         return Scenario(
             machine=machine,
             operation=Operation(
@@ -151,6 +156,12 @@ class Recipe(BaseModel):
             seed=self.seed,
             machine_id=machine_id(machine),
         )
+
+    @property
+    def feels_frame(self) -> bool:
+        """Whether some run's sensors may feel the machine's frame."""
+        path = self.surroundings and self.surroundings.path_gain  # type: ignore[attr-defined]
+        return bool(self.sensing.set.on_housing or path is not None)
 
     @cached_property
     def sensing(self) -> Sensing:

@@ -12,6 +12,7 @@ from pydantic.dataclasses import dataclass
 
 from rubgen.brief import brief, counted
 from rubgen.machine import Machine
+from rubgen.machine.frame import Frame
 from rubgen.machine.quantities import (
     STRICT,
     AdcBits,
@@ -161,6 +162,12 @@ class Scenario:
         sensors = f"{counted(len(sensing.set.sensors), 'sensor')} {sensing.set.name!r} at {sensing.sample_rate_hz:g} Hz"
         facts = f"{self.operation.title}, friction {friction:g}, {sensors} for {self.signal_seconds:g} s"
         return f"Scenario({self.run_id}: {self.machine.name}, {facts}, seed {self.seed})"
+
+    @property
+    def frame(self) -> Frame | None:
+        """The machine's frame, where a sensor feels it; else None."""
+        felt = self.sensing.set.on_housing or (self.surroundings and self.surroundings.path_gain)
+        return self.machine.frame if felt else None
 
     @property
     def run_id(self) -> str:

@@ -20,9 +20,11 @@ from rubgen.machine.quantities import (
     BackgroundLevel,
     Height,
     Order,
+    PathGain,
     Rate,
     SpectralSlope,
     SpeedExponent,
+    Spread,
 )
 from rubgen.scenario.distributions import Distribution
 
@@ -57,7 +59,8 @@ class Surroundings:
 
     The three levels of the casing are rms accelerations. The background and the blade passing have theirs at 10,000
     rev/min and go as (speed / 10,000)^`speed_exponent`. The background's power spectral density falls as
-    1/f^`background_slope`.
+    1/f^`background_slope`. `path_gain` scales what the casing feels of the machine's frame. The frequency and the
+    modal mass of each of its modes are those of the machine times exp(`frame_spread` x), x normal and independent.
     """
 
     background_m_per_s2: BackgroundLevel = 0.0
@@ -66,6 +69,8 @@ class Surroundings:
     blade_passing_m_per_s2: BackgroundLevel = 0.0
     runout_m: Height = 0.0
     shaft_drift_m: Height = 0.0
+    path_gain: PathGain = 0.0
+    frame_spread: Spread = 0.0
     tones: Annotated[tuple[Tone, ...], Field(max_length=MOST_TONES)] = ()
 
 
@@ -89,13 +94,16 @@ SURROUNDINGS = (
     ),
     SurroundingsKey("runout_m", "m", "amplitude of order 1 of the shaft's runout under the proximity probes"),
     SurroundingsKey("shaft_drift_m", "m", "slow movement of the shaft over the recorded signals"),
+    SurroundingsKey("path_gain", "1", "share of the frame's motion that the casing feels; 1 is the machine's frame"),
+    SurroundingsKey("frame_spread", "1", "spread of frequencies and masses of the frame's modes about the machine's"),
 )
 
 
-def surroundings_values(around: Surroundings, rotation_frequency_hz: float) -> dict[str, float | list[float]]:
-    """The values of a run by column: one for each key, and two lists with one value for each tone."""
+def surroundings_values(around: Surroundings) -> dict[str, float | list[float]]:
+    """The values of a run by column: one for each key, and three lists with one value for each tone."""
     values: dict[str, float | list[float]] = {each.key: getattr(around, each.key) for each in SURROUNDINGS}
-    values["tones_order"] = [tone.order_at(rotation_frequency_hz) for tone in around.tones]
+    values["tones_order"] = [tone.order or 0.0 for tone in around.tones]
+    values["tones_frequency_hz"] = [tone.frequency_hz or 0.0 for tone in around.tones]
     values["tones_m_per_s2"] = [tone.level_m_per_s2 for tone in around.tones]
     return values
 

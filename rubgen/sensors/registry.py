@@ -9,6 +9,7 @@ from rubgen.sensors.kinds.blade_strain import BladeStrain
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
 from rubgen.sensors.kinds.casing_strain import CasingStrain
 from rubgen.sensors.kinds.contact_force import ContactForceSensor
+from rubgen.sensors.kinds.housing_accelerometer import HousingAccelerometer
 from rubgen.sensors.kinds.once_per_rev import OncePerRev
 from rubgen.sensors.kinds.proximity import Proximity
 from rubgen.sensors.kinds.support_force import SupportForceSensor
@@ -18,6 +19,7 @@ from rubgen.sensors.kinds.torque import Torque
 AnySensor = Annotated[
     Proximity
     | Accelerometer
+    | HousingAccelerometer
     | BladeStrain
     | CasingStrain
     | SupportForceSensor

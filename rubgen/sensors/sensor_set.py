@@ -12,7 +12,7 @@ from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
 from rubgen.sensors.kinds.once_per_rev import OncePerRev
 from rubgen.sensors.registry import AnySensor
 from rubgen.sensors.sensor import RunoutOrder, SampledSensor
-from rubgen.taps import DEFAULT_TAPS, Tap
+from rubgen.taps import DEFAULT_TAPS, HousingAcceleration, Tap
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -42,12 +42,18 @@ class SensorSet:
         return tuple(sensor for sensor in self.sensors if isinstance(sensor, SampledSensor))
 
     @property
+    def on_housing(self) -> tuple[SampledSensor, ...]:
+        """The sensors that feel the machine's frame alone."""
+        return tuple(sensor for sensor in self.sampled if isinstance(sensor.tap, HousingAcceleration))
+
+    @property
     def front_end_hz(self) -> float:
         """The highest frequency of any sensor's own dynamics, 0 without any."""
         return max((sensor.front_end_hz for sensor in self.sampled), default=0.0)
 
     @property
     def taps(self) -> tuple[Tap, ...]:
-        """The true signals of a run, each once: first the default taps, then the taps of further sensors."""
-        sampled = dict.fromkeys([*DEFAULT_TAPS, *(sensor.tap for sensor in self.sampled)])
+        """The true signals of the solver, each once: first the default taps, then the taps of further sensors."""
+        solved = (sensor.tap for sensor in self.sampled if sensor not in self.on_housing)
+        sampled = dict.fromkeys([*DEFAULT_TAPS, *solved])
         return (*sampled, *(sensor.tap for sensor in self.sensors if isinstance(sensor, TimingProbe)))

@@ -1,9 +1,13 @@
 """`[surroundings]` of a recipe: what is drawn, and what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from rubgen.errors import RubgenWarning, UserError
+from rubgen.machine import load_machine
+from rubgen.machine.load import PRESETS, machine_id
 from rubgen.scenario import make_scenario, parse_recipe
 from rubgen.scenario.scenario import scenario_dict
 from rubgen.scenario.surroundings import Surroundings, Tone
@@ -94,3 +98,28 @@ def test_a_level_in_another_unit_is_asked_about():
 
 def test_a_tone_at_a_fixed_frequency_has_an_order_of_the_run():
     assert Tone(frequency_hz=50, level_m_per_s2=1).order_at(200) == 0.25
+
+
+def test_a_frame_that_no_sensor_feels_is_no_part_of_the_run():
+    idle, plain = parse_recipe(BASE).scenario(0), load_machine("zeng2019")
+    assert plain.frame is not None
+    assert idle.machine.frame is None
+    assert idle.machine_id == machine_id(replace(plain, frame=None))
+    assert "frame" not in scenario_dict(idle)["machine"]
+    assert recipe(runout_m=1e-6).scenario(0).machine.frame is None
+    for felt in (recipe(path_gain={"uniform": [0, 2]}), parse_recipe({**BASE, "sensors": {"set": "field"}})):
+        assert felt.scenario(0).machine.frame == plain.frame
+        assert felt.scenario(0).machine_id == machine_id(plain)
+    assert make_scenario(path_gain=0.5).frame == plain.frame
+    assert make_scenario(runout_m=1e-6).frame is None
+
+
+def test_a_machine_without_a_frame_says_what_needs_one(tmp_path):
+    machine = tmp_path / "m.toml"
+    text = (PRESETS / "zeng2019.toml").read_text(encoding="utf-8")
+    machine.write_text(text[: text.index("# A plausible frame")], encoding="utf-8")
+    with pytest.raises(UserError, match=r"^surroundings\.path_gain = 0\.5: the machine has no \[frame\]; give it one"):
+        make_scenario(machine, path_gain=0.5)
+    with pytest.raises(UserError, match=r"housing_accelerometer' of housing_acc_x: the machine has no \[frame\]"):
+        make_scenario(machine, sensors="field")
+    assert make_scenario(machine, background_m_per_s2=3).machine.frame is None

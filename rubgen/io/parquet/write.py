@@ -72,7 +72,7 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
     around = run.scenario.surroundings
     row = _identity(run, split) | varied_values(run.scenario) | _operation(run)
     if around:
-        row |= surroundings_values(around, run.scenario.operation.rotation_frequency_hz)
+        row |= surroundings_values(around)
     if run.labels is not None:
         row |= labels_to_json(run.labels)
         row |= {each.name: each.value(run.response.energy) for each in ENERGY_LABELS}

@@ -1,0 +1,101 @@
+"""Motion of the frame: what forces of the disk's support do to bearing housing and casing, one way."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.machine.frame import Frame, FrameMode
+from rubgen.machine.quantities import FRAME_HZ, MODAL_KG
+from rubgen.measurement.front_end import FORGOTTEN
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrameMotion:
+    """Accelerations of a frame under forces that are linear between the steps.
+
+    A mode with fewer than two steps a period is left out: the steps do not show it.
+    """
+
+    frame: Frame
+    force: tuple[FloatArray, FloatArray]
+    """Forces of the disk on its support along X and Y (steps,), N."""
+    dt: float
+    """Time step, s."""
+
+    def of_housing(self, angle_deg: float) -> FloatArray:
+        """Acceleration (steps,) of the bearing housing along a direction, in m/s2."""
+        return self._sum([_cosine(angle_deg - mode.direction_deg) for mode in self.frame.modes])
+
+    def of_casing(self, angle_deg: float) -> FloatArray:
+        """Radial acceleration (steps,) of the casing, outward, at a polar angle, in m/s2."""
+        turned = [mode.casing_order * (angle_deg - mode.casing_angle_deg) for mode in self.frame.modes]
+        return self._sum([mode.casing_share * _cosine(a) for mode, a in zip(self.frame.modes, turned, strict=True)])
+
+    def _sum(self, factors: list[float]) -> FloatArray:
+        total = np.zeros(self.force[0].size)
+        for factor, acceleration in zip(factors, self._accelerations, strict=True):
+            if acceleration is not None:
+                total += factor * acceleration
+        return total
+
+    @cached_property
+    def _accelerations(self) -> list[FloatArray | None]:
+        """Acceleration q'' (steps,) of each mode in m/s2, None where the steps do not show it."""
+        shown = [2 * mode.frequency_hz * self.dt < 1 for mode in self.frame.modes]
+        return [self._acceleration(mode) if here else None for mode, here in zip(self.frame.modes, shown, strict=True)]
+
+    def _acceleration(self, mode: FrameMode) -> FloatArray:
+        x, y = self.force
+        along = _cosine(mode.direction_deg) * x + _cosine(mode.direction_deg - 90) * y
+        return accelerations(mode, along, self.dt)
+
+
+def accelerations(mode: FrameMode, force: FloatArray, dt: float) -> FloatArray:
+    """Acceleration q'' (steps,) in m/s2 of q'' + 2 d w q' + w^2 q = F / m, for a force linear between the steps.
+
+    Exact at the steps, by the recursion of Smallwood (1981, ramp invariant; ISO 18431-4): with E = exp(-d w dt) and
+    K = w dt sqrt(1 - d^2), H(z) = E sin(K) / K (1 - 1/z)^2 / (1 - 2 E cos(K) / z + E^2 / z^2). The mode starts at rest
+    under the first force.
+
+    - mode: w, d and m.
+    - force (steps,): F, N.
+    - dt: time step, s.
+    """
+    from scipy.signal import lfilter  # slow to import
+
+    w = 2 * np.pi * mode.frequency_hz
+    decay, turned = np.exp(-mode.damping * w * dt), w * dt * np.sqrt(1 - mode.damping**2)
+    gain = decay * np.sin(turned) / turned / mode.modal_mass_kg
+    filtered = lfilter(gain * np.array([1, -2, 1]), [1, -2 * decay * np.cos(turned), decay**2], force - force[0])
+    return np.asarray(filtered, dtype=np.float64)
+
+
+def frame_memory_seconds(frame: Frame) -> float:
+    """Time in s after which the start of the slowest mode has decayed to 1e-4."""
+    slowest = min(mode.damping * mode.frequency_hz for mode in frame.modes)
+    return float(FORGOTTEN / (2 * np.pi * slowest))
+
+
+def _cosine(angle_deg: float) -> float:
+    return float(np.cos(np.deg2rad(angle_deg)))
+
+
+def spread(frame: Frame, deviation: float, rng: np.random.Generator) -> Frame:
+    """The frame of another machine of the kind: frequencies and masses times exp(`deviation` x), x normal.
+
+    A frequency or a mass outside of its bounds is set to the bound.
+    """
+    if deviation == 0:
+        return frame
+    factors = np.exp(deviation * rng.standard_normal((len(frame.modes), 2)))
+    modes = (
+        replace(
+            mode,
+            frequency_hz=float(np.clip(mode.frequency_hz * frequency, *FRAME_HZ)),
+            modal_mass_kg=float(np.clip(mode.modal_mass_kg * mass, *MODAL_KG)),
+        )
+        for mode, (frequency, mass) in zip(frame.modes, factors, strict=True)
+    )
+    return Frame(modes=tuple(modes))
