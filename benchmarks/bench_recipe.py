@@ -32,7 +32,7 @@ from rubgen import pipeline
 from rubgen.scenario import load_recipe
 from rubgen.solver import integrate
 from rubgen.solver.observers.companion_kernels import run_companion
-from rubgen.solver.scheme.turn_kernels import run_turn
+from rubgen.solver.scheme.turn_kernels import run_turns
 from rubgen.solver.wants import Wants
 
 RUBGEN = str(Path(sys.executable).with_name("rubgen"))
@@ -133,7 +133,7 @@ def _counted(out: Path, runs: int) -> tuple[float, float]:
     recipe = out.with_suffix(".toml")
     recipe.write_text(RECIPE.format(runs=runs), encoding="utf-8")
     with (
-        patch("rubgen.solver.scheme.stepper.run_turn", timed(run_turn)),
+        patch("rubgen.solver.scheme.stepper.run_turns", timed(run_turns)),
         patch("rubgen.solver.observers.companion.run_companion", timed(run_companion)),
     ):
         begun = time.process_time()

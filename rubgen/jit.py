@@ -26,7 +26,7 @@ R = TypeVar("R")
 PACKAGE = Path(__file__).parent
 caching: Any = numba.core.caching
 """Private to numba. Therefore pyproject.toml bounds the version of numba."""
-LAST_COMPILED = "turn_kernels.run_turn-*.nbc"
+LAST_COMPILED = "turn_kernels.run_turns-*.nbc"
 """The kernel that calls all others of a run."""
 
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 from threadpoolctl import threadpool_limits
 
@@ -26,6 +27,7 @@ from rubgen.solver.speed.changing import ChangingSystem
 from rubgen.solver.speed.driver import SpeedDriver, SteadyDriver
 from rubgen.solver.speed.repeated import RepeatedDriver
 from rubgen.solver.speed.start import Closing, rub_free_stepper, start_opening
+from rubgen.solver.speed.turn import Turn
 from rubgen.solver.wants import SpeedModel, Wants
 
 ENERGY_TOLERANCE = 1e-8
@@ -146,23 +148,31 @@ class Integration:
 
     def run(self) -> None:
         """Integrate until the end of the record, or until the status is no longer OK."""
-        settle, turns = self.driver.settle, self.driver.settle + self.record
-        for number in range(-settle, self.record):
-            count(number + settle, turns)
-            if number == 0:
+        settle, first = self.driver.settle, self.first_recorded
+        places = sorted({-settle, min(max(first, -settle), self.record), 0, self.record})
+        for start, end in pairwise(places):
+            if start == 0:
                 for observer in self.observers:
                     observer.start()
-            turn = self.driver.run_turn(number, self.closing.after, recording=number >= self.first_recorded)
-            self.growth.add(turn.step)
-            code = turn.code
-            if code == OK and not self.energy.residual() <= ENERGY_TOLERANCE:
-                code = ENERGY
-            if code != OK:
-                self.status = STATUS[code]
-                self.reason = self._reason(number, turn.step)
-                return
-            for observer in self.observers:
-                observer.turn(turn)
+            for turn in self.driver.run_turns(range(start, end), self.closing.after, recording=start >= first):
+                if not self._add(turn):
+                    return
+
+    def _add(self, turn: Turn) -> bool:
+        """Give a turn to the observers. Return whether the status is still OK."""
+        settle = self.driver.settle
+        count(turn.number + settle, settle + self.record)
+        self.growth.add(turn.step)
+        code = turn.code
+        if code == OK and not self.energy.residual() <= ENERGY_TOLERANCE:
+            code = ENERGY
+        if code != OK:
+            self.status = STATUS[code]
+            self.reason = self._reason(turn.number, turn.step)
+            return False
+        for observer in self.observers:
+            observer.turn(turn)
+        return True
 
     def response(self) -> Response:
         """Run, and return the response."""

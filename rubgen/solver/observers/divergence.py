@@ -43,7 +43,7 @@ class Growth:
         """Add the turn that was just run; it made `steps` steps."""
         result = self.stepper.result
         count = math.ceil(steps * len(result.frames) / self.stepper.steps)
-        self.turns.append((float(result.summary[2]), result.frames[:count].copy()))
+        self.turns.append((float(result.summary[2]), result.frames[:count]))
 
     def sentence(self) -> str:
         """Growth of both over the last turns in words, with the rates a turn and a second."""

@@ -32,15 +32,15 @@ class EnergyIdentity:
         self.rounding_energy = ROUNDING_SHARE * gross_energy(stepper)
 
     def residual(self) -> float:
-        """|E - E_start - works| over the summed absolute works, or over the largest |E| where no work is done.
+        """|E - E_start - works| after a turn, over the summed absolute works, or the largest |E| where no work is done.
 
         At a critical speed the rub-free motion has no energy in the turning frame. There the rounding error of its
         energy terms is the scale.
         """
-        works, energy = self.stepper.state.works, self.stepper.energy()
+        works, energy = self.stepper.end.works, float(self.stepper.end.energy)
         self.largest_energy = max(self.largest_energy, abs(energy))
         done = works[UNBALANCE] + works[DAMPING] + works[CIRCULATORY] + works[CONTACT] + works[SPEED_CHANGE]
-        done += self.stepper.state.support.works[:LAWS_LOSS].sum()
+        done += self.stepper.end.support_works[:LAWS_LOSS].sum()
         scale = max(float(works[ABSOLUTE]), self.largest_energy, self.rounding_energy)
         return abs(energy - self.start_energy - float(done)) / scale if scale > 0 else 0.0
 

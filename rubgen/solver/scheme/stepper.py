@@ -1,6 +1,6 @@
 """A model, its state, and the output of a turn."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -12,17 +12,20 @@ from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw
 from rubgen.solver.linear.admissible import check_step
 from rubgen.solver.linear.system_blocks import system_blocks
-from rubgen.solver.scheme.energy_kernels import ABSOLUTE, SPEED_CHANGE, stored_energy
+from rubgen.solver.scheme.energy_kernels import ABSOLUTE, SPEED_CHANGE, WORKS, stored_energy
 from rubgen.solver.scheme.model import angle_tables, at_speed, build_model, new_state, turned
 from rubgen.solver.scheme.motion_kernels import recover
 from rubgen.solver.scheme.snapshot_kernels import Snapshots
 from rubgen.solver.scheme.speed_part import SpeedPart
 from rubgen.solver.scheme.state_kernels import Coordinates
-from rubgen.solver.scheme.step_kernels import advance, shift_gaps
+from rubgen.solver.scheme.step_kernels import OK, advance, shift_gaps
 from rubgen.solver.scheme.taps import build_taps, sampled_taps, turned_taps
-from rubgen.solver.scheme.turn_kernels import STEPS, Touches, TurnResult, close_touches, run_turn
+from rubgen.solver.scheme.turn_kernels import STEPS, Touches, TurnEnds, TurnResult, close_touches, run_turns
+from rubgen.solver.supports.support_kernels import SUPPORT_WORKS
 from rubgen.taps import DEFAULT_TAPS, Tap
 
+TURNS = 8
+"""Most turns in one call of the kernel."""
 FRAMES = 32
 """Frames of a turn: enough for smooth blade modes up to the 16th order of rotation."""
 
@@ -68,6 +71,7 @@ class Stepper:
             np.zeros((min(FRAMES, steps), self.blocks.rows * LANES)),
         )  # fmt: skip
         self.take_snapshots([steps])
+        self._many: list[FloatArray] = []
 
     @property
     def steps(self) -> int:
@@ -122,7 +126,7 @@ class Stepper:
     def run_turn(
         self, opening: FloatArray | None = None, clock: int = 0, *, recording: bool = True
     ) -> tuple[int, int, int]:
-        """Integrate one turn. Its outputs are in `result`, `touches` and `snapshots`.
+        """Integrate one turn. Its outputs are in `result`, `touches`, `snapshots` and `end`.
 
         - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., steps, m; none by default.
         - clock: number of the first step, for touches.
@@ -131,11 +135,49 @@ class Stepper:
         Returns a code of `step_kernels`, the step where the turn ended, and the number of touches in `touches.ended`.
         """
         width = np.zeros(self.steps + 2) if opening is None else opening
-        code, step, ended = run_turn(
-            self.model, width, clock, recording, self.state, self.taps, self.touches, self.snapshots, self.result
+        return next(self.run_turns(width[None], clock, recording=recording))
+
+    def run_turns(
+        self, opening: FloatArray, clock: int = 0, *, recording: bool = True
+    ) -> Iterator[tuple[int, int, int]]:
+        """Integrate turns in one call of the kernel. Yields what `run_turn` returns, of each turn.
+
+        `result`, `touches`, `snapshots` and `end` are those of the turn that was yielded last, and its frames are new
+        arrays. The state is that after the last turn, and the arrivals of timing probes are the last turn's. A turn
+        that fails is the last.
+
+        - opening (turns, steps + 2): as in `run_turn`, a row for each turn.
+        - clock, recording: as in `run_turn`.
+        """
+        touches, snapshots, results, ends = self._rows(len(opening))
+        code, whole, step = run_turns(
+            self.model, opening, clock, recording, self.state, self.taps, touches, snapshots, results, ends
         )
-        self.state = turned(self.state, step)
-        return code, step, ended
+        last = step if code != OK else 0
+        self.state = turned(self.state, whole * self.steps + last)
+        for t in range(whole + (code != OK)):
+            self.touches = touches._replace(ended=touches.ended[t])
+            self.snapshots = Snapshots(snapshots.steps, snapshots.z[t], snapshots.step_gaps[t])
+            self.result, self.end = TurnResult(*[rows[t] for rows in results]), TurnEnds(*[rows[t] for rows in ends])
+            yield (OK, self.steps, int(ends.touches[t])) if t < whole else (code, last, int(ends.touches[t]))
+
+    def _rows(self, turns: int) -> tuple[Touches, Snapshots, TurnResult, TurnEnds]:
+        """Outputs with a row for each turn; those of one turn are its own arrays."""
+        present = self.touches.ended, self.snapshots.z, self.snapshots.step_gaps, *self.result[:-1]
+        if turns == 1:
+            rows = [each[None] for each in present]
+        else:
+            shapes = [(TURNS, *each.shape) for each in present]
+            if [each.shape for each in self._many] != shapes:
+                self._many = [np.zeros(shape) for shape in shapes]
+            rows = [each[:turns] for each in self._many]
+        frames = np.empty((turns, *self.result.frames.shape))
+        ends = TurnEnds(
+            np.zeros(turns, dtype=np.int64), np.zeros((turns, WORKS)), np.zeros((turns, SUPPORT_WORKS)), np.zeros(turns)
+        )
+        ended, z, step_gaps, taps, section, summary, orbit = rows
+        results = TurnResult(taps, section, summary, orbit, frames)
+        return self.touches._replace(ended=ended), Snapshots(self.snapshots.steps, z, step_gaps), results, ends
 
     def begin_record(self) -> None:
         """Count present touches from here on."""

@@ -1,4 +1,4 @@
-"""One turn of the blisk in one call: steps, works, taps, touches."""
+"""Some turns of the blisk in one call: steps, works, taps, touches."""
 
 import math
 from typing import NamedTuple
@@ -8,7 +8,7 @@ from rubgen.contact.clearance_kernels import casing_displacement_bound
 from rubgen.contact.wear_kernels import wear_where_lined
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.harmonic_kernels import Harmonics, recover_all
-from rubgen.solver.scheme.energy_kernels import ABSOLUTE, add_contact_works, add_linear_works
+from rubgen.solver.scheme.energy_kernels import ABSOLUTE, add_contact_works, add_linear_works, stored_energy
 from rubgen.solver.scheme.model_kernels import Model
 from rubgen.solver.scheme.motion_kernels import Motion
 from rubgen.solver.scheme.snapshot_kernels import Snapshots, keep_snapshot
@@ -32,7 +32,7 @@ class Touches(NamedTuple):
 
 
 class TurnResult(NamedTuple):
-    """Outputs of a turn or part of a turn."""
+    """Outputs of a turn or part of a turn; of several turns, every array has a row for each."""
 
     taps: FloatArray
     """True signals (taps, steps)."""
@@ -163,7 +163,7 @@ def add_contacts(
     return force, torque, ended
 
 
-@allocation_free_kernel
+@inlined_kernel
 def run_turn(
     model: Model,
     opening: FloatArray,
@@ -235,3 +235,76 @@ def run_turn(
     ended = close_touches(touches, clock + steps - 1, ended)
     result.summary[3] = arrivals
     return OK, steps, ended
+
+
+class TurnEnds(NamedTuple):
+    """What else some turns leave, a row for each."""
+
+    touches: IntArray
+    """Number of touches that ended in the turn (turns,)."""
+    works: FloatArray
+    """Works after the turn (turns, 8), J, at the places of `energy_kernels`."""
+    support_works: FloatArray
+    """Works of the supports after it (turns, any), J."""
+    energy: FloatArray
+    """Stored energy half a step before its end (turns,), J."""
+
+
+@inlined_kernel
+def moved_on(state: State, steps: int) -> State:
+    """The state after `steps` steps: in each step the three motions have changed places."""
+    a, b, c = state.motions
+    motions = (a, b, c)
+    if steps % 3 == 1:
+        motions = (b, c, a)
+    elif steps % 3 == 2:
+        motions = (c, a, b)
+    return State(motions, state.contact, state.support, state.wear, state.works, state.scratch)
+
+
+@allocation_free_kernel
+def run_turns(
+    model: Model,
+    opening: FloatArray,
+    clock: int,
+    recording: bool,
+    state: State,
+    taps: Taps,
+    touches: Touches,
+    snapshots: Snapshots,
+    results: TurnResult,
+    ends: TurnEnds,
+) -> tuple[int, int, int]:
+    """Integrate turns, or parts of turns, one after another. A call costs 300 words, whatever it does.
+
+    Return a code, the number of whole turns, and the step where the last turn ended.
+
+    - opening (turns, steps + 2): as in `run_turn`, a row for each turn. So are ended touches, `snapshots` but for their
+      steps, `results` and `ends`.
+    - model, clock, recording, state, taps: as in `run_turn`. Arrivals are those of the last turn.
+    """
+    code, step, steps = OK, 0, model.angles.cosine.shape[0] - 2
+    for t in range(opening.shape[0]):
+        code, step, ends.touches[t] = run_turn(
+            model,
+            opening[t],
+            clock + t * steps,
+            recording,
+            state,
+            taps,
+            Touches(touches.open, touches.last, touches.ended[t]),
+            Snapshots(snapshots.steps, snapshots.z[t], snapshots.step_gaps[t]),
+            TurnResult(results.taps[t], results.section[t], results.summary[t], results.orbit[t], results.frames[t]),
+        )
+        state = moved_on(state, step)
+        before, now, _ = state.motions
+        for i in range(now.z.shape[0]):
+            state.scratch.z_change[i] = now.z[i] - before.z[i]
+        ends.energy[t] = stored_energy(model.energy, before.z, now.z, state.scratch.z_change, model.laws.dt)
+        for i in range(state.works.shape[0]):
+            ends.works[t, i] = state.works[i]
+        for i in range(state.support.works.shape[0]):
+            ends.support_works[t, i] = state.support.works[i]
+        if code != OK:
+            return code, t, step
+    return code, opening.shape[0], step

@@ -1,8 +1,9 @@
 """Drivers run a stepper turn by turn: at a steady speed in one call a turn, at a changing speed in short parts."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -11,7 +12,7 @@ from rubgen.arrays import FloatArray, IntArray
 from rubgen.scenario.rotation import Rotation, steady_rotation
 from rubgen.solver.linear.rub_free import RubFreeMotion
 from rubgen.solver.scheme.step_kernels import OK
-from rubgen.solver.scheme.stepper import FRAMES, Stepper
+from rubgen.solver.scheme.stepper import FRAMES, TURNS, Stepper
 from rubgen.solver.scheme.turn_kernels import TurnResult
 from rubgen.solver.speed.interpolation import SpeedInterpolation
 from rubgen.solver.speed.turn import Turn, TurnFrames
@@ -19,6 +20,9 @@ from rubgen.solver.speed.turn import Turn, TurnFrames
 SPEED_SHARE = 2e-4
 """Within a part the matrices are constant, at its middle speed. The speed changes by at most this share."""
 MOST_PARTS = 64
+MOST_STEPS_AT_ONCE = 4096
+"""Turns of more steps are run one by one: there the way into the kernel costs nothing, and room for their touches much.
+"""
 NEVER = 2**62
 """A step number that no part reaches."""
 
@@ -38,10 +42,10 @@ class SpeedDriver(Protocol):
         """Number of the step at which a turn begins."""
         ...
 
-    def run_turn(self, number: int, opening: Opening, *, recording: bool) -> Turn:
-        """Run one turn.
+    def run_turns(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
+        """Run turns one after another. The stepper's outputs are those of the turn that was yielded last.
 
-        - number: of the turn; negative in the settling.
+        - numbers: of the turns; negative in the settling.
         - opening: of the surface.
         - recording: whether taps, orbit and arrivals are recorded.
         """
@@ -54,30 +58,44 @@ class SteadyDriver:
     def __init__(self, stepper: Stepper, settle: int) -> None:
         self.stepper, self.settle = stepper, settle
         self.rotation = steady_rotation(stepper.system.speed)
+        self.places = np.arange(-1, stepper.steps + 1) / stepper.steps
 
     def first_step(self, number: int) -> int:
         """Number of the step at which a turn begins."""
         return number * self.stepper.steps
 
-    def run_turn(self, number: int, opening: Opening, *, recording: bool) -> Turn:
-        """Run one turn, see `SpeedDriver.run_turn`."""
-        stepper, steps, first = self.stepper, self.stepper.steps, self.first_step(number)
-        width = opening(number + self.settle + np.arange(-1, steps + 1) / steps)
-        code, step, ended = stepper.run_turn(width, first, recording=recording)
-        return Turn(
-            number=number,
-            code=code,
-            step=step,
-            first_step=first,
-            end_step=first + steps,
-            recording=recording,
-            result=stepper.result,
-            touches=[stepper.touches.ended[:ended].copy()],
-            arrivals=_arrivals(stepper),
-            opening=width,
-            frames=_frames(stepper.result, first, steps),
-            tip_growth=stepper.system.tip_static,
-        )
+    def run_turns(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
+        """Run turns, several in a call of the kernel; see `SpeedDriver.run_turns`."""
+        at_once = self._at_once(recording=recording)
+        for start in range(0, len(numbers), at_once):
+            yield from self._run_together(numbers[start : start + at_once], opening, recording=recording)
+
+    def _run_together(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
+        stepper, steps = self.stepper, self.stepper.steps
+        width = np.array([opening(number + self.settle + self.places) for number in numbers])
+        made = stepper.run_turns(width, self.first_step(numbers[0]), recording=recording)
+        for number, wide, (code, step, ended) in zip(numbers, width, made, strict=False):
+            first = self.first_step(number)
+            yield Turn(
+                number=number,
+                code=code,
+                step=step,
+                first_step=first,
+                end_step=first + steps,
+                recording=recording,
+                result=stepper.result,
+                touches=[stepper.touches.ended[:ended].copy()],
+                arrivals=_arrivals(stepper),
+                opening=wide,
+                frames=_frames(stepper.result, first, steps),
+                tip_growth=stepper.system.tip_static,
+            )
+
+    def _at_once(self, *, recording: bool) -> int:
+        """Turns in a call: one where every turn's own arrivals or worn surface are read, or where steps are many."""
+        model, probes = self.stepper.model, len(self.stepper.taps.timing.angle)
+        one = model.surface.liner.bins or (recording and probes) or self.stepper.steps > MOST_STEPS_AT_ONCE
+        return 1 if one else TURNS
 
 
 class ChangingDriver:
@@ -108,8 +126,12 @@ class ChangingDriver:
         """Number of the step at which a turn begins."""
         return round(self._time_of(number) / self.stepper.dt)
 
-    def run_turn(self, number: int, opening: Opening, *, recording: bool) -> Turn:
-        """Run one turn, see `SpeedDriver.run_turn`."""
+    def run_turns(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
+        """Run turns, see `SpeedDriver.run_turns`."""
+        for number in numbers:
+            yield self._run_turn(number, opening, recording=recording)
+
+    def _run_turn(self, number: int, opening: Opening, *, recording: bool) -> Turn:
         stepper, starts = self.stepper, self._part_starts(number)
         first, ends = int(starts[0]), (starts - starts[0]).tolist()
         middles = 0.5 * (starts[:-1] + starts[1:] - 1) * stepper.dt
@@ -168,10 +190,15 @@ class ChangingDriver:
 
 def _frames(result: TurnResult, first: int, steps: int) -> TurnFrames:
     """The frames of a turn or part of so many steps from number `first` on; see `turn_kernels.record_frame`."""
-    count = min(len(result.frames), steps)
-    number = np.arange(count)
-    even = -(-number * steps // len(result.frames))
-    return TurnFrames(first + np.maximum(even, number), result.frames[:count].copy())
+    places = _frame_steps(len(result.frames), steps)
+    return TurnFrames(first + places, result.frames[: len(places)])
+
+
+@lru_cache(maxsize=16)
+def _frame_steps(frames: int, steps: int) -> IntArray:
+    """The steps of a turn or part that have frames."""
+    number = np.arange(min(frames, steps))
+    return np.maximum(-(-number * steps // frames), number)
 
 
 def _copied(result: TurnResult) -> TurnResult:

@@ -1,5 +1,6 @@
 """A run that provably never touches: one turn of its exact rub-free motion, handed out again and again."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -28,14 +29,16 @@ class RepeatedDriver(SteadyDriver):
         """Turns of the run over those that were integrated: what the works of the stepper stand for."""
         return (self.integrated + self.repeated) / self.integrated
 
-    def run_turn(self, number: int, opening: Opening, *, recording: bool) -> Turn:
-        """The turn of that number."""
+    def run_turns(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
+        """The turns of these numbers."""
+        for number in numbers:
+            yield self._run_turn(number, opening, recording=recording)
+
+    def _run_turn(self, number: int, opening: Opening, *, recording: bool) -> Turn:
         if recording and opening(np.array([float(number + self.settle)]))[0] > 0:
-            self.integrated += 1
-            return super().run_turn(number, opening, recording=True)
+            return self._integrated(number, opening)
         if self.once is None:
-            self.integrated += 1
-            turn = super().run_turn(number, np.zeros_like, recording=True)
+            turn = self._integrated(number, np.zeros_like)
             self.once = replace(turn, result=TurnResult(*(part.copy() for part in turn.result)))
             return replace(self.once, recording=recording)
         self.repeated += 1
@@ -52,3 +55,7 @@ class RepeatedDriver(SteadyDriver):
             arrivals=arrivals,
             frames=TurnFrames(once.frames.step + shift, once.frames.z),
         )
+
+    def _integrated(self, number: int, opening: Opening) -> Turn:
+        self.integrated += 1
+        return next(super().run_turns(range(number, number + 1), opening, recording=True))

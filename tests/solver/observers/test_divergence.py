@@ -21,7 +21,7 @@ def add(growth, casing, tip, steps=256):
     stepper = growth.stepper
     q = np.zeros(len(stepper.system.M))
     q[3 * 3 + 1] = -tip
-    stepper.result.frames[:] = 0
+    stepper.result = stepper.result._replace(frames=np.zeros_like(stepper.result.frames))
     stepper.result.frames[10] = stepper.blocks.to_z(q)
     stepper.result.summary[2] = casing
     growth.add(steps)
