@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from rubgen.brief import counted, html_table, number, table
 from rubgen.errors import UserError
 from rubgen.jit import kernels_are_compiled
 from rubgen.labels import Labels, label
+from rubgen.linalg.threads import one_blas_thread
 from rubgen.measurement import Recording, margin_seconds, measure
 from rubgen.progress import COMPILING, step
 from rubgen.reduction import reduce
@@ -89,7 +89,7 @@ def simulate(scenario: Scenario) -> Run:
     if not isinstance(scenario, Scenario):
         raise UserError(f"{scenario!r:.200}: is no scenario; give rubgen.make_scenario(...) or recipe.scenario(0)")
     operation, sensing, seconds = scenario.operation, scenario.sensing, scenario.signal_seconds
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         model = reduce(scenario.machine, scenario.reduction)
         with _shown_step():
             response = integrate(

@@ -5,12 +5,12 @@ from functools import partial
 
 import numpy as np
 from scipy.linalg import block_diag, eig, eigh
-from threadpoolctl import threadpool_limits
 
 from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
 from rubgen.fem.beam import blade_matrices, held_root_strain
 from rubgen.fem.constraints import support_stiffness
+from rubgen.linalg.threads import one_blas_thread
 from rubgen.machine import Damping, Machine, Unbalance
 from rubgen.reduction.blisk import ReducedBlisk
 from rubgen.reduction.cache import cached_blisk
@@ -65,7 +65,7 @@ class ReducedModel:
         speed adds Omega' G to K and -Omega' (f_t + e_z x U) to the forces (Euler term). Acceleration and change of the
         tips' steady growth are left out, a share of at most Omega' / Omega^2 of it.
         """
-        with threadpool_limits(1, user_api="blas"):
+        with one_blas_thread():
             return self._assemble(speed, acceleration)
 
     def _assemble(self, speed: float, acceleration: float) -> SpinningSystem:
@@ -175,7 +175,7 @@ class ReducedModel:
         Above a critical speed the stiffness is indefinite, so the quadratic problem is solved directly.
         """
         M, K = self.blisk.M, self.stiffness(speed)
-        with threadpool_limits(1, user_api="blas"):
+        with one_blas_thread():
             if speed == 0:
                 squares: FloatArray = eigh(K, M, eigvals_only=True)
                 return np.sqrt(squares) / (2 * np.pi)
@@ -197,7 +197,7 @@ class ReducedModel:
         There K_e + K_s + Omega^2 (K_sigma - S) is singular: an unbalance, static in the turning frame, acts against no
         stiffness. Of all such speeds it is the one with the largest share of energy in the lateral springs.
         """
-        with threadpool_limits(1, user_api="blas"):
+        with one_blas_thread():
             inverse_squares, modes = eigh(-self.blisk.A, self.stiffness(0.0))
         centre = 3 * self.machine.blades.count
         share = self.springs[0] * (modes[centre] ** 2 + modes[centre + 1] ** 2)
@@ -230,7 +230,7 @@ def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:
     if problem:
         raise UserError(problem)
     try:
-        with threadpool_limits(1, user_api="blas"):
+        with one_blas_thread():
             blisk = cached_blisk(machine.disk, machine.blades, machine.disk_support, reduction)
             casing = reduce_casing(machine, reduction.casing_modes)
     except (np.linalg.LinAlgError, RuntimeError) as error:  # of LAPACK, ARPACK and SuperLU

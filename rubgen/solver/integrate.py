@@ -4,9 +4,8 @@ import math
 from dataclasses import replace
 from itertools import pairwise
 
-from threadpoolctl import threadpool_limits
-
 from rubgen.errors import UserError
+from rubgen.linalg.threads import one_blas_thread
 from rubgen.progress import count
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
@@ -69,7 +68,7 @@ def integrate(
     if wants.companion:
         check_turns(operation.record_turns)
     # More BLAS threads split sums otherwise and change the last bits of A^-1, which irregular motion makes large.
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         system = model if isinstance(model, SpinningSystem) else model.at_speed(operation.speed_rad_per_s)
         check_system(system)
         if operation.profile == "steady":

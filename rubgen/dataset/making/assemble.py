@@ -25,31 +25,28 @@ def assemble(recipe: Recipe, layout: Layout) -> Counter[str]:
     staged = [layout.staged(f"run-{index:06d}") for index in range(recipe.runs)]
     asked = asked_bytes(recipe)
     status = _write_runs(staged, layout, recipe_schema(recipe, signals=False), asked)
-    valid = _valid(staged, asked)
+    valid = [path for path, code in zip(staged, status, strict=True) if code == "ok"]
     if "parquet" in recipe.output.formats:
         _write_shards(valid, valid, layout.shard, recipe_schema(recipe, signals=True), asked)
         sync_directory(layout.data)
     _write_shards([layout.staged_section(path.stem) for path in valid], valid, layout.section_shard, SCHEMA, asked)
     sync_directory(layout.sections)
     sync_directory(layout.root)
-    return status
+    return Counter(status)
 
 
-def _write_runs(staged: Sequence[Path], layout: Layout, types: pa.Schema, asked: float) -> Counter[str]:
-    status: Counter[str] = Counter()
+def _write_runs(staged: Sequence[Path], layout: Layout, types: pa.Schema, asked: float) -> list[str]:
+    """Write `runs.parquet`. Return the status of each run."""
+    status: list[str] = []
 
     def tables() -> Iterator[pa.Table]:
         for paths in _batches(staged, ROWS_PER_TABLE_GROUP):
             table = pa.concat_tables([_read(path, path, types.names, asked) for path in paths]).combine_chunks()
-            status.update(table["status"].to_pylist())
+            status.extend(table["status"].to_pylist())
             yield table.cast(types)
 
     write_table(tables(), types, layout.runs)
     return status
-
-
-def _valid(staged: Sequence[Path], asked: float) -> list[Path]:
-    return [path for path in staged if read_table(path, ["status"], asked)["status"][0].as_py() == "ok"]
 
 
 def _write_shards(

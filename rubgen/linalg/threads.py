@@ -1,0 +1,19 @@
+"""One BLAS thread: more of them split sums otherwise, and change the last bits."""
+
+from contextlib import AbstractContextManager
+from functools import cache
+
+import scipy.linalg  # noqa: F401  # with numpy's own, all BLAS libraries that rubgen uses are loaded then
+from threadpoolctl import ThreadpoolController
+
+
+def one_blas_thread() -> AbstractContextManager[object]:
+    """A context in which the BLAS libraries of numpy and scipy use one thread. Irregular motion magnifies last bits."""
+    limit: AbstractContextManager[object] = _controller().limit(limits=1, user_api="blas")
+    return limit
+
+
+@cache
+def _controller() -> ThreadpoolController:
+    """The libraries of this process. It takes 3 ms to find them, so they are looked for once."""
+    return ThreadpoolController()

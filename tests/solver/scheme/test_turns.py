@@ -1,0 +1,53 @@
+"""Turns that are run in one call of the kernel are the same as turns that are run one by one."""
+
+import numpy as np
+import pytest
+
+from rubgen.scenario import ContactLaw
+from rubgen.solver.scheme.step_kernels import DIVERGED, OK
+from rubgen.solver.speed.start import closing_ramp, rub_free_stepper
+
+STEPS, TURNS = 256, 8
+OPENING = 5e-4 * closing_ramp((np.arange(TURNS)[:, None] + np.arange(-1, STEPS + 1) / STEPS) / 6)
+
+
+def stepper_of(system):
+    stepper = rub_free_stepper(system, ContactLaw(friction=0.1), STEPS)
+    stepper.take_snapshots([100, STEPS])
+    return stepper
+
+
+def outputs(stepper, ended):
+    parts = [*stepper.result, stepper.touches.ended[:ended], stepper.snapshots.z, stepper.snapshots.step_gaps]
+    return [np.array(part) for part in (*parts, stepper.end.works, stepper.end.support_works)]
+
+
+def test_turns_in_one_call_are_turns_one_by_one(small_system):
+    """Every output of every turn, the works and the stored energy have the same bits, and the touches go on."""
+    system = small_system(speed=500.0)
+    together, single = stepper_of(system), stepper_of(system)
+    energies, touched = [], 0
+    for turn, (code, step, ended) in enumerate(together.run_turns(OPENING, 0)):
+        assert (code, step, ended) == single.run_turn(OPENING[turn], turn * STEPS)
+        for many, one in zip(outputs(together, ended), outputs(single, ended), strict=True):
+            np.testing.assert_array_equal(many, one)
+        energies.append([float(together.end.energy), single.energy()])
+        touched += ended
+    assert len(energies) == TURNS
+    assert touched > 20
+    np.testing.assert_array_equal(*np.transpose(energies))
+    np.testing.assert_array_equal(together.coordinates.now, single.coordinates.now)
+    np.testing.assert_array_equal(together.touches.open, single.touches.open)
+
+
+@pytest.mark.parametrize("failing", [0, 3])
+def test_a_turn_that_fails_is_the_last(small_system, failing):
+    """The surface closes far beyond the tips in one turn: that turn is returned with its step, and none after it."""
+    opening = OPENING.copy()
+    opening[failing:] = -0.1
+    together, single = stepper_of(small_system(speed=500.0)), stepper_of(small_system(speed=500.0))
+    found = list(together.run_turns(opening, 0))
+    expected = [single.run_turn(opening[turn], turn * STEPS) for turn in range(failing + 1)]
+    assert found == expected
+    assert [code for code, _, _ in found] == [OK] * failing + [DIVERGED]
+    np.testing.assert_array_equal(together.coordinates.after, single.coordinates.after)
