@@ -1,7 +1,7 @@
 """Labelled blade-rub data from a finite-element blisk in a flexible oval casing.
 
-`make_scenario` and `simulate` make one run in memory, `generate` a whole data set, `open` reads one. Importing rubgen
-imports no other module, so that a command handles Ctrl-C from its first moment: functions import what they need.
+`make_scenario` and `simulate` make one run in memory, `generate` makes a whole data set, `open` reads one. Importing
+rubgen imports no other module, so that a command handles Ctrl-C from its first moment. Functions import what they need.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> object:
-    """The name from its module."""
+    """Import the public name `name` from its module on first use. Raise AttributeError for any other name."""
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module
@@ -54,10 +54,11 @@ def __dir__() -> list[str]:
 
 
 def simulate(scenario: Scenario) -> Run:
-    """The run of `scenario` in memory: true response, recorded channels and labels. See `rubgen.pipeline.simulate`.
+    """Simulate the run that `scenario` describes and return its true response, recorded channels and labels.
 
-    A run that fails has `response.status` and `response.reason`, but no recording and no labels. Raises UserError for a
-    machine that cannot be modelled or reduced as asked, or a record too short for its signals.
+    Progress is shown on a terminal. A run that fails has `response.status` and `response.reason`, but its recording and
+    labels are None. Raises UserError for a machine that cannot be modelled or reduced as asked, or a record too short
+    for its signals. See `rubgen.pipeline.simulate`.
     """
     from rubgen.pipeline import simulate
     from rubgen.progress import shown
@@ -67,7 +68,7 @@ def simulate(scenario: Scenario) -> Run:
 
 
 def open(directory: Path | str) -> DataSet:  # noqa: A001
-    """The data set in that directory: `.runs` as a DataFrame, `.signals(run_id)` as arrays, read on demand.
+    """Open the data set in `directory`: `.runs` is a DataFrame, `.signals(run_id)` are arrays, read on demand.
 
     Raises UserError where the directory holds no finished data set.
     """
@@ -77,7 +78,7 @@ def open(directory: Path | str) -> DataSet:  # noqa: A001
 
 
 def verify(directory: Path | str) -> list[str]:
-    """Problems of the data set in that directory, one sentence each; empty without problems.
+    """Check the data set in `directory` and return its problems, one sentence each. The list is empty for a good set.
 
     Raises UserError where the directory holds no finished data set.
     """

@@ -16,9 +16,10 @@ Record = TypeVar("Record", bound=tuple[Any, ...])
 
 
 def frozen(record: Record) -> Record:
-    """A copy of a named tuple whose arrays, at any depth, cannot be written; the arrays of `record` stay as they are.
+    """Copy a named tuple so that its arrays, at any depth, cannot be written.
 
-    Kernels that write into such an array do not compile.
+    The copy shares their memory; the arrays of `record` itself stay writable. A kernel that writes into an array of the
+    copy does not compile.
     """
     return type(record)(*(_frozen_value(value) for value in record))
 

@@ -13,9 +13,10 @@ FEW, LONGEST, MOST = 3, 60, 780
 
 
 def brief(value: object) -> str:
-    """A dataclass as `Name(field=..., ...)`. Arrays are shown by their shape, tables and long lists by their size.
+    """Write a dataclass as `Name(field=..., ...)`, in one line of at most about MOST characters.
 
-    Fields with their default value are left out. Classes with large fields use it as their `__repr__`.
+    Arrays are shown by their shape, tables and long lists by their size. Fields with their default value are left out.
+    Classes with large fields use it as their `__repr__`.
     """
     fields = dataclasses.fields(value) if dataclasses.is_dataclass(value) else ()
     shown = [f"{field.name}={_short(getattr(value, field.name))}" for field in fields if _is_shown(value, field)]
@@ -24,24 +25,24 @@ def brief(value: object) -> str:
 
 
 def counted(count: int, noun: str) -> str:
-    """A number of things: 1 run, 2 runs."""
+    """Write a count with its noun, in the plural unless it is one: "1 run", "2 runs"."""
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def table(title: str, rows: Mapping[str, str]) -> str:
-    """The title, then each name with its value on one line."""
+    """Write a title line, then one line for each name and its value."""
     width = max(map(len, rows), default=0)
     return "\n".join([title, *(f"  {name:<{width}}  {value}" for name, value in rows.items())])
 
 
 def html_table(title: str, rows: Mapping[str, str]) -> str:
-    """The same table in HTML, for a notebook."""
+    """Write the content of `table` in HTML, for a notebook."""
     cells = "".join(f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows.items())
     return f"<table><caption>{escape(title)}</caption>{cells}</table>"
 
 
 def number(value: object) -> str:
-    """A label or parameter in a few characters; None is shown as -."""
+    """Write a label or parameter in a few characters: a float with 4 digits, None as "-", anything else as it is."""
     if value is None:
         return "-"
     return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -29,7 +29,10 @@ pending_warnings: list[str] = []
 
 
 def wanted_root() -> Path:
-    """The folder of all caches: $RUBGEN_CACHE_DIR, or the user's cache folder of rubgen."""
+    """Return the folder that should hold all caches: $RUBGEN_CACHE_DIR, or rubgen's folder in the user's cache folder.
+
+    The folder need not exist, and may not be usable.
+    """
     root = Path(os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_dir("rubgen"))
     with suppress(RuntimeError):  # there is no home folder
         root = root.expanduser()
@@ -37,18 +40,20 @@ def wanted_root() -> Path:
 
 
 def cache_folder(name: str) -> Path | None:
-    """The folder of the cache `name`, one of FOLDERS. None if no file can be written.
+    """Return the folder of the cache `name`, one of FOLDERS, or None if caches cannot be written anywhere.
 
-    Child processes use the same folder: they inherit the path of a temporary one in $RUBGEN_CACHE_DIR.
+    It lies below `wanted_root()`, or else below a temporary folder of this process. Child processes use the same
+    folder: they inherit the path of a temporary one in $RUBGEN_CACHE_DIR.
     """
     root = _settled_root(wanted_root())
     return None if root is None else root / name
 
 
 def problem_of(root: Path) -> str:
-    """Why caches cannot be written below `root`, or an empty text if they can. A missing folder is made.
+    """Try to write caches below `root`. Return why that fails, or an empty text if it works.
 
-    A folder of another user, or one that all users may write to, is refused: anyone could put code there.
+    Missing folders are made. A folder of another user, or one that all users may write to, is refused: anyone could put
+    code there.
     """
     if str(root).startswith("~"):
         return "there is no home folder"
@@ -65,7 +70,10 @@ def problem_of(root: Path) -> str:
 
 
 def keep(path: Path, content: bytes) -> None:
-    """Write `content` after its SHA-256 to a file of a cache, completely or not at all. A failure is only a warning."""
+    """Write `content` to a cache file, after its SHA-256. The file is written completely or not at all.
+
+    A failure is only a warning.
+    """
     part = path.with_name(f"{path.name}.{uuid.uuid4().hex[:12]}.tmp")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -78,7 +86,10 @@ def keep(path: Path, content: bytes) -> None:
 
 
 def kept(path: Path) -> bytes | None:
-    """The content that `keep` wrote to `path`. None if there is no such file, or if it is damaged or another user's."""
+    """Read the content that `keep` wrote to `path`.
+
+    Returns None if there is no such file, or if it is damaged or belongs to another user.
+    """
     try:
         with open(path, "rb", opener=_at_once) as file:
             foreign, content = _is_foreign(os.fstat(file.fileno())), file.read()

@@ -29,7 +29,7 @@ class RubgenWarning(UserWarning):
 
 
 def warn(message: str) -> None:
-    """Warn the user in one line."""
+    """Show the user a warning of one line, as a RubgenWarning."""
     warnings.warn(message, RubgenWarning, stacklevel=2)
 
 
@@ -37,12 +37,15 @@ def warn(message: str) -> None:
 def write_problems(
     output: Path, *, named: str = "", advice: str = "choose another place", kept: str = ""
 ) -> Iterator[None]:
-    """Turn an OSError of the block into a UserError if it occurred at `output`, else into a RubgenError with its file.
+    """Name the file in errors of a block that writes `output`.
+
+    An OSError at `output`, or a full disk, becomes a UserError, since the user can mend it. An OSError elsewhere
+    becomes a RubgenError with the file that the system names. A closed pipe passes unchanged.
 
     - `output`: file or directory that the block writes
     - `named`: its name in messages; the path if empty
     - `advice`: what the user can do if it cannot be written
-    - `kept`: what is not lost
+    - `kept`: what is not lost, for the message
     """
     try:
         yield
@@ -61,13 +64,13 @@ def write_problems(
 
 
 def os_reason(error: OSError) -> str:
-    """The reason of the system, with the file if it names one."""
+    """Return the system's reason for an OSError, after the name of the file if the error has one."""
     named = isinstance(error.filename, str | bytes | os.PathLike)
     return f"{os.fsdecode(error.filename)}: {_text_of(error)}" if named else _text_of(error)
 
 
 def _text_of(error: OSError) -> str:
-    """The system's text for the error alone: pyarrow and others add their own text to it."""
+    """Return the system's text for the error number. pyarrow and others add text of their own to `strerror`."""
     return os.strerror(error.errno) if error.errno else " ".join((error.strerror or str(error)).split())
 
 

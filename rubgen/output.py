@@ -19,10 +19,10 @@ Write = Callable[["Run", Path], None]
 
 
 def save(run: Run, path: Path, *, named: str = "") -> None:
-    """Write `run` to `path`, complete or not at all, in the format that its ending names (Parquet: one row).
+    """Write a run to a file in the format that the ending of `path` names. A Parquet file has one row.
 
-    `named` is how messages call the file. Raises UserError for a failed run, another ending, a folder that does not
-    exist, and a file that cannot be written.
+    The file is complete or not written at all. Messages call it `named`. Raises UserError for a failed run, an unknown
+    ending, a folder that does not exist, and a file that cannot be written.
     """
     named = named or str(path)
     write = writer_of(path, named)
@@ -32,7 +32,10 @@ def save(run: Run, path: Path, *, named: str = "") -> None:
 
 
 def writer_of(path: Path, named: str) -> Write:
-    """What writes that kind of file; UserError where the ending or the folder will not do."""
+    """Return the function that writes one run to a file with the ending of `path`. Nothing is written here.
+
+    Messages call the file `named`. Raises UserError where the ending is unknown or the folder does not exist.
+    """
     if not path.parent.is_dir():
         raise UserError(f"{named}: there is no directory {path.parent}; make it first")
     if path.suffix.removeprefix(".") not in FORMAT_NAMES:
@@ -41,9 +44,9 @@ def writer_of(path: Path, named: str) -> Write:
 
 
 def plot(run: Run) -> Figure:
-    """Four panels: orbit with its Poincare section, a recorded channel, contact by angle, orders of the contact force.
+    """Draw a run in four panels: orbit with Poincare section, a recorded channel, contact by angle, orders.
 
-    Raises UserError for a failed run.
+    The orders are those of the contact force. Raises UserError for a failed run.
     """
     from rubgen.viz.figures import overview
 
@@ -52,9 +55,10 @@ def plot(run: Run) -> Figure:
 
 
 def replay(run: Run, *, web: bool = False) -> None:
-    """Show `run` in Rerun's viewer, or with `web` in the browser of this machine alone, and wait until it is closed.
+    """Show a run in Rerun's viewer and return when the viewer is closed.
 
-    Raises UserError for a failed run and where there is no screen.
+    With `web` the viewer is a page in the browser, served to this computer alone. Raises UserError for a failed run,
+    and without `web` where there is no screen.
     """
     from rubgen.viz.replay import replay_of
     from rubgen.viz.viewer import has_screen, open_viewer

@@ -1,4 +1,4 @@
-"""The whole job for one run, on one screen."""
+"""The steps from a scenario to a labelled run: reduce, integrate, measure, label."""
 
 from __future__ import annotations
 
@@ -61,30 +61,30 @@ class Run:
         }
 
     def save(self, path: Path | str) -> None:
-        """Write the run to a file in the format that its ending names. See `rubgen.output.save`."""
+        """Write the run to a file in the format of its ending: .parquet, .mcap or .rrd. See `rubgen.output.save`."""
         from rubgen.output import save
 
         save(self, Path(path))
 
     def plot(self) -> Figure:
-        """A matplotlib Figure of the run: orbit, waveform, contact by angle, orders. See `rubgen.output.plot`."""
+        """Draw the run as a matplotlib Figure: orbit, waveform, contact by angle, orders. See `rubgen.output.plot`."""
         from rubgen.output import plot
 
         return plot(self)
 
     def replay(self, *, web: bool = False) -> None:
-        """Show the run in Rerun's viewer until it is closed, with `web` in the browser. See `rubgen.output.replay`."""
+        """Show the run in Rerun's viewer until it is closed; with `web`, in the browser. See `rubgen.output.replay`."""
         from rubgen.output import replay
 
         replay(self, web=web)
 
 
 def simulate(scenario: Scenario) -> Run:
-    """The run of `scenario`: reduced model, contact integration, sensors, labels.
+    """Simulate the run that `scenario` describes: reduce the machine, integrate with contact, measure, label.
 
-    On one machine the same scenario always has the same bits, whatever the number of BLAS threads (one is used here),
-    and with or without the cache of reduced models. A run that fails is returned with its status and without labels.
-    Raises UserError for a machine that cannot be modelled, reduced or run as asked.
+    On one computer the same scenario always gives the same bits, whatever the number of BLAS threads (one is used
+    here), and with or without the cache of reduced models. A run that fails is returned with its status, without
+    recording and labels. Raises UserError for a machine that cannot be modelled, reduced or run as asked.
     """
     if not isinstance(scenario, Scenario):
         raise UserError(f"{scenario!r:.200}: is no scenario; give rubgen.make_scenario(...) or recipe.scenario(0)")
@@ -114,13 +114,16 @@ def simulate(scenario: Scenario) -> Run:
 
 
 def _shown_step() -> AbstractContextManager[None]:
-    """The progress of a run in turns; the first run also says that it compiles."""
+    """Show the progress of a run in turns. The first run also says that it compiles."""
     compiled = kernels_are_compiled()
     return step("simulate" if compiled else COMPILING, "turns", long=not compiled)
 
 
 def refused(scenario: Scenario, reason: str) -> Run:
-    """The run of a scenario that `simulate` refused with a UserError: status REFUSED, and nothing else."""
+    """Make the run of a scenario for which `simulate` raised a UserError, so that it has a row in its data set.
+
+    Its status is REFUSED and its reason `reason`. The response is empty; recording and labels are None.
+    """
     operation = scenario.operation
     turn = 1 / operation.rotation_frequency_hz
     response = no_response(

@@ -28,7 +28,7 @@ class Show(Protocol):
     """A way to show steps, one at a time."""
 
     def __call__(self, text: str, unit: str, *, long: bool) -> AbstractContextManager[Report]:
-        """Show while the block runs; `long` steps are shown at once."""
+        """Show `text` while the block runs; yield a function that takes the progress. A `long` step shows at once."""
         ...
 
 
@@ -38,9 +38,12 @@ _counting: ContextVar[Report] = ContextVar("counting", default=lambda _done, _to
 
 @contextmanager
 def step(text: str, unit: str = "", *, long: bool = False) -> Iterator[None]:
-    """Show `text` while the block runs; `unit` names the parts that `count` reports. A step within a step is not shown.
+    """Show `text` while the block runs, if a surrounding block `with shown()` allows it.
 
-    `long` shows the step at once: for steps that are known to take more than a few seconds.
+    A step within a step is not shown.
+
+    - `unit`: name of the parts that `count` reports, such as "turns"
+    - `long`: show the step at once, not after SOON_S; for steps known to take more than a few seconds
     """
     show = _showing.get()
     around = show(text, unit, long=long) if show else nullcontext(_nothing)
@@ -57,7 +60,7 @@ def step(text: str, unit: str = "", *, long: bool = False) -> Iterator[None]:
 
 
 def count(done: int, total: int) -> None:
-    """Report that `done` of `total` parts of the surrounding step are finished."""
+    """Report that `done` of `total` parts of the surrounding `step` are finished. It does nothing in no `step`."""
     _counting.get()(done, total)
 
 
@@ -126,7 +129,7 @@ class _SoFar:
     """Parts that were finished before the step began; they took no time of it."""
 
     def state(self) -> str:
-        """The numbers of finished and of all parts, and the remaining time at the rate so far."""
+        """Return "3 of 10 turns, about 5 s left": finished parts, all parts, and the time left at the rate so far."""
         if not self.total:
             return ""
         if self.first is None:
@@ -139,7 +142,7 @@ class _SoFar:
         return f"{counted}, about {_duration(left)} left"
 
     def line(self) -> str:
-        """The step, its state and the time since its start."""
+        """Return the text of the step, its state and the time since its start."""
         passed = time.monotonic() - self.start
         parts = [self.state(), f"{_duration(passed)} so far" if passed > SOON_S else ""]
         return ": ".join(filter(None, (self.text, ", ".join(filter(None, parts)))))

@@ -1,4 +1,4 @@
-"""Taps: the true signals of the solver at every step, before any sensor. One class a kind."""
+"""Taps: the signals that the solver can record at every step of a run, exactly, before any sensor. One class a kind."""
 
 from typing import Annotated, ClassVar
 
@@ -11,7 +11,7 @@ from rubgen.machine.sentences import CHANNEL_NAME
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Tap:
-    """A named signal of the true response, in `UNIT`."""
+    """A named signal of the true response, in `UNIT`. A sensor names the taps that it measures."""
 
     UNIT: ClassVar[str] = ""
 
@@ -124,11 +124,11 @@ DEFAULT_TAPS: tuple[Tap, ...] = (
 
 
 def name_of(value: float) -> str:
-    """A number as part of a tap's name: 22.5 is 22p5."""
+    """Write a number as part of a tap's name, where "." and "-" are not allowed: 22.5 becomes 22p5, -3 becomes m3."""
     text = repr(value + 0.0).removesuffix(".0")  # -0.0 becomes 0.0
     return text.replace(".", "p").replace("-", "m").replace("+", "")
 
 
 def name_of_direction(angle_deg: float) -> str:
-    """A direction of the inertial frame as part of a tap's name: x, y, or the angle in degrees."""
+    """Write a direction of the inertial frame as part of a tap's name: 0 deg is x, 90 deg y, others as `name_of`."""
     return {0.0: "x", 90.0: "y"}.get(angle_deg, name_of(angle_deg))

@@ -14,10 +14,10 @@ _RPM = 0.10471975511965977
 
 
 def rad_per_s(rpm: Speed) -> Speed:
-    """A speed in rad/s from the same in rev/min, or an acceleration in rad/s2 from rev/min/s."""
+    """Convert a speed from rev/min to rad/s, or an acceleration from rev/min/s to rad/s2."""
     return rpm * _RPM
 
 
 def rev_per_min(speed: Speed) -> Speed:
-    """A speed in rev/min from the same in rad/s."""
+    """Convert a speed from rad/s to rev/min, or an acceleration from rad/s2 to rev/min/s."""
     return speed * 30 / math.pi

@@ -1,4 +1,4 @@
-"""The declaration of a file format, and the formats by name."""
+"""The declaration of a file format, and the lookup of formats by name."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class RunSignals:
-    """What a file of one run holds of its signals: the run's number, channels by their columns, and pulses in s."""
+    """The signals in a file of one run: index of the run, samples by column name, arrival times of pulses in s."""
 
     index: int
     channels: dict[str, npt.NDArray[np.float32]]
@@ -34,7 +34,10 @@ def _no_problem(_path: Path, _run_id: str, _proven: bool) -> Sequence[str]:
 
 @dataclass(frozen=True, kw_only=True)
 class Format:
-    """One file format. Its module imports libraries inside its functions: commands that do not need them stay fast."""
+    """One file format of runs: how a file is written, checked, read and described to users.
+
+    Its module imports libraries inside its functions, so that commands that do not need them stay fast.
+    """
 
     name: str
     """Name in a recipe, and the ending of its files after the dot."""
@@ -61,18 +64,18 @@ class Format:
 
     @property
     def suffix(self) -> str:
-        """The ending of its files."""
+        """Ending of the files, with the dot."""
         return f".{self.name}"
 
 
 def format_of(name: str) -> Format:
-    """The format of that name in FORMAT_NAMES."""
+    """Return the format called `name`, which is one of FORMAT_NAMES."""
     found: Format = import_module(f"rubgen.formats.{name}").FORMAT
     return found
 
 
 def run_formats(names: Iterable[str] = FORMAT_NAMES) -> list[Format]:
-    """The given formats that have one file a run, in the order of FORMAT_NAMES."""
+    """Return those of the named formats that have one file for each run, in the order of FORMAT_NAMES."""
     chosen = set(names)
     found = [format_of(name) for name in FORMAT_NAMES if name in chosen]
     return [each for each in found if each.one_file_a_run]

@@ -1,4 +1,4 @@
-"""MCAP: every sample, contacts, labels and scenario of one run, for Foxglove and `rubgen replay`."""
+"""MCAP: every sample, contacts, labels and scenario of one run in one file, for Foxglove and `rubgen replay`."""
 
 from __future__ import annotations
 

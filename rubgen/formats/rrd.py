@@ -1,4 +1,4 @@
-"""Rerun recordings (.rrd): a view of one run that can be made again. Its bytes differ each time."""
+"""Rerun recordings (.rrd): a view of one run, which can be made again. Its bytes differ each time."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _remake(replay: Replay, path: Path) -> None:
 
 
 def _problems(path: Path, run_id: str, proven: bool) -> list[str]:
-    """None for a file with the recorded digest: rubgen wrote it, and this process can read it safely."""
+    """Return the problems of the file. A file with the recorded digest was written by rubgen and is safe to read."""
     from rubgen.viz.rerun import check_rrd, content_problems
 
     return content_problems(path, run_id) if proven else check_rrd(path, run_id)

@@ -1,4 +1,4 @@
-"""The columns of `runs.parquet` and of the data files: names, types, units, meaning, in their fixed order."""
+"""The columns of `runs.parquet` and of the data files, in their fixed order: name, type, unit, meaning."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -56,16 +56,16 @@ def _operation() -> list[Column]:
 
 
 def label_columns(labels: Iterable[Label] = LABELS) -> list[Column]:
-    """The columns of these labels."""
+    """Return one column for each of the labels `labels`."""
     return [Column(x.name, x.kind, x.unit, x.meaning, nullable=True, words=x.words) for x in labels]
 
 
 FIELDS = tuple(CasingAcceleration(name=f"casing_{part}", angle_deg=0) for part in ("even", "odd"))
-"""Parts of the casing's acceleration with even and odd circumferential order. They are no taps, but have orders."""
+"""Parts of the casing's acceleration with even and odd circumferential order. They are no taps, but have labels too."""
 
 
 def tap_columns(name: str, unit: str) -> list[Column]:
-    """The columns of a true signal of that name and unit."""
+    """Return the columns of the labels of the tap `name`, such as its amplitudes at orders. `unit` is the tap's."""
     return [
         Column(f"{name}_{x.ending}", x.kind, unit if x.unit is None else x.unit, x.meaning.format(tap=name), True)
         for x in TAP_LABELS
@@ -77,7 +77,7 @@ def _energy() -> list[Column]:
 
 
 def _channel(sensor: SampledSensor | OncePerRev) -> tuple[str, str]:
-    """Unit and meaning of a channel."""
+    """Return unit and meaning of a channel."""
     if isinstance(sensor, OncePerRev):
         return "1", "one pulse a turn, from theta = 0"
     about = sensor.description
@@ -114,14 +114,15 @@ def _surroundings() -> list[Column]:
 
 
 def _ordered_taps(sensors: SensorSet) -> tuple[Tap, ...]:
-    """The true signals that have orders."""
+    """Return the true signals with amplitudes at orders: all but passages under a probe, and the parts in FIELDS."""
     return (*(tap for tap in sensors.taps if not isinstance(tap, TipTiming)), *FIELDS)
 
 
 def scalar_columns(sensors: SensorSet, *, surroundings: bool = False) -> tuple[Column, ...]:
-    """Columns of `runs.parquet` for runs with these sensors. Each true signal of a sensor has its orders.
+    """Return the columns of `runs.parquet` for runs with the sensor set `sensors`.
 
-    Runs of a recipe with `surroundings` have their levels at the end.
+    They are identity, parameters, operation, labels, the orders of each tap of a sensor, and energies. With
+    `surroundings`, as for a recipe that has this table, the levels of the disturbances follow.
     """
     orders = [column for tap in _ordered_taps(sensors) for column in tap_columns(tap.name, tap.UNIT)]
     around = _surroundings() if surroundings else []
@@ -129,9 +130,10 @@ def scalar_columns(sensors: SensorSet, *, surroundings: bool = False) -> tuple[C
 
 
 def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
-    """Columns of the data files in addition to `runs.parquet`; with `clean` the clean channels too.
+    """Return the columns that data files have in addition to `runs.parquet`: channels, touches, windows, arrivals.
 
-    Raises UserError where a sensor has the name of another column.
+    With `clean` each channel's signal without noise is included. Raises UserError where a sensor has the name of
+    another column.
     """
     facts = {each.name: _channel(each) for each in sensors.sensors if isinstance(each, SampledSensor | OncePerRev)}
     columns = [

@@ -1,4 +1,4 @@
-"""Files of unknown origin, read with care; files that are written completely and durably, or not at all."""
+"""Safe reading of files of unknown origin, and writing that is complete and durable or leaves no file."""
 
 import errno
 import json
@@ -20,10 +20,10 @@ _NO_SYNC = (errno.EBADF, errno.EINVAL, errno.ENOSYS, errno.ENOTSUP)
 
 
 def write_durably(path: Path, write: Callable[[Path], object]) -> None:
-    """Let `write` make the file under a temporary name, flush it to the disk, then rename it to `path`.
+    """Call `write` with a temporary name, flush the file it makes to the disk, then rename it to `path`.
 
-    Any error of `write` passes on. Then there is no file, or the old one. An OSError of the file itself names `path`:
-    this is one at the temporary file, or one without a file name that only writing can cause.
+    After an error of `write`, which passes on, there is no file at `path`, or the old one. An OSError of the file
+    itself names `path`: an error at the temporary file, or one without a file name that only writing can cause.
     """
     part = path.with_name(f"{path.stem}{PART}{path.suffix}")
     try:
@@ -43,7 +43,7 @@ def write_durably(path: Path, write: Callable[[Path], object]) -> None:
 
 
 def sync_directory(directory: Path) -> None:
-    """Make the names in a directory durable, where the system can. An OSError names the directory."""
+    """Flush the names in a directory to the disk, where the system can. Raises an OSError that names the directory."""
     try:
         descriptor = os.open(directory, os.O_RDONLY)
     except PermissionError:  # Windows opens no directory
@@ -58,10 +58,10 @@ def sync_directory(directory: Path) -> None:
 
 
 def check_regular(path: Path) -> int:
-    """Size in bytes of the file at `path`.
+    """Check that `path` is a regular file and return its size in bytes.
 
-    Raises UserError where there is none, or it is a folder, a pipe or a device: opening a pipe waits for a writer, and
-    a device may have no end.
+    Raises UserError where there is no file, or a folder, a pipe or a device: opening a pipe waits for a writer, and a
+    device may have no end.
     """
     try:
         found = path.stat()
@@ -75,7 +75,7 @@ def check_regular(path: Path) -> int:
 
 
 def read_json(content: bytes) -> Any:
-    """The values of a JSON text. Raises ValueError for anything that is not JSON."""
+    """Parse a JSON text. Raises ValueError for anything else, also for JSON nested too deeply for the parser."""
     try:
         return json.loads(content)
     except RecursionError:

@@ -1,4 +1,4 @@
-"""Problems of an MCAP file, in sentences."""
+"""Check an MCAP file of a run. Problems are sentences."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -25,12 +25,13 @@ CHANNEL_KEYS = ("unit", "quantity", "axis", "location", "range_min", "range_max"
 
 
 def check_mcap(path: Path, run_id: str = "") -> list[str]:
-    """Problems of the file at `path`, none for a good file. With `run_id`, a file of another run is a problem too.
+    """Check the MCAP file at `path` and return its problems, one sentence each. The list is empty for a good file.
 
-    Checked: CRCs of chunks, data and summary; scenario and labels present and equal in metadata and attachments; every
-    message of every topic decoded, at the time of its record, in order of time; channels described; blocks without gap,
-    of one sample rate, at the times of their indices, of the length in the scenario; a preview for every quantity; and
-    the rules of `read_mcap`: finite values, existing blades, events within the recording.
+    With `run_id` it is a problem too if the file is of another run. Checked are: CRCs of chunks, data and summary;
+    scenario and labels, present and equal in metadata and attachments; every message of every topic, which must decode
+    and have the time of its record; the order of times; the description of channels; blocks of samples, which must be
+    without gap, of one sample rate, at the times of their indices and of the length in the scenario; a preview for
+    every quantity; and the rules of `read_mcap`: finite values, existing blades, events within the recording.
     """
     try:
         content = read_content(path)
@@ -45,7 +46,7 @@ def check_mcap(path: Path, run_id: str = "") -> list[str]:
 
 
 def _raised(check: Callable[[], object]) -> list[str]:
-    """The one problem that a check finds, if any."""
+    """Run a check. Return the message of the DamageError that it raises as a list of one, else an empty list."""
     try:
         check()
     except DamageError as damage:

@@ -1,4 +1,4 @@
-"""The content of an MCAP file by name; the content of a file of rubgen as types."""
+"""The content of an MCAP file by name, and the checks that turn it into typed values of a run."""
 
 import math
 from collections import defaultdict
@@ -58,11 +58,11 @@ class McapContent:
     schemas: dict[int, str] = field(default_factory=dict)
 
     def topics(self, prefix: str) -> list[str]:
-        """The topics that begin with `prefix`."""
+        """Return the topics whose names begin with `prefix`, in file order."""
         return [topic for topic in self.channels if topic.startswith(prefix)]
 
     def document(self, name: str) -> dict[str, Any]:
-        """The attachment of that name as a table of JSON. Raises DamageError where it is missing or not a table."""
+        """Parse the attachment `name` as a JSON object. Raises DamageError where it is missing or anything else."""
         if name not in self.attachments:
             raise DamageError(f"attachment {name} is missing: this is no run of rubgen")
         with damage_found(f"attachment {name}"):
@@ -73,7 +73,10 @@ class McapContent:
 
 
 def read_content(path: Path, lost: list[str] | None = None) -> McapContent:
-    """Every record of the file, see `read_records`. Raises DamageError where names are not unique or unknown."""
+    """Read every record of the file at `path`. `lost` is as in `read_records`.
+
+    Raises DamageError where two channels or attachments share a name, or a message has no described channel.
+    """
     content = McapContent()
     topics: dict[int, str] = {}
     messages: list[Message] = []
@@ -113,7 +116,7 @@ def _add(kind: str, there: dict[str, Any], name: str, value: object) -> None:
 
 
 def message_name(topic: str) -> str | None:
-    """The message of this topic; None for a topic that rubgen does not know."""
+    """Return the name of the message that `topic` carries, such as "Contact". None for an unknown topic."""
     names = (
         name for key, name in MESSAGE_OF_TOPIC.items() if topic == key or (key.endswith("/") and topic.startswith(key))
     )
@@ -121,7 +124,10 @@ def message_name(topic: str) -> str | None:
 
 
 def rows(content: McapContent, topic: str) -> list[Any]:
-    """The decoded messages of a topic, none where it is missing. Raises DamageError where they do not fit."""
+    """Decode the messages of a topic. The list is empty where the topic is missing.
+
+    Raises DamageError where the topic carries another message or the bytes cannot be decoded.
+    """
     name = message_name(topic)
     if name is None or topic not in content.channels:
         return []
@@ -132,12 +138,15 @@ def rows(content: McapContent, topic: str) -> list[Any]:
 
 
 def check_kind(content: McapContent, topic: str, name: str) -> None:
-    """Raise DamageError where the messages of the topic are not rubgen.v1.`name`."""
+    """Check that the topic carries messages of type rubgen.v1.`name`. Raises DamageError where it does not."""
     _check_schema(content, content.channels[topic], f"{PACKAGE}.{name}", "protobuf")
 
 
 def check_other(content: McapContent, topic: str) -> None:
-    """Decode a topic for other programs. Raises DamageError where its bytes do not fit, or it is unknown."""
+    """Check a topic that is written for other programs: `/tf` and previews. Every message is decoded.
+
+    Raises DamageError where the bytes do not fit, values are not finite, or the topic is unknown.
+    """
     channel = content.channels[topic]
     if topic == "/tf":
         _check_schema(content, channel, TRANSFORM, "protobuf")
@@ -164,10 +173,10 @@ def _check_schema(content: McapContent, channel: Channel, name: str, encoding: s
 
 
 def columns(content: McapContent, topic: str, scenario: Scenario) -> dict[str, FloatArray]:
-    """The fields of a topic's events, each (n_events,).
+    """Decode the events of a topic, such as contacts, into one array (n_events,) for each field of their message.
 
-    Raises DamageError where a value is not finite, a blade does not exist, or events are outside of the recording or
-    not in order. `scenario` has the blades and the length of the recording.
+    `scenario` tells how many blades there are and how long the recording is. Raises DamageError where a value is not
+    finite, a blade does not exist, or events are outside of the recording or not in order.
     """
     found = rows(content, topic)
     names = [each.name for each in message_class(message_name(topic) or "").DESCRIPTOR.fields]
@@ -193,14 +202,14 @@ def _check_times(topic: str, start: FloatArray, end: FloatArray, seconds: float)
 
 
 def check_order(content: McapContent, topic: str) -> None:
-    """Raise DamageError where the times of a topic's messages decrease."""
+    """Check that the times of a topic's messages never decrease. Raises DamageError where they do."""
     times = [message.log_time for message in content.messages.get(topic, [])]
     if any(later < earlier for earlier, later in pairwise(times)):
         raise DamageError(f"{topic}: messages are not in order of time")
 
 
 class RequiredLabels(BaseModel):
-    """Labels without which a run cannot be shown."""
+    """The labels without which a replay cannot be shown, with their types."""
 
     model_config = ConfigDict(strict=False, extra="ignore")
     rub: Annotated[bool, Field(strict=True)]
@@ -210,7 +219,7 @@ class RequiredLabels(BaseModel):
 
 
 class ChannelFacts(BaseModel):
-    """Metadata of a channel of samples; MCAP has them as text."""
+    """The metadata of a channel of samples, with their types. MCAP stores them as text."""
 
     model_config = ConfigDict(extra="ignore")
     unit: str
@@ -224,7 +233,10 @@ class ChannelFacts(BaseModel):
 
 
 def checked_scenario(content: McapContent) -> tuple[dict[str, Any], Scenario]:
-    """The scenario as in the file, and as a `Scenario`. Raises DamageError where this rubgen cannot read it."""
+    """Return the scenario as the file has it, and as a `Scenario`.
+
+    Raises DamageError where this version of rubgen cannot read it, or it asks for more samples than rubgen makes.
+    """
     plain = content.document("scenario.json")
     scenario: Scenario = _validated(_adapter(Scenario), plain, "its scenario is of another rubgen")
     samples = scenario.signal_seconds * scenario.sensing.sample_rate_hz
@@ -234,7 +246,11 @@ def checked_scenario(content: McapContent) -> tuple[dict[str, Any], Scenario]:
 
 
 def checked_labels(content: McapContent) -> dict[str, Any]:
-    """The labels, each a value or a list of values. Raises DamageError where they are not labels."""
+    """Return the labels by name, each a value or a list of values.
+
+    Raises DamageError where one of `RequiredLabels` is missing, or names or values are not of the kind that rubgen
+    writes.
+    """
     labels = content.document("labels.json")
     _validated(_adapter(dict[LabelName, LabelValue]), labels, "labels.json is not what rubgen writes")
     _validated(_adapter(RequiredLabels), labels, "labels.json is not what rubgen writes")
@@ -242,7 +258,7 @@ def checked_labels(content: McapContent) -> dict[str, Any]:
 
 
 def check_facts(channel: Channel) -> None:
-    """Raise DamageError where unit, place or range of a channel is missing or wrong."""
+    """Check unit, place and range in the metadata of a channel. Raises DamageError where one is missing or wrong."""
     facts: ChannelFacts = _validated(_adapter(ChannelFacts), channel.metadata, f"metadata of {channel.topic}")
     if not math.isfinite(facts.range_max - facts.range_min) or facts.range_max < facts.range_min:
         raise DamageError(f"metadata of {channel.topic}: the range is empty")

@@ -48,16 +48,16 @@ _ENCAPSULATION = b"\x00\x01\x00\x00"  # plain CDR, little endian; alignment coun
 
 @cache
 def transform_descriptor_set() -> bytes:
-    """Serialised FileDescriptorSet of FrameTransform and its parts, as MCAP embeds it."""
+    """Serialise the descriptors of FrameTransform and its parts, as MCAP embeds them in a schema."""
     return descriptor_set(_FILES)
 
 
 def transform(time_ns: int, angle: float, centre: list[float]) -> bytes:
-    """The frame `blisk` in the frame `machine`, as a serialised message.
+    """Serialise a FrameTransform message: position and rotation of the frame `blisk` in the inertial frame `machine`.
 
     - time_ns: time in ns.
     - angle: rotation about Z, rad.
-    - centre: x and y of its origin in the turned frame, m.
+    - centre: x and y of the disk centre in the turning frame, m.
     """
     cosine, sine = math.cos(angle), math.sin(angle)
     x, y = centre
@@ -72,7 +72,7 @@ def transform(time_ns: int, angle: float, centre: list[float]) -> bytes:
 
 
 def read_transform(data: bytes) -> Any:
-    """The message from its bytes. Raises protobuf's DecodeError where they are not one."""
+    """Parse a serialised FrameTransform. Raises protobuf's DecodeError where `data` is anything else."""
     return _message_class().FromString(data)
 
 
@@ -82,9 +82,10 @@ def _message_class() -> Any:
 
 
 def multi_arrays(names: Sequence[str], values: FloatArray) -> list[bytes]:
-    """One CDR message for each row of `values` (n, len(names)). The label of its one dimension lists the names.
+    """Serialise each row of `values` (n, len(names)) as a Float64MultiArray in CDR.
 
-    All messages have the same header, so one template is filled for all of them at once.
+    The label of the array's one dimension lists the names. All messages have the same header, so one template is filled
+    for all of them at once.
     """
     count = len(names)
     label = ", ".join(names).encode() + b"\0"
@@ -99,7 +100,10 @@ def multi_arrays(names: Sequence[str], values: FloatArray) -> list[bytes]:
 
 
 def read_multi_array(data: bytes) -> tuple[list[str], FloatArray]:
-    """Names and values of a message of `multi_arrays`. Raises ValueError or struct.error where it is not one."""
+    """Parse a message of `multi_arrays` into names and values (len(names),).
+
+    Raises ValueError or struct.error where `data` is anything else.
+    """
     if data[: len(_ENCAPSULATION)] != _ENCAPSULATION:
         raise ValueError("no little-endian CDR")
     body = data[len(_ENCAPSULATION) :]

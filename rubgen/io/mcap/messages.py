@@ -1,4 +1,4 @@
-"""The protobuf messages of MCAP files of rubgen, defined once: classes, descriptor and .proto file come from here."""
+"""The protobuf messages of rubgen's MCAP files. Classes, descriptors and the .proto file come from this table."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -113,7 +113,12 @@ CONTACT_FIELDS = {
 
 
 def proto_file(path: str, package: str, messages: dict[str, list[Field]]) -> descriptor_pb2.FileDescriptorProto:
-    """A .proto file with these messages; other messages among their fields are imported from their files."""
+    """Describe a .proto file with the given messages. It imports the files of other messages among their fields.
+
+    - path: the name under which other files import this one.
+    - package: the protobuf package of the messages.
+    - messages: the fields of each message, by its name.
+    """
     file = descriptor_pb2.FileDescriptorProto(name=path, package=package, syntax="proto3")
     for name, fields in messages.items():
         message = file.message_type.add(name=name)
@@ -130,12 +135,12 @@ def proto_file(path: str, package: str, messages: dict[str, list[Field]]) -> des
 
 
 def descriptor_set(files: list[descriptor_pb2.FileDescriptorProto]) -> bytes:
-    """Serialised FileDescriptorSet of these files behind that of timestamps, as MCAP embeds it."""
+    """Serialise the descriptors of `files`, after that of Timestamp, as MCAP embeds them in a schema."""
     return descriptor_pb2.FileDescriptorSet(file=_with_timestamp(files)).SerializeToString(deterministic=True)
 
 
 def class_of(files: list[descriptor_pb2.FileDescriptorProto], name: str) -> Any:
-    """The generated class of the message of that full name in these files."""
+    """Generate the Python class of the message with the full name `name` (package and message) in these files."""
     pool = descriptor_pool.DescriptorPool()
     for file in _with_timestamp(files):
         pool.Add(file)
@@ -150,30 +155,30 @@ def _with_timestamp(files: list[descriptor_pb2.FileDescriptorProto]) -> list[des
 
 @cache
 def file_descriptor_set() -> bytes:
-    """Serialised FileDescriptorSet with every message of rubgen and its imports."""
+    """Serialise the descriptors of all messages of rubgen and of their imports, as MCAP embeds them in a schema."""
     return descriptor_set([_own_file()])
 
 
 @cache
 def message_class(name: str) -> Any:
-    """The generated class of the message of that name."""
+    """Return the Python class of rubgen's message `name`, such as "Contact"."""
     return class_of([_own_file()], f"{PACKAGE}.{name}")
 
 
 def timestamp(time_ns: int) -> dict[str, int]:
-    """A google.protobuf.Timestamp as a keyword argument of a generated class."""
+    """Return the fields of a google.protobuf.Timestamp: whole seconds and the remaining nanoseconds of `time_ns`."""
     return {"seconds": time_ns // 10**9, "nanos": time_ns % 10**9}
 
 
 def sample_block(values: Float32Array, sample_rate_hz: float, first_index: int, time_ns: int) -> bytes:
-    """Serialised SampleBlock of `values` (n,).
+    """Serialise a SampleBlock message with samples `values` (n,).
 
     The message has the packed floats as one bytes field of the same number. Its wire bytes are the same (a test
     compares them), without a Python object for each sample.
 
-    - sample_rate_hz: of the channel.
+    - sample_rate_hz: samples per second of the channel.
     - first_index: index of the first sample in the channel.
-    - time_ns: time of the first sample.
+    - time_ns: time of the first sample after the first of the file.
     """
     block = _bytes_block()(
         timestamp=timestamp(time_ns),
@@ -185,7 +190,7 @@ def sample_block(values: Float32Array, sample_rate_hz: float, first_index: int, 
 
 
 def read_sample_block(data: bytes) -> tuple[int, float, int, Float32Array]:
-    """Time in ns, sample rate in Hz, first index and values of a serialised SampleBlock."""
+    """Parse a serialised SampleBlock: time in ns, sample rate in Hz, index of the first sample, values (n,)."""
     block = _bytes_block().FromString(data)
     time_ns = block.timestamp.seconds * 10**9 + block.timestamp.nanos
     return time_ns, block.sample_rate, block.first_index, np.frombuffer(block.values, dtype="<f4")

@@ -1,4 +1,4 @@
-"""Runs back from MCAP files, with every checksum checked, and what can still be read of damaged files."""
+"""Reading of runs from MCAP files: whole files with every checksum checked, and the rest of damaged files."""
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
@@ -34,7 +34,10 @@ FRAMES, MODES = "/motion/frames", "/motion/casing_modes"
 
 
 def read_frames(content: McapContent, scenario: Scenario) -> MotionFrames | None:
-    """The frames; None where the file has none. Raises DamageError where they do not fit each other or the machine."""
+    """Decode the frames of motion: positions of disk, tips and casing at single moments. None where the file has none.
+
+    Raises DamageError where their sizes do not fit each other or the machine, or times do not ascend in the recording.
+    """
     found, shapes = rows(content, FRAMES), rows(content, MODES)
     if not found or not shapes:
         return None
@@ -99,10 +102,10 @@ class McapRun:
 
 
 def read_mcap(path: Path, *, channels: Collection[str] | None = None) -> McapRun:
-    """The run in the file at `path`. CRCs of chunks, data and summary, and the content, are checked.
+    """Read the run in the MCAP file at `path`, with CRCs of chunks, data and summary, and the content, checked.
 
-    With `channels` (`<name>_clean` for a clean one) only these channels and the pulses are decoded. Raises UserError,
-    one line, where there is no such file, it is damaged, or it has no run of rubgen.
+    With `channels` (`<name>_clean` for the channel without noise) only these channels and the pulses are decoded.
+    Raises UserError, one line, where there is no such file, it is damaged, or it has no run of rubgen.
     """
     try:
         return run_of(read_content(path), channels=channels)
@@ -113,10 +116,10 @@ def read_mcap(path: Path, *, channels: Collection[str] | None = None) -> McapRun
 
 
 def run_of(content: McapContent, *, gaps: bool = False, channels: Collection[str] | None = None) -> McapRun:
-    """The run in these records. Raises DamageError where there is none.
+    """Make the run from the records of its file. Raises DamageError where they are no run of rubgen.
 
-    - gaps: samples may be missing and are then NaN.
-    - channels: names of the channels to decode; all with None.
+    - gaps: samples may be missing and are then NaN; else a missing block is damage.
+    - channels: names of the channels to decode, with the pulses and nothing else; None decodes everything.
     """
     plain, scenario = checked_scenario(content)
     if not content.topics("/raw/"):
@@ -141,7 +144,7 @@ def run_of(content: McapContent, *, gaps: bool = False, channels: Collection[str
 
 
 def _only(content: McapContent, channels: Collection[str]) -> McapContent:
-    """The content with only the messages of these channels and of the pulses."""
+    """Return the content with only the messages of these channels and of the pulses."""
     clean = {f"/clean/{name.removesuffix('_clean')}" for name in channels if name.endswith("_clean")}
     topics = {"/once_per_rev", *(f"/raw/{name}" for name in channels), *clean}
     return replace(
@@ -152,7 +155,7 @@ def _only(content: McapContent, channels: Collection[str]) -> McapContent:
 
 
 def _signals(content: McapContent, prefix: str, scenario: Scenario, *, gaps: bool) -> dict[str, Float32Array]:
-    """Samples of every channel under `prefix`, all of one length."""
+    """Return the samples of every channel under `prefix`, all of one length."""
     topics = content.topics(prefix)
     length = round(scenario.signal_seconds * scenario.sensing.sample_rate_hz) if gaps else None
     signals = {
@@ -165,7 +168,7 @@ def _signals(content: McapContent, prefix: str, scenario: Scenario, *, gaps: boo
 
 
 def _samples(content: McapContent, topic: str, rate: float, length: int | None) -> Float32Array:
-    """The blocks one after another. With a `length` each block is at its place, with NaN between."""
+    """Join the blocks of a channel. With a `length` each block is put at its index, with NaN between."""
     check_kind(content, topic, "SampleBlock")
     check_order(content, topic)
     parts = [np.empty(0, np.float32)]
@@ -205,11 +208,11 @@ def _motion_classes(content: McapContent) -> dict[str, list[tuple[float, str]]]:
 
 
 def salvage_mcap(path: Path) -> tuple[McapRun, list[str]]:
-    """The run in the file at `path`, and its losses, one sentence each: none for a good file.
+    """Read what can be read of the run in the MCAP file at `path`. Returns it with its losses, one sentence each.
 
-    Chunks that fail their CRC are left out, and everything after the place where the records can no longer be followed.
-    Lost samples are NaN. Raises UserError where scenario or labels are lost, where the rest contradicts itself, or it
-    is no file of rubgen.
+    There is no loss in a good file. Chunks that fail their CRC are left out, and everything after the place where the
+    records can no longer be followed. Lost samples are NaN. Raises UserError where scenario or labels are lost, the
+    rest contradicts itself, or it is no file of rubgen.
     """
     try:
         return read_mcap(path), []

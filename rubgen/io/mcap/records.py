@@ -1,4 +1,4 @@
-"""The records of an MCAP file one after another, each within its bounds: framing, sizes, checksums.
+"""The records of an MCAP file in file order, each with its framing, size and checksum checked.
 
 The mcap package parses single records. It trusts their lengths, leaves the summary's CRC unchecked, and unpacks a chunk
 to whatever size the chunk names.
@@ -46,12 +46,12 @@ _PARSERS_RAISE = (
 
 
 class DamageError(RubgenError):
-    """A problem of a file, in words to be put after its name."""
+    """Damage of an MCAP file. The message is to be put after the name of the file."""
 
 
 @contextmanager
 def damage_found(what: str) -> Iterator[None]:
-    """Turn any error of a parser in the block into a `DamageError` of `what`."""
+    """Turn any error of a parser in the block into a `DamageError`: "`what` cannot be read (...)"."""
     try:
         yield
     except _PARSERS_RAISE as error:
@@ -60,11 +60,11 @@ def damage_found(what: str) -> Iterator[None]:
 
 
 def read_records(path: Path, lost: list[str] | None = None) -> Iterator[McapRecord]:
-    """Schemas, channels, messages, metadata and attachments in file order, including those in chunks.
+    """Yield schemas, channels, messages, metadata and attachments in file order, including records within chunks.
 
-    Raises DamageError where a record, a size or a CRC is wrong. With `lost`, problems are appended to it and damaged
-    parts left out, and the CRCs of the whole file are not checked. Raises UserError or OSError where the file cannot be
-    read at all.
+    Raises DamageError where a record, a size or a CRC is wrong. If a list `lost` is given, damaged parts are left out
+    instead, one text about each is appended to `lost`, and the CRCs of the whole file are not checked. Raises UserError
+    or OSError where the file cannot be read at all.
     """
     size = check_regular(path)
     with path.open("rb") as stream:
@@ -179,7 +179,7 @@ class _Reading:
 
 
 def _content(chunk: Chunk) -> bytes:
-    """The chunk unpacked. Its size is checked against the bound before, and against its header after."""
+    """Unpack a chunk. Its size is checked against the bound before, and against its header after."""
     size = chunk.uncompressed_size
     if size > MOST_CHUNK_BYTES:
         raise DamageError(f"a chunk would unpack to {size:,} bytes; {MOST_CHUNK_BYTES:,} are allowed")

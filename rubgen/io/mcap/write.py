@@ -1,4 +1,4 @@
-"""One run as one MCAP file: every sample, a preview for plots, contacts, labels and scenario."""
+"""Writing of one run as one MCAP file: every sample, a preview for plots, contacts, labels and scenario."""
 
 from __future__ import annotations
 
@@ -39,13 +39,14 @@ Stamped = tuple[int, bytes]
 
 
 def write_mcap(run: Run, path: Path) -> None:
-    """Write `run` to `path`, complete or not at all. The same run always makes the same bytes.
+    """Write `run` to the MCAP file at `path`, complete or not at all. The same run always makes the same bytes.
 
-    Topics: `/raw/<channel>` (`/clean/<channel>` for clean channels) blocks of 1024 float32 samples,
-    `/preview/<quantity>` minimum and maximum at about 1 kHz, `/contact`, `/once_per_rev`, `/blade_tip_timing/<probe>`,
-    `/labels/motion`, and with a track `/motion/frames`, `/motion/casing_modes` and `/tf`. Times are integer ns from the
-    first sample. Scenario and labels are metadata records (`rubgen.scenario`, `rubgen.labels`; each value JSON) and
-    attachments. Raises ValueError for a run without a recording, OSError when the file cannot be written.
+    Topics: `/raw/<channel>` (`/clean/<channel>` without noise) has blocks of 1024 float32 samples,
+    `/preview/<quantity>` has minimum and maximum at about 1 kHz. Events are on `/contact`, `/once_per_rev`,
+    `/blade_tip_timing/<probe>` and `/labels/motion`. A run with a motion track has `/motion/frames`,
+    `/motion/casing_modes` and `/tf`. Times are integer ns from the first sample. Scenario and labels are metadata
+    records (`rubgen.scenario`, `rubgen.labels`; each value JSON) and attachments. Raises ValueError for a run without a
+    recording, OSError when the file cannot be written.
     """
     if run.recording is None or run.labels is None:
         raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to record")
@@ -54,7 +55,7 @@ def write_mcap(run: Run, path: Path) -> None:
 
 
 def nanoseconds(seconds: float) -> int:
-    """A time in s as integer ns."""
+    """Round a time in s to whole ns."""
     return round(seconds * 1e9)
 
 
@@ -111,7 +112,7 @@ def _write_messages(writer: Writer, run: Run, recording: Recording, labels: Labe
 
 
 def _describe(channel: Channel) -> dict[str, str]:
-    """The meaning of the channel's numbers. Samples are in `unit` already, so their sensitivity is 1."""
+    """Return the metadata of a channel. Samples are already in `unit`, so their sensitivity is 1."""
     texts = {key: str(getattr(channel, key)) for key in TEXTS}
     return texts | {key: repr(float(getattr(channel, key))) for key in NUMBERS} | {"sensitivity": "1.0"}
 
@@ -128,7 +129,7 @@ def _arrays(shown: Preview, sample_rate_hz: float) -> Iterator[Stamped]:
 
 
 def _messages(name: str, rows: Iterable[tuple[float, dict[str, Any]]]) -> Iterator[Stamped]:
-    """Messages rubgen.v1.`name` with these fields, each at its time in s, or at 0 where that is negative."""
+    """Yield messages rubgen.v1.`name` with these fields, each at its time in s, or at 0 where that is negative."""
     message = message_class(name)
     for seconds, fields in rows:
         time = max(0, nanoseconds(seconds))
@@ -148,7 +149,7 @@ def _pulses(recording: Recording) -> Iterator[Stamped]:
 
 
 def _describe_probe(run: Run, name: str) -> dict[str, str]:
-    """The place of a timing probe."""
+    """Return the metadata of a timing probe: its place and its errors."""
     (probe,) = [each for each in run.scenario.sensing.set.sensors if each.name == name]
     values = {key: value for key, value in vars(probe).items() if key.endswith(("_deg", "_m", "_s", "_hz"))}
     return {"unit": "s", "quantity": "arrival time", **{key: repr(float(value)) for key, value in values.items()}}
@@ -161,7 +162,7 @@ def _passages(seen: TipTimes) -> Iterator[Stamped]:
 
 
 def _motions(labels: Labels, recording: Recording) -> Iterator[Stamped]:
-    """The class from the first sample on, and at a changing speed each later class within the recording."""
+    """Yield the class from the first sample on, and at a changing speed each later class within the recording."""
     classes = motion_classes(labels, recording.start_seconds, recording.samples / recording.sample_rate_hz)
     period = labels.period or 0 if labels.history is None else 0
     return _messages("MotionLabel", ((time, {**names, "period": period}) for time, names in classes))
@@ -187,7 +188,7 @@ def _casing_modes(frames: MotionFrames) -> Iterator[Stamped]:
 
 
 def _transforms(frames: MotionFrames) -> Iterator[Stamped]:
-    """The turning blisk in the ground's frame, for every frame."""
+    """Yield the position of the turning blisk in the inertial frame, for every frame."""
     for row, time_s in enumerate(frames.time.tolist()):
         time = nanoseconds(time_s)
         yield time, transform(time, float(frames.angle[row]), frames.centre[row].tolist())

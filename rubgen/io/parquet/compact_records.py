@@ -1,6 +1,6 @@
-"""Compact records of runs as Parquet, from which labels can be made again.
+"""Compact records of runs as Parquet: of the true response what is needed to make its labels again.
 
-One row a run. Arrays are flat lists, row after row.
+One row a run. Arrays are stored as flat lists, row after row.
 """
 
 from pathlib import Path
@@ -46,19 +46,22 @@ SCHEMA = pa.schema(
 
 
 def record_table(run_id: str, response: Response) -> pa.Table:
-    """One row: the compact record of a run that ended well."""
+    """Make the row with the compact record of run `run_id`. The run must have ended well (status OK)."""
     record = compact_record(response)
     columns = {name: pa.array([record[name].ravel()], pa.list_(kind)) for name, (kind, _) in RECORD_COLUMNS.items()}
     return pa.table({"run_id": pa.array([run_id])} | columns, schema=SCHEMA)
 
 
 def write_record(run_id: str, response: Response, path: Path) -> None:
-    """Write the compact record of the response of run `run_id` to `path`, complete or not at all."""
+    """Write the compact record of the response of run `run_id` as a Parquet file at `path`, complete or not at all."""
     write_table([record_table(run_id, response)], SCHEMA, path)
 
 
 def read_record(table: pa.Table, row: int, path: Path) -> CompactRecord:
-    """The compact record in a row of the file at `path`. Raises UserError where its lists do not fit each other."""
+    """Read the compact record in row `row` of `table`, which was read from `path`. Returns its arrays by name.
+
+    Raises UserError where the lengths of its lists do not fit each other or a number is not valid.
+    """
     record: dict[str, np.ndarray[Any, Any]] = {}
     try:
         for name in RECORD_COLUMNS:

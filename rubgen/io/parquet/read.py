@@ -1,4 +1,4 @@
-"""Tables from Parquet files: correct, or an error of one line that names the file."""
+"""Tables from Parquet files. A damaged file is a UserError of one line that names it, never a wrong value."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -22,15 +22,18 @@ is allowed too: signals without noise that repeat every turn have a ratio of 5,0
 
 
 class ParquetSource:
-    """An open Parquet file of rubgen. Every damage is a UserError that names it.
+    """An open Parquet file of rubgen. Any damage raises a UserError that names the file.
 
-    Page checksums, UTF-8 and offsets are checked; sizes are bounded before anything is unpacked.
+    Page checksums, UTF-8 and offsets are checked. Sizes are checked before anything is unpacked, so that a small file
+    cannot fill the memory.
     """
 
     def __init__(self, path: Path, asked_bytes: float = 0.0) -> None:
-        """Read the footer. Raises UserError where it is missing or damaged, or has columns that rubgen does not write.
+        """Open the file and read its footer.
 
-        `asked_bytes` is the size of a row group by the recipe of its set, where that is known.
+        `asked_bytes` is the unpacked size of a row group that the recipe of the data set leads one to expect, if known.
+        It is allowed beyond the general bound. Raises UserError where the file is missing, damaged or has columns of
+        unknown types.
         """
         self.path, self._asked_bytes = path, asked_bytes
         self._size = check_regular(path)
@@ -55,18 +58,21 @@ class ParquetSource:
         self._stream.close()
 
     def rows_of(self, group: int) -> int:
-        """Number of rows of one group, from the footer."""
+        """Return the number of rows of row group `group`, from the footer."""
         return int(self._file.metadata.row_group(group).num_rows)
 
     def read_row_group(self, group: int, columns: Sequence[str] | None = None) -> pa.Table:
-        """The rows of one group. Raises UserError where a page is damaged or a column is missing."""
+        """Read the rows of row group `group`, with the named columns or all.
+
+        Raises UserError where a page is damaged or a column is missing.
+        """
         names = self._names(columns)
         with damage_named(self.path):
             self._check_size(group)
             return self._plain(self._file.read_row_group(group, columns=names), names)
 
     def read(self, columns: Sequence[str] | None = None) -> pa.Table:
-        """All rows. Raises UserError as for one group."""
+        """Read all rows, with the named columns or all. Raises UserError as `read_row_group` does."""
         groups = [self.read_row_group(group, columns) for group in range(self.num_row_groups)]
         types = pa.schema([self.schema_arrow.field(name) for name in self._names(columns)])
         return pa.concat_tables([types.empty_table(), *groups])
@@ -89,7 +95,10 @@ class ParquetSource:
         self._refuse_above(unpacked, self._size, self._asked_bytes)
 
     def _plain(self, table: pa.Table, names: list[str]) -> pa.Table:
-        """The table with text as text. It was read as a dictionary, as a long word may stand for a million rows."""
+        """Return the table with text as text.
+
+        It was read as a dictionary, since a long word may be repeated a million times.
+        """
         text = [chunk for name in names if name in self._text for chunk in table[name].chunks]
         table.validate(full=True)
         self._refuse_above(sum(_text_bytes(chunk) for chunk in text), 0)
@@ -101,10 +110,9 @@ class ParquetSource:
 
 
 def read_table(path: Path, columns: Sequence[str] | None = None, asked_bytes: float = 0.0) -> pa.Table:
-    """The rows of a Parquet file, every page checked.
+    """Read all rows of the Parquet file at `path`, with every page checked.
 
-    - path: of the file.
-    - columns: names of the columns; all with None.
+    - columns: names of the columns to read; None reads all.
     - asked_bytes: as in `ParquetSource`.
 
     Raises UserError where the file is missing, damaged or lacks a column.
@@ -114,7 +122,10 @@ def read_table(path: Path, columns: Sequence[str] | None = None, asked_bytes: fl
 
 
 def row_groups(path: Path, asked_bytes: float = 0.0) -> Iterator[pa.Table]:
-    """One row group after another, every page checked. Raises UserError where the file is missing or damaged."""
+    """Yield the row groups of the Parquet file at `path` one by one, with every page checked. Only one is in memory.
+
+    `asked_bytes` is as in `ParquetSource`. Raises UserError where the file is missing or damaged.
+    """
     with ParquetSource(path, asked_bytes) as file:
         for group in range(file.num_row_groups):
             yield file.read_row_group(group)
@@ -122,7 +133,7 @@ def row_groups(path: Path, asked_bytes: float = 0.0) -> Iterator[pa.Table]:
 
 @contextmanager
 def damage_named(path: Path) -> Iterator[None]:
-    """Turn any error of pyarrow in the block into a UserError of one line that names the file."""
+    """Turn any error of pyarrow in the block into a UserError of one line that names the file `path`."""
     try:
         yield
     except (pa.ArrowException, OSError, ValueError, LookupError, MemoryError, OverflowError) as error:
@@ -131,7 +142,10 @@ def damage_named(path: Path) -> Iterator[None]:
 
 
 def _text_columns(path: Path, types: pa.Schema) -> list[str]:
-    """Names of the text columns. Raises UserError where two columns share a name or one has a type not of rubgen."""
+    """Return the names of the text columns.
+
+    Raises UserError where two columns share a name, or one has a type that rubgen never writes.
+    """
     if len(set(types.names)) != len(types.names):
         raise UserError(f"{path}: two columns share a name; that is no file of rubgen")
     for field in types:

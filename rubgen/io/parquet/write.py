@@ -45,12 +45,12 @@ COMPRESSION_LEVEL = 3
 def schema(
     *, signals: bool, clean: bool = False, sensors: SensorSet | None = None, surroundings: bool = False
 ) -> pa.Schema:
-    """The Arrow schema of `runs.parquet`; with `signals`, of the data files. Each field has its unit and meaning.
+    """Return the Arrow schema of `runs.parquet`, or with `signals` of the data files. Fields name unit and meaning.
 
-    - signals: include the channels.
-    - clean: include the clean channels.
-    - sensors: the sensor set of the runs; the default set with None.
-    - surroundings: include their levels.
+    - signals: include the recorded channels, touches and windows of each run.
+    - clean: include the channels without noise.
+    - sensors: the sensor set of the runs; None is the default set.
+    - surroundings: include the levels of the disturbances from the surroundings.
     """
     used = sensors or default_sensor_set()
     columns = scalar_columns(used, surroundings=surroundings) + (signal_columns(used, clean=clean) if signals else ())
@@ -58,16 +58,19 @@ def schema(
 
 
 def recipe_schema(recipe: Recipe, *, signals: bool) -> pa.Schema:
-    """The same of the set that a recipe makes."""
+    """Return the Arrow schema of the files of the data set that a recipe makes, as `schema` does.
+
+    With `signals` it is the schema of the data files, else of `runs.parquet`.
+    """
     sensing, around = recipe.sensing, recipe.surroundings
     return schema(signals=signals, clean=sensing.keep_clean, sensors=sensing.set, surroundings=around is not None)
 
 
 def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Table:
-    """One row: the run's identity, parameters and labels, and with `signals` its channels.
+    """Make the row of one run: its identity, parameters and labels, and with `signals` its channels and touches.
 
-    `split` is the split of the data set. A failed run has null labels, energies and signals. Raises ValueError where a
-    label has no column.
+    `split` is the name of the run's part of the data set. A failed run has null labels, energies and signals. Raises
+    ValueError where a label has no column.
     """
     around = run.scenario.surroundings
     row = _identity(run, split) | varied_values(run.scenario) | _operation(run)
@@ -87,9 +90,9 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
 
 
 def write_table(tables: Iterable[pa.Table], types: pa.Schema, path: Path) -> int:
-    """Write tables to `path`, each as one row group, complete or not at all. Return the number of rows written.
+    """Write tables of schema `types` to the file at `path`, each as one row group. Return the number of rows written.
 
-    `types` is the schema of all tables.
+    The file is complete or not written at all.
     """
     rows = 0
 
@@ -105,7 +108,7 @@ def write_table(tables: Iterable[pa.Table], types: pa.Schema, path: Path) -> int
 
 
 def write_parquet(run: Run, path: Path) -> None:
-    """Write one run as a Parquet file of one row, with its signals. Raises OSError when it cannot be written."""
+    """Write one run as a Parquet file of one row, with its signals. Raises OSError when the file cannot be written."""
     table = run_table(run)
     write_table([table], table.schema, path)
 
@@ -167,7 +170,7 @@ def _signals(recording: Recording) -> dict[str, object]:
 
 
 def _touches(run: Run, recording: Recording) -> dict[str, object]:
-    """The touches that overlap the recording, in order of their start."""
+    """Return the columns of the touches that overlap the recording, in order of their start."""
     touches = contact_intervals(run.response, recording)
     order = np.argsort(touches.start, kind="stable")
     return {
@@ -181,5 +184,5 @@ def _touches(run: Run, recording: Recording) -> dict[str, object]:
 
 
 def _single(values: FloatArray) -> FloatArray:
-    """Rounded to single precision, so that they compress."""
+    """Round values to single precision, so that they compress."""
     return np.asarray(values.astype(np.float32), dtype=np.float64)
