@@ -1,4 +1,4 @@
-"""The card of a data set: content, loading, and the meaning of every column, as the README.md of hubs."""
+"""Write the card of a data set, README.md: content, loading, and the meaning of every column, as hubs show it."""
 
 import json
 from collections.abc import Sequence
@@ -15,17 +15,20 @@ from rubgen.io.parquet.compact_records import RECORD_COLUMNS
 
 
 def write_card(layout: Layout, identity: Identity, status: dict[str, int]) -> None:
-    """Write README.md. Its bytes depend only on these inputs.
+    """Write README.md of a data set. Its bytes depend only on these inputs.
 
-    - layout: of the set.
-    - identity: its origin.
+    - layout: paths of the set.
+    - identity: recipe, machine, sensors and versions.
     - status: number of runs by status.
     """
     write_text(layout.card, card(identity, status))
 
 
 def card(identity: Identity, status: dict[str, int]) -> str:
-    """The text of the card; its YAML head names the files of each configuration and the licence."""
+    """Compose the text of README.md. Its YAML head names the files of each configuration and the licence, for hubs.
+
+    `status` is the number of runs by status.
+    """
     recipe = identity.recipe
     formats = recipe["output"]["formats"]
     sensors = identity.sensor_set
@@ -85,7 +88,7 @@ published machine are not known and were chosen. Simulated data: learn from it, 
 
 
 def _record(recipe: dict[str, Any]) -> str:
-    """What labels and signals are computed from."""
+    """Say from which part of a run labels and signals are computed."""
     steady = recipe["operation"]["profile"] == "steady"
     record = f"{recipe['simulation']['record_turns']} turns" if steady else "the whole record, `duration_s`"
     text = f"The labels come from {record}; the signals are\nthe last {recipe['output']['signal_seconds']:g} s of it."
@@ -96,14 +99,14 @@ def _record(recipe: dict[str, Any]) -> str:
 
 
 def _limits(recipe: dict[str, Any]) -> str:
-    """What the model leaves out."""
+    """Say what the model leaves out."""
     speed = "constant speed" if recipe["operation"]["profile"] == "steady" else "a speed that the rub does not change"
     wear = "no wear but the liner's" if recipe["contact"].get("liner") else "no wear"
     return f"Linear ring, {speed}, no heat, {wear}, one contact point a blade."
 
 
 def _head(recipe: dict[str, object]) -> str:
-    """YAML that `datasets.load_dataset` and hubs understand; JSON strings are YAML strings."""
+    """Return the YAML head that `datasets.load_dataset` and hubs understand. JSON strings are YAML strings."""
     output = recipe["output"]
     configs = [("runs", "runs.parquet")]
     if isinstance(output, dict) and "parquet" in output["formats"]:
@@ -123,7 +126,7 @@ def _head(recipe: dict[str, object]) -> str:
 
 
 def column_table(columns: Sequence[Column]) -> str:
-    """The columns as a table in Markdown."""
+    """Write the columns as a table in Markdown: name, type, unit, meaning."""
     head = "| column | type | unit | meaning |\n|---|---|---|---|\n"
     return head + "\n".join(f"| `{c.name}` | {c.kind} | {c.unit} | {c.meaning} |" for c in columns)
 

@@ -1,4 +1,4 @@
-"""The data set's description in Croissant 1.0 (JSON-LD), for machine-learning tools."""
+"""Describe a data set in Croissant 1.0 (JSON-LD), for machine-learning tools."""
 
 import re
 from typing import Any
@@ -40,12 +40,15 @@ CONTEXT: dict[str, Any] = {term: _OTHER.get(term, f"cr:{term}") for term in _TER
 
 
 def write_croissant(layout: Layout, identity: Identity) -> None:
-    """Write croissant.json beside the files that it describes; `runs.parquet` must be there."""
+    """Write croissant.json beside the files that it describes. `runs.parquet` must be there: its sha256 is named."""
     write_json(layout.croissant, croissant(layout, identity))
 
 
 def croissant(layout: Layout, identity: Identity) -> dict[str, Any]:
-    """The description: the record set `runs`, and `signals` where the set has Parquet data."""
+    """Describe a data set as a JSON-LD object of Croissant 1.0.
+
+    It has the record set `runs`, and `signals` where the set has Parquet data. `runs.parquet` is read for its sha256.
+    """
     recipe = identity.recipe
     runs_file = {
         "@type": "cr:FileObject",
@@ -97,5 +100,5 @@ def _field(record_set: str, column: Column, source: dict[str, Any]) -> dict[str,
 
 
 def _semantic(version: str) -> str:
-    """The three leading numbers of a version: Croissant allows no more."""
+    """Return the three leading numbers of a version: Croissant allows no more."""
     return ".".join([*re.findall(r"\d+", version), "0", "0"][:3])

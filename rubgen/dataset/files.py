@@ -1,4 +1,4 @@
-"""Small files of a data set, and files that do not belong to it."""
+"""Write and hash small files of a data set, and recognise files that do not belong to it."""
 
 import hashlib
 import json
@@ -16,33 +16,33 @@ SYSTEM_FILES = (
 
 
 def is_system_file(name: str) -> bool:
-    """Whether a file or folder of that name belongs to the operating system."""
+    """Return whether a file or folder called `name` belongs to the operating system."""
     return any(fnmatch(name.lower(), pattern.lower()) for pattern in SYSTEM_FILES)
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file durably; UTF-8, line ends as given."""
+    """Write `text` to a file in UTF-8, with its line ends, completely and durably or not at all."""
     write_durably(path, lambda part: part.write_bytes(text.encode()))
 
 
 def write_json(path: Path, values: object) -> None:
-    """Write a JSON file durably; keys in their order, numbers with all their bits."""
+    """Write values to a JSON file, durably and completely or not at all. Keys keep their order, numbers their bits."""
     write_text(path, json_text(values))
 
 
 def json_text(values: object) -> str:
-    """JSON in the form of rubgen's files."""
+    """Return the JSON of values in the form of rubgen's files: indented by two spaces, with a line end."""
     return json.dumps(values, indent=2, ensure_ascii=False) + "\n"
 
 
 def remove_parts(directory: Path) -> None:
-    """Remove incomplete files of a killed run from this folder."""
+    """Delete the incomplete files that a killed process left in this folder."""
     for path in directory.glob(f"*{PART}*"):
         if path.is_file():
             path.unlink(missing_ok=True)
 
 
 def sha256_of(path: Path) -> str:
-    """Hexadecimal sha256 of a file's content."""
+    """Return the sha256 of a file's content in hexadecimal digits."""
     with path.open("rb") as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()

@@ -1,4 +1,4 @@
-"""Paths of the files of a data set."""
+"""Paths of the files of a data set. Nothing is read or written here."""
 
 import math
 from collections.abc import Iterable
@@ -17,10 +17,10 @@ RUNS_PER_ROW_GROUP = 8
 
 
 class Layout:
-    """Paths in the directory `root` of a data set."""
+    """Paths of the files of a data set in the directory `root`."""
 
     def __init__(self, root: Path | str) -> None:
-        """Raise UserError for what is no path."""
+        """Derive all paths from `root`. Raises UserError for what is no path."""
         try:
             root = Path(root)
         except TypeError:
@@ -50,29 +50,29 @@ class Layout:
         """The identity of an unfinished set."""
 
     def staged(self, run_id: str) -> Path:
-        """The finished run: its existence proves that all its files are complete."""
+        """Return the path of a finished run's row. Its existence proves that all files of the run are complete."""
         return self.staging / "runs" / f"{run_id}.parquet"
 
     def staged_section(self, run_id: str) -> Path:
-        """The compact record of a finished run."""
+        """Return the path of the compact record of a finished run."""
         return self.staging / "sections" / f"{run_id}.parquet"
 
     def section_shard(self, number: int, count: int) -> Path:
-        """A file of the compact records of as many runs as a data file has."""
+        """Return the path of file number `number`, of `count`, with the compact records of the runs of that shard."""
         return self.sections / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
 
     def export(self, kind: str, run_id: str) -> Path:
-        """The file of a run in a format. The format's name is its folder and its ending."""
+        """Return the path of a run's file in the format `kind`, whose name is its folder and its ending."""
         return self.root / kind / f"{run_id}.{kind}"
 
     def folders(self, names: Iterable[str]) -> list[Path]:
-        """The folders of these formats: `data` for Parquet, else the folder of its name."""
+        """Return the folders of the formats `names`: `data` for Parquet, else the folder with the format's name."""
         return [self.root / name if format_of(name).one_file_a_run else self.data for name in names]
 
     def shard(self, number: int, count: int) -> Path:
-        """A data file."""
+        """Return the path of the data file number `number`, of `count`. Numbers begin at 0."""
         return self.data / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
 
     def number_of_shards(self, good_runs: int) -> int:
-        """Number of data files, and of files of sections, for this number of good runs: at least one."""
+        """Return the number of data files, and of files of sections, for this number of good runs: at least one."""
         return max(1, math.ceil(good_runs / RUNS_PER_SHARD))

@@ -39,7 +39,7 @@ class FileEntry(BaseModel):
 
 
 class Identity(BaseModel):
-    """Everything that decides the bytes of a data set on one machine: recipe, its machine and sensors, versions."""
+    """Everything that decides the bytes of a data set on one computer: recipe, machine, sensors, package versions."""
 
     model_config = _STRICT
     recipe: dict[str, Any]
@@ -48,19 +48,22 @@ class Identity(BaseModel):
     packages: dict[str, str]
 
     def same_recipe(self, other: "Identity") -> bool:
-        """Whether both describe the same data set, ignoring versions."""
+        """Return whether both describe the same data set, ignoring versions."""
         return (self.recipe, self.machine, self.sensors) == (other.recipe, other.machine, other.sensors)
 
     def checked(self, source: str) -> "Identity":
-        """The same with every key in its place. Raises UserError, beginning with `source`, for anything else."""
+        """Return the identity with every key of its recipe present. It may come from a file.
+
+        Raises UserError, beginning with `source`, where a key or value is not valid.
+        """
         if "rubgen" not in self.packages:
             raise UserError(f"{source}: identity.packages names no rubgen; {MAKE_AGAIN}")
         return _identity(self.recorded(f"{source}: identity"), self.packages)
 
     def recorded(self, source: str = "manifest") -> Recipe:
-        """The recipe with its recorded machine and sensors.
+        """Make the recipe with its recorded machine and sensors, instead of those that its names now mean.
 
-        Raises UserError, beginning with `source`, for an unknown one.
+        Raises UserError, beginning with `source`, where a key or value is not valid.
         """
         return recorded_recipe(self.recipe, self.machine, self.sensors, source)
 
@@ -88,13 +91,13 @@ class Manifest(BaseModel):
     derived: tuple[InnerPath, ...]
 
     def listed(self, folder: str) -> list[str]:
-        """The paths of the set below `folder`, in order; other files there are ignored."""
+        """Return the paths of the set's files below `folder`, sorted. Unlisted files there are ignored."""
         names = [*(entry.path for entry in self.files), *self.derived]
         return sorted(name for name in names if name.startswith(f"{folder}/"))
 
 
 def identity_of(recipe: Recipe) -> Identity:
-    """The identity of the data set that this recipe makes with the installed packages."""
+    """Return the identity of the data set that this recipe makes with the installed packages."""
     return _identity(recipe, {name: version(name) for name in PACKAGES} | {"python": platform.python_version()})
 
 
@@ -108,10 +111,10 @@ def _identity(recipe: Recipe, packages: dict[str, str]) -> Identity:
 
 
 def write_manifest(layout: Layout, identity: Identity, status: dict[str, int]) -> Manifest:
-    """Hash every file of the finished set. Write the digests of derived files, the manifest, then its digest.
+    """Finish a data set: hash every file, then write the digests of derived files, the manifest, and its digest.
 
-    - layout: of the set.
-    - identity: its origin.
+    - layout: paths of the set, whose other files are complete.
+    - identity: recipe, machine, sensors and versions.
     - status: number of runs by status.
     """
     recipe = identity.recipe
@@ -133,7 +136,10 @@ def write_manifest(layout: Layout, identity: Identity, status: dict[str, int]) -
 
 
 def read_manifest(layout: Layout) -> Manifest:
-    """The manifest of a finished set. Raises UserError where there is none, or it is damaged or not of rubgen."""
+    """Read the manifest of a finished data set and check it against its digest.
+
+    Raises UserError where there is none, or it is damaged or not of rubgen.
+    """
     if not layout.manifest.exists():
         raise UserError(f"{layout.root}: no finished data set of rubgen: {_why_none(layout)}")
     try:
@@ -164,7 +170,7 @@ def _why_none(layout: Layout) -> str:
 
 
 def _checked(manifest: Manifest, path: Path) -> Manifest:
-    """The manifest with its identity complete. Raises UserError where the two contradict each other."""
+    """Return the manifest with its identity complete. Raises UserError where the two contradict each other."""
     identity = manifest.identity.checked(str(path))
     for key in ("name", "license", "seed", "runs"):
         if getattr(manifest, key) != identity.recipe[key]:
@@ -175,7 +181,7 @@ def _checked(manifest: Manifest, path: Path) -> Manifest:
 
 
 def content_of(layout: Layout, formats: Sequence[str]) -> tuple[list[Path], list[Path]]:
-    """The files whose sha256 is in the manifest, and the files that it only names, each in order.
+    """Return the files whose sha256 the manifest has, and the derived files that it only names, each in order.
 
     They follow from `runs.parquet` and the formats. Other files in the folders are ignored.
     """
@@ -190,12 +196,15 @@ def content_of(layout: Layout, formats: Sequence[str]) -> tuple[list[Path], list
 
 
 def entry_of(path: Path, root: Path) -> FileEntry:
-    """The entry of a file from its present content."""
+    """Hash the file at `path` and return its entry, with the path relative to `root`."""
     return FileEntry(path=path.relative_to(root).as_posix(), bytes=path.stat().st_size, sha256=sha256_of(path))
 
 
 def write_derived(layout: Layout, names: Sequence[str]) -> bool:
-    """Write sizes and digests of the derived files, where there are any. Return whether the file changed."""
+    """Write sizes and digests of the derived files `names` to derived.json. Return whether that file changed.
+
+    Without derived files nothing is written.
+    """
     if not names:
         return False
     text = _derived_text(tuple(entry_of(layout.root / name, layout.root) for name in names))
@@ -206,7 +215,10 @@ def write_derived(layout: Layout, names: Sequence[str]) -> bool:
 
 
 def read_derived(layout: Layout) -> dict[str, FileEntry]:
-    """The derived files as they were written, by path. Raises UserError where their digests are missing or damaged."""
+    """Read sizes and digests of the derived files as they were written, by path.
+
+    Raises UserError where derived.json is missing or damaged.
+    """
     try:
         check_regular(layout.derived)
         content = layout.derived.read_bytes()
@@ -222,7 +234,7 @@ def read_derived(layout: Layout) -> dict[str, FileEntry]:
 
 
 def _derived_text(entries: tuple[FileEntry, ...]) -> str:
-    """The entries and the sha256 of their JSON: any flipped bit is detected."""
+    """Return the JSON of the entries and its own sha256, by which any flipped bit is detected."""
     files = [entry.model_dump() for entry in entries]
     return json_text({"files": files, "sha256": hashlib.sha256(json_text(files).encode()).hexdigest()})
 

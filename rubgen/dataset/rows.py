@@ -1,4 +1,4 @@
-"""Rows of single runs from Parquet files of many runs."""
+"""Find the rows of single runs in Parquet files with many runs."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
@@ -16,12 +16,16 @@ from rubgen.scenario.costs import stored_bytes
 
 
 def asked_bytes(recipe: Recipe) -> float:
-    """Unpacked size in bytes of a row group of this recipe's set, with its channels and states."""
+    """Estimate the largest unpacked size in bytes of a row group in the data set of this recipe.
+
+    It is the size of RUNS_PER_ROW_GROUP runs with their channels and states, at the extremes of `[vary]`. Readers allow
+    it beyond their general bound.
+    """
     return RUNS_PER_ROW_GROUP * max(map(stored_bytes, recipe.corners()))
 
 
 class Place(NamedTuple):
-    """Where the row of a run is."""
+    """Where the row of a run is: file, number of the row group, number of the row in that group."""
 
     file: Path
     group: int
@@ -29,15 +33,15 @@ class Place(NamedTuple):
 
 
 class RunRows:
-    """The rows of these files, one a run. Files are opened on demand."""
+    """Access to single runs in Parquet files with one row a run. Files are opened on demand."""
 
     def __init__(self, files: Sequence[Path], types: pa.Schema, asked_bytes: float) -> None:
-        """`types` is the schema of the files, `asked_bytes` the unpacked size of a row group by the recipe."""
+        """Take the files, their schema `types`, and the unpacked size of a row group (function `asked_bytes`)."""
         self.files, self.types, self._asked_bytes = files, types, asked_bytes
 
     @cached_property
     def places(self) -> dict[str, Place]:
-        """The place of every run. Raises UserError where a file is missing or damaged."""
+        """The place of every run by its name. Raises UserError where a file is missing or damaged."""
         places: dict[str, Place] = {}
         for path in self.files:
             with ParquetSource(path, self._asked_bytes) as file:
@@ -47,10 +51,10 @@ class RunRows:
         return places
 
     def each(self, run_ids: Iterable[str], columns: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
-        """Name and row of each run, in that order, with only these columns.
+        """Yield name and row of each run in `run_ids`, in that order, with only these columns.
 
-        A file is opened once, and a group read once, for successive runs in it. Raises UserError that names file and
-        run where a page is damaged, or a run lacks a value.
+        A file is opened once, and a row group read once, for successive runs in it. Raises UserError that names file
+        and run where a page is damaged, or a run lacks a value.
         """
         run_ids = list(run_ids)
         lost = [run_id for run_id in run_ids if run_id not in self.places]

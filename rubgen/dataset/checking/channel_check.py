@@ -1,4 +1,7 @@
-"""Whether labels of windows fit the run's, and the impulse the contact force as far as that channel resolves it."""
+"""Checks of labels against labels of windows, and against the recorded channels as far as their errors allow.
+
+A row has the columns of one run.
+"""
 
 import math
 from collections.abc import Iterator
@@ -30,7 +33,7 @@ ORDER_TOLERANCE = 0.01
 
 
 def windows_fit(row: Row) -> bool:
-    """Whether the impulse a turn is the mean of its windows, each weighted with its number of turns."""
+    """Return whether the impulse per turn is the mean over the record's windows, weighted by their turns."""
     turns, values = _window_turns(row), row["window_impulse_per_turn_n_s"]
     if len(values) != turns.size:
         return False
@@ -39,7 +42,10 @@ def windows_fit(row: Row) -> bool:
 
 
 def duty_fits(row: Row) -> bool:
-    """Whether the duty is the mean of its windows, weighted with their turns; True where turns have unequal length."""
+    """Return whether the duty is the mean over the windows of the record, weighted by their numbers of turns.
+
+    At a changing speed turns have unequal length, nothing is compared, and it is True.
+    """
     turns, values = _window_turns(row), row["window_contact_duty"]
     if row["change_times_s"] or len(values) != turns.size:
         return bool(row["change_times_s"])
@@ -48,7 +54,7 @@ def duty_fits(row: Row) -> bool:
 
 
 def window_times_fit(row: Row) -> bool:
-    """Whether windows begin after whole turns, at the run's speed; True at a changing speed."""
+    """Return whether the windows begin after whole turns and have the run's speed. True at a changing speed."""
     if row["change_times_s"]:
         return True
     starts = np.arange(0, row["record_turns"], WINDOW_TURNS) * 60 / row["speed_rpm"]
@@ -60,7 +66,7 @@ def window_times_fit(row: Row) -> bool:
 
 
 def exponents_fit(row: Row) -> bool:
-    """Whether the exponent in 1/s is the exponent in 1/turn over the time of a turn; True at a changing speed."""
+    """Return whether the Lyapunov exponent in 1/s is that in 1/turn over a turn's time. True at a changing speed."""
     by_turn, by_second = row["lyapunov_per_turn"], row["lyapunov_per_second"]
     if row["change_times_s"] or (by_turn is None and by_second is None):
         return True
@@ -69,10 +75,11 @@ def exponents_fit(row: Row) -> bool:
 
 
 def impulse_problems(row: Row, force: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
-    """Contradictions between the impulse label of a period-1 run in contact and its force channel.
+    """Compare the impulse label of a period-1 run in contact with its force channel. Yields a sentence if they differ.
 
-    The impulse a turn is the channel's mean over whole turns times the time of a turn. None where fewer than
-    LEAST_TURNS turns are recorded, or the label contradicts its windows.
+    The impulse per turn from the channel is its mean over whole turns times the time of a turn. The allowed difference
+    is `resolved_impulse`. Nothing is compared where fewer than LEAST_TURNS turns are recorded, or the label contradicts
+    its windows.
 
     - row: the run's labels.
     - force (samples,): the channel in N.
@@ -88,16 +95,16 @@ def impulse_problems(row: Row, force: Float32Array, noise_rms: float, step: floa
 
 
 def samples_per_turn(row: Row) -> float:
-    """Samples of a channel in one turn, rarely a whole number."""
+    """Return the number of samples in one turn, which is rarely whole."""
     return float(row["sample_rate_hz"] * 60 / row["speed_rpm"])
 
 
 def whole_turn_weights(samples: int, turn: float) -> FloatArray | None:
-    """Weights (samples,) of a mean over all m whole turns of `turn` samples; None below LEAST_TURNS.
+    """Return weights (samples,) with which the samples' mean covers whole turns and has no part of any order k >= 1.
 
-    A boxcar of one turn convolved with one of m - 1 turns. It removes every order k >= 1, wherever the samples lie in
-    the turn, although a turn is not a whole number of samples. A plain mean would include up to half a sample at its
-    edge, where a blade may touch.
+    `turn` is the number of samples in one turn; the weights cover all m whole turns. They are a boxcar of one turn
+    convolved with one of m - 1 turns, which removes every order wherever the samples lie in the turn. A plain mean
+    would include up to half a sample at its edge, where a blade may touch. Returns None below LEAST_TURNS turns.
     """
     turns = math.floor(samples / turn)
     if turns < LEAST_TURNS:
@@ -109,7 +116,10 @@ def whole_turn_weights(samples: int, turn: float) -> FloatArray | None:
 
 
 def resolved_impulse(row: Row, weights: FloatArray, noise_rms: float, step: float) -> float:
-    """The smallest difference of impulse a turn, in N s, that the channel can show: the sum of four known errors.
+    """Return the smallest difference of impulse per turn, in N s, that the channel can show.
+
+    It is the sum of four known errors. `weights` are from `whole_turn_weights`; `noise_rms` and `step` are noise and
+    ADC step in N.
 
     - Noise of rms s and ADC steps d: the weighted mean has the standard error sqrt((s^2 + d^2 / 12) sum w^2).
     - The ADC's bias where noise does not dither it. The mean error of a rounded Gaussian is the series (d / pi) sum_k
@@ -131,20 +141,23 @@ def resolved_impulse(row: Row, weights: FloatArray, noise_rms: float, step: floa
 
 
 def _adc_bias(noise_rms: float, step: float) -> float:
-    """The largest mean error of an ADC, in its unit."""
+    """Return the largest mean error of an ADC, in its unit."""
     q = math.exp(-2 * (math.pi * noise_rms / step) ** 2)
     return float(min(step / 2, -step / math.pi * math.log1p(-q))) if q < 1 else step / 2
 
 
 def _scatter_of_turns(row: Row, turns: int) -> float:
-    """Standard error of the mean impulse over `turns` turns, from the scatter of the record's windows."""
+    """Return the standard error of the mean impulse over `turns` turns, from the scatter of the record's windows."""
     whole = np.asarray(row["window_impulse_per_turn_n_s"])[: row["record_turns"] // WINDOW_TURNS]
     late = whole[whole.size // 2 :]
     return float(np.std(late, ddof=1) * math.sqrt(WINDOW_TURNS / turns)) if late.size > 1 else 0.0
 
 
 def _share_of_covered_windows(row: Row, weights: FloatArray) -> float:
-    """Impulse of the windows in the channel over the impulse of all windows: the record may begin with a transient."""
+    """Return the mean impulse of the windows that the channel covers over that of all windows.
+
+    They differ where the record begins with a transient.
+    """
     times = row["signal_start_s"] + np.arange(weights.size) / row["sample_rate_hz"]
     number = np.searchsorted(np.asarray(row["window_starts_s"]), times, side="right") - 1
     values = np.asarray(row["window_impulse_per_turn_n_s"])
@@ -153,20 +166,21 @@ def _share_of_covered_windows(row: Row, weights: FloatArray) -> float:
 
 
 def _window_turns(row: Row) -> FloatArray:
-    """Number of turns of each window: WINDOW_TURNS, and the rest."""
+    """Return the number of turns of each window: WINDOW_TURNS, and the rest for the last."""
     starts = np.arange(0, row["record_turns"], WINDOW_TURNS)
     return np.asarray(np.minimum(WINDOW_TURNS, row["record_turns"] - starts), dtype=np.float64)
 
 
 def order_problems(row: Row, tap: str, values: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
-    """Contradictions between the orders of a true signal and its channel, at a steady speed.
+    """Compare the amplitudes of a true signal at orders 1 to 10 with those of its channel, at a steady speed.
+
+    Yields a sentence if they differ by more than noise, ADC and tolerance allow. Nothing is compared where the channel
+    has fewer turns than the label.
 
     - row: the run's labels.
     - tap: name of the true signal.
     - values (samples,): the channel.
     - noise_rms, step: noise and ADC step, in the channel's unit.
-
-    None where the channel has fewer turns than the label.
     """
     turns = min(SPECTRUM_TURNS, row["record_turns"])
     turns_per_sample = row["speed_rpm"] / 60 / row["sample_rate_hz"]
@@ -186,19 +200,22 @@ def order_problems(row: Row, tap: str, values: Float32Array, noise_rms: float, s
 
 
 def order_amplitudes(values: Float32Array, turns_per_sample: float) -> FloatArray:
-    """Peak amplitudes at k = 1..10 times the rotation frequency: 2/n |sum x exp(-2 pi i k turns)|, mean removed."""
+    """Return peak amplitudes at k = 1..10 times the rotation frequency: 2/n |sum x exp(-2 pi i k turns)|.
+
+    The mean is removed before. `turns_per_sample` is the rotation frequency over the sample rate.
+    """
     return np.asarray(2 / values.size * np.abs(_turned(values, turns_per_sample).sum(axis=1)))
 
 
 def _turned(values: Float32Array, turns_per_sample: float) -> ComplexArray:
-    """Samples times exp(-2 pi i k turns) for k = 1..10 (orders, samples), mean removed."""
+    """Return the samples times exp(-2 pi i k turns) for k = 1..10 (orders, samples), mean removed."""
     turns = np.arange(values.size) * turns_per_sample
     centred = values.astype(np.float64) - values.mean(dtype=np.float64)
     return np.asarray([np.exp(-2j * np.pi * k * turns) * centred for k in range(1, COMPARED_ORDERS + 1)])
 
 
 def _of_unseen_end(row: Row, values: Float32Array, samples: int, turns_per_sample: float) -> FloatArray:
-    """Largest difference of each amplitude because the channel ends half a filter before the label's window.
+    """Bound the difference of each amplitude because the channel ends half a filter before the label's window.
 
     The label has d samples at its end that the channel has not, and lacks d samples of the channel's beginning. Both
     pieces together change an amplitude by at most twice the amplitude of the largest piece of the recording, for any
@@ -212,7 +229,7 @@ def _of_unseen_end(row: Row, values: Float32Array, samples: int, turns_per_sampl
 
 
 def _spectral_floor(noise_rms: float, step: float, samples: int) -> float:
-    """Largest amplitude of a line from noise and ADC steps. The steps are white where the noise dithers them."""
+    """Return the largest amplitude of a line from noise and ADC steps. The steps are white where noise dithers them."""
     if noise_rms < step / 2:
         return step
     return NOISE_PEAK * math.sqrt((noise_rms**2 + step**2 / 12) * 2 / samples)

@@ -1,4 +1,4 @@
-"""Whether labels, parameters and recorded signals of a run agree."""
+"""Checks that labels, parameters and recorded signals of a run agree."""
 
 import dataclasses
 import math
@@ -37,7 +37,10 @@ ENERGY_TOLERANCE = 1e-8
 
 
 def label_problems(row: Row) -> Iterator[str]:
-    """Contradictions among the labels of a valid run."""
+    """Yield the contradictions among the labels of a run with status ok, such as contact time without a rub.
+
+    `row` has the columns of `runs.parquet` for that run.
+    """
     rules = {
         "contact_duty outside [0, 1]": 0 <= row["contact_duty"] <= 1,
         "rub and contact_duty": row["rub"] == (row["contact_duty"] > 0),
@@ -74,14 +77,14 @@ def label_problems(row: Row) -> Iterator[str]:
 
 
 def signal_problems(row: Row, signals: dict[str, Float32Array], sensing: Sensing) -> Iterator[str]:
-    """Contradictions between the labels of a valid run and its channels.
+    """Yield the contradictions between the labels of a run with status ok and its channels.
 
     - row: the run's parameters and labels.
     - signals: its channels by name.
-    - sensing: of the run.
+    - sensing: the sensors of the run.
 
-    Only channels that did not reach their range are compared, of sensors without faults except noise that
-    feel no surroundings.
+    A channel's values are compared with labels only where they stay within its range, and where its sensor has no error
+    but noise and feels no surroundings.
     """
     lengths = {values.size for values in signals.values()}
     if len(lengths) > 1:
@@ -98,7 +101,7 @@ def signal_problems(row: Row, signals: dict[str, Float32Array], sensing: Sensing
 
 
 def is_faultless(sensor: SampledSensor, sensing: Sensing) -> bool:
-    """Whether a sensor, in SI units, records the truth except for noise, range and ADC."""
+    """Return whether a sensor records the truth in SI units, except for noise, range and ADC."""
     usual = dataclasses.asdict(dataclasses.replace(sensor, range=None, noise_rms=0.0, adc_bits=None))
     plain = {field.name: field.default for field in dataclasses.fields(SampledSensor) if field.name in usual}
     differs = [key for key, value in plain.items() if key not in ("name", "unit") and usual[key] != value]
@@ -107,7 +110,7 @@ def is_faultless(sensor: SampledSensor, sensing: Sensing) -> bool:
 
 
 def _shows_the_motion(sensor: SampledSensor, sensing: Sensing, row: Row) -> bool:
-    """Whether a sensor gives the true motion but for noise: neither faults nor surroundings disturb it.
+    """Return whether a sensor measures the true motion, apart from noise: no error and no surroundings disturb it.
 
     The housing's motion has no labels to compare.
     """

@@ -1,4 +1,4 @@
-"""The files of a data set compared with its manifest: good, damaged, missing, or not of the set."""
+"""Compare the files of a data set with its manifest: good, damaged, missing, or not listed."""
 
 import os
 import stat
@@ -19,7 +19,7 @@ HEAD_BYTES = 2000
 
 
 class Kind(Enum):
-    """The remedy of a finding."""
+    """What a finding concerns. The value is the remedy."""
 
     DATA = "make the set again"
     DERIVED = "rubgen repair"
@@ -39,7 +39,10 @@ class Finding:
 
 
 def file_findings(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
-    """Problems of the files that the manifest lists."""
+    """Yield a finding for every file that the manifest lists and that is missing, unreadable or of other content.
+
+    Compared are size and sha256, for derived files (.rrd) with those in derived.json.
+    """
     remade = {layout.card.name, layout.croissant.name}
     for entry in manifest.files:
         kind = Kind.DERIVED if entry.path in remade else Kind.DATA
@@ -51,7 +54,10 @@ def file_findings(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
 
 
 def derived_digests(layout: Layout, manifest: Manifest) -> tuple[dict[str, FileEntry], list[Finding]]:
-    """The derived files as they were written, by path, and the problems of that list."""
+    """Return size and sha256 of each derived file from derived.json, by path, and the problems of that file itself.
+
+    Where it has problems there are no digests. Derived files are those that `repair` can make again.
+    """
     name = layout.derived.name
     if not manifest.derived:
         return {}, []
@@ -78,7 +84,7 @@ def _entry_findings(root: Path, name: str, entry: FileEntry | None, where: str, 
 
 
 def _check_within(root: Path, path: Path) -> int:
-    """Size of a regular file in the set itself. Raises UserError or OSError for anything else."""
+    """Return the size of a regular file in the set itself. Raises UserError or OSError for anything else."""
     try:
         real = path.resolve(strict=True)
     except RuntimeError:
@@ -100,10 +106,11 @@ def _reason(error: OSError | UserError) -> str:
 
 
 def strangers(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
-    """Files and folders below the set that belong neither to the manifest nor to rubgen's other commands.
+    """Yield a finding for every file or folder in the set's directory that neither the manifest nor rubgen put there.
 
-    Files of the operating system are ignored. `.staging` and its lock remain where `generate` was stopped at its very
-    end; the next `generate` removes them. A page of `rubgen report` is recognised by its name and its mark.
+    Files of the operating system are ignored. So is what `generate` left where it was stopped at its very end,
+    `.staging` and its lock: the next `generate` removes them. So is a page of `rubgen report`, known by its name and
+    its mark.
     """
     known = {entry.path for entry in manifest.files} | set(manifest.derived)
     known |= {layout.manifest.name, layout.digest.name}

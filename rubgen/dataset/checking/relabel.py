@@ -1,4 +1,4 @@
-"""Labels of a data set made again from its compact records, and how they differ from the stored ones."""
+"""Make the labels of a data set again from its compact records, and compare them with the stored labels."""
 
 import math
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ RELATIVE, ABSOLUTE = 1e-9, 1e-12
 
 @dataclass(frozen=True)
 class Difference:
-    """A label of a run that differs: in `runs.parquet`, and made again."""
+    """A label of a run that differs: its value in `runs.parquet` (`stands`), and made again (`again`)."""
 
     run_id: str
     label: str
@@ -34,7 +34,7 @@ class Difference:
 
 @dataclass(frozen=True, kw_only=True)
 class Relabelled:
-    """Number of runs and labels that were made again, and the differences."""
+    """The result of `relabel`: numbers of runs and labels that were made again, and the labels that differ."""
 
     runs: int
     labels: int
@@ -42,9 +42,10 @@ class Relabelled:
 
 
 def relabel(directory: Path) -> Relabelled:
-    """Make the labels of every good run again, except orders, which need the signals at every step.
+    """Make the labels of every good run again from its compact record, and compare them with `runs.parquet`.
 
-    The data set is only read. Raises UserError where `directory` holds no finished data set, or one without sections.
+    Labels of orders are left out: they need the signals at every step. The data set is only read. Raises UserError
+    where `directory` holds no finished data set, or one without sections.
     """
     layout = Layout(directory)
     manifest = read_manifest(layout)
@@ -66,14 +67,14 @@ def relabel(directory: Path) -> Relabelled:
 
 
 def _good_rows(layout: Layout) -> Iterator[dict[str, Any]]:
-    """The runs that ended well, in order, without the columns of orders."""
+    """Yield the runs that ended well, in order, without the columns of orders."""
     for table in row_groups(layout.runs):
         names = [name for name in table.schema.names if not name.endswith(TAP_ENDINGS)]
         yield from (row for row in table.select(names).to_pylist() if row["status"] == "ok")
 
 
 def _remade(layout: Layout, names: list[str], asked: float) -> Iterator[tuple[str, dict[str, object]]]:
-    """Name and labels of each run with a compact record."""
+    """Yield name and labels of each run with a compact record."""
     if not names:
         raise UserError(f"{layout.root}: no sections/ to make labels from; generate the set again with this rubgen")
     for path in (layout.root / name for name in names):
@@ -95,7 +96,7 @@ def _labels_of(table: pa.Table, row: int, path: Path) -> dict[str, object]:
 
 
 def equal(one: object, other: object) -> bool:
-    """Whether two labels are equal. Numbers may differ by rounding."""
+    """Return whether two labels are equal. Numbers may differ by rounding, RELATIVE or ABSOLUTE; lists by element."""
     if isinstance(one, list) and isinstance(other, list):
         return len(one) == len(other) and all(map(equal, one, other))
     if isinstance(one, float) and isinstance(other, float):

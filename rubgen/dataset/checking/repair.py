@@ -1,4 +1,4 @@
-"""Files made from the data files of a set, made again where they are lost or damaged."""
+"""Make files of a data set again that can be made from its data files, where they are lost or damaged."""
 
 import hashlib
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ from rubgen.formats import format_of
 
 @dataclass(frozen=True, kw_only=True)
 class Repaired:
-    """Paths of the files that were made again, and the remaining problems."""
+    """The result of `repair`: paths of the files that were made again, and the findings that remain."""
 
     made: tuple[str, ...]
     left: tuple[Finding, ...]
@@ -45,7 +45,7 @@ def repair(directory: Path) -> Repaired:
 
 
 def _texts(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[str]:
-    """README.md and croissant.json, each only where its bytes agree with the manifest."""
+    """Write README.md and croissant.json, each only where its bytes agree with the manifest. Yields their names."""
     listed = {entry.path: entry.sha256 for entry in manifest.files}
     texts = {}
     if layout.card.name in wrong:
@@ -59,7 +59,7 @@ def _texts(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[str]
 
 
 def _recordings(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[str]:
-    """The .rrd files that are not proven good, then their digests."""
+    """Write the .rrd files that are not proven good, then their digests. Yields their names."""
     data, left = DataSet(layout.root), False
     for name in manifest.derived:
         if name in wrong or layout.derived.name in wrong:

@@ -1,4 +1,4 @@
-"""Whether the Parquet files of a set can be read to the last page and fit each other and the manifest."""
+"""Checks of a set's Parquet files: readable to the last page, and consistent with each other and the manifest."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -22,16 +22,20 @@ NO_PARQUET = "damaged or no Parquet file of rubgen"
 MOST_NAMED = 4
 """Number of runs or columns that a line lists one by one."""
 CLOSED: list[tuple[pa.Table | None, list[str]]] = [(None, [])]
-"""The content of a file that must not be opened: unknown."""
+"""The result of reading a file that must not be opened: no table, so its content is unknown, and no further problem."""
 UNCOMPARABLE = (TypeError, ValueError, LookupError, AttributeError, ArithmeticError)
 """Errors from comparing values of a wrong type or number."""
 
 
 def table_problems(layout: Layout, manifest: Manifest, closed: set[str]) -> Iterator[str]:
-    """Problems in `runs.parquet`, in `sections/` and in the data files.
+    """Read every Parquet file of a data set and yield their problems, one sentence each.
 
-    - layout, manifest: of the set.
-    - closed: files that must not be opened.
+    The files are `runs.parquet`, `sections/` and, where the recipe has the format parquet, the data files. Labels are
+    compared with each other and with the channels.
+
+    - layout: the paths of the set.
+    - manifest: its manifest.
+    - closed: names of files that must not be opened; for them nothing is reported.
     """
     identity = manifest.identity
     recorded = identity.recorded(str(layout.manifest))
@@ -53,7 +57,7 @@ def table_problems(layout: Layout, manifest: Manifest, closed: set[str]) -> Iter
 
 
 def _run_problems(name: str, rows: dict[str, Row], manifest: Manifest) -> Iterator[str]:
-    """Differences between `runs.parquet` and the manifest."""
+    """Yield differences between `runs.parquet` and the manifest."""
     expected = (f"run-{index:06d}" for index in range(len(rows)))
     if len(rows) != manifest.runs or any(run_id != next(expected) for run_id in rows):
         yield f"{name}: {len(rows)} runs, the manifest has {manifest.runs}"
@@ -62,7 +66,7 @@ def _run_problems(name: str, rows: dict[str, Row], manifest: Manifest) -> Iterat
 
 
 def _list_problems(manifest: Manifest, formats: Sequence[str], good: set[str]) -> Iterator[str]:
-    """Files of single runs that the manifest lists without a good run, or does not list for a good run."""
+    """Yield files of single runs that the manifest lists without a good run, or does not list for a good run."""
     for kind in (each.name for each in run_formats()):
         listed = set(manifest.listed(kind))
         expected = {f"{kind}/{name}.{kind}" for name in good} if kind in formats else set()
@@ -112,13 +116,13 @@ def _row_problems(
 
 
 def _difference(seen: set[str], good: set[str], has: str, lacks: str, *, whole: bool) -> Iterator[str]:
-    """Runs that have something without being good, and good runs that lack it; only for files read to the end."""
+    """Yield runs that have something without being good, and good runs that lack it; only for files read to the end."""
     for name in sorted(seen ^ good if whole else set(), key=str):
         yield f"{name}: {f'has {has}, but is not ok' if name in seen else f'is ok, but has {lacks}'}"
 
 
 def _compared(run_id: str, problems: Callable[[], list[str]]) -> Iterator[str]:
-    """The problems of a run. Values that cannot be compared are a problem too."""
+    """Yield the problems of a run. Values that cannot be compared are a problem too."""
     try:
         yield from (f"{run_id}: {problem}" for problem in problems())
     except UNCOMPARABLE as error:
@@ -128,7 +132,7 @@ def _compared(run_id: str, problems: Callable[[], list[str]]) -> Iterator[str]:
 def _groups(
     layout: Layout, name: str, types: pa.Schema, name_of: Callable[[int], str], asked: float
 ) -> Iterator[tuple[pa.Table | None, list[str]]]:
-    """Each row group of a file, or None with its problems; `name_of` is the run of a row."""
+    """Yield each row group of a file, or None with its problems. `name_of` returns the run of a row."""
     path, first = layout.root / name, 0
     try:
         with ParquetSource(path, asked) as file:
@@ -149,7 +153,7 @@ def _groups(
 
 
 def _namer(good: list[str], shard: int) -> Callable[[int], str]:
-    """The run of a row in that file of a folder: files have the good runs in their order."""
+    """Return a function from a row of a file to the name of its run: files have the good runs in their order."""
 
     def name_of(row: int) -> str:
         place = shard * RUNS_PER_SHARD + row
@@ -159,7 +163,7 @@ def _namer(good: list[str], shard: int) -> Callable[[int], str]:
 
 
 def _runs_of(file: ParquetSource, group: int) -> list[str]:
-    """The runs of a row group, where their names can be read."""
+    """Return the runs of a row group, where their names can be read."""
     try:
         return [str(name) for name in file.read_row_group(group, ["run_id"])["run_id"].to_pylist()]
     except UserError:
@@ -167,7 +171,7 @@ def _runs_of(file: ParquetSource, group: int) -> list[str]:
 
 
 def _few(names: Sequence[str]) -> str:
-    """The names; of many names the first and the last."""
+    """Join the names; of many names only the first and the last."""
     return ", ".join(names) if len(names) <= MOST_NAMED else f"{names[0]} to {names[-1]}"
 
 
@@ -180,6 +184,6 @@ def _reads(file: ParquetSource, group: int, column: str) -> bool:
 
 
 def _reason(error: UserError, path: object) -> str:
-    """Why a file cannot be read, without its name and without advice."""
+    """Return why a file cannot be read, without its name and without advice."""
     text = str(error).removeprefix(f"{path}: ").removesuffix("; generate it again")
     return text.removeprefix(f"{NO_PARQUET} (").removesuffix(")") if text.startswith(f"{NO_PARQUET} (") else text

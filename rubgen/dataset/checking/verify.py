@@ -1,4 +1,4 @@
-"""Whether a data set is what its manifest says, readable to the last page, and consistent in itself."""
+"""Checks of a whole data set: it is what its manifest says, readable to the last page, and consistent in itself."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,7 +11,7 @@ from rubgen.formats import run_formats
 
 
 def verify(directory: Path | str) -> list[str]:
-    """Every problem of the data set in `directory`, one line each; empty without problems.
+    """Check the data set in `directory` and return every problem, one line each. The list is empty for a good set.
 
     Checked: format and digest of the manifest; presence, size and sha256 of every listed file, and of .rrd files by
     derived.json; that there is nothing else and no link leads out; pages of every Parquet file, with the runs of a
@@ -23,7 +23,11 @@ def verify(directory: Path | str) -> list[str]:
 
 
 def findings(directory: Path | str) -> list[Finding]:
-    """The problems of `verify`, each with its kind."""
+    """Check the data set in `directory` as `verify` does, and return each problem as a `Finding`.
+
+    A finding says beside its sentence whether data, a derived file or an unlisted file is concerned, so that `repair`
+    and `advice` can choose the remedy. Raises UserError as `verify` does.
+    """
     layout = Layout(directory)
     manifest = read_manifest(layout)
     found = list(file_findings(layout, manifest))
@@ -34,7 +38,7 @@ def findings(directory: Path | str) -> list[Finding]:
 
 
 def _format_findings(layout: Layout, manifest: Manifest, closed: set[str], wrong: set[str]) -> Iterator[Finding]:
-    """Problems inside the files of single runs. Derived files are read only where they are not `wrong` already."""
+    """Yield problems inside the files of single runs. A derived file is read only where it is not `wrong` already."""
     proven = set(derived_digests(layout, manifest)[0])
     for each in run_formats():
         kind = Kind.DERIVED if each.remake else Kind.DATA
@@ -49,7 +53,7 @@ def _format_findings(layout: Layout, manifest: Manifest, closed: set[str], wrong
 
 
 def advice(directory: Path, found: list[Finding]) -> str:
-    """The remedy for these findings. It never deletes a good file."""
+    """Name the remedy for these findings on the set in `directory`, in one sentence. It never deletes a good file."""
     kinds = {finding.kind for finding in found}
     sentences = {
         Kind.DATA: (

@@ -1,4 +1,4 @@
-"""From finished runs to the files of the set, a few runs in memory at a time."""
+"""Join the staged files of finished runs into the files of the data set, with few runs in memory at a time."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -21,7 +21,11 @@ ROWS_PER_TABLE_GROUP = 4096
 
 
 def assemble(recipe: Recipe, layout: Layout) -> Counter[str]:
-    """Write `runs.parquet`, data files and sections from the staged runs. Return the number of runs by status."""
+    """Write `runs.parquet`, data files and sections of a data set from its staged runs.
+
+    All runs of the recipe must be staged. Returns the number of runs by status. Where a staged file is damaged, its run
+    is unstaged and RubgenError is raised: the same command makes that run anew.
+    """
     staged = [layout.staged(f"run-{index:06d}") for index in range(recipe.runs)]
     asked = asked_bytes(recipe)
     status = _write_runs(staged, layout, recipe_schema(recipe, signals=False), asked)
@@ -56,7 +60,7 @@ def _write_shards(
     types: pa.Schema,
     asked: float,
 ) -> None:
-    """Write files of staged tables of one row; `rows` are the staged runs that they belong to."""
+    """Write files with many rows from staged tables of one row; `rows` are the staged runs that they belong to."""
     shards = list(_batches(list(zip(staged, rows, strict=True)), RUNS_PER_SHARD)) or [[]]
     for number, shard in enumerate(shards):
         groups = (_joined(group, types, asked) for group in _batches(shard, RUNS_PER_ROW_GROUP))
@@ -68,7 +72,7 @@ def _joined(group: Sequence[tuple[Path, Path]], types: pa.Schema, asked: float) 
 
 
 def _read(path: Path, row: Path, names: list[str], asked: float) -> pa.Table:
-    """A staged table. Where it is damaged its run no longer counts as finished, and the next call makes it again."""
+    """Read a staged table. Where it is damaged its run no longer counts as finished, and the next call makes it."""
     try:
         return read_table(path, names, asked)
     except UserError as error:

@@ -1,4 +1,4 @@
-"""State of an output directory: empty, unfinished, finished, or of something else."""
+"""Claim an output directory for one process, and tell whether it is empty, unfinished, finished or foreign."""
 
 import errno
 import json
@@ -23,9 +23,9 @@ _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EINVAL)
 
 
 def acquired(path: Path) -> BaseFileLock | None:
-    """The lock at `path`, or None where another process has it.
+    """Take the lock at `path` without waiting. Returns it, or None where another process has it.
 
-    Where the file system has no locks, a file that only one process can make is the lock, with a remark.
+    Where the file system has no locks, a file that only one process can make is the lock, with a warning.
     """
     try:
         return _acquired(FileLock(path, timeout=0))
@@ -41,7 +41,7 @@ def acquired(path: Path) -> BaseFileLock | None:
 
 
 def soft_lock(path: Path) -> Path:
-    """The file that replaces the lock at `path` where there are no locks."""
+    """Return the path of the file that replaces the lock at `path` where the file system has no locks."""
     return path.with_name(f"{path.name}.soft")
 
 
@@ -54,7 +54,10 @@ def _acquired(lock: BaseFileLock) -> BaseFileLock | None:
 
 
 def finished(layout: Layout, identity: Identity) -> bool:
-    """Whether the directory holds this data set already. Raises UserError where it holds the set of another recipe."""
+    """Return whether the directory holds the finished data set with this identity.
+
+    Raises UserError where it holds the finished set of another recipe.
+    """
     if layout.manifest.exists() and layout.digest.exists():
         check_same(layout, read_manifest(layout).identity, identity)
         return True
@@ -63,11 +66,11 @@ def finished(layout: Layout, identity: Identity) -> bool:
 
 @contextmanager
 def claimed(layout: Layout, identity: Identity) -> Iterator[None]:
-    """A context in which this process alone has the directory. Checks before it may be outdated.
+    """Lock the output directory, which is made if needed, so that only this process writes there in the block.
 
-    A directory that it made is removed if it stays empty, its parents are not. Sets of another recipe are refused by
-    `finished` and `begun`, not here. Raises UserError where the directory has content that is no data set, or another
-    process has it; OSError where it cannot be made.
+    What was checked before the block may be outdated. A directory that was made here is removed if it stays empty, its
+    parents are not. Sets of another recipe are refused by `finished` and `begun`, not here. Raises UserError where the
+    directory has content that is no data set, or another process has it; OSError where it cannot be made.
     """
     root = layout.root
     _check_place(layout)
@@ -94,10 +97,11 @@ def claimed(layout: Layout, identity: Identity) -> Iterator[None]:
 
 @contextmanager
 def begun(layout: Layout, identity: Identity) -> Iterator[None]:
-    """A context, within `claimed`, in which the folders of the set exist. Incomplete files are removed.
+    """Make the folders of an unfinished data set, for a block within `claimed` that fills them.
 
-    `.staging` appears in one step with the identity in it: whenever the work stops, the same recipe can continue. An
-    error that the user must correct before the first run is finished leaves no files.
+    Incomplete files are removed. `.staging` appears in one step with the identity in it: whenever the work stops, the
+    same recipe can continue. Raises UserError where another recipe was begun. If the block raises a UserError before
+    the first run is finished, everything is removed.
     """
     if not layout.identity.exists():
         _begin(layout, identity)
@@ -117,12 +121,12 @@ def begun(layout: Layout, identity: Identity) -> Iterator[None]:
 
 
 def has_remains(layout: Layout) -> bool:
-    """Whether a stop at the very end left something beside the finished set."""
+    """Return whether a stop at the very end left `.staging` or a lock beside the finished set."""
     return any(layout.root.glob(f"{layout.staging.name}*"))
 
 
 def remove_staging(layout: Layout) -> None:
-    """Remove the staged runs of a complete set, and remains of their folder."""
+    """Delete the staged runs of a complete set, and the half-made folder for them that a kill may leave."""
     for folder in (layout.staging, _unborn(layout)):
         if folder.exists():
             shutil.rmtree(folder)
@@ -177,7 +181,7 @@ def _not_ours(layout: Layout) -> UserError:
 
 
 def _holds_nothing(layout: Layout) -> bool:
-    """Whether the directory has only files of the operating system, and remains of a stop in the first moments."""
+    """Return whether the directory has only files of the operating system, and remains of a stop at the start."""
     try:
         return all(_is_nothing(layout, path) for path in layout.root.iterdir())
     except FileNotFoundError:  # it vanished meanwhile: another rubgen is at work, the lock will tell
@@ -211,11 +215,12 @@ def _read_identity(layout: Layout) -> Identity:
 
 
 def check_same(layout: Layout, there: Identity, asked: Identity, *, versions: bool = False) -> None:
-    """Raise UserError, with the first different key, where the directory holds the set of another recipe.
+    """Check that two identities are of the same recipe. Raises UserError with the first key that differs.
 
-    - layout: of the directory.
-    - there, asked: identities of its set and of the wanted set.
-    - versions: compare the packages too.
+    - layout: paths of the directory, for the message.
+    - there: identity of the set in the directory.
+    - asked: identity of the wanted set.
+    - versions: compare the versions of packages too.
     """
     if not there.same_recipe(asked):
         key, old, new = _first_difference(there, asked)
@@ -250,6 +255,6 @@ def _flat(values: dict[str, object], prefix: str = "") -> dict[str, object]:
 
 
 def _by_name(listed: list[object]) -> object:
-    """A list of tables by their names or numbers; any other list unchanged."""
+    """Return a list of tables as a table by their names or numbers; any other list unchanged."""
     tables = [each for each in listed if isinstance(each, dict)]
     return {str(each.get("name", i)): each for i, each in enumerate(tables)} if len(tables) == len(listed) else listed

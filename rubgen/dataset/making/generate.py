@@ -1,4 +1,4 @@
-"""From a recipe to a data set. Every run is made once, even where the work is interrupted."""
+"""Make a data set from a recipe. Every run is made once, even where the work is interrupted."""
 
 from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager, suppress
@@ -25,7 +25,7 @@ from rubgen.scenario.recipe import check_recipe, checked_runs
 
 KEPT = "finished runs are kept"
 LOOKED_AT = 16
-"""Number of first runs of which one must be able to rub. A recipe without any rubs rarely at best."""
+"""Number of first runs of which one must be able to rub. In a recipe where none can, runs rub rarely at best."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,7 +155,7 @@ def _make_missing(recipe: Recipe, layout: Layout, workers: int, progress: Report
 
 
 def _see_end(ended: Iterable[str], done: int, runs: int, progress: Report | None) -> None:
-    """Report every run that ends; `done` runs were finished before."""
+    """Report every run that ends. `done` runs were finished before."""
     with step("simulate", "runs", long=True):
         count(done, runs)
         for now, _status in enumerate(ended, start=done + 1):

@@ -1,4 +1,4 @@
-"""The outcome of a set's runs: counts of rub and of classes of motion, and the reasons of failures."""
+"""Count how the runs of a data set ended: with or without rub, in which class of motion, with which failure."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -43,7 +43,7 @@ class Outcome:
 
 
 def outcome_of(layout: Layout) -> Outcome:
-    """The outcome of a set whose `runs.parquet` is written."""
+    """Count the runs of a data set whose `runs.parquet` is written: rub, classes of motion, failures."""
     rows = read_table(layout.runs, COLUMNS).to_pylist()
     good = [row for row in rows if row["status"] == "ok"]
     rubbing = sum(bool(row["rub"]) for row in good)
@@ -68,7 +68,7 @@ def _failures(rows: Iterable[dict[str, Any]]) -> list[Failure]:
 
 @dataclass(frozen=True, kw_only=True)
 class Unfinished:
-    """Name and number of runs of its recipe, and the number of finished runs."""
+    """An unfinished data set: name and number of runs of its recipe, and the number of finished runs (`kept`)."""
 
     name: str
     runs: int
@@ -76,14 +76,14 @@ class Unfinished:
 
 
 def finished_runs(out: Path | str) -> int:
-    """Number of finished runs of an unfinished set."""
+    """Count the finished runs of an unfinished data set in the directory `out`."""
     return len(list((Layout(Path(out)).staging / "runs").glob("run-*[0-9].parquet")))
 
 
 def unfinished(directory: Path) -> Unfinished | None:
-    """The unfinished set of an interrupted `generate` in `directory`; None without one, or where the set is finished.
+    """Return what an interrupted `generate` left in `directory`; None where there is no set or it is finished.
 
-    Raises UserError where it cannot be read.
+    Raises UserError where its identity cannot be read.
     """
     layout = Layout(directory)
     if (layout.manifest.exists() and layout.digest.exists()) or not layout.identity.exists():

@@ -1,4 +1,4 @@
-"""One run of a data set: simulated, and its files written completely or not at all."""
+"""Simulate one run of a data set and write its files, completely or not at all."""
 
 from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
@@ -15,14 +15,14 @@ WARM_UP_TURNS = 40
 
 
 def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
-    """Simulate one run and write its files. Return its status.
+    """Simulate one run and write its files. Return its status. A worker process calls it for each run.
 
-    The staged row is written last: it proves the other files. A run that is not possible with the drawn values is
-    recorded as refused, with the reason.
+    The staged row is written last: it proves that the other files are complete. A run that is not possible with the
+    drawn values is recorded as refused, with the reason.
 
     - scenario: the run.
     - root: directory of the set.
-    - formats: names of its formats.
+    - formats: names of the formats in which runs are written.
     """
     from rubgen.io.parquet.compact_records import write_record
     from rubgen.io.parquet.write import run_table, write_table
@@ -43,12 +43,12 @@ def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
 
 
 def is_staged(layout: Layout, index: int, formats: tuple[str, ...], asked_bytes: float) -> bool:
-    """Whether the run and all its files are there and its row can be read.
+    """Return whether a run was finished before: all its files are there and its row can be read.
 
-    - layout: of the set.
+    - layout: paths of the set.
     - index: number of the run.
-    - formats: names of its formats.
-    - asked_bytes: unpacked size of its row by the recipe.
+    - formats: names of the formats in which runs are written.
+    - asked_bytes: the largest unpacked size of its row, from the function of that name.
     """
     from rubgen.io.parquet.read import read_table
 
@@ -64,13 +64,14 @@ def is_staged(layout: Layout, index: int, formats: tuple[str, ...], asked_bytes:
 
 
 def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple[Scenario, ...]) -> list[str]:
-    """Reduce the machine at the extremes of `[vary]`, then run a few turns. Return warnings.
+    """Find out before the first run whether a recipe is possible, compile the kernels and cache the reduced model.
 
-    Impossible recipes fail here, before any run. Kernels are then compiled and the reduced model cached for the
-    workers. The warnings are problems of a worker with caches, and that none of the first runs can be made or can rub.
+    The machine is reduced at the extremes of `[vary]`, where an impossible recipe raises UserError. Then a few turns of
+    `scenario` are run. Returns warnings: problems of a worker with caches, and that none of the first runs can be made
+    or can rub.
 
     - scenario: its machine is reduced and run.
-    - corners: scenarios at the extremes.
+    - corners: scenarios at the extremes of `[vary]`.
     - first_runs: the first runs of the recipe.
     """
     from rubgen.pipeline import simulate
@@ -89,7 +90,7 @@ def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple
 
 
 def warming_up() -> AbstractContextManager[None]:
-    """The progress of `warm_up`, here or in a worker."""
+    """Show the progress of `warm_up`, which runs here or in a worker, during the block."""
     from rubgen.jit import kernels_are_compiled
 
     compiled = kernels_are_compiled()

@@ -1,4 +1,4 @@
-"""Worker processes, which end on request and when the process that started them has ended."""
+"""Run work in worker processes, which end on request and when the process that started them has ended."""
 
 import math
 import multiprocessing
@@ -31,7 +31,7 @@ _ONE_START = threading.Lock()
 
 
 def usable_cores(root: Path = Path("/")) -> int:
-    """Number of cores that this process may use: its affinity and its container's CPU quota, rounded up.
+    """Return the number of cores that this process may use: its affinity and its container's CPU quota, rounded up.
 
     `root` is the root of the system's own files: /proc/self/cgroup and, of either version, /sys/fs/cgroup.
     """
@@ -40,7 +40,7 @@ def usable_cores(root: Path = Path("/")) -> int:
 
 
 def _cpu_quotas(root: Path) -> Iterator[float]:
-    """The quota in cores of every control group of this process, inner and outer."""
+    """Yield the quota in cores of every control group of this process, inner and outer."""
     base = root / "sys/fs/cgroup"
     for line in _text(root / "proc/self/cgroup").splitlines():
         _number, controllers, inner = [*line.split(":", 2), "", ""][:3]
@@ -52,7 +52,7 @@ def _cpu_quotas(root: Path) -> Iterator[float]:
 
 
 def _quota(folder: Path) -> float | None:
-    """Cores of one control group: `cpu.max` of version 2, `cpu.cfs_*` of version 1; None without a limit."""
+    """Return the cores of one control group: `cpu.max` of version 2, `cpu.cfs_*` of version 1; None without a limit."""
     limit = _text(folder / "cpu.max") or f"{_text(folder / 'cpu.cfs_quota_us')} {_text(folder / 'cpu.cfs_period_us')}"
     match limit.split():
         case [quota, period] if quota.isdecimal() and period.isdecimal() and int(period) > 0:
@@ -69,10 +69,10 @@ def _text(path: Path) -> str:
 
 @contextmanager
 def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor | None]:
-    """A pool of new processes with one thread of BLAS each. When the block ends early, its processes are ended at once.
+    """Yield a pool of `workers` new processes, each with one BLAS thread. They are ended at once with the block.
 
-    None for one worker and, with a remark, where no process can be started: `unordered` then works in this process.
-    Raises RubgenError where a process dies or memory runs out.
+    Yields None for one worker and, with a warning, where no process can be started: `unordered` then works in this
+    process. Raises RubgenError where a process dies or memory runs out.
     """
     context = _OwnMain()
     cache_folder("kernels")  # found, and where it is a temporary one handed on, before there are workers
@@ -98,12 +98,14 @@ def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor | None]:
 def unordered(
     pool: ProcessPoolExecutor | None, workers: int, work: Callable[..., R], jobs: Iterable[tuple[object, ...]]
 ) -> Iterator[R]:
-    """Results of `work(*job)` as they finish. Only a few jobs are submitted at a time.
+    """Call `work(*job)` for every job and yield the results as they finish, in any order.
+
+    Only a few jobs are submitted at a time.
 
     - pool: from `worker_pool`; None works in this process.
     - workers: number of its processes.
     - work: a function that can be pickled.
-    - jobs: its arguments.
+    - jobs: the tuples of its arguments.
     """
     if pool is None:
         yield from (work(*job) for job in jobs)
@@ -136,13 +138,13 @@ class _Worker(SpawnProcess):
 
 
 class _OwnMain(SpawnContext):
-    """A context that makes such processes and remembers them."""
+    """A context of multiprocessing that makes `_Worker` processes and remembers them."""
 
     def __init__(self) -> None:
         self.workers: list[_Worker] = []
 
     def Process(self, *args: Any, **kwargs: Any) -> _Worker:  # type: ignore[override]
-        """A process of this context, called by the pool."""
+        """Make a process of this context. The pool calls it."""
         self.workers.append(_Worker(*args, **kwargs))
         return self.workers[-1]
 
@@ -174,7 +176,7 @@ def _end(pool: ProcessPoolExecutor | None, context: _OwnMain) -> None:
 
 
 def _how_it_ended(context: _OwnMain) -> str:
-    """How the process ended that broke the pool, from the system. The pool ends the others by SIGTERM."""
+    """Say how the process ended that broke the pool, from the system. The pool ends the others by SIGTERM."""
     codes = [code for process in context.workers if (code := _exit_code(process)) is not None]
     if not codes:
         return "ended, and the system does not say how"
@@ -186,7 +188,7 @@ def _how_it_ended(context: _OwnMain) -> str:
 
 
 def _exit_code(process: _Worker) -> int | None:
-    """The exit code of an ended process. The system gives it to one thread only; wait until that one has noted it."""
+    """Return the exit code of an ended process. The system gives it to one thread only; wait until it is noted."""
     for _ in range(EXIT_CODE_TRIES):
         if process.exitcode is not None:
             break
@@ -202,7 +204,7 @@ def _start_worker() -> None:
 
 
 def _end_with_parent() -> None:
-    """End with the parent: a worker whose parent was killed would wait for jobs for ever."""
+    """End this process with its parent: a worker whose parent was killed would wait for jobs for ever."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         connection.wait([parent.sentinel])

@@ -1,4 +1,4 @@
-"""A finished data set, read on demand."""
+"""Access to a finished data set. Its files are read on demand."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ PULSES = "once_per_rev_s"
 class DataSet:
     """The data set in a directory. Only what is asked for is read.
 
-    `len(data)` is the number of its runs, failed ones too. `data[run_id]` is one of them, and iteration yields their
-    names. The set consists of what its manifest lists; other files in the directory are ignored.
+    `len(data)` is the number of its runs, with failed ones. `data[run_id]` is one run, and iteration yields the names
+    of runs. The set consists of the files that its manifest lists; other files in the directory are ignored.
     """
 
     def __init__(self, directory: Path | str) -> None:
@@ -60,47 +60,48 @@ class DataSet:
         return isinstance(run_id, str) and run_id in self._numbers
 
     def __getitem__(self, run_id: str) -> StoredRun:
-        """The run of that name. Raises UserError where there is none."""
+        """Return the run called `run_id`. Raises UserError where there is none."""
         return stored_run(self, self.row(run_id))
 
     @cached_property
     def runs(self) -> pd.DataFrame:
-        """One row a run, failed ones too: parameters and labels. `run_id` is the index. See `runs_frame`."""
+        """Parameters and labels of all runs, one row a run, also failed ones. The index is `run_id`: `runs_frame`."""
         return runs_frame(self._table, self._sensing.set)
 
     @property
     def ok(self) -> pd.DataFrame:
-        """The good runs among `runs`: they have labels, signals and touches."""
+        """The rows of `runs` with status ok. Only these have labels, signals and touches."""
         return self.runs[self.runs["status"] == "ok"]
 
     @cached_property
     def units(self) -> dict[str, str]:
-        """Unit of each recorded channel by its name, with the clean channels where the set has them."""
+        """Unit of each recorded channel by its name, with the channels without noise where the set has them."""
         columns = signal_columns(self._sensing.set, clean=self._sensing.keep_clean)
         return {column.name: column.unit for column in columns if column.kind == "signal"}
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Names of the recorded channels, with the clean channels where the set has them."""
+        """Names of the recorded channels, with the channels without noise where the set has them."""
         return tuple(self.units)
 
     @property
     def sample_rate_hz(self) -> float:
-        """Samples a second of every channel."""
+        """Samples per second of every channel."""
         return self._sensing.sample_rate_hz
 
     def row(self, run_id: str) -> dict[str, Any]:
-        """One run's parameters and labels by column, as plain values. Raises UserError where there is no such run."""
+        """Return a run's parameters and labels by column, as plain values. Raises UserError for an unknown run."""
         if run_id not in self:
             raise UserError(f"{self.layout.root}: {self._no_such_run(run_id)}")
         row: dict[str, Any] = self._table.slice(self._numbers[run_id], 1).to_pylist()[0]
         return row
 
     def signals(self, run_id: str, channels: Sequence[str] | None = None) -> dict[str, Float32Array]:
-        """The recorded channels of a run, each (n_samples,) in its unit of `units`. Sample i is at i / sample_rate_hz.
+        """Read the recorded channels of a run, each (n_samples,) in its unit of `units`.
 
-        With `channels` only the named channels are decoded. Raises UserError where there is no such run or channel, the
-        run failed, a file is damaged, or the set has neither Parquet data nor MCAP files.
+        Sample i is at i / sample_rate_hz. With `channels` only the named channels are decoded. Raises UserError where
+        there is no such run or channel, the run failed, a file is damaged, or the set has neither Parquet data nor MCAP
+        files.
         """
         names = self._known(channels)
         self.check_has_signals(run_id)
@@ -108,9 +109,10 @@ class DataSet:
         return row_signals(table, 0)
 
     def touches(self, run_id: str) -> pd.DataFrame:
-        """One row a touch of a blade within the whole record, in order of its start. See `touches_frame`.
+        """Read the touches of blades within the whole record of a run, one row each, in order of their start.
 
-        Raises UserError where there is no such run, it failed, or the file is damaged.
+        See `touches_frame` for the columns. Raises UserError where there is no such run, it failed, or the file is
+        damaged.
         """
         self.check_has_signals(run_id)
         ((_, table),) = self._sections.each([run_id], COLUMNS)
@@ -118,16 +120,16 @@ class DataSet:
             return touches_frame(table, self._sensing, self._recipe.output.signal_seconds)
 
     def each_channel(self, name: str) -> Iterator[tuple[str, Float32Array, FloatArray]]:
-        """Name of the run, samples of one channel and arrival times (s) of the pulses, run by run.
+        """Yield for each good run its name, the samples of the channel `name` and the arrival times of its pulses (s).
 
-        Only these are read. Raises UserError where that channel was not recorded.
+        Nothing else is read, one run at a time. Raises UserError where that channel was not recorded.
         """
         names = self._known([name])
         for run_id, table in self._tables(list(self.ok.index), names):
             yield run_id, row_signals(table, 0)[name], np.asarray(table[PULSES][0].values, dtype=np.float64)
 
     def check_has_signals(self, run_id: str) -> None:
-        """Raise UserError where there is no such run, or it failed."""
+        """Check that the run exists and did not fail. Raises UserError where it has no signals."""
         row = self.row(run_id)
         if row["status"] != "ok":
             failed = f"{run_id} failed ({row['status']}: {row['reason']}) and has no signals"
@@ -222,11 +224,11 @@ class DataSet:
 
 
 def is_signal(field: Any) -> bool:
-    """Whether this Arrow field holds a recorded channel."""
+    """Return whether the column of this Arrow field holds a recorded channel: lists of float32."""
     return bool(pa.types.is_list(field.type) and field.type.value_type == pa.float32())
 
 
 def row_signals(table: pa.Table, row: int) -> dict[str, Float32Array]:
-    """The channels of one row of a data table."""
+    """Return the recorded channels in row number `row` of a data table, by name."""
     names = [field.name for field in table.schema if is_signal(field)]
     return {name: np.asarray(table[name][row].values, dtype=np.float32) for name in names}

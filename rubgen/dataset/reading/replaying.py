@@ -1,4 +1,4 @@
-"""Replays of runs: from a data set, from an MCAP file, or simulated again from their scenario."""
+"""The replay of a run: read from an MCAP file, or simulated again from the scenario in its data set."""
 
 import re
 from collections.abc import Iterable
@@ -28,28 +28,29 @@ ONLY_READ: dict[str, bool | int | float | str | list[str]] = {
     "enable_external_access": False,
     "lock_configuration": True,
 }
-"""Settings of duckdb: a condition can read only the table of runs, no file and no setting."""
+"""Settings of duckdb: a condition can read only the table of runs, and neither a file nor a setting."""
 MOST_MEANT = 5
 """Number of similar columns in the message about a mistaken condition."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class FoundReplay:
-    """A replay and remarks for its reader: where it comes from, what is lost."""
+    """A replay, with remarks for the user on where it comes from and what is lost."""
 
     replay: Replay
     remarks: tuple[str, ...] = ()
 
 
 def find_replay(source: Path, run_id: str | None = None, where: str | None = None) -> FoundReplay:
-    """The replay of a run.
+    """Find the run that the user wants to see and return its replay.
 
     - source: an MCAP file, or the directory of a data set.
     - run_id: name of the run in the set.
     - where: a condition in duckdb's SQL on the columns of `runs.parquet`; the first good run that meets it is taken.
 
-    Without both it is the first good run. Raises UserError where there is no such source or run, no run meets the
-    condition, or it cannot be understood.
+    With neither `run_id` nor `where` it is the first good run of the set. A run without an MCAP file is simulated
+    again. Raises UserError where there is no such source or run, no run meets the condition, or it cannot be
+    understood.
     """
     if source.is_dir():
         return _from_data_set(source, run_id, where)
@@ -61,7 +62,7 @@ def find_replay(source: Path, run_id: str | None = None, where: str | None = Non
 
 
 def replay_of_mcap(path: Path) -> FoundReplay:
-    """The replay of an MCAP file, as far as it can be read."""
+    """Make the replay of an MCAP file. What a damaged file has lost is left out and named in the remarks."""
     from rubgen.io.mcap.read import salvage_mcap
 
     run, lost = salvage_mcap(path)
@@ -70,7 +71,10 @@ def replay_of_mcap(path: Path) -> FoundReplay:
 
 
 def replay_of_recorded(run: McapRun, *, source: str = "the file") -> Replay:
-    """The replay of a run from an MCAP file. Raises UserError where this rubgen cannot read its scenario."""
+    """Make the replay of a run that was read from an MCAP file, which messages call `source`.
+
+    Raises UserError where this version of rubgen cannot read its scenario.
+    """
     try:
         scenario = TypeAdapter(Scenario).validate_python(run.scenario)
     except ValidationError as error:
@@ -95,7 +99,7 @@ def replay_of_recorded(run: McapRun, *, source: str = "the file") -> Replay:
 
 
 def find_runs(data: DataSet, where: str) -> list[str]:
-    """Names of the good runs that meet a condition on the columns of `runs.parquet`, in order.
+    """Return the names of the good runs that meet a condition in SQL on the columns of `runs.parquet`, in order.
 
     Raises UserError, with similar columns, for a condition that duckdb does not understand.
     """
@@ -114,7 +118,7 @@ def find_runs(data: DataSet, where: str) -> list[str]:
 
 
 def _meant(where: str, columns: Iterable[str]) -> str:
-    """Names of columns similar to the unknown words of a condition, because a set has hundreds of columns."""
+    """Name columns similar to the unknown words of a condition, because a set has hundreds of columns."""
     known = set(columns)
     words = [word for word in re.findall(r"[A-Za-z_]\w+", where) if word not in known]
     near = [name for word in words for name in get_close_matches(word, known, n=3)]
@@ -122,7 +126,7 @@ def _meant(where: str, columns: Iterable[str]) -> str:
 
 
 def scenario_of(data: DataSet, run_id: str) -> Scenario:
-    """The scenario of a run, from the manifest's recipe and machine."""
+    """Return the scenario of a run, drawn again from the recipe and machine in the manifest."""
     return data.manifest.identity.recorded().scenario(int(run_id.removeprefix("run-")))
 
 

@@ -1,4 +1,4 @@
-"""Tables of a set: runs.parquet as it must be, runs and touches as DataFrames."""
+"""The table of runs, checked against the manifest, and DataFrames of runs and touches."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ FLAGS_AND_COUNTS = ("rub", "blades_touched", "contact_touches")
 NUMBERS = ("contact_duty", "contact_impulse_per_turn_n_s", "speed_rpm", "sample_rate_hz")
 MOTIONS = ("motion", "motion_blisk", "motion_casing")
 COLUMNS = ("scalars", "turn_steps", *TOUCHES)
-"""The columns of the section files that are read."""
+"""The columns of the files in `sections/` that are read here."""
 UNITS = {
     "start_s": "s", "end_s": "s", "blade": "", "angle_rad": "rad", "impulse_n_s": "N s", "friction_work_j": "J",
     "normal_work_j": "J",
@@ -34,11 +34,11 @@ UNITS = {
 
 
 def runs_frame(table: pa.Table, sensors: SensorSet) -> pd.DataFrame:
-    """The table of all runs, failed ones too, with `run_id` as the index and not as a column.
+    """Turn the table of `runs.parquet` into a DataFrame with `run_id` as the index. Failed runs are included.
 
-    Flags are pandas "boolean", integers "Int64", text "string". A failed run has <NA> there, and a flag can still
-    select rows. Numbers are float64 with NaN. Lists are numpy arrays, None where a run has none. `attrs["units"]` and
-    `attrs["meanings"]` map each column to its unit and its meaning.
+    Flags are pandas "boolean", integers "Int64", text "string"; a failed run has <NA> there, and a flag can still
+    select rows. Numbers are float64 with NaN. Lists are numpy arrays, or None where a run has none. `attrs["units"]`
+    and `attrs["meanings"]` map each column to its unit and its meaning.
     """
     frame: pd.DataFrame = table.to_pandas(types_mapper=_nullable)
     frame = frame.set_index("run_id")
@@ -51,16 +51,16 @@ def runs_frame(table: pa.Table, sensors: SensorSet) -> pd.DataFrame:
 
 
 def _nullable(kind: pa.DataType) -> Any:
-    """The pandas type of a column; None leaves it to pyarrow."""
+    """Return the pandas type of a column, or None to leave it to pyarrow."""
     import pandas as pd
 
     return {pa.bool_(): pd.BooleanDtype(), pa.int64(): pd.Int64Dtype(), pa.string(): pd.StringDtype()}.get(kind)
 
 
 def check_runs(table: pa.Table, manifest: Manifest, path: Path) -> None:
-    """Raise UserError, one line with file and run, where the values of `table` do not fit the manifest.
+    """Check the values of `runs.parquet` against the manifest: names, status counts, and the main labels of good runs.
 
-    `path` is its file.
+    `path` is the file that `table` was read from. Raises UserError, one line with file and run, where they do not fit.
     """
     names = table["run_id"].to_pylist()
     if names != [f"run-{index:06d}" for index in range(manifest.runs)]:
@@ -81,15 +81,15 @@ def check_runs(table: pa.Table, manifest: Manifest, path: Path) -> None:
 
 
 def touches_frame(table: pa.Table, sensing: Sensing, seconds: float) -> pd.DataFrame:
-    """One row a touch of a blade, in order of its start.
+    """Make a DataFrame of the touches of a run, one row a touch of a blade, in order of its start.
 
-    - table: the row of a run in `sections/`.
-    - sensing: of the run.
+    - table: the row of the run in `sections/`.
+    - sensing: the sensors of the run, from which the first sample follows.
     - seconds: length of the signals.
 
     `start_s` and `end_s` count from the first sample of the signals: earlier touches have negative times. `angle_rad`
-    is the polar angle on the casing, mean by impulse. The works are <= 0. `attrs["units"]` maps each column to its
-    unit.
+    is the polar angle on the casing, a mean weighted by impulse. The works are <= 0. `attrs["units"]` maps each column
+    to its unit.
     """
     import pandas as pd
 
