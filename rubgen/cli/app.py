@@ -1,4 +1,4 @@
-"""The commands and their options. Each function imports its work when it is called."""
+"""Declare the commands and their options. Each function imports its work when it is called."""
 
 import sys
 from collections.abc import Sequence
@@ -29,7 +29,7 @@ def _whole_number(text: str) -> Parameter:
 
 
 def _whole(_type: Any, tokens: Sequence[Token]) -> int:
-    """The integer as written. Without this converter cyclopts would truncate 2.5 to 2."""
+    """Return the integer as written. Without this converter cyclopts would truncate 2.5 to 2."""
     return int(tokens[0].value)
 
 

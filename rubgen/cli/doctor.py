@@ -1,4 +1,4 @@
-"""`rubgen doctor`: whether this machine can run rubgen."""
+"""The command `rubgen doctor`: whether this computer can run rubgen."""
 
 import os
 import platform
@@ -21,7 +21,10 @@ _SOFTWARE_DRIVER = "lvp_icd"
 
 
 def doctor_command(*, as_json: bool) -> int:
-    """Print the state. Return 1 where a package is missing or outside of the versions that rubgen declares, else 0."""
+    """Print versions, caches, cores, Vulkan and screen of this computer.
+
+    Returns the exit code 1 where a package is missing or outside of the versions that rubgen declares, else 0.
+    """
     root = wanted_root()
     problem = problem_of(root)
     needed = _needed()
@@ -48,13 +51,13 @@ def doctor_command(*, as_json: bool) -> int:
 
 
 def _needed() -> list[Requirement]:
-    """The declared requirements of rubgen, without extras."""
+    """Return the declared requirements of rubgen, without extras."""
     declared = map(Requirement, requires("rubgen") or [])
     return [each for each in declared if each.marker is None or each.marker.evaluate({"extra": ""})]
 
 
 def _version(requirement: Requirement) -> str | None:
-    """The installed version; None where there is none."""
+    """Return the installed version; None where there is none."""
     try:
         return version(requirement.name)
     except PackageNotFoundError:
@@ -62,7 +65,7 @@ def _version(requirement: Requirement) -> str | None:
 
 
 def _problem(requirement: Requirement, found: str | None) -> str:
-    """The problem of a package; empty without one."""
+    """Return the problem of a package; empty without one."""
     name, allowed = requirement.name, requirement.specifier
     if found is None:
         return f"{name}: not installed; install rubgen again"
@@ -83,7 +86,7 @@ def _folder(folder: Path) -> dict[str, object]:
 
 
 def _vulkan() -> str:
-    """How pictures can be drawn without a screen: hardware, software or none, from the files of drivers."""
+    """Return how pictures can be drawn without a screen: hardware, software or none, from the files of drivers."""
     named = os.environ.get("VK_DRIVER_FILES") or os.environ.get("VK_ICD_FILENAMES")
     files = [Path(each) for each in named.split(os.pathsep)] if named else []
     files = files or [each for folder in _VULKAN_DRIVERS for each in Path(folder).glob("*.json")]

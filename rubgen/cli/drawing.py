@@ -1,4 +1,4 @@
-"""`rubgen figure` and `rubgen report`: pictures and the page of a data set."""
+"""The commands `rubgen figure` and `rubgen report`: pictures, and the page of a data set."""
 
 from pathlib import Path
 
@@ -10,7 +10,10 @@ ENDINGS = (".png", ".svg", ".pdf")
 
 
 def figure_command(name: str, source: Path | None, out: Path, choice: Choice, *, force: bool) -> int:
-    """Draw a figure and write it."""
+    """Draw the figure called `name` and write it to `out`. Returns the exit code 0.
+
+    `source` and `choice` are as in `make_figure`; `force` replaces a file that is there.
+    """
     from rubgen.viz.figures import save_figure
 
     check_new_file("--out", out, ENDINGS, force=force)
@@ -22,7 +25,7 @@ def figure_command(name: str, source: Path | None, out: Path, choice: Choice, *,
 
 
 def report_command(directory: Path, out: Path | None, *, force: bool) -> int:
-    """Write the page."""
+    """Write the page of the data set in `directory` to `out`, by default its report.html. Returns the exit code 0."""
     from rubgen.report.page import write_report
 
     path = out or directory / REPORT

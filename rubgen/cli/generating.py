@@ -1,4 +1,4 @@
-"""`rubgen generate`: progress for people, a summary for programs."""
+"""The command `rubgen generate`: progress for people, a summary for programs."""
 
 import dataclasses
 import os
@@ -16,7 +16,10 @@ from rubgen.formats import run_formats
 
 
 def generate_command(recipe: Path | None, out: Path, runs: int | None, workers: int | None, *, as_json: bool) -> int:
-    """Generate, and print a summary. After Ctrl-C, print how to continue."""
+    """Generate a data set and print a summary. The parameters are those of `rubgen.generate`.
+
+    Returns the exit code 0. After Ctrl-C it prints how to continue and returns 130.
+    """
     try:
         with terminable():
             made = generate(recipe, out, runs=runs, workers=workers, progress=not as_json)
@@ -39,7 +42,7 @@ def _report(made: Generated, *, as_json: bool) -> None:
 
 
 def _what_was_made(made: Generated) -> Iterator[str]:
-    """Counts of runs, rub and classes, then each kind of failure with its shortest reason."""
+    """Yield counts of runs, rub and classes, then each kind of failure with its shortest reason."""
     outcome = made.outcome
     status = ", ".join(f"{made.status[name]} {name}" for name in sorted(made.status, key=lambda name: name != "ok"))
     done = "nothing to do, verified" if made.verified else f"{made.made} new"
@@ -51,7 +54,7 @@ def _what_was_made(made: Generated) -> Iterator[str]:
 
 
 def _ways_to_look(directory: Path) -> Iterator[str]:
-    """The places of the files, and the command that shows them."""
+    """Yield the places of the files, and the commands that show them."""
     yield f"  {directory}/runs.parquet, data/: parameters, labels, signals; for pandas, polars, datasets"
     for each in run_formats():
         files = sorted((directory / each.name).glob(f"*{each.suffix}"))
@@ -63,5 +66,5 @@ def _ways_to_look(directory: Path) -> Iterator[str]:
 
 
 def _command(name: str) -> str:
-    """The call of a program of this environment: by name where the shell finds it, else by path."""
+    """Return the call of a program of this environment: its name where the shell finds it, else its path."""
     return name if which(name) else os.path.relpath(Path(sys.executable).with_name(name))

@@ -1,4 +1,4 @@
-"""`rubgen info`, `label`, `verify`, `repair`: content and state of a data set."""
+"""The commands `rubgen info`, `label`, `verify` and `repair`: content and state of a data set."""
 
 from __future__ import annotations
 
@@ -21,7 +21,11 @@ if TYPE_CHECKING:
 
 
 def info_command(directory: Path, *, as_json: bool) -> int:
-    """Count runs; of an interrupted set, its finished runs."""
+    """Print what the data set in `directory` contains: runs by status, rub and motion, and reasons of failed runs.
+
+    For an unfinished set, which an interrupted `generate` left, print how many of its runs are finished and how to
+    continue. Returns the exit code 0. Raises UserError where the directory holds neither.
+    """
     begun = unfinished(directory)
     if begun is not None:
         return _tell_unfinished(directory, begun, as_json=as_json)
@@ -53,14 +57,20 @@ def _tell_unfinished(directory: Path, begun: Unfinished, *, as_json: bool) -> in
 
 
 def verify_command(directory: Path, *, as_json: bool) -> int:
-    """Verify and list the problems. Return 1 where there are any."""
+    """Check the data set in `directory` and print its problems with their remedy.
+
+    Returns the exit code 1 if there is a problem, else 0.
+    """
     with step("verify"):
         found = findings(directory)
     return _tell(directory, found, {}, as_json=as_json)
 
 
 def repair_command(directory: Path, *, as_json: bool) -> int:
-    """Make derived files again, list them and the remaining problems. Return 1 where there are any."""
+    """Make damaged or missing derived files again and print them, then the problems that remain.
+
+    Returns the exit code 1 if a problem remains, else 0.
+    """
     from rubgen.dataset.checking.repair import repair
 
     with step("repair"):
@@ -72,7 +82,7 @@ def repair_command(directory: Path, *, as_json: bool) -> int:
 
 
 def _tell(directory: Path, found: list[Finding], more: dict[str, object], *, as_json: bool) -> int:
-    """Print the problems and the remedy. Return 1 where there are any."""
+    """Print the problems and the remedy. Returns the exit code 1 if there are any."""
     what_to_do = advice(directory, found) if found else ""
     if as_json:
         print_json({"ok": not found, **more, "problems": [each.text for each in found], "advice": what_to_do})
@@ -85,7 +95,10 @@ def _tell(directory: Path, found: list[Finding], more: dict[str, object], *, as_
 
 
 def label_command(directory: Path, *, as_json: bool) -> int:
-    """Make labels again and list differences. Return 1 where there are any."""
+    """Make the labels of a data set again and print where they differ from the stored ones.
+
+    Returns the exit code 1 if one differs, else 0.
+    """
     with step("make labels again"):
         done = relabel(directory)
     if as_json:
@@ -100,6 +113,6 @@ def label_command(directory: Path, *, as_json: bool) -> int:
 
 
 def _counts(values: pd.Series[Any], expected: Iterable[str] = ()) -> dict[str, int]:
-    """Number of occurrences of each value, also of expected ones that never occur. Failed runs are left out."""
+    """Count how often each value occurs, also expected ones that never occur. Failed runs are left out."""
     counts = values.dropna().astype(str).str.lower().value_counts()
     return {name: int(counts.get(name, 0)) for name in [*expected, *sorted(set(counts.index) - set(expected))]}

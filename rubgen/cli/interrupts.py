@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM end every command in the same way."""
+"""Make Ctrl-C and SIGTERM end every command in the same way."""
 
 import signal
 import sys
@@ -11,11 +11,11 @@ from typing import Any
 
 @contextmanager
 def terminable() -> Iterator[None]:
-    """A context in which SIGTERM raises KeyboardInterrupt, and Ctrl-C too where the shell has switched it off.
+    """Raise KeyboardInterrupt in the block for SIGTERM, and for Ctrl-C also where the shell has switched it off.
 
-    Compiled code of other libraries may swallow the exception or print it, and fail later with another one. Nothing is
-    therefore printed after an interrupt, and the interrupt is raised. Signals can be handled only in the main thread;
-    elsewhere nothing changes.
+    Compiled code of other libraries may swallow the exception or print it, and fail later with another one. After a
+    signal nothing of that is printed, and KeyboardInterrupt is raised instead. Signals can be handled only in the main
+    thread; elsewhere nothing changes.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -1,4 +1,4 @@
-"""A mistake in a command line, in one line: the word, what is allowed, what was perhaps meant."""
+"""Explain a mistake in a command line in one line: the word, what is allowed, what was perhaps meant."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TYPE_NAMES = {float: "a number", int: "a whole number", bool: "true or false", P
 
 
 def mistake(error: CycloptsError, app: App) -> str:
-    """The line for a command line with a mistake."""
+    """Return the line for an error of cyclopts, whose own messages have many lines. `app` knows the commands."""
     command = " ".join(["rubgen", *(error.command_chain or ())])
     see = f"see {command} --help"
     match error:
@@ -60,6 +60,6 @@ def _allowed(error: CoercionError) -> str:
 
 
 def meant(word: str, known: Iterable[str]) -> str:
-    """` did you mean ...?` where a known name is similar, else nothing."""
+    """Return " did you mean ...?" where one of the `known` names is similar to `word`, else an empty text."""
     close = get_close_matches(word, list(known), n=1)
     return f" did you mean {close[0]}?" if close else ""

@@ -1,4 +1,4 @@
-"""`rubgen modes`: size and natural frequencies of a machine."""
+"""The command `rubgen modes`: size and natural frequencies of a machine."""
 
 from rubgen.cli.printing import print_json, print_pairs, say
 from rubgen.machine import load_machine
@@ -12,7 +12,10 @@ SHOWN_BLISK_MODES = 42
 
 
 def modes_command(machine: str, *, as_json: bool) -> int:
-    """Reduce the machine at rest and print it. Deviations from the paper are relative."""
+    """Reduce the machine, a preset's name or a TOML, and print its size, critical speed and frequencies at rest.
+
+    The preset zeng2019 is compared with the published frequencies. Returns the exit code 0.
+    """
     loaded = load_machine(machine)
     with file_named(machine):
         model = reduce(loaded, Reduction())

@@ -1,4 +1,4 @@
-"""Results for people and programs; files that are refused before any work, or written complete or not at all."""
+"""Print results for people and programs, and write the files that a command was asked for."""
 
 import json
 import math
@@ -13,22 +13,22 @@ REPORT = "report.html"
 
 
 def say(text: str) -> None:
-    """Print one or more lines on stdout."""
+    """Print one or more lines on stdout, with control characters escaped."""
     sys.stdout.write(f"{printable(text)}\n")
 
 
 def printable(text: str) -> str:
-    """The text with control characters, which a terminal would obey, and line breaks as escapes."""
+    """Return the text with control characters, which a terminal would obey, and line breaks as escapes."""
     return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
 
 
 def print_json(values: dict[str, object]) -> None:
-    """Print one JSON document on stdout; NaN becomes null."""
+    """Print one JSON document on stdout. NaN and infinity become null."""
     sys.stdout.write(f"{json.dumps(_plain(values), indent=2, allow_nan=False)}\n")
 
 
 def print_pairs(values: dict[str, object]) -> None:
-    """Print names and values in two columns."""
+    """Print names and values in two columns, for people: yes or no for flags, 6 digits, - for None."""
     width = max(map(len, values), default=0)
     for name, value in values.items():
         say(f"{name:<{width}}  {_text(value)}")
@@ -57,14 +57,11 @@ def _plain(value: object) -> object:
 
 
 def check_new_file(option: str, path: Path, endings: tuple[str, ...], *, force: bool = False) -> None:
-    """Raise UserError where a file cannot be written as asked.
+    """Check, before any work, that a command can write the file at `path` that the user named with `option`.
 
-    - option: for the message.
-    - path: of the file.
-    - endings: allowed endings; the folder must exist.
-    - force: allow an existing file.
-
-    No file but the report may lie in a data set: `rubgen verify` would find a file that the manifest does not list.
+    Raises UserError where its ending is none of `endings`, its folder does not exist, it would lie in a data set,
+    `path` is no file, or a file exists already and `force` (the option --force) is False. Only the report may lie in a
+    data set: `rubgen verify` would find a file that the manifest does not list. Nothing is written.
     """
     if path.suffix not in endings:
         allowed = endings[0] if len(endings) == 1 else f"{', '.join(endings[:-1])} or {endings[-1]}"
@@ -85,7 +82,10 @@ def _is_data_set(folder: Path) -> bool:
 
 
 def write_file(option: str, path: Path, write: Callable[[Path], object]) -> None:
-    """Write under a temporary name, then rename: an old file stays whole until then. `option` is for messages."""
+    """Call `write` with a temporary name, then rename that file to `path`, so that an old file stays whole until then.
+
+    `option` is how messages call the file. Raises UserError where it cannot be written.
+    """
     from rubgen.io.files import write_durably
 
     with write_problems(path, named=f"{option} {path}"):

@@ -1,4 +1,4 @@
-"""`rubgen replay`: a run in the viewer, in the browser, or as a file or picture."""
+"""The command `rubgen replay`: a run in the viewer, in the browser, or as a file or picture."""
 
 import sys
 from collections.abc import Callable
@@ -14,7 +14,10 @@ from rubgen.viz.viewer import has_screen, open_viewer
 
 @dataclass(frozen=True, kw_only=True)
 class Showing:
-    """The ways of showing a replay: as files where any is named, else in the viewer or, with `web`, in the browser."""
+    """The user's options for showing a replay.
+
+    It is written to files where any is named, else shown in the viewer or, with `web`, in the browser.
+    """
 
     save: Path | None = None
     gif: Path | None = None
@@ -25,7 +28,10 @@ class Showing:
     force: bool = False
 
     def check(self) -> None:
-        """Raise UserError, before any work, where a file exists or is not possible, or nothing can show the replay."""
+        """Check the options before any work.
+
+        Raises UserError where a file exists or is not possible, options exclude each other, or there is no screen.
+        """
         for option, path, ending in (
             ("--save", self.save, ".rrd"),
             ("--gif", self.gif, ".gif"),
@@ -47,7 +53,7 @@ class Showing:
 
 
 def replay_command(source: Path, run_id: str | None, where: str | None, showing: Showing) -> int:
-    """Find the run, print remarks, and show it."""
+    """Find a run as `find_replay` does, print the remarks about it on stderr, and show it. Returns the exit code 0."""
     showing.check()
     from rubgen.dataset.reading.replaying import find_replay
 

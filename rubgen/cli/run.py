@@ -1,4 +1,4 @@
-"""Run the command line and end the process. Every failure is one line on stderr."""
+"""Run the command line and end the process with its exit code. Every failure is one line on stderr."""
 
 import io
 import os
@@ -19,7 +19,11 @@ DONE, WANTING, MISTAKE, INTERRUPTED = 0, 1, 2, 130
 
 
 def main(arguments: list[str] | None = None) -> NoReturn:
-    """Run the command line with `arguments`, by default the arguments of the process. It never returns."""
+    """Run the command line with `arguments`, by default those of the process, and exit. It never returns.
+
+    Any error becomes one line on stderr and an exit code: 1 for a RubgenError, 2 for the user's mistake, 130 for
+    Ctrl-C.
+    """
     warnings.simplefilter("always", RubgenWarning)
     warnings.showwarning = _show_warning
     for stream in (sys.stdout, sys.stderr):

@@ -1,4 +1,4 @@
-"""`rubgen simulate`: one run, its labels, its file."""
+"""The command `rubgen simulate`: one run, its labels, its file."""
 
 import math
 from collections.abc import Iterator
@@ -36,7 +36,16 @@ MOST_ZONES = 4
 def simulate_command(
     options: dict[str, Any], out: Path | None, *, replay: bool = False, force: bool = False, as_json: bool
 ) -> int:
-    """Simulate, print, write and show. Return 1 where the run failed."""
+    """Simulate one run, print its labels, and write or show it as asked.
+
+    - options: the parameters of `make_scenario` by name, from the command line.
+    - out: file to write, in the format of its ending.
+    - replay: show the run in the viewer at the end.
+    - force: replace a file that is there.
+    - as_json: print every label as JSON instead of a summary.
+
+    Returns the exit code 1 where the run failed, else 0.
+    """
     if replay:
         Showing().check()
     if out:
@@ -65,7 +74,7 @@ def simulate_command(
 
 
 def _all_labels(run: Run) -> dict[str, object]:
-    """Status, parameters and labels by name."""
+    """Return status, parameters and labels by name."""
     return {
         "status": run.response.status.code,
         "reason": run.response.reason,
@@ -83,7 +92,7 @@ def _scenario(options: dict[str, Any]) -> Scenario:
 
 
 def run_summary(run: Run) -> Iterator[tuple[str, str]]:
-    """Names and values, one line each."""
+    """Yield the main facts of a run as names and values, for people: machine, speeds, contact, motion, orders."""
     yield "run", _course_of_run(run)
     if run.response.status is not Status.OK:
         yield "failed", f"{run.response.status.value}; {run.response.reason}"
@@ -131,7 +140,7 @@ def _zones_word(labels: Labels) -> str:
 
 
 def _zones(labels: Labels) -> str:
-    """Centre and width of each zone, in degrees on the casing from +X."""
+    """Return centre and width of each zone, in degrees on the casing from +X."""
     zones = zip(labels.contact_zone_centres, labels.contact_zone_widths, strict=True)
     texts = [f"{math.degrees(centre):.1f}° ({math.degrees(width):.1f}° wide)" for centre, width in zones]
     more = f" and {len(texts) - MOST_ZONES} more" if len(texts) > MOST_ZONES else ""
@@ -151,7 +160,7 @@ def _motion(labels: Labels) -> Iterator[tuple[str, str]]:
 
 
 def _ranges(orders: tuple[int, ...]) -> str:
-    """Rising numbers, runs of three or more as `4 to 9`."""
+    """Write rising numbers, runs of three or more as `4 to 9`."""
     runs: list[list[int]] = []
     for order in orders:
         if runs and order == runs[-1][-1] + 1:
@@ -162,7 +171,7 @@ def _ranges(orders: tuple[int, ...]) -> str:
 
 
 def _speeds(labels: Labels) -> Iterator[tuple[str, str]]:
-    """Where rub begins and ends as the speed changes, and how often the motion changes.
+    """Yield where rub begins and ends as the speed changes, and how often the motion changes.
 
     A rub of the first or of the last turns has its onset or end outside of the record.
     """

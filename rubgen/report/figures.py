@@ -1,4 +1,4 @@
-"""Figures by name: of a machine, of a run, or of a whole data set."""
+"""Draw the figures of `rubgen figure`, by name: of a machine, of a run, or of a whole data set."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -28,7 +28,10 @@ SHOWN_UNIT = {"m": (1e6, "µm"), "m/s2": (1.0, "m/s²")}
 
 @dataclass(frozen=True, kw_only=True)
 class Choice:
-    """What is drawn: a run of a data set, the parameter of a sweep, a channel; each has a default."""
+    """The user's choice of what a figure shows: a run of a data set, the parameter of a sweep, a channel.
+
+    None means a default.
+    """
 
     run_id: str | None = None
     where: str | None = None
@@ -37,17 +40,18 @@ class Choice:
 
 
 OPTIONS = {"run_id": "run", "where": "--where", "parameter": "--over", "channel": "--channel"}
-"""Names of the fields of a choice on the command line."""
+"""Names of the fields of a choice on the command line, for messages."""
 Make = Callable[[Path | None, Choice], Figure]
 
 
 def make_figure(name: str, source: Path | None, choice: Choice) -> Figure:
-    """The figure of that name.
+    """Draw the figure called `name`, one of FIGURES.
 
-    - source: a machine, a data set or an MCAP file.
+    - source: name or TOML of a machine, directory of a data set, or an MCAP file; what is needed depends on the figure.
     - choice: what is drawn of it.
 
-    Raises UserError for an unknown figure, a source that does not fit, a missing column.
+    Raises UserError for an unknown figure, a source that does not fit, an option that the figure does not use, or
+    signals that it needs and that are missing.
     """
     if name not in FIGURES:
         raise UserError(f"figure {name!r}: {nearest(name, list(FIGURES))}")
@@ -88,7 +92,7 @@ def _of_set(draw: Callable[[DataSet, Choice], Figure], *options: str) -> Make:
 
 
 def _refuse_others(choice: Choice, used: tuple[str, ...]) -> None:
-    """UserError for an option that the figure would ignore."""
+    """Raise UserError for an option that the figure would ignore."""
     for option, name in OPTIONS.items():
         value = getattr(choice, option)
         if value is not None and option not in used:
@@ -106,13 +110,13 @@ def _waveform(replay: Replay, choice: Choice) -> Figure:
 
 
 def _channel(choice: Choice, usual: str, recorded: Iterable[str]) -> str:
-    """The requested channel; else the usual one, or the first of a sensor set without it."""
+    """Return the requested channel; else the usual one, or the first of a sensor set without it."""
     names = list(recorded)
     return choice.channel or (usual if usual in names else names[0])
 
 
 def _bifurcation(data: DataSet, choice: Choice) -> Figure:
-    """The channel at each pulse less the mean of each run: k points for period k, for any size of the orbit."""
+    """Draw the channel at each pulse less the mean of each run: k points for period k, for any size of the orbit."""
     key, name = _parameter(data, choice), choice.channel or _without_noise(data, _channel(choice, CHANNEL, data.units))
     unit = data.units.get(name, "")
     scale, unit = SHOWN_UNIT.get(unit, (1.0, unit))
@@ -129,7 +133,7 @@ def _bifurcation(data: DataSet, choice: Choice) -> Figure:
 
 
 def _cascade(data: DataSet, choice: Choice) -> Figure:
-    """Order spectra of the channel over the parameter."""
+    """Draw order spectra of the channel over the parameter."""
     key, name = _parameter(data, choice), _channel(choice, "casing_acc_0", data.units)
     values, spectra, orders = [], [], np.zeros(0)
     for run_id, samples, pulses in data.each_channel(name):
@@ -146,7 +150,7 @@ def _cascade(data: DataSet, choice: Choice) -> Figure:
 
 
 def _exponent(data: DataSet, choice: Choice) -> Figure:
-    """The column `lyapunov_per_turn` with its error."""
+    """Draw the column `lyapunov_per_turn` with its error over the parameter."""
     key, good = _parameter(data, choice), data.ok
     known = good[good["lyapunov_per_turn"].notna()]
     if known.empty:
@@ -178,7 +182,7 @@ def _why_not_over(name: str, varied: list[str]) -> str:
 
 
 def _without_noise(data: DataSet, channel: str) -> str:
-    """The clean channel where the set has it."""
+    """Return the channel without noise where the set has it."""
     clean = f"{channel}_clean"
     return clean if clean in data.units else channel
 

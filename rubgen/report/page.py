@@ -1,4 +1,4 @@
-"""One page about a data set: `rubgen report DIR`."""
+"""Make one HTML page about a data set, for `rubgen report DIR`."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ signal = data.signals("RUN")["CHANNEL"]"""
 
 
 def write_report(directory: Path, path: Path) -> None:
-    """Write the page of the data set in `directory` to `path`, as one file without other files.
+    """Write the page of the data set in `directory` to `path`, as one file that needs no other files.
 
-    Content of the set, balance of classes, coverage of parameters, failed runs and reasons, six examples with pictures,
-    the channels, how to load it, and its checks. Raises UserError where there is no finished data set, no good run, or
-    the file cannot be written.
+    It shows the content of the set, balance of classes, coverage of parameters, failed runs and reasons, six examples
+    with pictures, the channels, how to load it, and its checks. Raises UserError where there is no finished data set,
+    no good run, or the file cannot be written.
     """
     html = render_report(directory)
     with write_problems(path):
@@ -52,7 +52,7 @@ def write_report(directory: Path, path: Path) -> None:
 
 
 def render_report(directory: Path) -> str:
-    """The page as text."""
+    """Compose the HTML of the page of the data set in `directory`. Raises UserError as `write_report` does."""
     data = DataSet(directory)
     good = data.ok
     if good.empty:
@@ -86,7 +86,7 @@ def render_report(directory: Path) -> str:
 
 
 def _replays(directory: Path, examples: list[str]) -> dict[str, Replay]:
-    """The examples that can be read. The checks on the page name a damaged file. Raise UserError if none can be."""
+    """Return the examples that can be read. The page's checks name a damaged file. Raises UserError without any."""
     replays, problem = dict[str, Replay](), UserError(f"{directory}: no example can be read")
     for done, run_id in enumerate(examples):
         count(done, len(examples))
@@ -100,7 +100,10 @@ def _replays(directory: Path, examples: list[str]) -> dict[str, Replay]:
 
 
 def example_runs(good: pd.DataFrame) -> list[str]:
-    """Up to six runs: the hardest rub of each class, then a run without contact, then the hardest of the rest."""
+    """Choose up to six runs to show: the hardest rub of each class, then one without contact, then the hardest others.
+
+    `good` is the table of the runs with status ok. Returns their names.
+    """
     by_impulse = good.sort_index().sort_values("contact_impulse_per_turn_n_s", ascending=False, kind="stable")
     hardest = [by_impulse.index[by_impulse["motion"] == motion.value][:1] for motion in Motion]
     free = by_impulse.index[~by_impulse["rub"].astype(bool)][:1]
@@ -109,7 +112,7 @@ def example_runs(good: pd.DataFrame) -> list[str]:
 
 
 def as_data_url(figure: Figure) -> str:
-    """The figure as a PNG in a data URL."""
+    """Encode a figure as PNG in a data URL."""
     picture = io.BytesIO()
     figure.savefig(picture, dpi=DPI, format="png", metadata={"Software": None})
     return f"data:image/png;base64,{base64.b64encode(picture.getvalue()).decode('ascii')}"
@@ -143,7 +146,7 @@ def _parameters(good: pd.DataFrame, recipe: dict[str, Any]) -> list[dict[str, st
 
 
 def _drawn(distribution: object) -> str:
-    """A distribution as in the recipe, numbers short."""
+    """Write a distribution as in the recipe, with short numbers."""
     if isinstance(distribution, dict):
         return ", ".join(f"{key} {_drawn(value)}" for key, value in distribution.items() if value is not None)
     if isinstance(distribution, list):
@@ -165,7 +168,10 @@ def _example(row: dict[str, Any], replay: Replay) -> dict[str, str]:
 
 
 def loading(data: DataSet, replay: Replay) -> dict[str, str]:
-    """Ways to load the set, each a few lines of Python; DIR is its directory."""
+    """Return ways to load the set by title, each a few lines of Python. DIR in them stands for its directory.
+
+    Channel and run are those of `replay`.
+    """
     formats = data.manifest.identity.recipe["output"]["formats"]
     ways = {"rubgen": RUBGEN}
     for name in FORMAT_NAMES:

@@ -28,11 +28,14 @@ IMPULSE_COLORS = np.array([0xFFE8A0FF, 0xFFD166FF, 0xF4A340FF, 0xE6752BFF, 0xD55
 
 
 def impulse_color(share: FloatArray) -> UInt32Array:
-    """Colours 0xrrggbbff for the square root of the impulse over the largest one, (any,) in [0, 1]."""
+    """Return colours 0xrrggbbff of touches from light to hard.
+
+    `share` (any,) is the square root of a touch's impulse over the largest impulse, in [0, 1].
+    """
     place = np.minimum((share * len(IMPULSE_COLORS)).astype(int), len(IMPULSE_COLORS) - 1)
     return np.asarray(IMPULSE_COLORS[place])
 
 
 def rgba(color: str) -> int:
-    """An opaque colour `#rrggbb` as the number 0xrrggbbff for Rerun."""
+    """Convert a colour `#rrggbb` to the opaque number 0xrrggbbff for Rerun."""
     return int(f"{color.lstrip('#')}ff", 16)

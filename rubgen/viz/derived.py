@@ -1,4 +1,4 @@
-"""Quantities for pictures of a recording: order spectra, the orbit of the disk centre, sectors of the casing."""
+"""Compute what pictures of a recording show: order spectra, the orbit of the disk centre, sectors of the casing."""
 
 from dataclasses import dataclass
 
@@ -28,14 +28,14 @@ class OrderMap:
 def order_map(
     values: Float32Array, sample_rate_hz: float, pulses: FloatArray, *, turns: int = BLOCK_TURNS, most_blocks: int = 60
 ) -> OrderMap:
-    """Spectra of a channel over successive blocks of `turns` turns, at the orders 1/turns, 2/turns, ..., 12.
+    """Compute spectra of a channel over successive blocks of `turns` turns, at the orders 1/turns, 2/turns, ..., 12.
 
     The samples are interpolated linearly at 256 equal angles of each turn, so that orders stay sharp while the speed
     changes. Amplitudes are |2 X / n|, without a window, because each block is a whole number of turns. Valid up to
     order 12 where the sample rate is at least some 50 times the rotation frequency.
 
     - values (samples,): the channel; blocks with NaN are left out.
-    - sample_rate_hz: of the channel.
+    - sample_rate_hz: samples per second.
     - pulses (any,): times in s at which turns begin; the last ends the last turn. Fewer than two make an empty map.
     - turns: turns of a block; fewer in a shorter recording.
     - most_blocks: of more blocks, every second, third, ... is taken.
@@ -60,10 +60,11 @@ def order_map(
 
 
 def shaft_orbit(replay: Replay) -> FloatArray | None:
-    """X and Y of the disk centre (2, samples) in um from the first pair of probes; None without a pair.
+    """Compute X and Y of the disk centre (2, samples) in um from the first pair of proximity probes.
 
-    A probe at angle phi reads u = x cos(phi) + y sin(phi). Two readings are solved for x and y. For readings in V the
-    bias is subtracted and the rest divided by the sensitivity.
+    Returns None without two probes at least 30 degrees apart. A probe at angle phi reads u = x cos(phi) + y sin(phi).
+    Two readings are solved for x and y. For readings in V the bias is subtracted and the rest divided by the
+    sensitivity.
     """
     channels = replay.recording.channels
     sensors = replay.scenario.sensing.set.sensors
@@ -79,7 +80,12 @@ def shaft_orbit(replay: Replay) -> FloatArray | None:
 
 
 def section(replay: Replay) -> FloatArray | None:
-    """X and Y (2, pulses) of the recorded orbit at the once-per-turn pulses, um; None without a pair of probes."""
+    """Compute the Poincare section of the recorded orbit: its points at the once-per-turn pulses.
+
+    The orbit of `shaft_orbit` is interpolated linearly at each pulse. Returns X and Y (2, pulses) in um, or None
+    without a pair of probes. In period-1 motion all points coincide, apart from noise; in period-k motion there are k
+    groups.
+    """
     orbit = shaft_orbit(replay)
     if orbit is None:
         return None
@@ -93,6 +99,9 @@ def _micrometres(probe: Proximity, values: Float32Array) -> FloatArray:
 
 
 def sector_of(angle: FloatArray, sectors: int) -> IntArray:
-    """Number of the sector, of `sectors` equal ones, of each polar angle (rad). Sector 0 is centred at 0."""
+    """Return the number of the sector that each polar angle (rad) lies in, of `sectors` equal ones around the casing.
+
+    Sector 0 is centred at angle 0.
+    """
     width = 2 * np.pi / sectors
     return np.floor(np.mod(angle + width / 2, 2 * np.pi) / width).astype(np.int64) % sectors

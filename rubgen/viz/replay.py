@@ -1,4 +1,4 @@
-"""The content of a replay, from memory or from a file."""
+"""What is needed to show a run, from memory or from a file."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Replay:
-    """One run for display."""
+    """One run for display, in plain values: the true response is not needed."""
 
     scenario: Scenario
     labels: dict[str, object]
@@ -36,7 +36,7 @@ class Replay:
 
     @property
     def title(self) -> str:
-        """Run, machine and speed, or the speeds of the run."""
+        """Name of the run, machine, and its speed or first and last speed."""
         rotation = self.scenario.operation.rotation
         start, end = (f"{rev_per_min(speed):,.0f}" for speed in (rotation.start, rotation.end))
         speed = start if start == end else f"{start} to {end}"
@@ -46,7 +46,7 @@ class Replay:
 
     @property
     def hardest_touch(self) -> float:
-        """Time in s of the touch with the largest impulse; the middle of the recording without contact."""
+        """Time in s of the touch with the largest impulse; the middle of the recording where nothing touched."""
         touches = self.touches
         if not touches.impulse.size:
             return self.seconds / 2
@@ -70,7 +70,7 @@ class Replay:
 
 
 def replay_of(run: Run) -> Replay:
-    """The replay of a run in memory. Raises ValueError for a run without a recording."""
+    """Make the replay of a run in memory. Raises ValueError for a run without a recording."""
     if run.recording is None or run.labels is None:
         raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to show")
     touches, recording = contact_intervals(run.response, run.recording), run.recording
@@ -87,6 +87,6 @@ def replay_of(run: Run) -> Replay:
 
 
 def sorted_touches(touches: ContactIntervals) -> ContactIntervals:
-    """The touches in order of their beginning."""
+    """Return the touches in order of their beginning."""
     order = np.argsort(touches.start, kind="stable")
     return ContactIntervals(**{name: getattr(touches, name)[order] for name in ContactIntervals.__dataclass_fields__})

@@ -1,4 +1,4 @@
-"""One run as a Rerun recording (.rrd): a view made from the run, opened with `rerun FILE`."""
+"""Write one run as a Rerun recording (.rrd): a view made from the run, opened with `rerun FILE`."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ ENTITIES = ("/preview/", "/detail/", "/labels/motion", "/labels/text", "/__prope
 
 
 def write_rrd(run: Run, path: Path) -> None:
-    """`write_replay` of a run in memory; raises ValueError for one without a recording."""
+    """Write a run in memory as `write_replay` does. Raises ValueError for a run without a recording."""
     from rubgen.viz.replay import replay_of
 
     write_replay(replay_of(run), path)
 
 
 def write_replay(replay: Replay, path: Path, *, full: bool = False) -> None:
-    """Write `replay` to `path`, complete or not at all, with a default arrangement of views.
+    """Write `replay` to a Rerun recording at `path`, complete or not at all, with a default arrangement of views.
 
-    The machine in 3D with its contact points; every channel as minimum and maximum (`/preview/<quantity>`) and at full
-    rate over 20 turns around the hardest touch (`/detail/<quantity>`; the middle without contact); touches, orbit,
-    order spectra, motion classes, labels and scenario as text and as properties. About a megabyte for any length;
-    `full` writes every sample and every touch. Times are ns from the first sample. Two writings differ in their bytes,
-    not in their content. Raises OSError when the file cannot be written.
+    It has the machine in 3D with its contact points; every channel as minimum and maximum (`/preview/<quantity>`) and
+    at full rate over 20 turns around the hardest touch (`/detail/<quantity>`; the middle without contact); touches,
+    orbit, order spectra, motion classes, labels and scenario as text and as properties. It takes about a megabyte for
+    any length; `full` writes every sample and every touch. Times are ns from the first sample. Two writings differ in
+    their bytes, not in their content. Raises OSError when the file cannot be written.
     """
     from rerun_bindings import flush_and_cleanup_orphaned_recordings
 
@@ -53,7 +53,7 @@ def write_replay(replay: Replay, path: Path, *, full: bool = False) -> None:
 
 
 def _recorded(replay: Replay, *, full: bool) -> bytes:
-    """The content of the .rrd file."""
+    """Return the content of the .rrd file."""
     import rerun as rr  # here, for importing it takes 0.6 s
 
     from rubgen.viz.entities.events import send_tip_timing, send_touches
@@ -102,7 +102,10 @@ def _send_blueprint(stream: RecordingStream, blueprint: Blueprint) -> None:
 
 
 def check_rrd(path: Path, run_id: str | None = None) -> list[str]:
-    """Problems of the recording at `path`, none for a good one: `rerun rrd verify`, then `content_problems`."""
+    """Check the recording at `path` with `rerun rrd verify`, then as `content_problems` does. Returns its problems.
+
+    With `run_id` it is a problem too if the recording is of another run.
+    """
     if not path.is_file():
         return ["there is no such file"]
     command = [sys.executable, "-m", "rerun", "rrd", "verify", str(path)]
@@ -114,9 +117,9 @@ def check_rrd(path: Path, run_id: str | None = None) -> list[str]:
 
 
 def content_problems(path: Path, run_id: str | None = None) -> list[str]:
-    """What the recording at `path` lacks of a recording by `write_rrd`, and whether it is of the named run.
+    """Return what the recording at `path` lacks that `write_rrd` writes, and whether it is of another run.
 
-    Decodes in this process: only for files whose bytes are proven to be as written.
+    The file is decoded in this process: only for files whose bytes are proven to be as written.
     """
     from rerun.chunk import RrdReader
 
@@ -132,6 +135,6 @@ def content_problems(path: Path, run_id: str | None = None) -> list[str]:
 
 
 def recording_id(scenario: Scenario) -> str:
-    """Name of the run and a hash of its scenario: the same run has the same id, no two runs share one."""
+    """Return the name of the run and a hash of its scenario: the same run has the same id, no two runs share one."""
     digest = hashlib.sha256(json.dumps(scenario_dict(scenario), sort_keys=True).encode()).hexdigest()
     return f"{scenario.run_id}-{digest[:12]}"

@@ -1,4 +1,4 @@
-"""Rerun's viewer for one replay, until it is closed."""
+"""Open Rerun's viewer for one replay, until it is closed."""
 
 import os
 import socket
@@ -21,9 +21,9 @@ SCREENS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
 def open_viewer(replay: Replay, *, web: bool = False, full: bool = False) -> None:
-    """Show a replay in the viewer, and wait until it is closed.
+    """Show a replay in Rerun's viewer, and return when it is closed.
 
-    - web: in the browser of this machine only.
+    - web: in the browser, served to this computer alone.
     - full: with every sample and every touch.
 
     Raises UserError where the viewer ends with an error, OSError where its file cannot be written.
@@ -37,12 +37,12 @@ def open_viewer(replay: Replay, *, web: bool = False, full: bool = False) -> Non
 
 
 def has_screen() -> bool:
-    """Whether a window can be opened; always on systems other than Linux."""
+    """Return whether a window can be opened. Only Linux can tell; elsewhere it is True."""
     return not sys.platform.startswith("linux") or any(os.environ.get(name) for name in SCREENS)
 
 
 def _first_moment(replay: Replay) -> float:
-    """Time of the first turn around the hardest touch, s."""
+    """Return the time of the first turn around the hardest touch, s."""
     frames = replay.frames
     if frames is None or not frames.dense.any():
         return replay.hardest_touch
@@ -69,7 +69,7 @@ def _open(path: Path, moment: float, *, web: bool) -> None:
 
 
 def _started(command: list[str]) -> subprocess.Popen[bytes]:
-    """The viewer's process. Raises UserError where its program is missing, cannot be executed, or does not start."""
+    """Start the viewer. Raises UserError where its program is missing, cannot be executed, or does not start."""
     package = find_spec("rerun_cli")
     folder = Path(package.origin if package and package.origin else "rerun_cli/__init__.py").parent
     named = os.environ.get("RERUN_CLI_PATH")  # which rerun follows

@@ -1,4 +1,4 @@
-"""The arrangement of a replay in the Rerun viewer."""
+"""Arrange the views of a replay in the Rerun viewer."""
 
 import numpy as np
 import rerun as rr
@@ -21,7 +21,7 @@ PLAYBACK = 0.02
 
 
 def arrangement(replay: Replay) -> rrb.Blueprint:
-    """Machine and motion on the left, signals in the middle, orbit, orders and labels on the right."""
+    """Arrange the views: machine and motion on the left, signals in the middle, orbit, orders and labels right."""
     parts = [
         rrb.Vertical(*_machine(replay), _motion(), row_shares=[4, 1]) if _has_frames(replay) else _motion(),
         rrb.Vertical(*_signals(replay), row_shares=[3, 3, 3]),
@@ -41,7 +41,7 @@ def _has_frames(replay: Replay) -> bool:
 
 
 def _near(replay: Replay, before: float, after: float = 0.0) -> tuple[rr.TimeRangeBoundary, rr.TimeRangeBoundary]:
-    """Range of time from `before` turns before to `after` turns after the cursor."""
+    """Return the range of time from `before` turns before to `after` turns after the cursor."""
     turn = replay.turn_seconds
     return (
         rrb.TimeRangeBoundary.cursor_relative(seconds=-before * turn),
@@ -50,7 +50,7 @@ def _near(replay: Replay, before: float, after: float = 0.0) -> tuple[rr.TimeRan
 
 
 def _machine(replay: Replay) -> list[rrb.Tabs]:
-    """The machine in the inertial frame and in the turning frame."""
+    """Return views of the machine in the inertial frame and in the turning frame."""
     machine = replay.scenario.machine
     factor = drawing_factor(machine, replay.frames)
     start, end = _near(replay, 1.0)
@@ -79,7 +79,7 @@ def _motion() -> rrb.StateTimelineView:
 
 
 def _signals(replay: Replay) -> list[rrb.Tabs]:
-    """The whole run above; below a few turns around the cursor, with every sample around the hardest touch."""
+    """Return views of the whole run, and of a few turns around the cursor with every sample near the hardest touch."""
     start, end = _near(replay, NEAR_TURNS, NEAR_TURNS)
     near = rrb.TimeAxis(view_range=rrb.TimeRange(start=start, end=end))
     groups = {name: group for name, group in replay.recording.by_quantity().items() if name != UNSHOWN}
@@ -108,7 +108,7 @@ def _signals(replay: Replay) -> list[rrb.Tabs]:
 
 
 def _legend(group: list[Channel], lines: int) -> rrb.PlotLegend | None:
-    """None for the viewer's own legend; hidden where it would be long, because names also appear under the cursor."""
+    """Return None for the viewer's own legend; hidden where it would be long: names also appear under the cursor."""
     return rrb.PlotLegend(visible=False) if len(group) * lines > MOST_NAMES else None
 
 
@@ -129,14 +129,14 @@ def _contacts(replay: Replay) -> rrb.Tabs:
 
 
 def _timing(replay: Replay) -> list[rrb.TimeSeriesView]:
-    """A view of the deflections from blade tip timing, where there are any."""
+    """Return a view of the deflections from blade tip timing, where there are any."""
     if not replay.recording.tip_timing:
         return []
     return [rrb.TimeSeriesView(origin="/blade_tip_timing", name="tip deflection from timing, um")]
 
 
 def _orbits(replay: Replay) -> rrb.Tabs:
-    """The orbit of the last turns with all points once a turn, and these points enlarged."""
+    """Return views of the orbit of the last turns with all points once a turn, and of these points enlarged."""
     start, end = _near(replay, ORBIT_TURNS)
     orbit = rrb.Spatial2DView(
         origin="/orbit",
@@ -155,13 +155,13 @@ def _orbits(replay: Replay) -> rrb.Tabs:
 
 
 def _square(bounds: Bounds) -> rrb.VisualBounds2D:
-    """Bounds with Y upward: in the viewer it points downward."""
+    """Return the bounds with Y upward: in the viewer it points downward."""
     x, y, half = bounds.x, -bounds.y, bounds.half
     return rrb.VisualBounds2D(x_range=[x - half, x + half], y_range=[y - half, y + half])
 
 
 def _orders(replay: Replay) -> rrb.Tabs:
-    """Spectra at the cursor and waterfalls over the run; a waterfall first where the speed changes."""
+    """Return views of spectra at the cursor and waterfalls over the run; a waterfall first where the speed changes."""
     channels = spectrum_channels(replay)
     spectra = [
         rrb.BarChartView(origin=f"/spectrum/{name}", name=f"{name}, {channel.unit}, over order")
@@ -194,7 +194,7 @@ def _texts() -> rrb.Tabs:
 
 
 def _time_panel(replay: Replay) -> rrb.TimePanel:
-    """Paused at the start of the dense turns, which play slowly in a loop."""
+    """Return the time panel: paused at the start of the dense turns, which play slowly in a loop."""
     frames = replay.frames
     if frames is None or not frames.dense.any():
         return rrb.TimePanel(state="collapsed", timeline=TIMELINE)

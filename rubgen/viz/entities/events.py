@@ -1,4 +1,4 @@
-"""Events as Rerun entities: touches over time and as a map of blades and casing angles, and blade tip timing."""
+"""Send events to Rerun: touches over time and as a map of blades and casing angles, and blade tip timing."""
 
 import numpy as np
 import rerun as rr
@@ -17,7 +17,7 @@ MOST_PASSAGES = 4000
 
 
 def shown_touches(replay: Replay, *, full: bool) -> IntArray:
-    """Numbers of the touches that are drawn one by one: all (`full`), or the 2,000 with the largest impulse."""
+    """Return the numbers of the touches that are drawn one by one: all (`full`), or the 2,000 of largest impulse."""
     impulse = replay.touches.impulse
     if full or impulse.size <= MOST_TOUCHES:
         return np.arange(impulse.size)
@@ -25,9 +25,9 @@ def shown_touches(replay: Replay, *, full: bool) -> IntArray:
 
 
 def send_touches(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
-    """Angle, impulse and blade of touches at their start, and their map; with `full` all touches.
+    """Send angle, impulse and blade of touches at their start, and their map. Nothing is sent without contact.
 
-    Nothing without contact.
+    With `full` all touches are sent, else as many as `shown_touches` chooses.
     """
     touches, shown = replay.touches, shown_touches(replay, full=full)
     if not shown.size:
@@ -47,7 +47,7 @@ def send_touches(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> N
 
 
 def contact_map(replay: Replay) -> FloatArray:
-    """Normal impulse (SECTORS, n_blades) in mN s by blade and sector of the casing. Sector 0 is centred at 0."""
+    """Return the normal impulse (SECTORS, n_blades) in mN s by sector and blade. Sector 0 is centred at angle 0."""
     touches, blades = replay.touches, replay.scenario.machine.blades.count
     place = sector_of(touches.angle, SECTORS) * blades + touches.blade.astype(np.int64)
     total = np.bincount(place, weights=touches.impulse, minlength=SECTORS * blades)
@@ -55,9 +55,9 @@ def contact_map(replay: Replay) -> FloatArray:
 
 
 def send_tip_timing(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
-    """Deflections from each probe's arrival times, in um, as points at these times.
+    """Send the tip deflections from each probe's arrival times, in um, as points at these times.
 
-    All (`full`), or where they are many, the ones around the hardest touch and every few of the others.
+    All are sent with `full`. Else, where they are many, the ones around the hardest touch and every few of the others.
     """
     recording, radius = replay.recording, replay.scenario.machine.tip_radius_m
     most = MOST_PASSAGES // max(len(recording.tip_timing), 1)
@@ -73,7 +73,7 @@ def send_tip_timing(stream: rr.RecordingStream, replay: Replay, *, full: bool) -
 
 
 def _chosen(time: FloatArray, replay: Replay, most: int) -> IntArray:
-    """Numbers of at most `most` of ascending times: half nearest to the hardest touch, half at equal distances."""
+    """Return numbers of at most `most` of ascending times: half nearest to the hardest touch, half spread evenly."""
     number = np.arange(time.size)
     if time.size <= most:
         return number

@@ -1,4 +1,4 @@
-"""Labels of a run as Rerun entities and properties."""
+"""Send the labels of a run to Rerun, as entities and properties."""
 
 import json
 from typing import Any
@@ -18,7 +18,7 @@ PARTS = {"system": "motion", "blisk": "motion_blisk", "casing": "motion_casing"}
 
 
 def send_labels(stream: rr.RecordingStream, replay: Replay) -> None:
-    """Properties `labels` and `scenario`, both as text, and lanes of motion.
+    """Send labels and scenario, as properties and as text, and a lane for each class of motion over time.
 
     Labels with one value for the whole run are properties, and all labels are in `json`: each property takes up to a
     kilobyte of the file, half of it in the index at its end.
@@ -34,7 +34,7 @@ def send_labels(stream: rr.RecordingStream, replay: Replay) -> None:
 
 
 def _single(labels: dict[str, object]) -> dict[str, Any]:
-    """The labels with one value that belong to no single tap."""
+    """Return the labels with one value that belong to no single tap."""
     taps = tuple(key.removesuffix("orders") for key in labels if key.endswith("_orders"))
     return {
         key: value
@@ -44,7 +44,7 @@ def _single(labels: dict[str, object]) -> dict[str, Any]:
 
 
 def _send_motion(stream: rr.RecordingStream, part: str, classes: list[tuple[float, str]]) -> None:
-    """A lane of the classes from their times (s) on, each class in its colour."""
+    """Send a lane of the classes from their times (s) on, each class in its colour."""
     named = rr.StateConfiguration(
         values=[each.value for each in Motion],
         labels=[f"{part}: {each.value}" for each in Motion],
@@ -59,7 +59,7 @@ def _send_motion(stream: rr.RecordingStream, part: str, classes: list[tuple[floa
 def _send_table(
     stream: rr.RecordingStream, entity: str, heading: str, replay: Replay, values: dict[str, object]
 ) -> None:
-    """Names and values as Markdown."""
+    """Send names and values as Markdown."""
     title = f"# {replay.title}"
     rows = [f"| {key} | {_shown(value)} |" for key, value in values.items()]
     text = "\n".join([title, "", f"| {heading} | value |", "|---|---|", *rows])
@@ -67,7 +67,7 @@ def _send_table(
 
 
 def _flat(values: dict[str, Any], prefix: str = "") -> dict[str, object]:
-    """Nested tables as one, keys joined by dots."""
+    """Return nested tables as one, keys joined by dots."""
     flat: dict[str, object] = {}
     for key, value in values.items():
         flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}

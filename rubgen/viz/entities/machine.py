@@ -1,4 +1,4 @@
-"""The machine in 3D as Rerun entities: motions are sent as few numbers, shapes once."""
+"""Send the machine in 3D to Rerun: shapes once, motions as few numbers."""
 
 import numpy as np
 import rerun as rr
@@ -40,7 +40,7 @@ STEEL, DARK_STEEL, RING = 0xB9C4CEFF, 0x7D8A96FF, 0x9FB4C7FF
 
 
 def send_machine(stream: rr.RecordingStream, replay: Replay) -> None:
-    """Casing, supports, blisk and contact points under `/machine`; nothing without frames."""
+    """Send casing, supports, blisk and contact points under `/machine`. Nothing is sent without frames."""
     frames = replay.frames
     if frames is None or not frames.time.size:
         return
@@ -53,7 +53,7 @@ def send_machine(stream: rr.RecordingStream, replay: Replay) -> None:
 
 
 def _send_casing(stream: rr.RecordingStream, replay: Replay, frames: MotionFrames, factor: float) -> None:
-    """Plates that move with the ring, and the inner surface at rest as a line."""
+    """Send plates that move with the ring, and the inner surface at rest as a line."""
     machine, angle = replay.scenario.machine, casing_angles()
     _log_mesh(stream, "/machine/casing/ring", plate_mesh(), RING)
     curve = casing_curve(machine, frames, angle, factor)
@@ -67,7 +67,7 @@ def _send_casing(stream: rr.RecordingStream, replay: Replay, frames: MotionFrame
 def _send_instances(
     stream: rr.RecordingStream, entity: str, frames: MotionFrames, places: FloatArray, shapes: FloatArray
 ) -> None:
-    """Copies of a mesh at `places` and in `shapes`, each (frames, copies, ...) or (copies, ...).
+    """Send copies of a mesh at `places` and in `shapes`, each (frames, copies, ...) or (copies, ...).
 
     Rerun 0.41 combines no pose from static and changing or from older and newer parts. Constant parts are therefore
     sent with every frame; they compress.
@@ -100,7 +100,7 @@ def _send_rotor(stream: rr.RecordingStream, replay: Replay, frames: MotionFrames
 
 
 def _send_unbalances(stream: rr.RecordingStream, machine: Machine, frames: MotionFrames, leanings: FloatArray) -> None:
-    """Unbalances of the disk are on its front face; unbalances of blades move with the tips."""
+    """Send unbalances of the disk on its front face, and unbalances of blades, which move with the tips."""
     disk, size = machine.disk, UNBALANCE_SHARE * machine.tip_radius_m
     marks = unbalances(machine)
     place = 0.9 * disk.rim_radius_m
@@ -135,7 +135,7 @@ def _log_mesh(stream: rr.RecordingStream, entity: str, mesh: Mesh, color: int) -
 
 
 def _send_supports(stream: rr.RecordingStream, replay: Replay, factor: float) -> None:
-    """Springs of the casing, and springs of the shaft at either end."""
+    """Send springs of the casing, and springs of the shaft at either end."""
     machine = replay.scenario.machine
     angle = 2 * np.pi * np.arange(SPRINGS) / SPRINGS
     radius = machine.tip_radius_m + factor * (casing_radius(machine, angle) - machine.tip_radius_m)
@@ -181,7 +181,7 @@ def _send_contact_points(stream: rr.RecordingStream, replay: Replay, frames: Mot
 
 
 def _touches_of_frames(replay: Replay, frames: MotionFrames) -> list[IntArray]:
-    """Numbers of the touches in each frame, the hardest ones where they are many."""
+    """Return the numbers of the touches in each frame, the hardest ones where they are many."""
     touches = replay.touches
     end = np.minimum(np.append(frames.time[1:], replay.seconds), frames.time + replay.turn_seconds)
     last = touches.start + touches.duration
@@ -193,7 +193,7 @@ def _touches_of_frames(replay: Replay, frames: MotionFrames) -> list[IntArray]:
 
 
 def _on_curves(curves: FloatArray, angle: FloatArray) -> FloatArray:
-    """Points (n, 3) at polar angles (n,) on closed curves (n, stations, 2), one each."""
+    """Return points (n, 3) at polar angles (n,) on closed curves (n, stations, 2), one each."""
     stations = curves.shape[1]
     place = np.mod(angle, 2 * np.pi) * stations / (2 * np.pi)
     low = np.floor(place).astype(int) % stations

@@ -1,4 +1,4 @@
-"""The machine as triangles and lines, with its small deviations enlarged.
+"""Shapes of the machine as triangles and lines, with its small deviations enlarged.
 
 The circle of the tip radius is drawn to scale. All deviations from it (lobes, clearance, deflection of the casing,
 motion of tips and disk) are multiplied by one factor. Tips and casing that touch in the run therefore also touch in the
@@ -28,7 +28,7 @@ COILS, COIL_WIDTH_M = 5, 0.01
 
 @dataclass(frozen=True)
 class Mesh:
-    """Triangles: `vertices` (n, 3) in m, `triangles` (m, 3) of their numbers, outward unit `normals` (n, 3)."""
+    """A surface of triangles: `vertices` (n, 3) in m, `triangles` (m, 3) of vertex numbers, unit `normals` (n, 3)."""
 
     vertices: FloatArray
     triangles: IntArray
@@ -36,7 +36,10 @@ class Mesh:
 
 
 def drawing_factor(machine: Machine, frames: MotionFrames | None) -> float:
-    """Factor of deviations from the tip circle: 1, 2 or 5 times a power of ten."""
+    """Choose the factor by which deviations from the tip circle are enlarged: 1, 2 or 5 times a power of ten.
+
+    It is the largest such factor with which no deviation exceeds DRAWN_SHARE of the tip radius.
+    """
     largest = max(machine.casing.ovality_m / 2, machine.casing.clearance_m)
     if frames is not None and frames.time.size:
         largest = max(largest, float(np.abs(frames.tips).max()), float(np.abs(frames.centre).max()))
@@ -46,22 +49,22 @@ def drawing_factor(machine: Machine, frames: MotionFrames | None) -> float:
 
 
 def casing_angles(stations: int = STATIONS) -> FloatArray:
-    """Polar angles of the drawn points of the casing, rad."""
+    """Return `stations` equally spaced polar angles of drawn points of the casing, rad."""
     return 2 * np.pi * np.arange(stations) / stations
 
 
 def casing_radius(machine: Machine, angle: FloatArray) -> FloatArray:
-    """Inner radius of the undeformed casing at polar angles, m."""
+    """Return the inner radius of the undeformed casing at the given polar angles (rad), m."""
     casing = machine.casing
     wave = np.cos(casing.lobes * (angle - np.radians(casing.lobe_angle_deg)))
     return np.asarray(machine.casing_mean_radius_m - casing.ovality_m / 2 * wave)
 
 
 def casing_curve(machine: Machine, frames: MotionFrames, angle: FloatArray, factor: float) -> FloatArray:
-    """Drawn points (frames, stations, 2) of the casing's inner surface. Nodes are joined linearly.
+    """Return drawn points (frames, stations, 2) of the casing's deformed inner surface. Nodes are joined linearly.
 
     - angle (stations,): polar angles, rad.
-    - factor: of deviations.
+    - factor: enlarges deviations from the tip circle.
     """
     nodes = frames.casing_modes.shape[0]
     place = np.mod(angle, 2 * np.pi) * nodes / (2 * np.pi)
@@ -73,13 +76,16 @@ def casing_curve(machine: Machine, frames: MotionFrames, angle: FloatArray, fact
 
 
 def undeformed_curve(machine: Machine, angle: FloatArray, factor: float) -> FloatArray:
-    """Drawn points (stations, 2) of the casing at rest, at polar angles `angle` (rad), deviations times `factor`."""
+    """Return drawn points (stations, 2) of the casing at rest, at polar angles `angle` (rad).
+
+    `factor` enlarges deviations from the tip circle.
+    """
     radius = machine.tip_radius_m + factor * (casing_radius(machine, angle) - machine.tip_radius_m)
     return np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
 
 
 def plate_mesh() -> Mesh:
-    """A box of side 1 on x = 0: x outward, y along the casing, z along its width."""
+    """Make a box of side 1 on x = 0: x outward, y along the casing, z along its width. Its copies draw the casing."""
     faces = []
     for axis in range(3):
         for side in (-0.5, 0.5):
@@ -92,7 +98,7 @@ def plate_mesh() -> Mesh:
 
 
 def plate_shapes(machine: Machine, factor: float) -> FloatArray:
-    """Matrices (stations, 3, 3) from `plate_mesh` to the plates of the casing at rest."""
+    """Return matrices (stations, 3, 3) that stretch and turn `plate_mesh` into the plates of the casing at rest."""
     curve = undeformed_curve(machine, casing_angles(), factor)
     chord = (np.roll(curve, -1, axis=0) - np.roll(curve, 1, axis=0)) / 2
     length = np.linalg.norm(chord, axis=1)
@@ -106,7 +112,7 @@ def plate_shapes(machine: Machine, factor: float) -> FloatArray:
 
 
 def ribbon_triangles(stations: int) -> IntArray:
-    """Triangles of a closed band between two rings of that many points."""
+    """Return the triangles of a closed band between two rings of `stations` points, numbered one ring first."""
     here, there = np.arange(stations), (np.arange(stations) + 1) % stations
     lower = np.column_stack([here, there, here + stations])
     upper = np.column_stack([there, there + stations, here + stations])
@@ -114,20 +120,20 @@ def ribbon_triangles(stations: int) -> IntArray:
 
 
 def disk_mesh(disk: Disk) -> Mesh:
-    """The annular disk, its thickness linear in the radius."""
+    """Make the annular disk, whose thickness is linear in the radius."""
     inner, outer = disk.bore_radius_m, disk.rim_radius_m
     low, high = disk.bore_thickness_m / 2, disk.rim_thickness_m / 2
     return revolved([(inner, -low), (outer, -high), (outer, high), (inner, low)])
 
 
 def shaft_mesh(disk: Disk, reach: float) -> Mesh:
-    """The shaft through the bore, from -reach to reach along Z."""
+    """Make the shaft through the bore, from -reach to reach along Z."""
     radius = disk.bore_radius_m
     return revolved([(1e-4, -reach), (radius, -reach), (radius, reach), (1e-4, reach)])
 
 
 def revolved(profile: list[tuple[float, float]]) -> Mesh:
-    """A closed profile of points (radius, z), counter-clockwise, revolved about Z; sides are flat across it."""
+    """Revolve a closed profile of points (radius, z), counter-clockwise, about Z. The normals of a side are flat."""
     angle = 2 * np.pi * np.arange(ROUND) / ROUND
     parts = []
     for (r1, z1), (r2, z2) in zip(profile, profile[1:] + profile[:1], strict=True):
@@ -142,7 +148,7 @@ def revolved(profile: list[tuple[float, float]]) -> Mesh:
 
 
 def blade_mesh(blades: BladeRow) -> Mesh:
-    """One blade along x from its root at the origin: a rectangle that narrows, thins and turns from root to tip."""
+    """Make one blade along x with its root at the origin: a rectangle that narrows, thins and turns to the tip."""
     span = np.linspace(0.0, 1.0, BLADE_CROSS_SECTIONS)
     corners = _blade_corners(blades, span)
     parts = [_strip(corners[:, side], corners[:, (side + 1) % 4]) for side in range(4)]
@@ -152,7 +158,7 @@ def blade_mesh(blades: BladeRow) -> Mesh:
 
 
 def _blade_corners(blades: BladeRow, span: FloatArray) -> FloatArray:
-    """Corners (places, 4, 3) of the cross-sections; the thickness normal stands at the stagger angle to Z."""
+    """Return corners (places, 4, 3) of the cross-sections; the thickness normal stands at the stagger angle to Z."""
     chord = blades.root_chord_m + span * (blades.tip_chord_m - blades.root_chord_m)
     thickness = blades.root_thickness_m + span * (blades.tip_thickness_m - blades.root_thickness_m)
     angle = np.radians(blades.root_angle_deg + span * (blades.tip_angle_deg - blades.root_angle_deg))
@@ -165,7 +171,7 @@ def _blade_corners(blades: BladeRow, span: FloatArray) -> FloatArray:
 
 
 def _strip(first: FloatArray, second: FloatArray) -> Mesh:
-    """A band between two lines of points (n, 3)."""
+    """Make a band between two lines of points (n, 3)."""
     n = len(first)
     here = np.arange(n - 1)
     triangles = np.concatenate(
@@ -179,7 +185,7 @@ def _strip(first: FloatArray, second: FloatArray) -> Mesh:
 
 
 def joined(parts: list[Mesh]) -> Mesh:
-    """Several meshes as one."""
+    """Join several meshes into one."""
     starts = np.cumsum([0, *(len(part.vertices) for part in parts[:-1])])
     return Mesh(
         np.concatenate([part.vertices for part in parts]),
@@ -189,32 +195,33 @@ def joined(parts: list[Mesh]) -> Mesh:
 
 
 def unbalances(machine: Machine) -> list[Unbalance]:
-    """All unbalances that are not zero, the machine's own first."""
+    """Return all unbalances of the machine that are not zero, its own first."""
     own = Unbalance(kg_m=machine.unbalance_kg_m, angle_deg=machine.unbalance_angle_deg)
     return [each for each in (own, *machine.unbalances) if each.kg_m > 0]
 
 
 def unbalance_text(unbalance: Unbalance) -> str:
-    """The text beside an unbalance."""
+    """Return the text drawn beside an unbalance, with its size in g m."""
     return f"unbalance {1e3 * unbalance.kg_m:.3g} g m"
 
 
 def blade_angles(blades: BladeRow) -> FloatArray:
-    """Angles of the blades from blade 0, rad."""
+    """Return the angles of the blades in the turning frame, from blade 0, rad."""
     return 2 * np.pi * np.arange(blades.count) / blades.count
 
 
 def blade_placements(machine: Machine) -> FloatArray:
-    """Place of each blade's root in the blisk's turning frame, (n_blades, 3)."""
+    """Return the place of each blade's root in the blisk's turning frame, (n_blades, 3) in m."""
     angle = blade_angles(machine.blades)
     rim = machine.disk.rim_radius_m
     return np.column_stack([rim * np.cos(angle), rim * np.sin(angle), np.zeros_like(angle)])
 
 
 def blade_leanings(machine: Machine, frames: MotionFrames, factor: float) -> FloatArray:
-    """Matrices (frames, n_blades, 3, 3) that turn a blade into place and lean it, so that its drawn tip is right.
+    """Return matrices (frames, n_blades, 3, 3) that turn `blade_mesh` into place and lean it to its drawn tip.
 
-    R_k (I + s d e_x^T / L), d the tip's displacement relative to the disk centre: a straight lean from root to tip.
+    The matrix of blade k is R_k (I + s d e_x^T / L) with R_k the turn to its place, s the `factor`, L the length and d
+    the tip's displacement relative to the disk centre: a straight lean from root to tip.
     """
     angle = blade_angles(machine.blades)
     cosine, sine = np.cos(angle), np.sin(angle)
@@ -231,7 +238,10 @@ def blade_leanings(machine: Machine, frames: MotionFrames, factor: float) -> Flo
 
 
 def drawn_tips(machine: Machine, frames: MotionFrames, factor: float) -> FloatArray:
-    """Drawn places (frames, n_blades, 2) of the tips in the inertial frame."""
+    """Return the drawn places (frames, n_blades, 2) of the tips in the inertial frame, m.
+
+    `factor` enlarges deviations from the tip circle.
+    """
     angle = frames.angle[:, None] + blade_angles(machine.blades)
     radial = machine.tip_radius_m + factor * frames.tips[..., 0]
     tangential = factor * frames.tips[..., 1]
@@ -241,7 +251,7 @@ def drawn_tips(machine: Machine, frames: MotionFrames, factor: float) -> FloatAr
 
 
 def spring(start: FloatArray, end: FloatArray) -> FloatArray:
-    """A zigzag (points, 3) between two points, in the plane across Z."""
+    """Return a zigzag line (points, 3) between two points, in the plane across Z."""
     share = np.concatenate([[0.0, 0.15], np.linspace(0.2, 0.8, 2 * COILS), [0.85, 1.0]])
     side = np.concatenate([[0.0, 0.0], COIL_WIDTH_M * (-1.0) ** np.arange(2 * COILS), [0.0, 0.0]])
     along = end - start

@@ -1,4 +1,4 @@
-"""The orbit of the disk centre on the time line, with its points once a turn."""
+"""Send the orbit of the disk centre to Rerun, with its points once a turn."""
 
 from dataclasses import dataclass
 
@@ -16,7 +16,10 @@ COARSE_TURNS = 100
 
 
 def send_orbit(stream: rr.RecordingStream, replay: Replay) -> None:
-    """The recorded path turn by turn (all near the hardest touch, else up to 100), and every turn's first point; um."""
+    """Send the recorded path turn by turn, and the first point of every turn, in um.
+
+    All turns near the hardest touch are sent, else up to 100. Nothing is sent without a pair of probes.
+    """
     orbit, turns = shaft_orbit(replay), replay.pulse_times
     if orbit is None or turns.size < 2:
         return
@@ -42,7 +45,7 @@ def send_orbit(stream: rr.RecordingStream, replay: Replay) -> None:
 
 @dataclass(frozen=True)
 class Bounds:
-    """A square of the plane of the orbit, its middle and half a side in um, X to the right and Y upward."""
+    """The visible square in the plane of the orbit: its middle and half a side in um, X to the right and Y upward."""
 
     x: float
     y: float
@@ -50,17 +53,17 @@ class Bounds:
 
 
 def orbit_bounds(replay: Replay) -> Bounds:
-    """Bounds of the whole recorded path."""
+    """Return the square that shows the whole recorded path."""
     return _bounds(shaft_orbit(replay), least=1.0)
 
 
 def section_bounds(replay: Replay) -> Bounds:
-    """Bounds of the points once a turn."""
+    """Return the square that shows the points once a turn."""
     return _bounds(section(replay), least=0.1)
 
 
 def _bounds(places: FloatArray | None, least: float) -> Bounds:
-    """Bounds of places (2, any), um; around 0 without any."""
+    """Return the square that shows places (2, any), um; around 0 without any."""
     if places is None or not places.size:
         return Bounds(0.0, 0.0, least)
     low, high = np.nanmin(places, axis=1).tolist(), np.nanmax(places, axis=1).tolist()
@@ -69,7 +72,7 @@ def _bounds(places: FloatArray | None, least: float) -> Bounds:
 
 
 def _send_scale(stream: rr.RecordingStream, name: str, bounds: Bounds) -> None:
-    """A bar of a round length in the lower left corner, because the viewer's planes have no axes."""
+    """Send a bar of a round length in the lower left corner, because the viewer's planes have no axes."""
     wanted = 0.6 * bounds.half
     power = 10.0 ** np.floor(np.log10(wanted))
     length = max(step * power for step in (1, 2, 5) if step * power <= wanted)
@@ -82,7 +85,7 @@ def _send_scale(stream: rr.RecordingStream, name: str, bounds: Bounds) -> None:
 
 
 def _drawn_turns(replay: Replay) -> IntArray:
-    """Numbers of the turns whose path is drawn."""
+    """Return the numbers of the turns whose path is drawn."""
     turns, window = replay.pulse_times, detail_window(replay)
     first, last = (end / replay.recording.sample_rate_hz for end in (window.start, window.stop))
     number = np.arange(turns.size - 1)

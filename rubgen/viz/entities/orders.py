@@ -1,4 +1,4 @@
-"""Order spectra as Rerun entities: the spectrum at the cursor as bars, all spectra as a waterfall."""
+"""Send order spectra to Rerun: the spectrum at the cursor as bars, all spectra as a waterfall."""
 
 import numpy as np
 import pyarrow as pa
@@ -19,7 +19,7 @@ FLOOR = 1e-5
 
 
 def spectrum_channels(replay: Replay) -> dict[str, Channel]:
-    """The recorded channels of `FIRST`, else the first channel that is no pulse, by name."""
+    """Return the recorded channels that have spectra, by name: those in `FIRST`, or the first that is no pulse."""
     channels = replay.recording.channels
     names = [name for name in FIRST if name in channels]
     names = names or [name for name, channel in channels.items() if channel.quantity != UNSHOWN][:1]
@@ -27,7 +27,7 @@ def spectrum_channels(replay: Replay) -> dict[str, Channel]:
 
 
 def send_orders(stream: rr.RecordingStream, replay: Replay) -> None:
-    """`/spectrum/<channel>` at the beginning of each block of turns, `/waterfall/<channel>` of all of them in dB."""
+    """Send `/spectrum/<channel>` at the start of each block of turns, `/waterfall/<channel>` of all of them in dB."""
     for name, channel in spectrum_channels(replay).items():
         found = order_map(channel.values, replay.recording.sample_rate_hz, replay.pulse_times, most_blocks=MOST_BLOCKS)
         if not found.amplitude.size or not found.amplitude.any():
@@ -40,13 +40,13 @@ def send_orders(stream: rr.RecordingStream, replay: Replay) -> None:
 
 
 class _Spectra:
-    """Rows of values as the column of tensors for bars."""
+    """Rows of values as the column of tensors that Rerun's bars need."""
 
     def __init__(self, rows: Float32Array) -> None:
         self.rows = rows
 
     def as_arrow_array(self) -> pa.Array:
-        """One tensor a row."""
+        """Return one tensor a row."""
         return pa.concat_arrays([rr.components.TensorDataBatch(row).as_arrow_array() for row in self.rows])
 
 
@@ -58,13 +58,13 @@ def send_bars(
     left: FloatArray,
     color: int,
 ) -> None:
-    """Bars of equal width over time.
+    """Send bars of equal width whose heights change over time.
 
     - stream, entity: where they are sent.
     - index: times of the rows.
-    - values (rows, n): heights.
-    - left (n,): left edges.
-    - color: of the bars.
+    - values (rows, n): heights at each time.
+    - left (n,): left edges, at equal steps.
+    - color: one colour for all.
     """
     width = np.full(left.size, left[1] - left[0] if left.size > 1 else 1.0)
     whole = rr.BarChart(values[0], abscissa=left, widths=width, color=color).as_component_batches()

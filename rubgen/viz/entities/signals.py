@@ -1,4 +1,4 @@
-"""Signals of a replay as Rerun entities: a preview of all, every sample around the hardest touch."""
+"""Send the signals of a replay to Rerun: a preview of all, and every sample around the hardest touch."""
 
 import numpy as np
 import numpy.typing as npt
@@ -21,12 +21,15 @@ Nanoseconds = npt.NDArray[np.timedelta64]
 
 
 def shown_channels(replay: Replay) -> int:
-    """Number of channels with signals in a file of moderate size."""
+    """Count the channels whose signals are sent where not everything is wanted: all but the pulses."""
     return sum(channel.quantity != UNSHOWN for channel in replay.recording.channels.values())
 
 
 def detail_window(replay: Replay) -> slice:
-    """Samples of 20 turns, fewer where turns are long, around the hardest touch; the middle without one."""
+    """Return the range of samples that are sent at full rate: 20 turns around the hardest touch.
+
+    It has fewer turns where turns are long. Without contact it is the middle of the recording.
+    """
     recording, samples = replay.recording, replay.recording.samples
     length = round(DETAIL_TURNS * replay.turn_seconds * recording.sample_rate_hz)
     length = min(samples, length, DETAIL_VALUES // shown_channels(replay))
@@ -36,25 +39,25 @@ def detail_window(replay: Replay) -> slice:
 
 
 def times_ns(seconds: FloatArray) -> Nanoseconds:
-    """Times as whole ns."""
+    """Round times in s to whole ns."""
     return np.round(seconds * 1e9).astype("timedelta64[ns]")
 
 
 def time_column(seconds: FloatArray) -> list[rr.TimeColumn]:
-    """The index of rows at these times, s."""
+    """Return Rerun's index of rows at these times, s."""
     return [rr.TimeColumn(TIMELINE, duration=times_ns(seconds))]
 
 
 def preview_rate(replay: Replay) -> float:
-    """Bins a second of the preview: as many as its values allow, at most 1024."""
+    """Return how many bins per second the preview has: as many as PREVIEW_VALUES allows, at most PREVIEW_RATE_HZ."""
     columns = 2 * shown_channels(replay)
     return min(PREVIEW_RATE_HZ, PREVIEW_VALUES / (columns * replay.seconds))
 
 
 def send_signals(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
-    """Every channel as preview and at full rate over the detail window (`full`: all of it), one entity a quantity.
+    """Send every channel as preview and at full rate over the detail window, one entity a quantity.
 
-    Minimum and maximum have the colour of their channel.
+    With `full` the whole recording is sent at full rate. Minimum and maximum of a bin have the colour of their channel.
     """
     recording, rate = replay.recording, replay.recording.sample_rate_hz
     window = slice(0, recording.samples) if full else detail_window(replay)
@@ -75,7 +78,7 @@ def send_signals(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> N
 def _send_scalars(
     stream: rr.RecordingStream, entity: str, times: FloatArray, values: FloatArray, names: list[str], colors: list[int]
 ) -> None:
-    """Lines of one entity: `values` (n, len(names)). Spikes remain when zooming out."""
+    """Send lines of one entity: `values` (n, len(names)). Spikes remain when zooming out."""
     policy = rr.components.AggregationPolicy.MinMax
     lines = rr.SeriesLines(names=names, colors=np.array(colors, np.uint32), aggregation_policy=policy)
     stream.log(entity, lines, static=True)

@@ -1,4 +1,4 @@
-"""A data set at a glance: drawn parameters and results."""
+"""Draw a data set at a glance: which parameters were drawn, and what came of them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LABEL_LETTERS = 40
 
 
 def dataset_overview(runs: pd.DataFrame) -> Figure:
-    """Runs in up to two planes of the parameters that vary, and their contact impulse, by class of motion.
+    """Draw the runs in up to two planes of parameters that vary, and their contact impulse, marked by class of motion.
 
     `runs` is the table `runs.parquet`; failed runs are left out. Runs without contact are hollow.
     """
@@ -42,7 +42,7 @@ def dataset_overview(runs: pd.DataFrame) -> Figure:
 
 
 def varied_keys(runs: pd.DataFrame) -> list[str]:
-    """The keys of `[vary]` with more than one value, the keys of `FIRST` first.
+    """Return the keys of `[vary]` with more than one value among the runs, the keys of `FIRST` first.
 
     At steady speed the duration and the end speed follow from the speed and are left out.
     """
@@ -59,7 +59,10 @@ def _is_steady(runs: pd.DataFrame) -> bool:
 
 
 def parameter_plane(axes: Axes, runs: pd.DataFrame, x: str, y: str) -> None:
-    """Draw runs over two columns `x` and `y`, coloured and shaped by class of motion, hollow without contact."""
+    """Draw runs over two columns `x` and `y`, coloured and shaped by class of motion, hollow without contact.
+
+    An axis is logarithmic where its values are positive and span more than a factor of LOGARITHMIC_SPAN.
+    """
     for motion, color in MOTION_COLORS.items():
         for rub, inside in ((True, color), (False, "none")):
             chosen = runs[(runs["motion"] == motion.value) & (runs["rub"] == rub)]
@@ -79,12 +82,12 @@ def parameter_plane(axes: Axes, runs: pd.DataFrame, x: str, y: str) -> None:
 
 
 def scale_of(key: str) -> float:
-    """Factor of a column for display: small lengths are shown in mm."""
+    """Return the factor from a column's unit to the displayed one: lengths in m are shown in mm."""
     return 1e3 if key.endswith("_m") and not key.endswith(("per_m", "kg_m")) else 1.0
 
 
 def axis_text(key: str) -> str:
-    """Meaning of a column, with the displayed unit."""
+    """Return the label of an axis for the column `key`: its meaning, with the displayed unit."""
     if key == "contact_impulse_per_turn_n_s":
         return "Contact impulse a turn, N s"
     entry = next(entry for entry in PARAMETERS if entry.key == key)

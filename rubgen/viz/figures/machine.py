@@ -1,4 +1,4 @@
-"""Figures of a machine: natural frequencies over the speed, with the exciting orders, and the first modes."""
+"""Draw a machine: its natural frequencies over the speed with the exciting orders, and its first modes."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -21,7 +21,7 @@ DIRECTIONS = ("radial", "tangential", "axial")
 
 
 def campbell(model: ReducedModel) -> Figure:
-    """Campbell diagrams of the blisk in its turning frame and of the casing in the inertial frame.
+    """Draw Campbell diagrams of the blisk in its turning frame and of the casing in the inertial frame.
 
     In the turning frame the unbalance is static: the critical speed is where a frequency reaches zero. Anything fixed
     in the inertial frame rotates at -f_r there, so a casing of N lobes excites the blisk at orders kN. The blisk
@@ -53,7 +53,7 @@ def _blisk(axes: Axes, model: ReducedModel, speeds: FloatArray) -> None:
 
 
 def _casing(axes: Axes, model: ReducedModel, speeds: FloatArray) -> None:
-    """Constant frequencies, with points where an order of the lobes crosses one of its modes."""
+    """Draw constant frequencies, with points where an order of the lobes crosses one of the casing's modes."""
     hertz = model.casing_frequencies_hz[:CASING_MODES]
     lobes = model.machine.casing.lobes
     top = 1.08 * float(hertz.max())
@@ -67,7 +67,7 @@ def _casing(axes: Axes, model: ReducedModel, speeds: FloatArray) -> None:
 
 
 def _orders(axes: Axes, speeds: FloatArray, top: float, orders: range | list[int]) -> None:
-    """Lines k f_r, numbered where they leave the panel."""
+    """Draw lines k f_r, numbered where they leave the panel."""
     for order in orders:
         end = min(speeds[-1], 60 * top / order)
         axes.plot([0, end], [0, order * end / 60], color=GREY, linewidth=0.6, zorder=1)
@@ -84,7 +84,7 @@ def _finish(axes: Axes, speeds: FloatArray, top: float, text: str) -> None:
 
 
 def mode_shapes(model: ReducedModel) -> Figure:
-    """The first modes at rest: the casing above, the tips below, displaced outward by their largest component.
+    """Draw the first modes at rest, casing above and tips below, displaced outward by their largest component.
 
     The drawn component is named, with its nodal diameters (ND). The tips come from the reduced model, without damping.
     """
@@ -113,7 +113,7 @@ def _unit_ring(count: int) -> FloatArray:
 
 
 def _diameters(values: FloatArray) -> str:
-    """The nodal diameters of values at equal angles."""
+    """Return the nodal diameters of values at equal angles."""
     return f"ND {int(np.argmax(np.abs(np.fft.rfft(values))))}"
 
 

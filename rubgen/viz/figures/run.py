@@ -1,4 +1,4 @@
-"""Figures of one run: from its true response, and from what was recorded, which needs no solver and works for files."""
+"""Draw one run: its true response, or its recording, which needs no solver and works for files."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SECTORS = 90
 
 
 def overview(run: Run) -> Figure:
-    """Four panels: orbit with its section, casing acceleration, spectrum and polar map of the contact force.
+    """Draw a run in four panels: orbit with section, casing acceleration, spectrum and polar map of the contact force.
 
     Orbit, spectrum and map show the true response, the waveform the recorded channel. Raises ValueError for a run
     without a recording.
@@ -51,7 +51,7 @@ def overview(run: Run) -> Figure:
 
 
 def _true_orbit(axes: Axes, run: Run) -> None:
-    """Path of the disk centre over the last 30 turns and its position once a turn over the whole record."""
+    """Draw the path of the disk centre over the last 30 turns and its position once a turn over the whole record."""
     taps, steps = run.response.taps, ORBIT_TURNS * run.response.steps_per_turn
     axes.plot(1e6 * taps["blisk_x"][-steps:], 1e6 * taps["blisk_y"][-steps:], color=BLUE, linewidth=0.6, alpha=0.8)
     centre = 3 * run.response.n_blades
@@ -65,7 +65,7 @@ def _true_orbit(axes: Axes, run: Run) -> None:
 
 
 def _enlarged(axes: Axes, x: FloatArray, y: FloatArray) -> None:
-    """The section points about their mean, enlarged."""
+    """Draw the section points about their mean, enlarged."""
     axes.plot(x, y, ".", color=VERMILION, markersize=3.5, markeredgewidth=0)
     half = 1.25 * max(float(np.abs(x).max()), float(np.abs(y).max()), 0.1)
     axes.set(xlim=(-half, half), ylim=(-half, half), aspect="equal")
@@ -76,7 +76,7 @@ def _enlarged(axes: Axes, x: FloatArray, y: FloatArray) -> None:
 
 
 def _waveform(axes: Axes, channel: Channel, rate: float, pulses: FloatArray, seconds: float) -> None:
-    """The last `seconds` of a recorded channel; vertical lines mark the turns."""
+    """Draw the last `seconds` of a recorded channel; vertical lines mark the turns."""
     count = min(channel.values.size, round(seconds * rate))
     begin = (channel.values.size - count) / rate
     turns = pulses[pulses >= begin] - begin
@@ -90,12 +90,12 @@ def _unit(channel: Channel) -> str:
 
 
 def _floor(amplitudes: FloatArray) -> float:
-    """The lower end of a logarithmic axis of amplitudes: 100 dB below the largest, or half of the noise."""
+    """Return the lower end of a logarithmic axis of amplitudes: 100 dB below the largest, or half of the noise."""
     return max(float(np.percentile(amplitudes, 1)) / 2, float(amplitudes.max()) * 1e-5)
 
 
 def _force_spectrum(axes: Axes, run: Run) -> None:
-    """Amplitudes of the total contact force over the order f / f_r, even orders marked."""
+    """Draw amplitudes of the total contact force over the order f / f_r, with even and odd orders marked."""
     spectrum = order_spectrum(run.response.taps["contact_force"], run.response)
     turns = spectrum_turns(run.response)
     stop = HIGHEST_ORDER * turns + turns // 2
@@ -120,9 +120,9 @@ def _force_spectrum(axes: Axes, run: Run) -> None:
 
 
 def orbit_section(replay: Replay) -> Figure:
-    """The recorded orbit of the disk centre over the last 30 turns, and its points once a turn, enlarged.
+    """Draw the recorded orbit of the disk centre over the last 30 turns, and its Poincare section, enlarged.
 
-    Raises ValueError where the probes were not recorded.
+    Raises ValueError where no pair of proximity probes was recorded.
     """
     orbit, once = shaft_orbit(replay), section(replay)
     if orbit is None or once is None:
@@ -143,7 +143,7 @@ def orbit_section(replay: Replay) -> Figure:
 
 
 def contact_distribution(replay: Replay) -> Figure:
-    """Normal impulse around the casing, in sectors of 4 degrees, and by blade, a turn on average."""
+    """Draw the mean normal impulse per turn around the casing, in sectors of 4 degrees, and by blade."""
     touches, turns = replay.touches, max(replay.seconds / replay.turn_seconds, 1.0)
     figure = new_figure(10.0, 4.6)
     grid = figure.add_gridspec(1, 2, width_ratios=[1, 1.4])
@@ -160,7 +160,7 @@ def contact_distribution(replay: Replay) -> Figure:
 
 
 def waveform_orders(replay: Replay, name: str = "casing_acc_0") -> Figure:
-    """A channel over its last six turns, and its order spectrum over the whole recording.
+    """Draw the channel `name` over its last six turns, and its order spectrum over the whole recording.
 
     Raises ValueError for a channel that was not recorded.
     """
@@ -187,7 +187,7 @@ def waveform_orders(replay: Replay, name: str = "casing_acc_0") -> Figure:
 
 
 def channel_of(replay: Replay, name: str) -> Channel:
-    """The recorded channel of that name. Raises ValueError, with the recorded names, where there is none."""
+    """Return the recorded channel called `name`. Raises ValueError, with similar names, where there is none."""
     channels = replay.recording.channels
     if name not in channels:
         raise ValueError(f"no channel {name!r}; {nearest(name, list(channels))}")
@@ -195,12 +195,12 @@ def channel_of(replay: Replay, name: str) -> Channel:
 
 
 def contact_map(axes: PolarAxes, angle: FloatArray, impulse: FloatArray, turns: float) -> None:
-    """Draw the normal impulse a turn, in mN s, of touches at polar angles of the casing, in sectors of 4 degrees.
+    """Draw the normal impulse per turn around the casing as a polar histogram in sectors of 4 degrees, in mN s.
 
-    - axes: polar axes.
-    - angle (touches,): rad.
-    - impulse (touches,): N s, over all turns.
-    - turns: their number.
+    - axes: polar axes to draw on.
+    - angle (touches,): polar angle of each touch on the casing, rad.
+    - impulse (touches,): impulse of each touch over all turns, N s.
+    - turns: number of turns in which the touches occurred.
 
     Sector 0 is centred at 0.
     """

@@ -1,4 +1,4 @@
-"""A moment of a replay as a picture, and the dense turns as an animation, without a screen or a viewer."""
+"""Draw a moment of a replay as a picture, and the dense turns as an animation, without a screen or a viewer."""
 
 from __future__ import annotations
 
@@ -53,17 +53,20 @@ class _Scene:
 
 
 def picture(replay: Replay, time: float | None = None) -> Figure:
-    """The machine along its axis, the orbit and the contact force about `time` (s), by default the hardest touch.
+    """Draw the machine seen along its axis, the orbit and the contact force at one moment.
 
-    The machine is drawn in the frame nearest to `time`; the picture shows the time of that frame. Raises ValueError for
-    a replay without frames, or a time outside the recording.
+    `time` is in s, by default that of the hardest touch. The machine is drawn in the frame nearest to it; the picture
+    shows the time of that frame. Raises ValueError for a replay without frames, or a time outside the recording.
     """
     scene = _scene(replay)
     return _drawn(scene, _nearest(scene, replay.hardest_touch if time is None else time))
 
 
 def write_gif(replay: Replay, path: Path) -> None:
-    """Two of the dense turns as an endless animation of 64 frames; raises ValueError for a replay without frames."""
+    """Write an endless animation of 64 frames, two of the dense turns, to `path`.
+
+    Raises ValueError for a replay without frames.
+    """
     from PIL import Image
 
     scene = _scene(replay)
@@ -78,7 +81,7 @@ def write_gif(replay: Replay, path: Path) -> None:
 
 
 def _palette(images: list[Image.Image]) -> Image.Image:
-    """Colours for all frames from some: moved towards means of clusters, so that rare colours remain."""
+    """Choose colours for all frames from some: moved towards means of clusters, so that rare colours remain."""
     from PIL import Image
 
     width, height = images[0].size
@@ -124,13 +127,13 @@ def _drawn(scene: _Scene, row: int) -> Figure:
 
 
 def _motion_at(replay: Replay, time: float) -> Motion:
-    """The class of motion at a time, s."""
+    """Return the class of motion at a time, s."""
     known = [name for start, name in replay.motion_classes.get("motion", []) if start <= time]
     return Motion(known[-1] if known else str(replay.labels["motion"]))
 
 
 def machine_along_axis(axes: Axes, replay: Replay, row: int, factor: float) -> None:
-    """Draw frame number `row` along the axis of rotation; deviations from the tip circle times `factor`."""
+    """Draw frame number `row` of a replay along the axis of rotation. `factor` enlarges deviations from the circle."""
     machine, frames = replay.scenario.machine, replay.frames
     assert frames is not None  # noqa: S101 - the caller has looked
     time, angle = float(frames.time[row]), float(frames.angle[row])
@@ -160,7 +163,7 @@ def _only(frames: MotionFrames, row: int) -> MotionFrames:
 
 
 def _blisk(axes: Axes, replay: Replay, centre: FloatArray, angle: float, tips: FloatArray) -> None:
-    """Disk, blades as wide as their chord is seen along the axis, and the unbalances."""
+    """Draw disk, blades as wide as their chord is seen along the axis, and the unbalances."""
     machine = replay.scenario.machine
     blades, rim = machine.blades, machine.disk.rim_radius_m
     turned = angle + blade_angles(blades)
@@ -181,7 +184,7 @@ def _blisk(axes: Axes, replay: Replay, centre: FloatArray, angle: float, tips: F
 
 
 def _unbalance(axes: Axes, each: Unbalance, centre: FloatArray, angle: float, place: FloatArray | float) -> None:
-    """A mark near the rim, `place` its radius, or at the tip of its blade, `place` the tips; with its size inside."""
+    """Draw an unbalance near the rim, `place` its radius, or at the tip of its blade, `place` the tips."""
     if isinstance(place, float):
         turned = angle + np.radians(each.angle_deg or 0.0)
         mark = centre + 0.88 * place * np.array([np.cos(turned), np.sin(turned)])
@@ -195,7 +198,7 @@ def _unbalance(axes: Axes, each: Unbalance, centre: FloatArray, angle: float, pl
 
 
 def _contacts(axes: Axes, replay: Replay, frames: MotionFrames, row: int, curve: FloatArray) -> None:
-    """Touches of the last turn, in this frame large; both by impulse."""
+    """Draw touches of the last turn small and touches of this frame large, both by impulse."""
     touches = replay.touches
     if not touches.impulse.size:
         return
@@ -214,7 +217,7 @@ def _contacts(axes: Axes, replay: Replay, frames: MotionFrames, row: int, curve:
 
 
 def _orbit(axes: Axes, scene: _Scene, row: int) -> None:
-    """The recorded path of the last turns, points once a turn, and the present disk centre."""
+    """Draw the recorded path of the last turns, points once a turn, and the present disk centre."""
     replay, time = scene.replay, float(scene.frames.time[row])
     label_axes(axes, "Disk centre $x$, µm", "Disk centre $y$, µm")
     orbit = shaft_orbit(replay)
@@ -235,7 +238,7 @@ def _orbit(axes: Axes, scene: _Scene, row: int) -> None:
 
 
 def _force(axes: Axes, scene: _Scene, row: int) -> None:
-    """The recorded contact force three turns before and after."""
+    """Draw the recorded contact force three turns before and after."""
     replay, time = scene.replay, float(scene.frames.time[row])
     label_axes(axes, "Time, ms (a line at every turn)", "Contact force, kN")
     channel = replay.recording.channels.get("contact_force")

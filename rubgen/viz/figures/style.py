@@ -24,7 +24,7 @@ MOTION_MARKERS = {
 
 
 class ShownFigure(Figure):
-    """A figure that a notebook shows without pyplot."""
+    """A matplotlib Figure that a notebook shows without pyplot."""
 
     def _repr_png_(self) -> bytes:
         picture = BytesIO()
@@ -33,14 +33,14 @@ class ShownFigure(Figure):
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """An empty figure without global state, sizes in inches."""
+    """Make an empty figure of that size in inches. No state of pyplot is touched."""
     figure = ShownFigure(figsize=(width, height), layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
     return figure
 
 
 def label_axes(axes: Axes, x: str, y: str) -> None:
-    """Set the labels `x` and `y`, with their units, and a light frame."""
+    """Label the axes with `x` and `y`, which contain the units, and give them a light frame."""
     axes.set_xlabel(x, fontsize=10, color=INK)
     axes.set_ylabel(y, fontsize=10, color=INK)
     axes.tick_params(labelsize=9, colors=INK)
@@ -49,12 +49,15 @@ def label_axes(axes: Axes, x: str, y: str) -> None:
 
 
 def note(axes: Axes, text: str) -> None:
-    """A grey text in the middle of an empty panel."""
+    """Write a grey text in the middle of an empty panel."""
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=11, color=GREY)
 
 
 def motion_legend(motions: Iterable[str], marker: str | None = None, *, hollow: bool = False) -> list[Line2D]:
-    """Marks of the classes in `motions`, all with `marker` if given; with `hollow` another for runs without contact."""
+    """Make legend entries for the classes of motion in `motions`, in the order of `Motion`.
+
+    They have the class's marker, or `marker` if given. With `hollow` an entry says that hollow marks have no contact.
+    """
     present = [motion for motion in Motion if motion.value in set(motions)]
     marks = [(each.value, MOTION_COLORS[each], marker or MOTION_MARKERS[each], MOTION_COLORS[each]) for each in present]
     marks += [("hollow: no contact", INK, "o", "none")] if hollow else []
@@ -70,7 +73,7 @@ def save_png(figure: Figure, path: Path, *, dpi: int = 110) -> None:
 
 
 def save_figure(figure: Figure, path: Path) -> None:
-    """Write `figure` in the format of its ending: .png, .svg or .pdf, without dates."""
+    """Write `figure` in the format of the ending of `path`: .png, .svg or .pdf, without dates."""
     if path.suffix == ".png":
         save_png(figure, path, dpi=150)
     else:

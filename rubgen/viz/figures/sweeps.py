@@ -1,4 +1,4 @@
-"""Sweeps: the motion once a turn, the Lyapunov exponent, and order spectra as a map."""
+"""Draw what changes over a swept parameter: Poincare section, Lyapunov exponent, order spectra."""
 
 from collections.abc import Sequence
 
@@ -16,13 +16,13 @@ DECIBELS = 80.0
 def bifurcation(
     values: FloatArray, sections: Sequence[FloatArray], motions: Sequence[str], *, x: str, y: str
 ) -> Figure:
-    """The Poincare section of each run over its parameter: one point for a motion that repeats every turn.
+    """Draw a bifurcation diagram: the Poincare section of each run over the value of the swept parameter.
 
-    A motion of period k has k points.
+    A motion that repeats every turn is one point, a motion of period k is k points, chaos is a band.
 
-    - values (runs,): of the parameter.
-    - sections: an array (any,) for each run.
-    - motions: class of each run.
+    - values (runs,): the swept parameter.
+    - sections: for each run, one coordinate of its motion once a turn (any,).
+    - motions: class of each run, which decides its colour.
     - x, y: labels of the axes, with units.
     """
     figure = new_figure(9.0, 4.8)
@@ -40,11 +40,12 @@ def bifurcation(
 def exponent_sweep(
     values: FloatArray, exponents: FloatArray, errors: FloatArray, motions: Sequence[str], *, x: str
 ) -> Figure:
-    """The largest Lyapunov exponent of each run over its parameter, 1/turn, with its standard error.
+    """Draw the largest Lyapunov exponent of each run, in 1/turn, with its standard error, over the swept parameter.
 
     Above zero neighbouring trajectories separate: chaos. A forced system has no exponent that must be zero.
 
-    - values, exponents, errors (runs,): of the runs.
+    - values (runs,): the swept parameter.
+    - exponents, errors (runs,): exponent and its standard error, 1/turn.
     - motions: class of each run.
     - x: label of the parameter, with its unit.
     """
@@ -64,9 +65,13 @@ def exponent_sweep(
 
 
 def spectrum_cascade(values: FloatArray, orders: FloatArray, amplitudes: FloatArray, *, y: str, unit: str) -> Figure:
-    """Amplitudes (runs, orders) over order and `values` (runs,) as shade, in dB below the largest.
+    """Draw order spectra of several runs as a map: order to the right, parameter upward, amplitude as shade in dB.
 
-    Orders have equal steps. `y` is the label of the values, `unit` the unit of the amplitudes.
+    - values (runs,): the swept parameter.
+    - orders (orders,): at equal steps.
+    - amplitudes (runs, orders): 0 dB is the largest.
+    - y: label of the parameter.
+    - unit: of the amplitudes.
     """
     figure = new_figure(9.0, 5.0)
     axes = figure.subplots()
@@ -87,7 +92,7 @@ def spectrum_cascade(values: FloatArray, orders: FloatArray, amplitudes: FloatAr
 
 
 def _edges(values: FloatArray) -> FloatArray:
-    """Edges midway between ascending values."""
+    """Return edges midway between ascending values."""
     if values.size == 1:
         return np.array([values[0] - 0.5, values[0] + 0.5])
     middle = (values[1:] + values[:-1]) / 2
