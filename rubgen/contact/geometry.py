@@ -1,4 +1,4 @@
-"""The casing surface and the blade tips as the contact kernels take them."""
+"""Make the casing surface and the blade tips of a system in the form that the contact kernels take."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ CENTRE_LINE = ContactLaw()
 
 
 def periodic_derivative(values: FloatArray) -> FloatArray:
-    """Derivative by angle of values (n, ...) at n equal steps of a full turn, exact for orders below n / 2."""
+    """Differentiate values (n, ...) at n equal steps of a full turn by the angle. Exact for orders below n / 2."""
     n = values.shape[0]
     order = 1j * np.fft.rfftfreq(n, 1 / n)
     if n % 2 == 0:
@@ -25,7 +25,9 @@ def periodic_derivative(values: FloatArray) -> FloatArray:
 
 
 def hermite_bends(values: FloatArray, slopes: FloatArray, step: float) -> FloatArray:
-    """The largest second derivative of each mode (n_casing,) between nodes, where it is linear in the angle.
+    """Return the largest second derivative by the angle of each mode's displacement (n_casing,) between nodes.
+
+    The Hermite cubic's second derivative is linear in the angle, so it is largest at a node.
 
     - values, slopes (nodes, 2, n_casing): displacement at the nodes and its derivative by the angle.
     - step: angle between nodes, rad.
@@ -37,18 +39,17 @@ def hermite_bends(values: FloatArray, slopes: FloatArray, step: float) -> FloatA
 
 
 def with_zeros(numbers: FloatArray) -> FloatArray:
-    """The casing's coordinates (..., n_casing) followed by zeros, to a multiple of eight."""
+    """Append zeros to the casing's coordinates (..., n_casing), up to a multiple of eight."""
     missing = -numbers.shape[-1] % 8
     return np.ascontiguousarray(np.concatenate([numbers, np.zeros((*numbers.shape[:-1], missing))], axis=-1))
 
 
 def surface_modes(system: SpinningSystem, contact: ContactLaw) -> FloatArray:
-    """X and Y displacement (nodes, 2, n_casing) of the contact surface at the nodes per unit of each mode.
+    """Return X and Y displacement (nodes, 2, n_casing) of the contact surface at the nodes per unit of each mode.
 
     It is u of the ring's centre line. With `contact.half_thickness` it is u - (h / 2) phi e_theta of the inner surface,
     half a thickness inside the centre line, with phi the rotation of the cross-section. Force and velocity use the same
     point. A force F there therefore also turns the cross-section by the moment (-(h / 2) e_r) x F, and no work is lost.
-
     Raises UserError where the system has no rotations.
     """
     modes = np.ascontiguousarray(system.casing_modes, dtype=float)
@@ -62,7 +63,7 @@ def surface_modes(system: SpinningSystem, contact: ContactLaw) -> FloatArray:
 
 
 def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) -> Surface:
-    """The surface r(psi) e_r + u(psi) of a system: smooth undeformed curve, Hermite-interpolated displacement.
+    """Make the surface r(psi) e_r + u(psi) of a system: smooth undeformed curve, Hermite-interpolated displacement.
 
     Nodal slopes come from the Fourier series of the nodal displacements, so u is exact to fourth order in the node
     distance, and continuous in slope. The displacement of each mode between nodes is at most the largest nodal value
@@ -105,7 +106,7 @@ def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) ->
 
 
 def blade_tips(system: SpinningSystem) -> Tips:
-    """The tips of a system: rest radius, steady displacement, angle on the disk. The arrays cannot be written."""
+    """Make the tips of a system: rest radius, steady displacement, angle on the disk. The arrays cannot be written."""
     angle = np.asarray(system.blade_angles, dtype=float)
     orders = np.multiply.outer(np.asarray(system.surface.order, dtype=float), angle)
     return frozen(
@@ -122,13 +123,13 @@ def blade_tips(system: SpinningSystem) -> Tips:
 
 
 def node_radii(curve: CasingSurface, nodes: int) -> FloatArray:
-    """Radius (nodes,) of the smooth curve at equal steps of polar angle from 0."""
+    """Return the radius (nodes,) of the smooth undeformed curve at equal steps of polar angle from 0, m."""
     angle = 2 * np.pi * np.arange(nodes) / nodes
     return np.asarray(curve.mean_radius + np.cos(np.subtract.outer(angle, curve.phase) * curve.order) @ curve.amplitude)
 
 
 def chord_bounds(corners: FloatArray, bend: float) -> tuple[float, float]:
-    """The largest distance of chords between nodes inside the smooth curve, m, and their largest |dr/dpsi|.
+    """Bound the distance of chords between nodes inside the smooth curve, m, and their largest |dr/dpsi|, m/rad.
 
     Both meet at the nodes. They differ by at most h^2 / 8 times the largest second derivative of the difference: `bend`
     of the curve plus r + 2 r'^2 / r of a straight line, whose |r'| is largest at its ends. `corners` (nodes,) are the
@@ -143,7 +144,10 @@ def chord_bounds(corners: FloatArray, bend: float) -> tuple[float, float]:
 
 
 def liner_of(spec: LinerSpec | None, radius: float) -> Liner:
-    """The liner of a specification, without bins for None; `radius` (m) turns angles into lengths."""
+    """Make the constants of the liner that a recipe specifies. With None there is no liner: it has no bins.
+
+    `radius` (m) turns angles into lengths.
+    """
     if spec is None:
         return Liner(bins=0, thickness=0.0, rate=0.0, area=1.0)
     area = spec.width_m * radius * 2 * np.pi / spec.bins
@@ -151,5 +155,5 @@ def liner_of(spec: LinerSpec | None, radius: float) -> Liner:
 
 
 def unworn(liner: Liner) -> Wear:
-    """The state of a liner before any contact."""
+    """Return the state of a liner before any contact: no depth, no removed volume."""
     return Wear(depth=np.zeros(liner.bins), earlier=np.zeros((2, liner.bins)), sums=np.zeros(2))

@@ -45,7 +45,7 @@ class BeamMatrices:
 
 
 def blade_matrices(blades: BladeRow, root_radius: float) -> BeamMatrices:
-    """Matrices of one blade, assembled from exact-statics two-node elements.
+    """Assemble the matrices of one blade from two-node beam elements with exact statics.
 
     `root_radius` is the radius of the root in m.
 
@@ -97,7 +97,7 @@ def blade_matrices(blades: BladeRow, root_radius: float) -> BeamMatrices:
 
 
 def _gauss(length: float | FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Gauss points and weights on 0..length."""
+    """Return Gauss points and weights on 0..length."""
     points, weights = leggauss(GAUSS_POINTS)
     scale: FloatArray = np.asarray(length, dtype=np.float64)[..., None] / 2
     return scale * (points + 1), scale * weights
@@ -106,7 +106,7 @@ def _gauss(length: float | FloatArray) -> tuple[FloatArray, FloatArray]:
 def _shape_functions(
     blades: BladeRow, root_radius: float, starts: FloatArray, step: float
 ) -> tuple[FloatArray, FloatArray]:
-    """N(x) and generalised strains at the Gauss points, (element, point, 6, 12), from the element's exact statics."""
+    """Return N(x) and generalised strains at Gauss points (element, point, 6, 12), from the element's exact statics."""
 
     def flexibility(ends: FloatArray) -> FloatArray:
         """int_0^end b_end^T D^-1 b ds: motion at `end` by unit forces at the element's outer end."""
@@ -131,7 +131,7 @@ def _shape_functions(
 
 
 def _equilibrium(arm: FloatArray) -> FloatArray:
-    """b: internal forces (N, V_y, V_z, M_x, M_y, M_z) of unit forces that act a distance `arm` further out."""
+    """Return b: internal forces (N, V_y, V_z, M_x, M_y, M_z) of unit forces that act a distance `arm` further out."""
     b = np.zeros((*arm.shape, 6, 6))
     b[..., range(6), range(6)] = 1.0
     b[..., 4, 2], b[..., 5, 1] = -arm, arm
@@ -139,7 +139,7 @@ def _equilibrium(arm: FloatArray) -> FloatArray:
 
 
 def _rigid(x: FloatArray) -> FloatArray:
-    """Motion at x of a rigid body on the node at 0: u + th x (x e_x)."""
+    """Return the motion at x of a rigid body on the node at 0: u + th x (x e_x)."""
     return np.swapaxes(_equilibrium(x), -1, -2)
 
 
@@ -159,22 +159,23 @@ def _assemble_vector(blocks: FloatArray) -> FloatArray:
 
 
 def symmetric(matrix: FloatArray) -> FloatArray:
-    """The symmetric part of a matrix."""
+    """Return the symmetric part (A + A^T) / 2, to remove rounding errors where A is symmetric by its formula."""
     return np.ascontiguousarray((matrix + matrix.T) / 2)
 
 
 def skew(matrix: FloatArray) -> FloatArray:
-    """The skew part of a matrix."""
+    """Return the skew part (A - A^T) / 2, to remove rounding errors where A is skew by its formula."""
     return np.ascontiguousarray((matrix - matrix.T) / 2)
 
 
 def root_strain_row(blades: BladeRow, root_radius: float, beam: BeamMatrices) -> FloatArray:
-    """Spanwise strain (12,) per displacement of a blade's first two nodes, at the root's mid-chord fibre.
+    """Return the row (12,) that gives a blade's strain at its root from the displacements of its first two nodes.
 
-    The fibre lies on the face to which the thickness normal n = (-sin a, cos a) in (y, z) points, half the thickness h
-    from the centre line: eps + (h / 2) (n_z th_y' - n_y th_z'). The generalised strains are D^-1 F. The internal forces
-    F at the root are minus the nodal forces of the first element, which is exact for loads at the nodes. A blade with
-    another stiffness has the same row. Test: tests/reduction/test_root_strain.py.
+    It is the spanwise strain of the mid-chord fibre on the face to which the thickness normal n = (-sin a, cos a) in
+    (y, z) points, half the thickness h from the centre line: eps + (h / 2) (n_z th_y' - n_y th_z'). The generalised
+    strains are D^-1 F. The internal forces F at the root are minus the nodal forces of the first element, which is
+    exact for loads at the nodes. A blade with another stiffness has the same row. Test:
+    tests/reduction/test_root_strain.py.
     """
     sections = cross_sections(blades, root_radius, np.zeros(1))
     strains = -np.linalg.solve(cross_section_stiffness(blades, sections)[0], beam.K[:6, :12])
@@ -186,10 +187,11 @@ def root_strain_row(blades: BladeRow, root_radius: float, beam: BeamMatrices) ->
 def held_root_strain(
     blades: BladeRow, root_radius: float, beam: BeamMatrices, *, speed: float, stiffness: float = 1.0
 ) -> tuple[FloatArray, FloatArray]:
-    """Strain of `root_strain_row` per displacement of the tip (3,) and of the root (6,), without inertia.
+    """Return a blade's root strain per displacement of its tip (3,) and of its root (6,), without inertia.
 
-    Between tip and root the blade has the shape of least energy under K + Omega^2 (K_sigma - S). At rest this is the
-    cubic of a tip load; at speed it is flatter, with more curvature near the root.
+    The strain is that of `root_strain_row`. Between tip and root the blade has the shape of least energy under K +
+    Omega^2 (K_sigma - S). At rest this is the cubic of a tip load; at speed it is flatter, with more curvature near the
+    root.
 
     - blades: the blade row.
     - root_radius: radius of the root, m.

@@ -1,4 +1,4 @@
-"""The full finite-element blisk in the turning frame: disk centre, disk, blades and their couplings."""
+"""Assemble the full finite-element blisk in the turning frame: disk centre, disk, blades and their couplings."""
 
 from dataclasses import dataclass
 
@@ -55,7 +55,7 @@ class BliskModel:
     penalty: float
     """Penalty stiffness k_p."""
     held: HeldStiffness
-    """Solves static problems with O_d fixed laterally."""
+    """Solves static problems of the blisk with O_d fixed laterally."""
     plate: DiskModel
     """Matrices of the disk."""
     beam: BeamMatrices
@@ -65,13 +65,13 @@ class BliskModel:
 
 
 def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskModel:
-    """Full model of the blisk, 14,478 DoFs in the preset. The supports only affect the centrifugal stress.
+    """Assemble the full model of the blisk, 14,478 DoFs in the preset.
 
-    In the steady state at 1 rad/s the blades pull at the rim and the rigid link fixes the bore. It determines the
-    disk's plane stress, the forces in the link and the link's geometric term. K_sigma - S on rigid-body motions is then
-    -m, -m, 0, I_p - I_d, I_p - I_d, 0: tests/fem/test_blisk_assembly.py. A mistuned blade differs only by (1 +
-    deviation) K: E scales every term of K, the shape functions depend only on ratios of stiffness, and its pull on the
-    rim follows from its mass.
+    The supports only affect the centrifugal stress. In the steady state at 1 rad/s the blades pull at the rim and the
+    rigid link fixes the bore. That state determines the disk's plane stress, the forces in the link and the link's
+    geometric term. K_sigma - S on rigid-body motions is then -m, -m, 0, I_p - I_d, I_p - I_d, 0:
+    tests/fem/test_blisk_assembly.py. A mistuned blade differs only by (1 + deviation) K: E scales every term of K, the
+    shape functions depend only on ratios of stiffness, and its pull on the rim follows from its mass.
 
     Raises UserError where blades do not meet corner nodes of the rim, for a single blade, whose pull is not a symmetric
     load, and for a bore outside the rim.
@@ -121,7 +121,7 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
 
 
 def rigid_motions(model: BliskModel) -> FloatArray:
-    """Displacements (n, 6) of the blisk moved as a rigid body by unit u, v, w (m), th_x, th_y, th_z (rad)."""
+    """Return displacements (n, 6) of the blisk moved as a rigid body by unit u, v, w (m), th_x, th_y, th_z (rad)."""
     plate = model.plate.mesh.nodes
     x, y = np.concatenate([[0.0], plate[:, 0]]), np.concatenate([[0.0], plate[:, 1]])
     parts = [_rigid_nodes(x, y)]
@@ -147,7 +147,7 @@ def _dof(nodes: IntArray) -> IntArray:
 def _blocks(
     plate: SparseMatrix, blade: FloatArray, scale: FloatArray, centre: FloatArray | None = None
 ) -> SparseMatrix:
-    """diag(O_d, disk, scale_0 blade, scale_1 blade, ...). O_d has only the matrix of the link."""
+    """Return diag(O_d, disk, scale_0 blade, scale_1 blade, ...). O_d has only the matrix of the link."""
     first = np.zeros((6, 6)) if centre is None else centre
     one = sp.coo_array(blade)
     blocks = [sp.coo_array(first), plate, *[factor * one for factor in scale]]

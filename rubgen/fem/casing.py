@@ -1,4 +1,4 @@
-"""The casing's full model: a closed ring of Timoshenko beams in its plane, on springs at its nodes."""
+"""Assemble the casing's full model: a closed ring of Timoshenko beams in its plane, on springs at its nodes."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -33,12 +33,12 @@ class CasingModel:
 
     @property
     def K(self) -> SparseMatrix:
-        """Stiffness of the ring on its springs."""
+        """Stiffness of the ring on its springs, (3 nodes, 3 nodes)."""
         return sp.csr_array(self.K_ring + self.K_supports)
 
 
 def assemble_casing(machine: Machine, *, any_nodes: bool = False) -> CasingModel:
-    """Full model of the casing at rest.
+    """Assemble the full model of the machine's casing at rest.
 
     The centre line lies half a thickness outside the undeformed inner surface of `machine.casing`. Its nodes are at
     equal steps of polar angle, with straight uniform elements between them (exact statics, Friedman and Kosmatka 1993,
@@ -73,13 +73,13 @@ def assemble_casing(machine: Machine, *, any_nodes: bool = False) -> CasingModel
 def element_matrices(
     material: Material, width: float, thickness: float, lengths: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Stiffness and consistent mass (elements, 6, 6) of straight plane beams, local (u, v, phi) at both ends.
+    """Return stiffness and consistent mass (elements, 6, 6) of straight plane beams in local (u, v, phi) at both ends.
 
     With Phi = 12 E I / (kappa G A L^2) the static shape functions of a uniform Timoshenko beam interpolate v and phi,
     linear ones u; I = width thickness^3 / 12 (bending in the plane of the ring).
 
     - width, thickness: of the cross-section, m.
-    - lengths (elements,): m.
+    - lengths (elements,): of the elements, m.
     """
     area, inertia = width * thickness, width * thickness**3 / 12
     E, rho = material.youngs_modulus_pa, material.density_kg_per_m3
@@ -95,7 +95,7 @@ def element_matrices(
 
 
 def _shape_functions(s: FloatArray, length: FloatArray, phi: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(u, v, phi) and (u', v' - phi, phi') at s = x / L, each (element, point, 3, 6)."""
+    """Return (u, v, phi) and (u', v' - phi, phi') at s = x / L, each (element, point, 3, 6)."""
     field = np.zeros((*np.broadcast_shapes(s.shape, length.shape), 3, 6))
     strain = np.zeros_like(field)
     n = 1 / (1 + phi)
@@ -119,7 +119,7 @@ def _shape_functions(s: FloatArray, length: FloatArray, phi: FloatArray) -> tupl
 
 
 def _rotation(tangents: FloatArray) -> FloatArray:
-    """From global to element axes, (elements, 6, 6)."""
+    """Return the rotation from global to element axes, (elements, 6, 6)."""
     c, s = tangents.T
     turn = np.zeros((len(tangents), 6, 6))
     for o in (0, 3):
@@ -130,7 +130,7 @@ def _rotation(tangents: FloatArray) -> FloatArray:
 
 
 def _assemble(blocks: FloatArray) -> SparseMatrix:
-    """Sum of the elements of a closed ring: element e joins nodes e and e + 1, the last one closes it."""
+    """Sum the elements of a closed ring: element e joins nodes e and e + 1, the last one closes it."""
     n = len(blocks)
     ends = np.column_stack([np.arange(n), (np.arange(n) + 1) % n])
     dofs = (3 * ends[:, :, None] + np.arange(3)).reshape(n, 6)

@@ -1,4 +1,4 @@
-"""Penalty couplings of the blisk, disk centre to bore and blade root to rim; its springs, and direct solves."""
+"""Penalty couplings of the blisk, disk centre to bore and blade root to rim; its springs; direct solves."""
 
 import numpy as np
 import scipy.sparse as sp
@@ -9,10 +9,10 @@ from rubgen.machine import DiskSupport
 
 
 def rigid_rows(arm: FloatArray) -> FloatArray:
-    """Rows (n, 6, 12) of the rigid link between O_d and the nodes at `arm` (n, 2): T [q_O, q_i] = 0.
+    """Return rows (n, 6, 12) of the constraint T [q_O, q_i] = 0 that ties nodes at `arm` (n, 2) rigidly to O_d.
 
-    u_i - u_O + Y th_Z = 0, v_i - v_O - X th_Z = 0, w_i - w_O - Y th_X + X th_Y = 0, rotations equal
-    (Zeng et al. 2019, Eq. 1).
+    u_i - u_O + Y th_Z = 0, v_i - v_O - X th_Z = 0, w_i - w_O - Y th_X + X th_Y = 0, rotations equal (Zeng et al. 2019,
+    Eq. 1).
     """
     x, y = arm[:, 0], arm[:, 1]
     T = np.zeros((len(arm), 6, 12))
@@ -23,12 +23,12 @@ def rigid_rows(arm: FloatArray) -> FloatArray:
 
 
 def rigid_link(arm: FloatArray, node_dof: IntArray, centre_dof: IntArray, size: int) -> SparseMatrix:
-    """Constraint rows T (6 n, size) of a rigid link between O_d and n nodes.
+    """Return the constraint rows T (6 n, size) of a rigid link between O_d and n nodes, as a sparse matrix.
 
     The penalty stiffness is k_p T^T T, and the force of the link on node i is -k_p T_i q.
 
     - arm (n, 2): X and Y of the nodes from O_d, m.
-    - node_dof (n, 6), centre_dof (6,): DoFs of the nodes and of O_d.
+    - node_dof (n, 6), centre_dof (6,): numbers of the DoFs of the nodes and of O_d.
     - size: number of all DoFs.
     """
     rows = rigid_rows(arm)
@@ -37,11 +37,12 @@ def rigid_link(arm: FloatArray, node_dof: IntArray, centre_dof: IntArray, size: 
 
 
 def link_stress_stiffness(arm: FloatArray, force: FloatArray) -> FloatArray:
-    """Stiffness (6, 6) of O_d from the steady forces in a rigid link, the second order of its rotation.
+    """Return the geometric stiffness (6, 6) of O_d from the steady forces in a rigid link.
 
-    The link pushes node i with F_i (`force` (n, 3) in N) at the arm r_i (`arm` (n, 2) in m). A rotation th moves the
-    arm's end by th x r + th x (th x r) / 2. The second-order energy is E2 = sum F_i . th x (th x r_i) / 2, and K = sum
-    [(F r^T + r F^T) / 2 - (F . r) I] on the rotations. Without it the gyroscopic terms of the whole blisk are wrong.
+    It is the second order of the link's rotation. The link pushes node i with F_i (`force` (n, 3) in N) at the arm r_i
+    (`arm` (n, 2) in m). A rotation th moves the arm's end by th x r + th x (th x r) / 2. The second-order energy is E2
+    = sum F_i . th x (th x r_i) / 2, and K = sum [(F r^T + r F^T) / 2 - (F . r) I] on the rotations. Without it the
+    gyroscopic terms of the whole blisk are wrong.
     """
     r = np.column_stack([arm, np.zeros(len(arm))])
     product = force.T @ r
@@ -51,19 +52,19 @@ def link_stress_stiffness(arm: FloatArray, force: FloatArray) -> FloatArray:
 
 
 def blade_rotation(angle: float) -> FloatArray:
-    """T_k (6, 6), from DoFs in the axes of a blade at polar `angle` (rad) to o-xyz."""
+    """Return T_k (6, 6), which turns displacements from the axes of a blade at polar `angle` (rad) to o-xyz."""
     c, s = np.cos(angle), np.sin(angle)
     R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     return np.kron(np.eye(2), R)
 
 
 def rim_joint(angle: FloatArray, rim_dof: IntArray, root_dof: IntArray, size: int) -> SparseMatrix:
-    """Constraint rows (6 n, size) that join blade roots to rim nodes: q_rim - T_k q_root = 0.
+    """Return the constraint rows (6 n, size) that join blade roots to rim nodes: q_rim - T_k q_root = 0.
 
     The penalty stiffness is k_p [I -T_k]^T [I -T_k] (Zeng et al. 2019).
 
     - angle (n,): polar angles of the blades, rad.
-    - rim_dof, root_dof (n, 6): DoFs of rim nodes and blade roots.
+    - rim_dof, root_dof (n, 6): numbers of the DoFs of rim nodes and blade roots.
     - size: number of all DoFs.
     """
     rows = np.stack([np.hstack([np.eye(6), -blade_rotation(a)]) for a in angle])
@@ -80,29 +81,29 @@ def _sparse_rows(rows: FloatArray, columns: IntArray, size: int) -> SparseMatrix
 
 
 def factorize(K: SparseMatrix) -> SuperLU:
-    """LU factors of a symmetric positive definite stiffness, ordered for symmetric matrices, without pivoting."""
+    """Factorise a symmetric positive definite stiffness as LU, ordered for symmetric matrices, without pivoting."""
     return splu(sp.csc_array(K), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 def support_stiffness(support: DiskSupport) -> FloatArray:
-    """Spring constants (6,) of O_d: x, y, z in N/m, rotations about x, y, z in N m/rad."""
+    """Return the spring constants (6,) of O_d: x, y, z in N/m, rotations about x, y, z in N m/rad."""
     lateral, tilt = support.lateral_stiffness_n_per_m, support.tilt_stiffness_nm_per_rad
     axial, torsion = support.axial_stiffness_n_per_m, support.torsion_stiffness_nm_per_rad
     return np.array([lateral, lateral, axial, tilt, tilt, torsion])
 
 
 def on_springs(K: SparseMatrix, stiffness: FloatArray) -> SparseMatrix:
-    """K with the springs of `stiffness` (6,) on its first six DoFs, the DoFs of O_d."""
+    """Return K with the spring constants `stiffness` (6,) added to its first six DoFs, the DoFs of O_d."""
     diagonal = np.zeros(K.shape[0])
     diagonal[:6] = stiffness
     return (K + sp.diags_array(diagonal)).tocsr()
 
 
 class HeldStiffness:
-    """K on its axial, tilt and torsion springs, with O_d x and y fixed at zero; factorised once.
+    """The blisk's K on its axial, tilt and torsion springs, with x and y of O_d fixed at zero; factorised once.
 
-    By symmetry the centrifugal load of two or more equal blades does not push O_d sideways. The steady state is
-    therefore the same for any lateral stiffness.
+    It solves static problems. By symmetry the centrifugal load of two or more equal blades does not push O_d sideways.
+    The steady state is therefore the same for any lateral stiffness.
     """
 
     def __init__(self, K: SparseMatrix, support: DiskSupport) -> None:
@@ -110,5 +111,5 @@ class HeldStiffness:
         self._factor = factorize(self.K[2:, 2:])
 
     def solve(self, load: FloatArray) -> FloatArray:
-        """Displacement (n,) under `load` (n,)."""
+        """Return the displacement (n,) under `load` (n,) in N and N m. Its first two components are zero."""
         return np.concatenate([np.zeros(2), self._factor.solve(load[2:])])

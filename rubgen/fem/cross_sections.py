@@ -1,7 +1,8 @@
 """Rectangular cross-sections of a pre-twisted, tapered blade: what the beam element integrates along its length.
 
-Cross-section matrices act on (u_x, u_y, u_z, th_x, th_y, th_z) of the centre line or on the six generalised strains. A
-point s = (0, y, z) moves by u + th x s. Each matrix has the shape (..., 6, 6) for cross-sections of shape (...).
+A cross-section matrix is a quadratic form per length. It acts on the displacement (u_x, u_y, u_z, th_x, th_y, th_z) of
+the centre line or on the six generalised strains. A point s = (0, y, z) moves by u + th x s. Each matrix has the shape
+(..., 6, 6) for cross-sections of shape (...).
 """
 
 from dataclasses import dataclass
@@ -32,12 +33,12 @@ class CrossSections:
 
 
 def cowper_shear_coefficient(poisson_ratio: float) -> float:
-    """Cowper's kappa = 10 (1 + nu) / (12 + 11 nu) of a rectangle (J. Appl. Mech. 33, 1966)."""
+    """Return Cowper's shear coefficient of a rectangle, 10 (1 + nu) / (12 + 11 nu) (J. Appl. Mech. 33, 1966)."""
     return 10 * (1 + poisson_ratio) / (12 + 11 * poisson_ratio)
 
 
 def rectangle_torsion_constant(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Saint-Venant torsion constant of rectangles of sides `a` and `b` (m, same shape), in m^4.
+    """Return the Saint-Venant torsion constant of rectangles of sides `a` and `b` (m, same shape), in m^4.
 
     J = c h^3 / 3 (1 - 192 h / (pi^5 c) sum_{n odd} tanh(n pi c / (2 h)) / n^5), c >= h (Timoshenko and Goodier, Theory
     of Elasticity, art. 109). Twenty terms have an error of 1e-7.
@@ -49,14 +50,11 @@ def rectangle_torsion_constant(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def cross_sections(blades: BladeRow, root_radius: float, x: FloatArray) -> CrossSections:
-    """Properties of the cross-sections of a blade.
+    """Compute the properties of a blade's cross-sections at distances `x` (any,) in m from its root.
 
     Chord, thickness and angle are linear in x. The chord points along cos(angle) e_y + sin(angle) e_z, the thickness
     normal along -sin(angle) e_y + cos(angle) e_z: at angle 0 the blade lies flat in the plane of the disk.
-
-    - blades: the blade row.
-    - root_radius: radius of the root, m.
-    - x (any): distances from the root, m.
+    `root_radius` is the radius of the root, m.
     """
     chord = _linear(blades.root_chord_m, blades.tip_chord_m, blades.length_m)
     thickness = _linear(blades.root_thickness_m, blades.tip_thickness_m, blades.length_m)
@@ -80,7 +78,7 @@ def _linear(root: float, tip: float, length: float) -> Polynomial:
 
 
 def cross_section_stiffness(blades: BladeRow, s: CrossSections) -> FloatArray:
-    """Internal forces (N, V_y, V_z, M_x, M_y, M_z) per strain (eps, gamma_y, gamma_z, th_x', th_y', th_z')."""
+    """Return D: internal forces (N, V_y, V_z, M_x, M_y, M_z) by strain (eps, gamma_y, gamma_z, th_x', th_y', th_z')."""
     E, G = blades.material.youngs_modulus_pa, blades.material.shear_modulus_pa
     shear = cowper_shear_coefficient(blades.material.poisson_ratio) * G * s.area
     D = _bending(E * s.yy, E * s.zz, E * s.yz)
@@ -89,7 +87,7 @@ def cross_section_stiffness(blades: BladeRow, s: CrossSections) -> FloatArray:
 
 
 def cross_section_mass(s: CrossSections) -> FloatArray:
-    """|u + th x s|^2 over the cross-section: translation and rotary inertia."""
+    """Return the quadratic form int |u + th x s|^2 dA of a mass matrix: translation and rotary inertia."""
     m = _bending(s.yy, s.zz, s.yz)
     m[..., 0, 0] = m[..., 1, 1] = m[..., 2, 2] = s.area
     m[..., 3, 3] = s.yy + s.zz
@@ -97,7 +95,7 @@ def cross_section_mass(s: CrossSections) -> FloatArray:
 
 
 def cross_section_spin(s: CrossSections) -> FloatArray:
-    """u_x^2 + u_y^2 over the cross-section, u_x = th_y z - th_z y, u_y = -th_x z."""
+    """Return the quadratic form int u_x^2 + u_y^2 dA of spin softening, for the displacement u + th x s."""
     m = _bending(s.yy, s.zz, s.yz)
     m[..., 0, 0] = m[..., 1, 1] = s.area
     m[..., 3, 3] = s.zz
@@ -105,7 +103,7 @@ def cross_section_spin(s: CrossSections) -> FloatArray:
 
 
 def cross_section_coriolis(s: CrossSections) -> FloatArray:
-    """Virtual work du . (e_z x u) = du_y u_x - du_x u_y over the cross-section."""
+    """Return the bilinear form int du . (e_z x u) dA = int du_y u_x - du_x u_y dA of the Coriolis matrix G."""
     m = np.zeros((*s.area.shape, 6, 6))
     m[..., 1, 0], m[..., 0, 1] = s.area, -s.area
     m[..., 4, 3], m[..., 3, 4] = s.zz, -s.zz
@@ -114,7 +112,10 @@ def cross_section_coriolis(s: CrossSections) -> FloatArray:
 
 
 def cross_section_pull(s: CrossSections) -> FloatArray:
-    """P (u_y'^2 + u_z'^2) + P I_p / A th_x'^2, on (-, u_y', u_z', th_x', -, -)."""
+    """Return the quadratic form of the pull P in K_sigma: P (u_y'^2 + u_z'^2) + P I_p / A th_x'^2.
+
+    It acts on (-, u_y', u_z', th_x', -, -).
+    """
     m = np.zeros((*s.area.shape, 6, 6))
     m[..., 1, 1] = m[..., 2, 2] = s.pull
     m[..., 3, 3] = s.pull * (s.yy + s.zz) / s.area
@@ -122,7 +123,10 @@ def cross_section_pull(s: CrossSections) -> FloatArray:
 
 
 def cross_section_second_order(s: CrossSections) -> FloatArray:
-    """I_y2 (th_x^2 + th_z^2) - I_yz th_y th_z: twice the work of -(0, y, 0) on th x (th x s) / 2."""
+    """Return the quadratic form I_y2 (th_x^2 + th_z^2) - I_yz th_y th_z, the part of rotations in K_sigma.
+
+    It is twice the work of the centrifugal load -(0, y, 0) on the second-order displacement th x (th x s) / 2.
+    """
     m = np.zeros((*s.area.shape, 6, 6))
     m[..., 3, 3] = m[..., 5, 5] = s.yy
     m[..., 4, 5] = m[..., 5, 4] = -s.yz / 2
@@ -130,7 +134,11 @@ def cross_section_second_order(s: CrossSections) -> FloatArray:
 
 
 def cross_section_load(s: CrossSections, radius: FloatArray) -> FloatArray:
-    """Work of r_perp on u + th x s, r_perp = (r, y, 0): a pull along x and the propeller moment about x."""
+    """Return the centrifugal load per length at 1 rad/s and unit density, (..., 6).
+
+    It is the work of r_perp = (r, y, 0) on u + th x s: a pull along x and the propeller moment about x. `radius` is r
+    of the cross-sections in m.
+    """
     load = np.zeros((*s.area.shape, 6))
     load[..., 0] = s.area * radius
     load[..., 3] = -s.yz
@@ -138,7 +146,7 @@ def cross_section_load(s: CrossSections, radius: FloatArray) -> FloatArray:
 
 
 def _bending(yy: FloatArray, zz: FloatArray, yz: FloatArray) -> FloatArray:
-    """(th_y z - th_z y)^2 over the cross-section as the last two rows of a 6 x 6 matrix."""
+    """Return (th_y z - th_z y)^2 over the cross-section as the last two rows of a 6 x 6 matrix."""
     m = np.zeros((*yy.shape, 6, 6))
     m[..., 4, 4], m[..., 5, 5] = zz, yy
     m[..., 4, 5] = m[..., 5, 4] = -yz

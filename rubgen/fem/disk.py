@@ -1,4 +1,4 @@
-"""The disk: its mesh of eight-node shells and its matrices of the turning frame."""
+"""Assemble the disk: its mesh of eight-node shells and its matrices in the turning frame."""
 
 from dataclasses import dataclass
 
@@ -29,7 +29,7 @@ class DiskModel:
 
 
 def assemble_disk(disk: Disk) -> DiskModel:
-    """Shell model of the disk, 7 x 72 elements in the preset; M, G and S contain rotary inertia.
+    """Assemble the shell model of the disk, 7 x 72 elements in the preset. M, G and S contain rotary inertia.
 
     f_c = int rho N^T r_perp equals S r exactly, because the element represents the field r_perp.
     """
@@ -51,7 +51,7 @@ def assemble_disk(disk: Disk) -> DiskModel:
 
 
 def annular_mesh(disk: Disk) -> ShellMesh:
-    """Mesh of the annulus, rings from the bore outwards, all nodes on true circles.
+    """Make the mesh of the annulus, rings from the bore outwards, with all nodes on true circles.
 
     Rings of corner nodes have two nodes an element (corner, midside); rings between them have one (at the corners'
     angles).

@@ -30,7 +30,7 @@ SPIN = np.kron(np.eye(2), np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0
 
 @dataclass(frozen=True)
 class ShellInertia:
-    """M mass, G Coriolis (skew), S spin softening, each (6 n, 6 n)."""
+    """Inertia matrices of a mesh: mass M, Coriolis G (skew), spin softening S, each (6 n, 6 n)."""
 
     M: SparseMatrix
     G: SparseMatrix
@@ -38,19 +38,20 @@ class ShellInertia:
 
 
 def shell_stiffness(mesh: ShellMesh, material: Material) -> SparseMatrix:
-    """Elastic stiffness (6 n, 6 n): membrane, bending and drilling by 3 x 3 points, transverse shear by 2 x 2.
+    """Assemble the elastic stiffness (6 n, 6 n) of a mesh.
 
-    Strains: u_x, v_y, u_y + v_x; curvatures th_y,x, -th_x,y, th_y,y - th_x,x; shear w_x + th_y, w_y - th_x with the
-    correction 5/6. Drilling: energy G h (th_z - (v_x - u_y)/2)^2 / 2 per area; far below G it makes the joint of a
-    blade too soft. Square elements do not lock however thin; narrow sectors of a disk keep 1 % down to a thickness of
-    a hundredth of the element. Tests: tests/fem/test_shell.py, test_disk.py.
+    Membrane, bending and drilling are integrated at 3 x 3 points, transverse shear at 2 x 2. Strains: u_x, v_y, u_y +
+    v_x; curvatures th_y,x, -th_x,y, th_y,y - th_x,x; shear w_x + th_y, w_y - th_x with the correction 5/6. Drilling:
+    energy G h (th_z - (v_x - u_y)/2)^2 / 2 per area; far below G it makes the joint of a blade too soft. Square
+    elements do not lock however thin; narrow sectors of a disk keep 1 % down to a thickness of a hundredth of the
+    element. Tests: tests/fem/test_shell.py, test_disk.py.
     """
     K = _element_stiffness(mesh.firsts, material)
     return _assemble(mesh, mesh.turned(_on_nodes(_following(K), K)))
 
 
 def shell_inertia(mesh: ShellMesh, material: Material) -> ShellInertia:
-    """Consistent inertia: rho h on translations, rho h^3/12 on th_x and th_y, none on th_z.
+    """Assemble the consistent inertia of a mesh: rho h on translations, rho h^3/12 on th_x and th_y, none on th_z.
 
     M = int rho N^T N; S = int rho N^T (1 - e_z e_z^T) N, without w; G = int rho N^T (e_z x N) = (e_z x) S.
     """
@@ -66,7 +67,7 @@ def shell_inertia(mesh: ShellMesh, material: Material) -> ShellInertia:
 
 
 def shell_stress_stiffness(mesh: ShellMesh, material: Material, displacement: FloatArray) -> SparseMatrix:
-    """Stiffness (6 n, 6 n) from the plane stress of the membrane part of `displacement` (6 n,) in m.
+    """Assemble the geometric stiffness (6 n, 6 n) from the membrane stress that `displacement` (6 n,) in m causes.
 
     Energy h grad(d)^T sigma grad(d) / 2 for d = u, v, w, and the same for th_x, th_y with h^3/12, per area. sigma is
     taken at the 3 x 3 points of the membrane stiffness, so that it balances the loads of these points exactly.
@@ -101,7 +102,7 @@ def _plane_stress(material: Material) -> FloatArray:
 
 
 def _quadratic(B: FloatArray, D: FloatArray, weight: FloatArray) -> FloatArray:
-    """Integral of B^T D B for every element, (e, n, n)."""
+    """Return the integral of B^T D B for every element, (e, n, n)."""
     e, q, rows, n = B.shape
     DB = np.einsum("ij,eqjb,eq->eqib", D, B, weight, optimize=True)
     integral: FloatArray = B.reshape(e, q * rows, n).swapaxes(1, 2) @ DB.reshape(e, q * rows, n)
@@ -109,7 +110,7 @@ def _quadratic(B: FloatArray, D: FloatArray, weight: FloatArray) -> FloatArray:
 
 
 def _following(K: FloatArray) -> FloatArray:
-    """T (e, 54, 48): the bubble follows the nodes statically."""
+    """Return T (e, 54, 48), by which the bubble follows the nodes statically."""
     T = np.zeros((len(K), ELEMENT_DOFS, 48))
     T[:, :48] = np.eye(48)
     T[:, BUBBLE_DOFS] = -np.linalg.solve(K[:, BUBBLE_DOFS[:, None], BUBBLE_DOFS], K[:, BUBBLE_DOFS, :48])
@@ -117,7 +118,7 @@ def _following(K: FloatArray) -> FloatArray:
 
 
 def _by_direction(*blocks: FloatArray) -> FloatArray:
-    """Element matrices (e, 54, 54) of blocks (e, 9, 9), one for each DoF from u on."""
+    """Return element matrices (e, 54, 54) of blocks (e, 9, 9), one for each DoF from u on."""
     full = np.zeros((len(blocks[0]), 9, 6, 9, 6))
     for i, block in enumerate(blocks):
         full[:, :, i, :, i] = block
@@ -125,7 +126,7 @@ def _by_direction(*blocks: FloatArray) -> FloatArray:
 
 
 def _on_nodes(T: FloatArray, matrices: FloatArray) -> FloatArray:
-    """T^T X T (e, 48, 48): on the nodes only."""
+    """Return T^T X T (e, 48, 48): the matrices on the nodes only."""
     nodal: FloatArray = T.swapaxes(1, 2) @ matrices @ T
     return nodal
 

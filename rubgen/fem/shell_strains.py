@@ -1,4 +1,4 @@
-"""Interpolation and strains of the eight-node shell at its quadrature points, for all elements at once."""
+"""Interpolate displacements in the eight-node shell and compute strains at quadrature points, all elements at once."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -34,7 +34,10 @@ class ShellMesh:
         return ShellMesh(self.nodes, self.elements[:: self.around], self.thickness)
 
     def turned(self, firsts: FloatArray) -> FloatArray:
-        """Matrices (e, 6 a, 6 b) of all elements from the first ones: Z_j X Z_j^T, Z_j turns each node's DoFs."""
+        """Return the matrices (e, 6 a, 6 b) of all elements from those of the first ones: Z_j X Z_j^T.
+
+        Z_j turns each node's DoFs to the place of element j of the group.
+        """
         if self.around == 1:
             return firsts
         angle = (2 * np.pi * np.arange(self.around) / self.around)[:, None, None]
@@ -62,7 +65,7 @@ class Quadrature:
 
 
 def serendipity(xi: FloatArray, eta: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Shape functions N (q, 8) and their derivatives (q, 8, 2) by xi, eta at the points (q,) of the square [-1, 1]^2.
+    """Return shape functions N (q, 8) and their derivatives (q, 8, 2) by xi, eta at points (q,) of [-1, 1]^2.
 
     Corners: (1 + a)(1 + b)(a + b - 1)/4 with a = xi xi_i, b = eta eta_i; midsides (1 - xi^2)(1 + b)/2 and so on
     (Zienkiewicz and Taylor, The Finite Element Method, serendipity family).
@@ -80,7 +83,7 @@ def serendipity(xi: FloatArray, eta: FloatArray) -> tuple[FloatArray, FloatArray
 
 
 def quadrature(mesh: ShellMesh, order: int) -> Quadrature:
-    """Gauss points, order x order in each element."""
+    """Evaluate shape functions, thickness and area at order x order Gauss points of each element."""
     points, weights = np.polynomial.legendre.leggauss(order)
     xi, eta = (grid.ravel() for grid in np.meshgrid(points, points, indexing="ij"))
     N, dN = serendipity(xi, eta)
@@ -96,7 +99,7 @@ def quadrature(mesh: ShellMesh, order: int) -> Quadrature:
 
 
 def in_plane_strain(points: Quadrature) -> FloatArray:
-    """Rows (e, q, 3, 54) of u_x, v_y, u_y + v_x."""
+    """Return the rows (e, q, 3, 54) that give u_x, v_y, u_y + v_x from an element's DoFs."""
     B, g = _strain_rows(points, 3), points.gradient[:, :, :8]
     B[:, :, 0, :8, 0] = B[:, :, 2, :8, 1] = g[..., 0]
     B[:, :, 1, :8, 1] = B[:, :, 2, :8, 0] = g[..., 1]
@@ -104,7 +107,7 @@ def in_plane_strain(points: Quadrature) -> FloatArray:
 
 
 def curvature(points: Quadrature) -> FloatArray:
-    """Rows (e, q, 3, 54) of th_y,x, -th_x,y, th_y,y - th_x,x."""
+    """Return the rows (e, q, 3, 54) that give th_y,x, -th_x,y, th_y,y - th_x,x from an element's DoFs."""
     B, g = _strain_rows(points, 3), points.gradient
     B[:, :, 0, :, 4] = g[..., 0]
     B[:, :, 1, :, 3] = -g[..., 1]
@@ -114,7 +117,7 @@ def curvature(points: Quadrature) -> FloatArray:
 
 
 def shear_strain(points: Quadrature) -> FloatArray:
-    """Rows (e, q, 2, 54) of w_x + th_y, w_y - th_x."""
+    """Return the rows (e, q, 2, 54) that give w_x + th_y, w_y - th_x from an element's DoFs."""
     B, g = _strain_rows(points, 2), points.gradient[:, :, :8]
     B[:, :, :, :8, 2] = g.swapaxes(2, 3)
     B[:, :, 0, :, 4] = points.N
@@ -123,7 +126,7 @@ def shear_strain(points: Quadrature) -> FloatArray:
 
 
 def drilling(points: Quadrature) -> FloatArray:
-    """Row (e, q, 1, 54) of th_z - (v_x - u_y) / 2."""
+    """Return the row (e, q, 1, 54) that gives th_z - (v_x - u_y) / 2 from an element's DoFs."""
     B, g = _strain_rows(points, 1), points.gradient[:, :, :8]
     B[:, :, 0, :8, 5] = points.N[:, :8]
     B[:, :, 0, :8, 1] = -g[..., 0] / 2
@@ -132,5 +135,5 @@ def drilling(points: Quadrature) -> FloatArray:
 
 
 def _strain_rows(points: Quadrature, rows: int) -> FloatArray:
-    """Zero strain rows (e, q, rows, 9, 6): eight nodes and the bubble, six DoFs each."""
+    """Return zero strain rows (e, q, rows, 9, 6): eight nodes and the bubble, six DoFs each."""
     return np.zeros((*points.area.shape, rows, 9, 6))

@@ -1,8 +1,9 @@
-"""The blocks of a system's matrices, found from the matrices themselves.
+"""Find the blocks into which a system's matrices fall, and store matrices block by block for kernels.
 
 Equal blades couple only within one nodal diameter, so harmonics over the blades divide the blisk into small blocks.
 Nothing is assumed: the blocks are the sets of coordinates that the matrices connect. Mistuned blades make one large
-block, with the same code.
+block, with the same code. q are physical coordinates, y the same with the tips as harmonics, z is y in the order of the
+blocks, padded to rows of eight.
 """
 
 from dataclasses import dataclass
@@ -26,7 +27,7 @@ ROUNDING = 1e-14
 
 
 def aligned(array: FloatArray) -> FloatArray:
-    """A C-contiguous copy that begins at a cache line: rows of eight across two lines load half as fast."""
+    """Copy an array into memory that begins at a cache line: rows of eight across two lines load half as fast."""
     buffer = np.zeros(array.size + LANES)
     start = (-buffer.ctypes.data // 8) % LANES
     out = buffer[start : start + array.size].reshape(array.shape)
@@ -35,12 +36,15 @@ def aligned(array: FloatArray) -> FloatArray:
 
 
 def padded(size: int) -> int:
-    """The next multiple of eight."""
+    """Round `size` up to a multiple of eight."""
     return -(-size // LANES) * LANES
 
 
 def blade_harmonics(blades: int) -> FloatArray:
-    """Orthonormal real harmonics (blades, blades) over the number of the blade: 1, cos, sin, cos 2, ..., (-1)^k."""
+    """Return orthonormal real harmonics (blades, blades) over the number k of the blade, one in each column.
+
+    The columns are 1, cos, sin, cos 2, sin 2, ..., and for an even number of blades (-1)^k.
+    """
     k = np.arange(blades)
     columns = [np.ones(blades) / np.sqrt(blades)]
     for d in range(1, (blades + 1) // 2):
@@ -51,12 +55,12 @@ def blade_harmonics(blades: int) -> FloatArray:
 
 
 def coupled(matrix: FloatArray) -> BoolArray:
-    """Which entries couple two coordinates."""
+    """Return which entries of a matrix couple two coordinates: they exceed COUPLING_TOLERANCE times `scale_of`."""
     return np.asarray(np.abs(matrix) > COUPLING_TOLERANCE * scale_of(matrix))
 
 
 def scale_of(matrix: FloatArray) -> FloatArray:
-    """For each entry the geometric mean of its row's and its column's largest entry."""
+    """Return for each entry of a matrix the geometric mean of its row's and its column's largest entry."""
     size = np.abs(matrix)
     scale = np.sqrt(np.maximum(size.max(axis=0), size.max(axis=1)))
     return np.asarray(np.multiply.outer(scale, scale))
@@ -64,7 +68,7 @@ def scale_of(matrix: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Blocks:
-    """Blocks of coordinates and their places in z."""
+    """The blocks of a system, and the place of each coordinate in z."""
 
     transform: FloatArray
     """T (n, n), orthonormal, q = T y."""
@@ -79,11 +83,14 @@ class Blocks:
     """Number of rows of eight in z."""
 
     def product(self, matrix: FloatArray) -> Product:
-        """A physical matrix (n, n) in blocks. Entries between different blocks are dropped."""
+        """Store a physical matrix (n, n) in blocks, for products in kernels. Entries between blocks are dropped."""
         return self._packed(self.transform.T @ matrix @ self.transform, triangle=False)
 
     def without_zeros(self, matrix: FloatArray, like: FloatArray) -> Product:
-        """The same without rounding relative to the matrix `like` (n, n), and without lines of zeros."""
+        """Store a matrix as `product` does, without lines of zeros.
+
+        Entries count as zero where they are rounding (ROUNDING) relative to the matrix `like` (n, n).
+        """
         Y = self.transform.T @ matrix @ self.transform
         size = ROUNDING * scale_of(self.transform.T @ like @ self.transform)
         product = self._packed(np.where(np.abs(Y) > size, Y, 0.0), triangle=False)
@@ -93,10 +100,11 @@ class Blocks:
         return Product(np.ascontiguousarray(product.lines[kept]), product.entries)
 
     def damping(self, matrix: FloatArray, *, whole: bool = False) -> Product:
-        """The lower triangle of the symmetric part with half its diagonal: d^T C d = 2 d^T (triangle d).
+        """Store a damping matrix C so that a kernel gets d^T C d as 2 d^T (triangle d).
 
-        Within a block, Coriolis forces couple more coordinates than dampers. Entries that the symmetric part does not
-        couple are left out, unless `whole`.
+        The triangle is the lower one of the symmetric part with half its diagonal. Within a block, Coriolis forces
+        couple more coordinates than dampers. Entries that the symmetric part does not couple are left out, unless
+        `whole`.
         """
         Y = self.transform.T @ matrix @ self.transform
         Y = (Y + Y.T) / 2
@@ -107,27 +115,27 @@ class Blocks:
         return self._packed(lower, triangle=True, coupling=np.ones_like(Y, dtype=bool) if whole else coupled(Y))
 
     def connected(self, coordinates: IntArray) -> IntArray:
-        """All coordinates of y in the blocks of these, sorted."""
+        """Return all coordinates of y in the blocks that contain any of `coordinates`, sorted."""
         blocks = [block for bundle in self.lanes for block in bundle] + self.single
         found = [block[block >= 0] for block in blocks if np.isin(block, coordinates).any()]
         return np.sort(np.concatenate(found))
 
     def vector(self, y: FloatArray) -> FloatArray:
-        """Y (n,) as z."""
+        """Return y (n,) in the order of z, with zeros as padding."""
         z = np.zeros(self.rows * LANES)
         z[self.place] = y
         return aligned(z)
 
     def to_z(self, q: FloatArray) -> FloatArray:
-        """Z of physical coordinates (n,)."""
+        """Return physical coordinates q (n,) as z."""
         return self.vector(self.transform.T @ q)
 
     def to_q(self, z: FloatArray) -> FloatArray:
-        """Physical coordinates (n,) of z."""
+        """Return z as physical coordinates q (n,)."""
         return np.asarray(self.transform @ z[self.place])
 
     def _packed(self, Y: FloatArray, *, triangle: bool, coupling: BoolArray | None = None) -> Product:
-        """Lines and entries of a matrix in y. A triangle has only the columns up to its rows of results.
+        """Return lines and entries of a matrix in y. A triangle has only the columns up to its rows of results.
 
         In blocks side by side only the entries of a triangle that `coupling` (n, n) connects.
         """
@@ -159,20 +167,20 @@ class Blocks:
 
 
 def parts_of(rows: int) -> list[slice]:
-    """Rows of results in parts of nearly equal size, none larger than a line allows."""
+    """Divide rows of results into parts of nearly equal size, none larger than MOST_ROWS, which one line allows."""
     count = -(-rows // MOST_ROWS)
     ends = [part * (rows // count) + min(part, rows % count) for part in range(count + 1)]
     return [slice(start, end) for start, end in pairwise(ends)]
 
 
 def _coupling_of(bundle: IntArray, coupling: BoolArray) -> BoolArray:
-    """Which coordinates (m, m) of a bundle any of its blocks couples."""
+    """Return which coordinates (m, m) of a bundle any of its blocks couples."""
     used = bundle[bundle[:, 0] >= 0]
     return np.asarray(np.any([coupling[np.ix_(block, block)] for block in used], axis=0))
 
 
 def _triangle_parts(coupling: BoolArray) -> list[tuple[slice, slice]]:
-    """Rows and columns of the lower triangle (m, m) in blocks that cover all connected entries.
+    """Return rows and columns of the lower triangle (m, m) in blocks that cover all connected entries.
 
     A connected set consists of runs of neighbours. Each run makes a block with itself and with each run of the set
     before it.
@@ -202,7 +210,12 @@ def _append(
 
 
 def find_blocks(matrices: list[FloatArray], blades: int) -> Blocks:
-    """Blocks of all `matrices` (n, n), whose first 3 blades coordinates are tips, three to a blade."""
+    """Find the blocks of coordinates that no entry of any of the `matrices` (n, n) couples with each other.
+
+    The first 3 `blades` coordinates are tips, three to a blade. They are changed to harmonics over the blades first:
+    equal blades then couple only within one nodal diameter. Blocks are the connected components of the entries that
+    `coupled` finds. Blocks of one size are laid side by side in lanes of eight where that saves work.
+    """
     n = len(matrices[0])
     T = np.eye(n)
     for a in range(3):
@@ -224,7 +237,7 @@ def find_blocks(matrices: list[FloatArray], blades: int) -> Blocks:
 
 
 def _arranged(parts: list[IntArray]) -> tuple[list[IntArray], list[IntArray]]:
-    """Blocks of one size side by side in lanes where this is less work than one by one."""
+    """Lay blocks of one size side by side in lanes where this is less work than one by one."""
     lanes: list[IntArray] = []
     single: list[IntArray] = []
     for size in sorted({len(part) for part in parts}, reverse=True):
@@ -242,7 +255,7 @@ def _arranged(parts: list[IntArray]) -> tuple[list[IntArray], list[IntArray]]:
 
 
 def half_turn(blades: int) -> int:
-    """Number of blades that determine all: half of an even number, else all.
+    """Return the number of blades whose tips determine all: half of an even number, else all.
 
     Harmonics of an even number of blades keep or change their sign after half a turn.
     """
@@ -250,13 +263,13 @@ def half_turn(blades: int) -> int:
 
 
 def share_width(blades: int) -> int:
-    """Numbers for the recovery of tips for each of three coordinates: the sums over the harmonics by halves."""
+    """Return how many scratch numbers `recover_tips` needs for each tip coordinate: sums over harmonics by halves."""
     half = half_turn(blades)
     return blades // half * padded(half)
 
 
 def system_harmonics(blocks: Blocks, blades: int) -> Harmonics:
-    """The harmonics of a system's blades, and their places in z."""
+    """Make the constants by which kernels recover blade tips from z, for a system with `blades` equal places."""
     width, n, half = padded(blades), len(blocks.place), half_turn(blades)
     order = np.arange(blades)
     if half < blades:  # those of even nodal diameters first

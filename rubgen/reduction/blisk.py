@@ -1,4 +1,4 @@
-"""Two-step Craig-Bampton reduction of the blisk, its basis at rest."""
+"""Reduce the blisk by Craig-Bampton in two steps, with its basis at rest."""
 
 from dataclasses import dataclass
 
@@ -63,13 +63,14 @@ class _Joined:
 def reduce_blisk(
     disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction, *, cyclic: bool = True
 ) -> ReducedBlisk:
-    """Reduced blisk. It does not depend on the lateral stiffness, which acts only on masters.
+    """Reduce the blisk to its tips, O_d x and y, and modes.
 
     Step 1: each blade keeps root, tip and `blade_modes` fixed-interface modes. The disk keeps O_d, the rim nodes with
     blades and `disk_modes`. Penalties join blades and rim. Step 2, on the axial, tilt and torsion springs: the tips'
     translations and O_d x, y remain, with `blisk_modes`. Coriolis and centrifugal matrices are projected on this basis
     of rest, which is more accurate than a basis of the spinning blisk. A number of disk modes that divides a pair, as 4
-    does in the preset, splits frequency pairs by up to 1e-5.
+    does in the preset, splits frequency pairs by up to 1e-5. The lateral stiffness has no influence: it acts on
+    masters.
 
     - disk, blades, support: the machine's.
     - reduction: numbers of modes.
@@ -98,13 +99,13 @@ def reduce_blisk(
 
 
 def _turning(disk: Disk, blades: BladeRow) -> Turning:
-    """The disk's turns: rings of corner nodes have two nodes an element, rings between them one."""
+    """Return the disk's turns: rings of corner nodes have two nodes an element, rings between them one."""
     rings = np.arange(2 * disk.radial_elements + 1)
     return disk_turning(np.where(rings % 2, 1, 2) * disk.circumferential_elements, blades.count)
 
 
 def _join_components(model: BliskModel, reduction: Reduction, turning: Turning | None) -> _Joined:
-    """First step: disk [O_d, rim nodes, modes], then blades [root, tip, modes], joined at the rim."""
+    """Take the first step: disk [O_d, rim nodes, modes], then blades [root, tip, modes], joined at the rim."""
     count, n_blade = len(model.angles), len(model.beam.f_c)
     plate, blade = slice(0, model.disk_size), slice(model.disk_size, model.disk_size + n_blade)
     ends = np.concatenate([np.arange(6), np.arange(n_blade - 6, n_blade)])

@@ -1,4 +1,4 @@
-"""The reduced blisk in a cache on disk, by a hash of all its inputs and of its code."""
+"""Keep the reduced blisk in a cache on disk, under a hash of all its inputs and of its code."""
 
 import hashlib
 import io
@@ -32,7 +32,7 @@ PATIENCE_S = 120.0
 
 
 def cached_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> ReducedBlisk:
-    """`reduce_blisk` from the cache, or made and stored there, with the same bits. Parameters as there.
+    """Return the reduced blisk from the cache, or make it with `reduce_blisk` and store it. The bits are the same.
 
     Lateral stiffness and the number of casing modes are no inputs, so runs that vary them share one file. A damaged
     file is made again. Where nothing can be stored, each process makes the blisk. Several processes make it once.
@@ -54,7 +54,7 @@ def cached_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: 
 
 @contextmanager
 def _lock(path: Path) -> Iterator[None]:
-    """One process makes the file at `path`. Where files cannot be locked in time, several may make the same bytes."""
+    """Let one process make the file at `path`. Where files cannot be locked in time, several make the same bytes."""
     lock = FileLock(path.with_suffix(".lock"), timeout=PATIENCE_S)
     try:
         lock.acquire()
@@ -84,7 +84,7 @@ def _key(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reductio
 
 @cache
 def _digest_of_code(package: Path) -> bytes:
-    """Digest of all sources of a reduced blisk, read once in a process."""
+    """Return a digest of all sources of a reduced blisk, read once in a process."""
     digest = hashlib.sha256()
     for folder in ("fem", "reduction", "machine"):
         for source in sorted((package / folder).glob("*.py")):

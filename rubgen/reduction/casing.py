@@ -1,4 +1,4 @@
-"""The casing's reduction: its first modes."""
+"""Reduce the casing to its first modes."""
 
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -33,7 +33,7 @@ class ReducedCasing:
 
 
 def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
-    """The first `modes` modes of the casing, mass-normalised, and its undeformed inner surface.
+    """Compute the first `modes` modes of the casing, mass-normalised, and its undeformed inner surface.
 
     Solves K phi = omega^2 M phi. Signs are fixed: radial plus tangential displacement is positive at the node nearest
     to the lobe axis, where a symmetric mode is radial and an antisymmetric one tangential. Of two modes of the same
@@ -91,7 +91,7 @@ def _lowest_modes(model: CasingModel, modes: int) -> tuple[FloatArray, FloatArra
 def _oriented(
     displacements: FloatArray, rotations: FloatArray, eigenvalues: FloatArray, angles: FloatArray, lobe_angle: float
 ) -> tuple[FloatArray, FloatArray]:
-    """The same modes, with pairs of equal frequency turned to the lobe axis and every sign fixed."""
+    """Return the same modes, with pairs of equal frequency turned to the lobe axis and every sign fixed."""
     oriented, turned = np.array(displacements), np.array(rotations)
     node = round(lobe_angle / (angles[1] - angles[0])) % angles.size
     e_r = np.array([np.cos(angles[node]), np.sin(angles[node])])

@@ -1,4 +1,4 @@
-"""Craig-Bampton reduction of one component, and the rotational symmetry of the disk."""
+"""Reduce one component by Craig and Bampton's method, with the rotational symmetry of the disk."""
 
 from dataclasses import dataclass
 
@@ -20,7 +20,7 @@ FIRST = 12
 
 @dataclass(frozen=True, kw_only=True)
 class Turning:
-    """Turns of the disk by whole blade pitches. Its DoFs are O_d first, then six a node."""
+    """Turns of the disk by whole blade pitches. The disk's DoFs are O_d first, then six a node."""
 
     place: IntArray
     """(blades, nodes + 1): after a turn by k pitches, node i is where node place[k, i] was."""
@@ -28,9 +28,9 @@ class Turning:
     """R_k (blades, 6, 6)."""
 
     def copy_columns(self, V: FloatArray) -> None:
-        """Fill the columns of V (n, 6 + 6 blades + any) of the rim nodes 1, 2, ...
+        """Fill the columns of the rim nodes 1, 2, ... of V with turned copies of node 0's columns.
 
-        with turned copies of node 0's columns.
+        V is (n, 6 + 6 blades + any).
         """
         first = V[:, 6:FIRST].reshape(-1, 6, 6)
         for k in range(1, len(self.place)):
@@ -39,7 +39,10 @@ class Turning:
             V.reshape(-1, 6, V.shape[1])[self.place[k], :, 6 * k + 6 : 6 * k + 12] = turned
 
     def project(self, X: SparseMatrix, V: FloatArray, *, skew: bool = False) -> FloatArray:
-        """V^T X V of a symmetric or skew X (n, n), with V (n, 6 + 6 blades + modes) from `copy_columns`."""
+        """Return V^T X V of a symmetric or `skew` X (n, n), with V (n, 6 + 6 blades + modes) from `copy_columns`.
+
+        Only the columns of O_d, node 0 and the modes are multiplied; the others follow by symmetry.
+        """
         blades, size = len(self.place), V.shape[1]
         modes = slice(6 + 6 * blades, size)
         solved = np.r_[:FIRST, modes]
@@ -55,7 +58,7 @@ class Turning:
 
 
 def disk_turning(rings: IntArray, blades: int) -> Turning:
-    """Turns of a disk with rings of `rings` (any,) nodes each, multiples of the number of blades."""
+    """Make the turns of a disk whose rings have `rings` (any,) nodes each, multiples of the number of blades."""
     starts = 1 + np.concatenate([[0], np.cumsum(rings)[:-1]])
     place = np.zeros((blades, 1 + int(rings.sum())), dtype=np.int64)
     for start, count in zip(starts, rings, strict=True):
@@ -69,7 +72,7 @@ def disk_turning(rings: IntArray, blades: int) -> Turning:
 def craig_bampton(
     M: SparseMatrix, K: SparseMatrix, masters: IntArray, modes: int, turning: Turning | None = None
 ) -> FloatArray:
-    """Basis V (n, masters + modes) of constraint modes and mass-normalised fixed-interface modes.
+    """Return the basis V (n, masters + modes) of constraint modes and mass-normalised fixed-interface modes.
 
     q = V p, its rows in the order of the DoFs. For the masters V is [I, 0], for all other DoFs [-K_ss^-1 K_sm, Phi],
     with Phi the lowest modes of K_ss Phi = M_ss Phi omega^2 (Craig and Bampton 1968). p begins with the masters' own

@@ -1,4 +1,4 @@
-"""Steady centrifugal displacement of the blade tips, from the full model."""
+"""Compute the steady centrifugal displacement of the blade tips, from the full model."""
 
 from dataclasses import dataclass
 
@@ -15,9 +15,10 @@ MISTUNED_BASIS_SIZE = 20
 
 @dataclass(frozen=True, kw_only=True)
 class CentrifugalGrowth:
-    """(K + Omega^2 A) y = Omega^2 f in a small basis: K, A (m, m), f (m,); `tips` (blades, 3, m) of its vectors.
+    """The steady displacement in a small basis of m vectors: (K + Omega^2 A) y = Omega^2 f gives the coefficients y.
 
-    `moment` (2, m) in kg is each vector's int rho (u_x, u_y) dV, by which it shifts the centre of mass.
+    K and A are (m, m), f (m,). `tips` (blades, 3, m) are the vectors at the tips. `moment` (2, m) in kg is each
+    vector's int rho (u_x, u_y) dV, by which it shifts the centre of mass.
     """
 
     K: FloatArray
@@ -27,12 +28,12 @@ class CentrifugalGrowth:
     moment: FloatArray
 
     def at(self, speed: float) -> FloatArray:
-        """Tip displacement (blades, 3) in m along the blades' axes at `speed` in rad/s."""
+        """Return the tips' displacement (blades, 3) in m along the blades' axes at `speed` in rad/s."""
         displacement: FloatArray = self.tips @ self._solve(speed)
         return displacement
 
     def unbalance(self, speed: float) -> FloatArray:
-        """Unbalance (2,) in kg m along x and y that uneven growth at `speed` in rad/s brings; 0 for equal blades."""
+        """Return the unbalance (2,) in kg m along x and y by uneven growth at `speed` in rad/s; 0 for equal blades."""
         U: FloatArray = self.moment @ self._solve(speed)
         return U
 
@@ -41,11 +42,12 @@ class CentrifugalGrowth:
 
 
 def centrifugal_growth(model: BliskModel) -> CentrifugalGrowth:
-    """Galerkin solution of (K + Omega^2 (K_sigma - S)) u = Omega^2 f_c in the Krylov space of K^-1 A and K^-1 f_c.
+    """Solve (K + Omega^2 (K_sigma - S)) u = Omega^2 f_c for the steady displacement at any speed, in a small basis.
 
-    K is on its axial, tilt and torsion springs with O_d held laterally, where a symmetric load leaves it. Equal to the
-    direct solution to 1e-9 of its size at the preset's top speed: tests/reduction/test_reduced_model.py. Blades that
-    differ grow unevenly, and what holds O_d then bears Omega^2 `unbalance`: the reduced model takes it over as a load.
+    Galerkin's method in the Krylov space of K^-1 A and K^-1 f_c. K is on its axial, tilt and torsion springs with O_d
+    fixed laterally, where a symmetric load leaves it. Equal to the direct solution to 1e-9 of its size at the preset's
+    top speed: tests/reduction/test_reduced_model.py. Blades that differ grow unevenly, and O_d then bears Omega^2
+    `unbalance`: the reduced model takes it over as a load.
     """
     equal = bool(np.ptp(model.blade_stiffness) == 0)
     K, A = model.held.K, model.K_sigma - model.S
