@@ -35,7 +35,9 @@ ROTATION = ("start", "end", "seconds", "swing", "period")
 
 
 def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
-    """The arrays from which `label` can be made again: about 0.27 MB for 500 turns and 36 blades, and 26 bytes a touch.
+    """Return the arrays of a response from which `label` can be made again.
+
+    They have about 0.27 MB for 500 turns and 36 blades, and 26 bytes a touch.
 
     - `scalars` (9,): the numbers named by `SCALARS`.
     - `section` (turns, 3 blades + 4 + 2 casing modes), once a turn: displacements of the tips, x, y, v_x, v_y of the
@@ -66,7 +68,7 @@ def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
 
 
 def response_of(record: CompactRecord) -> Response:
-    """The response of a compact record: without taps and their orders, energy, blisk modes and velocities of tips."""
+    """Make a response from a compact record. It has no taps and orders, energy, blisk modes and velocities of tips."""
     scalars = dict(zip(SCALARS, record["scalars"].tolist(), strict=True))
     blades, casing = int(scalars["n_blades"]), int(scalars["n_casing"])
     q, v = _wide(record["section"], blades, casing)
@@ -97,7 +99,10 @@ def response_of(record: CompactRecord) -> Response:
 
 
 def in_record_precision(response: Response) -> Response:
-    """The response in the precision of the compact record, with its taps and orders."""
+    """Round a response to the precision of the compact record, with its taps and orders as they are.
+
+    Labels of a run and labels made again from its compact record are therefore equal.
+    """
     rounded = response_of(compact_record(response))
     return replace(
         rounded, taps=response.taps, changing_speed=response.changing_speed, window_orders=response.window_orders
@@ -125,7 +130,7 @@ def _narrow(q: FloatArray, v: FloatArray, response: Response) -> npt.NDArray[np.
 
 
 def _wide(rows: npt.NDArray[Any], blades: int, casing: int) -> tuple[FloatArray, FloatArray]:
-    """Q and v (any, 3 blades + 2 + casing) of rows of a record."""
+    """Return q and v (any, 3 blades + 2 + casing) of rows of a record."""
     centre = 3 * blades
     rows = rows.astype(np.float64) if rows.size else np.zeros((0, centre + 4 + 2 * casing))
     q = np.concatenate([rows[:, : centre + 2], rows[:, centre + 4 : centre + 4 + casing]], axis=1)

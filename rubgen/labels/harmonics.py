@@ -1,4 +1,4 @@
-"""Amplitudes and phases of the taps at multiples of the rotation frequency, and orders above the noise."""
+"""Compute amplitudes and phases of taps at multiples of the rotation frequency f_r, and orders above the noise."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -43,37 +43,38 @@ class TapOrders:
 
     @property
     def even_share(self) -> float:
-        """Share of the sum of squares on even orders; NaN where all amplitudes are zero."""
+        """Share of the sum of squared amplitudes that is on even orders; NaN where all amplitudes are zero."""
         return _share(self.amplitudes, self.amplitudes[1::2])
 
     @property
     def odd_share(self) -> float:
-        """Share of the sum of squares on odd orders; NaN where all amplitudes are zero."""
+        """Share of the sum of squared amplitudes that is on odd orders; NaN where all amplitudes are zero."""
         return _share(self.amplitudes, self.amplitudes[0::2])
 
     @property
     def dominant(self) -> int:
-        """The k of the largest amplitude, 0 when there is none."""
+        """The order k of the largest amplitude; 0 where all amplitudes are zero."""
         return int(np.argmax(self.amplitudes)) + 1 if self.amplitudes.any() else 0
 
     @property
     def present(self) -> tuple[int, ...]:
-        """The k whose amplitude is above the least and 20 dB above the floor."""
+        """The orders k that stand out: amplitude above FLOOR and 20 dB above the median of the lines around k."""
         stands = (self.amplitudes > FLOOR) & (self.amplitudes >= RATIO * self.floors)
         return tuple((np.flatnonzero(stands) + 1).tolist())
 
 
 def harmonics(response: Response) -> dict[str, TapOrders]:
-    """Orders of every tap over exactly the last 100 turns (all turns of a shorter record), at the step rate.
+    """Compute the orders of every tap over exactly the last 100 turns (all turns of a shorter record).
 
-    `casing_even` and `casing_odd` are the parts of the casing's radial acceleration at 0 degrees with even and with odd
-    circumferential order, (a(0) +- a(pi)) / 2. They are present where both accelerations were recorded.
+    The taps have the rate of the steps. `casing_even` and `casing_odd` are the parts of the casing's radial
+    acceleration at 0 degrees with even and with odd circumferential order, (a(0) +- a(pi)) / 2. They are present where
+    both accelerations were recorded.
     """
     return {name: tap_orders(tap, response) for name, tap in with_casing_fields(response.taps).items()}
 
 
 def with_casing_fields(taps: dict[str, Array]) -> dict[str, Array]:
-    """The taps, and the even and odd part of the casing's acceleration as in `harmonics` where both are recorded."""
+    """Add the even and odd part of the casing's acceleration to `taps`, as in `harmonics`, where both are recorded."""
     if OPPOSITE_TAP not in taps:
         return taps
     first, second = taps[MARKED_TAP], taps[OPPOSITE_TAP]
@@ -81,7 +82,7 @@ def with_casing_fields(taps: dict[str, Array]) -> dict[str, Array]:
 
 
 def tap_orders(tap: FloatArray, response: Response) -> TapOrders:
-    """The orders of one tap."""
+    """Compute the orders of one tap, given at every step of the record."""
     turns = spectrum_turns(response)
     looked_at = turns * (max(HIGHEST_ORDER, response.n_blades + SIDEBANDS) + 1)
     lines = order_lines(tap, response)[:looked_at]
@@ -98,14 +99,15 @@ def tap_orders(tap: FloatArray, response: Response) -> TapOrders:
 
 
 def spectrum_turns(response: Response) -> int:
-    """Number of turns that the spectrum covers: 100, or all of a shorter record."""
+    """Return the number of turns that a spectrum covers: 100, or all of a shorter record."""
     return min(SPECTRUM_TURNS, response.record_turns)
 
 
 def order_lines(tap: FloatArray, response: Response) -> ComplexArray:
-    """Peak amplitudes and phases (complex) at orders 0, 1/turns, ...: 2 X / n of the last n = turns * steps values.
+    """Compute peak amplitudes and phases (complex) of a tap at orders 0, 1/turns, 2/turns, ...: 2 X / n of a DFT.
 
-    The record ends with a turn, so the first value is at theta = 0.
+    It covers the last n = turns * steps values. The record ends with a turn, so the first value is at theta = 0. Raises
+    ValueError where the tap is shorter.
     """
     count = spectrum_turns(response) * response.steps_per_turn
     if tap.size < count:
@@ -114,14 +116,15 @@ def order_lines(tap: FloatArray, response: Response) -> ComplexArray:
 
 
 def order_spectrum(tap: FloatArray, response: Response) -> FloatArray:
-    """The amplitudes of `order_lines`."""
+    """Compute the amplitudes of `order_lines`."""
     return np.asarray(np.abs(order_lines(tap, response)), dtype=np.float64)
 
 
 def order_floors(spectrum: FloatArray, turns: int) -> FloatArray:
-    """Median amplitude of the lines around each order k = 1 .. 20; 0 where there is none.
+    """Return the median amplitude of the lines around each order k = 1 .. 20; 0 where there is none.
 
-    These are the lines within half an order of k, without the lines within 0.05 of k.
+    These are the lines within half an order of k, without the lines within 0.05 of k. `spectrum` has `turns` lines per
+    order.
     """
     near, half = turns // 20, turns // 2
     beside = np.concatenate([np.arange(-half, -near), np.arange(near + 1, half + 1)])
@@ -135,7 +138,7 @@ def order_floors(spectrum: FloatArray, turns: int) -> FloatArray:
 
 
 def fractional_amplitudes(tap: FloatArray, response: Response) -> FloatArray:
-    """Peak amplitudes at FRACTIONS of f_r over the last 96 turns (in a shorter record, the largest multiple of 12).
+    """Compute peak amplitudes at FRACTIONS of f_r over the last 96 turns (or the largest multiple of 12 below).
 
     Twelve turns are a whole number of periods of each fraction. The tap is therefore averaged over all its stretches of
     twelve turns, which removes other orders and noise. NaN in a record of fewer turns.

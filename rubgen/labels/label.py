@@ -1,4 +1,4 @@
-"""All labels of one run."""
+"""Make all labels of one run."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ from rubgen.solver.response import Response
 
 
 def label(response: Response) -> Labels:
-    """The labels of a run that ended with status OK; every one is defined in docs/labels.md.
+    """Make the labels of a run that ended with status OK. Every label is defined in docs/labels.md.
 
     Labels describe the true response, before any sensor. Contact and motion come from the whole record. Orders come
     from its last 100 turns. Only the number of windows with amplitudes depends on the length of the taps.

@@ -105,7 +105,7 @@ class Labels:
 
     @property
     def changes(self) -> tuple[Change, ...]:
-        """Changes of rub and motion over time; none at a steady speed."""
+        """Changes of rub and motion over time; empty at a steady speed."""
         return self.history.changes if self.history else ()
 
     def __repr__(self) -> str:

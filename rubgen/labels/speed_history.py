@@ -1,4 +1,4 @@
-"""Labels of a run whose speed changes: of the whole record, and from window to window."""
+"""Label a run whose speed changes: the whole record, and how rub and motion change over time."""
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -58,7 +58,10 @@ class SpeedHistory:
 
 
 def speed_history(response: Response) -> SpeedHistory:
-    """The labels over time of a response whose speed changes. Raises ValueError at a steady speed."""
+    """Find the speeds at which a rub begins and ends, and every change of rub or motion, as the speed changes.
+
+    Raises ValueError for a response at a steady speed.
+    """
     changing = response.changing_speed
     if changing is None:
         raise ValueError("a steady speed has no history")
@@ -72,7 +75,7 @@ def speed_history(response: Response) -> SpeedHistory:
 
 
 def changing_motion(rub: bool) -> Motions:
-    """The motion of a whole record whose speed changes: the forced whirl without rub, else undecided."""
+    """Return the motion of a whole record whose speed changes: the forced whirl without rub, else undecided."""
     return (
         Motions(blisk=UNDECIDED, casing=UNDECIDED, system=UNDECIDED)
         if rub
@@ -81,7 +84,7 @@ def changing_motion(rub: bool) -> Motions:
 
 
 def changing_orders(windows: Windows) -> dict[str, TapOrders]:
-    """Orders of a whole record at a changing speed.
+    """Average the orders of a record at a changing speed over its windows.
 
     Amplitudes are root mean squares over the windows' amplitudes. Floors are root mean squares over their standard
     errors. Phases, fractional orders and blade passing are unknown: NaN.
@@ -102,7 +105,10 @@ def _rms(values: FloatArray) -> FloatArray:
 
 
 def by_angle(response: Response) -> ContactEvents:
-    """The touches with steps of equal angle, `steps_per_turn` a turn, instead of steps of equal time."""
+    """Return the touches counted in steps of equal angle, `steps_per_turn` a turn, instead of steps of equal time.
+
+    At a steady speed both are the same.
+    """
     changing, events = response.changing_speed, response.events
     if changing is None:
         return events
@@ -118,7 +124,7 @@ def _speed_at(changing: ChangingSpeed, time: float) -> float:
 
 
 def _changes(response: Response, changing: ChangingSpeed, edges: IntArray) -> tuple[Change, ...]:
-    """The first turn, and every turn where rub or motion differs from before."""
+    """Return the first turn, and every turn where rub or motion differs from before."""
     times, rubs = turn_times(response, changing), _rubbing(response)
     edges = np.union1d(edges, np.flatnonzero(np.diff(rubs)) + 1)
     states = [_state(response, a, b, rub=bool(rubs[a])) for a, b in pairwise(edges.tolist())]
@@ -143,7 +149,7 @@ def _changes(response: Response, changing: ChangingSpeed, edges: IntArray) -> tu
 
 
 def _start_of(response: Response, times: FloatArray, turn: int, rub: bool, rubbed: bool | None) -> float:
-    """When a stretch begins: with the first touch, after the last touch, or with its first turn."""
+    """Return when a stretch begins: with the first touch, after the last touch, or with its first turn."""
     start, dt = float(times[turn]), response.dt
     begun = response.events.start_step * dt
     if rub and rubbed is False:
@@ -155,7 +161,7 @@ def _start_of(response: Response, times: FloatArray, turn: int, rub: bool, rubbe
 
 
 def _rubbing(response: Response) -> BoolArray:
-    """Whether there is rub in each turn (turns,). Touches that are fewer than WINDOW_TURNS turns apart are one rub."""
+    """Return whether there is rub in each turn (turns,). Touches fewer than WINDOW_TURNS turns apart are one rub."""
     touched = np.flatnonzero(response.contact_steps_per_turn)
     rubs = np.zeros(response.record_turns, dtype=bool)
     rubs[touched] = True
@@ -166,7 +172,7 @@ def _rubbing(response: Response) -> BoolArray:
 
 
 def _state(response: Response, first: int, last: int, *, rub: bool) -> tuple[bool, Motion, Motion, Motion]:
-    """Rub, and motion of blisk, casing and both, of the turns first .. last - 1."""
+    """Return rub, and motion of blisk, casing and both, of the turns first .. last - 1."""
     if not rub:
         window = _cut(response, first, last)
         casing = AT_REST if casing_rests(window) else UNDECIDED
@@ -181,7 +187,7 @@ def _state(response: Response, first: int, last: int, *, rub: bool) -> tuple[boo
 
 
 def _drift(response: Response, first: int, last: int) -> float:
-    """Range of the speed over these turns, as a share of it."""
+    """Return the range of the speed over these turns, as a share of it."""
     changing = response.changing_speed
     if changing is None:
         return 0.0
@@ -190,7 +196,7 @@ def _drift(response: Response, first: int, last: int) -> float:
 
 
 def _cut(response: Response, first: int, last: int) -> Response:
-    """A response of the turns first .. last - 1, with what their motion class needs."""
+    """Return a response of the turns first .. last - 1, with what their motion class needs."""
     turns = slice(first, last)
     return replace(
         response,

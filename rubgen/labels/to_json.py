@@ -1,4 +1,4 @@
-"""Labels as a dictionary for JSON, by the names in every file and command."""
+"""Turn labels into a dictionary for JSON, by their names in every file and command."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -15,7 +15,7 @@ MOTION_LABELS = ("motion", "motion_blisk", "motion_casing")
 
 
 def labels_to_json(labels: Labels) -> dict[str, object]:
-    """The labels of one run by their public names, as JSON-ready Python values.
+    """Return the labels of one run by their public names, as plain Python values.
 
     The keys are in the order of `rubgen.labels.registry`, which lists names, units and meanings. The orders of each
     true signal follow, `<tap>_orders` and so on. Undefined values (no period, a share of nothing) are None.
@@ -27,19 +27,19 @@ def labels_to_json(labels: Labels) -> dict[str, object]:
 
 
 def remade_labels(record: CompactRecord) -> dict[str, object]:
-    """The labels that can be made from the compact record of a run, by their public names: all except orders."""
+    """Make labels from the compact record of a run, by their public names: all except labels of orders."""
     values = labels_to_json(label(response_of(record)))
     return {name: value for name, value in values.items() if name not in FROM_TAPS}
 
 
 def window_labels(labels: Labels) -> dict[str, object]:
-    """The labels of each true signal in windows, by their public names: `<tap>_window_amplitudes`."""
+    """Return the labels of each true signal in windows by their public names, `<tap>_window_amplitudes`."""
     orders = labels.windows.orders
     return {f"{tap}_{each.ending}": each.value(values) for tap, values in orders.items() for each in WINDOW_LABELS}
 
 
 def _number(value: float) -> float | None:
-    """A number for JSON, which has no NaN: NaN becomes None."""
+    """Return a number for JSON, which has no NaN: NaN becomes None."""
     return float(value) if math.isfinite(value) else None
 
 
@@ -58,9 +58,10 @@ def _plain(kind: str, value: Any) -> object:
 
 
 def motion_classes(labels: Labels, start: float, seconds: float) -> list[tuple[float, dict[str, str]]]:
-    """Classes of motion by the names of their labels, each with the time in s after `start` from which it is valid.
+    """Return the classes of motion in a part of the record, each with the time in s from which it is valid.
 
-    One class of a steady run; at a changing speed those within `seconds` from `start`, a time of the record in s.
+    Times count from `start`, a time of the record in s; the part is `seconds` long. A class is a table of the labels in
+    MOTION_LABELS. A steady run has one entry, at time 0.
     """
     if labels.history is None:
         stretches = [(0.0, labels.motion, labels.motion_blisk, labels.motion_casing)]

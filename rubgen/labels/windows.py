@@ -1,4 +1,4 @@
-"""Labels of short windows of a record, for users who cut its signals."""
+"""Label short windows of a record, for users who cut its signals."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -30,12 +30,12 @@ class Windows:
 
 
 def window_edges(response: Response) -> IntArray:
-    """First turn of each window, and the number of turns."""
+    """Return the first turn of each window, then the number of turns (windows + 1,)."""
     return np.append(np.arange(0, response.record_turns, WINDOW_TURNS), response.record_turns)
 
 
 def windows(response: Response) -> Windows:
-    """The windows of a record at a steady or a changing speed."""
+    """Compute impulse, duty and orders of each window of WINDOW_TURNS turns, at a steady or a changing speed."""
     edges, changing = window_edges(response), response.changing_speed
     times = turn_times(response, changing)[edges]
     if changing is None:
@@ -59,7 +59,7 @@ def windows(response: Response) -> Windows:
 
 
 def turn_times(response: Response, changing: ChangingSpeed | None) -> FloatArray:
-    """Start of each turn, and end of the record (record_turns + 1,), s."""
+    """Return the start of each turn, and the end of the record (record_turns + 1,), s."""
     turns = range(response.record_turns + 1)
     if changing is None:
         return np.asarray(response.turn_seconds * np.array(turns))
@@ -67,7 +67,10 @@ def turn_times(response: Response, changing: ChangingSpeed | None) -> FloatArray
 
 
 def _standard_error(amplitudes: ComplexArray) -> FloatArray:
-    """Of the mean over turns (turns, ...), from what successive turns differ by, where a slow drift is small."""
+    """Return the standard error of the mean over turns (turns, ...), from differences of successive turns.
+
+    A slow drift is small in them.
+    """
     if len(amplitudes) < 2:
         return np.asarray(np.abs(amplitudes[0]), dtype=np.float64)
     return np.asarray(np.sqrt(np.mean(np.abs(np.diff(amplitudes, axis=0)) ** 2, axis=0) / 2 / len(amplitudes)))

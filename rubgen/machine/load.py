@@ -1,4 +1,4 @@
-"""Machines from TOML files: the presets of rubgen, and the user's own in the same form."""
+"""Load machines from TOML files: the presets of rubgen, and the user's own in the same form."""
 
 import hashlib
 import json
@@ -19,12 +19,12 @@ ABOUT_MACHINE = re.compile(r"(?:^|: )machine .*?: (its .*)")
 
 
 def preset_names() -> list[str]:
-    """Names of the machines that come with rubgen, sorted."""
+    """Return the names of the machines that come with rubgen, sorted."""
     return sorted(path.stem for path in PRESETS.glob("*.toml"))
 
 
 def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
-    """The preset of that name, or the machine in that TOML file; relative paths start from `folder`.
+    """Load the preset with that name, or the machine in that TOML file; relative paths start from `folder`.
 
     Raises UserError with file, key, value and what is allowed where there is none or it is not a valid machine.
     """
@@ -38,9 +38,9 @@ def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
 
 @contextmanager
 def file_named(name_or_path: str, folder: Path | None = None) -> Iterator[None]:
-    """Add the machine's file to the message of a UserError about a machine, `machine <name>: its ...`.
+    """Add the machine's file to a UserError that the block raises about a machine, "machine <name>: its ...".
 
-    The code that builds the model of a machine knows only its name.
+    The code that builds the model of a machine knows only its name. A preset has no file, and nothing is added.
     """
     try:
         yield
@@ -52,7 +52,7 @@ def file_named(name_or_path: str, folder: Path | None = None) -> Iterator[None]:
 
 
 def machine_id(machine: Machine) -> str:
-    """Twelve hexadecimal digits from all values of the machine: sha256 of its sorted JSON.
+    """Return twelve hexadecimal digits from all values of the machine: sha256 of its sorted JSON.
 
     Default values are left out, so a key that a later version adds changes no machine's digits.
     """

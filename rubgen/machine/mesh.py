@@ -1,4 +1,4 @@
-"""Rules for the numbers of a machine's meshes."""
+"""Check the numbers of a machine's meshes. A problem is a sentence with key, value and remedy."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ from rubgen.machine.machine import BladeRow, Casing, Disk
 
 
 def disk_nodes(disk: Disk) -> int:
-    """Nodes of the disk: rings of corner nodes have two an element, the rings between them one."""
+    """Return the number of nodes of the disk: rings of corner nodes have two an element, the rings between them one."""
     return disk.circumferential_elements * (3 * disk.radial_elements + 2)
 
 
 def pitch_problem(disk: Disk, blades: BladeRow) -> str | None:
-    """The problem where blades do not meet corner nodes of the rim, or do not balance their pull; None without one."""
+    """Return the problem where blades do not meet corner nodes of the rim, or a single blade's pull is not balanced.
+
+    None without a problem.
+    """
     elements, count = disk.circumferential_elements, blades.count
     if count < 2:
         return f"blades.count = {count}: a blisk needs at least 2 equal blades; raise it"
@@ -26,7 +29,7 @@ def pitch_problem(disk: Disk, blades: BladeRow) -> str | None:
 
 
 def node_problem(casing: Casing) -> str | None:
-    """The problem where the casing's nodes break the symmetry of its quarters or lobes; None without one."""
+    """Return the problem where the casing's nodes break the symmetry of its quarters or lobes; None without one."""
     step = math.lcm(4, casing.lobes)
     if casing.nodes % step == 0:
         return None

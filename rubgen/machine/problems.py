@@ -1,4 +1,4 @@
-"""Data that does not fit its type, as one line for the user: file, key, value, what is allowed, the remedy."""
+"""Explain data that does not fit its type in one line for the user: file, key, value, what is allowed, the remedy."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -45,7 +45,7 @@ OTHER_NAMES = {
 def validated(
     source: object, data: object, adapter: TypeAdapter[T], place: Callable[[Path], Path] = lambda path: path
 ) -> T:
-    """The data as the adapter's type.
+    """Validate data and return it as the adapter's type.
 
     - source: file or name of the data, for messages.
     - data: the TOML values.
@@ -68,10 +68,10 @@ def first_problem(
     adapter: TypeAdapter[Any] | None = None,
     place: Callable[[Path], Path] = lambda path: path,
 ) -> UserError:
-    """The first problem of data that does not fit its type.
+    """Make the UserError of the first problem, in the order of the file, of data that does not fit its type.
 
     - source: file or name of the data.
-    - error: of pydantic.
+    - error: pydantic's.
     - data: the TOML values.
     - adapter: of the type; without it no similar keys are suggested.
     - place: as in `validated`.
@@ -88,7 +88,7 @@ def first_problem(
 
 
 def check_plain(source: object, value: object, path: Path = ()) -> None:
-    """Raise UserError where data is nested too deeply, or has an integer that does not fit in 64 bits.
+    """Check that data is not nested too deeply, and that its integers fit in 64 bits. Raises UserError where not.
 
     `source` is the file or name of the data, `path` the place of `value` in it.
     """
@@ -105,12 +105,12 @@ def check_plain(source: object, value: object, path: Path = ()) -> None:
 
 
 def _of(source: object, text: str) -> str:
-    """The text after its source, if that has a name."""
+    """Return the text after its source, if that has a name."""
     return f"{source}: {text}".removeprefix(": ")
 
 
 def nearest(name: str, known: list[str]) -> str:
-    """The remedy for an unknown `name`: the nearest known name, and the allowed names."""
+    """Say what to write for an unknown `name`: "did you mean ...?" with the nearest known name; the allowed names."""
     close = _closest(name, known)
     hint = f"did you mean {close}? " if close else ""
     more = f" and {len(known) - MOST_LISTED} more" if len(known) > MOST_LISTED else ""
@@ -118,7 +118,7 @@ def nearest(name: str, known: list[str]) -> str:
 
 
 def key_name(path: Path) -> str:
-    """A path as in TOML, `blades.material`; a part that is no bare key is quoted."""
+    """Write a path as in TOML, `blades.material`; a part that is no bare key is quoted."""
     return ".".join(_cut(key_text(part)) for part in path)
 
 
@@ -139,7 +139,7 @@ class _Problem:
         return self.kind in OWN
 
     def text(self, data: object, schema: SchemaNodes | None) -> str:
-        """Value, what is allowed and the remedy, after the key."""
+        """Return value, what is allowed and the remedy, after the key."""
         if self.kind == "missing":
             return ": this key is missing; add it"
         if self.kind in UNKNOWN:
@@ -170,7 +170,10 @@ def _problems(error: ValidationError, data: object) -> list[_Problem]:
 
 
 def _follows(problem: _Problem, problems: list[_Problem]) -> bool:
-    """Whether a problem follows from another: a misspelt key is also a missing key, and a list lacks its bad value."""
+    """Return whether a problem follows from another.
+
+    A misspelt key is also a missing key, and a list lacks its bad value.
+    """
     if problem.kind not in ("too_short", "missing"):
         return False
     path, others = problem.path, [each for each in problems if each is not problem]
@@ -181,7 +184,7 @@ def _follows(problem: _Problem, problems: list[_Problem]) -> bool:
 
 
 def _instead(path: Path, data: object, schema: SchemaNodes | None) -> str:
-    """What to write for an unknown key: a near one of its table, or one of that name elsewhere."""
+    """Say what to write for an unknown key: a near one of its table, or one of that name elsewhere."""
     if schema is None:
         return "remove it"
     name, here = str(path[-1]), schema.keys(data, path[:-1])
@@ -201,7 +204,7 @@ def _instead(path: Path, data: object, schema: SchemaNodes | None) -> str:
 
 
 def _closest(name: str, known: list[str], cutoff: float = NEAR) -> str | None:
-    """The known name that is most like `name`, or has it as one of its words."""
+    """Return the known name that is most like `name`, or has it as one of its words."""
     lower = {each.lower(): each for each in known}
     units = [each for each in lower if each.rpartition("_")[0] == name.lower()]  # all but its unit
     if len(units) == 1:
@@ -213,7 +216,7 @@ def _closest(name: str, known: list[str], cutoff: float = NEAR) -> str | None:
 
 
 def _hint(value: object, message: str) -> str:
-    """The likely mistake, where a number is written as text or a share in percent."""
+    """Name the likely mistake, where a number is written as text or a share in percent."""
     if isinstance(value, int | float) and 1 < value <= 100 and message.endswith(SHARES) and not SIGNED.search(message):
         return f"; {value:g} % is written {value / 100:g}"
     if not isinstance(value, str) or "number" not in message:
@@ -244,7 +247,7 @@ def _at(data: object, path: Path) -> Any:
 
 
 def _path_in(data: object, loc: tuple[int | str, ...], *, missing: bool) -> Path:
-    """The parts of `loc` that are keys of the data; pydantic mixes the names of union members in."""
+    """Return the parts of `loc` that are keys of the data; pydantic mixes the names of union members in."""
     path: list[int | str] = []
     for position, part in enumerate(loc):
         here = (isinstance(data, Mapping) and part in data) or (
@@ -259,7 +262,7 @@ def _path_in(data: object, loc: tuple[int | str, ...], *, missing: bool) -> Path
 
 
 def _order(data: object, path: Path) -> tuple[int, ...]:
-    """The place of a path in the file. A missing key is at the end of its table."""
+    """Return the place of a path in the file. A missing key is at the end of its table."""
     order = []
     for part in path:
         keys = list(data) if isinstance(data, Mapping) else list(range(len(data))) if isinstance(data, list) else []

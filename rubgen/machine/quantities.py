@@ -27,7 +27,7 @@ class Usual:
     ours: str = ""
 
     def doubt(self, value: float) -> str | None:
-        """Why the value is unusual, with the first unit in which it would be usual; None where it is usual."""
+        """Say why a value is unusual, with the first unit in which it would be usual; None where it is usual."""
         if self.low <= value <= self.high:
             return None
         for unit, size in self.units:
@@ -41,7 +41,7 @@ Place = tuple[int | str, ...]
 
 
 def usual_values(record: Any, place: Place = ()) -> Iterator[tuple[Place, float, Usual]]:
-    """Every number of a record, and of records in it, that has a usual range: with its place and that range."""
+    """Yield every number of a record, and of records in it, that has a usual range: place, value, that range."""
     for name, usual in _usual_ranges(record.__class__).items():
         yield from _values(getattr(record, name), usual, (*place, name))
 
@@ -63,7 +63,7 @@ def _usual_ranges(kind: type) -> dict[str, Usual | None]:
 
 
 def _usual_range(hint: Any) -> Usual | None:
-    """The usual range in the annotation of a type or of one of its parts."""
+    """Return the usual range in the annotation of a type or of one of its parts."""
     if isinstance(hint, Usual):
         return hint
     parts = (*getattr(hint, "__metadata__", ()), *get_args(hint), *getattr(hint, "metadata", ()))
@@ -71,21 +71,21 @@ def _usual_range(hint: Any) -> Usual | None:
 
 
 def _no_text(value: object) -> object:
-    """The value unchanged if it is a number; pydantic would read "0.3" as 0.3 and true as 1."""
+    """Return the value unchanged if it is a number; pydantic would read "0.3" as 0.3 and true as 1."""
     if isinstance(value, str | bytes | bool | np.bool_):
         raise PydanticCustomError("number", "must be a number")
     return value
 
 
 def _whole(*, usual: Usual | None = None, **bounds: Any) -> Any:
-    """Bounds of a whole number (`ge`, `gt`, `le`, `lt`), for which no text may stand, and its usual range."""
+    """Return bounds of a whole number (`ge`, `gt`, `le`, `lt`), for which no text may stand, with its usual range."""
     field: FieldInfo = Field(**bounds)
     field.metadata += [BeforeValidator(_no_text), *([usual] if usual else [])]
     return field
 
 
 def real(**bounds: Any) -> Any:
-    """Bounds of a finite number, as `_whole`."""
+    """Return bounds of a finite number (`ge`, `gt`, `le`, `lt`), for which no text may stand, and its usual range."""
     return _whole(allow_inf_nan=False, **bounds)
 
 

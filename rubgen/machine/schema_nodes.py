@@ -1,4 +1,4 @@
-"""What a type allows at a place of its data, from its JSON schema: keys, and bounds of a number."""
+"""Look up what a type allows at a place of its data, in its JSON schema: keys, and bounds of a number."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -25,7 +25,7 @@ class SchemaNodes:
         self.root: Node = adapter.json_schema()
 
     def at(self, data: object, path: Path) -> list[Node]:
-        """All nodes that describe the value at `path` of `data`."""
+        """Return all schema nodes that describe the value at `path` of `data`."""
         nodes = list(self._branches(self.root, data))
         for part in path:
             data = _within(data, part)
@@ -34,11 +34,11 @@ class SchemaNodes:
         return nodes
 
     def keys(self, data: object, path: Path) -> list[str]:
-        """Keys that a table at `path` may have, sorted."""
+        """Return the keys that a table at `path` may have, sorted."""
         return sorted({key for node in self.at(data, path) for key in _properties(node)})
 
     def every_key(self) -> list[tuple[str, ...]]:
-        """Paths of all keys of all tables, without numbers of list elements."""
+        """Return the paths of all keys of all tables, without numbers of list elements."""
         return list(self._below(self.root, ()))
 
     def _below(self, node: Node, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
@@ -50,7 +50,7 @@ class SchemaNodes:
                 yield from self._below(child, (*path, key))
 
     def _branches(self, node: Node, data: object) -> Iterator[Node]:
-        """The node itself, or the node it refers to: every branch of a union that fits the data."""
+        """Yield the node itself, or the node it refers to: every branch of a union that fits the data."""
         if "$ref" in node:
             yield from self._branches(self.root["$defs"][str(node["$ref"]).rsplit("/", 1)[-1]], data)
             return
@@ -62,7 +62,7 @@ class SchemaNodes:
 
 
 def bounds_in_words(nodes: list[Node]) -> str:
-    """The allowed range of a number, "at least 0 and below 1"; empty where there is none."""
+    """Return the allowed range of a number in words, "at least 0 and below 1"; empty where there is none."""
     for node in nodes:
         if any(key in node for key in BOUNDS):
             return " and ".join(f"{words} {limit(node[key])}" for key, words in BOUNDS.items() if key in node)
@@ -70,23 +70,23 @@ def bounds_in_words(nodes: list[Node]) -> str:
 
 
 def limit(value: float) -> str:
-    """A bound as people write it."""
+    """Write a bound as people do, with commas between thousands."""
     return f"{value:,}" if isinstance(value, int) else f"{value:,.12g}"
 
 
 def digits(value: float) -> str:
-    """The first three digits of a value, without an exponent where people write none."""
+    """Write the first three digits of a value, without an exponent where people write none."""
     return limit(float(f"{value:.3g}"))
 
 
 def below(value: float) -> str:
-    """Three digits of a value that are not above it, to be copied into a file."""
+    """Write three digits of a value, rounded down so that they are not above it, to be copied into a file."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 2)
     return f"{math.floor(value / unit) * unit:.12g}"
 
 
 def _chosen(node: Node, data: object) -> Node | None:
-    """The branch that a discriminator of the data names, if it does."""
+    """Return the branch that a discriminator of the data names, if it does."""
     tags = node.get("discriminator", {})
     if not isinstance(data, Mapping) or "mapping" not in tags:
         return None

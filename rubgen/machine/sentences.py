@@ -1,4 +1,4 @@
-"""One plain sentence for each way in which a value can fail to fit its type, and values as they stand in TOML."""
+"""Say in one plain sentence how a value fails to fit its type, and write values as they stand in TOML."""
 
 import re
 from collections.abc import Mapping
@@ -53,7 +53,7 @@ LEVELS = 6
 
 
 def sentence(error: Mapping[str, Any], bounds: str, nodes: list[Mapping[str, Any]]) -> str:
-    """What a value must be.
+    """Say what a value must be, for one error of validation.
 
     - error: one error of pydantic.
     - bounds: allowed range in words.
@@ -101,7 +101,10 @@ def _list_of(kind: str, context: Mapping[str, Any], nodes: list[Mapping[str, Any
 
 
 def toml_text(value: object, levels: int = LEVELS) -> str:
-    """The value in TOML: `true`, `{ uniform = [1, 2] }`, `2026-01-31`; texts in single quotes."""
+    """Write a value in TOML: `true`, `{ uniform = [1, 2] }`, `2026-01-31`; texts in single quotes.
+
+    Tables and lists deeper than `levels` are written as "...".
+    """
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, Integral):
@@ -121,6 +124,6 @@ def toml_text(value: object, levels: int = LEVELS) -> str:
 
 
 def key_text(key: object) -> str:
-    """A key in TOML: bare where that is allowed, else in quotes with control characters escaped."""
+    """Write a key in TOML: bare where that is allowed, else in quotes with control characters escaped."""
     text = str(key)
     return text if re.fullmatch(r"[A-Za-z0-9_-]+", text) else repr(text)

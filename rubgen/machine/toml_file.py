@@ -1,4 +1,4 @@
-"""TOML files of users: found, read and turned into values, or refused in one line with the remedy."""
+"""Find and read users' TOML files and turn them into values, or refuse them in one line with the remedy."""
 
 import codecs
 import os
@@ -41,14 +41,14 @@ UNCLOSED = {
 
 
 def names_toml(name: str) -> bool:
-    """Whether a text is the path of a TOML file rather than the name of a preset."""
+    """Return whether a text is the path of a TOML file rather than the name of a preset: it ends with .toml."""
     return name.lower().endswith(".toml")
 
 
 def toml_path(name: str | Path, folder: Path | None = None) -> Path:
-    """The path that a user gave, with `~` as the home directory; a relative path starts from `folder`.
+    """Return the path that a user gave, with `~` as the home directory; a relative path starts from `folder`.
 
-    Raises UserError for a text that cannot be a path.
+    The file need not exist. Raises UserError for a text that cannot be a path.
     """
     text = str(name)
     if any(ord(letter) < 32 for letter in text):
@@ -62,7 +62,7 @@ def toml_path(name: str | Path, folder: Path | None = None) -> Path:
 
 
 def named_toml(key: str, name: str, folder: Path | None = None) -> Path:
-    """The path of the TOML file `name`, the value of `key`; a relative path starts from `folder`.
+    """Return the path of the TOML file `name`, the value of `key`; a relative path starts from `folder`.
 
     Raises UserError with the key where there is no such file.
     """
@@ -74,11 +74,12 @@ def named_toml(key: str, name: str, folder: Path | None = None) -> Path:
 
 
 def check_kind(path: Path | str, data: dict[str, object], wanted: str) -> None:
-    """Raise UserError for a file of another kind, a machine instead of a recipe for example.
+    """Check that the content of a TOML file is of the kind `wanted`: "recipe", "machine" or "sensor set".
 
-    - path: of the file.
+    - path: of the file, for the message.
     - data: its content.
-    - wanted: kind of file that is expected.
+
+    Raises UserError where the content is clearly of another kind. A file without any known key passes.
     """
     if any(key in data for key in KEYS_OF_KIND[wanted]):
         return
@@ -89,7 +90,7 @@ def check_kind(path: Path | str, data: dict[str, object], wanted: str) -> None:
 
 
 def read_toml(path: Path) -> dict[str, object]:
-    """The content of a TOML file.
+    """Read a TOML file and return its values.
 
     Raises UserError of one line where it is missing, not text, too large or not TOML. A byte order mark of UTF-8 is
     skipped. Lines may end as on any system.
@@ -107,7 +108,7 @@ def read_toml(path: Path) -> dict[str, object]:
 
 
 def _content(path: Path) -> bytes:
-    """The bytes of a regular file. Raises UserError for other files: opening them may block or never end."""
+    """Return the bytes of a regular file. Raises UserError for other files: opening them may block or never end."""
     try:
         found = path.stat()
         if stat.S_ISDIR(found.st_mode):
@@ -139,7 +140,7 @@ def _text(path: Path, content: bytes) -> str:
 
 
 def _not_toml(text: str, error: str) -> str:
-    """The line that is not TOML, and the remedy."""
+    """Return the line that is not TOML, and the remedy."""
     found = LINE.search(error)
     lines = text.rstrip().split("\n")
     number = min(int(found[1]), len(lines)) if found else len(lines)
@@ -149,7 +150,7 @@ def _not_toml(text: str, error: str) -> str:
 
 
 def remedy(line: str, error: str) -> str:
-    """What to write instead of the line; `error` is the message of the parser."""
+    """Say what to write instead of a line that is not TOML; `error` is the message of the parser."""
     value = line.partition("=")[2].strip()
     return _of_whole_line(line.strip(), value, error) or _of_value(value) or "write key = value, texts in quotes"
 

@@ -1,4 +1,4 @@
-"""How much the blades touch: counts, friction work, each blade's share, severity, partial or full annular."""
+"""Measure how much the blades touch: counts, friction work, each blade's share, severity, extent."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -45,7 +45,7 @@ class ContactAmounts:
 
 
 def contact_amounts(response: Response, zones: ContactZones, *, record_steps: int) -> ContactAmounts:
-    """The amounts of a record.
+    """Compute the amounts of contact of a record.
 
     severity = impulse of all blades / (m g T), with T the time of the record. It is the mean force on the casing in
     weights of the blisk.
@@ -70,7 +70,11 @@ def contact_amounts(response: Response, zones: ContactZones, *, record_steps: in
 
 
 def rub_extent(duty: float, zones: ContactZones) -> RubExtent:
-    """Full annular: permanent contact, all the way round the casing (Muszynska 2005, Rotordynamics, ch. 5)."""
+    """Classify how far around the casing a rub extends: none, partial or full annular.
+
+    Full annular is contact in at least LASTING of the time, all the way round the casing (Muszynska 2005,
+    Rotordynamics, ch. 5). `duty` is the share of the time with contact.
+    """
     if duty == 0:
         return RubExtent.NONE
     round_about = len(zones.widths) == 1 and zones.widths[0] >= 2 * np.pi - 1e-9

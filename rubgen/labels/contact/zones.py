@@ -1,4 +1,4 @@
-"""Where on the casing the blades touch."""
+"""Find where on the casing the blades touch."""
 
 from dataclasses import dataclass
 
@@ -38,14 +38,14 @@ class ContactZones:
 
 
 def contact_zones(events: ContactEvents, *, steps_per_turn: int) -> ContactZones:
-    """The contact zones of a record.
+    """Find the contact zones of a record: arcs of the casing with impulse, and whether they are symmetric.
 
     A zone is a connected arc of the impulse histogram. Gaps of more than 10 deg separate zones. The lightest bins, 2 %
     of the impulse in all, and then zones with less than 2 % are left out; `imbalance` counts them. A zone's centre is
     its mean angle by impulse. Its width is the arc from its first to its last bin. A circle without such a gap is one
-    zone of width 2 pi. Zones are symmetric where their widths and spacings are equal within 3 deg and their impulses
-    in each turn within 5 % (rms). A single zone is symmetric only as the whole circle. Over many turns even a chaotic
-    rub has equal mean impulses.
+    zone of width 2 pi. Zones are symmetric where their widths and spacings are equal within 3 deg and their impulses in
+    each turn within 5 % (rms). A single zone is symmetric only as the whole circle. Over many turns even a chaotic rub
+    has equal mean impulses.
 
     - events: touches, in steps of equal angle.
     - steps_per_turn: number of such steps in a turn.
@@ -68,10 +68,10 @@ def contact_zones(events: ContactEvents, *, steps_per_turn: int) -> ContactZones
 
 
 def impulse_histogram(events: ContactEvents, steps_per_turn: int) -> FloatArray:
-    """Impulse in each of BINS bins of casing angle from 0, in N s. Its sum is the impulse of all events.
+    """Distribute the impulse of all touches over BINS bins of casing angle from 0, in N s.
 
-    The impulse of an event is distributed evenly over the angle that the blade swept during contact, steps dt Omega,
-    around its mean angle.
+    The sum is the impulse of all events. The impulse of an event is distributed evenly over the angle that the blade
+    swept during contact, steps dt Omega, around its mean angle.
     """
     sweep = np.minimum(events.steps * (2 * np.pi / steps_per_turn), 2 * np.pi)
     start = np.mod(events.angle - sweep / 2, 2 * np.pi) / (2 * np.pi) * BINS
@@ -86,7 +86,7 @@ def impulse_histogram(events: ContactEvents, steps_per_turn: int) -> FloatArray:
 
 
 def _ramps(start: FloatArray, slope: FloatArray, edges: IntArray) -> FloatArray:
-    """Sum over i of slope_i * max(edge - start_i, 0) at every edge; starts lie between the first and the last edge."""
+    """Return the sum over i of slope_i * max(edge - start_i, 0) at every edge; starts lie between the outer edges."""
     bins = np.minimum(start.astype(np.int64), edges.size - 2)
     begun = np.bincount(bins, weights=slope, minlength=edges.size - 1)
     within = np.bincount(bins, weights=slope * (bins + 1 - start), minlength=edges.size - 1)
@@ -95,7 +95,7 @@ def _ramps(start: FloatArray, slope: FloatArray, edges: IntArray) -> FloatArray:
 
 
 def _without_lightest(density: FloatArray) -> FloatArray:
-    """The histogram without its lightest bins, which together have at most the share SPECK."""
+    """Return the histogram without its lightest bins, which together have at most the share SPECK."""
     rising = np.argsort(density, kind="stable")
     light = np.cumsum(density[rising]) <= SPECK * density.sum()
     kept = density.copy()
@@ -104,7 +104,10 @@ def _without_lightest(density: FloatArray) -> FloatArray:
 
 
 def touched_arcs(touched: np.typing.NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First bin and number of bins of each arc, gaps up to GAP closed; (0, BINS) for a circle without a gap."""
+    """Return the first bin and the number of bins of each arc of `touched` bins around a circle.
+
+    Gaps up to GAP are closed. A circle without a larger gap is the one arc (0, number of bins).
+    """
     bins = np.flatnonzero(touched)
     to_next = np.diff(bins, append=bins[0] + touched.size)
     ends = np.flatnonzero(to_next - 1 > GAP / (2 * np.pi) * touched.size)
@@ -116,7 +119,7 @@ def touched_arcs(touched: np.typing.NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 
 def _zone(share: FloatArray, first: int, count: int) -> tuple[float, float, float]:
-    """Centre, width and share of impulse of the arc of `count` bins from `first`."""
+    """Return centre, width and share of impulse of the arc of `count` bins from `first`."""
     bins = (first + np.arange(count)) % BINS
     angle = 2 * np.pi * (bins + 0.5) / BINS
     centre = np.angle(np.sum(share[bins] * np.exp(1j * angle)))
@@ -124,7 +127,7 @@ def _zone(share: FloatArray, first: int, count: int) -> tuple[float, float, floa
 
 
 def turn_imbalance(events: ContactEvents, centres: FloatArray, steps_per_turn: int) -> float:
-    """Standard deviation of the impulses of all zones in all turns, over their mean.
+    """Compute how unequal the zones are: the standard deviation of their impulses in all turns, over the mean.
 
     Symmetric motion, q(t + T/N) = q(t), has equal impulses of all zones in each turn: 0. An event belongs to the zone
     with the nearest centre. Turns are cut where there is least contact, so that no touch of a periodic rub changes from
@@ -147,7 +150,7 @@ def turn_imbalance(events: ContactEvents, centres: FloatArray, steps_per_turn: i
 
 
 def _evenly_placed(centres: tuple[float, ...], widths: tuple[float, ...]) -> bool:
-    """Whether N >= 2 zones have equal widths and spacings; a single zone only if it is the whole circle."""
+    """Return whether N >= 2 zones have equal widths and spacings; a single zone only if it is the whole circle."""
     if len(centres) == 1:
         return bool(widths[0] >= 2 * np.pi - 1e-9)
     spacing = np.diff(centres, append=centres[0] + 2 * np.pi)
