@@ -1,4 +1,4 @@
-"""The largest Lyapunov exponent from the growth of the distance to a companion trajectory."""
+"""Compute the largest Lyapunov exponent from the growth of the distance to a companion trajectory."""
 
 import math
 from collections.abc import Sequence
@@ -31,12 +31,12 @@ class Exponent:
 
     @property
     def is_positive(self) -> bool:
-        """More than two standard errors above zero, and above LEAST."""
+        """Whether the exponent is more than two standard errors above zero, and above LEAST."""
         return self.per_turn > max(2 * self.error, LEAST)
 
     @property
     def is_negative(self) -> bool:
-        """More than two standard errors below zero, and below -LEAST."""
+        """Whether the exponent is more than two standard errors below zero, and below -LEAST."""
         return self.per_turn < -max(2 * self.error, LEAST)
 
 
@@ -50,7 +50,7 @@ LEAST = 1e-3
 
 
 def lyapunov(growth: FloatArray) -> Exponent | None:
-    """The largest Lyapunov exponent: the mean of `growth` without its first tenth.
+    """Compute the largest Lyapunov exponent: the mean of `growth` without its first tenth.
 
     Benettin, Galgani, Giorgilli, Strelcyn 1980, Meccanica 15, 9. For the error see `standard_error`.
 
@@ -72,10 +72,10 @@ def lyapunov(growth: FloatArray) -> Exponent | None:
 
 
 def is_settled(growth: Sequence[float]) -> bool:
-    """Whether the growths so far settle the exponent: more of them would not change its sign.
+    """Return whether the growths so far settle the exponent, so that more of them would not change its sign.
 
-    It is asked for at 150, 200, ... growths, and settled where it is farther from zero than SETTLED_ERRORS standard
-    errors and than SETTLED_FROM. After a growth that is no number there is none.
+    It is decided at 150, 200, ... growths. The exponent is settled where it is farther from zero than SETTLED_ERRORS
+    standard errors and than SETTLED_FROM. A last growth that is NaN settles it too: there will be no exponent.
     """
     n = len(growth)
     if not math.isfinite(growth[-1]):
@@ -87,7 +87,7 @@ def is_settled(growth: Sequence[float]) -> bool:
 
 
 def changed_after(impulse: FloatArray, turns: int, exponent: float) -> bool:
-    """Whether a motion whose exponent was settled after so many turns has become another since.
+    """Return whether a motion has become another one since its exponent was settled after `turns` turns.
 
     Chaos may be a transient, and a regular motion an episode. The impulses of the turns (n,) tell: after chaos some 50
     turns repeat ten times more closely than the last 100 turns that the exponent knows, after a regular motion ten
@@ -103,12 +103,12 @@ def changed_after(impulse: FloatArray, turns: int, exponent: float) -> bool:
 
 
 def _unlikeness(impulse: FloatArray) -> float:
-    """Root mean square of what impulses (n,) differ by from those some turns before, where that is least."""
+    """Return the rms difference of impulses (n,) from those some turns before, for the turns where it is least."""
     return min(float(np.sqrt(np.mean(np.square(impulse[lag:] - impulse[:-lag])))) for lag in range(1, MOST_LAG + 1))
 
 
 def standard_error(growth: FloatArray) -> float:
-    """The standard error of the mean of growths (n,) that follow each other in time; n is at least ten.
+    """Return the standard error of the mean of growths (n,) that follow each other in time; n is at least ten.
 
     It is the largest of three estimates. For each there is a motion that the other two underestimate:
 

@@ -1,4 +1,4 @@
-"""Runs that cannot be integrated: the reason, known before the run, and the response."""
+"""Refuse runs that cannot be integrated: the reason, known before the run, and the response."""
 
 import math
 from collections.abc import Sequence
@@ -37,7 +37,7 @@ def no_response(
     n_casing: int = 0,
     size: int = 0,
 ) -> Response:
-    """A response with a status and its reason; all its arrays are empty.
+    """Make a response with a status and its reason. All its arrays are empty.
 
     - speed, dt, steps_per_turn, record_turns, n_blades, n_casing: as in `Response`.
     - size: number of coordinates.
@@ -64,10 +64,10 @@ def no_response(
 
 
 def refused_response(system: SpinningSystem, operation: Operation, steps: int, refusal: Refusal) -> Response:
-    """The response of a system that is not integrated.
+    """Make the response of a system that is not integrated.
 
     - system, operation: of the run.
-    - steps: steps a turn.
+    - steps: number of steps in a turn.
     - refusal: status and reason.
     """
     return no_response(
@@ -83,7 +83,7 @@ def refused_response(system: SpinningSystem, operation: Operation, steps: int, r
 
 
 def film_refusal(system: SpinningSystem, steps: int) -> Refusal | None:
-    """The refusal where no rub-free motion fits the laws of the support at `steps` steps a turn; else None."""
+    """Return the refusal where no rub-free motion fits the laws of the support at `steps` steps a turn; else None."""
     if system.turning is None or not system.turning.laws:
         return None
     missing = rub_free_motion(system, steps).residual
@@ -96,7 +96,10 @@ def film_refusal(system: SpinningSystem, steps: int) -> Refusal | None:
 
 
 def stability(system: SpinningSystem) -> tuple[Refusal | None, float]:
-    """The refusal of a system that grows by itself or has an undamped mode, else None; and the slowest decay in 1/s."""
+    """Return the refusal of a system that grows by itself or has an undamped mode, else None; and its decay.
+
+    The decay is the slowest of all modes, in 1/s.
+    """
     decay = slowest_decay(system)
     if decay > UNDYING_SHARE * system.speed:
         return None, decay
@@ -106,7 +109,7 @@ def stability(system: SpinningSystem) -> tuple[Refusal | None, float]:
 
 
 def no_run(scenarios: Sequence[Scenario]) -> str | None:
-    """One line where none of these runs can be integrated, with the reason of the first; None where one can."""
+    """Return one line where none of these runs can be integrated, with the reason of the first; None where one can."""
     reasons = []
     for scenario in scenarios:
         reason = _refusal(scenario)
@@ -118,7 +121,7 @@ def no_run(scenarios: Sequence[Scenario]) -> str | None:
 
 
 def _refusal(scenario: Scenario) -> str | None:
-    """Why `integrate` would refuse the run, from its first, slowest and fastest speed."""
+    """Return why `integrate` would refuse the run, from its first, slowest and fastest speed."""
     operation, model = scenario.operation, reduce(scenario.machine, scenario.reduction)
     speeds = (operation.rotation.start, operation.rotation.slowest, operation.rotation.fastest)
     try:

@@ -249,5 +249,5 @@ class Response:
 
     @property
     def tail_steps(self) -> int:
-        """Number of steps that `taps` hold: the end of the record."""
+        """Number of steps that `taps` cover: the end of the record."""
         return next(iter(self.taps.values())).size

@@ -1,4 +1,4 @@
-"""What is integrated, and what the response records."""
+"""What `integrate` integrates, and what its response records."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -11,7 +11,7 @@ class SpeedModel(Protocol):
     """Makes the system at any speed, as `reduction.ReducedModel` does."""
 
     def at_speed(self, speed: float, acceleration: float = 0.0) -> SpinningSystem:
-        """The system at a speed in rad/s and an acceleration in rad/s2."""
+        """Return the system at a speed in rad/s and an acceleration in rad/s2."""
         ...
 
 

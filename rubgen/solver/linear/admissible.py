@@ -1,4 +1,4 @@
-"""Checks of a system before it is integrated. Each problem is one line."""
+"""Check a system before it is integrated. Each problem is one line."""
 
 import math
 
@@ -14,7 +14,7 @@ LEAST_MASS_SHARE = 1e-13
 
 
 def check_system(system: SpinningSystem) -> None:
-    """Raise UserError, one line, for a system that cannot be integrated.
+    """Check that a system can be integrated. Raises UserError, one line, where it cannot.
 
     It must turn and have blades, finite matrices, and positive definite masses of blisk and casing. At rest the tips
     must be inside the casing's narrowest radius. At speed the tips, with their centrifugal growth, must be inside its
@@ -28,7 +28,7 @@ def check_system(system: SpinningSystem) -> None:
 
 
 def check_step(system: SpinningSystem, steps: int) -> None:
-    """Raise UserError where `steps` a turn exceed the stability limit dt < 2 / omega_max."""
+    """Check that `steps` a turn are enough: dt < 2 / omega_max. Raises UserError where the step is not stable."""
     turn, longest = 2 * math.pi / system.speed, stable_step(system)
     if turn / steps >= longest:
         raise UserError(
@@ -93,5 +93,5 @@ def _growth_problem(system: SpinningSystem) -> str | None:
 
 
 def _grown_radius(system: SpinningSystem) -> float:
-    """The largest radius of a tip at speed, in m."""
+    """Return the largest radius of a tip at speed, in m."""
     return float(np.hypot(system.tip_radius + system.tip_static[:, 0], system.tip_static[:, 1]).max())

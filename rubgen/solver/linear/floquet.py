@@ -1,4 +1,4 @@
-"""Growth or decay of small disturbances of the rub-free motion, with uneven supports or a squeeze film."""
+"""Compute growth or decay of small disturbances of the rub-free motion, with uneven supports or a squeeze film."""
 
 import math
 from dataclasses import replace
@@ -14,7 +14,7 @@ from rubgen.solver.supports.turning_forces import force_derivatives
 
 
 def linearised(system: SpinningSystem) -> SpinningSystem:
-    """The system with the laws of its support linearised at the rub-free motion, for a static rub-free motion.
+    """Return the system with the laws of its support linearised at its rub-free motion, which must be static.
 
     C += -d f / d v and K += -d f / d u on O_d. The result has no turning forces.
     """
@@ -31,7 +31,7 @@ def linearised(system: SpinningSystem) -> SpinningSystem:
 
 
 def floquet_exponents(system: SpinningSystem, steps: int) -> ComplexArray:
-    """Exponents ln(mu) / T in 1/s of the coordinates that O_d moves, and eigenvalues of all others.
+    """Return exponents ln(mu) / T in 1/s of the coordinates that O_d moves, and eigenvalues of all others.
 
     mu are the eigenvalues of the transition over one period T: M q'' + C q' + K q = E (f_u u + f_v v), with the
     derivatives of the turning forces along the rub-free motion. T is half a turn, or a whole turn with laws of the
@@ -55,7 +55,7 @@ def floquet_exponents(system: SpinningSystem, steps: int) -> ComplexArray:
 
 
 def quadratic_eigenvalues(M: FloatArray, C: FloatArray, K: FloatArray) -> ComplexArray:
-    """All 2 n eigenvalues s of s^2 M + s C + K, from the first-order form."""
+    """Return all 2 n eigenvalues s of s^2 M + s C + K, from the first-order form."""
     n = len(M)
     first_order = np.block([[np.zeros((n, n)), np.eye(n)], [-la.solve(M, K), -la.solve(M, C)]])
     values: ComplexArray = la.eigvals(first_order).astype(np.complex128)
@@ -70,7 +70,10 @@ def _transition(
     count: int,
     steps: int,
 ) -> FloatArray:
-    """What becomes of [q_n-1, q_n] in `count` steps from theta = 0; matrices M, C, K in the coordinates `inside`."""
+    """Return the matrix that takes [q_n-1, q_n] through `count` steps from theta = 0.
+
+    The matrices M, C, K are in the coordinates `inside`.
+    """
     M, C, K = matrices
     n, dt = len(M), 2 * math.pi / system.speed / steps
     centre = np.searchsorted(inside, [system.centre, system.centre + 1])
@@ -89,7 +92,7 @@ def _transition(
 def _derivatives(
     system: SpinningSystem, forces: TurningForces, count: int, steps: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Derivatives f_u and f_v (count, 2, 2) at each step along the rub-free motion."""
+    """Return the derivatives f_u and f_v (count, 2, 2) at each step along the rub-free motion."""
     theta = 2 * np.pi * np.arange(count) / steps
     if not forces.laws:  # linear: the motion does not matter, and an undamped one may be infinite
         return force_derivatives(forces, system.speed, theta, *np.zeros((2, count, 2)))

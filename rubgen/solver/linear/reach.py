@@ -1,4 +1,4 @@
-"""Whether a blade can reach the casing at all, from the rub-free motions before any run."""
+"""Find out whether a blade can reach the casing at all, from the rub-free motions before any run."""
 
 import math
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ SPEEDS = 9
 
 
 def no_rub(scenarios: Sequence[Scenario]) -> str | None:
-    """One line where no blade reaches the casing in the rub-free motion of any of these runs; None where one does.
+    """Return one line where no blade reaches the casing in the rub-free motion of any of these runs, else None.
 
     A run starts from that motion and keeps it where nothing touches. The search ends at the first run that rubs.
     Refused runs are left out, because they report themselves; None where all are refused. A single run without rub may
@@ -49,7 +49,7 @@ def no_rub(scenarios: Sequence[Scenario]) -> str | None:
 
 
 def deepest(scenario: Scenario) -> tuple[float, float]:
-    """Largest free penetration in m, and its speed in rev/min. A negative penetration is a gap.
+    """Return the largest free penetration of a run in m, and its speed in rev/min. A negative penetration is a gap.
 
     A changing speed is checked at nine speeds from the slowest to the fastest, each as a steady speed. The amplitude of
     a run through a critical speed is smaller. Raises UserError where a speed makes no run.
@@ -67,7 +67,7 @@ def _penetration(model: ReducedModel, scenario: Scenario, speed: float) -> float
 
 
 def _question(scenarios: Sequence[Scenario]) -> str:
-    """A question whether speeds were meant in rad/s, where a blade would then reach the casing."""
+    """Return a question whether speeds were meant in rad/s, where a blade would then reach the casing."""
     fastest = max(scenarios, key=lambda each: each.operation.speed_rpm)
     rpm = rev_per_min(fastest.operation.speed_rpm)
     if fastest.operation.speed_rpm * fastest.machine.tip_radius_m > MOST_TIP_SPEED:

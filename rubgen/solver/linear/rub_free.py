@@ -1,4 +1,4 @@
-"""The rub-free motion: static in the turning frame, or periodic where supports are uneven or gravity acts."""
+"""Compute the rub-free motion: static in the turning frame, or periodic with uneven supports or gravity."""
 
 import math
 from dataclasses import dataclass
@@ -42,23 +42,23 @@ class RubFreeMotion:
     It is the truncation error, or large where the iteration found no motion."""
 
     def at(self, theta: float) -> FloatArray:
-        """State q (n,) at an angle of rotation."""
+        """Return the state q (n,) at the angle of rotation `theta`, rad."""
         q: FloatArray = self.harmonics[0].real.copy()
         for m in range(1, len(self.harmonics)):
             q += (self.harmonics[m] * np.exp(1j * m * theta)).real
         return q
 
     def over_turn(self) -> FloatArray:
-        """States q (places, n) at equal steps of one turn; one place where it is static."""
+        """Return states q (places, n) at equal steps of one turn; one place where the motion is static."""
         places = 1 if len(self.harmonics) == 1 else TURN_PLACES
         return np.stack([self.at(2 * np.pi * i / places) for i in range(places)])
 
 
 def free_penetration(motion: RubFreeMotion, surface: Surface, tips: Tips) -> float:
-    """How deep the tips would enter the casing at rest in this motion, m; negative is a clearance.
+    """Return how deep the tips would enter the casing at rest in this motion, m; negative is a clearance.
 
-    max over blades and angles of |P_k| - r(angle of P_k), with r the undeformed `surface`, its chords or liner
-    included.
+    It is the maximum over blades and angles of |P_k| - r(angle of P_k), with r the undeformed `surface`, its chords or
+    liner included.
     """
     theta = 2 * np.pi * np.arange(CLEARANCE_PLACES) / CLEARANCE_PLACES
     turn = np.exp(1j * np.multiply.outer(theta, np.arange(len(motion.harmonics))))
@@ -67,7 +67,7 @@ def free_penetration(motion: RubFreeMotion, surface: Surface, tips: Tips) -> flo
 
 
 def never_touches(system: SpinningSystem, surface: Surface, penetration: float) -> bool:
-    """Whether a run at steady speed, which starts from its rub-free motion with this `penetration`, keeps to it.
+    """Return whether a run at steady speed, which starts from its rub-free motion with this `penetration`, keeps to it.
 
     The supports must be linear, so that the motion is the only one, and the surface unlined. Uneven supports, gravity
     and mistuned blades are linear; laws of the support are not.
@@ -79,7 +79,7 @@ def never_touches(system: SpinningSystem, surface: Surface, penetration: float) 
 
 
 def steady_state(system: SpinningSystem) -> FloatArray:
-    """The exact motion q (n,) without rub and turning forces: K q = force in the turning frame, the casing at rest."""
+    """Return the exact motion q (n,) without rub and turning forces: K q = force, with the casing at rest."""
     q = np.zeros(system.M.shape[0])
     start = system.casing_start
     q[:start] = la.solve(system.K[:start, :start], system.force[:start])
@@ -87,14 +87,15 @@ def steady_state(system: SpinningSystem) -> FloatArray:
 
 
 def rub_free_motion(system: SpinningSystem, steps: float = 0) -> RubFreeMotion:
-    """The periodic motion without rub, by harmonic balance. With `steps` a turn, the motion of the scheme itself.
+    """Compute the periodic motion without rub, by harmonic balance.
 
-    M q'' + C q' + K q = force + weight(theta) + E f(theta, u, v). Each harmonic of f on O_d moves the blisk by the
-    receptance of that harmonic. This leaves a small system for u alone, solved at equal places of a turn by Newton's
-    method (one step where it is linear). For the scheme's motion 2 (cos m phi - 1) / dt^2 replaces -(m Omega)^2 and i
-    sin(m phi) / dt replaces i m Omega, phi = 2 pi / steps: a run that starts from it keeps it. With laws of the support
-    there may be more than one motion. The iteration starts from the motion without f, shortened to within the range of
-    the laws. Where it finds none, nothing is raised: `residual` is large.
+    With `steps` a turn it is the motion of the scheme itself, else of the differential equation. M q'' + C q' + K q =
+    force + weight(theta) + E f(theta, u, v). Each harmonic of f on O_d moves the blisk by the receptance of that
+    harmonic. This leaves a small system for u alone, solved at equal places of a turn by Newton's method (one step
+    where it is linear). For the scheme's motion 2 (cos m phi - 1) / dt^2 replaces -(m Omega)^2 and i sin(m phi) / dt
+    replaces i m Omega, phi = 2 pi / steps: a run that starts from it keeps it. With laws of the support there may be
+    more than one motion. The iteration starts from the motion without f, shortened to within the range of the laws.
+    Where it finds none, nothing is raised: `residual` is large.
     """
     forces = system.turning
     if forces is None:
@@ -141,18 +142,18 @@ class _Balance:
         return loads
 
     def _at_places(self, harmonics: ComplexArray) -> FloatArray:
-        """Values (samples, 2) of harmonics (H + 1, 2)."""
+        """Return the values (samples, 2) of harmonics (H + 1, 2)."""
         return np.asarray((np.exp(1j * np.multiply.outer(self.theta, np.arange(len(harmonics)))) @ harmonics).real)
 
     def _circulant(self, factor: ComplexArray) -> FloatArray:
-        """The matrix (2 samples, 2 samples) that multiplies each harmonic of values (samples, 2) by factor[m]."""
+        """Return the matrix (2 samples, 2 samples) that multiplies each harmonic of values (samples, 2) by factor."""
         orders, N = np.arange(len(factor)), self.samples
         weight = np.where(orders > 0, 2.0, 1.0) / N
         turn = np.exp(1j * np.multiply.outer(self.theta[:, None] - self.theta, orders)) * weight
         return np.asarray(np.einsum("jkm,mab->jakb", turn, factor).real.reshape(2 * N, 2 * N))
 
     def solve(self) -> FloatArray:
-        """Places u (samples, 2) by Newton's method with shortened steps."""
+        """Solve for the places u (samples, 2) by Newton's method with shortened steps."""
         u = self._shortened(np.zeros_like(self.u_alone), self.u_alone)
         residual = self._residual(u)
         for _ in range(NEWTON_STEPS):
@@ -163,7 +164,7 @@ class _Balance:
         return u
 
     def _search(self, u: FloatArray, residual: FloatArray, step: FloatArray) -> tuple[FloatArray, FloatArray, float]:
-        """The longest of halved steps that makes the residual smaller; the last one where none does."""
+        """Return the longest of halved steps that makes the residual smaller; the last one where none does."""
         goal = self._shortened(u, step)
         for _ in range(30):
             new = self._residual(goal)
@@ -173,7 +174,7 @@ class _Balance:
         return goal, new, float(np.abs(goal - u).max())
 
     def _shortened(self, u: FloatArray, step: FloatArray) -> FloatArray:
-        """U + step, or as much of the step as the laws allow."""
+        """Return u + step, or as much of the step as the laws allow."""
         limit = min((law.limit_m for law in self.forces.laws), default=math.inf)
         while np.hypot(*(u + step).T).max() >= LAW_RANGE * limit:
             step = step / 2
@@ -192,7 +193,7 @@ class _Balance:
         )
 
     def motion(self, u: FloatArray) -> RubFreeMotion:
-        """All coordinates, from the forces on O_d at the displacements u."""
+        """Return all coordinates, from the forces on O_d at the displacements u."""
         v = (self.D @ u.ravel()).reshape(u.shape)
         F = _harmonics(turning_force(self.forces, self.system.speed, self.theta, u, v))
         q = np.zeros((len(F), len(self.system.M)), dtype=np.complex128)
@@ -202,7 +203,7 @@ class _Balance:
         return RubFreeMotion(harmonics=q, residual=self._unbalanced(q))
 
     def _unbalanced(self, q: ComplexArray) -> float:
-        """The largest share of force on O_d that is missing midway between the places."""
+        """Return the largest share of force on O_d that is missing midway between the places."""
         system, theta = self.system, self.theta + np.pi / self.samples
         centre, orders = slice(system.centre, system.centre + 2), np.arange(len(q))
         M, C, K = system.M[centre], system.C[centre], system.K[centre]
@@ -217,7 +218,7 @@ class _Balance:
 
 
 def _harmonics(values: FloatArray) -> ComplexArray:
-    """Factors of e^(i m theta), m >= 0, whose sum has the values (samples, any) as its real part."""
+    """Return factors of e^(i m theta), m >= 0, whose sum has the values (samples, any) as its real part."""
     factors = np.fft.rfft(values, axis=0) / len(values)
     factors[1:] *= 2
     return np.asarray(factors)

@@ -1,4 +1,4 @@
-"""Eigenvalues of the linear system, its stable step, and the turns in which its transients decay."""
+"""Compute eigenvalues of the linear system, its stable step, and the turns in which its transients decay."""
 
 import math
 
@@ -23,7 +23,7 @@ FLOQUET_STEPS = 1024
 
 
 def eigenvalues(system: SpinningSystem) -> ComplexArray:
-    """All 2 n eigenvalues s in 1/s of M q'' + C q' + K q = 0, blisk and casing apart.
+    """Return all 2 n eigenvalues s in 1/s of M q'' + C q' + K q = 0, blisk and casing apart.
 
     Laws of the support are linearised at the rub-free motion. With uneven supports, which turn against the blisk, these
     are Floquet exponents, whose imaginary parts are known up to a multiple of 2 Omega (Omega with laws).
@@ -39,12 +39,12 @@ def eigenvalues(system: SpinningSystem) -> ComplexArray:
 
 
 def slowest_decay(system: SpinningSystem) -> float:
-    """min(-Re s) in 1/s, which is 2 pi min(zeta f); negative for a linear system that grows by itself."""
+    """Return min(-Re s) in 1/s, which is 2 pi min(zeta f); negative for a linear system that grows by itself."""
     return float(-eigenvalues(system).real.max())
 
 
 def stable_step(system: SpinningSystem) -> float:
-    """The largest stable step 2 / omega_max in s, omega_max of (K, M) without gyroscopic terms.
+    """Return the largest stable step 2 / omega_max in s, omega_max of (K, M) without gyroscopic terms.
 
     Uneven supports count with their stiffer direction on both axes.
     """
@@ -61,12 +61,10 @@ def stable_step(system: SpinningSystem) -> float:
 
 
 def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0.0) -> int:
-    """`least`, doubled until the step is stable and the step rate is at least 2.56 `sample_rate_hz`.
+    """Double `least` until the step is stable and the step rate is at least 2.56 `sample_rate_hz`. Return the steps.
 
-    Stable is dt < 0.95 * 2 / omega_max.
-
-    A turn is a whole number of steps, so the Poincare section lies on steps exactly. Raises UserError for a system that
-    would need more than 4,194,304 steps.
+    Stable is dt < 0.95 * 2 / omega_max. A turn is a whole number of steps, so the Poincare section lies on steps
+    exactly. Raises UserError for a system that would need more than 4,194,304 steps.
     """
     turn = 2 * math.pi / system.speed
     sampled = 1 / (STEPS_PER_SAMPLE * sample_rate_hz) if sample_rate_hz else turn
@@ -83,10 +81,10 @@ def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0
 
 
 def automatic_settle_turns(system: SpinningSystem, closing_turns: int, decay: float | None = None) -> int:
-    """Turns until the clearance is closed and transients have decayed to a hundredth.
+    """Return the number of turns until the clearance is closed and transients have decayed to a hundredth.
 
-    closing_turns + ln(100) f_r / (2 pi min(zeta f)) with the eigenvalues at speed, rounded up. `decay` is the slowest
-    decay in 1/s where it is known already. Raises ValueError for an unstable system.
+    It is closing_turns + ln(100) f_r / (2 pi min(zeta f)) with the eigenvalues at speed, rounded up. `decay` is the
+    slowest decay in 1/s where it is known already. Raises ValueError for an unstable system.
     """
     decay = slowest_decay(system) if decay is None else decay
     if decay <= 0:
@@ -95,7 +93,7 @@ def automatic_settle_turns(system: SpinningSystem, closing_turns: int, decay: fl
 
 
 def settle_turns(system: SpinningSystem, operation: Operation, decay: float | None = None) -> int:
-    """The settle turns of the operation, or `automatic_settle_turns` where it has none."""
+    """Return the settle turns of the operation, or `automatic_settle_turns` where it has none."""
     if operation.settle_turns == "auto":
         return automatic_settle_turns(system, operation.closing_turns, decay)
     return operation.settle_turns

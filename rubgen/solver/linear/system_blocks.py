@@ -1,4 +1,4 @@
-"""The blocks into which the matrices of systems decompose."""
+"""Find the blocks into which the matrices of systems decompose."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from rubgen.reduction.model import SpinningSystem
 
 
 def system_blocks(*systems: SpinningSystem) -> Blocks:
-    """Blocks that all systems share. Raises ValueError when anything but contact couples blisk and casing."""
+    """Find the blocks that all systems share. Raises ValueError when anything but contact couples blisk and casing."""
     start = systems[0].casing_start
     matrices = [matrix for system in systems for matrix in (system.M, system.C, system.K)]
     for matrix in matrices:

@@ -1,4 +1,4 @@
-"""Which observers a run has."""
+"""Choose the observers of a run."""
 
 import math
 
@@ -20,7 +20,7 @@ LEAST_TAIL_TURNS = 100
 
 
 def chosen_observers(driver: SpeedDriver, record: int, wants: Wants) -> list[Observer]:
-    """The observers of a record of `record` turns. Also sets the snapshots that they need on the driver's stepper."""
+    """Return the observers of a record of `record` turns, and set the snapshots that they need on the stepper."""
     stepper, steady = driver.stepper, driver.rotation.is_steady
     observers: list[Observer] = [
         Tail(wants.taps, tail_turns(driver, record, wants)),
@@ -43,13 +43,13 @@ def chosen_observers(driver: SpeedDriver, record: int, wants: Wants) -> list[Obs
 
 
 def tail_turns(driver: SpeedDriver, record: int, wants: Wants) -> int:
-    """Number of turns that the taps cover."""
+    """Return the number of turns that the taps cover: as many as `wants.tail_seconds` takes, 100 at least."""
     asked = math.ceil(wants.tail_seconds * driver.rotation.fastest / (2 * math.pi))
     return min(max(LEAST_TAIL_TURNS, asked), driver.settle + record)
 
 
 def _signal_turns(rotation: Rotation, record: int, seconds: float) -> float:
-    """Number of turns in the last `seconds` of a record of `record` turns."""
+    """Return the number of turns in the last `seconds` of a record of `record` turns."""
     if rotation.is_steady:
         return seconds * rotation.fastest / (2 * math.pi)
     end = rotation.time_of(2 * math.pi * record)

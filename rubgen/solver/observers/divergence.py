@@ -1,4 +1,4 @@
-"""How fast a diverging run has grown, and what to change."""
+"""Say how fast a diverging run has grown, and what to change."""
 
 import math
 from collections import deque
@@ -29,7 +29,7 @@ ADVICE = {
 
 
 class Growth:
-    """Amplitudes of casing and blade tips, turn by turn, over the last turns of a stepper.
+    """Keeps the amplitudes of casing and blade tips, turn by turn, over the last turns of a stepper.
 
     The casing's amplitude is the largest bound of its displacement within the turn. The blades' amplitude is the
     largest tip coordinate in the frames of the turn. The frames are evaluated only at the end.
@@ -46,7 +46,7 @@ class Growth:
         self.turns.append((float(result.summary[2]), result.frames[:count]))
 
     def sentence(self) -> str:
-        """Growth of both over the last turns in words, with the rates a turn and a second."""
+        """Say how both have grown over the last turns, with the rates per turn and per second."""
         amplitudes = {"blades": self._blades(), "casing": [casing for casing, _ in self.turns]}
         trends = {name: found for name, sizes in amplitudes.items() if (found := trend(np.array(sizes)))}
         if not trends:
@@ -61,7 +61,7 @@ class Growth:
         return float(self.stepper.dt * self.stepper.turn_steps)
 
     def _blades(self) -> list[float]:
-        """The largest tip coordinate of each turn, m; 0 where a turn has no frame."""
+        """Return the largest tip coordinate of each turn, m; 0 where a turn has no frame."""
         tips = 3 * self.stepper.system.n_blades
         return [
             max((float(np.abs(self.stepper.blocks.to_q(z)[:tips]).max()) for z in frames), default=0.0)
@@ -70,7 +70,7 @@ class Growth:
 
 
 def what_diverged(stepper: Stepper) -> tuple[str, str]:
-    """Which of the two branches has left its range, "blade" or "casing", and how far it was."""
+    """Return which of the two branches has left its range, "blade" or "casing", and how far it was."""
     system, laws = stepper.system, stepper.model.laws
     tips = np.abs(stepper.coordinates.after[: 3 * system.n_blades])
     if not np.all(tips <= laws.tip_limit):
@@ -88,12 +88,12 @@ class Trend:
     turns: int
 
     def text(self, turn_seconds: float) -> str:
-        """The rate a turn and a second, and the size."""
+        """Write the rates per turn and per second, and the size."""
         return f"{self.rate:+.3g} a turn ({self.rate / turn_seconds:+.3g} 1/s) about {1e3 * self.size:.3g} mm"
 
 
 def trend(amplitudes: FloatArray) -> Trend | None:
-    """The growth of amplitudes (turns,) by least squares on their logarithms; None for fewer than two.
+    """Fit the growth of amplitudes (turns,) by least squares on their logarithms; None for fewer than two.
 
     Amplitudes that are zero or NaN are left out.
     """

@@ -1,4 +1,4 @@
-"""The balance of the scheme's energy identity over a run."""
+"""Check the energy identity of the scheme over a run."""
 
 from typing import Any
 
@@ -24,7 +24,7 @@ ROUNDING_SHARE = 1e-6
 
 
 class EnergyIdentity:
-    """How well a stepper satisfies the energy identity, from its present state on."""
+    """Measures how well a stepper satisfies the energy identity, from its present state on."""
 
     def __init__(self, stepper: Stepper) -> None:
         self.stepper, self.start_energy = stepper, stepper.energy()
@@ -32,7 +32,7 @@ class EnergyIdentity:
         self.rounding_energy = ROUNDING_SHARE * gross_energy(stepper)
 
     def residual(self) -> float:
-        """|E - E_start - works| after a turn, over the summed absolute works, or the largest |E| where no work is done.
+        """Return |E - E_start - works| over the summed absolute works, or over the largest |E| where no work is done.
 
         At a critical speed the rub-free motion has no energy in the turning frame. There the rounding error of its
         energy terms is the scale.
@@ -45,7 +45,7 @@ class EnergyIdentity:
         return abs(energy - self.start_energy - float(done)) / scale if scale > 0 else 0.0
 
     def result(self, times: float = 1.0) -> dict[str, Any]:
-        """The `EnergyBalance` of a run that repeats the stepper's turns so many times."""
+        """Return the field `energy`, the `EnergyBalance` of a run that repeats the stepper's turns `times` times."""
         works = [times * float(work) for work in self.stepper.state.works]
         support = [times * float(work) for work in self.stepper.state.support.works]
         wear = 0.0 - float(self.stepper.state.wear.sums[WORK])
@@ -71,6 +71,6 @@ class EnergyIdentity:
 
 
 def gross_energy(stepper: Stepper) -> float:
-    """Sum of |q_i K_ij q_j| / 2 in the present state, J."""
+    """Return the sum of |q_i K_ij q_j| / 2 in the present state, J: the size of the terms that cancel in the energy."""
     q = np.abs(stepper.coordinates.now)
     return 0.5 * float(q @ np.abs(stepper.system.K) @ q)

@@ -1,4 +1,4 @@
-"""What all observers of a run have."""
+"""The base class of all observers of a run."""
 
 from abc import ABC, abstractmethod
 from typing import Any
@@ -13,11 +13,11 @@ class Observer(ABC):
     """
 
     def start(self) -> None:  # noqa: B027
-        """Called once: the record begins with the next turn. Does nothing by default."""
+        """Prepare for the record, which begins with the next turn. Does nothing by default."""
 
     def turn(self, turn: Turn) -> None:  # noqa: B027
-        """Called after each turn, of the settling (`turn.number` < 0) or of the record. Does nothing by default."""
+        """Take in a turn that was just run, of the settling (`number` < 0) or the record. Does nothing by default."""
 
     @abstractmethod
     def result(self) -> dict[str, Any]:
-        """The fields of `Response` from this observer, by name."""
+        """Return the fields of `Response` that this observer makes, by name."""

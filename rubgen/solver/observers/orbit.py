@@ -1,4 +1,4 @@
-"""Means of the disk centre's motion."""
+"""Keep the means of the disk centre's motion."""
 
 from collections import deque
 from typing import Any
@@ -11,7 +11,7 @@ from rubgen.solver.speed.turn import Turn
 
 
 class Orbit(Observer):
-    """Means of the orbit over each of the last `turns` turns of the record; over all turns with None."""
+    """Keeps the means of the orbit over each of the last `turns` turns of the record; over all turns with None."""
 
     def __init__(self, turns: int | None) -> None:
         self.means: deque[FloatArray] = deque(maxlen=turns)
@@ -22,5 +22,5 @@ class Orbit(Observer):
             self.means.append(turn.result.orbit / turn.result.taps.shape[1])
 
     def result(self) -> dict[str, Any]:
-        """`orbit` (turns, 5)."""
+        """Return the field `orbit` (turns, 5)."""
         return {"orbit": np.array(self.means).reshape(-1, 5)}

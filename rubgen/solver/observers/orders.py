@@ -1,4 +1,4 @@
-"""Orders of rotation of each turn, over its angle."""
+"""Compute the orders of rotation of each turn, over its angle."""
 
 from typing import Any
 
@@ -12,12 +12,10 @@ from rubgen.solver.speed.turn import Turn
 
 
 class WindowOrders(Observer):
-    """Complex amplitudes of a steady run's taps, window by window.
+    """Computes complex amplitudes of a steady run's taps, window by window.
 
-    A window's amplitude is the amplitude of the mean of its turns.
-
-    The first step of a turn is at theta = 0. Turns before the first whole window are left out; the last window may be
-    shorter.
+    A window's amplitude is the amplitude of the mean of its turns. The first step of a turn is at theta = 0. Turns
+    before the first whole window are left out; the last window may be shorter.
     """
 
     def __init__(self, taps: int, steps: int) -> None:
@@ -36,7 +34,7 @@ class WindowOrders(Observer):
             self._close()
 
     def result(self) -> dict[str, Any]:
-        """`window_orders` (windows, taps, 20) of all turns so far."""
+        """Return the field `window_orders` (windows, taps, 20) of all turns so far."""
         if self.turns:
             self._close()
         windows = np.array(self.windows, dtype=np.complex128).reshape(len(self.windows), len(self.sum), ORDERS)
@@ -49,7 +47,7 @@ class WindowOrders(Observer):
 
 
 class ChangingOrders(Observer):
-    """Speed and orders of each turn of a record at a changing speed."""
+    """Computes speed and orders of each turn of a record at a changing speed."""
 
     def __init__(self, driver: SpeedDriver, record: int) -> None:
         self.driver, self.record = driver, record
@@ -62,7 +60,7 @@ class ChangingOrders(Observer):
             self.orders.append(turn_orders(turn.result.taps, self.driver.rotation.angle(time)))
 
     def result(self) -> dict[str, Any]:
-        """`changing_speed`, and `window_orders` without windows."""
+        """Return the fields `changing_speed`, and `window_orders` without windows."""
         changing = ChangingSpeed(
             rotation=self.driver.rotation,
             turn_steps=np.array([self.driver.first_step(number) for number in range(self.record + 1)]),
@@ -75,10 +73,11 @@ class ChangingOrders(Observer):
 
 
 def turn_orders(taps: FloatArray, theta: FloatArray) -> ComplexArray:
-    """Complex amplitudes (taps, 20) at k = 1 .. 20 of `taps` (taps, steps), the steps at angles `theta` (steps + 1,).
+    """Compute complex amplitudes (taps, 20) at k = 1 .. 20 of `taps` (taps, steps) over the angle of one turn.
 
-    2 / (2 pi) sum x exp(-i k theta) dtheta by the trapezoidal rule on the steps' own angles, from the first to the last
-    as if they were exactly one turn. Each end is off by at most half a step, an error of a share 1 / steps.
+    The steps are at angles `theta` (steps + 1,). 2 / (2 pi) sum x exp(-i k theta) dtheta by the trapezoidal rule on the
+    steps' own angles, from the first to the last as if they were exactly one turn. Each end is off by at most half a
+    step, an error of a share 1 / steps.
     """
     weight = np.zeros(taps.shape[1])
     weight += 0.5 * np.diff(theta)

@@ -1,4 +1,4 @@
-"""State, impulse and number of steps with contact, once a turn."""
+"""Keep the state once a turn, and the impulse and number of steps with contact of each turn."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ from rubgen.solver.speed.turn import Turn
 
 
 class Sections(Observer):
-    """The Poincare section, and the sums of each turn, of a record of `record` turns with `size` coordinates."""
+    """Keeps the Poincare section, and the sums of each turn, of a record of `record` turns with `size` coordinates."""
 
     def __init__(self, record: int, size: int) -> None:
         self.section = np.zeros((record, 2, size))
@@ -24,7 +24,7 @@ class Sections(Observer):
             self.impulse[row], self.contact_steps[row] = result.summary[0], int(result.summary[1])
 
     def result(self) -> dict[str, Any]:
-        """`section_q`, `section_v`, `impulse_per_turn`, `contact_steps_per_turn`."""
+        """Return the fields `section_q`, `section_v`, `impulse_per_turn`, `contact_steps_per_turn`."""
         return {
             "section_q": np.ascontiguousarray(self.section[:, 0]),
             "section_v": np.ascontiguousarray(self.section[:, 1]),

@@ -1,4 +1,4 @@
-"""The state after each Nth of a turn. A motion with the symmetry of the casing has N equal states."""
+"""Compare the states after each Nth of a turn. A motion with the symmetry of the casing has N equal states."""
 
 import math
 from typing import Any
@@ -12,14 +12,14 @@ from rubgen.solver.scheme.stepper import Stepper
 
 
 def lobes_of(system: SpinningSystem) -> int:
-    """Number N of lobes: the casing looks alike after each Nth of a turn. 1 where its nodes do not."""
+    """Return the number N of lobes: the casing looks alike after each Nth of a turn. 1 where its nodes do not."""
     orders = [round(order) for order, a in zip(system.surface.order, system.surface.amplitude, strict=True) if a]
     lobes = math.gcd(*orders)
     return lobes if lobes and len(system.casing_modes) % lobes == 0 else 1
 
 
 def turned_back(modes: FloatArray, share: float) -> FloatArray:
-    """The matrix (n_casing, n_casing) that turns the casing's displacement back by a share of a turn.
+    """Return the matrix (n_casing, n_casing) that turns the casing's displacement back by a share of a turn.
 
     With u(theta) the displacement in X and Y: R(-a) u(theta + a) on the casing's own modes (nodes, 2, n_casing), by
     least squares over the nodes. Exact where the modes of each order come in pairs.
@@ -32,7 +32,7 @@ def turned_back(modes: FloatArray, share: float) -> FloatArray:
 
 
 class Symmetry(Observer):
-    """The states after 1/N, 2/N, ... 1 of the last turn. A turn must leave snapshots at `steps`."""
+    """Takes the states after 1/N, 2/N, ... 1 of the last turn. A turn must leave snapshots at `steps`."""
 
     def __init__(self, stepper: Stepper) -> None:
         self.stepper, steps = stepper, stepper.steps
@@ -42,7 +42,7 @@ class Symmetry(Observer):
         self.steps = sorted({min(math.ceil(place), steps) for place in self.places})
 
     def result(self) -> dict[str, Any]:
-        """`symmetry_states` (N, 2, n), q and v, linear between two steps; v is their difference over dt."""
+        """Return the field `symmetry_states` (N, 2, n): q and v, linear between two steps; v is their slope."""
         stepper, states = self.stepper, []
         for share, place in zip(self.shares, self.places, strict=True):
             step = min(math.ceil(place), stepper.steps)

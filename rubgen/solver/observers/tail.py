@@ -1,4 +1,4 @@
-"""Taps and passages under timing probes of the last turns."""
+"""Keep the taps and the passages under timing probes of the last turns."""
 
 from collections import deque
 from typing import Any
@@ -14,7 +14,7 @@ from rubgen.taps import Tap
 
 
 class Tail(Observer):
-    """All taps, and all passages under timing probes, of the last `turns` turns."""
+    """Keeps all taps, and all passages under timing probes, of the last `turns` turns."""
 
     def __init__(self, taps: tuple[Tap, ...], turns: int) -> None:
         self.wanted = taps
@@ -28,7 +28,7 @@ class Tail(Observer):
             self.arrivals.append(turn.arrivals)
 
     def result(self) -> dict[str, Any]:
-        """`taps` and `arrivals`."""
+        """Return the fields `taps` and `arrivals`."""
         sampled = sampled_taps(self.wanted)
         tail = np.concatenate([np.zeros((len(sampled), 0)), *self.taps], axis=1)
         return {
@@ -38,7 +38,11 @@ class Tail(Observer):
 
 
 def tip_arrivals(arrivals: list[FloatArray], names: list[str]) -> dict[str, TipArrivals]:
-    """Arrivals (each array (any, 4): number of the probe, blade, step, displacement) by probe, in order of time."""
+    """Sort arrivals by probe and then by time, and name the probes.
+
+    Each array of `arrivals` is (any, 4): number of the probe, blade, step, displacement. `names` are those of the
+    probes.
+    """
     rows = np.concatenate([np.zeros((0, 4)), *arrivals])
     seen = {}
     for number, name in enumerate(names):

@@ -1,4 +1,4 @@
-"""Touches of blades."""
+"""Keep the touches of blades."""
 
 from typing import Any
 
@@ -13,14 +13,14 @@ from rubgen.solver.speed.turn import Turn
 
 
 class TouchKeeper(Observer):
-    """The touches of a record of `record` turns."""
+    """Keeps the touches of a record of `record` turns."""
 
     def __init__(self, stepper: Stepper, record: int) -> None:
         self.stepper, self.record = stepper, record
         self.touches: list[FloatArray] = []
 
     def start(self) -> None:
-        """Count a present touch from the start of the record."""
+        """Count a present touch from the start of the record on."""
         self.stepper.begin_record()
 
     def turn(self, turn: Turn) -> None:
@@ -31,12 +31,15 @@ class TouchKeeper(Observer):
             self.touches.append(self.stepper.end_record(turn.end_step))
 
     def result(self) -> dict[str, Any]:
-        """`events`, the touches as `ContactEvents`."""
+        """Return the field `events`, the touches as `ContactEvents`."""
         return {"events": contact_events(self.touches)}
 
 
 def contact_events(touches: list[FloatArray]) -> ContactEvents:
-    """Touches (each array (any, 8) with the columns of `turn_kernels`) in order of their last step, then of blade."""
+    """Sort touches by their last step, then by blade, and return them as `ContactEvents`.
+
+    Each array of `touches` is (any, 8), with the columns of `turn_kernels`.
+    """
     rows = np.concatenate([np.zeros((0, 8)), *touches])
     rows = rows[np.lexsort((rows[:, BLADE], rows[:, START] + rows[:, STEPS]))]
     angle = np.mod(np.arctan2(rows[:, SINE], rows[:, COSINE]), 2 * np.pi)

@@ -1,4 +1,4 @@
-"""The replay track: the whole motion, frame by frame, over the few turns about the hardest touch."""
+"""Keep the replay track: the whole motion, frame by frame, over the few turns about the hardest touch."""
 
 from collections import deque
 from typing import Any
@@ -16,7 +16,7 @@ TRACK_TURNS = 8
 
 
 class TrackKeeper(Observer):
-    """The frames of the eight turns around the hardest touch. The memory does not grow with the turns.
+    """Keeps the frames of the eight turns around the hardest touch. The memory does not grow with the turns.
 
     Turns of the record before `first_turn` are left out. Without any touch the first eight turns are recorded.
     """
@@ -49,7 +49,7 @@ class TrackKeeper(Observer):
             self.hardest, self.kept = touch, list(self.frames)
 
     def result(self) -> dict[str, Any]:
-        """`track`; None where no turn was recorded."""
+        """Return the field `track`; None where no turn was recorded."""
         if not self.kept:
             return {"track": None}
         blocks, system = self.driver.stepper.blocks, self.driver.stepper.system

@@ -1,4 +1,4 @@
-"""Matrices of the central difference scheme with Lagrange multipliers, for the kernels."""
+"""Build the matrices of the central difference scheme with Lagrange multipliers, for the kernels."""
 
 import numpy as np
 import scipy.linalg as la
@@ -11,7 +11,7 @@ from rubgen.solver.scheme.model_kernels import EnergyTerms
 
 
 def scheme(M: FloatArray, C: FloatArray, K: FloatArray, force: FloatArray, dt: float, blocks: Blocks) -> Scheme:
-    """The free step q* = P1 q_n + P2 q_n-1 + p0 and A^-1, in blocks.
+    """Build the free step q* = P1 q_n + P2 q_n-1 + p0, and A^-1, in blocks.
 
     A = M / dt^2 + C / (2 dt), P1 = A^-1 (2 M / dt^2 - K), P2 = -A^-1 (M / dt^2 - C / (2 dt)), p0 = A^-1 force. C and K
     may be unsymmetric (Carpenter, Taylor, Katona 1991). Matrices are (n, n), `force` is (n,) in N, `dt` in s.
@@ -39,7 +39,7 @@ def compliances(system: SpinningSystem, dt: float) -> tuple[FloatArray, FloatArr
 
 
 def energy_terms(system: SpinningSystem, blocks: Blocks, *, zeros: bool = False) -> EnergyTerms:
-    """Matrices of the energy terms in blocks; with `zeros` entries that are zero remain."""
+    """Build the matrices of the energy terms in blocks; with `zeros` entries that are zero remain."""
     force = blocks.to_z(system.force)
     places = np.arange(force.size) if zeros else np.flatnonzero(force)
     circulatory = (system.K - system.K.T) / 2

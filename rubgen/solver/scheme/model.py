@@ -1,4 +1,4 @@
-"""The constants of a run, and its first state."""
+"""Build the constants of a run, and its first state."""
 
 import numpy as np
 
@@ -33,21 +33,21 @@ clearance; the tips of a linear beam do not."""
 
 
 def relative_tip_shift(tips: Tips, tip_limit: float) -> float:
-    """The largest distance of a tip from its place at rest along either axis, in tip radii.
+    """Return the largest distance of a tip from its place at rest along either axis, in tip radii.
 
-    Steady displacement plus `tip_limit` (m), beyond which a run has diverged.
+    It is the steady displacement plus `tip_limit` (m), beyond which a run has diverged.
     """
     return (tip_limit + float(np.abs(tips.static[:2]).max(initial=0.0))) / tips.radius
 
 
 def bounds_hold(surface: Surface, tip_shift: float, casing_limit: float) -> bool:
-    """Whether the bounds of `clearance_kernels` are valid in every state of a run that has not diverged.
+    """Return whether the bounds of `clearance_kernels` are valid in every state of a run that has not diverged.
 
     They are valid where a tip is less than a quarter of its radius from its place at rest, and where the radius of the
     deformed surface is nowhere below 0.9 of its mean. Bladed machines are far inside these limits. A Jeffcott rotor,
     whose one "tip" stands on the axis, is not. Tests: tests/solver/scheme/test_screening.py.
 
-    - tip_shift: `relative_tip_shift`.
+    - tip_shift: from `relative_tip_shift`.
     - casing_limit: largest displacement of the casing, m.
     """
     narrowest = surface.mean_radius - float(np.abs(surface.amplitude).sum()) - surface.inset - casing_limit
@@ -63,8 +63,9 @@ def build_model(
     start_angle: float = 0.0,
     screen: bool = True,
 ) -> Model:
-    """The constants of a run of `steps` equal steps a turn.
+    """Build the constants of a run of `steps` equal steps a turn.
 
+    - system, contact: the system at its speed, and the contact law.
     - blocks: of the system's matrices.
     - start_angle: theta at the beginning of each turn, rad.
     - screen: False evaluates every blade's gap in every step, as where `bounds_hold` is false. The result is the same.
@@ -107,7 +108,7 @@ def build_model(
 
 
 def speed_part(system: SpinningSystem, blocks: Blocks, dt: float) -> SpeedPart:
-    """The fields of a model that follow the speed, for the same system at another speed; `dt` in s."""
+    """Build the fields of a model that follow the speed, for the same system at another speed; `dt` in s."""
     return frozen(
         SpeedPart(
             blade_tips(system),
@@ -120,7 +121,7 @@ def speed_part(system: SpinningSystem, blocks: Blocks, dt: float) -> SpeedPart:
 
 
 def at_speed(model: Model, part: SpeedPart, speed: float, angles: Angles, *, screen: bool) -> Model:
-    """The model at another speed.
+    """Return the model at another speed.
 
     - part: made by `speed_part` at that speed.
     - speed: in rad/s.
@@ -134,13 +135,16 @@ def at_speed(model: Model, part: SpeedPart, speed: float, angles: Angles, *, scr
 
 
 def angle_tables(system: SpinningSystem, theta: FloatArray, section: float = 0.0) -> Angles:
-    """Tables at the angles `theta` (steps + 2,) in rad of steps 0, ..., steps and -1; `section` as in `Angles`."""
+    """Build the tables at the angles `theta` (steps + 2,) in rad of steps 0, ..., steps and -1.
+
+    `section` is as in `Angles`.
+    """
     orders = np.multiply.outer(theta, system.surface.order) - system.surface.order * system.surface.phase
     return frozen(Angles(theta, np.cos(theta), np.sin(theta), np.cos(orders), np.sin(orders), section))
 
 
 def new_state(model: Model) -> State:
-    """A state at rest, undeformed and unworn, its works zero."""
+    """Return a state at rest, undeformed and unworn, its works zero."""
     return State(
         motions=(new_motion(model), new_motion(model), new_motion(model)),
         contact=new_contact_work(len(model.tip_compliance), len(model.casing_compliance)),
@@ -152,14 +156,14 @@ def new_state(model: Model) -> State:
 
 
 def turned(state: State, steps: int) -> State:
-    """The state after `steps` steps: in each step the three motions have changed places."""
+    """Return the state after `steps` steps: in each step the three motions have changed places."""
     first = steps % 3
     order = state.motions[first:] + state.motions[:first]
     return state._replace(motions=(order[0], order[1], order[2]))
 
 
 def new_motion(model: Model) -> Motion:
-    """A motion of zeros."""
+    """Return a motion of zeros, of the model's size."""
     (blades, width), numbers = model.harmonics.basis.shape, model.scheme.constant.size
     n = 3 * blades + model.harmonics.rest.size
     return Motion(aligned(np.zeros(numbers)), aligned(np.zeros((2, width))), aligned(np.zeros(n)))
@@ -175,7 +179,7 @@ def _scratch(model: Model) -> Scratch:
 
 
 def new_contact_work(tip_coordinates: int, c: int) -> ContactWork:
-    """Arrays of the contact step for `tip_coordinates` tip coordinates and `c` casing modes."""
+    """Allocate the arrays of the contact step for `tip_coordinates` tip coordinates and `c` casing modes."""
     m = tip_coordinates // 3
     return ContactWork(
         casing=with_zeros(np.zeros(c)), bounds=np.full(padded(m), np.inf), psi=np.zeros(m), gap=np.zeros(m),

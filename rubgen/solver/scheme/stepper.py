@@ -1,4 +1,4 @@
-"""A model, its state, and the output of a turn."""
+"""Advance one system turn by turn: its model, its state, and the output of a turn."""
 
 from collections.abc import Iterator, Sequence
 
@@ -75,7 +75,7 @@ class Stepper:
 
     @property
     def steps(self) -> int:
-        """Steps of a turn, or of the present part of one."""
+        """Number of steps of a turn, or of the present part of one."""
         return len(self.model.angles.theta) - 2
 
     @property
@@ -180,7 +180,7 @@ class Stepper:
         return self.touches._replace(ended=ended), Snapshots(self.snapshots.steps, z, step_gaps), results, ends
 
     def begin_record(self) -> None:
-        """Count present touches from here on."""
+        """Count the steps of present touches from here on."""
         self.touches.open[:, STEPS] = 0.0
 
     def end_record(self, clock: int) -> FloatArray:
@@ -192,12 +192,15 @@ class Stepper:
         self.state.works[:] = 0.0
 
     def take_frames(self, frames: int) -> None:
-        """Let every turn or part of a turn leave `frames` frames."""
+        """Let every turn or part of a turn leave `frames` frames of the motion at equal steps, in `result.frames`."""
         if len(self.result.frames) != frames:
             self.result = self.result._replace(frames=np.zeros((frames, self.result.frames.shape[1])))
 
     def take_snapshots(self, steps: list[int]) -> None:
-        """Let every turn leave snapshots at rising steps; the last is the end of the turn, or is never reached."""
+        """Let every turn leave snapshots of the state at these rising steps, in `snapshots`.
+
+        The last step is the end of the turn, or is never reached.
+        """
         numbers, blades = self.blocks.rows * LANES, self.system.n_blades
         self.snapshots = Snapshots(
             np.array(steps), np.zeros((len(steps), 2, numbers)), np.full((len(steps), 2, blades), np.nan)
@@ -217,7 +220,7 @@ class Stepper:
         return code, count
 
     def energy(self) -> float:
-        """Stored energy E half a step before now, J."""
+        """Return the stored energy E half a step before now, J."""
         before, now, _ = self.state.motions
         change = self.state.scratch.z_change
         np.subtract(now.z, before.z, out=change)

@@ -1,4 +1,4 @@
-"""Taps as the kernels take them. A new kind of sampled tap is one function and one line in `TAP_ROWS`."""
+"""Make taps in the form that the kernels take. A new kind of sampled tap is one function and one line in `TAP_ROWS`."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -67,11 +67,11 @@ class TapLayout:
         return self.system.recovery
 
     def add(self, output: int, **functionals: FloatArray) -> None:
-        """Add a linear tap: the sum of its functionals, named by their sources."""
+        """Add a linear tap at row `output` of the taps: the sum of its functionals, named by their sources."""
         self.linear.append((output, self._place(**functionals)))
 
     def add_ray(self, output: int, angle: float) -> None:
-        """Add a clearance on a ray."""
+        """Add a clearance on the ray at polar angle `angle` (rad), at row `output` of the taps."""
         self.rays.append((output, self.places, angle))
         for row in polar_rows(self.surface, angle):
             self._place(displacement=row)
@@ -84,7 +84,7 @@ class TapLayout:
         return place
 
     def product(self, source: str) -> Product:
-        """The functionals of one source: a line for each row of eight places with a functional."""
+        """Return the functionals of one source: a line for each row of eight places with a functional."""
         placed = self.rows[source]
         lines, parts, first = [], [np.zeros((0, LANES))], 0
         for number in sorted({place // LANES for place, _ in placed}):
@@ -99,7 +99,7 @@ class TapLayout:
 
 
 def direction(angle_deg: float) -> tuple[float, float]:
-    """Cosine and sine, exact at right angles."""
+    """Return cosine and sine of an angle, exact at right angles."""
     quarter, rest = divmod(angle_deg, 90.0)
     if rest == 0:
         return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[int(quarter) % 4]
@@ -107,19 +107,19 @@ def direction(angle_deg: float) -> tuple[float, float]:
 
 
 def along(angle_deg: float, first: int, second: int) -> FloatArray:
-    """The shaft's signals `first` and `second`, X and Y parts, along a direction."""
+    """Return the row that gives a vector's part along a direction, from the signals `first` (X) and `second` (Y)."""
     row = np.zeros(LANES)
     row[first], row[second] = direction(angle_deg)
     return row
 
 
 def only(signal: int) -> FloatArray:
-    """One of the shaft's signals."""
+    """Return the row that gives one of the shaft's signals."""
     return np.asarray(np.eye(LANES)[signal])
 
 
 def polar_rows(surface: Surface, angle: float) -> list[FloatArray]:
-    """Radial, tangential displacement and d(radial)/d(angle) at a polar angle per unit of each casing mode."""
+    """Return rows for radial and tangential displacement and d(radial)/d(angle) at a polar angle, per casing mode."""
     cosine, sine = np.cos(angle), np.sin(angle)
     n_casing = len(surface.mode_displacement)
     at, aside = np.zeros((2, n_casing)), np.zeros((2, 2, n_casing))
@@ -133,10 +133,11 @@ def polar_rows(surface: Surface, angle: float) -> list[FloatArray]:
 
 
 def ring_strain_row(system: SpinningSystem, recovery: Recovery, angle: float) -> FloatArray:
-    """Hoop strain at the casing's outer face per unit of each mode: (u_t' + u_r) / R + (h / 2) (u_t' - u_r'') / R^2.
+    """Return the row of the hoop strain at the casing's outer face: (u_t' + u_r) / R + (h / 2) (u_t' - u_r'') / R^2.
 
-    The first term is the stretch of the centre line. The second is the bending, from the rotation (u_t - u_r') / R of
-    the cross-section; a thin ring (Love 1888). Derivatives are taken of the trigonometric polynomial through the nodes.
+    It is per unit of each mode, at polar angle `angle` in rad. The first term is the stretch of the centre line. The
+    second is the bending, from the rotation (u_t - u_r') / R of the cross-section; a thin ring (Love 1888). Derivatives
+    are taken of the trigonometric polynomial through the nodes.
     """
     modes = system.casing_modes
     nodes = len(modes)
@@ -190,19 +191,19 @@ TAP_ROWS: dict[type[Tap], Callable[[TapLayout, int, Any], None]] = {
 
 
 def sampled_taps(taps: tuple[Tap, ...]) -> list[Tap]:
-    """The taps that are signals, not events."""
+    """Return the taps that have a value at every step."""
     return [tap for tap in taps if not isinstance(tap, TipTiming)]
 
 
 def timing_taps(taps: tuple[Tap, ...]) -> list[TipTiming]:
-    """The taps that are events."""
+    """Return the taps that are events: passages under a probe."""
     return [tap for tap in taps if isinstance(tap, TipTiming)]
 
 
 def build_taps(
     taps: tuple[Tap, ...], system: SpinningSystem, surface: Surface, blocks: Blocks, laws: Laws, theta: FloatArray
 ) -> Taps:
-    """Constants and scratch of the kernels for these taps of a system.
+    """Build the constants and scratch of the kernels for these taps of a system.
 
     - surface: of the casing.
     - blocks: of the system's matrices.
@@ -254,14 +255,14 @@ def _timing(system: SpinningSystem, probes: list[TipTiming], theta: FloatArray, 
 
 
 def turned_taps(taps: Taps, system: SpinningSystem, theta: FloatArray) -> Taps:
-    """The same taps at other angles `theta` (steps,) of the steps, rad."""
+    """Return the same taps for steps at other angles `theta` (steps,), rad."""
     blade, share = _blades_around_rays(system, taps.rays.angle, theta)
     passing, _ = _blades_around_rays(system, taps.timing.angle, theta)
     return taps._replace(rays=taps.rays._replace(blade=blade, share=share), timing=taps.timing._replace(blade=passing))
 
 
 def _blades_around_rays(system: SpinningSystem, rays: FloatArray, theta: FloatArray) -> tuple[IntArray, FloatArray]:
-    """The blades (steps, rays, 2) on either side of each ray at angles `theta`, and the ray's share of the angle."""
+    """Return the blades (steps, rays, 2) on either side of each ray at angles `theta`, and the ray's share between."""
     turn = 2 * np.pi
     order = np.argsort(np.mod(system.blade_angles, turn), kind="stable")
     placed = np.mod(system.blade_angles, turn)[order]
