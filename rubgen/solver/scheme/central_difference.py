@@ -30,7 +30,7 @@ def scheme(M: FloatArray, C: FloatArray, K: FloatArray, force: FloatArray, dt: f
 
 
 def compliances(system: SpinningSystem, dt: float) -> tuple[FloatArray, FloatArray]:
-    """A^-1 between tip coordinates (3 blades, 3 blades) and of the casing modes (n_casing, n_casing)."""
+    """Return A^-1, transposed, between tip coordinates (3 blades, 3 blades), of casing modes (n_casing, n_casing)."""
     A = system.M / dt**2 + system.C / (2 * dt)
     inverse = la.inv(A)
     tips, start = 3 * system.n_blades, system.casing_start

@@ -184,7 +184,7 @@ class Stepper:
         self.touches.open[:, STEPS] = 0.0
 
     def end_record(self, clock: int) -> FloatArray:
-        """End the present touches at the step `clock`. Return them (any, 8)."""
+        """End the present touches at the step `clock`. Return them (any, 8), with the columns of `turn_kernels`."""
         return self.touches.ended[: close_touches(self.touches, clock, 0)].copy()
 
     def clear_works(self) -> None:
