@@ -18,8 +18,19 @@ from rubgen.viz.figures import save_png
 from validation.contact_options.blade_shortening import soft_draw_in
 from validation.contact_options.chords import artefact
 from validation.contact_options.figures import chords_figure, liner_figure
-from validation.contact_options.page import page
-from validation.contact_options.runs import HEAVY_RPM, OPTIONS, Found, heavy_scenario, option_scenario, read
+from validation.contact_options.matched import (
+    FIGURE_RPM,
+    MATCHED,
+    ONSETS,
+    SMOOTH,
+    SPEEDS_RPM,
+    SURFACES,
+    compared,
+    matched_section,
+    scenario,
+)
+from validation.contact_options.page import chords_section, page
+from validation.contact_options.runs import HEAVY_RPM, OPTIONS, heavy_scenario, option_scenario, read
 from validation.sensitivity.cases import CASES
 
 QUICK_SETTLE, QUICK_RECORD = 60, 64
@@ -37,29 +48,29 @@ def main(arguments: Sequence[str], folder: Path) -> int:
         read(case, option, _run(option_scenario(case, option), quick=quick)) for case in cases for option in OPTIONS
     ]
     heavy = [read("heavy", "none", _run(heavy_scenario(speed), quick=quick)) for speed in speeds]
-    scenario = option_scenario(cases[0], "none")
-    system = reduce(scenario.machine, scenario.reduction).at_speed(scenario.operation.speed_rad_per_s)
+    speeds_on_chords, ends = (SPEEDS_RPM[-4:-3], ONSETS[:1]) if quick else (SPEEDS_RPM, ONSETS)
+    runs = [compared(one, _run(scenario(one, rpm), quick=quick)) for rpm in speeds_on_chords for one in SURFACES]
+    onsets = [compared(one, _run(scenario(one, *end), quick=quick)) for end in ends for one in SURFACES]
+    preset = option_scenario(cases[0], "none")
+    system = reduce(preset.machine, preset.reduction).at_speed(preset.operation.speed_rad_per_s)
     hits = artefact(system)
-    save_png(chords_figure(hits, *_first(options, "none", "chords")), out / "contact-options-chords.png")
+    shown = {run.surface: run for run in runs if run.speed_rpm == FIGURE_RPM}
+    save_png(chords_figure(hits, shown[SMOOTH], shown[MATCHED]), out / "contact-options-chords.png")
     save_png(liner_figure(options), out / "contact-options-liner.png")
-    factor = soft_draw_in(scenario.machine.blades, scenario.machine.disk.rim_radius_m)
-    text = page(options, heavy, hits, factor)
+    factor = soft_draw_in(preset.machine.blades, preset.machine.disk.rim_radius_m)
+    chords = chords_section(hits, matched_section(runs, onsets))
+    text = page(options, heavy, chords, factor)
     (out / "contact-options.md").write_text(text, encoding="utf-8")
     return 0
 
 
-def _first(found: Sequence[Found], *options: str) -> list[Found]:
-    """The first case with each of these options."""
-    return [next(each for each in found if each.option == option) for option in options]
-
-
-def _run(scenario: Scenario, *, quick: bool) -> Run:
+def _run(asked: Scenario, *, quick: bool) -> Run:
     if quick:
-        operation = replace(scenario.operation, settle_turns=QUICK_SETTLE, record_turns=QUICK_RECORD)
-        scenario = replace(scenario, operation=operation, signal_seconds=0.2)
-    run = simulate(scenario)
+        operation = replace(asked.operation, settle_turns=QUICK_SETTLE, record_turns=QUICK_RECORD)
+        asked = replace(asked, operation=operation, signal_seconds=0.2)
+    run = simulate(asked)
     motion = run.labels.motion if run.labels else run.response.reason
-    sys.stdout.write(f"{scenario.operation.speed_rpm:6.0f} rev/min, {scenario.contact}: {motion}\n")
+    sys.stdout.write(f"{asked.operation.speed_rpm:6.0f} rev/min, {asked.contact}: {motion}\n")
     sys.stdout.flush()
     return run
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from rubgen.viz.colors import BLUE, GREEN, ORANGE, VERMILION
 from validation.contact_options.chords import Artefact
+from validation.contact_options.matched import Compared
 from validation.contact_options.runs import Found
 
 if TYPE_CHECKING:
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
 SHOWN_NODES = 5
 
 
-def chords_figure(artefact: Artefact, smooth: Found, chords: Found) -> Figure:
-    """How chords lie and approach over a few nodes, and what becomes of a period-1 run on them."""
+def chords_figure(artefact: Artefact, smooth: Compared, chords: Compared) -> Figure:
+    """How chords lie and approach over a few nodes, and what becomes of a run on them."""
     figure, panels = _figure(4)
     shown = artefact.angle < 2 * np.pi * SHOWN_NODES / len(artefact.hits)
     degrees = np.rad2deg(artefact.angle[shown])

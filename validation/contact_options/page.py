@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from validation.contact_options.chords import Artefact
+from validation.contact_options.matched import FIGURE_RPM
 from validation.contact_options.runs import HEAVY_FRICTION, LINER, Found
 from validation.markdown import table
 
 COMMAND = "python -m validation.contact_options"
 
 
-def page(options: Sequence[Found], heavy: Sequence[Found], artefact: Artefact, factor: float) -> str:
-    """The page: options run by run, chords, the liner, heavy rub, and how far blades shorten."""
-    parts = [_introduction(), _options(options), _chords(artefact), _liner(options), _heavy(heavy), _draw_in(factor)]
+def page(options: Sequence[Found], heavy: Sequence[Found], chords: str, factor: float) -> str:
+    """The page: options run by run, `chords` (see `chords_section`), the liner, heavy rub, how far blades shorten."""
+    parts = [_introduction(), _options(options), chords, _liner(options), _heavy(heavy), _draw_in(factor)]
     return "\n\n".join(part.strip() for part in parts) + "\n"
 
 
@@ -39,11 +40,13 @@ def _options(found: Sequence[Found]) -> str:
 
 Impulses are mean and standard deviation over the turns of the record. The half thickness of the casing, 0.65 mm in
 the preset, moves the line of action of friction by 0.16 % of the radius. It changes no class of these runs. In
-chaotic motion every change of the last digit leads to another trajectory.
+chaotic motion every change of the last digit leads to another trajectory. The row of the chords has unbalance and
+clearance fitted for chords: see below.
 """
 
 
-def _chords(artefact: Artefact) -> str:
+def chords_section(artefact: Artefact, matched: str) -> str:
+    """The part of the page about chords; `matched` ends it."""
     return f"""
 ## Chords between nodes
 
@@ -52,8 +55,10 @@ def _chords(artefact: Artefact) -> str:
 Chords between the {len(artefact.hits)} nodes lie up to {1e6 * artefact.inside.max():.0f} um inside the smooth curve,
 {1e6 * artefact.inside.mean():.0f} um in the mean. The tips move at {artefact.tip_speed:.0f} m/s. The speed at which
 the surface approaches a tip jumps by {artefact.hits.min():.1f} to {artefact.hits.max():.1f} m/s at each node. So every
-tip in contact has an impact at every node. The upper plot shows a stretch of 5 nodes. The lower plot shows the first
-case, which is period-1 on the smooth surface, on both surfaces. The clearance at rest is defined by the smooth curve.
+tip in contact has an impact at every node. The upper plots show a stretch of 5 nodes. The lower plots show the run at
+{FIGURE_RPM:,.0f} rev/min on the smooth curve, and on chords at matched onset.
+
+{matched.strip()}
 """
 
 

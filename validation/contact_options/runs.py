@@ -14,6 +14,7 @@ from rubgen.solver import EnergyBalance, Status
 from rubgen.solver.response import WornLiner
 from validation.contact_options.blade_shortening import draw_in_matrix
 from validation.contact_options.draw_in import deflections, draw_in
+from validation.contact_options.matched import MATCHED, on_matched_chords
 from validation.sensitivity.cases import CASES
 
 LINER = Liner(thickness_m=2e-3, wear_m2_per_n=1e-11, width_m=0.0386)
@@ -21,7 +22,7 @@ LINER = Liner(thickness_m=2e-3, wear_m2_per_n=1e-11, width_m=0.0386)
 OPTIONS: dict[str, ContactLaw] = {
     "none": ContactLaw(),
     "half_thickness": ContactLaw(half_thickness=True),
-    "chords": ContactLaw(surface="chords"),
+    MATCHED: ContactLaw(surface="chords"),
     "liner": ContactLaw(liner=LINER),
     "liner, ten times as soft": ContactLaw(liner=replace(LINER, wear_m2_per_n=1e-10)),
 }
@@ -54,7 +55,8 @@ class Found:
 def option_scenario(case: str, option: str) -> Scenario:
     """One of the sensitivity studies' cases with an option of contact."""
     scenario = vary(make_scenario("zeng2019"), CASES[case])
-    return replace(scenario, contact=replace(OPTIONS[option], friction=scenario.contact.friction))
+    with_option = replace(scenario, contact=replace(OPTIONS[option], friction=scenario.contact.friction))
+    return on_matched_chords(with_option) if option == MATCHED else with_option
 
 
 def heavy_scenario(speed_rpm: float) -> Scenario:

@@ -15,13 +15,12 @@ from rubgen.errors import UserError
 from rubgen.progress import count
 from validation.command import run_command
 from validation.zeng2019 import fit, reproduce
-from validation.zeng2019.size import MACHINE
 
 
 def main(arguments: Sequence[str]) -> int:
     """Compute, judge, write, or search; say in one line what is wrong or how to go on."""
     given = _parser().parse_args(arguments)
-    folder = given.out or Path("out") / (f"{given.machine}-quick" if given.quick else given.machine)
+    folder = given.out or Path("out") / ("zeng2019-quick" if given.quick else "zeng2019")
 
     def work() -> None:
         _check(given)
@@ -37,7 +36,6 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--out", type=Path, help="directory for the page; out/zeng2019 when not given")
     parser.add_argument("--quick", action="store_true", help="few values and short runs, in two minutes")
     parser.add_argument("--every", type=int, default=1, help="every how many-th speed: 1 by 30 rev/min, 4 by 120")
-    parser.add_argument("--machine", default=MACHINE, help="preset: zeng2019, or zeng2019-fitted that --fit made")
     parser.add_argument("--fit", action="store_true", help="search what is not published, instead of the page")
     parser.add_argument("--workers", type=int, help="number of processes; the number of cores when not given")
     parser.add_argument("--json", action="store_true", help="print JSON, for programs")
@@ -51,10 +49,6 @@ def _check(given: argparse.Namespace) -> None:
         raise UserError(f"--every {given.every}: must be at least 1; 4 gives steps of 120 rev/min")
     if given.fit and given.figure is not None:
         raise UserError(f"--fit --figure {given.figure}: the search is one whole; leave --figure out")
-    if given.fit and given.machine != MACHINE:
-        raise UserError(
-            f"--fit --machine {given.machine}: the search starts from the paper's own preset; leave --machine out"
-        )
 
 
 def _reproduce(given: argparse.Namespace, folder: Path) -> dict[str, object]:
@@ -63,7 +57,6 @@ def _reproduce(given: argparse.Namespace, folder: Path) -> dict[str, object]:
         figure=given.figure,
         quick=given.quick,
         every=given.every,
-        machine=given.machine,
         workers=given.workers,
         progress=count,
     )
@@ -73,8 +66,8 @@ def _reproduce(given: argparse.Namespace, folder: Path) -> dict[str, object]:
 
 def _fit(given: argparse.Namespace, folder: Path) -> dict[str, object]:
     made = fit(folder, quick=given.quick, workers=given.workers, progress=count)
-    counts = {"fitted": made.best.fitted, "predicted": made.best.predicted}
-    return {"page": str(made.page), "machine": str(made.machine), "made": made.made, "words_borne_out": counts}
+    accuracy = {"fitted": made.best.accuracy, "held_out": made.best.held_out}
+    return {"page": str(made.page), "machine": str(made.machine), "made": made.made, "balanced_accuracy": accuracy}
 
 
 if __name__ == "__main__":

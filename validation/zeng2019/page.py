@@ -3,26 +3,39 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 
 from validation.markdown import table
-from validation.zeng2019.remarks import EVERY_REMARK, INTRODUCTION, MACHINES, QUICK_REMARK, TITLE, rules
+from validation.zeng2019.differences import MEANINGS, cause_of
+from validation.zeng2019.fitting.evidence import read_evidence
+from validation.zeng2019.remarks import (
+    DIFFERENCES,
+    DIFFERENCES_TEXT,
+    EVERY_REMARK,
+    INTRODUCTION,
+    QUICK_REMARK,
+    TITLE,
+    rules,
+)
 from validation.zeng2019.section import Section
-from validation.zeng2019.size import QUICK, Size
-from validation.zeng2019.statement import Statement
+from validation.zeng2019.size import AS_COMPUTED, MACHINE, QUICK, Size
+from validation.zeng2019.statement import DIFFERS, Statement
 
 STYLE = (
-    "body{font:15px/1.5 sans-serif;max-width:62em;margin:2em auto;padding:0 1em;color:#222}"
+    "body{font:15px/1.5 sans-serif;max-width:72em;margin:2em auto;padding:0 1em;color:#222}"
     "table{border-collapse:collapse;width:100%;font-size:13px}td,th{border-top:1px solid #ddd;padding:.3em .5em;"
     "text-align:left;vertical-align:top}img{max-width:100%}code{background:#f4f4f4}"
     ".differs{color:#d55e00}.agrees{color:#009e73}.unknowable{color:#8c8c8c}"
 )
 HEADER = ("statement", "verdict", "found")
+COMPARED_HEADER = ("statement", MACHINE, AS_COMPUTED, f"found with {MACHINE}", f"found with {AS_COMPUTED}")
+DIFFERENCE_HEADER = ("figure", "statement", MACHINE, AS_COMPUTED, "main cause", "experiment")
 VERDICTS = ("agrees", "agrees within", "differs", "unknowable")
 COUNT_HEADER = ("statements", "agrees", "agrees within X", "differs", "unknowable", "all")
-HEADER_BY_FIGURE = "by figure, all kinds"
+HEADER_BY_FIGURE = f"by figure, {MACHINE}"
+Rows = Sequence[Sequence[str]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,11 +49,17 @@ class Drawn:
 
 @dataclass(frozen=True, kw_only=True)
 class Judged:
-    """A section with its verdicts and pictures."""
+    """A section with its verdicts and pictures; `others` are the statements with each further machine."""
 
     section: Section
     statements: tuple[Statement, ...]
+    others: tuple[tuple[Statement, ...], ...] = ()
     drawn: tuple[Drawn, ...]
+
+    def other(self, machine: int, one: Statement) -> Statement | None:
+        """The same statement with the further machine of that number; None where it was not asked."""
+        found = self.others[machine] if self.others else ()
+        return next((each for each in found if each.statement == one.statement), None)
 
 
 def markdown(judged: Sequence[Judged], size: Size) -> str:
@@ -50,20 +69,27 @@ def markdown(judged: Sequence[Judged], size: Size) -> str:
     for each in judged:
         parts += [f"## {each.section.title}", each.section.text, f"    {each.section.command}{size.option}"]
         parts += [f"![{picture.caption}]({picture.name})\n\n*{picture.caption}.*" for picture in each.drawn]
-        parts.append(table(HEADER, [_cells(one) for one in each.statements]))
+        header, rows = _statements(each)
+        parts.append(table(header, rows))
+    rows, counts = _differences(judged)
+    parts += [f"## {DIFFERENCES}", DIFFERENCES_TEXT, table(("main cause", "meaning", "statements"), counts)]
+    parts.append(table(DIFFERENCE_HEADER, rows))
     return "\n\n".join(parts) + "\n"
 
 
 def html(judged: Sequence[Judged], size: Size) -> str:
     """The page as one HTML file with its pictures in it."""
     parts = [f"<h1>{escape(TITLE)}</h1>", *(f"<p>{_inline(text)}</p>" for text in _introduction(size))]
-    parts.append(_count_html(COUNT_HEADER, _by_kind(judged)))
-    parts.append(_count_html((HEADER_BY_FIGURE, *COUNT_HEADER[1:]), _by_figure(judged)))
+    parts.append(_html_table(COUNT_HEADER, _by_kind(judged)))
+    parts.append(_html_table((HEADER_BY_FIGURE, *COUNT_HEADER[1:]), _by_figure(judged)))
     for each in judged:
         parts += [f"<h2>{escape(each.section.title)}</h2>", f"<p>{_inline(each.section.text)}</p>"]
         parts.append(f"<p><code>{escape(each.section.command + size.option)}</code></p>")
         parts += [_figure(picture) for picture in each.drawn]
-        parts.append(_html_table(each.statements))
+        parts.append(_html_table(*_statements(each)))
+    rows, counts = _differences(judged)
+    parts += [f"<h2>{DIFFERENCES}</h2>", f"<p>{_inline(DIFFERENCES_TEXT)}</p>"]
+    parts += [_html_table(("main cause", "meaning", "statements"), counts), _html_table(DIFFERENCE_HEADER, rows)]
     body = "\n".join(parts)
     head = f'<meta charset="utf-8"><title>{escape(TITLE)}</title><style>{STYLE}</style>'
     return f"<!doctype html><html><head>{head}</head><body>{body}</body></html>\n"
@@ -71,26 +97,65 @@ def html(judged: Sequence[Judged], size: Size) -> str:
 
 def _introduction(size: Size) -> list[str]:
     remark = [QUICK_REMARK] if size.name == QUICK.name else [EVERY_REMARK] if size.speed_thin > 1 else []
-    return [INTRODUCTION + MACHINES[size.machine], *remark, rules(size)]
+    return [*INTRODUCTION.split("\n\n"), *remark, rules(size)]
 
 
-def _cells(one: Statement) -> tuple[str, str, str]:
-    kind = " (fitted)" if one.used_for_fitting else " (experiment)" if one.experiment else ""
-    verdict = one.verdict + kind
-    return one.statement, verdict, f"{one.found}. {one.why}".removesuffix(". ") if one.why else one.found
+def _statements(each: Judged) -> tuple[Sequence[str], Rows]:
+    if not each.others:
+        return HEADER, [(one.statement, _verdict(one), _found(one)) for one in each.statements]
+    rows = []
+    for one in each.statements:
+        other = each.other(0, one)
+        told = (_verdict(other), other.found) if other else ("not asked", "")
+        rows.append((one.statement, _verdict(one), told[0], _found(one), told[1]))
+    return COMPARED_HEADER, rows
 
 
-def _by_kind(judged: Sequence[Judged]) -> list[list[str]]:
-    every = [one for each in judged for one in each.statements]
+def _verdict(one: Statement) -> str:
+    return one.verdict + (" (fitted)" if one.used_for_fitting else f" ({one.apart})" if one.apart else "")
+
+
+def _found(one: Statement) -> str:
+    eye = f"By {one.other_bound}: `{one.by_eye}`" if one.by_eye and one.by_eye != one.verdict else ""
+    return ". ".join(part.rstrip(".") for part in (one.found, eye, one.why) if part)
+
+
+def _differences(judged: Sequence[Judged]) -> tuple[Rows, Rows]:
+    """Each of the paper's statements that differs with the preset, and how often each cause is named."""
+    search, rows = read_evidence(), []
+    for each, one in _counted(judged):
+        if one.verdict != DIFFERS:
+            continue
+        chords, twin = each.other(0, one), each.other(1, one)
+        cause = cause_of(one, chords, twin, search)
+        title = each.section.title.split(":")[0]
+        told = _verdict(chords) if chords else "not run"
+        rows.append((title, one.statement, _verdict(one), told, cause.name, cause.experiment))
+    counts = [(name, meaning, str(sum(row[4] == name for row in rows))) for name, meaning in MEANINGS.items()]
+    return rows, counts
+
+
+def _counted(judged: Sequence[Judged]) -> Iterator[tuple[Judged, Statement]]:
+    """The paper's own statements, with their sections."""
+    return ((each, one) for each in judged for one in each.statements if not one.apart)
+
+
+def _by_kind(judged: Sequence[Judged]) -> Rows:
+    """The tally of the preset; and of both machines over the sections that are run with both."""
+    every = [one for _, one in _counted(judged)]
+    both = [one for each, one in _counted(judged) if each.others]
+    chords = [one for each in judged if each.others for one in each.others[0] if not one.apart]
+    groups = [(MACHINE, every), (f"{MACHINE}, compared figures", both), (f"{AS_COMPUTED}, compared figures", chords)]
     return [
-        _counts("predictions", [one for one in every if not (one.used_for_fitting or one.experiment)]),
-        _counts("used for fitting", [one for one in every if one.used_for_fitting]),
-        _counts("hypotheses about causes, by experiment", [one for one in every if one.experiment]),
+        _counts(f"{name}: {kind}", [one for one in ones if one.used_for_fitting == fitted])
+        for name, ones in groups
+        if ones
+        for kind, fitted in (("predictions", False), ("used for fitting", True))
     ]
 
 
-def _by_figure(judged: Sequence[Judged]) -> list[list[str]]:
-    return [_counts(each.section.title, each.statements) for each in judged]
+def _by_figure(judged: Sequence[Judged]) -> Rows:
+    return [_counts(each.section.title, [one for one in each.statements if not one.apart]) for each in judged]
 
 
 def _counts(name: str, chosen: Sequence[Statement]) -> list[str]:
@@ -107,18 +172,13 @@ def _figure(picture: Drawn) -> str:
     return f'<p><img alt="{caption}" src="data:image/png;base64,{data}"><br><em>{caption}.</em></p>'
 
 
-def _count_html(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+def _html_table(header: Sequence[str], rows: Rows) -> str:
+    """A table whose cells that begin with a verdict are coloured by it."""
     lines = ["".join(f"<th>{escape(cell)}</th>" for cell in header)]
-    lines += ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows]
+    for row in rows:
+        kinds = (cell.split()[0] if cell.startswith(VERDICTS) else "" for cell in row)
+        lines.append("".join(f'<td class="{kind}">{_inline(cell)}</td>' for kind, cell in zip(kinds, row, strict=True)))
     return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
-
-
-def _html_table(statements: Sequence[Statement]) -> str:
-    rows = ["".join(f"<th>{name}</th>" for name in HEADER)]
-    for one in statements:
-        texts = [_inline(cell) for cell in _cells(one)]
-        rows.append(f'<td>{texts[0]}</td><td class="{one.verdict.split()[0]}">{texts[1]}</td><td>{texts[2]}</td>')
-    return f"<table>{''.join(f'<tr>{row}</tr>' for row in rows)}</table>"
 
 
 def _inline(text: str) -> str:

@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
-from validation.zeng2019.size import FITTED, MACHINE, Size
+from validation.zeng2019.size import AS_COMPUTED, MACHINE, TWIN, Size
 from validation.zeng2019.statement import HALF, MOST, ROUNDING, TOLERANCE
 
 TITLE = "The paper, reproduced"
-INTRODUCTION = """J. Zeng, C. Zhao, H. Ma, K. Yu, B. Wen, *Rubbing dynamic characteristics of the blisk-casing \
+INTRODUCTION = f"""J. Zeng, C. Zhao, H. Ma, K. Yu, B. Wen, *Rubbing dynamic characteristics of the blisk-casing \
 system with elastic supports*, Aerosp. Sci. Technol. (2019), doi 10.1016/j.ast.2019.105481. This page computes the \
-figures of the paper again and judges its statements, in our words. `python -m validation.zeng2019` makes this \
-page, its pictures and `statements.json`. The command under each heading makes only that section. Contact has no \
-friction unless the text says so. """
-MACHINES = {
-    MACHINE: """The machine is the preset `zeng2019` (`docs/preset-zeng2019.md`). The paper does not publish its \
-dimensions, damping, unbalance and clearance. `(fitted)` marks the values to which the preset was fitted; their \
-agreement proves nothing. Everything else is a prediction.""",
-    FITTED: """The machine is the preset `zeng2019-fitted` (`docs/zeng2019-fit.md`), which was also fitted to the \
-motion classes of the regions II, III and V. `(fitted)` marks the values to which it was fitted; their agreement \
-proves nothing. Everything else is a prediction.""",
-}
+figures of the paper again and judges its statements, in our words. `make zeng2019` makes this page, its pictures and \
+`statements.json`. The command under each heading makes only that section. Contact has no friction unless the text \
+says so.
+
+Two machines stand side by side (`docs/preset-zeng2019.md`). `{MACHINE}` is the machine of rubgen: contact on the \
+smooth curve. `{AS_COMPUTED}` is the machine as the paper discretised it: contact on chords between the casing's \
+nodes, unbalance and clearance fitted for chords, and the casing that fits the paper's words best \
+(`docs/zeng2019-fit.md`). It is for comparison, never for data. A third run of some statements, `{TWIN}`, has its \
+casing and the same air, but the smooth curve, at every fourth speed and every second support: it separates chords \
+from the casing. Figures show `{MACHINE}`.
+
+The paper does not publish dimensions, damping, unbalance and clearance. `(fitted)` marks the values to which a \
+machine was fitted; their agreement proves nothing. Everything else is a prediction. The paper's blisk is x of the \
+disk centre. So statements on the blisk are judged by the class of the disk centre. Rows marked `(tips)` judge the \
+same by the worst of the disk centre and the 36 tips. Rows marked `(experiment)` are hypotheses of ours about causes. \
+Neither are statements of the paper, and the tables do not count them."""
+DIFFERENCES = "Statements that differ, and why"
+DIFFERENCES_TEXT = f"""Each statement of the paper that differs with `{MACHINE}`, with one main cause and the \
+experiment that shows it. The first of these rules that applies decides: a cause that a section of this page shows for \
+all machines; `{AS_COMPUTED}` agrees (contact geometry if `{TWIN}` does not); another bound agrees; another reading \
+agrees; the twin agrees; some candidate of the search agrees. No verdict changes by this."""
 
 
 def rules(size: Size) -> str:
@@ -30,10 +40,11 @@ a reduction the first limit is 2 %. A statement about many runs agrees if at lea
 confirm it. Down to {100 * HALF:g} %, it agrees within the share that does not confirm it. Below, it differs. A \
 statement is unknowable if it needs a parameter or a drawing that is lost. Motion classes are the classes of \
 `docs/labels.md`, from {size.record_turns} turns after {size.settle_turns} turns of settling, without the \
-Lyapunov exponent (it would double the time). The paper judges 49 points by eye, which cannot recognise \
-quasi-periodic motion. Such motion counts as chaotic, and as multi-period where the paper has this word. If the \
-eye sees another class than the label, the page states both. A motion with the label undecided confirms no \
-statement."""
+Lyapunov exponent: no companion trajectory runs, because it would double the time. The paper judges 49 points by eye, \
+which cannot recognise quasi-periodic motion. Such motion counts as chaotic, and as multi-period where the paper has \
+this word. What the eye sees is given as a number: how far the 49 points scatter, over the height of the diagram of \
+the whole sweep; below 2 % they look like one point. If the verdict by this number is another one, the page states \
+both. A motion with the label undecided confirms no statement."""
 
 
 QUICK_REMARK = (

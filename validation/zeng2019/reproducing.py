@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from rubgen.dataset.files import write_text
@@ -16,14 +16,17 @@ from validation.zeng2019.drawing.style import png
 from validation.zeng2019.page import Drawn, Judged, html, markdown
 from validation.zeng2019.section import Section
 from validation.zeng2019.sections import SECTIONS
-from validation.zeng2019.size import FULL, MACHINE, MACHINES, QUICK, Size
+from validation.zeng2019.size import FULL, MACHINES, QUICK, Size, sizes
 
 PAGE = "zeng2019"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Reproduced:
-    """What `reproduce` left behind: the page, how many pieces were made now, how often each verdict was given."""
+    """What `reproduce` left behind: the page, how many pieces were made now, and how often each verdict was given.
+
+    `verdicts` counts the paper's statements with the preset.
+    """
 
     page: Path
     made: int
@@ -36,26 +39,22 @@ def reproduce(
     figure: str | None = None,
     quick: bool = False,
     every: int = 1,
-    machine: str = MACHINE,
     size: Size | None = None,
     workers: int | None = None,
     progress: Progress = lambda _done, _all: None,
 ) -> Reproduced:
     """Compute what the paper shows, judge its statements, write the page into `out`.
 
-    `every` takes every so many-th speed: 1 steps by 30 rev/min, 4 by 120. `machine` is one of MACHINES. `figure` asks
-    for one section; its page goes to `out/figure-N`. Pieces of computation are kept in `out/pieces`: the same call
-    after an interruption makes the rest. Writes `zeng2019.md` with its pictures, `zeng2019.html` (one file) and
-    `statements.json`. Raises UserError for an unknown figure or machine, and an `out` that is not ours or cannot be
-    written.
+    `every` takes every so many-th speed: 1 steps by 30 rev/min, 4 by 120. `figure` asks for one section; its page goes
+    to `out/figure-N`. Sections that are `compared` are judged with all of MACHINES. Pieces of computation are kept in
+    `out/pieces`: the same call after an interruption makes the rest. Writes `zeng2019.md` with its pictures,
+    `zeng2019.html` (one file) and `statements.json`. Raises UserError for an unknown figure, and for an `out` that is
+    not ours or cannot be written.
     """
-    if machine not in MACHINES:
-        raise UserError(f"--machine {machine}: not a machine of this paper; choose from {', '.join(MACHINES)}")
     chosen, size = sections_of(figure), size or (QUICK if quick else replace(FULL, speed_thin=every))
-    size = replace(size, machine=machine)
     store = Store(Path(out))
     with store.claimed():
-        pieces = [piece for section in chosen for piece in section.pieces(size)]
+        pieces = [piece for section in chosen for one in _sizes(section, size) for piece in section.pieces(one)]
         made = store.compute(pieces, workers or usable_cores(), progress)
         judged = [judge(section, size, store) for section in chosen]
         folder = Path(out) if figure is None else Path(out) / f"figure-{chosen[0].name}"
@@ -75,13 +74,18 @@ def sections_of(figure: str | None) -> Sequence[Section]:
     return chosen
 
 
+def _sizes(section: Section, size: Size) -> list[Size]:
+    return list(sizes(size).values()) if section.compared else [size]
+
+
 def judge(section: Section, size: Size, store: Store) -> Judged:
-    """The section with its verdicts and pictures."""
+    """The section with its verdicts, by machine, and pictures, of the preset."""
     drawn = [
         Drawn(name=f"{PAGE}-{section.name}{'abcdef'[i]}.png", caption=caption, png=png(figure))
         for i, (caption, figure) in enumerate(section.figures(size, store).items())
     ]
-    return Judged(section=section, statements=tuple(section.statements(size, store)), drawn=tuple(drawn))
+    own, *others = (tuple(section.statements(one, store)) for one in _sizes(section, size))
+    return Judged(section=section, statements=own, others=tuple(others), drawn=tuple(drawn))
 
 
 def write(judged: Sequence[Judged], size: Size, folder: Path) -> Path:
@@ -95,20 +99,12 @@ def write(judged: Sequence[Judged], size: Size, folder: Path) -> Path:
 
 
 def statement_rows(judged: Sequence[Judged], size: Size) -> list[Row]:
-    """Rows of `figure`, `statement`, `verdict`, `found`, `why`, `used_for_fitting`, `experiment` and `command`."""
+    """Rows of `figure`, `machine`, a Statement's fields, and `command`; the machines of a section one after another."""
     return [
-        {
-            "figure": each.section.name,
-            "statement": one.statement,
-            "verdict": one.verdict,
-            "found": one.found,
-            "why": one.why,
-            "used_for_fitting": one.used_for_fitting,
-            "experiment": one.experiment,
-            "command": each.section.command + size.option,
-        }
+        {"figure": each.section.name, "machine": machine, **asdict(one), "command": each.section.command + size.option}
         for each in judged
-        for one in each.statements
+        for machine, statements in zip(MACHINES, (each.statements, *each.others), strict=False)
+        for one in statements
     ]
 
 
@@ -117,6 +113,6 @@ def _write_png(path: Path, png: bytes) -> None:
 
 
 def _count(judged: Sequence[Judged]) -> dict[str, int]:
-    verdicts = [one.verdict for each in judged for one in each.statements]
+    verdicts = [one.verdict for each in judged for one in each.statements if not one.apart]
     kinds = ["agrees within" if verdict.startswith("agrees within") else verdict for verdict in verdicts]
     return {kind: kinds.count(kind) for kind in ("agrees", "agrees within", "differs", "unknowable")}

@@ -20,6 +20,7 @@ class Section:
 
     `also` are numbers of further figures that it covers. `pieces`, `statements` and `figures` are functions of the
     size; the latter two read the pieces that were made. The keys of `figures` are captions. `text` stands above them.
+    `compared` sections are judged with all MACHINES, the others with the preset alone.
     """
 
     name: str
@@ -29,6 +30,7 @@ class Section:
     statements: Callable[[Size, Found], Sequence[Statement]]
     figures: Callable[[Size, Found], dict[str, Figure]]
     also: tuple[str, ...] = ()
+    compared: bool = False
 
     @property
     def command(self) -> str:

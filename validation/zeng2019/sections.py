@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.zeng2019.conclusions import causes, conclusion1, conclusion2, conclusion3, friction
+from validation.zeng2019.conclusions import causes, conclusion1, conclusion2, conclusion3, friction, scale
 from validation.zeng2019.figures import (
     figure06,
     figure07,
@@ -39,4 +39,5 @@ SECTIONS: tuple[Section, ...] = (
     conclusion2.SECTION,
     conclusion3.SECTION,
     causes.SECTION,
+    scale.SECTION,
 )

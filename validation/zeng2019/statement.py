@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 AGREES, DIFFERS, UNKNOWABLE = "agrees", "differs", "unknowable"
+EXPERIMENT, TIPS = "experiment", "tips"
 ROUNDING, TOLERANCE = 0.005, 0.05
 """A number agrees within half a percent, agrees within what it is off by up to 5 %, and differs beyond."""
 MOST, HALF = 0.9, 0.5
@@ -16,7 +17,9 @@ class Statement:
     """A published statement (in our words) and its verdict: `agrees`, `agrees within X`, `differs` or `unknowable`.
 
     `found` is what rubgen found, `why` what explains it. `used_for_fitting` marks what the preset was fitted to: its
-    agreement is no evidence. `experiment` marks a hypothesis of ours about a cause, no statement of the paper.
+    agreement is no evidence. `apart` marks what is no statement of the paper and stays out of the tally: EXPERIMENT, a
+    hypothesis of ours about a cause, or TIPS, a statement on the blisk judged by the tips as well.
+    `by_eye` is the verdict with `other_bound`, and `by_words` that with the reading `other_words`, where it is another.
     """
 
     statement: str
@@ -24,7 +27,11 @@ class Statement:
     found: str
     why: str = ""
     used_for_fitting: bool = False
-    experiment: bool = False
+    apart: str = ""
+    by_eye: str = ""
+    other_bound: str = "the scatter of 49 points"
+    by_words: str = ""
+    other_words: str = ""
 
     def __post_init__(self) -> None:
         kinds = (AGREES, DIFFERS, UNKNOWABLE)

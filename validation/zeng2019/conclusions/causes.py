@@ -20,7 +20,7 @@ from validation.zeng2019.runs.measures import harmonics
 from validation.zeng2019.runs.outcome import Outcome, outcome_of, run_piece
 from validation.zeng2019.section import Section
 from validation.zeng2019.size import Size
-from validation.zeng2019.statement import AGREES, DIFFERS, UNKNOWABLE, Statement, by_deviation, power
+from validation.zeng2019.statement import AGREES, DIFFERS, EXPERIMENT, UNKNOWABLE, Statement, by_deviation, power
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -94,7 +94,7 @@ def _odd_orders(runs: dict[str, Outcome]) -> Sequence[Statement]:
             verdict=AGREES if asked["even shapes only"] < PURE else DIFFERS,
             found=f"largest odd over largest even order {asked['even shapes only']:.1g}, of a motion that is "
             + runs["even shapes only"].label,
-            experiment=True,
+            apart=EXPERIMENT,
             why="The odd shapes are therefore the cause. The paper's casing, or its channel, has none.",
         ),
         Statement(
@@ -102,7 +102,7 @@ def _odd_orders(runs: dict[str, Outcome]) -> Sequence[Statement]:
             verdict=AGREES if asked["181 nodes"] > MORE * asked["as it is"] else DIFFERS,
             found=f"largest odd over largest even order at the point {asked['181 nodes']:.3g} with 181 nodes "
             f"({nodes.label}), {asked['as it is']:.3g} with 180",
-            experiment=True,
+            apart=EXPERIMENT,
             why="The undeformed surface is smooth with any number: only the deformed shape depends on the odd mesh.",
         ),
         Statement(
@@ -110,7 +110,7 @@ def _odd_orders(runs: dict[str, Outcome]) -> Sequence[Statement]:
             verdict=AGREES if force["chords, 181 nodes"] > MORE * max(force["chords"], force["as it is"]) else DIFFERS,
             found="largest odd over largest even order of the force: "
             + ", ".join(f"{name} {force[name]:.2g} ({runs[name].label})" for name in force),
-            experiment=True,
+            apart=EXPERIMENT,
             why="Chords of a polygon lie up to 60 um inside the curve, a fifth of the clearance. Where a run is not "
             "period-1, broken symmetry adds further odd orders.",
         ),
@@ -125,7 +125,7 @@ def _by_modes(runs: dict[int, Outcome]) -> Statement:
         statement="Another number of casing modes than eta_c = 11 removes the odd orders from the point.",
         verdict=UNKNOWABLE if not shares else AGREES if gone else DIFFERS,
         found=f"largest odd over largest even order at the point: {told or 'every run diverged'}",
-        experiment=True,
+        apart=EXPERIMENT,
         why="The first five modes already contain the translation of the ring, an odd shape.",
     )
 
@@ -139,7 +139,7 @@ def _second_crossing(found: Found) -> Sequence[Statement]:
             statement="Natural frequencies of a consistent model of the full blisk cross f_r once.",
             verdict=AGREES if len(met["consistent"]) == 1 else DIFFERS,
             found=f"at {told['consistent']} N/m",
-            experiment=True,
+            apart=EXPERIMENT,
         )
     ]
     for name, words in (
@@ -154,7 +154,7 @@ def _second_crossing(found: Found) -> Sequence[Statement]:
                 found=f"{len(met[name])} crossings, at {told[name]} N/m: off by up to {100 * off:.1f} %",
                 why="The blades' Coriolis forces split the lateral frequency in two where only the blades' matrices "
                 "are in turning axes; the paper writes disk matrices in inertial and blade matrices in turning axes.",
-                experiment=True,
+                apart=EXPERIMENT,
             )
         )
     return made

@@ -82,4 +82,5 @@ SECTION = Section(
     pieces=pieces,
     statements=statements,
     figures=figures,
+    compared=True,
 )

@@ -60,7 +60,7 @@ def _onset(runs: dict[float, Outcome]) -> Statement:
 
 def _region_one(runs: dict[float, Outcome]) -> Sequence[Statement]:
     free = [run for run in within(runs, *REGIONS["I"]).values() if run.ok]
-    alone = [_only_first(run) and run.motion_blisk == "period-1" for run in free]
+    alone = [_only_first(run) and run.motion_centre == "period-1" for run in free]
     return [
         Statement(
             statement="Region I: the blisk is in period-1 motion and shows f_r alone.",
@@ -145,6 +145,8 @@ def _degree(runs: dict[float, Outcome]) -> Statement:
     return Statement(
         statement="Rubbing is heavier near the critical speed (III) and at high speed (V) than between (II, IV).",
         verdict=yes_or_no(min(mean["III"], mean["V"]) > max(mean["II"], mean["IV"])),
+        by_words=yes_or_no(mean["III"] > mean["II"] and mean["V"] > mean["IV"]),
+        other_words="heavier than in the region just below",
         found="mean impulse a turn " + ", ".join(f"{name}: {mean[name]:.3f}" for name in list(REGIONS)[1:]) + " N s",
     )
 
@@ -166,4 +168,5 @@ SECTION = Section(
     pieces=pieces,
     statements=statements,
     figures=figures,
+    compared=True,
 )

@@ -45,9 +45,9 @@ def _classes(runs: dict[float, Outcome]) -> Sequence[Statement]:
     outside = {k: run for k, run in rubbing(runs).items() if k not in inside}
     name = "Disk support 3.70e8 to 5.45e8 N/m"
     return [
-        one_class("Disk support, all values", PERIODIC, "blisk", runs, every),
-        switching(name, (PERIODIC, CHAOTIC), "casing", inside, every),
-        one_class("Disk support outside that region", PERIODIC, "casing", outside, every),
+        *one_class("Disk support, all values", PERIODIC, "blisk", runs, every),
+        *switching(name, (PERIODIC, CHAOTIC), "casing", inside, every),
+        *one_class("Disk support outside that region", PERIODIC, "casing", outside, every),
     ]
 
 
@@ -154,4 +154,5 @@ SECTION = Section(
     pieces=pieces,
     statements=statements,
     figures=figures,
+    compared=True,
 )

@@ -42,4 +42,5 @@ SECTION = Section(
     pieces=pieces,
     statements=statements,
     figures=figures,
+    compared=True,
 )

@@ -45,9 +45,10 @@ def statements(size: Size, found: Found) -> Sequence[Statement]:
 def _classes(reading: str, runs: dict[float, Outcome]) -> Sequence[Statement]:
     every = list(runs.values())
     return [
-        one_class(f"Casing support {reading}, region {name}", word, part, within(runs, *span), every)
+        one
         for name, (span, *words) in REGIONS.items()
         for part, word in zip(("blisk", "casing"), words, strict=True)
+        for one in one_class(f"Casing support {reading}, region {name}", word, part, within(runs, *span), every)
     ]
 
 
@@ -93,4 +94,5 @@ SECTION = Section(
     pieces=pieces,
     statements=statements,
     figures=figures,
+    compared=True,
 )

@@ -49,7 +49,11 @@ def _area(reading: str, runs: dict[float, Outcome]) -> Statement:
     area = np.array([run.area_deg for run in runs.values()])
     rank = float(spearmanr(list(runs), area).statistic) if len(runs) > 2 and np.ptp(area) else float("nan")
     soft, stiff = (f"{area[i]:.0f} degrees at {power(list(runs)[i])} N/m" for i in (0, -1))
+    named = [float(runs[k].area_deg) for k in NAMED_CASING_SUPPORTS if k in runs]
+    told = " and ".join(f"{value:.0f}" for value in named)
     return Statement(
+        by_words=yes_or_no(len(named) == len(NAMED_CASING_SUPPORTS) and named[0] > named[1]),
+        other_words=f"on the two supports that the paper draws ({told} degrees)",
         statement=f"Casing support {reading}: the softer it is, the larger the contact area.",
         verdict=UNKNOWABLE if np.isnan(rank) else yes_or_no(rank <= -RANK),
         found=f"rank correlation of stiffness and touched arc {rank:.2f} over {len(runs)} runs that rub and do not "
@@ -72,4 +76,5 @@ SECTION = Section(
     pieces=pieces,
     statements=statements,
     figures=figures,
+    compared=True,
 )

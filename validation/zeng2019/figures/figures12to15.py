@@ -25,8 +25,8 @@ MASS = "How much of a sweep is chaotic depends on the casing's mass, which is no
 
 def _second(where: str, runs: dict[float, Outcome], every: list[Outcome], fitted: bool) -> Sequence[Statement]:
     return [
-        one_class(where, PERIODIC, "blisk", runs, every, fitted=fitted),
-        one_class(where, CHAOTIC, "casing", runs, every, MASS, fitted=fitted),
+        *one_class(where, PERIODIC, "blisk", runs, every, fitted=fitted),
+        *one_class(where, CHAOTIC, "casing", runs, every, MASS, fitted=fitted),
     ]
 
 
@@ -34,20 +34,21 @@ def _third(where: str, runs: dict[float, Outcome], every: list[Outcome], fitted:
     middle = sum(REGIONS["III"]) / 2
     low, high = within(runs, 0, middle), within(runs, middle + 1, 1e9)
     return [
-        one_class(f"{where}, first half", CHAOTIC, "blisk", low, every, fitted=fitted),
-        one_class(f"{where}, second half", PERIODIC, "blisk", high, every, MASS, fitted=fitted),
-        switching(where, (CHAOTIC, MULTIPLE, PERIODIC), "casing", runs, every),
+        *one_class(f"{where}, first half", CHAOTIC, "blisk", low, every, fitted=fitted),
+        *one_class(f"{where}, second half", PERIODIC, "blisk", high, every, MASS, fitted=fitted),
+        *switching(where, (CHAOTIC, MULTIPLE, PERIODIC), "casing", runs, every),
     ]
 
 
 def _fourth(where: str, runs: dict[float, Outcome], every: list[Outcome], _fitted: bool) -> Sequence[Statement]:
-    return [switching(where, (PERIODIC, CHAOTIC), part, runs, every) for part in ("blisk", "casing")]
+    return [one for part in PARTS for one in switching(where, (PERIODIC, CHAOTIC), part, runs, every)]
 
 
 def _fifth(where: str, runs: dict[float, Outcome], every: list[Outcome], fitted: bool) -> Sequence[Statement]:
-    return [one_class(where, CHAOTIC, part, runs, every, MASS, fitted=fitted) for part in ("blisk", "casing")]
+    return [one for part in PARTS for one in one_class(where, CHAOTIC, part, runs, every, MASS, fitted=fitted)]
 
 
+PARTS = ("blisk", "casing")
 JUDGES: dict[str, Judge] = {"II": _second, "III": _third, "IV": _fourth, "V": _fifth}
 
 
@@ -73,6 +74,7 @@ def _section(number: str, region: str) -> Section:
         pieces=pieces,
         statements=statements,
         figures=figures,
+        compared=True,
     )
 
 

@@ -1,39 +1,29 @@
-"""`python -m validation.zeng2019 --fit`: the search computed, its evidence written."""
+"""`python -m validation.zeng2019 --fit`: the search computed, its evidence, page and machine written."""
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from rubgen.dataset.files import write_text
 from rubgen.dataset.making.workers import usable_cores
 from validation.piece import Piece
-from validation.rows import write_rows
 from validation.store import Progress, Store
-from validation.zeng2019.figures import figure10, figure16, figure17, figure18, figures12to15
+from validation.zeng2019.fitting.candidate import Candidate
+from validation.zeng2019.fitting.evidence import scores_of, write_evidence
+from validation.zeng2019.fitting.machine_file import toml_of
 from validation.zeng2019.fitting.page import page
-from validation.zeng2019.fitting.score import Score, best, frictionless, score
-from validation.zeng2019.fitting.search import DAMPING, candidates, room, toml_of
-from validation.zeng2019.size import FULL, MACHINE, QUICK, Size
-from validation.zeng2019.statement import Statement
+from validation.zeng2019.fitting.room import room
+from validation.zeng2019.fitting.score import Score, as_computed, best
+from validation.zeng2019.fitting.search import DAMPING, SURFACE, around, grid
 
-QUICK_THIN = 15
-FOLDER, PAGE, MACHINE_FILE = "fit", "zeng2019-fit.md", "zeng2019-fitted.toml"
-COMPARED = (
-    figure10.SECTION,
-    *figures12to15.SECTIONS,
-    figure16.SECTION,
-    figure17.SECTION,
-    figure18.SECTION,
-)
-"""Sections that are judged with both machines; most others hang on neither damping nor the casing's mass."""
-COARSE = replace(FULL, speed_thin=8, thin=4)
-"""Their sweeps: the speed by 240 rev/min, every fourth support, and the values that the paper names."""
+QUICK_THIN = 20
+FOLDER, PAGE, MACHINE_FILE, EVIDENCE_FILE = "fit", "zeng2019-fit.md", "zeng2019-as-computed.toml", "found.json"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Fitted:
-    """What `fit` left behind: the page with the evidence, the machine, and how many pieces were made now."""
+    """What `fit` left behind: page, machine file, and how many pieces were made now; `best` is the machine's score."""
 
     page: Path
     machine: Path
@@ -48,29 +38,31 @@ def fit(
     workers: int | None = None,
     progress: Progress = lambda _done, _all: None,
 ) -> Fitted:
-    """Search the grid of unknowns, judge statements with preset and result; `out/fit` gets page, `fit.json`, machine.
+    """Run the grid of `search`, then what is around the best of each surface; `out/fit` gets page, evidence, machine.
 
     Resumable like `reproduce`; raises the same.
     """
-    tried, store = candidates(QUICK_THIN if quick else 1), Store(Path(out))
-    rooms = {damping: Piece(room, (damping,)) for damping in DAMPING}
+    store, thin, many = Store(Path(out)), QUICK_THIN if quick else 1, workers or usable_cores()
     with store.claimed():
-        made = store.compute([*(one.piece for one in tried), *rooms.values()], workers or usable_cores(), progress)
-        scores = [score(one, store) for one in tried]
-        folder = Path(out) / FOLDER
+        rooms = {damping: Piece(room, (damping,)) for damping in DAMPING}
+        tried = grid()[::thin]
+        made = store.compute([*(one.piece for one in tried), *rooms.values()], many, progress)
+        for surface in SURFACE:
+            found = _best_on(surface, tried, store)
+            more = around(found)[::thin] if found else []
+            made += store.compute([one.piece for one in more], many, progress)
+            tried += more
+        seen = {one: store(one.piece) for one in tried}
+        scores, folder = scores_of(seen), Path(out) / FOLDER
         folder.mkdir(exist_ok=True)
-        found = best(frictionless(scores))
-        write_text(folder / MACHINE_FILE, toml_of(found.candidate))
-        size = QUICK if quick else COARSE
-        sizes = [replace(size, machine=name) for name in (MACHINE, str(folder / MACHINE_FILE))]
-        asked = [piece for one in sizes for section in COMPARED for piece in section.pieces(one)]
-        made += store.compute(asked, workers or usable_cores(), progress)
-        judged = [_judged(one, store) for one in sizes]
-        write_rows(folder / "fit.json", [asdict(one) for one in scores])
-        spans = {damping: store(piece) for damping, piece in rooms.items()}
-        write_text(folder / PAGE, page(scores, spans, judged, size))
-    return Fitted(page=folder / PAGE, machine=folder / MACHINE_FILE, made=made, best=found)
+        write_evidence(folder / EVIDENCE_FILE, seen)
+        chosen = as_computed(scores)
+        write_text(folder / MACHINE_FILE, toml_of(chosen.candidate))
+        write_text(folder / PAGE, page(scores, {damping: store(piece) for damping, piece in rooms.items()}))
+    return Fitted(page=folder / PAGE, machine=folder / MACHINE_FILE, made=made, best=chosen)
 
 
-def _judged(size: Size, store: Store) -> list[tuple[str, Statement]]:
-    return [(section.title, one) for section in COMPARED for one in section.statements(size, store)]
+def _best_on(surface: str, tried: list[Candidate], store: Store) -> Candidate | None:
+    """The best candidate of the grid on that surface; None where a thinned grid has none."""
+    scores = scores_of({one: store(one.piece) for one in tried if one.surface == surface})
+    return best(scores).candidate if scores else None

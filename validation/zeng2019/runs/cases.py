@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rubgen.machine import load_machine
-from rubgen.scenario import Scenario, make_scenario
+from rubgen.scenario import Scenario
 from rubgen.scenario.vary import vary
 from validation.piece import Found, Piece
 from validation.zeng2019.runs.outcome import Outcome, outcome_of, run_piece
@@ -53,15 +52,15 @@ CASING_SUPPORTS = tuple(
 )  # fmt: skip
 """N/m a node, on the paper's own grid, closer where its regions are narrow."""
 NAMED_CASING_SUPPORTS = (3.8e3, 2.27e4)
-LIGHTEST_N_PER_M = 1e4
-"""Springs at each node of the lightest reading of the casing, 1.39 kg."""
-PRINTED = "as printed"
+LIGHTEST_WIDTH_M = 0.053324
+"""Width of the lightest reading of the casing, 1.39 kg, on springs of 1e4 N/m at each node."""
+PRINTED, SCALED = "as printed", "in proportion to the mass"
 
 
 def case(size: Size, friction: float = 0.0, **values: float) -> Scenario:
-    """The preset with these keys of `[vary]`, with the turns of that size."""
-    scenario = size.shortened(vary(make_scenario(size.machine), values))
-    return replace(scenario, contact=replace(scenario.contact, friction=friction)) if friction else scenario
+    """The machine with its contact law and these keys of `[vary]`, with the turns of that size."""
+    scenario = vary(size.scenario(), values)
+    return replace(scenario, contact=replace(scenario.contact, friction=friction))
 
 
 def at_speed(size: Size, rpm: float, friction: float = 0.0) -> Piece:
@@ -75,12 +74,11 @@ def on_disk_support(size: Size, stiffness: float) -> Piece:
 
 
 def readings(size: Size) -> dict[str, float]:
-    """How the casing's supports of the paper may be read: as printed, and times what the machine's casing is heavier.
+    """Factors of the two readings of the paper's casing supports: as printed, and times what the casing is heavier.
 
-    Its frequencies fix the ratio of springs to mass: five times the lightest mass has five times its springs.
+    The casing's frequencies fix the ratio of springs to mass: five times the lightest mass has five times its springs.
     """
-    ratio = load_machine(size.machine).casing.radial_support_stiffness_n_per_m / LIGHTEST_N_PER_M
-    return {PRINTED: 1.0} | ({f"times {ratio:g}": ratio} if ratio != 1 else {})
+    return {PRINTED: 1.0, SCALED: round(size.scenario().machine.casing.width_m / LIGHTEST_WIDTH_M, 2)}
 
 
 def on_casing_support(size: Size, printed: float, reading: str) -> Piece:

@@ -9,11 +9,14 @@ import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.labels import Motion
-from validation.zeng2019.runs.outcome import REGULAR, Outcome
+from validation.zeng2019.runs.outcome import Outcome
 
 LINES_PER_ORDER = 100
 EYE = 0.02
-"""Points that keep within this share of their diagram's height look like one."""
+"""Points that scatter over less than this share of their diagram's height look like one."""
+PARTS = {"blisk": "motion_centre", "tips": "motion_blisk", "casing": "motion_casing"}
+"""Parts of the machine and their class: the paper's blisk is its disk centre; `tips` are the disk centre and all tips.
+"""
 PROMINENT = 0.01
 """A line is visible in a cascade from a hundredth of the run's strongest line on."""
 CLOSE = 0.05
@@ -45,15 +48,19 @@ def height(runs: Collection[Outcome], part: str) -> float:
     return float(np.ptp(points[1:])) if len(points) > 1 else 0.0
 
 
+def scatter(run: Outcome, part: str, full_height: float) -> float:
+    """Largest less smallest of the 49 points over the height of their diagram; 0 in a diagram without height."""
+    return float(np.ptp(getattr(run, f"points_{part}"))) / full_height if full_height else 0.0
+
+
 def looks_regular(run: Outcome, part: str, full_height: float) -> bool:
     """Whether the 49 points look like one in a diagram of that height."""
-    points = getattr(run, f"points_{part}")
-    return run.ok and float(np.ptp(points)) <= EYE * full_height
+    return run.ok and scatter(run, part, full_height) <= EYE
 
 
 def motion_of(run: Outcome, part: str) -> str:
-    """Motion class of the blisk or the casing; the status of a failed run."""
-    return str(getattr(run, f"motion_{part}")) if run.ok else run.status
+    """Motion class of one of PARTS; the status of a failed run."""
+    return str(getattr(run, PARTS[part])) if run.ok else run.status
 
 
 def class_counts(runs: Collection[Outcome], part: str) -> str:
@@ -67,11 +74,6 @@ def class_counts(runs: Collection[Outcome], part: str) -> str:
 def rubbing(runs: dict[float, Outcome]) -> dict[float, Outcome]:
     """The runs that ended well and rub."""
     return {value: run for value, run in runs.items() if run.ok and run.rub}
-
-
-def is_regular(motion: str) -> bool:
-    """Static or period-1."""
-    return motion in REGULAR
 
 
 def segments(values: Sequence[float], names: Sequence[str], least: int) -> list[tuple[str, float, float]]:

@@ -10,6 +10,9 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.labels import Labels, Motion, label
 from rubgen.labels.harmonics import HIGHEST_ORDER, order_spectrum
+from rubgen.labels.motion.classify import indicators
+from rubgen.labels.motion.decision import decide
+from rubgen.labels.motion.section import blisk_points, casing_points, casing_rests
 from rubgen.reduction import reduce
 from rubgen.scenario import Scenario
 from rubgen.solver import Response, Status
@@ -28,6 +31,7 @@ REGULAR = (Motion.STATIC.value, Motion.PERIOD_1.value)
 class Outcome:
     """What is kept of one run; of a failed one only `status` and `reason`, its arrays being empty.
 
+    `motion_centre` is the class of the disk centre alone, `motion_blisk` that of the worst of disk centre and tips.
     `points_*` (49,) are O_d x (m) and casing acceleration at 0 deg (m/s2) once a turn, `spectrum_*` (1001,) their peak
     amplitudes over orders 0 to 10 by a hundredth. `even_field` and `odd_field` (10,) are orders 1 to 10 of half the
     sum and half the difference of the accelerations at 0 and 180 deg, which hold the even and the odd circumferential
@@ -40,6 +44,7 @@ class Outcome:
     status: str
     reason: str
     motion: str = ""
+    motion_centre: str = ""
     motion_blisk: str = ""
     motion_casing: str = ""
     period: int = 0
@@ -110,10 +115,23 @@ def outcome(response: Response) -> Outcome:
     return Outcome(
         status=response.status.code,
         reason="",
+        motion_centre=_motion_of_the_centre(response, labels),
         **_labels(labels),
         **_signals(response),
         **_contact(contact_pattern(response, POINTS)),
     )
+
+
+def _motion_of_the_centre(response: Response, labels: Labels) -> str:
+    """Class of the disk centre by the rules of `docs/labels.md`, as if the blisk had no tips.
+
+    K of the 0-1 test is the larger of the disk centre and the casing.
+    """
+    if not labels.rub:
+        return labels.motion_blisk.value
+    centre = blisk_points(response)[:, :1]
+    parts = [centre] if casing_rests(response) else [centre, casing_points(response)]
+    return decide(indicators(parts, None)[0]).motion.value
 
 
 def _labels(labels: Labels) -> dict[str, Any]:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
 
-from validation.zeng2019.runs.measures import class_counts, height, is_regular, looks_regular, motion_of
+import numpy as np
+
+from validation.zeng2019.runs.measures import EYE, class_counts, height, looks_regular, motion_of, scatter
 from validation.zeng2019.runs.outcome import Outcome
-from validation.zeng2019.statement import AGREES, DIFFERS, UNKNOWABLE, Statement, by_share
+from validation.zeng2019.statement import AGREES, DIFFERS, TIPS, UNKNOWABLE, Statement, by_share
 
 SEEN = 0.05
 """A class belongs to those among which a motion switches when at least this share of the runs has it."""
+WITH_TIPS = "(tips)"
+"""Ends a statement on the blisk that is judged by the worst of disk centre and tips."""
 PERIODIC, MULTIPLE, CHAOTIC = "period-1", "multi-period", "chaotic"
 MEMBERS = {
     PERIODIC: ("period-1", "static"),
@@ -28,54 +33,78 @@ def one_class(
     why: str = "",
     *,
     fitted: bool = False,
-) -> Statement:
-    """That a part moves in one way throughout, period-1 or chaotic: how many runs do."""
-    good = [run for run in runs.values() if run.ok]
-    true = sum(motion_of(run, part) in MEMBERS[word] for run in good)
-    verdict = by_share(true, len(good))
-    return Statement(
-        statement=f"{where}: the {part} moves in {word} motion.",
+) -> list[Statement]:
+    """That a part moves in one way throughout, period-1 or chaotic: how many runs do. On the blisk, with the tips."""
+
+    def judged(judged_part: str) -> tuple[str, str]:
+        good = [run for run in runs.values() if run.ok]
+        true = sum(motion_of(run, judged_part) in MEMBERS[word] for run in good)
+        return by_share(true, len(good)), _found(runs, judged_part, every)
+
+    verdict, found = judged(part)
+    statement = f"{where}: the {part} moves in {word} motion."
+    first = Statement(
+        statement=statement,
         verdict=verdict,
-        found=_found(runs, part, every),
-        why=" ".join(filter(None, (_by_eye(word, part, good, every, verdict), why))),
+        found=found,
+        why=why,
         used_for_fitting=fitted,
+        by_eye=_by_eye(word, part, [run for run in runs.values() if run.ok], every, verdict),
     )
-
-
-def _by_eye(word: str, part: str, good: Sequence[Outcome], every: Collection[Outcome], verdict: str) -> str:
-    """What the verdict would be by the scatter of the 49 points, where that is another one."""
-    full = height(every, part)
-    points = sum(looks_regular(run, part, full) for run in good)
-    other = by_share(points if word == PERIODIC else len(good) - points, len(good))
-    return f"By the scatter of 49 points, the paper's way, the verdict would be `{other}`." if other != verdict else ""
+    return with_tips(part, first, judged)
 
 
 def switching(
     where: str, words: tuple[str, ...], part: str, runs: dict[float, Outcome], every: Collection[Outcome], why: str = ""
-) -> Statement:
-    """That a part switches among some ways to move: whether each of them occurs.
+) -> list[Statement]:
+    """That a part switches among some ways to move: whether each of them occurs. On the blisk, with the tips.
 
     Quasi-periodic motion counts for one word alone, multi-period where that is among them.
     """
     good = [run for run in runs.values() if run.ok]
     meant = MEMBERS | ({CHAOTIC: ("chaotic",)} if MULTIPLE in words else {})
-    shares = {word: sum(motion_of(run, part) in meant[word] for run in good) for word in words}
-    missing = [word for word, count in shares.items() if count < SEEN * len(good)]
+
+    def judged(judged_part: str) -> tuple[str, str]:
+        shares = {word: sum(motion_of(run, judged_part) in meant[word] for run in good) for word in words}
+        missing = [word for word, count in shares.items() if count < SEEN * len(good)]
+        told = f"; {' and '.join(missing)} too rare" if missing else ""
+        return UNKNOWABLE if not good else DIFFERS if missing else AGREES, _found(runs, judged_part, every) + told
+
     named = f"{', '.join(words[:-1])} and {words[-1]}"
-    return Statement(
-        statement=f"{where}: the {part} switches {'among' if len(words) > 2 else 'between'} {named} motion.",
-        verdict=UNKNOWABLE if not good else DIFFERS if missing else AGREES,
-        found=_found(runs, part, every) + (f"; {' and '.join(missing)} too rare" if missing else ""),
-        why=why,
-    )
+    verdict, found = judged(part)
+    statement = f"{where}: the {part} switches {'among' if len(words) > 2 else 'between'} {named} motion."
+    return with_tips(part, Statement(statement=statement, verdict=verdict, found=found, why=why), judged)
+
+
+def with_tips(part: str, first: Statement, judged: Callable[[str], tuple[str, str]]) -> list[Statement]:
+    """The statement, and for one on the blisk a row beside the tally: `judged` gives verdict and finding of a part."""
+    if part != "blisk":
+        return [first]
+    verdict, found = judged("tips")
+    if verdict != first.verdict:
+        first = replace(first, by_words=verdict, other_words="judged by the disk centre and the tips")
+    return [first, Statement(statement=f"{first.statement} {WITH_TIPS}", verdict=verdict, found=found, apart=TIPS)]
+
+
+def _by_eye(word: str, part: str, good: Sequence[Outcome], every: Collection[Outcome], verdict: str) -> str:
+    """The verdict by the scatter of the 49 points, the paper's way, where that is another one."""
+    full = height(every, part)
+    points = sum(looks_regular(run, part, full) for run in good)
+    other = by_share(points if word == PERIODIC else len(good) - points, len(good))
+    return other if other != verdict else ""
 
 
 def _found(runs: dict[float, Outcome], part: str, every: Collection[Outcome]) -> str:
+    """Classes, and for what has 49 points how far they scatter."""
     if not runs:
         return "no value of this range is run at this size"
-    full = height(every, part)
-    good = [run for run in runs.values() if run.ok]
+    good, full = [run for run in runs.values() if run.ok], height(every, part) if part != "tips" else 0.0
+    counts = class_counts(runs.values(), part)
+    if not good or not full:
+        return counts
+    scatters = [100 * scatter(run, part, full) for run in good]
     seen = sum(looks_regular(run, part, full) for run in good)
-    regular = sum(is_regular(motion_of(run, part)) for run in good)
-    eye = f"; to the eye, {seen} of {len(good)} show one point" if seen != regular else ""
-    return class_counts(runs.values(), part) + eye
+    return (
+        f"{counts}; 49 points scatter over {np.median(scatters):.2g} % of the height of the diagram (median; largest "
+        f"{max(scatters):.2g} %), over less than {100 * EYE:.0f} % in {seen} of {len(good)}"
+    )
