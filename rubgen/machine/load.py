@@ -15,6 +15,8 @@ from rubgen.machine.problems import nearest, validated
 from rubgen.machine.toml_file import check_kind, named_toml, names_toml, read_toml, toml_path
 
 PRESETS = Path(__file__).parent / "presets"
+FOR_COMPARISON = "zeng2019-as-computed"
+"""The preset that repeats the paper's discretisation; a recipe that names it is told that it is not for data."""
 ABOUT_MACHINE = re.compile(r"(?:^|: )machine .*?: (its .*)")
 
 

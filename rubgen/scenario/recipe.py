@@ -11,10 +11,10 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, TypeAdapter, ValidationError, create_model
 
 from rubgen.brief import counted
-from rubgen.errors import UserError
+from rubgen.errors import UserError, warn
 from rubgen.format_names import FORMAT_NAMES, FormatName
 from rubgen.machine import Machine, load_machine
-from rubgen.machine.load import file_named, machine_id
+from rubgen.machine.load import FOR_COMPARISON, file_named, machine_id
 from rubgen.machine.problems import first_problem, validated
 from rubgen.machine.quantities import (
     MOST_RUNS,
@@ -44,6 +44,10 @@ from rubgen.sensors.load import DEFAULT_SET, load_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
 
 DEFAULT_RECIPE = Path(__file__).parent / "zeng2019-mini.toml"
+NOT_FOR_DATA = (
+    'for comparison with the paper, never for data: it belongs to [contact] surface = "chords", '
+    'where every node of the mesh hits the tips; name "zeng2019" instead'
+)
 _STRICT = ConfigDict(extra="forbid", frozen=True)
 
 
@@ -293,6 +297,8 @@ def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | 
             check_feasible(scenario, f"{source}: ")
     if not recipe._checked:
         warn_of(recipe.corners(), f"{source}: ")
+        if recipe.base.machine.name == FOR_COMPARISON:
+            warn(f"{source}: machine = {recipe.machine!r}: {NOT_FOR_DATA}")
     recipe._checked = True
 
 

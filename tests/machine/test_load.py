@@ -57,7 +57,7 @@ BAD = {
 
 def test_preset_has_the_published_tip_radius():
     machine = load_machine("zeng2019")
-    assert preset_names() == ["zeng2019", "zeng2019-fitted"]
+    assert preset_names() == ["zeng2019", "zeng2019-as-computed", "zeng2019-fitted"]
     assert machine.blades.count == 36
     assert machine.tip_radius_m == pytest.approx(0.40)
     casing = machine.casing

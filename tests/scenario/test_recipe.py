@@ -228,3 +228,10 @@ def test_the_recipe_of_a_manifest_is_a_recipe(operation, exclude_none):
     data = {"name": "a", "runs": 1, "machine": "zeng2019", "operation": operation}
     recorded = json.loads(json.dumps(parse_recipe(data).model_dump(mode="json", exclude_none=exclude_none)))
     assert parse_recipe(recorded).model_dump(mode="json", exclude_none=exclude_none) == recorded
+
+
+def test_a_recipe_on_the_machine_for_comparison_is_told_that_it_is_not_for_data():
+    with pytest.warns(RubgenWarning, match="machine = 'zeng2019-as-computed': for comparison .* never for data"):
+        parse_recipe(MINIMAL | {"machine": "zeng2019-as-computed"})
+    with warnings.catch_warnings(action="error"):
+        parse_recipe(MINIMAL)
