@@ -46,12 +46,13 @@ fuzz: $(VENV)/.installed-dev
 
 zeng2019: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.zeng2019 --out out/zeng2019
-	cp out/zeng2019/zeng2019.md out/zeng2019/zeng2019-*.png docs/
+	cp out/zeng2019/zeng2019*.md out/zeng2019/zeng2019-*.png docs/
 
 zeng2019-fit: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.zeng2019 --fit --out out/zeng2019
 	cp out/zeng2019/fit/zeng2019-fit.md docs/
-	cp out/zeng2019/fit/zeng2019-fitted.toml rubgen/machine/presets/
+	cp out/zeng2019/fit/found.json validation/zeng2019/fitting/
+	cp out/zeng2019/fit/zeng2019-as-computed.toml rubgen/machine/presets/
 
 pictures: $(VENV)/.installed-dev
 	$(BIN)/python docs/pictures.py

@@ -18,7 +18,7 @@ from validation.zeng2019.reproducing import sections_of
 from validation.zeng2019.sections import SECTIONS
 from validation.zeng2019.statement import Statement, by_deviation, by_share, power
 
-FIELDS = {"figure", "statement", "verdict", "found", "why", "used_for_fitting", "experiment", "command"}
+FIELDS = {*Statement.__dataclass_fields__, "figure", "machine", "command"}
 VERDICTS = ("agrees", "agrees within ", "differs", "unknowable")
 
 
@@ -99,16 +99,8 @@ def test_a_figure_makes_its_page(tmp_path):
     statements = json.loads((folder / "statements.json").read_text())
     assert sum(made.verdicts.values()) == len(statements) == 2
     for one in statements:
-        assert set(one) == {
-            "figure",
-            "statement",
-            "verdict",
-            "found",
-            "why",
-            "used_for_fitting",
-            "experiment",
-            "command",
-        }
+        assert set(one) == FIELDS
+        assert one["machine"] == "zeng2019"
         assert one["verdict"].startswith(VERDICTS)
         assert one["statement"] in text
         assert one["command"] == "python -m validation.zeng2019 --figure 9"

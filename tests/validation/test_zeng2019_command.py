@@ -30,15 +30,7 @@ def test_a_figure_is_reproduced(run, tmp_path):
     [
         (["--figure", "22"], "--figure 22: there is no such figure; choose from 6"),
         (["--fit", "--figure", "9"], "--fit --figure 9: the search is one whole; leave --figure out"),
-        (
-            ["--fit", "--machine", "zeng2019-fitted"],
-            "--fit --machine zeng2019-fitted: the search starts from the paper's own preset; leave --machine out",
-        ),
         (["--every", "0"], "--every 0: must be at least 1; 4 gives steps of 120 rev/min"),
-        (
-            ["--machine", "zeng2020"],
-            "--machine zeng2020: not a machine of this paper; choose from zeng2019, zeng2019-fitted",
-        ),
         (["--workers", "0"], "--workers 0: must be at least 1; give a number of processes"),
     ],
 )

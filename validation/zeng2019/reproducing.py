@@ -13,12 +13,15 @@ from rubgen.io.files import write_durably
 from validation.rows import Row, write_rows
 from validation.store import Progress, Store
 from validation.zeng2019.drawing.style import png
+from validation.zeng2019.fitting.evidence import read_evidence
+from validation.zeng2019.fitting.page import ROOMS
+from validation.zeng2019.fitting.page import page as page_of_the_fit
 from validation.zeng2019.page import Drawn, Judged, html, markdown
 from validation.zeng2019.section import Section
 from validation.zeng2019.sections import SECTIONS
 from validation.zeng2019.size import FULL, MACHINES, QUICK, Size, sizes
 
-PAGE = "zeng2019"
+PAGE, FIT_PAGE = "zeng2019", "zeng2019-fit.md"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,18 +51,21 @@ def reproduce(
     `every` takes every so many-th speed: 1 steps by 30 rev/min, 4 by 120. `figure` asks for one section; its page goes
     to `out/figure-N`. Sections that are `compared` are judged with all of MACHINES. Pieces of computation are kept in
     `out/pieces`: the same call after an interruption makes the rest. Writes `zeng2019.md` with its pictures,
-    `zeng2019.html` (one file) and `statements.json`. Raises UserError for an unknown figure, and for an `out` that is
-    not ours or cannot be written.
+    `zeng2019.html` (one file) and `statements.json`; for all figures also the page of the search, from its kept
+    results. Raises UserError for an unknown figure, and for an `out` that is not ours or cannot be written.
     """
     chosen, size = sections_of(figure), size or (QUICK if quick else replace(FULL, speed_thin=every))
     store = Store(Path(out))
     with store.claimed():
         pieces = [piece for section in chosen for one in _sizes(section, size) for piece in section.pieces(one)]
+        pieces += ROOMS.values() if figure is None else ()
         made = store.compute(pieces, workers or usable_cores(), progress)
         judged = [judge(section, size, store) for section in chosen]
         folder = Path(out) if figure is None else Path(out) / f"figure-{chosen[0].name}"
         folder.mkdir(exist_ok=True)
         page = write(judged, size, folder)
+        if figure is None:
+            write_text(folder / FIT_PAGE, page_of_the_fit(read_evidence(), store))
     return Reproduced(page=page, made=made, verdicts=_count(judged))
 
 

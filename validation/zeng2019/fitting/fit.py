@@ -7,15 +7,13 @@ from pathlib import Path
 
 from rubgen.dataset.files import write_text
 from rubgen.dataset.making.workers import usable_cores
-from validation.piece import Piece
 from validation.store import Progress, Store
 from validation.zeng2019.fitting.candidate import Candidate
 from validation.zeng2019.fitting.evidence import scores_of, write_evidence
 from validation.zeng2019.fitting.machine_file import toml_of
-from validation.zeng2019.fitting.page import page
-from validation.zeng2019.fitting.room import room
+from validation.zeng2019.fitting.page import ROOMS, page
 from validation.zeng2019.fitting.score import Score, as_computed, best
-from validation.zeng2019.fitting.search import DAMPING, SURFACE, around, grid
+from validation.zeng2019.fitting.search import SURFACE, around, grid
 
 QUICK_THIN = 20
 FOLDER, PAGE, MACHINE_FILE, EVIDENCE_FILE = "fit", "zeng2019-fit.md", "zeng2019-as-computed.toml", "found.json"
@@ -44,9 +42,8 @@ def fit(
     """
     store, thin, many = Store(Path(out)), QUICK_THIN if quick else 1, workers or usable_cores()
     with store.claimed():
-        rooms = {damping: Piece(room, (damping,)) for damping in DAMPING}
         tried = grid()[::thin]
-        made = store.compute([*(one.piece for one in tried), *rooms.values()], many, progress)
+        made = store.compute([*(one.piece for one in tried), *ROOMS.values()], many, progress)
         for surface in SURFACE:
             found = _best_on(surface, tried, store)
             more = around(found)[::thin] if found else []
@@ -58,7 +55,7 @@ def fit(
         write_evidence(folder / EVIDENCE_FILE, seen)
         chosen = as_computed(scores)
         write_text(folder / MACHINE_FILE, toml_of(chosen.candidate))
-        write_text(folder / PAGE, page(scores, {damping: store(piece) for damping, piece in rooms.items()}))
+        write_text(folder / PAGE, page(scores, store))
     return Fitted(page=folder / PAGE, machine=folder / MACHINE_FILE, made=made, best=chosen)
 
 
