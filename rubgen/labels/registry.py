@@ -172,7 +172,10 @@ MOTION = (
     _count("period_casing", "the same of the casing", lambda x: x.period_casing, unit="turns"),
     _count("period", "least common multiple of the two; null where there is none", lambda x: x.period, unit="turns"),
     _number(
-        "motion_confidence", "1", "how sure the class is, 0 to 1; 0 where undecided", lambda x: x.motion_confidence
+        "motion_confidence",
+        "1",
+        "chance that half the time step keeps the class, 0 to 1; 0 where undecided",
+        lambda x: x.motion_confidence,
     ),
     _flag(
         "motion_symmetric",

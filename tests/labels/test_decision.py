@@ -5,8 +5,8 @@ from rubgen.labels import Motion
 from rubgen.labels.motion.decision import Indicators, MotionClass, combined, decide
 from rubgen.solver.exponent import Exponent
 
-GROWING, NEUTRAL, DYING = (
-    Exponent(per_turn=size, error=0.01, convergence=np.full(10, size), turns=500) for size in (0.2, 0.001, -0.2)
+STRONG, GROWING, NEUTRAL, DYING = (
+    Exponent(per_turn=size, error=0.01, convergence=np.full(10, size), turns=500) for size in (1.5, 0.2, 0.001, -0.2)
 )
 
 
@@ -42,14 +42,34 @@ def test_a_class_needs_indicators_that_agree(period, stray, growth, exponent, mo
 
 
 def test_confidence_falls_towards_the_bounds() -> None:
-    far, near = (decided(1, stray, 0.0, NEUTRAL).confidence for stray in (1e-4, 9e-3))
-    assert far > 0.99
-    assert 0.5 < near < 0.9
-    sure, doubtful = (decided(None, 0.3, growth, GROWING).confidence for growth in (0.99, 0.72))
+    far, near = (decided(1, stray, 0.0, DYING).confidence for stray in (1e-4, 9e-3))
+    assert far > 0.95
+    assert 0.5 < near < 0.6
+    sure, *doubtful = (
+        decided(None, stray, growth, exponent).confidence
+        for stray, growth, exponent in (
+            (0.3, 0.99, STRONG), (0.011, 0.99, STRONG), (0.3, 0.72, STRONG), (0.3, 0.99, GROWING), (0.3, 0.99, None),
+        )
+    )  # fmt: skip
     assert sure > 0.95
-    assert doubtful < sure
+    assert max(doubtful) < 0.9
     assert decided(1, 4e-3, 0.99, GROWING).confidence < decided(1, 4e-3, 0.0, DYING).confidence
-    assert decided(None, 0.3, 0.99, None).confidence < sure
+    assert decided(1, 1e-6, 0.0, NEUTRAL).confidence < 0.6  # half the step may be beyond a bifurcation
+
+
+def test_few_steps_in_a_touch_leave_a_periodic_motion_doubtful() -> None:
+    fine, coarse = (
+        decide(Indicators(period=1, stray=1e-8, growth=0.0, exponent=DYING, resolved=resolved))
+        for resolved in (True, False)
+    )
+    assert fine == coarse
+    assert fine.confidence > 0.95
+    assert coarse.confidence < 0.9
+
+
+def test_what_few_runs_have_shown_is_never_sure() -> None:
+    assert decided(4, 1e-9, 0.0, DYING).confidence < 0.9
+    assert decided(None, 1.0, 0.0, NEUTRAL).confidence < 0.9
 
 
 def test_chaos_of_one_part_is_that_of_the_whole_and_else_doubt_is() -> None:

@@ -6,7 +6,7 @@ import pytest
 from rubgen.labels.motion.classify import Motions
 from rubgen.labels.motion.decision import AT_REST, Indicators, combined, decide
 from rubgen.solver.exponent import Exponent
-from validation.sensitivity.confidence import bins, spreads, sure
+from validation.sensitivity.confidence import bins, interval, spreads, sure
 from validation.sensitivity.confidence_figure import reliability_figure
 from validation.sensitivity.confidence_page import confidence_page
 from validation.sensitivity.recipes import RECIPES, SEEDS, Halved, all_runs
@@ -44,6 +44,15 @@ def test_bins_count_decided_runs_by_confidence():
     assert low < 2 / 3 < high
 
 
+def test_interval_is_where_the_share_is_compatible_with_the_runs():
+    """Wilson's bounds solve (share - p)^2 = z^2 p (1 - p) / n."""
+    low, high = interval(57, 61)
+    for p in (low, high):
+        assert (57 / 61 - p) ** 2 == pytest.approx(1.96**2 * p * (1 - p) / 61)
+    assert low < 57 / 61 < high
+    assert interval(61, 61)[1] == pytest.approx(1.0)
+
+
 def test_spreads_are_changes_in_decades():
     changed = motions(1, 1e-3, 0.0, -0.2)
     assert spreads([pair(REGULAR, changed)])["stray, the rest regular"].rms == pytest.approx(1.0)
@@ -66,6 +75,7 @@ def test_the_page_names_every_class_that_moves():
     text = confidence_page(pairs)
     moved = [line for line in text.splitlines() if RUN.name in line]
     assert ["chaotic / period-1" in line or "undecided / period-1" in line for line in moved] == [True, True]
-    assert "| check | **0.9 to 1** |  | 1 | 0 | **0.0** |" in text
+    assert "| check | **0.9 to 1** |  | 1 | 0 | **0.0** | 0.0 to 79.3 |" in text
+    assert "| check, run 16 on | **0.9 to 1** |  | 0 | 0 | **-** | - |" in text
     figure = reliability_figure(pairs)
     assert [list(container.lines[0].get_ydata()) for container in figure.axes[0].containers] == [[1.0], [0.0]]

@@ -16,7 +16,7 @@ from validation.sensitivity.recipes import Halved
 SURE = 0.9
 KEPT_WHERE_SURE = 0.97
 """Share of the runs with a confidence of SURE or more that must keep their class."""
-BINS = (0.0, 0.5, 0.7, 0.9, 0.99, 1.0)
+BINS = (0.0, 0.5, 0.7, 0.9, 0.95, 1.0)
 ROUNDING = 1e-6
 """Strays below this are the rounding of a single-precision section."""
 
@@ -33,10 +33,15 @@ class Bin:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """The share of kept classes, one standard error below and above it (Wilson)."""
-        n, share = self.runs, self.kept / self.runs
-        centre, half = (share + 0.5 / n) / (1 + 1 / n), math.sqrt(share * (1 - share) / n + 0.25 / n**2) / (1 + 1 / n)
-        return max(centre - half, 0.0), min(centre + half, 1.0)
+        """The share of kept classes, one standard error below and above it."""
+        return interval(self.kept, self.runs, 1.0)
+
+
+def interval(kept: int, runs: int, deviates: float = 1.96) -> tuple[float, float]:
+    """Wilson's interval of a share (J. Am. Stat. Assoc. 22, 1927, 209); 1.96 deviates are 95 %."""
+    share, z = kept / runs, deviates**2 / runs
+    centre, half = share + z / 2, deviates * math.sqrt(share * (1 - share) / runs + z / (4 * runs))
+    return max((centre - half) / (1 + z), 0.0), min((centre + half) / (1 + z), 1.0)
 
 
 def bins(pairs: Sequence[Halved]) -> list[Bin]:
@@ -83,8 +88,12 @@ def spreads(pairs: Sequence[Halved]) -> dict[str, Spread]:
 def shared(pair: Halved) -> str:
     """What a run that loses its class has, by the most telling of its indicators."""
     first, parts = pair.whole.indicators[0], pair.whole.indicators
+    if not first.resolved:
+        return "half of the touches shorter than four steps"
     if all(part.period is not None for part in parts):
-        return "repeats, the rest chaotic" if _chaotic(first) else "repeats, the rest regular"
+        if not _chaotic(first) and any(part.period != 1 for part in parts):
+            return "repeats after several turns, the rest regular"
+        return "repeats, the rest chaotic" if _chaotic(first) else "repeats every turn, the rest regular"
     return "does not repeat, chaotic" if _chaotic(first) else "does not repeat, not chaotic"
 
 

@@ -8,18 +8,19 @@ from collections.abc import Mapping, Sequence
 from rubgen.labels.labels import Motion
 from rubgen.labels.motion.classify import Motions
 from validation.markdown import table
-from validation.sensitivity.confidence import KEPT_WHERE_SURE, SURE, bins, shared, spreads, sure
-from validation.sensitivity.recipes import RECIPES, RUNS, SEEDS, Halved
+from validation.sensitivity.confidence import KEPT_WHERE_SURE, SURE, bins, interval, shared, spreads, sure
+from validation.sensitivity.recipes import RECIPES, RUNS, SEEDS, SEEN, Halved
 
 TEXT = """
 # What a confidence is worth
 
 `motion_confidence` says how surely a run keeps its class of motion with half the step.
 `python -m validation.sensitivity recipes` makes this page from runs of the recipes with a steady speed, with 1,024 and
-with 2,048 steps a turn, for two seeds of each recipe. Constants of the confidence may be fitted to the runs of the
-first seed ("fit") only. The second seed ("check") shows what the confidence is worth. Only runs that rub are compared:
-without contact the class cannot change. At a changing speed the motion of a run with contact is always `undecided`. A
-class is kept if class and period of the whole system are equal.
+with 2,048 steps a turn, for two seeds of each recipe. The constants of the confidence were set by 106 runs of the first
+seed ("fit"). The second seed ("check") shows what the confidence is worth. Its first 16 runs of each recipe were known
+when the constants were set; its later runs were looked at only afterwards. Only runs that rub are compared: without
+contact the class cannot change. At a changing speed the motion of a run with contact is always `undecided`. A class is
+kept if class and period of the whole system are equal.
 
 ![Reliability of the confidence](confidence.png)
 """
@@ -56,14 +57,20 @@ def _reliability(pairs: Mapping[str, Sequence[Halved]]) -> str:
         for each in bins(group):
             span = f"{each.low:g} to {each.high:g}"
             share = _percent(each.kept, each.runs)
-            rows.append([use, span, f"{each.mean_confidence:.3f}", str(each.runs), str(each.kept), share])
-        runs, kept = sure(group)
-        rows.append([use, f"**{SURE:g} to 1**", "", str(runs), str(kept), f"**{_percent(kept, runs)}**"])
-    header = ["runs of", "confidence", "mean", "decided runs", "kept", "kept, %"]
+            rows.append([use, span, f"{each.mean_confidence:.3f}", str(each.runs), str(each.kept), share, ""])
+        rows.append(_sure_row(use, group))
+    rows.append(_sure_row(f"check, run {SEEN} on", [pair for pair in pairs["check"] if pair.run.index >= SEEN]))
+    header = ["runs of", "confidence", "mean", "decided runs", "kept", "kept, %", "95 % interval (Wilson)"]
     required = (
         f"Required: of runs with a confidence of {SURE:g} or more, {100 * KEPT_WHERE_SURE:.0f} % keep their class."
     )
     return f"{required}\n\n{table(header, rows, numbers_from=2)}"
+
+
+def _sure_row(name: str, pairs: Sequence[Halved]) -> list[str]:
+    runs, kept = sure(pairs)
+    between = " to ".join(f"{100 * end:.1f}" for end in interval(kept, runs)) if runs else "-"
+    return [name, f"**{SURE:g} to 1**", "", str(runs), str(kept), f"**{_percent(kept, runs)}**", between]
 
 
 def _causes(pairs: Sequence[Halved]) -> str:

@@ -1,7 +1,7 @@
 """The class of a motion from three indicators: clusters of the section, the 0-1 test, the Lyapunov exponent."""
 
 from dataclasses import dataclass, field
-from math import erf, exp, lcm, sqrt
+from math import erf, hypot, lcm, log10, sqrt
 
 from rubgen.labels.labels import Motion
 from rubgen.labels.motion.chaos import CHAOTIC_FROM
@@ -11,8 +11,22 @@ from rubgen.solver.exponent import LEAST, Exponent
 CLOSE = 0.5
 """A part that repeats, with points farther from its clusters than this share of the cluster radius (6 dB below it), is
 near the bound."""
-GROWTH_WIDTH = 0.1
-"""K within this of its bound is uncertain."""
+REGULAR_SPREAD, CHAOTIC_SPREAD = 0.6, 0.39
+"""Half the step moves log10 of a stray by so much, rms: where what strays is regular, and where it is chaotic."""
+GROWTH_SPREAD = 0.1
+"""Half the step moves K by less than this, unless the kind of motion changes."""
+EXPONENT_SPREAD = 0.2
+"""Half the step moves an exponent below 1 by so much, in 1/turn."""
+ZERO_SPREAD = 0.003
+"""Half the step moves an exponent near zero by so much, in 1/turn."""
+UNRESOLVED_STRAY = 2.5e-3
+"""Where the step does not resolve the touches, half the step may make a regular rest chaotic; it then strays so far."""
+KEPT = {Motion.PERIOD_1: 0.97, Motion.PERIOD_K: 0.8, Motion.QUASI_PERIODIC: 0.8, Motion.CHAOTIC: 0.98}
+"""Confidence far from every bound: (runs that kept the class + 1) / (runs + 2), after Laplace. Few had the middle two.
+"""
+WITHOUT_EXPONENT = 0.8
+"""Confidence, at most, without an exponent. It was not measured."""
+_TINY = 1e-300
 
 _REGULARITY = list(Motion)
 
@@ -31,6 +45,8 @@ class Indicators:
     """Exponent of the whole system; None where it is not known."""
     settling: bool = False
     """Whether any part still settles."""
+    resolved: bool = True
+    """Whether the time step resolves the touches: half of them last `classify.RESOLVED_STEPS` or more."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,36 +101,54 @@ def _class_of(seen: Indicators) -> Motion:
 
 
 def _confidence(seen: Indicators, motion: Motion) -> float:
-    """Share of the class in the weights of all three kinds.
+    """Probability that half the step keeps the class.
 
-    Each indicator has a degree in [0, 1]. Periodic: c = 1 / (1 + (stray / radius)^2). Chaotic by K: a logistic function
-    of K about its bound. Chaotic by the exponent: the probability that it is positive, from its error. The weight of
-    periodic is c, halved where both others find chaos in the rest. The weight of chaotic is (1 - c) times the geometric
-    mean of the other two. The weight of quasi-periodic is (1 - c) times the geometric mean of their complements, with
-    the probability that the exponent is zero.
+    It is KEPT times the probabilities that each indicator stays on its side of its bound, by normal deviates of the
+    spreads: log10 of the stray, K, the exponent. They are multiplied as if they were independent. Spreads and KEPT were
+    set by the runs of `docs/confidence.md` ("fit"). Without an exponent it is WITHOUT_EXPONENT at most.
     """
-    c = 1 / (1 + (seen.stray / CLUSTER_RADIUS) ** 2)
-    k = 1 / (1 + exp(-(seen.growth - CHAOTIC_FROM) / GROWTH_WIDTH))
-    positive, zero = _positive(seen.exponent), _zero(seen.exponent)
-    weights = {
-        "periodic": c * (1 - k * positive / 2),
-        "chaotic": (1 - c) * sqrt(k * positive),
-        "quasi-periodic": (1 - c) * sqrt((1 - k) * zero),
-    }
-    kind = "periodic" if motion in (Motion.PERIOD_1, Motion.PERIOD_K) else motion.value
-    return weights[kind] / sum(weights.values())
+    if motion in (Motion.PERIOD_1, Motion.PERIOD_K):
+        confidence = KEPT[motion] * _stays_periodic(seen)
+    else:
+        confidence = KEPT[motion] * _stays_aperiodic(seen, chaotic=motion is Motion.CHAOTIC)
+    return confidence if seen.exponent is not None else min(confidence, WITHOUT_EXPONENT)
 
 
-def _positive(exponent: Exponent | None) -> float:
-    if exponent is None:
-        return 0.5
-    return 0.5 * (1 + erf(exponent.per_turn / (sqrt(2) * max(exponent.error, LEAST))))
+def _stays_periodic(seen: Indicators) -> float:
+    """Probability that the rest stays inside the clusters and, where it is regular, that the motion does not bifurcate.
+
+    A regular motion bifurcates where its exponent reaches zero.
+    """
+    exponent = seen.exponent
+    grows = exponent is not None and exponent.is_positive
+    if (grows and seen.growth >= CHAOTIC_FROM) or not seen.resolved:
+        stray = seen.stray if seen.resolved else max(seen.stray, UNRESOLVED_STRAY)
+        return _normal(_decades(CLOSE * CLUSTER_RADIUS, stray) / CHAOTIC_SPREAD)
+    inside = _normal(_decades(CLUSTER_RADIUS, seen.stray) / REGULAR_SPREAD)
+    if exponent is None or grows:
+        return inside
+    return inside * _normal(-exponent.per_turn / hypot(exponent.error, ZERO_SPREAD))
 
 
-def _zero(exponent: Exponent | None) -> float:
-    if exponent is None:
-        return 0.5
-    return 1 - erf(abs(exponent.per_turn) / (3 * sqrt(2) * max(exponent.error, LEAST)))
+def _stays_aperiodic(seen: Indicators, *, chaotic: bool) -> float:
+    """Probability that the part stays outside the clusters and, where it is chaotic, that it stays so."""
+    outside = _normal(_decades(seen.stray, CLUSTER_RADIUS) / (CHAOTIC_SPREAD if chaotic else REGULAR_SPREAD))
+    distance = (seen.growth - CHAOTIC_FROM) / GROWTH_SPREAD
+    stays = outside * _normal(distance if chaotic else -distance)
+    if seen.exponent is None or not chaotic:
+        return stays
+    above = seen.exponent.per_turn - max(2 * seen.exponent.error, LEAST)
+    return stays * _normal(above / hypot(seen.exponent.error, EXPONENT_SPREAD))
+
+
+def _decades(value: float, bound: float) -> float:
+    """Logarithm of value / bound to the base 10."""
+    return log10(max(value, _TINY) / bound)
+
+
+def _normal(deviate: float) -> float:
+    """Probability of a normal deviate below this one."""
+    return 0.5 * (1 + erf(deviate / sqrt(2)))
 
 
 def combined(blisk: MotionClass, casing: MotionClass) -> MotionClass:
