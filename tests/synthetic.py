@@ -186,6 +186,6 @@ def make_run(
         seed=seed,
     )
     response = _response(generator, scenario, contact)
-    recording = measure(response, scenario.sensing, seconds=seconds, rng=generator)
+    recording = measure(response, scenario.sensing, seconds=seconds, rng=generator, frame=scenario.frame)
     labels = _labels(generator, response, contact)
     return Run(scenario=scenario, response=response, recording=recording, labels=labels)

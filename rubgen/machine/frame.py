@@ -1,5 +1,6 @@
 """The frame between the disk's support and what is fastened to it: bearing housing and casing."""
 
+import math
 from typing import Annotated
 
 from pydantic import Field
@@ -16,6 +17,8 @@ from rubgen.machine.quantities import (
 )
 
 MOST_FRAME_MODES = 64
+FORGOTTEN = math.log(1e4)
+"""Number of time constants after which a start has decayed to 1e-4."""
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -46,3 +49,8 @@ class Frame:
     """
 
     modes: Annotated[tuple[FrameMode, ...], Field(min_length=1, max_length=MOST_FRAME_MODES)]
+
+    @property
+    def memory_seconds(self) -> float:
+        """Time in s after which the start of the slowest mode has decayed to 1e-4."""
+        return FORGOTTEN / (2 * math.pi * min(mode.damping * mode.frequency_hz for mode in self.modes))

@@ -6,7 +6,6 @@ import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.machine.frame import Frame
-from rubgen.measurement.frame import frame_memory_seconds
 from rubgen.measurement.front_end import memory_seconds
 from rubgen.scenario import Sensing
 
@@ -60,7 +59,7 @@ def margin_seconds(sensing: Sensing, seconds: float = 0.0, frame: Frame | None =
     """
     margin = 2 * half_width_seconds(sensing.sample_rate_hz) + 2 / sensing.sample_rate_hz
     margin += max((memory_seconds(each) for each in sensing.set.sampled), default=0.0)
-    margin += frame_memory_seconds(frame) if frame else 0.0
+    margin += frame.memory_seconds if frame else 0.0
     return margin + late_seconds(sensing, seconds) + late_seconds(sensing, seconds, sign=-1)
 
 

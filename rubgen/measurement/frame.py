@@ -8,7 +8,6 @@ import numpy as np
 from rubgen.arrays import FloatArray
 from rubgen.machine.frame import Frame, FrameMode
 from rubgen.machine.quantities import FRAME_HZ, MODAL_KG
-from rubgen.measurement.front_end import FORGOTTEN
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,12 +69,6 @@ def accelerations(mode: FrameMode, force: FloatArray, dt: float) -> FloatArray:
     gain = decay * np.sin(turned) / turned / mode.modal_mass_kg
     filtered = lfilter(gain * np.array([1, -2, 1]), [1, -2 * decay * np.cos(turned), decay**2], force - force[0])
     return np.asarray(filtered, dtype=np.float64)
-
-
-def frame_memory_seconds(frame: Frame) -> float:
-    """Time in s after which the start of the slowest mode has decayed to 1e-4."""
-    slowest = min(mode.damping * mode.frequency_hz for mode in frame.modes)
-    return float(FORGOTTEN / (2 * np.pi * slowest))
 
 
 def _cosine(angle_deg: float) -> float:

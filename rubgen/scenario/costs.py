@@ -16,6 +16,8 @@ STEPS_PER_SAMPLE = 2.56
 """Steps per recorded sample that leave room for the anti-alias filter."""
 LEAST_TAIL_TURNS = 100
 LEAST_TAPS = 11
+SURROUNDINGS_ARRAYS, FRAME_ARRAYS = 12, 9
+"""Arrays with a value at every step that surroundings, and a frame beside its modes, need at a time."""
 GIGA = 1e9
 
 
@@ -81,10 +83,16 @@ def bytes_a_turn(scenario: Scenario) -> float:
 
 
 def bytes_a_second(scenario: Scenario) -> float:
-    """Bytes of each second of signal: taps at every step, twice while they are joined; channels, clean ones too."""
+    """Bytes of each second of signal: taps at every step, twice while they are joined; channels, clean ones too.
+
+    Surroundings and a frame add arrays: 12, and 17 with eight modes, measured (tracemalloc) in the set default.
+    """
     operation, sensing = scenario.operation, scenario.sensing
     steps = steps_per_turn(scenario) * operation.rotation.fastest / (2 * math.pi)
-    return 8 * _taps(scenario) * (2 * steps + (3 if sensing.keep_clean else 2) * sensing.sample_rate_hz)
+    added = SURROUNDINGS_ARRAYS if scenario.surroundings else 0
+    added += FRAME_ARRAYS + len(scenario.frame.modes) if scenario.frame else 0
+    samples = (3 if sensing.keep_clean else 2) * sensing.sample_rate_hz
+    return 8 * (_taps(scenario) * (2 * steps + samples) + added * steps)
 
 
 def coordinates(scenario: Scenario) -> int:
@@ -107,11 +115,15 @@ def run_problem(scenario: Scenario) -> str | None:
     turn, second = bytes_a_turn(scenario), bytes_a_second(scenario)
     if operation.recorded_turns * turn > MOST_RUN_BYTES:
         return _too_long(scenario, int(MOST_RUN_BYTES / turn))
-    tail = max(scenario.signal_seconds, LEAST_TAIL_TURNS / operation.rotation_frequency_hz)
+    memory = scenario.frame.memory_seconds if scenario.frame else 0.0
+    tail = max(scenario.signal_seconds + memory, LEAST_TAIL_TURNS / operation.rotation_frequency_hz)
     if tail * second <= MOST_RUN_BYTES:
         return None
     needed = f"takes about {digits(tail * second / GIGA)} GB of memory, at most {MOST_RUN_BYTES / GIGA:g} GB"
-    seconds = MOST_RUN_BYTES / second
+    seconds = MOST_RUN_BYTES / second - memory
+    if seconds <= 0:
+        before = f"the slowest needs {digits(memory)} s of the record before the signals"
+        return f"frame.modes: {before}, {needed}; damp it more"
     return f"output.signal_seconds = {scenario.signal_seconds:g}: {needed}; lower it to {below(seconds)}, or the rate"
 
 

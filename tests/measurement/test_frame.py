@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from rubgen.errors import UserError
 from rubgen.machine.frame import Frame, FrameMode
 from rubgen.measurement import margin_seconds, measure
-from rubgen.measurement.frame import FrameMotion, accelerations, frame_memory_seconds, spread
+from rubgen.measurement.frame import FrameMotion, accelerations, spread
 from rubgen.scenario import Sensing
 from rubgen.scenario.surroundings import Surroundings
 from rubgen.sensors.kinds.accelerometer import Accelerometer
@@ -82,12 +82,12 @@ def test_a_frame_remembers_until_its_slowest_mode_has_decayed():
     frame = Frame(modes=(MODE,))
     struck = np.zeros(60_000)
     struck[1] = 1.0
-    after = int(frame_memory_seconds(frame) / DT)
+    after = int(frame.memory_seconds / DT)
     rung = np.abs(FrameMotion(frame=frame, force=(struck, struck), dt=DT).of_housing(0))
     # As large as at first but for the mass itself: the blow is an acceleration of one step.
     assert rung[after:].max() == pytest.approx(1e-4 * rung[3:200].max(), rel=0.1)
-    assert frame_memory_seconds(Frame(modes=(replace(MODE, frequency_hz=5000), MODE))) == frame_memory_seconds(frame)
-    assert margin_seconds(Sensing(), 0.1, frame) == margin_seconds(Sensing(), 0.1) + frame_memory_seconds(frame)
+    assert Frame(modes=(replace(MODE, frequency_hz=5000), MODE)).memory_seconds == frame.memory_seconds
+    assert margin_seconds(Sensing(), 0.1, frame) == margin_seconds(Sensing(), 0.1) + frame.memory_seconds
 
 
 def test_another_machine_of_the_kind_has_other_frequencies_and_masses():

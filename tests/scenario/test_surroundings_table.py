@@ -7,8 +7,10 @@ import pytest
 
 from rubgen.errors import RubgenWarning, UserError
 from rubgen.machine import load_machine
+from rubgen.machine.frame import Frame
 from rubgen.machine.load import PRESETS, machine_id
 from rubgen.scenario import make_scenario, parse_recipe
+from rubgen.scenario.costs import bytes_a_second, run_problem
 from rubgen.scenario.scenario import scenario_dict
 from rubgen.scenario.surroundings import Surroundings, Tone
 
@@ -123,3 +125,42 @@ def test_a_machine_without_a_frame_says_what_needs_one(tmp_path):
     with pytest.raises(UserError, match=r"housing_accelerometer' of housing_acc_x: the machine has no \[frame\]"):
         make_scenario(machine, sensors="field")
     assert make_scenario(machine, background_m_per_s2=3).machine.frame is None
+
+
+@pytest.mark.parametrize(
+    ("surroundings", "words"),
+    [
+        ({"background_slope": 2}, "background_slope = 2: changes no channel: without background_m_per_s2"),
+        ({"speed_exponent": 2, "runout_m": 1e-6}, "without background_m_per_s2 or blade_passing_m_per_s2"),
+        ({"frame_spread": 0.1}, "frame_spread = 0.1: changes no channel: without path_gain or an accelerometer"),
+    ],
+)
+def test_a_key_that_changes_no_channel_is_warned_of(surroundings, words):
+    with pytest.warns(RubgenWarning) as caught:
+        recipe(**surroundings)
+    assert len(caught) == 1
+    assert words in str(caught[0].message)
+    assert str(caught[0].message).startswith("r.toml: surroundings.")
+
+
+def test_a_level_that_no_sensor_feels_is_warned_of(tmp_path):
+    sensors = tmp_path / "s.toml"
+    sensors.write_text('name = "one"\n[[sensors]]\nname = "f"\nkind = "contact_force"\n')
+    with pytest.warns(RubgenWarning, match="runout_m = 1e-06: .* the sensor set one has no proximity probe"):
+        make_scenario(runout_m=1e-6, sensors=sensors)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_key_that_some_run_needs_is_not_warned_of():
+    recipe(background_slope=2, background_m_per_s2={"uniform": [0, 10]})
+    recipe(frame_spread=0.1, path_gain={"uniform": [0, 1]})
+
+
+def test_the_memory_of_surroundings_and_frame_counts():
+    silent, around = make_scenario(), make_scenario(background_m_per_s2=3)
+    path = make_scenario(path_gain=1)
+    assert bytes_a_second(silent) < bytes_a_second(around) < bytes_a_second(path)
+    modes = (replace(path.machine.frame.modes[0], frequency_hz=10.0, damping=1e-3),)
+    slow = replace(path, machine=replace(path.machine, frame=Frame(modes=modes)))
+    assert "the slowest needs 147 s of the record" in run_problem(slow)
+    assert run_problem(path) is None

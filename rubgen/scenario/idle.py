@@ -1,0 +1,43 @@
+"""Keys of the surroundings that change no channel of a run."""
+
+from rubgen.scenario.scenario import Scenario
+from rubgen.scenario.surroundings import Surroundings
+from rubgen.taps import CasingAcceleration, CentreDisplacement, HousingAcceleration, Tap
+
+CASING, SHAKEN = (CasingAcceleration,), (CasingAcceleration, HousingAcceleration)
+FELT_BY: dict[str, tuple[tuple[type[Tap], ...], str]] = {
+    "background_m_per_s2": (SHAKEN, "accelerometer"),
+    "blade_passing_m_per_s2": (CASING, "accelerometer on the casing"),
+    "path_gain": (CASING, "accelerometer on the casing"),
+    "runout_m": ((CentreDisplacement,), "proximity probe"),
+    "shaft_drift_m": ((CentreDisplacement,), "proximity probe"),
+}
+"""The taps that feel each level, and the sensors of these taps."""
+SCALED_BY = {
+    "background_slope": ("background_m_per_s2",),
+    "speed_exponent": ("background_m_per_s2", "blade_passing_m_per_s2"),
+}
+"""The levels without which a key changes nothing."""
+
+
+def idle_surroundings(scenario: Scenario) -> dict[str, str]:
+    """Every key of the surroundings that changes no channel, with the words of a warning.
+
+    A key that it does not concern, and one with its default value, is as good as not given.
+    """
+    around, sensors = scenario.surroundings, scenario.sensing.set
+    values, usual = vars(around), vars(Surroundings())
+    given = {key: value for key, value in values.items() if value != usual[key]}
+    taps = [sensor.tap for sensor in sensors.sampled]
+    why = {
+        key: f"the sensor set {sensors.name} has no {which}"
+        for key, (kinds, which) in FELT_BY.items()
+        if not any(isinstance(tap, kinds) for tap in taps)
+    }
+    for key, levels in SCALED_BY.items():
+        if not any(values[level] for level in levels):
+            why[key] = f"without {' or '.join(levels)}"
+    if not (sensors.on_housing or values["path_gain"]):
+        why["frame_spread"] = "without path_gain or an accelerometer on the housing"
+    names = {key: f"surroundings.{key}" for key in given if key in why}
+    return {name: f"{name} = {given[key]:g}: changes no channel: {why[key]}" for key, name in names.items()}
