@@ -17,6 +17,7 @@ from rubgen.io.columns import Column, label_columns, scalar_columns, tap_columns
 from rubgen.io.mcap.messages import MESSAGES, PACKAGE
 from rubgen.labels import registry
 from rubgen.machine import Machine
+from rubgen.machine.faults.registry import FAULTS
 from rubgen.scenario import Recipe
 from rubgen.sensors.load import default_sensor_set
 from rubgen.sensors.registry import SENSOR_KINDS
@@ -25,6 +26,7 @@ from rubgen.sensors.sensor_set import SensorSet
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 JSON_TYPES: dict[str, dict[str, Any]] = {
     "text": {"type": "string"},
+    "texts": {"type": "array", "items": {"type": "string"}},
     "flag": {"type": "boolean"},
     "integer": {"type": "integer"},
     "number": {"type": "number"},
@@ -85,11 +87,11 @@ def with_tables(page: str) -> str:
 
 def _run_schema() -> dict[str, Any]:
     columns, endings = scalar_columns(default_sensor_set()), "|".join(registry.TAP_ENDINGS)
-    around = scalar_columns(default_sensor_set(), surroundings=True)[len(columns) :]
+    around = scalar_columns(default_sensor_set(), surroundings=True, faults=FAULTS)[len(columns) :]
     return {
         "title": "Run",
         "description": "One row of runs.parquet. Labels are null where a run failed or has no such value; levels of "
-        "surroundings are there where the recipe has them.",
+        "surroundings and labels of faults are there where the recipe has them.",
         "type": "object",
         "properties": {column.name: _property(column) for column in (*columns, *around)},
         "required": [column.name for column in columns],

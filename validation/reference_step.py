@@ -12,7 +12,7 @@ import scipy.linalg as la
 
 from rubgen.arrays import BoolArray, FloatArray, IntArray
 from rubgen.reduction.model import SpinningSystem
-from rubgen.solver.supports.turning_forces import force_derivatives, gravity_force, turning_force
+from rubgen.solver.supports.turning_forces import fault_force, force_derivatives, gravity_force, turning_force
 
 NEWTON_STEPS = 12
 NEWTON_TOLERANCE = 1e-10
@@ -88,6 +88,7 @@ class ReferenceStepper:
         drag = -force_derivatives(forces, system.speed, np.array(theta), u, np.zeros(2))[1]
         at_rest = turning_force(forces, system.speed, np.array(theta), u, np.zeros(2))
         inverse = la.inv(system.M / dt**2 + system.C / (2 * dt) + E @ drag @ E.T / (2 * dt))
+        at_rest = at_rest + fault_force(forces, theta)
         load = E @ (at_rest + drag @ E.T @ self.before / (2 * dt)) + gravity_force(forces, theta)
         return inverse @ (la.solve(self.inverse, free) + load), inverse
 

@@ -74,10 +74,16 @@ def simulate(
     support_anisotropy: Annotated[float | None, _option("(k_X - k_Y) / (k_X + k_Y) of the disk support.")] = None,
     gravity_m_per_s2: Annotated[float | None, _option("Gravity along -Y on the blisk, m/s2.")] = None,
     unbalance_angle_deg: Annotated[float | None, _option("Angle of the unbalance from blade 0, degrees.")] = None,
-    background_m_per_s2: Annotated[float | None, _option("Rms of the casing's broadband background, m/s2.")] = None,
+    background_m_per_s2: Annotated[
+        float | None,
+        Parameter(
+            name=("--background-m-per-s2", "--background"), help="Rms of the casing's broadband background, m/s2."
+        ),
+    ] = None,
     blade_passing_m_per_s2: Annotated[float | None, _option("Rms of the casing's blade passing, m/s2.")] = None,
     runout_m: Annotated[float | None, _option("Amplitude of the shaft's runout, m.")] = None,
     path_gain: Annotated[float | None, _option("Share of the frame's motion on the casing; 1 is all of it.")] = None,
+    fault: Annotated[list[str] | None, Parameter(negative=(), help="A fault: misalignment, bow, ...")] = None,
     profile: Annotated[str, _option("Speed: steady, run-up, coast-down or fluctuating.")] = "steady",
     end_speed_rpm: Annotated[float | None, _option("Speed at the end of a run-up or coast-down, rev/min.")] = None,
     duration_s: Annotated[float | None, _option("Duration of a record whose speed changes, s.")] = None,
@@ -97,6 +103,7 @@ def simulate(
     force: Force = False,
     replay: Annotated[bool, Parameter(negative=(), help="Then show the run in the viewer.")] = False,
     json: Json = False,
+    **fault_keys: Annotated[str, _option("A value of the fault: --parallel-m 5e-5.")],
 ) -> int:
     """Simulate one run and print its labels; with --out also write its signals."""
     options = dict(locals())

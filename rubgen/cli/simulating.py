@@ -7,12 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from rubgen.brief import counted
+from rubgen.cli.mistakes import meant
 from rubgen.cli.printing import check_new_file, print_json, print_pairs, say
 from rubgen.cli.replaying import Showing, show
-from rubgen.errors import warn
+from rubgen.errors import UserError, warn
 from rubgen.format_names import FORMAT_NAMES
 from rubgen.formats import format_of
 from rubgen.labels import Labels
+from rubgen.labels.faults import fault_labels
 from rubgen.labels.labels import Motion
 from rubgen.labels.registry import LABELS
 from rubgen.labels.to_json import labels_to_json
@@ -21,6 +23,7 @@ from rubgen.output import save
 from rubgen.pipeline import Run, simulate
 from rubgen.progress import step
 from rubgen.scenario import Scenario, make_scenario
+from rubgen.scenario.faults import FAULT_KEYS, kind_of
 from rubgen.scenario.vary import varied_values
 from rubgen.solver import Status
 from rubgen.solver.linear.reach import no_rub
@@ -84,11 +87,30 @@ def _all_labels(run: Run) -> dict[str, object]:
         "record_turns": run.response.record_turns,
         **dict.fromkeys(LABEL_NAMES),
         **(labels_to_json(run.labels) if run.labels else {}),
+        **fault_labels(run.scenario, rub=run.labels.rub if run.labels else None),
     }
 
 
 def _scenario(options: dict[str, Any]) -> Scenario:
-    return make_scenario(**{key: options[key] for key in signature(make_scenario).parameters})
+    keys = list(signature(make_scenario).parameters)[:-1]
+    return make_scenario(**{key: options[key] for key in keys}, **_fault_keys(options["fault_keys"], options))
+
+
+def _fault_keys(given: dict[str, str], options: dict[str, Any]) -> dict[str, Any]:
+    """The values of faults by their keys. Raises UserError for an option that is none of a fault either."""
+    found: dict[str, Any] = {}
+    for name, text in given.items():
+        key = name.replace("-", "_")
+        if key not in FAULT_KEYS:
+            known = [f"--{each.replace('_', '-')}" for each in (*options, *FAULT_KEYS)]
+            raise UserError(
+                f"--{name}: unknown option of rubgen simulate;{meant(f'--{name}', known)} see rubgen simulate --help"
+            )
+        try:
+            found[key] = float(text)
+        except ValueError:
+            found[key] = text
+    return found
 
 
 def run_summary(run: Run) -> Iterator[tuple[str, str]]:
@@ -96,6 +118,9 @@ def run_summary(run: Run) -> Iterator[tuple[str, str]]:
     yield "run", _course_of_run(run)
     if run.response.status is not Status.OK:
         yield "failed", f"{run.response.status.value}; {run.response.reason}"
+    for fault in run.scenario.machine.faults:
+        about = fault.SEVERITY
+        yield "fault", f"{kind_of(fault)}, {fault.severity:.4g} {about.unit}, {about.meaning}"
     if run.labels is not None:
         yield from _contact(run.labels)
         yield from _motion(run.labels)

@@ -11,6 +11,7 @@ from rubgen.io.columns import Column, scalar_columns, signal_columns
 PARQUET = "application/x-parquet"
 TYPES = {
     "text": "sc:Text",
+    "texts": "sc:Text",
     "flag": "sc:Boolean",
     "integer": "sc:Integer",
     "number": "sc:Float",
@@ -59,7 +60,8 @@ def croissant(layout: Layout, identity: Identity) -> dict[str, Any]:
         "sha256": sha256_of(layout.runs),
     }
     distribution = [runs_file]
-    scalars = scalar_columns(identity.sensor_set, surroundings="surroundings" in recipe)
+    around, faults = "surroundings" in recipe, identity.fault_kinds
+    scalars = scalar_columns(identity.sensor_set, surroundings=around, faults=faults)
     records = [_record_set("runs", scalars, {"fileObject": {"@id": "runs.parquet"}})]
     if "parquet" in recipe["output"]["formats"]:
         includes = f"data/{SPLIT}-*.parquet"
@@ -96,7 +98,7 @@ def _field(record_set: str, column: Column, source: dict[str, Any]) -> dict[str,
         "dataType": TYPES[column.kind],
         "source": {**source, "extract": {"column": column.name}},
     }
-    return field | ({"repeated": True} if column.kind in ("integers", "numbers", "signal") else {})
+    return field | ({"repeated": True} if column.kind in ("texts", "integers", "numbers", "signal") else {})
 
 
 def _semantic(version: str) -> str:

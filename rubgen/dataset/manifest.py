@@ -18,6 +18,7 @@ from rubgen.io.parquet.read import read_table
 from rubgen.machine import Machine
 from rubgen.machine.problems import first_problem
 from rubgen.scenario import Recipe
+from rubgen.scenario.faults import named_kinds
 from rubgen.scenario.recipe import recorded_recipe
 from rubgen.sensors.sensor_set import SensorSet
 
@@ -71,6 +72,11 @@ class Identity(BaseModel):
     def sensor_set(self) -> SensorSet:
         """The sensors of every run."""
         return TypeAdapter(SensorSet).validate_python(self.sensors)
+
+    @property
+    def fault_kinds(self) -> tuple[str, ...]:
+        """The kinds of fault that the runs may have."""
+        return named_kinds(self.recipe, self.machine)
 
 
 class Manifest(BaseModel):

@@ -6,6 +6,7 @@ from enum import StrEnum
 
 from rubgen.errors import UserError
 from rubgen.labels.registry import ENERGY_LABELS, LABELS, TAP_LABELS, WINDOW_LABELS, Label
+from rubgen.machine.faults.registry import FAULTS
 from rubgen.scenario.surroundings import SURROUNDINGS
 from rubgen.scenario.vary import PARAMETERS
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
@@ -21,7 +22,7 @@ class Column:
 
     name: str
     kind: str
-    """text, flag, integer, integers (list), number, numbers (list of float64) or signal (list of float32)."""
+    """text, texts (list), flag, integer, integers (list), number, numbers (list of float64) or signal (float32)."""
     unit: str
     meaning: str
     nullable: bool = False
@@ -113,20 +114,40 @@ def _surroundings() -> list[Column]:
     ]
 
 
+def _faults(kinds: Iterable[str]) -> list[Column]:
+    severities = [FAULTS[kind].SEVERITY for kind in kinds]
+    columns = [
+        Column("faults", "texts", "", "kinds of fault of the machine in this run"),
+        Column("healthy", "flag", "", "neither a fault nor a rub", nullable=True),
+        *(Column(each.column, "number", each.unit, f"{each.meaning}; 0 without this fault") for each in severities),
+    ]
+    return columns if severities else []
+
+
 def _ordered_taps(sensors: SensorSet) -> tuple[Tap, ...]:
     """Return the true signals with amplitudes at orders: all but passages under a probe, and the parts in FIELDS."""
     return (*(tap for tap in sensors.taps if not isinstance(tap, TipTiming)), *FIELDS)
 
 
-def scalar_columns(sensors: SensorSet, *, surroundings: bool = False) -> tuple[Column, ...]:
+def scalar_columns(sensors: SensorSet, *, surroundings: bool = False, faults: Iterable[str] = ()) -> tuple[Column, ...]:
     """Return the columns of `runs.parquet` for runs with the sensor set `sensors`.
 
     They are identity, parameters, operation, labels, the orders of each tap of a sensor, and energies. With
-    `surroundings`, as for a recipe that has this table, the levels of the disturbances follow.
+    `surroundings`, as for a recipe that has this table, the levels of the disturbances follow. The labels of `faults`
+    are last, for the kinds of fault that the runs may have.
     """
     orders = [column for tap in _ordered_taps(sensors) for column in tap_columns(tap.name, tap.UNIT)]
     around = _surroundings() if surroundings else []
-    return (*_identity(), *_parameters(), *_operation(), *label_columns(), *orders, *_energy(), *around)
+    return (
+        *_identity(),
+        *_parameters(),
+        *_operation(),
+        *label_columns(),
+        *orders,
+        *_energy(),
+        *around,
+        *_faults(faults),
+    )
 
 
 def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
@@ -156,7 +177,7 @@ def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
 
 
 def _check_names(sensors: SensorSet, columns: list[Column]) -> None:
-    taken = [column.name for column in (*scalar_columns(sensors, surroundings=True), *columns)]
+    taken = [column.name for column in (*scalar_columns(sensors, surroundings=True, faults=FAULTS), *columns)]
     for name in taken:
         if taken.count(name) > 1:
             raise UserError(f"sensor set {sensors.name}: two columns would be called {name}; rename that sensor")

@@ -11,6 +11,7 @@ from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, mod
 from pydantic.dataclasses import dataclass
 
 from rubgen.brief import brief
+from rubgen.machine.faults.registry import AnyFault
 from rubgen.machine.frame import Frame
 from rubgen.machine.quantities import (
     STRICT,
@@ -198,7 +199,8 @@ class Machine:
 
     `unbalance_kg_m` is on the disk at `unbalance_angle_deg` from blade 0, in the sense of rotation. `unbalances` are
     further ones. Gravity acts along -Y, only on the blisk; the casing's own sag is part of its shape. 0 is a vertical
-    axis. The `frame` takes forces of the disk's support to sensors; without one they feel no such forces.
+    axis. The `frame` takes forces of the disk's support to sensors; without one they feel no such forces. Of each kind
+    of fault a machine has at most one (docs/faults.md).
     """
 
     name: Annotated[str, Field(min_length=1)]
@@ -212,6 +214,7 @@ class Machine:
     unbalances: tuple[Unbalance, ...] = ()
     gravity_m_per_s2: Gravity = 0.0
     frame: Frame | None = None
+    faults: tuple[AnyFault, ...] = ()
 
     __repr__ = brief
 
@@ -223,11 +226,20 @@ class Machine:
                 raise ValueError(f"unbalances: there is no blade {each.blade}; give 0 to {last}")
         return self
 
+    @model_validator(mode="after")
+    def _has_each_fault_once(self) -> Self:
+        kinds = [fault.kind for fault in self.faults]
+        twice = next((kind for kind in kinds if kinds.count(kind) > 1), None)
+        if twice:
+            raise ValueError(f"faults: {twice} stands twice; keep one of the two")
+        return self
+
     @model_serializer(mode="wrap")
     def _without_absent_parts(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """The values without parts that the machine does not have: a key that is new changes no old machine's JSON."""
         values: dict[str, Any] = handler(self)
-        return {key: value for key, value in values.items() if key != "frame" or value is not None}
+        absent = [key for key, part in (("frame", self.frame), ("faults", self.faults)) if not part]
+        return {key: value for key, value in values.items() if key not in absent}
 
     @property
     def tip_radius_m(self) -> float:

@@ -81,7 +81,10 @@ def first_problem(
     schema = SchemaNodes(adapter) if adapter else None
     path = place(first.path)
     words = first.text(data, schema)
-    text = _of(source, f"{key_name(path) or 'the file'}{words}" if path or not first.own else words)
+    name = key_name(path) or "the file"
+    if first.own and not first.path:  # a rule of the whole: its words name the keys
+        name = f"{name}: " if path else ""
+    text = _of(source, f"{name}{words}")
     count = f"more than {MOST_ERRORS}" if error.error_count() > MOST_ERRORS else len(problems)
     others = f" ({count} problems in all)" if len(problems) > 1 else ""
     return UserError(f"{text}{others}")

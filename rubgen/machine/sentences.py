@@ -68,7 +68,9 @@ def sentence(error: Mapping[str, Any], bounds: str, nodes: list[Mapping[str, Any
     if kind == "literal_error":
         return _one_of(error.get("input"), re.findall(r"'([^']*)'", str(context["expected"])))
     if kind.startswith("union_tag"):
-        return _one_of(None, re.findall(r"'([^']*)'", str(context.get("expected_tags", ""))))
+        if kind == "union_tag_not_found":
+            return f"must have a {str(context['discriminator']).strip(chr(39))}; add it"
+        return _one_of(context.get("tag"), re.findall(r"'([^']*)'", str(context.get("expected_tags", ""))))
     if kind == "string_pattern_mismatch":
         return PATTERNS.get(context["pattern"], f"must match {context['pattern']}")
     if kind in ("pair", "too_long", "too_short", "tuple_type"):

@@ -3,7 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from rubgen.arrays import FloatArray
+from rubgen.arrays import ComplexArray, FloatArray
+from rubgen.machine.faults.fault import Ramp
 from rubgen.machine.support_laws.law import SupportLaw
 
 
@@ -44,12 +45,25 @@ class Recovery:
 
 
 @dataclass(frozen=True, kw_only=True)
+class GrowingLoad:
+    """A load on O_d that grows within the record."""
+
+    ramp: Ramp
+    """Its share at each time."""
+    loads: ComplexArray
+    """When it has grown; as `TurningForces.loads`."""
+    of_springs: bool
+    """Whether the lateral springs apply it, as `SpinningSystem.spring_load`."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class TurningForces:
     """Forces on the blisk that turn against it or depend on its state: no constant matrix contains them.
 
     On O_d, with u its displacement and v_abs = v + Omega e_z x u its absolute velocity in the turning frame:
     -k_a Q u - c_a Q v_abs, Q = [[cos 2 theta, -sin 2 theta], [-sin 2 theta, -cos 2 theta]], and the laws of the
-    support. On all of the blisk: -g M T (sin theta, cos theta), with T the rigid motions along x and y.
+    support, and Re sum_m loads[m] e^(i m theta), the loads of faults. On all of the blisk: -g M T (sin theta, cos
+    theta), with T the rigid motions along x and y.
     """
 
     stiffness: float = 0.0
@@ -60,6 +74,15 @@ class TurningForces:
     """Laws of the support, functions of u and v_abs."""
     weight: FloatArray | None = None
     """g M T (n, 2), N."""
+    loads: ComplexArray | None = None
+    """Loads of faults on O_d (orders, 2) in the turning frame, N; row m turns with m theta."""
+    growing: tuple[GrowingLoad, ...] = ()
+    """Further loads that grow within the record."""
+
+    @property
+    def is_periodic(self) -> bool:
+        """Whether a force depends on the angle alone, so that the rub-free motion moves in the turning frame."""
+        return self.weight is not None or self.loads is not None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,6 +134,8 @@ class SpinningSystem:
     """What sensors need; None where the system was not reduced from a machine."""
     turning: TurningForces | None = None
     """Forces that `M`, `C`, `K` and `force` do not contain; None for most machines."""
+    spring_load: FloatArray | None = None
+    """Part (2,) of `force` on O_d that the lateral springs apply, because a bow moves their place of rest, N."""
 
     @property
     def centre(self) -> int:

@@ -15,6 +15,7 @@ from rubgen.machine import Damping, Machine, Unbalance
 from rubgen.reduction.blisk import ReducedBlisk
 from rubgen.reduction.cache import cached_blisk
 from rubgen.reduction.casing import ReducedCasing, reduce_casing
+from rubgen.reduction.fault_loads import growing_loads, spring_load, steady_loads
 from rubgen.reduction.model import Recovery, SpinningSystem, TurningForces
 from rubgen.scenario import Reduction
 from rubgen.scenario.reducible import reduction_problem
@@ -61,9 +62,9 @@ class ReducedModel:
         H_s = T^T D S6 T. T (6, n) gives the motion of O_d. The dampers D = diag(c) are in the inertial frame and act on
         the absolute velocity (S6 is e_z x). The term Omega H_s makes K unsymmetric. Casing modes: 1, 2 zeta omega,
         omega^2. Each unbalance acts with Omega^2 U outward, on O_d or on a tip. The unbalance of uneven growth
-        (mistuned blades) acts on O_d. Uneven supports, laws of the support and gravity are in `turning`. A changing
-        speed adds Omega' G to K and -Omega' (f_t + e_z x U) to the forces (Euler term). Acceleration and change of the
-        tips' steady growth are left out, a share of at most Omega' / Omega^2 of it.
+        (mistuned blades) acts on O_d. Uneven supports, laws of the support, gravity and loads of faults are in
+        `turning`. A changing speed adds Omega' G to K and -Omega' (f_t + e_z x U) to the forces (Euler term).
+        Acceleration and change of the tips' steady growth are left out, a share of at most Omega' / Omega^2 of it.
         """
         with one_blas_thread():
             return self._assemble(speed, acceleration)
@@ -81,6 +82,8 @@ class ReducedModel:
         if acceleration:
             K += acceleration * blisk.G
             force -= acceleration * self._euler_load(force / speed**2)
+        if machine.faults:
+            force[3 * count : 3 * count + 2] += steady_loads(machine, speed)[0].real
         return SpinningSystem(
             speed=speed,
             M=block_diag(blisk.M, np.eye(len(omega))),
@@ -99,7 +102,8 @@ class ReducedModel:
             lateral_stiffness=float(self.springs[0]),
             lateral_damping=float(self.dampers[0]),
             recovery=self._recovery(speed),
-            turning=self._turning_forces(),
+            turning=self._turning_forces(speed),
+            spring_load=spring_load(machine, speed) if machine.faults else None,
         )
 
     def root_strain(self, blade: int, speed: float) -> FloatArray:
@@ -135,16 +139,31 @@ class ReducedModel:
         shift = rigid_shifts(self.machine.blades.count, len(self.blisk.M))[:, 0]
         return float(shift @ self.blisk.M @ shift)
 
-    def _turning_forces(self) -> TurningForces | None:
-        """The forces of supports and gravity that turn against the blisk or are not linear; None without any."""
+    def _turning_forces(self, speed: float) -> TurningForces | None:
+        """The forces of supports, gravity and faults that turn against the blisk or are not linear; None without any.
+
+        A steady load of a fault that is constant in the turning frame is in the system's `force`.
+        """
         support, g = self.machine.disk_support, self.machine.gravity_m_per_s2
+        loads, growing = steady_loads(self.machine, speed), growing_loads(self.machine, speed)
+        loads[0] = 0.0
+        laws = support.laws + tuple(
+            law for fault in self.machine.faults for law in fault.support_laws(self.machine, speed)
+        )
         stiffness = float(self.springs[0]) * support.lateral_stiffness_anisotropy
         damping = float(self.dampers[0]) * support.lateral_damping_anisotropy
-        if not (stiffness or damping or support.laws or g):
+        if not (stiffness or damping or laws or g or loads.any() or growing):
             return None
         weight = np.zeros((self.reduced_dof, 2))
         weight[: len(self.blisk.M)] = g * self.blisk.M @ rigid_shifts(self.machine.blades.count, len(self.blisk.M))
-        return TurningForces(stiffness=stiffness, damping=damping, laws=support.laws, weight=weight if g else None)
+        return TurningForces(
+            stiffness=stiffness,
+            damping=damping,
+            laws=laws,
+            weight=weight if g else None,
+            loads=loads if loads.any() else None,
+            growing=growing,
+        )
 
     def _add_unbalances(self, force: FloatArray, scale: float) -> None:
         """Add each unbalance times `scale` along its own direction, on O_d or on a tip."""
@@ -226,6 +245,8 @@ def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:
     threads. Raises UserError for meshes, mode numbers or lobes that do not fit, for more memory than a reduction may
     take, and for matrices that cannot be factorised.
     """
+    for fault in machine.faults:
+        machine = fault.altered(machine)
     problem = reduction_problem(machine, reduction)
     if problem:
         raise UserError(problem)

@@ -6,6 +6,7 @@ from rubgen.errors import UserError
 from rubgen.machine.quantities import MOST_STEPS
 from rubgen.machine.schema_nodes import digits
 from rubgen.scenario.costs import STEPS_PER_SAMPLE, run_problem
+from rubgen.scenario.faults import kind_of
 from rubgen.scenario.plausible import eccentricity, gram, shares, unbalances
 from rubgen.scenario.profiles import profile_problem
 from rubgen.scenario.reducible import reduction_problem
@@ -148,6 +149,14 @@ def _size_problem(scenario: Scenario) -> str | None:
     return None
 
 
+def _fault_problem(scenario: Scenario) -> str | None:
+    for fault in scenario.machine.faults:
+        problem = fault.problem(scenario.machine)
+        if problem:
+            return f"faults: {kind_of(fault)}: {problem}"
+    return None
+
+
 def _cost_problem(scenario: Scenario) -> str | None:
     return reduction_problem(scenario.machine, scenario.reduction) or run_problem(scenario)
 
@@ -159,5 +168,6 @@ PROBLEMS = (
     _sample_problem,
     _rate_problem,
     _size_problem,
+    _fault_problem,
 )
 SENSOR_PROBLEMS = (_front_end_problem, _blade_problem, _axial_problem, _frame_problem)

@@ -1,7 +1,7 @@
 """A single run by its keys: the same names, units and checks for Python and for `rubgen simulate`."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import wraps
 from inspect import signature
@@ -12,6 +12,7 @@ from pydantic import TypeAdapter
 
 from rubgen.errors import UserError
 from rubgen.machine.problems import nearest, validated
+from rubgen.scenario.faults import FAULT_KEYS, with_given_faults
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.profiles import check_used
@@ -36,12 +37,12 @@ _SURROUNDINGS = TypeAdapter(Surroundings)
 
 def _known_keys(function: Callable[P, Scenario]) -> Callable[P, Scenario]:
     """The function, with a check that refuses an unknown key and names the nearest known one."""
-    known = list(signature(function).parameters)
+    known = [name for name, each in signature(function).parameters.items() if each.kind is not each.VAR_KEYWORD]
 
     @wraps(function)
     def checked(*arguments: P.args, **keys: P.kwargs) -> Scenario:
         for key in keys:
-            if key not in known:
+            if key not in (*known, *FAULT_KEYS):
                 raise UserError(f"{key}: unknown key; {nearest(key, known)}")
         return function(*arguments, **keys)
 
@@ -69,6 +70,7 @@ def make_scenario(
     blade_passing_m_per_s2: float | None = None,
     runout_m: float | None = None,
     path_gain: float | None = None,
+    fault: str | Sequence[str] | None = None,
     profile: ProfileName = "steady",
     end_speed_rpm: float | None = None,
     duration_s: float | None = None,
@@ -82,6 +84,7 @@ def make_scenario(
     signal_seconds: float = 1.0,
     seed: int = 0,
     lyapunov: bool | None = None,
+    **fault_keys: float | str,
 ) -> Scenario:
     """One run of a machine, ready for `simulate`; a key that is not given keeps the machine's value.
 
@@ -103,6 +106,7 @@ def make_scenario(
     - `blade_passing_m_per_s2`: rms of the casing's answer to the blades' pressure at 10,000 rev/min in m/s2, >= 0
     - `runout_m`: amplitude of order 1 of the shaft's runout in m, >= 0; orders 2 and 3 have 1/2 and 1/3 of it
     - `path_gain`: share of the motion of the machine's frame that the casing's sensors feel, >= 0; 1 is all of it
+    - `fault`: kind of a fault of the machine, or several kinds in a list (docs/faults.md)
     - `profile`: of the speed: "steady", "run-up", "coast-down" or "fluctuating"
     - `end_speed_rpm`: speed at the end of a run-up or coast-down in rev/min, > 0; these two profiles need it
     - `duration_s`: duration of a record whose speed changes in s, > 0; every profile but "steady" needs it
@@ -116,20 +120,23 @@ def make_scenario(
     - `signal_seconds`: length of the recorded signals in s, the end of the record, at most all of it
     - `seed`: seed of the sensor noise and the surroundings, >= 0
     - `lyapunov`: whether to compute the Lyapunov exponent of a steady run, half as long again; yes when not given
+    - `fault_keys`: values of these faults, each by its key: parallel_m = 5e-5
 
     Warns (RubgenWarning) of values that are allowed but hardly intended. Raises UserError for an unknown machine or
     sensor set, a value that is not allowed, and keys that exclude each other.
     """
-    return _checked_scenario({key: value for key, value in locals().items() if value is not None})
+    given = {key: value for key, value in locals().items() if key != "fault_keys" and value is not None}
+    return _checked_scenario(given, fault_keys)
 
 
-def _checked_scenario(given: dict[str, Any]) -> Scenario:
+def _checked_scenario(given: dict[str, Any], fault_keys: dict[str, Any]) -> Scenario:
     values, varied = _recipe_values(given), {key: given[key] for key in KEYS if key in given}
     levels = {key: given[key] for key in SURROUNDINGS_KEYS if key in given}
     around = validated("", levels, _SURROUNDINGS) if levels else None
     recipe = validated("", values | ({"surroundings": levels} if levels else {}), _RECIPE, _key_alone)
     check_used("", {**values, "vary": varied}, _key_alone)
     scenario = vary(replace(recipe.base, surroundings=around), varied)
+    scenario = with_given_faults(scenario, given.get("fault", ()), fault_keys)
     with recipe.machine_named():
         check_feasible(scenario)
     warn_of([scenario])

@@ -34,6 +34,8 @@ from rubgen.machine.sentences import FILE_NAME
 from rubgen.machine.toml_file import check_kind, read_toml, toml_path
 from rubgen.scenario.contact_laws.contact_law import ContactLaw
 from rubgen.scenario.distributions import Choice, Constant, Distribution
+from rubgen.scenario.faults import FaultTable, kinds_of, with_faults
+from rubgen.scenario.faults import extremes as fault_extremes
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.profiles import check_used
@@ -119,6 +121,7 @@ class Recipe(BaseModel):
     license: Annotated[str, Field(min_length=1)] = "CC-BY-4.0"
     vary: Vary = Vary()
     surroundings: SurroundingsTable | None = None
+    faults: tuple[FaultTable, ...] | None = None
     operation: Profile = Profile()
     simulation: Simulation = Simulation()
     sensors: Sensors = Sensors()
@@ -191,7 +194,13 @@ class Recipe(BaseModel):
         point = sobol_point(self.seed, index)
         values = {entry.key: distribution.quantile(point[entry.key]) for entry, distribution in self.distributions()}
         around = drawn(self.surroundings, self.seed, index) if self.surroundings else None
-        return vary(replace(self.base, index=index, surroundings=around), values)
+        scenario = vary(replace(self.base, index=index, surroundings=around), values)
+        return with_faults(scenario, self.faults or ()) if self.fault_kinds else scenario
+
+    @property
+    def fault_kinds(self) -> tuple[str, ...]:
+        """The kinds of fault that its runs may have, of the recipe or of its machine."""
+        return kinds_of((*self.base.machine.faults, *(self.faults or ())))
 
     def corners(self, source: str = "") -> Iterator[Scenario]:
         """Scenarios at the extreme values of each key, the other keys at their first value. Checks use them.
@@ -203,6 +212,8 @@ class Recipe(BaseModel):
         yield first
         for around in extremes(self.surroundings, source) if self.surroundings else ():
             yield replace(first, surroundings=around)
+        if self.faults:
+            yield from fault_extremes(first, self.faults, source)
         for key, values in ends.items():
             for value in values[1:]:
                 yield vary(first, {key: value}, source, ("vary",))

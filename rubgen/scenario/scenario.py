@@ -143,7 +143,10 @@ class Labelling:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Scenario:
-    """One run, complete. The same scenario always makes the same bytes."""
+    """One run, complete. The same scenario always makes the same bytes.
+
+    `fault_kinds` are the kinds of fault that runs of its recipe may have; those of this run are in its machine.
+    """
 
     machine: Machine
     operation: Operation
@@ -152,6 +155,7 @@ class Scenario:
     sensing: Sensing = Field(default_factory=Sensing)
     labelling: Labelling = Labelling()
     surroundings: Surroundings | None = None
+    fault_kinds: tuple[str, ...] = ()
     signal_seconds: Duration = 1.0
     seed: Seed = 0
     index: Seed = 0
@@ -179,9 +183,11 @@ def scenario_dict(scenario: Scenario) -> dict[str, object]:
     """The scenario as nested JSON-ready Python values, keys as in the dataclasses, complete with its machine.
 
     `TypeAdapter(Scenario).validate_python(scenario_dict(s)) == s`: every float keeps all its bits in JSON. A
-    run without surroundings has no such key.
+    run without surroundings has no such key, and neither has one of a recipe without faults.
     """
     values = cast("dict[str, object]", TypeAdapter(Scenario).dump_python(scenario, mode="json"))
     if scenario.surroundings is None:
         del values["surroundings"]
+    if not scenario.fault_kinds:
+        del values["fault_kinds"]
     return values

@@ -79,7 +79,7 @@ class EnergyBalance:
     end: float
     """Energy E at the last step."""
     unbalance: float
-    """Work of the unbalance."""
+    """Work of the forces that are constant in the turning frame: unbalance, bow."""
     damping: float
     """Work of the damping."""
     circulatory: float
@@ -106,6 +106,8 @@ class EnergyBalance:
     """Sum of the absolute works."""
     residual: float
     """|end - start - sum of works| over `absolute_work`; over the largest |E| where hardly any work is done."""
+    faults: float = 0.0
+    """Work of the other loads of faults."""
     wear_loss: float = 0.0
     """Work of the contact forces on a liner's surface as it recedes, <= 0; 0 without a liner."""
 

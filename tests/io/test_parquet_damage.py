@@ -79,7 +79,7 @@ def test_a_column_that_is_missing_is_named(file):
     ("table", "message"),
     [
         (pa.table({"a": [{"b": 1}]}), "column 'a' is struct"),
-        (pa.table({"a": [["x"]]}), "column 'a' is list<.*string"),
+        (pa.table({"a": [[["x"]]]}), "column 'a' is list<.*list<.*string"),
         (pa.table({"a": [b"x"]}), "column 'a' is binary"),
         (pa.Table.from_arrays([pa.array([1]), pa.array([2])], ["a", "a"]), "two columns share a name"),
     ],
@@ -103,16 +103,21 @@ def test_text_that_is_no_utf_8_is_named(tmp_path):
     assert "UTF8" in refusal(path).upper()
 
 
+def words_of(numbers):
+    return pa.DictionaryArray.from_arrays(numbers, [WORD])
+
+
 @pytest.mark.parametrize(
     ("column", "use_dictionary"),
     [
         (lambda: pa.array(np.zeros(MANY)), False),
         (lambda: pa.array(np.zeros(MANY)), True),
         (lambda: pa.nulls(MANY, pa.int64()), False),
-        (lambda: pa.DictionaryArray.from_arrays(np.zeros(100_000, np.int32), [WORD]), True),
+        (lambda: words_of(np.zeros(100_000, np.int32)), True),
+        (lambda: pa.ListArray.from_arrays(np.arange(100_001), words_of(np.zeros(100_000, np.int32))), True),
         (lambda: pa.ListArray.from_arrays([0, 2 * MANY], pa.array(np.zeros(2 * MANY, np.float32))), False),
     ],
-    ids=["zstd", "runs of an index", "nulls", "a long word", "a long list"],
+    ids=["zstd", "runs of an index", "nulls", "a long word", "lists of a long word", "a long list"],
 )
 def test_a_small_file_that_unpacks_to_gigabytes_is_refused(column, use_dictionary, tmp_path):
     path = tmp_path / "bomb.parquet"

@@ -50,7 +50,8 @@ def test_every_key_is_named_with_its_unit():
     assert set(KEYS) <= set(parameters)
     for name, parameter in parameters.items():
         assert f"- `{name}`: " in text
-        assert parameter.kind is (parameter.POSITIONAL_OR_KEYWORD if name == "machine" else parameter.KEYWORD_ONLY)
+        kinds = {"machine": parameter.POSITIONAL_OR_KEYWORD, "fault_keys": parameter.VAR_KEYWORD}
+        assert parameter.kind is kinds.get(name, parameter.KEYWORD_ONLY)
     units = {
         "rev/min": "rev/min",
         "m": "in m,",

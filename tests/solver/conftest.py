@@ -123,7 +123,8 @@ TURNING = {
     "springs": {"stiffness": 6e5},
     "dampers": {"stiffness": -4e5, "damping": 150.0},
     "film": {"film": FILM},
-    "all": {"stiffness": 6e5, "damping": 150.0, "film": FILM, "gravity": 9.81},
+    "loads": {"loads": 90.0},
+    "all": {"stiffness": 6e5, "damping": 150.0, "film": FILM, "gravity": 9.81, "loads": 20.0},
 }
 
 
@@ -133,13 +134,20 @@ def build_turning(
     damping: float = 0.0,
     film: SqueezeFilm | None = None,
     gravity: float = 0.0,
+    loads: float = 0.0,
 ) -> SpinningSystem:
-    """The small system with uneven supports, a film, its weight."""
+    """The small system with uneven supports, a film, its weight, and loads of turning orders 1 to 4."""
     weight = np.zeros((len(system.M), 2))
     start = system.casing_start
     weight[:start] = gravity * system.M[:start, :start] @ rigid_shifts(system.n_blades, start)
+    form = np.random.default_rng(8).normal(size=(5, 4)).view(np.complex128)
+    form[0] = 0.0
     forces = TurningForces(
-        stiffness=stiffness, damping=damping, laws=(film,) if film else (), weight=weight if gravity else None
+        stiffness=stiffness,
+        damping=damping,
+        laws=(film,) if film else (),
+        weight=weight if gravity else None,
+        loads=loads * form if loads else None,
     )
     return replace(system, turning=forces)
 

@@ -21,6 +21,7 @@ _MODULES = (
     "rotors.uneven_supports",
     "rotors.squeeze_film",
     "rotors.turning_frame",
+    "rotors.linear_faults",
     "contact.integrator",
     "contact.bouncing_bar",
     "contact.impact_oscillator",

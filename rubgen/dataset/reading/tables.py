@@ -16,6 +16,7 @@ from rubgen.errors import UserError
 from rubgen.io.columns import scalar_columns
 from rubgen.labels.compact_record import SCALARS, TOUCHES
 from rubgen.labels.labels import Motion
+from rubgen.machine.faults.registry import FAULTS
 from rubgen.scenario import Sensing
 from rubgen.sensors.sensor_set import SensorSet
 
@@ -42,7 +43,8 @@ def runs_frame(table: pa.Table, sensors: SensorSet) -> pd.DataFrame:
     """
     frame: pd.DataFrame = table.to_pandas(types_mapper=_nullable)
     frame = frame.set_index("run_id")
-    columns = {column.name: column for column in scalar_columns(sensors, surroundings=True) if column.name in frame}
+    every = scalar_columns(sensors, surroundings=True, faults=FAULTS)
+    columns = {column.name: column for column in every if column.name in frame}
     frame.attrs = {
         "units": {name: column.unit for name, column in columns.items()},
         "meanings": {name: column.meaning for name, column in columns.items()},

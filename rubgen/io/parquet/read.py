@@ -45,7 +45,7 @@ class ParquetSource:
             self.num_row_groups: int = facts.num_row_groups
             self._text = _text_columns(path, self.schema_arrow)
             self._file = pq.ParquetFile(
-                self._stream, metadata=facts, read_dictionary=self._text, page_checksum_verification=True
+                self._stream, metadata=facts, read_dictionary=list(self._text.values()), page_checksum_verification=True
             )
 
     def __enter__(self) -> Self:
@@ -141,8 +141,8 @@ def damage_named(path: Path) -> Iterator[None]:
         raise UserError(f"{path}: damaged or no Parquet file of rubgen ({reason}); generate it again") from None
 
 
-def _text_columns(path: Path, types: pa.Schema) -> list[str]:
-    """Return the names of the text columns.
+def _text_columns(path: Path, types: pa.Schema) -> dict[str, str]:
+    """Return the columns of texts and of lists of texts, each with the name of its leaf.
 
     Raises UserError where two columns share a name, or one has a type that rubgen never writes.
     """
@@ -151,11 +151,16 @@ def _text_columns(path: Path, types: pa.Schema) -> list[str]:
     for field in types:
         leaf = field.type.value_type if pa.types.is_list(field.type) else field.type
         number = pa.types.is_integer(leaf) or pa.types.is_floating(leaf) or pa.types.is_boolean(leaf)
-        if not (number or pa.types.is_string(field.type)):
+        if not (number or pa.types.is_string(leaf)):
             raise UserError(f"{path}: column {field.name!r} is {field.type!s:.60}; that is no file of rubgen")
-    return [field.name for field in types if pa.types.is_string(field.type)]
+    lists = [
+        field.name for field in types if pa.types.is_list(field.type) and pa.types.is_string(field.type.value_type)
+    ]
+    text = [field.name for field in types if pa.types.is_string(field.type)]
+    return {name: name for name in text} | {name: f"{name}.list.element" for name in lists}
 
 
-def _text_bytes(chunk: pa.DictionaryArray) -> int:
-    lengths = pc.take(pc.binary_length(chunk.dictionary), chunk.indices)
+def _text_bytes(chunk: pa.Array) -> int:
+    words = chunk.flatten() if pa.types.is_list(chunk.type) else chunk
+    lengths = pc.take(pc.binary_length(words.dictionary), words.indices)
     return int(pc.sum(lengths).as_py() or 0)

@@ -17,6 +17,7 @@ import pyarrow.parquet as pq
 from rubgen.arrays import FloatArray
 from rubgen.io.columns import Column, scalar_columns, signal_columns
 from rubgen.io.files import write_durably
+from rubgen.labels.faults import fault_labels
 from rubgen.labels.registry import ENERGY_LABELS
 from rubgen.labels.to_json import labels_to_json, window_labels
 from rubgen.measurement.channel import Recording
@@ -32,6 +33,7 @@ if TYPE_CHECKING:  # Run carries the solver's imports; who reads a file needs no
 
 TYPES = {
     "text": pa.string(),
+    "texts": pa.list_(pa.string()),
     "flag": pa.bool_(),
     "integer": pa.int64(),
     "number": pa.float64(),
@@ -43,7 +45,12 @@ COMPRESSION_LEVEL = 3
 
 
 def schema(
-    *, signals: bool, clean: bool = False, sensors: SensorSet | None = None, surroundings: bool = False
+    *,
+    signals: bool,
+    clean: bool = False,
+    sensors: SensorSet | None = None,
+    surroundings: bool = False,
+    faults: tuple[str, ...] = (),
 ) -> pa.Schema:
     """Return the Arrow schema of `runs.parquet`, or with `signals` of the data files. Fields name unit and meaning.
 
@@ -51,9 +58,11 @@ def schema(
     - clean: include the channels without noise.
     - sensors: the sensor set of the runs; None is the default set.
     - surroundings: include the levels of the disturbances from the surroundings.
+    - faults: kinds of fault whose labels are included.
     """
     used = sensors or default_sensor_set()
-    columns = scalar_columns(used, surroundings=surroundings) + (signal_columns(used, clean=clean) if signals else ())
+    columns = scalar_columns(used, surroundings=surroundings, faults=faults)
+    columns += signal_columns(used, clean=clean) if signals else ()
     return pa.schema([_field(column) for column in columns])
 
 
@@ -63,7 +72,13 @@ def recipe_schema(recipe: Recipe, *, signals: bool) -> pa.Schema:
     With `signals` it is the schema of the data files, else of `runs.parquet`.
     """
     sensing, around = recipe.sensing, recipe.surroundings
-    return schema(signals=signals, clean=sensing.keep_clean, sensors=sensing.set, surroundings=around is not None)
+    return schema(
+        signals=signals,
+        clean=sensing.keep_clean,
+        sensors=sensing.set,
+        surroundings=around is not None,
+        faults=recipe.fault_kinds,
+    )
 
 
 def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Table:
@@ -81,8 +96,15 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
         row |= {each.name: each.value(run.response.energy) for each in ENERGY_LABELS}
     if signals and run.recording is not None and run.labels is not None:
         row |= _signals(run.recording) | _touches(run, run.recording) | window_labels(run.labels)
+    row |= fault_labels(run.scenario, rub=run.labels.rub if run.labels else None)
     sensing = run.scenario.sensing
-    types = schema(signals=signals, clean=sensing.keep_clean, sensors=sensing.set, surroundings=around is not None)
+    types = schema(
+        signals=signals,
+        clean=sensing.keep_clean,
+        sensors=sensing.set,
+        surroundings=around is not None,
+        faults=run.scenario.fault_kinds,
+    )
     unknown = sorted(set(row) - set(types.names))
     if unknown:
         raise ValueError(f"no column for {', '.join(unknown)}")

@@ -10,7 +10,7 @@ from rubgen.arrays import ComplexArray, FloatArray, IntArray
 from rubgen.contact.clearance_kernels import least_clearance
 from rubgen.contact.geometry_kernels import Surface, Tips
 from rubgen.reduction.model import SpinningSystem, TurningForces
-from rubgen.solver.supports.turning_forces import force_derivatives, gravity_force, turning_force
+from rubgen.solver.supports.turning_forces import fault_force, force_derivatives, gravity_force, turning_force
 
 SAMPLES = (9, 17, 33, 65, 129)
 """Numbers of places of a turn for the harmonic balance. The next one is used until the last harmonics are small."""
@@ -69,10 +69,11 @@ def free_penetration(motion: RubFreeMotion, surface: Surface, tips: Tips) -> flo
 def never_touches(system: SpinningSystem, surface: Surface, penetration: float) -> bool:
     """Return whether a run at steady speed, which starts from its rub-free motion with this `penetration`, keeps to it.
 
-    The supports must be linear, so that the motion is the only one, and the surface unlined. Uneven supports, gravity
-    and mistuned blades are linear; laws of the support are not.
+    The supports must be linear, so that the motion is the only one, and the surface unlined. Uneven supports, gravity,
+    mistuned blades and steady loads are linear; laws of the support are not. Nothing may grow within the record.
     """
-    if (system.turning is not None and system.turning.laws) or surface.liner.bins:
+    forces = system.turning
+    if (forces is not None and (forces.laws or forces.growing)) or surface.liner.bins:
         return False
     bend = float(np.sum(np.abs(system.surface.amplitude) * np.square(system.surface.order)))
     return penetration < -(CLEARANCE_MARGIN + bend * (np.pi / CLEARANCE_PLACES) ** 2 / 2)
@@ -100,7 +101,7 @@ def rub_free_motion(system: SpinningSystem, steps: float = 0) -> RubFreeMotion:
     forces = system.turning
     if forces is None:
         return RubFreeMotion(harmonics=steady_state(system)[None].astype(np.complex128), residual=0.0)
-    periodic = forces.stiffness or forces.damping or forces.weight is not None
+    periodic = forces.stiffness or forces.damping or forces.is_periodic
     for samples in SAMPLES if periodic else (1,):
         balance = _Balance(system, forces, samples, steps)
         u = balance.solve()
@@ -139,6 +140,9 @@ class _Balance:
         loads[0] = self.system.force
         if self.forces.weight is not None:
             loads[1] = -self.forces.weight @ np.array([-1j, 1.0])
+        if self.forces.loads is not None:  # `samples` doubles until these orders are far below the last
+            count = min(len(self.forces.loads), len(loads))
+            loads[:count, self.system.centre : self.system.centre + 2] += self.forces.loads[:count]
         return loads
 
     def _at_places(self, harmonics: ComplexArray) -> FloatArray:
@@ -212,6 +216,7 @@ class _Balance:
         u, v = (turn @ q[:, centre]).real, (turn @ (self.first[:, None] * q[:, centre])).real
         f = turning_force(self.forces, system.speed, theta, u, v)
         load = np.stack([np.broadcast_to(gravity_force(self.forces, t), len(system.M))[centre] for t in theta])
+        load += np.array([np.broadcast_to(fault_force(self.forces, t), 2) for t in theta])
         load = load + system.force[centre] + f
         scale = max(float(np.abs(inner).max()), float(np.abs(load).max()), float(np.abs(f).max()))
         return float(np.abs(inner - load).max()) / scale if scale > 0 else 0.0

@@ -29,7 +29,7 @@ def eigenvalues(system: SpinningSystem) -> ComplexArray:
     are Floquet exponents, whose imaginary parts are known up to a multiple of 2 Omega (Omega with laws).
     """
     forces = system.turning
-    if forces and (forces.stiffness or forces.damping or (forces.laws and forces.weight is not None)):
+    if forces and (forces.stiffness or forces.damping or (forces.laws and forces.is_periodic)):
         return floquet_exponents(system, steps_per_turn(system, FLOQUET_STEPS))
     constant = linearised(system) if forces and forces.laws else system
     parts = (slice(0, system.casing_start), slice(system.casing_start, None))

@@ -17,7 +17,7 @@ from rubgen.solver.scheme.energy_kernels import (
     UNBALANCE,
 )
 from rubgen.solver.scheme.stepper import Stepper
-from rubgen.solver.supports.support_kernels import ANISOTROPY, GRAVITY, LAWS, LAWS_LOSS
+from rubgen.solver.supports.support_kernels import ANISOTROPY, GRAVITY, LAWS, LAWS_LOSS, LOADS
 
 ROUNDING_SHARE = 1e-6
 """Energies below this share of their summed absolute terms are rounding errors."""
@@ -58,6 +58,7 @@ class EnergyIdentity:
             anisotropy=support[ANISOTROPY],
             support_laws=support[LAWS],
             gravity=support[GRAVITY],
+            faults=support[LOADS],
             contact=works[CONTACT],
             normal_loss=works[NORMAL],
             friction_loss=works[FRICTION],

@@ -148,7 +148,7 @@ def new_state(model: Model) -> State:
     return State(
         motions=(new_motion(model), new_motion(model), new_motion(model)),
         contact=new_contact_work(len(model.tip_compliance), len(model.casing_compliance)),
-        support=SupportState(np.zeros((2, 2)), np.zeros((2, 2)), np.zeros((2, 2)), np.zeros(SUPPORT_WORKS)),
+        support=SupportState(np.zeros((2, 2)), np.zeros((2, 2)), np.zeros((3, 2)), np.zeros(SUPPORT_WORKS)),
         wear=unworn(model.surface.liner),
         works=np.zeros(WORKS),
         scratch=_scratch(model),

@@ -298,7 +298,7 @@ def advance(
     """
     free_step(model.scheme, before.z, now.z, after.z)
     if model.support.active and not push_supports(
-        model.support, model.laws.speed, model.laws.dt,
+        model.support, model.laws.speed, model.laws.dt, step,
         model.angles.cosine[step], model.angles.sine[step], before.z, now.z, after.z, state.support,
     ):  # fmt: skip
         return FILM_CLOSED, 0

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from rubgen.arrays import FloatArray
+from rubgen.arrays import FloatArray, frozen
 from rubgen.contact.wear_kernels import wear_where_lined
 from rubgen.linalg.block_kernels import bilinear
 from rubgen.linalg.vector_kernels import LANES
@@ -59,7 +59,7 @@ class Stepper:
         self.system, self.turn_steps, self.screen = system, steps, screen
         self.blocks = system_blocks(system, *alike)
         self.model = build_model(system, contact, self.blocks, steps, start_angle=start_angle, screen=screen)
-        self.state = new_state(self.model)
+        self.steady_support, self.state = self.model.support, new_state(self.model)
         theta = self.model.angles.theta[:steps]
         self.taps = build_taps(taps, system, self.model.surface, self.blocks, self.model.laws, theta)
         n, blades = len(system.M), system.n_blades
@@ -116,12 +116,32 @@ class Stepper:
         """
         old, angles = self.model.energy.K, angle_tables(self.system, theta, section)
         self.model = at_speed(self.model, part, speed, angles, screen=self.screen)
+        self.steady_support = self.model.support
         self.taps = turned_taps(self.taps, self.system, theta[: self.steps])
         self.result = self.result._replace(taps=np.zeros((len(self.result.taps), self.steps)))
         before, now = self.state.motions[0].z, self.state.motions[1].z
         change = 0.5 * (bilinear(part.energy.K, now, before) - bilinear(old, now, before))
         self.state.works[SPEED_CHANGE] += change
         self.state.works[ABSOLUTE] += abs(change)
+
+    def grow_loads(self, start: float, end: float) -> None:
+        """Set the loads of faults that grow for the next turn: linear from `start` to `end`, times in s of the record.
+
+        They are linear within a turn, so a step takes place over the steps of one turn.
+        """
+        forces = self.system.turning
+        if forces is None or not forces.growing:
+            return
+        support, steps = self.model.support, self.steps
+        shares = np.array([each.ramp.share(np.array([start, end])) for each in forces.growing])
+        slopes = (shares[:, 1] - shares[:, 0]) / steps
+        grown = self.steady_support.loads + np.einsum("g,gmi->mi", shares[:, 0], support.growing)
+        rate = np.einsum("g,gmi->mi", slopes, support.growing)
+        self.model = self.model._replace(support=frozen(support._replace(loads=grown, slopes=rate)))
+        springs = np.array([each.of_springs for each in forces.growing])
+        rest = np.zeros(2) if self.system.spring_load is None else self.system.spring_load
+        full = np.array([each.loads[0].real for each in forces.growing])[springs]
+        self.taps.spring_load[:] = rest + shares[springs, 0] @ full, slopes[springs] @ full
 
     def run_turn(
         self, opening: FloatArray | None = None, clock: int = 0, *, recording: bool = True

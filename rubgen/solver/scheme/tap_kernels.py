@@ -80,6 +80,8 @@ class Taps(NamedTuple):
     """Of the disk support, N/m."""
     lateral_damping: float
     """Of the disk support, N s/m."""
+    spring_load: FloatArray
+    """Force on O_d of springs that are at rest elsewhere, and its change in a step (2, 2), N."""
     signals: FloatArray
     """Scratch (8,): displacement of O_d and force on its support along X and Y, force and torque of contact, velocity
     of O_d, inertial."""
@@ -124,10 +126,12 @@ def read_shaft(model: Model, taps: Taps, coordinates: Coordinates, support: Supp
     x, y = coordinates.now[taps.centre], coordinates.now[taps.centre + 1]
     vx = (coordinates.after[taps.centre] - coordinates.before[taps.centre]) / (2 * dt) - speed * y
     vy = (coordinates.after[taps.centre + 1] - coordinates.before[taps.centre + 1]) / (2 * dt) + speed * x
-    fx = taps.lateral_stiffness * x + taps.lateral_damping * vx
-    fy = taps.lateral_stiffness * y + taps.lateral_damping * vy
+    load = taps.spring_load
+    fx = taps.lateral_stiffness * x + taps.lateral_damping * vx - (load[0, 0] + step * load[1, 0])
+    fy = taps.lateral_stiffness * y + taps.lateral_damping * vy - (load[0, 1] + step * load[1, 1])
     if model.support.active:
-        fx, fy = fx - support.force[1, 0], fy - support.force[1, 1]
+        fx -= support.force[1, 0] - support.force[2, 0]
+        fy -= support.force[1, 1] - support.force[2, 1]
     taps.signals[X] = cosine * x - sine * y
     taps.signals[Y] = sine * x + cosine * y
     taps.signals[SPEED_X] = cosine * vx - sine * vy

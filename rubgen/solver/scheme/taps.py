@@ -223,6 +223,7 @@ def build_taps(
         centre=system.centre,
         lateral_stiffness=float(system.lateral_stiffness),
         lateral_damping=float(system.lateral_damping),
+        spring_load=np.array([np.zeros(2) if system.spring_load is None else system.spring_load, np.zeros(2)]),
         signals=aligned(np.zeros(LANES)),
         sums=aligned(np.zeros(padded(layout.places))),
         bend=np.zeros(system.n_casing),

@@ -73,6 +73,7 @@ class SteadyDriver:
     def _run_together(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
         stepper, steps = self.stepper, self.stepper.steps
         width = np.array([opening(number + self.settle + self.places) for number in numbers])
+        stepper.grow_loads(*(self.first_step(number) * stepper.dt for number in (numbers[0], numbers[-1] + 1)))
         made = stepper.run_turns(width, self.first_step(numbers[0]), recording=recording)
         for number, wide, (code, step, ended) in zip(numbers, width, made, strict=False):
             first = self.first_step(number)
@@ -92,10 +93,10 @@ class SteadyDriver:
             )
 
     def _at_once(self, *, recording: bool) -> int:
-        """Turns in a call: one where every turn's own arrivals or worn surface are read, or where steps are many."""
+        """Turns in a call: one where every turn has arrivals, a worn surface or loads of its own, or many steps."""
         model, probes = self.stepper.model, len(self.stepper.taps.timing.angle)
-        one = model.surface.liner.bins or (recording and probes) or self.stepper.steps > MOST_STEPS_AT_ONCE
-        return 1 if one else TURNS
+        own = model.surface.liner.bins or len(model.support.growing) or (recording and probes)
+        return 1 if own or self.stepper.steps > MOST_STEPS_AT_ONCE else TURNS
 
 
 class ChangingDriver:
@@ -144,6 +145,7 @@ class ChangingDriver:
         for start, end, speed, part in zip(ends[:-1], ends[1:], speeds, parts, strict=True):
             rows = slice(start, end + 2)
             stepper.follow(part, float(speed), np.roll(theta[rows], -1), float(section))
+            stepper.grow_loads((first + start) * stepper.dt, (first + end) * stepper.dt)
             wide = width[rows] + self.matrices.mean_growth(speed)
             code, step, ended = stepper.run_turn(wide, first + start, recording=recording)
             done.append(

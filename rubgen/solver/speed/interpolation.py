@@ -22,8 +22,8 @@ C and K are polynomials in Omega, and Omega dt is small in A = M / dt^2 + C / (2
 preset's interpolated matrices are exact except for rounding (tests/solver/speed/test_speed_interpolation.py)."""
 
 
-SUPPORT = ("columns", "compliance", "rows", "tip_columns", "tip_rows")
-"""The fields of `Support` that follow the speed: all products with A^-1."""
+SUPPORT = ("columns", "compliance", "rows", "tip_columns", "tip_rows", "loads", "growing")
+"""The fields of `Support` that follow the speed: all products with A^-1, and the loads of faults."""
 
 
 def chebyshev_speeds(slowest: float, fastest: float) -> FloatArray:
@@ -125,6 +125,8 @@ def _unpacked(template: SpeedPart, row: FloatArray, layout: PartLayout) -> Speed
             rows=new["rows"],
             tip_columns=new["tip_columns"],
             tip_rows=new["tip_rows"],
+            loads=new["loads"],
+            growing=new["growing"],
         ),
         energy._replace(
             damping=Product(energy.damping.lines, new["damping"]),

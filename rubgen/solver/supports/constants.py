@@ -3,7 +3,7 @@
 import numpy as np
 import scipy.linalg as la
 
-from rubgen.arrays import AnyArray, FloatArray
+from rubgen.arrays import AnyArray, ComplexArray, FloatArray
 from rubgen.linalg.blocks import Blocks, aligned
 from rubgen.machine.support_laws.disk_support import SUPPORT_LAWS
 from rubgen.machine.support_laws.law import SupportLaw
@@ -52,14 +52,35 @@ def _support(
     given = {name: aligned(arrays.get(name, empty)) for name in names}
     return Support(
         active=active,
+        yields=bool(forces.stiffness or forces.damping or forces.laws),
         stiffness=forces.stiffness,
         damping=forces.damping,
         laws=law_rows(forces.laws),
         limit=min((law.limit_m for law in forces.laws), default=np.inf),
         centre=none if centre is None else centre,
         places=none if places is None else places,
+        **load_tables(forces),
         **given,
     )
+
+
+def load_tables(forces: TurningForces) -> dict[str, FloatArray]:
+    """`Support.loads`, `slopes` and `growing`."""
+    parts = [each.loads for each in forces.growing]
+    steady = np.zeros((0, 2), dtype=np.complex128) if forces.loads is None else forces.loads
+    orders = max(map(len, [steady, *parts]))
+    return {
+        "loads": _row_of_parts(steady, orders),
+        "slopes": np.zeros((orders, 4)),
+        "growing": np.array([_row_of_parts(part, orders) for part in parts]).reshape(len(parts), orders, 4),
+    }
+
+
+def _row_of_parts(loads: ComplexArray, orders: int) -> FloatArray:
+    """Real and imaginary part of x and y (orders, 4), zeros behind."""
+    padded = np.zeros((orders, 2), dtype=np.complex128)
+    padded[: len(loads)] = loads
+    return padded.view(np.float64)
 
 
 def law_rows(laws: tuple[SupportLaw, ...]) -> FloatArray:

@@ -1,14 +1,14 @@
-"""Forces that no constant matrix contains: uneven supports, laws of the support, gravity.
+"""Forces that no constant matrix contains: uneven supports, laws of the support, gravity, loads of faults.
 
 On O_d, in the turning frame and at the time of step n,
 
-    f = -k_a Q(theta_n) u_n + s(u_n) - D v_abs,   D = c_a Q(theta_n) + D(u_n)
+    f = p(theta_n) - k_a Q(theta_n) u_n + s(u_n) - D v_abs,   D = c_a Q(theta_n) + D(u_n)
     v_abs = (u_n+1 - u_n-1) / (2 dt) + Omega e_z x u_n
 
-with s(u) and D(u) the sums over the laws (`reduction.model.TurningForces`). f is linear in the velocity and implicit in
-it, like the scheme's own dampers: u_n+1 = u* + Y f with Y = E^T A^-1 E leaves two equations. In the contact problem
-A + E D E^T / (2 dt) replaces A. The works of D are therefore never positive where D is positive semidefinite, whatever
-the contact does in the same step.
+with p the loads of faults, s(u) and D(u) the sums over the laws (`reduction.model.TurningForces`). f is linear in the
+velocity and implicit in it, like the scheme's own dampers: u_n+1 = u* + Y f with Y = E^T A^-1 E leaves two equations.
+In the contact problem A + E D E^T / (2 dt) replaces A. The works of D are therefore never positive where D is positive
+semidefinite, whatever the contact does in the same step.
 """
 
 from typing import NamedTuple
@@ -20,8 +20,8 @@ from rubgen.linalg.lanes_kernels import dot_rows
 from rubgen.linalg.vector_kernels import LANES
 from rubgen.machine.support_laws.disk_support import SUPPORT_LAWS
 
-ANISOTROPY, LAWS, GRAVITY, LAWS_LOSS = range(4)
-SUPPORT_WORKS = 4
+ANISOTROPY, LAWS, GRAVITY, LOADS, LAWS_LOSS = range(5)
+SUPPORT_WORKS = 5
 law_terms = switch([law.terms for law in SUPPORT_LAWS.values()])
 """`SupportLaw.terms` of the law with the number that stands first."""
 
@@ -31,6 +31,8 @@ class Support(NamedTuple):
 
     active: bool
     """False where a system has none of these forces; then nothing else is read."""
+    yields: bool
+    """Whether f depends on the motion; loads and gravity alone do not."""
     stiffness: float
     """k_a, N/m."""
     damping: float
@@ -55,6 +57,12 @@ class Support(NamedTuple):
     """A^-1 E at the tip coordinates (3 blades, 2)."""
     tip_rows: FloatArray
     """The transpose of E^T A^-1 there (3 blades, 2)."""
+    loads: FloatArray
+    """Real and imaginary part of p_x and p_y (orders, 4), N, at step 0 of what is run; row m turns with m theta."""
+    slopes: FloatArray
+    """Their change in a step (orders, 4), N."""
+    growing: FloatArray
+    """Loads that grow (any, orders, 4), N, when they have grown. Kernels do not read them."""
 
 
 class SupportState(NamedTuple):
@@ -65,9 +73,9 @@ class SupportState(NamedTuple):
     yielding: FloatArray
     """(1 + D Y / 2 dt)^-1 D / 2 dt (2, 2)."""
     force: FloatArray
-    """f without contact and with it (2, 2), N."""
+    """f without contact and with it, and p (3, 2), N."""
     works: FloatArray
-    """Works so far (4,), J, at ANISOTROPY, LAWS, GRAVITY, LAWS_LOSS."""
+    """Works so far (5,), J, at ANISOTROPY, LAWS, GRAVITY, LOADS, LAWS_LOSS."""
 
 
 @inlined_kernel
@@ -75,6 +83,23 @@ def turned(cosine: float, sine: float, x: float, y: float) -> tuple[float, float
     """Q(theta) (x, y) from cos theta and sin theta."""
     double_cosine, double_sine = cosine * cosine - sine * sine, 2.0 * cosine * sine
     return double_cosine * x - double_sine * y, -double_sine * x - double_cosine * y
+
+
+@inlined_kernel
+def load_at(support: Support, step: int, cosine: float, sine: float, out: FloatArray) -> None:
+    """Write p = Re sum_m p_m e^(i m theta) at a step into `out` (2,), by Horner's rule."""
+    x, y, x_imaginary, y_imaginary = 0.0, 0.0, 0.0, 0.0
+    for m in range(support.loads.shape[0] - 1, -1, -1):
+        row, slope = support.loads[m], support.slopes[m]
+        x, x_imaginary = (
+            x * cosine - x_imaginary * sine + row[0] + step * slope[0],
+            x * sine + x_imaginary * cosine + row[1] + step * slope[1],
+        )
+        y, y_imaginary = (
+            y * cosine - y_imaginary * sine + row[2] + step * slope[2],
+            y * sine + y_imaginary * cosine + row[3] + step * slope[3],
+        )
+    out[0], out[1] = x, y
 
 
 @inlined_kernel
@@ -112,6 +137,7 @@ def push_supports(
     support: Support,
     speed: float,
     dt: float,
+    step: int,
     cosine: float,
     sine: float,
     before: FloatArray,
@@ -121,20 +147,33 @@ def push_supports(
 ) -> bool:
     """Add the effect of f and gravity at step n to q* in `after`. Return False where O_d is beyond a law's limit.
 
-    `before`, `now` and `after` are z at steps n - 1, n and n + 1. `cosine` and `sine` are of theta at step n.
+    `before`, `now` and `after` are z at steps n - 1, n and n + 1. `cosine` and `sine` are of theta at step n, which is
+    number `step` of what is run.
     """
     i, j = support.centre[0], support.centre[1]
     x, y = now[i], now[j]
     if not x * x + y * y < support.limit * support.limit:
         return False
-    laws_x, laws_y = build_drag(support, cosine, sine, x, y, dt, state)
     force, weight = state.force, support.columns
+    load_at(support, step, cosine, sine, force[2])
+    if not support.yields:
+        for i in range(2):
+            force[0, i] = force[1, i] = force[2, i]
+        for a in range(support.places.shape[0]):
+            after[support.places[a]] += (
+                sine * weight[a, 2] + cosine * weight[a, 3] + force[2, 0] * weight[a, 0] + force[2, 1] * weight[a, 1]
+            )
+        return True
+    laws_x, laws_y = build_drag(support, cosine, sine, x, y, dt, state)
     for a in range(support.places.shape[0]):
         after[support.places[a]] += sine * weight[a, 2] + cosine * weight[a, 3]
-    # f = (1 + D Y / 2 dt)^-1 [s - k_a Q u_n - D (v* + Omega e_z x u_n)]: the springs are added to the bracket.
+    # f = (1 + D Y / 2 dt)^-1 [p + s - k_a Q u_n - D (v* + Omega e_z x u_n)]: the springs are added to the bracket.
     spring_x, spring_y = turned(cosine, sine, -support.stiffness * x, -support.stiffness * y)
     spring_x += laws_x
     spring_y += laws_y
+    if support.loads.shape[0] > 0:
+        spring_x += force[2, 0]
+        spring_y += force[2, 1]
     way_x = after[i] - before[i] - 2 * dt * speed * y
     way_y = after[j] - before[j] + 2 * dt * speed * x
     Y, S = support.compliance, state.yielding
@@ -191,8 +230,8 @@ def add_support_works(
 ) -> float:
     """Add the works of one step to `state.works`. Return the sum of their absolute values, J.
 
-    Works of uneven springs and dampers, of the laws, and of gravity are each force times d. LAWS_LOSS is the force of
-    the laws times dt v_abs. `now` and `change` (d) are in z.
+    Works of uneven springs and dampers, of the laws, of gravity, and of the loads of faults are each force times d.
+    LAWS_LOSS is the force of the laws times dt v_abs. `now` and `change` (d) are in z.
     """
     x, y = now[support.centre[0]], now[support.centre[1]]
     dx, dy = change[support.centre[0]], change[support.centre[1]]
@@ -203,15 +242,21 @@ def add_support_works(
         gravity -= weight * change[support.places[a]]
     k, c = support.stiffness, support.damping / dt
     uneven_x, uneven_y = turned(cosine, sine, -k * x - c * way_x, -k * y - c * way_y)
-    laws_x, laws_y = state.force[1, 0] - uneven_x, state.force[1, 1] - uneven_y
+    f_x, f_y, loads = state.force[1, 0], state.force[1, 1], 0.0
+    if support.loads.shape[0] > 0:
+        loads = state.force[2, 0] * dx + state.force[2, 1] * dy
+        f_x -= state.force[2, 0]
+        f_y -= state.force[2, 1]
+    laws_x, laws_y = f_x - uneven_x, f_y - uneven_y
     uneven, laws = uneven_x * dx + uneven_y * dy, 0.0
     if support.laws.shape[0] > 0:
         laws = laws_x * dx + laws_y * dy
         state.works[LAWS_LOSS] += laws_x * way_x + laws_y * way_y
     else:
-        uneven = state.force[1, 0] * dx + state.force[1, 1] * dy
+        uneven = f_x * dx + f_y * dy
     state.works[ANISOTROPY] += uneven
     state.works[LAWS] += laws
     state.works[GRAVITY] += gravity
-    total: float = abs(uneven) + abs(laws) + abs(gravity)
+    state.works[LOADS] += loads
+    total: float = abs(uneven) + abs(laws) + abs(gravity) + abs(loads)
     return total

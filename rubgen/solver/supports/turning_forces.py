@@ -1,4 +1,4 @@
-"""Forces that no constant matrix contains: uneven supports, laws of the support, gravity. In plain numpy.
+"""Forces that no constant matrix contains: uneven supports, laws of the support, gravity, faults. In plain numpy.
 
 `support_kernels` applies the same law in the steps of a run.
 """
@@ -41,6 +41,13 @@ def force_derivatives(
 def gravity_force(forces: TurningForces, theta: float) -> FloatArray | float:
     """Weight (n,) in N in the turning frame, along -Y: -g M T (sin theta, cos theta); 0 without gravity."""
     return 0.0 if forces.weight is None else -forces.weight @ np.array([np.sin(theta), np.cos(theta)])
+
+
+def fault_force(forces: TurningForces, theta: float) -> FloatArray | float:
+    """The steady loads of faults on O_d (2,) in N, in the turning frame; 0 without any."""
+    if forces.loads is None:
+        return 0.0
+    return np.asarray((np.exp(1j * theta * np.arange(len(forces.loads))) @ forces.loads).real)
 
 
 def _uneven(theta: AnyArray, w: AnyArray) -> AnyArray:

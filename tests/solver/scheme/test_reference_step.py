@@ -65,7 +65,7 @@ def test_restitution_agrees_with_plain_numpy(small_system, restitution):
     assert worst < 1e-6
 
 
-@pytest.mark.parametrize("case", ["gravity", "springs", "dampers", "film", "all"])
+@pytest.mark.parametrize("case", ["gravity", "springs", "dampers", "film", "loads", "all"])
 def test_turning_forces_agree_with_plain_numpy(small_system, turning, case):
     """Matrices made anew and inverted in every step, against two equations beside those of a constant A."""
     system = turning(small_system(speed=500.0, uneven_blade=0.05 if case == "all" else 0.0), case)

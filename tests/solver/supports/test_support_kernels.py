@@ -1,6 +1,6 @@
-"""Uneven supports, a squeeze film and gravity in one step, against the law itself and dense matrices.
+"""Uneven supports, a squeeze film, gravity and loads in one step, against the law itself and dense matrices.
 
-A (q_n+1 - q*) = E f + weight,   f = -k_a Q u_n - D v_abs,   D = c_a Q + C(u_n)
+A (q_n+1 - q*) = E f + weight,   f = p - k_a Q u_n - D v_abs,   D = c_a Q + C(u_n)
 v_abs = (u_n+1 - u_n-1) / (2 dt) + Omega e_z x u_n
 """
 
@@ -15,6 +15,8 @@ from rubgen.solver.supports.support_kernels import (
     GRAVITY,
     LAWS,
     LAWS_LOSS,
+    LOADS,
+    SUPPORT_WORKS,
     Support,
     SupportState,
     add_support_works,
@@ -36,8 +38,13 @@ CASES = {
     "springs": {"stiffness": 6e5},
     "dampers": {"damping": 900.0},
     "film": {"film": 1.7e3},
-    "all": {"stiffness": 6e5, "damping": 900.0, "film": 1.7e3},
+    "loads": {"loads": 1},
+    "all": {"stiffness": 6e5, "damping": 900.0, "film": 1.7e3, "loads": 1},
 }
+STEP = 3
+"""Number of the step, by which the loads have changed."""
+LOAD_ROWS = np.array([[10.0, 0.0, -20.0, 0.0], [30.0, -25.0, 15.0, 5.0], [-8.0, 12.0, 40.0, 3.0]])
+SLOPES = 0.1 * LOAD_ROWS[::-1]
 
 
 class Step:
@@ -51,10 +58,15 @@ class Step:
         self.weight = np.zeros((16, 2))
         self.weight[PLACES] = rng.normal(size=(8, 2)) * 80
         inverse = np.linalg.inv(self.A)
-        constants = {"stiffness": 0.0, "damping": 0.0, "film": 0.0} | CASES[case]
-        film = constants.pop("film")
+        constants = {"stiffness": 0.0, "damping": 0.0, "film": 0.0, "loads": 0} | CASES[case]
+        film, loaded = constants.pop("film"), constants.pop("loads")
+        count = 3 if loaded else 0
         self.support = Support(
             active=True,
+            yields=case != "loads",
+            loads=LOAD_ROWS[:count].copy(),
+            slopes=SLOPES[:count].copy(),
+            growing=np.zeros((0, count, 4)),
             **constants,
             laws=np.array([[list(SUPPORT_LAWS).index("squeeze_film"), film, CLEARANCE]] if film else np.zeros((0, 1))),
             limit=CLEARANCE if film else np.inf,
@@ -75,16 +87,20 @@ class Step:
         self.squeeze = CASES[case].get("film", 0.0) * rest**-1.5
         self.squeeze = self.squeeze * (np.eye(2) + 3 * np.outer(self.u, self.u) / CLEARANCE**2 / rest)
         self.D = self.uneven + self.squeeze
-        self.spring = -constants["stiffness"] * Q @ self.u
+        rows = (LOAD_ROWS + STEP * SLOPES)[:count]
+        turn = np.exp(1j * THETA * np.arange(count))
+        self.load = np.array([(turn @ (rows[:, i] + 1j * rows[:, i + 1])).real for i in (0, 2)])
+        self.spring = -constants["stiffness"] * Q @ self.u + self.load
         self.with_drag = self.A + E @ self.D @ E.T / (2 * DT)
-        self.state = SupportState(*np.full((3, 2, 2), np.nan), np.zeros(4))
+        self.state = SupportState(
+            np.full((2, 2), np.nan), np.zeros((2, 2)), np.full((3, 2), np.nan), np.zeros(SUPPORT_WORKS)
+        )
 
     def push(self):
         """What the kernel makes of q*; whether O_d is inside the film."""
         after = self.free.copy()
-        return push_supports(self.support, SPEED, DT, COSINE, SINE, self.before, self.now, after, self.state), aligned(
-            after
-        )
+        inside = push_supports(self.support, SPEED, DT, STEP, COSINE, SINE, self.before, self.now, after, self.state)
+        return inside, aligned(after)
 
     def absolute_velocity(self, after):
         relative = (after - self.before)[CENTRE] / (2 * DT)
@@ -104,13 +120,14 @@ def test_a_push_solves_the_implicit_law(case):
     inside, after = step.push()
     assert inside
     force = step.spring - step.D @ step.absolute_velocity(after)
-    np.testing.assert_allclose(step.state.force, [force, force], rtol=1e-9)
+    np.testing.assert_allclose(step.state.force, [force, force, step.load], rtol=1e-9)
     weight = -step.weight @ [SINE, COSINE]
     missing = step.A @ (after - step.free) - E @ force - weight
     assert np.abs(missing).max() < 1e-10 * np.abs(step.A @ (after - step.free)).max()
     untouched = np.setdiff1d(np.arange(16), PLACES)
     np.testing.assert_array_equal(after[untouched], step.free[untouched])
-    np.testing.assert_allclose(step.state.drag, step.D, rtol=1e-12, atol=1e-12)
+    if step.support.yields:
+        np.testing.assert_allclose(step.state.drag, step.D, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("share", [0.999, 1.001])
@@ -150,7 +167,7 @@ def test_supports_resist_the_jump_that_contacts_make(case):
     resist_contacts(step.support, step.state, force)
     jump = np.linalg.solve(step.with_drag, load)
     np.testing.assert_allclose(np.linalg.solve(step.A, force), jump, rtol=1e-9, atol=1e-12 * np.abs(jump).max())
-    np.testing.assert_allclose(step.state.force, [free, free - step.D @ jump[CENTRE] / (2 * DT)], rtol=1e-9)
+    np.testing.assert_allclose(step.state.force[:2], [free, free - step.D @ jump[CENTRE] / (2 * DT)], rtol=1e-9)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -160,13 +177,14 @@ def test_works_are_each_force_times_the_way(case):
     change = aligned(0.5 * (after - step.before))
     sizes = add_support_works(step.support, SPEED, DT, COSINE, SINE, step.now, change, step.state)
     velocity, way = step.absolute_velocity(after), change[CENTRE]
-    expected = np.zeros(4)
-    expected[ANISOTROPY] = (step.spring - step.uneven @ velocity) @ way
+    expected = np.zeros(SUPPORT_WORKS)
+    expected[ANISOTROPY] = (step.spring - step.load - step.uneven @ velocity) @ way
+    expected[LOADS] = step.load @ way
     expected[LAWS] = -(step.squeeze @ velocity) @ way
     expected[GRAVITY] = -(step.weight @ [SINE, COSINE]) @ change
     expected[LAWS_LOSS] = -DT * velocity @ step.squeeze @ velocity
     np.testing.assert_allclose(step.state.works, expected, rtol=1e-8, atol=1e-12)
-    assert sizes == pytest.approx(np.abs(expected[:3]).sum(), rel=1e-8)
+    assert sizes == pytest.approx(np.abs(expected[:LAWS_LOSS]).sum(), rel=1e-8)
     assert (step.state.works[LAWS_LOSS] < 0) == ("film" in CASES[case])
     add_support_works(step.support, SPEED, DT, COSINE, SINE, step.now, change, step.state)
     np.testing.assert_allclose(step.state.works, 2 * expected, rtol=1e-8, atol=1e-12)

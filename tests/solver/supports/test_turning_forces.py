@@ -17,7 +17,7 @@ from rubgen.solver.linear.stability import eigenvalues, slowest_decay, stable_st
 from rubgen.solver.speed.start import rub_free_stepper, start_opening
 from rubgen.solver.supports.turning_forces import turning_force
 
-CASES = ("gravity", "springs", "dampers", "film", "all")
+CASES = ("gravity", "springs", "dampers", "film", "loads", "all")
 
 
 @pytest.fixture(scope="module", params=CASES)
@@ -35,11 +35,12 @@ def test_the_rub_happens_and_every_work_is_booked(rub):
     assert run.impulse_per_turn.min() > 0.1
     balance = run.energy
     works = balance.unbalance + balance.damping + balance.circulatory + balance.contact
-    works += balance.anisotropy + balance.support_laws + balance.gravity
+    works += balance.anisotropy + balance.support_laws + balance.gravity + balance.faults
     assert balance.residual < 1e-11
     assert abs(balance.end - balance.start - works) <= 1e-11 * balance.absolute_work
     share = 1e-7 * balance.absolute_work
     assert (abs(balance.gravity) > share) is (case in ("gravity", "all"))
+    assert (abs(balance.faults) > share) is (case in ("loads", "all"))
     assert (abs(balance.anisotropy) > share) is (case in ("springs", "dampers", "all"))
     assert (abs(balance.support_laws) > share) is (case in ("film", "all"))
     assert (balance.support_laws_loss < -share) is (case in ("film", "all"))
@@ -88,7 +89,7 @@ def test_the_opening_of_the_start_regards_the_whole_turn(small_system, turning):
 
 def test_the_support_force_taps_hold_all_that_the_support_bears(small_system, turning):
     """Without rub and drag of blades, what the support bears is the weight and the unbalance's inertia."""
-    system = turning(small_system(clearance=5e-3), "all")
+    system = turning(small_system(clearance=5e-3), "all", loads=0.0)
     stepper = rub_free_stepper(system, ContactLaw(), 512)
     stepper.run_turn()
     fx, fy = stepper.result.taps[6:8]

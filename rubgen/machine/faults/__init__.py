@@ -1,0 +1,1 @@
+"""Faults of a machine, one file a fault; `registry` lists them."""

@@ -1,0 +1,43 @@
+"""A bent shaft."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+from pydantic.dataclasses import dataclass
+
+from rubgen.machine.faults.fault import Fault, HarmonicLoad, Severity
+from rubgen.machine.quantities import STRICT, Angle, real
+
+if TYPE_CHECKING:
+    from rubgen.machine.machine import Machine
+
+BowSize = Annotated[float, real(ge=0, le=0.1)]
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class Bow(Fault):
+    """A residual bow of the shaft: without any load the disk centre stands `bow_m` off the axis, and turns with it.
+
+    The lateral springs k act on what the shaft is bent beyond its bow, k (u - b e^(i theta)). The bow is therefore a
+    force k b that is constant in the turning frame, at `angle_deg` from blade 0 in the sense of rotation (Nicholas,
+    Gunter, Allaire 1976). k is the mean lateral stiffness of the disk support. At slow roll the disk centre moves on a
+    circle of radius b. At the critical speed a bow of U / m against the unbalance U of a mass m cancels it.
+    """
+
+    SEVERITY: ClassVar = Severity(column="bow_m", unit="m", meaning="residual bow of the shaft at the disk centre")
+    kind: Literal["bow"] = "bow"
+    bow_m: BowSize
+    angle_deg: Angle = 0.0
+
+    @property
+    def severity(self) -> float:
+        """The bow in m."""
+        return self.bow_m
+
+    def loads(self, machine: Machine, speed: float) -> tuple[HarmonicLoad, ...]:
+        """The force k b in the turning frame."""
+        force = machine.disk_support.lateral_stiffness_n_per_m * self.bow_m
+        return (HarmonicLoad.rotating(cmath.rect(force, math.radians(self.angle_deg)), of_springs=True),)

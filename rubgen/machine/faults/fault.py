@@ -1,0 +1,102 @@
+"""What a fault is, and the forms in which faults act."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Self
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.machine.support_laws.law import SupportLaw
+
+if TYPE_CHECKING:
+    from rubgen.machine.machine import Machine
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ramp:
+    """Growth from 0 to 1 within the record, linear over `duration_s` from `start_s`; a step where that is 0.
+
+    Times count from the start of the record.
+    """
+
+    start_s: float
+    duration_s: float
+
+    def share(self, time: FloatArray) -> FloatArray:
+        """The share at times in s, 0 to 1."""
+        if self.duration_s == 0:
+            return np.where(time >= self.start_s, 1.0, 0.0)
+        return np.asarray(np.clip((time - self.start_s) / self.duration_s, 0.0, 1.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class HarmonicLoad:
+    """A force on the disk centre in the inertial frame: F_X = Re(x e^(i order theta)) and F_Y likewise, in N."""
+
+    order: int
+    x: complex
+    y: complex
+    ramp: Ramp | None = None
+    """How it grows; None where it is always there."""
+    of_springs: bool = False
+    """Whether the lateral springs apply it, because they are at rest elsewhere; only for a `rotating` load."""
+
+    @classmethod
+    def rotating(cls, force: complex, ramp: Ramp | None = None, *, of_springs: bool = False) -> Self:
+        """The force f_x + i f_y that is constant in the turning frame: of order 1, forward."""
+        return cls(order=1, x=force, y=-1j * force, ramp=ramp, of_springs=of_springs)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SurfaceHarmonic:
+    """A part of the casing's inner surface: amplitude_m cos(order (theta - phase_rad))."""
+
+    order: int
+    amplitude_m: float
+    phase_rad: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Severity:
+    """The column of a fault's severity: name, unit and meaning."""
+
+    column: str
+    unit: str
+    meaning: str
+
+
+class Fault(ABC):
+    """A fault of a machine. A kind of fault overrides only the functions through which it acts.
+
+    The fields of a kind are its keys in a machine or a recipe, the first is `kind`. `speed` is in rad/s.
+    """
+
+    SEVERITY: ClassVar[Severity]
+
+    @property
+    @abstractmethod
+    def severity(self) -> float:
+        """How severe it is, in the unit of `SEVERITY`."""
+
+    def problem(self, machine: Machine) -> str | None:
+        """Why this machine cannot have the fault, with the remedy; None where it can."""
+        return None
+
+    def altered(self, machine: Machine) -> Machine:
+        """The machine that the fault makes of this one, for a fault of its shape or material."""
+        return machine
+
+    def surface_harmonics(self, machine: Machine) -> tuple[SurfaceHarmonic, ...]:
+        """What it adds to the casing's inner surface."""
+        return ()
+
+    def loads(self, machine: Machine, speed: float) -> tuple[HarmonicLoad, ...]:
+        """Forces on the disk centre that do not depend on the motion."""
+        return ()
+
+    def support_laws(self, machine: Machine, speed: float) -> tuple[SupportLaw, ...]:
+        """Forces on the disk centre that depend on the motion."""
+        return ()

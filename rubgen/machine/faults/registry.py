@@ -1,0 +1,18 @@
+"""Every kind of fault; a new one is a file and a line here."""
+
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from rubgen.machine.faults.bow import Bow
+from rubgen.machine.faults.fault import Fault
+from rubgen.machine.faults.misalignment import Misalignment
+
+AnyFault = Annotated[
+    Misalignment  #
+    | Bow,
+    Field(discriminator="kind"),
+]
+_KINDS: Any = AnyFault
+FAULTS: dict[str, type[Fault]] = {kind.kind: kind for kind in _KINDS.__origin__.__args__}
+"""Each kind by its name; columns stand in this order, so a new one is at the end."""

@@ -1,0 +1,53 @@
+"""Loads of faults on the disk centre, from the inertial frame into the turning one."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from rubgen.arrays import ComplexArray, FloatArray
+from rubgen.machine import Machine
+from rubgen.machine.faults.fault import HarmonicLoad
+from rubgen.reduction.model import GrowingLoad
+
+
+def steady_loads(machine: Machine, speed: float) -> ComplexArray:
+    """The loads that are always there, as `turning_harmonics`, at `speed` in rad/s."""
+    return turning_harmonics(load for load in _loads(machine, speed) if load.ramp is None)
+
+
+def growing_loads(machine: Machine, speed: float) -> tuple[GrowingLoad, ...]:
+    """Each load that grows within the record, at `speed` in rad/s."""
+    return tuple(
+        GrowingLoad(ramp=load.ramp, loads=turning_harmonics([load]), of_springs=load.of_springs)
+        for load in _loads(machine, speed)
+        if load.ramp is not None
+    )
+
+
+def spring_load(machine: Machine, speed: float) -> FloatArray:
+    """The part (2,) of the steady loads that the lateral springs apply, constant in the turning frame, N."""
+    loads = [load for load in _loads(machine, speed) if load.of_springs and load.ramp is None]
+    return np.asarray(turning_harmonics(loads)[0].real)
+
+
+def turning_harmonics(loads: Iterable[HarmonicLoad]) -> ComplexArray:
+    """The sum of inertial loads in the turning frame, p (orders, 2) in N: f = Re sum_m p_m e^(i m theta).
+
+    f_x = cos theta F_X + sin theta F_Y and f_y = -sin theta F_X + cos theta F_Y. An inertial load of order k has the
+    orders k - 1 and k + 1 there, and of order 0 the order 1 alone.
+    """
+    loads = tuple(loads)
+    total = np.zeros((max((load.order + 2 for load in loads), default=1), 2), dtype=np.complex128)
+    for load in loads:
+        above = 0.5 * np.array([load.x - 1j * load.y, 1j * load.x + load.y])
+        below = 0.5 * np.array([load.x + 1j * load.y, -1j * load.x + load.y])
+        total[load.order + 1] += above
+        if load.order:
+            total[load.order - 1] += below
+        else:
+            total[1] += below.conj()
+    return total
+
+
+def _loads(machine: Machine, speed: float) -> tuple[HarmonicLoad, ...]:
+    return tuple(load for fault in machine.faults for load in fault.loads(machine, speed))

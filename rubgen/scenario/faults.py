@@ -1,0 +1,183 @@
+"""`[[faults]]` of a recipe: which runs have which fault, and how severe it is.
+
+The tables are made from the fields of each kind (`rubgen.machine.faults.registry`), so a new kind needs nothing here.
+"""
+
+import zlib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import MISSING, fields, replace
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, cast, get_args, get_origin, get_type_hints
+
+import numpy as np
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, create_model
+
+from rubgen.errors import UserError
+from rubgen.machine.faults.fault import Fault
+from rubgen.machine.faults.registry import FAULTS, AnyFault
+from rubgen.machine.problems import nearest, validated
+from rubgen.machine.sentences import toml_text
+from rubgen.scenario.distributions import Distribution
+from rubgen.scenario.scenario import Scenario
+
+_STRICT = ConfigDict(extra="forbid", frozen=True)
+_FAULT: TypeAdapter[Fault] = TypeAdapter(AnyFault)
+Value = Callable[[str, Any], object]
+"""The value of a key, from its name and its distribution."""
+
+
+class WordChoice(BaseModel):
+    """`{ choice = ["a", "b"] }`: each listed word with the same probability."""
+
+    model_config = _STRICT
+    choice: Annotated[tuple[str, ...], Field(min_length=1)]
+
+    def quantile(self, u: float) -> str:
+        """The word number floor(u n)."""
+        return self.choice[int(u * len(self.choice))]
+
+    def extremes(self) -> tuple[str, ...]:
+        """Every word."""
+        return self.choice
+
+
+def _is_share(share: Distribution) -> Distribution:
+    if not all(0 <= value <= 1 for value in share.extremes()):
+        raise ValueError("a share of the runs must be at least 0 and at most 1")
+    return share
+
+
+def _words(hint: Any) -> tuple[str, ...]:
+    """The words that a field allows; none where it is a number."""
+    if get_origin(hint) is Literal:
+        return get_args(hint)
+    return next((words for part in get_args(hint) if (words := _words(part))), ())
+
+
+def _table(kind: str, fault: type[Fault]) -> type[BaseModel]:
+    """The table of one kind: each number of it may be drawn, each word chosen."""
+    share = Annotated[Distribution, AfterValidator(_is_share)]
+    about = "share of the runs that have this fault; all where not given"
+    values: dict[str, Any] = {"kind": (Literal[kind], ...), "share": (share | None, Field(None, description=about))}
+    hints = get_type_hints(fault)
+    for field in fields(cast("Any", fault))[1:]:
+        words = _words(hints[field.name])
+        allowed: Any = Literal[words] | WordChoice if words else Distribution
+        values[field.name] = (allowed, ...) if field.default is MISSING else (allowed | None, None)
+    return create_model(f"{fault.__name__}Table", __config__=_STRICT, __doc__=f"`[[faults]]` of {kind}.", **values)
+
+
+if TYPE_CHECKING:
+    FaultTable = BaseModel
+else:
+    _TABLES = tuple(_table(kind, fault) for kind, fault in FAULTS.items())
+    FaultTable = Annotated[Union[_TABLES], Field(discriminator="kind")]  # noqa: UP007
+
+
+def kind_of(fault: Fault | BaseModel) -> str:
+    """The kind of a fault, or of its table."""
+    return str(cast("Any", fault).kind)
+
+
+def with_faults(scenario: Scenario, tables: Sequence[BaseModel]) -> Scenario:
+    """The scenario with the faults that are drawn for its seed and index, and the kinds that its recipe names.
+
+    Each key of each kind has random numbers of its own, whatever other keys and kinds there are.
+    """
+
+    def number(name: str) -> float:
+        key = [scenario.seed, scenario.index, zlib.crc32(f"faults.{name}".encode())]
+        return float(np.random.default_rng(key).random())
+
+    def drawn(table: BaseModel) -> Fault:
+        return _fault(table, lambda key, entry: entry.quantile(number(f"{kind_of(table)}.{key}")))
+
+    def has(table: BaseModel) -> bool:
+        kind, share = kind_of(table), cast("Any", table).share
+        return share is None or number(f"{kind}.has") < share.quantile(number(f"{kind}.share"))
+
+    return _having(scenario, tables, tuple(drawn(table) for table in tables if has(table)))
+
+
+def with_given_faults(scenario: Scenario, kinds: str | Sequence[str], values: Mapping[str, object]) -> Scenario:
+    """The scenario with faults of these kinds, each value at the kind that has its key.
+
+    Raises UserError of one line for an unknown kind, a key that none or several of the kinds have, and a value that is
+    not allowed.
+    """
+    named = [kinds] if isinstance(kinds, str) else list(kinds)
+    already = kinds_of(scenario.machine.faults)
+    for kind in named:
+        if kind not in FAULTS:
+            raise UserError(f"fault = {toml_text(kind)}: unknown kind; {nearest(str(kind), list(FAULTS))}")
+        if kind in already or named.count(kind) > 1:
+            raise UserError(f"fault = {kind!r}: the machine has this fault already; name it once")
+    for key in values:
+        having = [kind for kind in named if key in _keys(kind)]
+        if len(having) > 1:
+            raise UserError(f"{key}: {' and '.join(having)} have this key; write a recipe, or make two runs")
+        if not having:
+            owners = " or ".join(kind for kind in FAULTS if key in _keys(kind))
+            raise UserError(f"{key}: a key of the fault {owners}; name that fault too, or leave the key out")
+    faults = tuple(
+        validated("", {"kind": kind, **_of_kind(kind, values)}, _FAULT, lambda path: path or ("fault",))
+        for kind in named
+    )
+    return _having(scenario, (), faults) if named or already else scenario
+
+
+def _keys(kind: str) -> list[str]:
+    """The keys of a kind, except for `kind`."""
+    return [field.name for field in fields(cast("Any", FAULTS[kind]))[1:]]
+
+
+def _of_kind(kind: str, values: Mapping[str, object]) -> dict[str, object]:
+    return {key: values[key] for key in _keys(kind) if key in values}
+
+
+FAULT_KEYS = tuple(dict.fromkeys(key for kind in FAULTS for key in _keys(kind)))
+"""The keys of all kinds."""
+
+
+def extremes(scenario: Scenario, tables: Sequence[BaseModel], source: str) -> Iterator[Scenario]:
+    """The scenario with each fault alone, at its least and its largest values, and with all at their largest.
+
+    Raises UserError, beginning with `source`, for a value that is not allowed, and for a kind that stands there twice.
+    """
+    kinds = [kind_of(fault) for fault in scenario.machine.faults]
+    largest = []
+    for number, table in enumerate(tables):
+        kind = kind_of(table)
+        if kind in kinds:
+            where = "the machine" if kind in kinds[: len(scenario.machine.faults)] else "the recipe"
+            raise UserError(f"{source}: faults.{number}.kind = {kind!r}: {where} has this fault already; remove one")
+        kinds.append(kind)
+        for end in (min, max):
+            fault = _fault(table, lambda _, entry, end=end: end(entry.extremes()), source, number)  # type: ignore[misc]
+            yield _having(scenario, tables, (fault,))
+        largest.append(fault)
+    yield _having(scenario, tables, tuple(largest))
+
+
+def named_kinds(recipe: dict[str, Any], machine: dict[str, Any]) -> tuple[str, ...]:
+    """The kinds of fault that the documents of a recipe and of its machine name, in the order of the registry."""
+    named = {each["kind"] for document in (machine, recipe) for each in document.get("faults") or ()}
+    return tuple(kind for kind in FAULTS if kind in named)
+
+
+def kinds_of(faults: Iterable[Fault | BaseModel]) -> tuple[str, ...]:
+    """The kinds of these faults or tables, in the order of the registry."""
+    kinds = {kind_of(each) for each in faults}
+    return tuple(kind for kind in FAULTS if kind in kinds)
+
+
+def _having(scenario: Scenario, tables: Sequence[BaseModel], faults: tuple[Fault, ...]) -> Scenario:
+    already = scenario.machine.faults
+    machine = replace(scenario.machine, faults=cast("Any", (*already, *faults)))
+    return replace(scenario, machine=machine, fault_kinds=kinds_of((*machine.faults, *tables)))
+
+
+def _fault(table: BaseModel, value: Value, source: str = "", number: int = 0) -> Fault:
+    """The fault with the values of its table; `source` and the table's `number` are for messages."""
+    given = [(key, getattr(table, key)) for key in type(table).model_fields if key not in ("kind", "share")]
+    values = {key: entry if isinstance(entry, str) else value(key, entry) for key, entry in given if entry is not None}
+    return validated(source, {"kind": kind_of(table), **values}, _FAULT, lambda path: ("faults", number, *path))

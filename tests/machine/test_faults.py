@@ -1,0 +1,101 @@
+"""Faults in the reduced model and in runs without rub, beside closed forms and a plain integration."""
+
+from dataclasses import replace
+from inspect import signature
+
+import numpy as np
+import pytest
+from pydantic import TypeAdapter
+
+from rubgen.errors import UserError
+from rubgen.machine import Machine, load_machine
+from rubgen.machine.faults.bow import Bow
+from rubgen.machine.faults.fault import HarmonicLoad
+from rubgen.machine.faults.misalignment import Misalignment
+from rubgen.machine.faults.registry import FAULTS
+from rubgen.machine.load import machine_id
+from rubgen.pipeline import simulate
+from rubgen.reduction import reduce
+from rubgen.reduction.fault_loads import turning_harmonics
+from rubgen.scenario import ContactLaw, Operation, make_scenario
+from rubgen.scenario.faults import FAULT_KEYS
+from rubgen.scenario.scenario import Reduction, scenario_dict
+from rubgen.solver.integrate import integrate
+from rubgen.solver.linear.rub_free import rub_free_motion
+from rubgen.solver.wants import Wants
+from rubgen.units import rad_per_s
+
+
+@pytest.fixture(scope="module")
+def preset():
+    return load_machine("zeng2019")
+
+
+def test_loads_are_the_same_force_in_both_frames():
+    rng = np.random.default_rng(0)
+    loads = [HarmonicLoad(order=k, x=complex(*rng.normal(size=2)), y=complex(*rng.normal(size=2))) for k in range(4)]
+    p = turning_harmonics(loads)
+    for theta in rng.uniform(0, 2 * np.pi, 5):
+        F = sum((np.array([load.x, load.y]) * np.exp(1j * load.order * theta)).real for load in loads)
+        turned = np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]]) @ F
+        np.testing.assert_allclose((np.exp(1j * theta * np.arange(len(p))) @ p).real, turned, rtol=1e-13)
+    rotating = turning_harmonics([HarmonicLoad.rotating(2 + 3j)])
+    np.testing.assert_allclose(rotating[0].real, [2, 3])
+    assert not rotating[1:].any()
+
+
+def test_a_machine_without_faults_is_as_before(preset):
+    assert "faults" not in TypeAdapter(Machine).dump_python(preset, mode="json")
+    scenario = make_scenario(speed_rpm=9000)
+    document = scenario_dict(scenario)
+    assert "faults" not in document["machine"]
+    assert "fault_kinds" not in document
+    bent = make_scenario(speed_rpm=9000, fault="bow", bow_m=1e-5)
+    assert scenario_dict(bent)["machine"]["faults"] == [{"kind": "bow", "bow_m": 1e-5, "angle_deg": 0.0}]
+    assert machine_id(bent.machine) != machine_id(preset)
+
+
+def test_keys_of_faults_are_no_keys_of_a_run():
+    assert not set(FAULT_KEYS) & set(signature(make_scenario).parameters)
+    columns = [kind.SEVERITY.column for kind in FAULTS.values()]
+    assert len(set(columns)) == len(columns)
+
+
+def test_a_run_keeps_the_motion_of_a_misaligned_shaft_and_books_its_work(preset):
+    """The coupling's force at orders 0 to 3 through the receptance of the inertial frame, found in a run."""
+    fault = Misalignment(parallel_m=6e-5, angular_deg=0.05, direction_deg=30.0)
+    scenario = make_scenario(speed_rpm=9000, clearance_m=4e-3, signal_seconds=0.05, lyapunov=False)
+    scenario = replace(scenario, machine=replace(scenario.machine, faults=(fault,)))
+    run = simulate(scenario)
+    assert run.response.energy.residual < 1e-10
+    assert abs(run.response.energy.faults) > 1e-3 * run.response.energy.absolute_work
+    assert run.labels.motion.value == "period-1"
+    turn = run.response.steps_per_turn
+    x = np.fft.rfft(run.response.taps["blisk_x"][-turn:]) / turn * 2
+    y = np.fft.rfft(run.response.taps["blisk_y"][-turn:]) / turn * 2
+    reaction = fault.coupling_stiffness_n_per_m * fault.severity
+    assert fault.severity == pytest.approx(6e-5 + np.deg2rad(0.05) * 0.1 / 2)
+    for order, share in ((2, 0.5), (3, 0.1)):
+        assert np.hypot(abs(x[order]), abs(y[order])) > 0.1 * share * reaction / 1e8
+    assert abs(x[2] / y[2]) == pytest.approx(1 / np.tan(np.deg2rad(30)), rel=0.02)  # along the misalignment
+    healthy = simulate(replace(scenario, machine=replace(scenario.machine, faults=())))
+    assert np.abs(np.fft.rfft(healthy.response.taps["blisk_x"][-turn:])[2:4]).max() < 1e-9 * turn * abs(x[2])
+
+
+def test_a_bow_is_followed_at_slow_roll_without_force_on_the_support():
+    scenario = make_scenario(speed_rpm=60, unbalance_kg_m=0, sample_rate_hz=1000, fault="bow", bow_m=2e-5, angle_deg=90)
+    system = reduce(scenario.machine, Reduction()).at_speed(rad_per_s(60))
+    q = rub_free_motion(system).at(0.0)
+    assert q[system.centre : system.centre + 2] == pytest.approx([0, 2e-5], abs=1e-7)
+    response = integrate(
+        system, Operation(speed_rpm=60, settle_turns=1, record_turns=1, closing_turns=1), ContactLaw(), Wants()
+    )
+    assert np.abs(response.taps["support_force_x"]).max() < 1e-3 * 1e8 * 2e-5
+
+
+def test_a_machine_has_each_fault_once(preset):
+    twice = (Bow(bow_m=1e-6), Bow(bow_m=2e-6))
+    with pytest.raises(ValueError, match="faults: bow stands twice"):
+        replace(preset, faults=twice)
+    with pytest.raises(UserError, match="the machine has this fault already"):
+        make_scenario(fault=["bow", "bow"], bow_m=1e-6)
