@@ -87,7 +87,7 @@ def _all_labels(run: Run) -> dict[str, object]:
         "record_turns": run.response.record_turns,
         **dict.fromkeys(LABEL_NAMES),
         **(labels_to_json(run.labels) if run.labels else {}),
-        **fault_labels(run.scenario, rub=run.labels.rub if run.labels else None),
+        **fault_labels(run.scenario, run.response),
     }
 
 

@@ -119,6 +119,7 @@ def _faults(kinds: Iterable[str]) -> list[Column]:
     columns = [
         Column("faults", "texts", "", "kinds of fault of the machine in this run"),
         Column("healthy", "flag", "", "neither a fault nor a rub", nullable=True),
+        Column("rub_onset_s", "number", "s", "time of the first touch, from the record's start; null without", True),
         *(Column(each.column, "number", each.unit, f"{each.meaning}; 0 without this fault") for each in severities),
     ]
     return columns if severities else []

@@ -3,19 +3,23 @@
 from rubgen.machine.faults.registry import FAULTS
 from rubgen.scenario import Scenario
 from rubgen.scenario.faults import kind_of
+from rubgen.solver import Response, Status
 
 
-def fault_labels(scenario: Scenario, *, rub: bool | None) -> dict[str, object]:
-    """The labels of faults by name: `faults`, `healthy`, and the severity of each kind that the recipe names.
+def fault_labels(scenario: Scenario, response: Response) -> dict[str, object]:
+    """Return the labels of faults by name: `faults`, `healthy`, `rub_onset_s`, and severities.
 
-    A severity is 0 where the run does not have that fault. `healthy` is true without a fault and without a rub; `rub`
-    is None for a run that failed, and so is `healthy`. A recipe and a machine without faults have no such label.
+    There is a severity for each kind of fault that the recipe names, 0 where the run does not have it. `healthy` is
+    true without a fault and without a rub. `rub_onset_s` is the time of the first touch in s from the record's start,
+    None without a rub. Both are None where the run failed. A recipe and a machine without faults have no such label.
     """
     if not scenario.fault_kinds:
         return {}
     there = {kind_of(fault): fault.severity for fault in scenario.machine.faults}
+    touches, good = response.events.start_step, response.status is Status.OK
     return {
         "faults": [kind for kind in FAULTS if kind in there],
-        "healthy": None if rub is None else not (rub or there),
+        "healthy": not (touches.size or there) if good else None,
+        "rub_onset_s": float(touches.min() * response.dt) if good and touches.size else None,
         **{FAULTS[kind].SEVERITY.column: float(there.get(kind, 0.0)) for kind in scenario.fault_kinds},
     }

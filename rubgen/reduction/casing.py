@@ -1,6 +1,7 @@
 """Reduce the casing to its first modes."""
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
@@ -9,6 +10,7 @@ from scipy.linalg import eigh
 from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
 from rubgen.fem.casing import CasingModel, assemble_casing
+from rubgen.machine.faults.fault import SurfaceHarmonic
 from rubgen.machine.machine import Casing, Machine
 from rubgen.reduction.model import CasingSurface
 from rubgen.scenario.reducible import casing_problem
@@ -45,9 +47,22 @@ def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
     problem = casing_problem(machine, modes)
     if problem:
         raise UserError(problem)
-    return _reduced(
-        _Asked(casing=machine.casing, mean_radius=machine.casing_mean_radius_m, modes=modes, machine=machine)
+    asked = _Asked(casing=machine.casing, mean_radius=machine.casing_mean_radius_m, modes=modes, machine=machine)
+    return with_harmonics(
+        _reduced(asked), [each for fault in machine.faults for each in fault.surface_harmonics(machine)]
     )
+
+
+def with_harmonics(casing: ReducedCasing, harmonics: Sequence[SurfaceHarmonic]) -> ReducedCasing:
+    """The casing with further harmonics of its inner surface. The modes are those of the ring without them."""
+    surface = casing.surface
+    added = CasingSurface(
+        mean_radius=surface.mean_radius,
+        amplitude=np.append(surface.amplitude, [each.amplitude_m for each in harmonics]),
+        order=np.append(surface.order, [float(each.order) for each in harmonics]),
+        phase=np.append(surface.phase, [each.phase_rad for each in harmonics]),
+    )
+    return replace(casing, surface=added) if harmonics else casing
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from rubgen.arrays import ComplexArray, FloatArray
-from rubgen.machine.faults.fault import Ramp
+from rubgen.machine.faults.fault import Narrowing, Ramp
 from rubgen.machine.support_laws.law import SupportLaw
 
 
@@ -134,6 +134,8 @@ class SpinningSystem:
     """What sensors need; None where the system was not reduced from a machine."""
     turning: TurningForces | None = None
     """Forces that `M`, `C`, `K` and `force` do not contain; None for most machines."""
+    narrowings: tuple[Narrowing, ...] = ()
+    """How the clearance closes within the record."""
     spring_load: FloatArray | None = None
     """Part (2,) of `force` on O_d that the lateral springs apply, because a bow moves their place of rest, N."""
 

@@ -103,6 +103,7 @@ class ReducedModel:
             lateral_damping=float(self.dampers[0]),
             recovery=self._recovery(speed),
             turning=self._turning_forces(speed),
+            narrowings=tuple(each for fault in machine.faults for each in fault.narrowings(machine)),
             spring_load=spring_load(machine, speed) if machine.faults else None,
         )
 

@@ -131,6 +131,16 @@ def _tones(scenario: Scenario) -> Iterator[str]:
             yield f"surroundings.tones.{number}.{key} = {value:g}: at {hertz:g} Hz; channels show at most {limit:g} Hz"
 
 
+def _late_faults(scenario: Scenario) -> Iterator[str]:
+    """Faults that grow only after the record."""
+    operation = scenario.operation
+    record = operation.duration_s or operation.record_turns / operation.rotation_frequency_hz
+    for fault in scenario.machine.faults:
+        start = getattr(fault, "start_s", 0.0)
+        if start >= record:
+            yield f"start_s of {fault.kind} = {start:g}: it never begins, the record lasts {record:.4g} s"
+
+
 def _shares(scenario: Scenario) -> Iterator[str]:
     for each in shares(scenario):
         if each.value > each.most * each.whole:
@@ -272,7 +282,20 @@ def _chains(scenario: Scenario) -> Iterator[str]:
             yield f"dropouts_per_s of {sensor.name} = {sensor.dropouts_per_s:g}: {lost}"
 
 
-CHECKS = (_usual, _shares, _sizes, _supports, _unbalance, _speed, _rate, _angles, _arrivals, _chains, _tones)
+CHECKS = (
+    _usual,
+    _shares,
+    _sizes,
+    _supports,
+    _unbalance,
+    _speed,
+    _rate,
+    _angles,
+    _arrivals,
+    _chains,
+    _tones,
+    _late_faults,
+)
 
 
 def unbalances(machine: Machine) -> Iterator[tuple[str, float]]:

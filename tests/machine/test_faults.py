@@ -8,6 +8,7 @@ import pytest
 from pydantic import TypeAdapter
 
 from rubgen.errors import UserError
+from rubgen.labels.faults import fault_labels
 from rubgen.machine import Machine, load_machine
 from rubgen.machine.faults.bow import Bow
 from rubgen.machine.faults.fault import HarmonicLoad
@@ -51,7 +52,9 @@ def test_a_machine_without_faults_is_as_before(preset):
     assert "faults" not in document["machine"]
     assert "fault_kinds" not in document
     bent = make_scenario(speed_rpm=9000, fault="bow", bow_m=1e-5)
-    assert scenario_dict(bent)["machine"]["faults"] == [{"kind": "bow", "bow_m": 1e-5, "angle_deg": 0.0}]
+    assert scenario_dict(bent)["machine"]["faults"] == [
+        {"kind": "bow", "bow_m": 1e-5, "angle_deg": 0.0, "start_s": 0.0, "growth_s": None}
+    ]
     assert machine_id(bent.machine) != machine_id(preset)
 
 
@@ -91,6 +94,49 @@ def test_a_bow_is_followed_at_slow_roll_without_force_on_the_support():
         system, Operation(speed_rpm=60, settle_turns=1, record_turns=1, closing_turns=1), ContactLaw(), Wants()
     )
     assert np.abs(response.taps["support_force_x"]).max() < 1e-3 * 1e8 * 2e-5
+
+
+def test_a_casing_off_centre_is_rubbed_on_one_side():
+    """Two narrow places of the oval at 0 and 180 degrees; an offset to 0 degrees leaves the rub at 180."""
+    keys = {"speed_rpm": 8600, "clearance_m": 7.2e-4, "signal_seconds": 0.2, "lyapunov": False}
+    centred, moved = (simulate(make_scenario(**keys, **more)).labels for more in ({}, OFF_CENTRE))
+    assert centred.contact_zones == 2
+    assert moved.contact_zones == 1
+    assert np.degrees(moved.contact_zone_centres[0]) == pytest.approx(180, abs=8)
+    assert centred.orders["contact_force"].odd_share < 0.02 < 0.2 < moved.orders["contact_force"].odd_share
+
+
+OFF_CENTRE = {"fault": "casing-off-centre", "offset_m": 1e-4, "direction_deg": 0.0}
+CLOSING = {"fault": "closing-clearance", "closing_m": 2e-4, "start_s": 0.1, "growth_s": 0.2}
+WAYS = {"steady": {}, "run-up": {"profile": "run-up", "end_speed_rpm": 9010, "duration_s": 0.5}}
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_clearance_closes_when_it_should(way):
+    """The true clearance at two rays, beside that of the same run without the fault."""
+    keys = {"speed_rpm": 9000, "clearance_m": 3e-3, "signal_seconds": 0.45, "lyapunov": False, "settle_turns": 60}
+    keys |= WAYS[way]
+    sound, closing = (simulate(make_scenario(**keys, **more)).response for more in ({}, CLOSING))
+    steps = closing.record_steps
+    for tap in ("tip_clearance_0", "tip_clearance_90"):
+        closed = (sound.taps[tap] - closing.taps[tap])[-steps:]
+        time = (steps - len(closed) + np.arange(len(closed))) * closing.dt
+        np.testing.assert_allclose(closed, 2e-4 * np.clip((time - 0.1) / 0.2, 0, 1), atol=1e-9)
+    assert closing.energy.residual < 1e-10
+
+
+def test_a_rub_begins_where_the_closed_clearance_is_used_up():
+    scenario = make_scenario(speed_rpm=9000, clearance_m=9e-4, lyapunov=False, signal_seconds=0.2, **LATE)
+    run = simulate(scenario)
+    gap = -run.response.free_penetration
+    assert gap > 5e-5
+    labels = fault_labels(scenario, run.response)
+    assert labels["rub_onset_s"] == pytest.approx(0.5 + 1.5 * gap / 6e-4, abs=60 / 9000)
+    assert labels["clearance_closing_m"] == 6e-4
+    assert run.labels.rub
+
+
+LATE = {"fault": "closing-clearance", "closing_m": 6e-4, "start_s": 0.5, "growth_s": 1.5}
 
 
 def test_a_machine_has_each_fault_once(preset):

@@ -1,5 +1,7 @@
 """`[[faults]]` of a recipe: what is drawn, what a run says of it, and what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,8 @@ from rubgen.labels.faults import fault_labels
 from rubgen.machine.faults.bow import Bow
 from rubgen.machine.load import PRESETS
 from rubgen.scenario import make_scenario, parse_recipe
+from rubgen.solver import Status
+from rubgen.solver.refusal import no_response
 
 BASE = {"name": "faults", "runs": 4, "machine": "zeng2019"}
 MISALIGNED = {"kind": "misalignment", "share": 0.3, "parallel_m": {"uniform": [1e-5, 1e-4]}}
@@ -41,15 +45,24 @@ def test_a_kind_changes_no_other_and_no_drawn_value_of_vary():
     assert "faults" not in silent.model_dump(mode="json", exclude_none=True)
 
 
+def response(status=Status.OK, start_steps=()):
+    """A response of 1 ms a step with touches."""
+    none = no_response(status, "", speed=1.0, dt=1e-3, steps_per_turn=1, record_turns=1)
+    return replace(none, events=replace(none.events, start_step=np.array(start_steps, dtype=np.int64)))
+
+
 def test_labels_name_the_faults_and_their_severity():
     made = recipe({**MISALIGNED, "share": 1, "parallel_m": 4e-5}, {**BENT, "share": 0})
-    labels = fault_labels(made.scenario(0), rub=False)
-    assert labels == {"faults": ["misalignment"], "healthy": False, "misalignment_m": 4e-5, "bow_m": 0.0}
+    labels = fault_labels(made.scenario(0), response())
+    found = {"faults": ["misalignment"], "healthy": False, "rub_onset_s": None, "misalignment_m": 4e-5, "bow_m": 0.0}
+    assert labels == found
     sound = recipe({**BENT, "share": 0}).scenario(0)
-    assert fault_labels(sound, rub=False) == {"faults": [], "healthy": True, "bow_m": 0.0}
-    assert fault_labels(sound, rub=True)["healthy"] is False
-    assert fault_labels(sound, rub=None)["healthy"] is None
-    assert fault_labels(make_scenario(), rub=False) == {}
+    assert fault_labels(sound, response()) == {"faults": [], "healthy": True, "rub_onset_s": None, "bow_m": 0.0}
+    rubbing = fault_labels(sound, response(start_steps=(400, 250)))
+    assert (rubbing["healthy"], rubbing["rub_onset_s"]) == (False, pytest.approx(0.25))
+    failed = fault_labels(sound, response(Status.DIVERGED))
+    assert (failed["healthy"], failed["rub_onset_s"]) == (None, None)
+    assert fault_labels(make_scenario(), response()) == {}
 
 
 def test_a_single_run_takes_kinds_and_keys():
@@ -75,7 +88,7 @@ BAD = {
     "missing key": ([{"kind": "bow"}], "faults.0.bow_m: this key is missing; add it"),
     "key of another kind": (
         [{**BENT, "parallel_m": 1}],
-        "faults.0.parallel_m: unknown key; allowed: angle_deg, bow_m, kind, share",
+        "faults.0.parallel_m: unknown key; allowed: angle_deg, bow_m, growth_s, kind",
     ),
     "share beyond 1": ([{**BENT, "share": 1.5}], "faults.0.share = 1.5: a share of the runs must be at least 0 and"),
     "share in percent": ([{**BENT, "share": 30}], "at most 1; 30 % is written 0.3"),

@@ -203,3 +203,10 @@ def test_a_key_is_warned_of_once_in_a_recipe():
     found = warned(tables)
     assert len(found) == 1
     assert re.match(r"r.toml: clearance_m = 0.1: 25 % of", found[0])
+
+
+def test_a_fault_that_begins_after_the_record_is_warned_of():
+    keys = {"fault": "closing-clearance", "closing_m": 1e-5}
+    make_scenario(**keys, start_s=2.9)
+    with pytest.warns(RubgenWarning, match="^start_s of closing-clearance = 3: it never begins, the record lasts 3 s"):
+        make_scenario(**keys, start_s=3)

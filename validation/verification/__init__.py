@@ -22,6 +22,7 @@ _MODULES = (
     "rotors.squeeze_film",
     "rotors.turning_frame",
     "rotors.linear_faults",
+    "rotors.growing_faults",
     "contact.integrator",
     "contact.bouncing_bar",
     "contact.impact_oscillator",

@@ -96,7 +96,7 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
         row |= {each.name: each.value(run.response.energy) for each in ENERGY_LABELS}
     if signals and run.recording is not None and run.labels is not None:
         row |= _signals(run.recording) | _touches(run, run.recording) | window_labels(run.labels)
-    row |= fault_labels(run.scenario, rub=run.labels.rub if run.labels else None)
+    row |= fault_labels(run.scenario, run.response)
     sensing = run.scenario.sensing
     types = schema(
         signals=signals,

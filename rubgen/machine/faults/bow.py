@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine.faults.fault import Fault, HarmonicLoad, Severity
+from rubgen.machine.faults.fault import Fault, HarmonicLoad, Ramp, Severity
 from rubgen.machine.quantities import STRICT, Angle, real
 
 if TYPE_CHECKING:
     from rubgen.machine.machine import Machine
 
+Moment = Annotated[float, real(ge=0, le=1e5)]
 BowSize = Annotated[float, real(ge=0, le=0.1)]
 
 
@@ -25,12 +26,17 @@ class Bow(Fault):
     force k b that is constant in the turning frame, at `angle_deg` from blade 0 in the sense of rotation (Nicholas,
     Gunter, Allaire 1976). k is the mean lateral stiffness of the disk support. At slow roll the disk centre moves on a
     circle of radius b. At the critical speed a bow of U / m against the unbalance U of a mass m cancels it.
+
+    With `growth_s` the bow is thermal: it grows linearly from 0, from `start_s` of the record on. The growth is
+    prescribed; it does not follow from the heat of a rub.
     """
 
     SEVERITY: ClassVar = Severity(column="bow_m", unit="m", meaning="residual bow of the shaft at the disk centre")
     kind: Literal["bow"] = "bow"
     bow_m: BowSize
     angle_deg: Angle = 0.0
+    start_s: Moment = 0.0
+    growth_s: Moment | None = None
 
     @property
     def severity(self) -> float:
@@ -40,4 +46,6 @@ class Bow(Fault):
     def loads(self, machine: Machine, speed: float) -> tuple[HarmonicLoad, ...]:
         """The force k b in the turning frame."""
         force = machine.disk_support.lateral_stiffness_n_per_m * self.bow_m
-        return (HarmonicLoad.rotating(cmath.rect(force, math.radians(self.angle_deg)), of_springs=True),)
+        turned = cmath.rect(force, math.radians(self.angle_deg))
+        ramp = None if self.growth_s is None else Ramp(start_s=self.start_s, duration_s=self.growth_s)
+        return (HarmonicLoad.rotating(turned, ramp, of_springs=True),)

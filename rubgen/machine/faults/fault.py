@@ -60,6 +60,14 @@ class SurfaceHarmonic:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Narrowing:
+    """A closing of the clearance within the record: by `amount_m` when it is over."""
+
+    amount_m: float
+    ramp: Ramp
+
+
+@dataclass(frozen=True, kw_only=True)
 class Severity:
     """The column of a fault's severity: name, unit and meaning."""
 
@@ -91,6 +99,10 @@ class Fault(ABC):
 
     def surface_harmonics(self, machine: Machine) -> tuple[SurfaceHarmonic, ...]:
         """What it adds to the casing's inner surface."""
+        return ()
+
+    def narrowings(self, machine: Machine) -> tuple[Narrowing, ...]:
+        """How the clearance closes within the record."""
         return ()
 
     def loads(self, machine: Machine, speed: float) -> tuple[HarmonicLoad, ...]:

@@ -5,12 +5,18 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from rubgen.machine.faults.bow import Bow
+from rubgen.machine.faults.casing_off_centre import CasingOffCentre
+from rubgen.machine.faults.closing_clearance import ClosingClearance
 from rubgen.machine.faults.fault import Fault
+from rubgen.machine.faults.growing_unbalance import GrowingUnbalance
 from rubgen.machine.faults.misalignment import Misalignment
 
 AnyFault = Annotated[
     Misalignment  #
-    | Bow,
+    | Bow
+    | CasingOffCentre
+    | GrowingUnbalance
+    | ClosingClearance,
     Field(discriminator="kind"),
 ]
 _KINDS: Any = AnyFault

@@ -73,7 +73,7 @@ def never_touches(system: SpinningSystem, surface: Surface, penetration: float) 
     mistuned blades and steady loads are linear; laws of the support are not. Nothing may grow within the record.
     """
     forces = system.turning
-    if (forces is not None and (forces.laws or forces.growing)) or surface.liner.bins:
+    if system.narrowings or surface.liner.bins or (forces is not None and (forces.laws or forces.growing)):
         return False
     bend = float(np.sum(np.abs(system.surface.amplitude) * np.square(system.surface.order)))
     return penetration < -(CLEARANCE_MARGIN + bend * (np.pi / CLEARANCE_PLACES) ** 2 / 2)

@@ -15,6 +15,7 @@ from rubgen.solver.scheme.step_kernels import OK
 from rubgen.solver.scheme.stepper import FRAMES, TURNS, Stepper
 from rubgen.solver.scheme.turn_kernels import TurnResult
 from rubgen.solver.speed.interpolation import SpeedInterpolation
+from rubgen.solver.speed.start import narrowed
 from rubgen.solver.speed.turn import Turn, TurnFrames
 
 SPEED_SHARE = 2e-4
@@ -74,6 +75,9 @@ class SteadyDriver:
         stepper, steps = self.stepper, self.stepper.steps
         width = np.array([opening(number + self.settle + self.places) for number in numbers])
         stepper.grow_loads(*(self.first_step(number) * stepper.dt for number in (numbers[0], numbers[-1] + 1)))
+        if stepper.system.narrowings:
+            times = np.add.outer([self.first_step(number) for number in numbers], np.arange(-1, steps + 1)) * stepper.dt
+            width -= narrowed(stepper.system, times)
         made = stepper.run_turns(width, self.first_step(numbers[0]), recording=recording)
         for number, wide, (code, step, ended) in zip(numbers, width, made, strict=False):
             first = self.first_step(number)
@@ -174,6 +178,8 @@ class ChangingDriver:
         time = np.arange(first - 1, last + 1) * self.stepper.dt
         theta = self.rotation.angle(time) - 2 * np.pi * number
         growth = self.matrices.mean_growth(self.rotation.speed(time))
+        if self.stepper.system.narrowings:
+            growth += narrowed(self.stepper.system, np.asarray(time, dtype=np.float64))
         return theta, opening(number + self.settle + theta / (2 * np.pi)) - growth
 
     def _time_of(self, number: int) -> float:

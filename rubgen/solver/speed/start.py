@@ -56,6 +56,11 @@ def closing_ramp(share: FloatArray) -> FloatArray:
     return np.asarray(1 - x**3 * (10 - 15 * x + 6 * x**2))
 
 
+def narrowed(system: SpinningSystem, time: FloatArray) -> FloatArray:
+    """How far the clearance has closed within the record, m, at times in s from its start."""
+    return np.asarray(sum(each.amount_m * each.ramp.share(time) for each in system.narrowings))
+
+
 @dataclass(frozen=True)
 class Closing:
     """The closing of the surface that is opened at the start of a run."""
