@@ -79,7 +79,7 @@ def shaft_orbit(replay: Replay) -> FloatArray | None:
     return None
 
 
-def section(replay: Replay) -> FloatArray | None:
+def poincare_section(replay: Replay) -> FloatArray | None:
     """Compute the Poincare section of the recorded orbit: its points at the once-per-turn pulses.
 
     The orbit of `shaft_orbit` is interpolated linearly at each pulse. Returns X and Y (2, pulses) in um, or None

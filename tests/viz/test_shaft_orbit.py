@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from rubgen.viz.derived import section, shaft_orbit
+from rubgen.viz.derived import poincare_section, shaft_orbit
 from rubgen.viz.replay import replay_of
 
 
@@ -31,12 +31,12 @@ def test_a_single_probe_has_no_orbit(rub_run):
     channels = {name: each for name, each in rub_run.recording.channels.items() if name != "proximity_y"}
     one = dataclasses.replace(replay_of(rub_run), recording=dataclasses.replace(rub_run.recording, channels=channels))
     assert shaft_orbit(one) is None
-    assert section(one) is None
+    assert poincare_section(one) is None
 
 
 def test_the_section_is_the_orbit_at_the_pulses(rub_run):
     replay = replay_of(rub_run)
-    found = section(replay)
+    found = poincare_section(replay)
     assert found.shape == (2, replay.pulse_times.size)
     sample = replay.pulse_times * replay.recording.sample_rate_hz
     near = shaft_orbit(replay)[:, np.round(sample).astype(int)]

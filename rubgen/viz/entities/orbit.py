@@ -7,7 +7,7 @@ import rerun as rr
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.viz.colors import BLUE, GREY, VERMILION, rgba
-from rubgen.viz.derived import section, shaft_orbit
+from rubgen.viz.derived import poincare_section, shaft_orbit
 from rubgen.viz.entities.signals import detail_window, time_column
 from rubgen.viz.replay import Replay
 
@@ -59,7 +59,7 @@ def orbit_bounds(replay: Replay) -> Bounds:
 
 def section_bounds(replay: Replay) -> Bounds:
     """Return the square that shows the points once a turn."""
-    return _bounds(section(replay), least=0.1)
+    return _bounds(poincare_section(replay), least=0.1)
 
 
 def _bounds(places: FloatArray | None, least: float) -> Bounds:

@@ -15,7 +15,7 @@ from rubgen.labels.harmonics import order_spectrum, spectrum_turns
 from rubgen.machine.problems import nearest
 from rubgen.measurement.channel import Channel
 from rubgen.viz.colors import BLUE, GREY, PAPER_GREY, VERMILION
-from rubgen.viz.derived import HIGHEST_ORDER, order_map, section, sector_of, shaft_orbit
+from rubgen.viz.derived import HIGHEST_ORDER, order_map, poincare_section, sector_of, shaft_orbit
 from rubgen.viz.figures.style import INK, label_axes, new_figure, note
 from rubgen.viz.replay import Replay
 
@@ -124,7 +124,7 @@ def orbit_section(replay: Replay) -> Figure:
 
     Raises ValueError where no pair of proximity probes was recorded.
     """
-    orbit, once = shaft_orbit(replay), section(replay)
+    orbit, once = shaft_orbit(replay), poincare_section(replay)
     if orbit is None or once is None:
         raise ValueError("no pair of proximity probes was recorded; choose sensors with two")
     x, y = orbit
