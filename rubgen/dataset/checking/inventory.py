@@ -23,7 +23,7 @@ class Kind(Enum):
 
     DATA = "make the set again"
     DERIVED = "rubgen repair"
-    STRANGE = "move it away"
+    UNLISTED = "move it away"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,7 +105,7 @@ def _reason(error: OSError | UserError) -> str:
     return str(error).rpartition(": ")[2]
 
 
-def strangers(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
+def unlisted_files(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
     """Yield a finding for every file or folder in the set's directory that neither the manifest nor rubgen put there.
 
     Files of the operating system are ignored. So is what `generate` left where it was stopped at its very end,
@@ -122,14 +122,14 @@ def strangers(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
         here = Path(folder).relative_to(layout.root)
         for name in _own(inner):
             if (here / name).as_posix() not in folders and not _is_left(layout, here / name):
-                yield _stranger((here / name).as_posix())
+                yield _unlisted((here / name).as_posix())
         inner[:] = [name for name in _own(inner) if (here / name).as_posix() in folders]
         for name in _own(names):
             path = (here / name).as_posix()
             if path not in known and not _is_left(layout, here / name) and not _is_report(layout.root, path):
-                yield _stranger(path)
+                yield _unlisted(path)
     for error in unreadable:
-        yield Finding(text=f"{Path(error.filename).name}: cannot be read ({error.strerror})", kind=Kind.STRANGE)
+        yield Finding(text=f"{Path(error.filename).name}: cannot be read ({error.strerror})", kind=Kind.UNLISTED)
 
 
 def _own(names: Iterable[str]) -> list[str]:
@@ -140,8 +140,8 @@ def _is_left(layout: Layout, path: Path) -> bool:
     return path.parent == Path() and path.name.startswith(layout.staging.name)
 
 
-def _stranger(path: str) -> Finding:
-    return Finding(text=f"{path}: not listed in the manifest", kind=Kind.STRANGE)
+def _unlisted(path: str) -> Finding:
+    return Finding(text=f"{path}: not listed in the manifest", kind=Kind.UNLISTED)
 
 
 def _is_report(root: Path, name: str) -> bool:

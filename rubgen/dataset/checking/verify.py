@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from rubgen.dataset.checking.inventory import Finding, Kind, derived_digests, file_findings, strangers
+from rubgen.dataset.checking.inventory import Finding, Kind, derived_digests, file_findings, unlisted_files
 from rubgen.dataset.checking.table_check import table_problems
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, read_manifest
@@ -31,7 +31,7 @@ def findings(directory: Path | str) -> list[Finding]:
     layout = Layout(directory)
     manifest = read_manifest(layout)
     found = list(file_findings(layout, manifest))
-    found += strangers(layout, manifest)
+    found += unlisted_files(layout, manifest)
     closed = {finding.path for finding in found if finding.closed}
     found += (Finding(text=text) for text in table_problems(layout, manifest, closed))
     return [*found, *_format_findings(layout, manifest, closed, {finding.path for finding in found})]
@@ -62,7 +62,7 @@ def advice(directory: Path, found: list[Finding]) -> str:
             "the bytes that the manifest here lists"
         ),
         Kind.DERIVED: f"what is made from the data files is made again by: rubgen repair {directory}",
-        Kind.STRANGE: "files that are not listed are no part of the set: move them elsewhere",
+        Kind.UNLISTED: "files that are not listed are no part of the set: move them elsewhere",
     }
     whole = [] if Kind.DATA in kinds else ["the data files are whole"]
     return "; ".join([*whole, *(text for kind, text in sentences.items() if kind in kinds)])

@@ -150,7 +150,7 @@ def test_a_stray_file_is_found(name, copied_shown_set):
     (copied_shown_set / name).write_text("x")
     shown = "new" if name == "new/x" else name
     assert rubgen.verify(copied_shown_set) == [f"{shown}: not listed in the manifest"]
-    assert {finding.kind for finding in findings(copied_shown_set)} == {Kind.STRANGE}
+    assert {finding.kind for finding in findings(copied_shown_set)} == {Kind.UNLISTED}
 
 
 def test_what_systems_leave_and_reports_are_no_strays(copied_shown_set):

@@ -11,7 +11,7 @@ import pytest
 from filelock import FileLock
 
 import rubgen
-from rubgen.dataset.checking.inventory import strangers
+from rubgen.dataset.checking.inventory import unlisted_files
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.making import generate as generating
 from rubgen.dataset.making.claim import check_same
@@ -38,7 +38,7 @@ def fake_simulate(short_records, make_synthetic_run, monkeypatch):
 
 
 def _stray_files(directory):
-    return list(strangers(Layout(directory), read_manifest(Layout(directory))))
+    return list(unlisted_files(Layout(directory), read_manifest(Layout(directory))))
 
 
 def make(out, **changes):
