@@ -10,9 +10,9 @@ from rubgen.io.mcap.content import (
     check_order,
     check_other,
     checked_scenario,
+    decoded,
     message_name,
     read_content,
-    rows,
 )
 from rubgen.io.mcap.messages import read_sample_block
 from rubgen.io.mcap.read import run_of
@@ -100,7 +100,7 @@ def _check_messages(content: McapContent, topic: str) -> None:
     if message_name(topic) is None:
         check_other(content, topic)
         return
-    for record, row in zip(content.messages.get(topic, []), rows(content, topic), strict=True):
+    for record, row in zip(content.messages.get(topic, []), decoded(content, topic), strict=True):
         if row.timestamp.seconds * 10**9 + row.timestamp.nanos != record.log_time:
             raise DamageError(f"{topic}: a message of another time than its record at {1e-9 * record.log_time:.6g} s")
 

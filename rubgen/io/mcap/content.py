@@ -123,7 +123,7 @@ def message_name(topic: str) -> str | None:
     return next(names, None)
 
 
-def rows(content: McapContent, topic: str) -> list[Any]:
+def decoded(content: McapContent, topic: str) -> list[Any]:
     """Decode the messages of a topic. The list is empty where the topic is missing.
 
     Raises DamageError where the topic carries another message or the bytes cannot be decoded.
@@ -172,13 +172,13 @@ def _check_schema(content: McapContent, channel: Channel, name: str, encoding: s
         )
 
 
-def columns(content: McapContent, topic: str, scenario: Scenario) -> dict[str, FloatArray]:
+def event_columns(content: McapContent, topic: str, scenario: Scenario) -> dict[str, FloatArray]:
     """Decode the events of a topic, such as contacts, into one array (n_events,) for each field of their message.
 
     `scenario` tells how many blades there are and how long the recording is. Raises DamageError where a value is not
     finite, a blade does not exist, or events are outside of the recording or not in order.
     """
-    found = rows(content, topic)
+    found = decoded(content, topic)
     names = [each.name for each in message_class(message_name(topic) or "").DESCRIPTOR.fields]
     values = {
         name: np.array([getattr(row, name) for row in found], dtype=np.float64) for name in names if name != "timestamp"

@@ -17,9 +17,9 @@ from rubgen.io.mcap.content import (
     check_order,
     checked_labels,
     checked_scenario,
-    columns,
+    decoded,
+    event_columns,
     read_content,
-    rows,
 )
 from rubgen.io.mcap.messages import read_sample_block
 from rubgen.io.mcap.records import DamageError, damage_found
@@ -38,7 +38,7 @@ def read_frames(content: McapContent, scenario: Scenario) -> MotionFrames | None
 
     Raises DamageError where their sizes do not fit each other or the machine, or times do not ascend in the recording.
     """
-    found, shapes = rows(content, FRAMES), rows(content, MODES)
+    found, shapes = decoded(content, FRAMES), decoded(content, MODES)
     if not found or not shapes:
         return None
     check_order(content, FRAMES)
@@ -135,9 +135,11 @@ def run_of(content: McapContent, *, gaps: bool = False, channels: Collection[str
         signals=_signals(content, "/raw/", scenario, gaps=gaps),
         clean=_signals(content, "/clean/", scenario, gaps=gaps),
         channels={topic.removeprefix("/raw/"): content.channels[topic].metadata for topic in content.topics("/raw/")},
-        contacts=columns(content, "/contact", scenario),
-        once_per_rev=columns(content, "/once_per_rev", scenario)["time_s"],
-        tip_timing={topic.removeprefix(TIMING): columns(content, topic, scenario) for topic in content.topics(TIMING)},
+        contacts=event_columns(content, "/contact", scenario),
+        once_per_rev=event_columns(content, "/once_per_rev", scenario)["time_s"],
+        tip_timing={
+            topic.removeprefix(TIMING): event_columns(content, topic, scenario) for topic in content.topics(TIMING)
+        },
         frames=read_frames(content, scenario),
         motion_classes=_motion_classes(content),
     )
@@ -194,7 +196,7 @@ def _samples(content: McapContent, topic: str, rate: float, length: int | None) 
 
 
 def _motion_classes(content: McapContent) -> dict[str, list[tuple[float, str]]]:
-    found = rows(content, "/labels/motion")
+    found = decoded(content, "/labels/motion")
     check_order(content, "/labels/motion")
     known = {motion.value for motion in Motion}
     for row in found:
