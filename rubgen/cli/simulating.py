@@ -26,7 +26,7 @@ from rubgen.scenario import Scenario, make_scenario
 from rubgen.scenario.faults import FAULT_KEYS, kind_of
 from rubgen.scenario.vary import varied_values
 from rubgen.solver import Status
-from rubgen.solver.linear.reach import no_rub
+from rubgen.solver.linear.reach import no_rub_warning
 from rubgen.units import rev_per_min
 from rubgen.viz.replay import replay_of
 
@@ -54,7 +54,7 @@ def simulate_command(
     if out:
         check_new_file("--out", out, tuple(sorted(f".{name}" for name in FORMAT_NAMES)), force=force)
     scenario = _scenario(options)
-    text = no_rub([scenario])
+    text = no_rub_warning([scenario])
     if text:
         warn(text)
     with file_named(options["machine"]):

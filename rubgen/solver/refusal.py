@@ -108,7 +108,7 @@ def stability(system: SpinningSystem) -> tuple[Refusal | None, float]:
     return (Status.UNSTABLE, largest + (undying if abs(decay) <= UNDYING_SHARE * system.speed else "")), decay
 
 
-def no_run(scenarios: Sequence[Scenario]) -> str | None:
+def no_run_warning(scenarios: Sequence[Scenario]) -> str | None:
     """Return one line where none of these runs can be integrated, with the reason of the first; None where one can."""
     reasons = []
     for scenario in scenarios:

@@ -76,8 +76,8 @@ def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple
     """
     from rubgen.pipeline import simulate
     from rubgen.reduction import reduce
-    from rubgen.solver.linear.reach import no_rub
-    from rubgen.solver.refusal import no_run
+    from rubgen.solver.linear.reach import no_rub_warning
+    from rubgen.solver.refusal import no_run_warning
 
     for corner in corners:
         reduce(corner.machine, corner.reduction)
@@ -85,7 +85,7 @@ def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple
     operation = replace(operation, closing_turns=WARM_UP_TURNS)
     with suppress(UserError):  # this run's own values, not the recipe's ends: it will be recorded as refused
         simulate(replace(scenario, operation=operation, signal_seconds=5 / operation.rotation_frequency_hz))
-    text = no_run(first_runs) or no_rub(first_runs)
+    text = no_run_warning(first_runs) or no_rub_warning(first_runs)
     return [*pending_warnings, text] if text else pending_warnings
 
 

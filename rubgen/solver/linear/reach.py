@@ -18,7 +18,7 @@ SPEEDS = 9
 """Number of speeds at which a changing speed is checked, first and last included."""
 
 
-def no_rub(scenarios: Sequence[Scenario]) -> str | None:
+def no_rub_warning(scenarios: Sequence[Scenario]) -> str | None:
     """Return one line where no blade reaches the casing in the rub-free motion of any of these runs, else None.
 
     A run starts from that motion and keeps it where nothing touches. The search ends at the first run that rubs.

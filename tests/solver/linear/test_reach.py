@@ -11,8 +11,8 @@ from rubgen.dataset.reading.open import DataSet
 from rubgen.errors import RubgenWarning
 from rubgen.pipeline import simulate
 from rubgen.scenario import Labelling, load_recipe, make_scenario, parse_recipe
-from rubgen.solver.linear.reach import deepest, no_rub
-from rubgen.solver.refusal import no_run
+from rubgen.solver.linear.reach import deepest, no_rub_warning
+from rubgen.solver.refusal import no_run_warning
 
 DATASETS = Path(__file__).parents[3] / "datasets"
 SLOW = {
@@ -34,20 +34,20 @@ def test_the_penetration_is_that_of_the_run(speed):
     assert at == pytest.approx(speed)
     assert depth == pytest.approx(response.free_penetration, abs=1e-7)
     rubs = bool(response.contact_steps_per_turn.any())
-    assert rubs == (depth > 0) == (no_rub([scenario, scenario]) is None) == (speed > 5000)
+    assert rubs == (depth > 0) == (no_rub_warning([scenario, scenario]) is None) == (speed > 5000)
 
 
 def test_speeds_in_rad_per_s_are_asked_about_where_they_would_rub():
-    text = no_rub([parse_recipe(SLOW).scenario(index) for index in range(2)])
+    text = no_rub_warning([parse_recipe(SLOW).scenario(index) for index in range(2)])
     assert text.startswith(
         "no blade can reach the casing in any of the 2 runs looked at: the largest free penetration "
     )
     assert "; were rad/s meant? A blade would: " in text
     for values in ({"speed_rpm": 4000}, {"clearance_m": 2e-3}):
         scenario = make_scenario(**values)
-        assert "rad/s" not in no_rub([scenario, scenario])
-        assert no_rub([scenario]) is None  # one run without rub may be meant
-    assert "in this run" in no_rub([make_scenario(speed_rpm=1000.0)])
+        assert "rad/s" not in no_rub_warning([scenario, scenario])
+        assert no_rub_warning([scenario]) is None  # one run without rub may be meant
+    assert "in this run" in no_rub_warning([make_scenario(speed_rpm=1000.0)])
 
 
 def test_a_run_up_is_looked_at_over_its_speeds():
@@ -60,7 +60,7 @@ def test_a_run_up_is_looked_at_over_its_speeds():
 @pytest.mark.parametrize("name", [None, "rig", "speed-sweep", "three-lobes", "run-up"])
 def test_what_is_shipped_can_rub(name):
     recipe = load_recipe(DATASETS / f"{name}.toml" if name else None)
-    assert no_rub([recipe.scenario(index) for index in range(3)]) is None
+    assert no_rub_warning([recipe.scenario(index) for index in range(3)]) is None
 
 
 GROWN = {"speed_rpm": 16_000, "ovality_m": 0.0, "clearance_m": 3e-4}
@@ -73,9 +73,9 @@ FAILING = [
 @pytest.mark.parametrize(("keys", "status", "reason"), FAILING, ids=["grown", "unstable"])
 def test_a_set_of_which_no_run_can_be_made_is_told_before(keys, status, reason, tmp_path):
     failing, good = make_scenario(signal_seconds=0.1, **keys), make_scenario(signal_seconds=0.1)
-    assert no_rub([failing] * 2) is None or status != "refused"
-    assert no_run([failing, good]) is None
-    assert no_run([failing]).startswith(f"the run cannot be integrated: {reason}")
+    assert no_rub_warning([failing] * 2) is None or status != "refused"
+    assert no_run_warning([failing, good]) is None
+    assert no_run_warning([failing]).startswith(f"the run cannot be integrated: {reason}")
     recipe = SLOW | {"vary": keys, "output": {"formats": ["parquet"], "signal_seconds": 0.1}}
     with pytest.warns(RubgenWarning) as found:
         made = generate(recipe, tmp_path / "set", workers=1)
