@@ -20,6 +20,7 @@ from rubgen.reduction import reduce
 from rubgen.scenario import Scenario
 from rubgen.solver import Response, Status
 from rubgen.solver.integrate import integrate
+from rubgen.solver.linear.reach import with_clearance
 from rubgen.solver.refusal import no_response
 from rubgen.solver.wants import Wants
 
@@ -90,6 +91,7 @@ def simulate(scenario: Scenario) -> Run:
         raise UserError(f"{scenario!r:.200}: is no scenario; give rubgen.make_scenario(...) or recipe.scenario(0)")
     operation, sensing, seconds = scenario.operation, scenario.sensing, scenario.signal_seconds
     with one_blas_thread():
+        scenario = with_clearance(scenario)
         model = reduce(scenario.machine, scenario.reduction)
         with _shown_step():
             response = integrate(

@@ -61,6 +61,7 @@ def simulate(
     machine: MachineName = "zeng2019",
     speed_rpm: Annotated[float | None, _option("Spin speed, rev/min; 10,000 when not given.")] = None,
     clearance_m: Annotated[float | None, _option("Smallest gap at rest, m.")] = None,
+    free_penetration_m: Annotated[float | None, _option("In place of it: depth of tips without contact, m.")] = None,
     ovality_m: Annotated[float | None, _option("Largest minus smallest radius of the casing, m.")] = None,
     disk_support_stiffness_n_per_m: Annotated[float | None, _option("Lateral, X and Y, N/m.")] = None,
     casing_support_stiffness_n_per_m: Annotated[

@@ -19,7 +19,7 @@ from rubgen.scenario.profiles import check_used
 from rubgen.scenario.recipe import Recipe
 from rubgen.scenario.scenario import ProfileName, Scenario
 from rubgen.scenario.surroundings import Surroundings
-from rubgen.scenario.vary import KEYS, vary
+from rubgen.scenario.vary import DRAWN, FREE_PENETRATION, TWO_CLEARANCES, vary
 
 P = ParamSpec("P")
 TABLES = {
@@ -55,6 +55,7 @@ def make_scenario(
     *,
     speed_rpm: float | None = None,
     clearance_m: float | None = None,
+    free_penetration_m: float | None = None,
     ovality_m: float | None = None,
     disk_support_stiffness_n_per_m: float | None = None,
     casing_support_stiffness_n_per_m: float | None = None,
@@ -91,6 +92,7 @@ def make_scenario(
     - `machine`: name of a preset ("zeng2019"), or path of a machine TOML
     - `speed_rpm`: spin speed in rev/min, of a run-up or coast-down at its start, > 0; 10,000 when not given
     - `clearance_m`: smallest gap between blade tips and casing at rest in m, > 0
+    - `free_penetration_m`: how deep tips would be without contact in m; the clearance follows from it, in its place
     - `ovality_m`: largest minus smallest radius of the casing's inner surface in m, >= 0
     - `disk_support_stiffness_n_per_m`: lateral stiffness of the disk support, mean of X and Y, in N/m, > 0
     - `casing_support_stiffness_n_per_m`: radial and circumferential stiffness under each casing node in N/m, > 0
@@ -130,7 +132,9 @@ def make_scenario(
 
 
 def _checked_scenario(given: dict[str, Any], fault_keys: dict[str, Any]) -> Scenario:
-    values, varied = _recipe_values(given), {key: given[key] for key in KEYS if key in given}
+    values, varied = _recipe_values(given), {entry.key: given[entry.key] for entry in DRAWN if entry.key in given}
+    if FREE_PENETRATION.key in varied and "clearance_m" in varied:
+        raise UserError(TWO_CLEARANCES)
     levels = {key: given[key] for key in SURROUNDINGS_KEYS if key in given}
     around = validated("", levels, _SURROUNDINGS) if levels else None
     recipe = validated("", values | ({"surroundings": levels} if levels else {}), _RECIPE, _key_alone)

@@ -15,6 +15,7 @@ PROFILES_OF: dict[str, tuple[ProfileName, ...]] = {
     "duration_s": ("run-up", "coast-down", "fluctuating"),
     "fluctuation_rpm": ("fluctuating",),
     "fluctuation_period_s": ("fluctuating",),
+    "free_penetration_m": ("steady",),
     "record_turns": ("steady",),
     "lyapunov": ("steady",),
 }

@@ -41,7 +41,15 @@ from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.profiles import check_used
 from rubgen.scenario.scenario import Labelling, Operation, ProfileName, Reduction, Scenario, Sensing
 from rubgen.scenario.surroundings import SurroundingsTable, drawn, extremes
-from rubgen.scenario.vary import DEFAULT_SPEED_RPM, PARAMETERS, Parameter, sobol_point, vary
+from rubgen.scenario.vary import (
+    DEFAULT_SPEED_RPM,
+    DRAWN,
+    FREE_PENETRATION,
+    TWO_CLEARANCES,
+    Parameter,
+    sobol_point,
+    vary,
+)
 from rubgen.sensors.load import DEFAULT_SET, load_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
 
@@ -101,7 +109,7 @@ class Sensors(BaseModel):
 def _vary_fields() -> dict[str, Any]:
     return {
         entry.key: (Distribution | None, Field(default=None, description=f"{entry.meaning}, {entry.unit}"))
-        for entry in PARAMETERS
+        for entry in DRAWN
     }
 
 
@@ -182,7 +190,7 @@ class Recipe(BaseModel):
 
     def distributions(self) -> Iterator[tuple[Parameter, Distribution]]:
         """The keys of the recipe with their distributions, in the order of the registry."""
-        for entry in PARAMETERS:
+        for entry in DRAWN:
             distribution = getattr(self.vary, entry.key)
             if distribution is not None:
                 yield entry, distribution
@@ -298,6 +306,8 @@ def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | 
     if len(set(recipe.output.formats)) != len(recipe.output.formats):
         raise UserError(f"{source}: output.formats = {list(recipe.output.formats)}: name each format once")
     _check_whole(recipe, source)
+    if {"clearance_m", FREE_PENETRATION.key} <= {entry.key for entry, _ in recipe.distributions()}:
+        raise UserError(f"{source}: vary.{TWO_CLEARANCES}")
     try:
         recipe.base  # noqa: B018  (reads the machine file)
     except UserError as error:

@@ -20,6 +20,7 @@ from rubgen.machine.quantities import (
     Duration,
     ModeCount,
     NoiseScale,
+    Penetration,
     Rate,
     Seed,
     Speed,
@@ -146,6 +147,8 @@ class Scenario:
     """One run, complete. The same scenario always makes the same bytes.
 
     `fault_kinds` are the kinds of fault that runs of its recipe may have; those of this run are in its machine.
+    With `free_penetration_m` the clearance follows from the rub-free motion (`solver.linear.reach.with_clearance`);
+    until then the machine has another clearance.
     """
 
     machine: Machine
@@ -156,6 +159,7 @@ class Scenario:
     labelling: Labelling = Labelling()
     surroundings: Surroundings | None = None
     fault_kinds: tuple[str, ...] = ()
+    free_penetration_m: Penetration | None = None
     signal_seconds: Duration = 1.0
     seed: Seed = 0
     index: Seed = 0
@@ -190,4 +194,6 @@ def scenario_dict(scenario: Scenario) -> dict[str, object]:
         del values["surroundings"]
     if not scenario.fault_kinds:
         del values["fault_kinds"]
+    if scenario.free_penetration_m is None:
+        del values["free_penetration_m"]
     return values

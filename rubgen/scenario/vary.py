@@ -25,6 +25,7 @@ from rubgen.machine.quantities import (
     Height,
     Length,
     Lobes,
+    Penetration,
     Speed,
     SpeedSwing,
     Stiffness,
@@ -169,10 +170,20 @@ PARAMETERS = (
         ("machine.unbalance_angle_deg",),
     ),
 )
+FREE_PENETRATION = Parameter(
+    "free_penetration_m",
+    "m",
+    "how deep tips would be without contact; the clearance follows from it",
+    Penetration,
+    ("free_penetration_m",),
+)
+"""Drawn in place of the clearance. It is no column of its own: the clearance that follows is one."""
+DRAWN = (*PARAMETERS, FREE_PENETRATION)
+TWO_CLEARANCES = "free_penetration_m: stands beside clearance_m, which follows from it; keep one of the two"
 KEYS = tuple(parameter.key for parameter in PARAMETERS)
 KEYS_AT = {place: parameter.key for parameter in PARAMETERS for place in parameter.places}
 """The key of a place of the scenario."""
-_FIELDS: dict[str, Any] = {parameter.key: (parameter.quantity, None) for parameter in PARAMETERS}
+_FIELDS: dict[str, Any] = {parameter.key: (parameter.quantity, None) for parameter in DRAWN}
 _VALUES: TypeAdapter[Any] = TypeAdapter(create_model("Values", __config__=STRICT, **_FIELDS))
 
 
@@ -185,7 +196,7 @@ def vary(scenario: Scenario, values: Mapping[str, float], source: str = "", tabl
     Raises UserError for an unknown key or a value out of range.
     """
     checked = validated(source, dict(values), _VALUES, lambda path: (*table, *path))
-    for entry in PARAMETERS:
+    for entry in DRAWN:
         if entry.key in values:
             scenario = entry.apply(scenario, getattr(checked, entry.key))
     return scenario
@@ -213,4 +224,4 @@ def sobol_point(seed: int, index: int) -> dict[str, float]:
     if index:
         engine.fast_forward(index)  # fast_forward(0) overflows
     point: FloatArray = engine.random(1)[0]
-    return dict(zip(KEYS, point.tolist(), strict=False))
+    return {**dict(zip(KEYS, point.tolist(), strict=False)), FREE_PENETRATION.key: float(point[-1])}

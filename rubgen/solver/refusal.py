@@ -10,6 +10,7 @@ from rubgen.reduction import reduce
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Operation, Scenario
 from rubgen.solver.linear.admissible import check_system
+from rubgen.solver.linear.reach import with_clearance
 from rubgen.solver.linear.rub_free import rub_free_motion
 from rubgen.solver.linear.stability import slowest_decay, steps_per_turn
 from rubgen.solver.observers.touches import contact_events
@@ -122,9 +123,11 @@ def no_run_warning(scenarios: Sequence[Scenario]) -> str | None:
 
 def _refusal(scenario: Scenario) -> str | None:
     """Return why `integrate` would refuse the run, from its first, slowest and fastest speed."""
-    operation, model = scenario.operation, reduce(scenario.machine, scenario.reduction)
+    operation = scenario.operation
     speeds = (operation.rotation.start, operation.rotation.slowest, operation.rotation.fastest)
     try:
+        scenario = with_clearance(scenario)
+        model = reduce(scenario.machine, scenario.reduction)
         systems = [model.at_speed(speed) for speed in dict.fromkeys(speeds)]
         for system in systems:
             check_system(system)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from rubgen.solver.linear.admissible import check_system
 from rubgen.solver.linear.rub_free import free_penetration, rub_free_motion
 from rubgen.units import rad_per_s, rev_per_min
 
+LEAST_CLEARANCE_M = 1e-7
+"""The least clearance that a machine may have."""
 SPEEDS = 9
 """Number of speeds at which a changing speed is checked, first and last included."""
 
@@ -48,12 +51,37 @@ def no_rub_warning(scenarios: Sequence[Scenario]) -> str | None:
     )
 
 
+def with_clearance(scenario: Scenario) -> Scenario:
+    """The scenario with the clearance that gives its `free_penetration_m`; the same scenario where it has none.
+
+    A larger clearance moves the undeformed surface outward and leaves the rub-free motion as it is. One correction is
+    therefore exact but for rounding, at the speed of the run and at the beginning of its record. Raises UserError where
+    there is no such clearance.
+    """
+    wanted, casing = scenario.free_penetration_m, scenario.machine.casing
+    if wanted is None:
+        return scenario
+    model = reduce(scenario.machine, scenario.reduction)
+    system = model.at_speed(scenario.operation.speed_rad_per_s)
+    depth = free_penetration(rub_free_motion(system), casing_surface(system, scenario.contact), blade_tips(system))
+    clearance = casing.clearance_m + depth - wanted
+    if clearance < LEAST_CLEARANCE_M:
+        most = casing.clearance_m + depth - LEAST_CLEARANCE_M
+        raise UserError(
+            f"free_penetration_m = {wanted:.6g}: at {scenario.operation.speed_rpm:g} rev/min it needs a clearance of "
+            f"{clearance:.3g} m at rest; lower it to at most {most:.4g}"
+        )
+    machine = replace(scenario.machine, casing=replace(casing, clearance_m=clearance))
+    return replace(scenario, machine=machine, free_penetration_m=None)
+
+
 def deepest(scenario: Scenario) -> tuple[float, float]:
     """Return the largest free penetration of a run in m, and its speed in rev/min. A negative penetration is a gap.
 
     A changing speed is checked at nine speeds from the slowest to the fastest, each as a steady speed. The amplitude of
     a run through a critical speed is smaller. Raises UserError where a speed makes no run.
     """
+    scenario = with_clearance(scenario)
     model, rotation = reduce(scenario.machine, scenario.reduction), scenario.operation.rotation
     speeds = [rotation.start] if rotation.is_steady else np.linspace(rotation.slowest, rotation.fastest, SPEEDS)
     return max((_penetration(model, scenario, float(speed)), rev_per_min(float(speed))) for speed in speeds)
@@ -70,7 +98,8 @@ def _question(scenarios: Sequence[Scenario]) -> str:
     """Return a question whether speeds were meant in rad/s, where a blade would then reach the casing."""
     fastest = max(scenarios, key=lambda each: each.operation.speed_rpm)
     rpm = rev_per_min(fastest.operation.speed_rpm)
-    if fastest.operation.speed_rpm * fastest.machine.tip_radius_m > MOST_TIP_SPEED:
+    drawn_depth = fastest.free_penetration_m is not None
+    if drawn_depth or fastest.operation.speed_rpm * fastest.machine.tip_radius_m > MOST_TIP_SPEED:
         return ""
     try:
         model = reduce(fastest.machine, fastest.reduction)
