@@ -22,6 +22,7 @@ check: $(VENV)/.installed-dev
 
 bench: $(VENV)/.installed-dev
 	$(BIN)/python -m benchmarks
+	$(BIN)/python -m benchmarks.page
 
 verification: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.verification
