@@ -110,8 +110,9 @@ def simulate(scenario: Scenario) -> Run:
             return Run(scenario=scenario, response=response, recording=None, labels=None)
         rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(scenario.index,)))
         recording = measure(
-            response, sensing, seconds=seconds, rng=rng, surroundings=scenario.surroundings, frame=scenario.frame
-        )
+            response, sensing, seconds=seconds, rng=rng, surroundings=scenario.surroundings, frame=scenario.frame,
+            faults=scenario.machine.faults,
+        )  # fmt: skip
         return Run(scenario=scenario, response=response, recording=recording, labels=label(response))
 
 

@@ -168,6 +168,7 @@ FrameOrder = Annotated[int, _whole(ge=0, le=100)]
 
 # Numbers of parts, of the mesh and of modes.
 BladeCount = Annotated[int, _whole(ge=1, le=1000)]
+BallCount = Annotated[int, _whole(ge=3, le=200)]
 BladeElements = Annotated[int, _whole(ge=1, le=200)]
 RadialElements = Annotated[int, _whole(ge=1, le=200)]
 CircumferentialElements = Annotated[int, _whole(ge=3, le=3600)]

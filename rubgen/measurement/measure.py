@@ -1,9 +1,13 @@
 """All channels and events of one run."""
 
+import zlib
+from collections.abc import Sequence
+
 import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
+from rubgen.machine.faults.fault import Fault
 from rubgen.machine.frame import Frame
 from rubgen.measurement.blade_tip_timing import TipTimes, blurred, tip_times
 from rubgen.measurement.chain import half_width_seconds, late_seconds, start_seconds
@@ -11,6 +15,7 @@ from rubgen.measurement.channel import Channel, Recording
 from rubgen.measurement.frame import FrameMotion, spread
 from rubgen.measurement.sampled import Source, feed_of, filtered, recorded
 from rubgen.measurement.shaft import pulse_channel, pulse_times, shaft_angle, shaft_speed
+from rubgen.measurement.strikes import force_of
 from rubgen.measurement.surroundings import Disturbances, Tail
 from rubgen.scenario import Sensing
 from rubgen.scenario.costs import STEPS_PER_SAMPLE
@@ -24,6 +29,8 @@ SURROUNDINGS_STREAM = 2**32 - 1
 """The child of a run's random numbers that its surroundings have: far beyond those of sensors."""
 FRAME_STREAM = SURROUNDINGS_STREAM - 1
 """The child that draws the frame."""
+STRIKES_STREAM = FRAME_STREAM - 1
+"""The child that draws the blows of faults."""
 
 
 def measure(
@@ -34,6 +41,7 @@ def measure(
     rng: np.random.Generator,
     surroundings: Surroundings | None = None,
     frame: Frame | None = None,
+    faults: Sequence[Fault] = (),
 ) -> Recording:
     """The channels and events of a run by the sensors of `sensing.set`.
 
@@ -48,6 +56,7 @@ def measure(
     - rng: random numbers.
     - surroundings: what sensors feel beside the motion; nothing with None.
     - frame: of the machine, which takes the force of the disk's support to sensors.
+    - faults: of the machine; only their blows on the frame count here.
 
     Raises UserError where the tail is too short for `seconds` and the filter, where the step rate is below 2.56 sample
     rates, and where a sensor or the surroundings need a frame and there is none.
@@ -59,9 +68,11 @@ def measure(
     start = start_seconds(sensing, seconds, steps=response.record_steps, dt=response.dt)
     pulses = pulse_times(response, float(angle[0]), start, covered)
     streams = dict(zip((sensor.name for sensor in sensors), rng.spawn(len(sensors)), strict=True))
-    motion = _frame_motion(frame, response, surroundings, rng) if frame else None
-    disturbances = _disturbances(surroundings, response, seconds, rng, motion) if surroundings else None
-    source = Source(response, shaft_angle(response, np.arange(response.tail_steps)), motion, disturbances)
+    tail = _tail(response, seconds)
+    motion = _frame_motion(frame, response, tail, surroundings, faults, rng) if frame else None
+    stream = _stream(rng, SURROUNDINGS_STREAM)
+    disturbances = Disturbances(surroundings, tail, stream, motion) if surroundings else None
+    source = Source(response, tail.angle, motion, disturbances)
     channels = _channels(source, sensing, positions, angle, streams)
     timing: dict[str, TipTimes] = {}
     for sensor in sensors:
@@ -130,35 +141,39 @@ def _channels(
 
 
 def _frame_motion(
-    frame: Frame, response: Response, surroundings: Surroundings | None, rng: np.random.Generator
-) -> FrameMotion:
-    """The motion of the run's own frame under the force on the disk's support."""
-    own = spread(frame, surroundings.frame_spread, _stream(rng, FRAME_STREAM)) if surroundings else frame
-    force = (response.taps["support_force_x"], response.taps["support_force_y"])
-    return FrameMotion(frame=own, force=force, dt=response.dt)
-
-
-def _disturbances(
-    surroundings: Surroundings,
+    frame: Frame,
     response: Response,
-    seconds: float,
+    tail: Tail,
+    surroundings: Surroundings | None,
+    faults: Sequence[Fault],
     rng: np.random.Generator,
-    motion: FrameMotion | None,
-) -> Disturbances:
-    """What the surroundings add to the taps over the tail of `response`."""
+) -> FrameMotion:
+    """Move the run's own frame by the force on the disk's support and by the blows of faults."""
+    own = spread(frame, surroundings.frame_spread, _stream(rng, FRAME_STREAM)) if surroundings else frame
+    x, y = response.taps["support_force_x"], response.taps["support_force_y"]
+    for fault in faults:
+        stream = _stream(rng, STRIKES_STREAM, zlib.crc32(type(fault).__name__.encode()))
+        strikes = fault.strikes(tail.turned, tail.speed, stream)
+        if strikes:
+            more = force_of(strikes, tail.turned, response.dt)
+            x, y = x + more[0], y + more[1]
+    return FrameMotion(frame=own, force=(x, y), dt=response.dt)
+
+
+def _tail(response: Response, seconds: float) -> Tail:
+    """Make the steps that are measured."""
     steps = np.arange(response.tail_steps)
-    tail = Tail(
+    return Tail(
         dt=response.dt,
         angle=shaft_angle(response, steps),
         speed=shaft_speed(response, steps),
         seconds=seconds,
         blades=response.n_blades,
     )
-    return Disturbances(surroundings, tail, _stream(rng, SURROUNDINGS_STREAM), motion)
 
 
-def _stream(rng: np.random.Generator, child: int) -> np.random.Generator:
-    """A child of the run's random numbers, whatever other children there are."""
+def _stream(rng: np.random.Generator, *child: int) -> np.random.Generator:
+    """Make a child of the run's random numbers, whatever other children there are."""
     own = rng.bit_generator.seed_seq
-    sequence = np.random.SeedSequence(own.entropy, spawn_key=(*own.spawn_key, child))  # type: ignore[attr-defined]
+    sequence = np.random.SeedSequence(own.entropy, spawn_key=(*own.spawn_key, *child))  # type: ignore[attr-defined]
     return np.random.default_rng(sequence)

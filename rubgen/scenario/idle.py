@@ -1,4 +1,6 @@
-"""Keys of the surroundings that change no channel of a run."""
+"""Keys of the surroundings, and faults, that change no channel."""
+
+from collections.abc import Sequence
 
 from rubgen.scenario.scenario import Scenario
 from rubgen.scenario.surroundings import Surroundings
@@ -41,3 +43,15 @@ def idle_surroundings(scenario: Scenario) -> dict[str, str]:
         why["frame_spread"] = "without path_gain or an accelerometer on the housing"
     names = {key: f"surroundings.{key}" for key in given if key in why}
     return {name: f"{name} = {given[key]:g}: changes no channel: {why[key]}" for key, name in names.items()}
+
+
+def idle(scenarios: Sequence[Scenario]) -> dict[str, str]:
+    """Return every key that changes no channel in any of the scenarios, with the words of a warning."""
+    around = [idle_surroundings(scenario) for scenario in scenarios if scenario.surroundings]
+    useless = {key: text for texts in around for key, text in texts.items()}
+    found = {key: text for key, text in useless.items() if all(key in texts for texts in around)}
+    striking = [fault for scenario in scenarios for fault in scenario.machine.faults if fault.STRIKES]
+    if striking and not any(scenario.frame for scenario in scenarios):
+        which = f"faults.{striking[0].kind}"
+        found[which] = f"{which}: changes no channel: without path_gain or an accelerometer on the housing"
+    return found

@@ -14,7 +14,7 @@ from rubgen.machine.machine import blisk_mass
 from rubgen.machine.quantities import Place, usual_values
 from rubgen.machine.schema_nodes import digits
 from rubgen.scenario.costs import steps_per_turn
-from rubgen.scenario.idle import idle_surroundings
+from rubgen.scenario.idle import idle
 from rubgen.scenario.scenario import Scenario
 from rubgen.scenario.vary import KEYS_AT
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
@@ -46,17 +46,14 @@ _QUARTERS = ("", "pi / 2", "pi", "3 pi / 2", "2 pi")
 def warn_of(scenarios: Iterable[Scenario], source: str = "") -> None:
     """Warn of each implausible key once, with its value in the first of the scenarios where it is implausible.
 
-    A level of the surroundings that no sensor feels is told where none of the scenarios needs it.
+    What changes no channel is told where that is so in all of them.
     """
+    checked = list(scenarios)
     found: dict[str, str] = {}
-    around: list[dict[str, str]] = []
-    for scenario in scenarios:
+    for scenario in checked:
         for text in implausible(scenario):
             found.setdefault(text.partition(" = ")[0], text)
-        if scenario.surroundings:
-            around.append(idle_surroundings(scenario))
-    useless = {key: text for texts in around for key, text in texts.items()}
-    found |= {key: text for key, text in useless.items() if all(key in texts for texts in around)}
+    found |= idle(checked)
     for text in found.values():
         warn(f"{source}{text}")
 

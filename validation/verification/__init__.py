@@ -23,6 +23,7 @@ _MODULES = (
     "rotors.turning_frame",
     "rotors.linear_faults",
     "rotors.growing_faults",
+    "sensors.bearing_defects",
     "contact.integrator",
     "contact.bouncing_bar",
     "contact.impact_oscillator",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.machine.faults.strikes import Strikes
 from rubgen.machine.support_laws.law import SupportLaw
 
 if TYPE_CHECKING:
@@ -83,6 +84,8 @@ class Fault(ABC):
     """
 
     SEVERITY: ClassVar[Severity]
+    STRIKES: ClassVar[bool] = False
+    """Whether it strikes the machine's frame."""
 
     @property
     @abstractmethod
@@ -112,3 +115,12 @@ class Fault(ABC):
     def support_laws(self, machine: Machine, speed: float) -> tuple[SupportLaw, ...]:
         """Forces on the disk centre that depend on the motion."""
         return ()
+
+    def strikes(self, turned: FloatArray, speed: FloatArray, rng: np.random.Generator) -> Strikes | None:
+        """Return its blows on the machine's frame, which move sensors and not the disk; None without any.
+
+        - turned (steps,): angle of the shaft at the steps, rad, rising. Blows are drawn back from the last one.
+        - speed (steps,): of the shaft there, rad/s.
+        - rng: random numbers.
+        """
+        return None

@@ -4,6 +4,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from rubgen.machine.faults.bearing_defect import BearingDefect
 from rubgen.machine.faults.bow import Bow
 from rubgen.machine.faults.casing_off_centre import CasingOffCentre
 from rubgen.machine.faults.closing_clearance import ClosingClearance
@@ -16,7 +17,8 @@ AnyFault = Annotated[
     | Bow
     | CasingOffCentre
     | GrowingUnbalance
-    | ClosingClearance,
+    | ClosingClearance
+    | BearingDefect,
     Field(discriminator="kind"),
 ]
 _KINDS: Any = AnyFault

@@ -1,0 +1,26 @@
+"""Forces of the blows that faults give the frame."""
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.machine.faults.strikes import Strikes
+
+
+def force_of(strikes: Strikes, turned: FloatArray, dt: float) -> tuple[FloatArray, FloatArray]:
+    """Forces (steps,) of blows along X and Y in N, linear between the steps, with each blow's impulse and time.
+
+    A blow of impulse J at the time (n + s) dt is the force (1 - s) J / dt at step n and s J / dt at step n + 1.
+
+    - strikes: the blows; those outside of the steps are left out.
+    - turned (steps,): angle of the shaft at the steps, rad, rising, on the scale of `strikes.turned`.
+    - dt: time step, s.
+    """
+    inside = (strikes.turned >= turned[0]) & (strikes.turned < turned[-1])
+    place = np.interp(strikes.turned[inside], turned, np.arange(turned.size))
+    step = np.minimum(place.astype(np.int64), turned.size - 2)
+    share, impulse, direction = place - step, strikes.impulse_n_s[inside], strikes.direction_rad[inside]
+    forces = np.zeros((2, turned.size))
+    for axis, along in enumerate((np.cos(direction), np.sin(direction))):
+        np.add.at(forces[axis], step, (1 - share) * along * impulse / dt)
+        np.add.at(forces[axis], step + 1, share * along * impulse / dt)
+    return forces[0], forces[1]
