@@ -154,10 +154,10 @@ def test_the_same_sources_in_another_place_share_the_kernels(small_package, tmp_
 
 def test_kernels_are_compiled_when_the_last_one_is(monkeypatch, tmp_path):
     """A compilation that was stopped has left most of the files."""
-    from rubgen.solver.scheme.turn_kernels import run_turn
+    from rubgen.solver.scheme.turn_kernels import run_turns
 
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
-    assert run_turn.__name__ == "run_turn"
-    for name, compiled in (("step_kernels.advance-262", False), ("turn_kernels.run_turn-165", True)):
+    assert run_turns.__name__ == "run_turns"
+    for name, compiled in (("step_kernels.advance-262", False), ("turn_kernels.run_turns-165", True)):
         cache_root.keep(tmp_path / "kernels" / kernel_key() / "solver" / f"{name}.py311.1.nbc", b"code")
         assert kernels_are_compiled() is compiled
