@@ -58,7 +58,7 @@ class Layout:
         return self.staging / "sections" / f"{run_id}.parquet"
 
     def section_shard(self, number: int, count: int) -> Path:
-        """Return the path of file number `number`, of `count`, with the compact records of the runs of that shard."""
+        """Return the path of the file with the compact records of the runs in data file `number` of `count`."""
         return self.sections / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
 
     def export(self, kind: str, run_id: str) -> Path:
@@ -70,7 +70,7 @@ class Layout:
         return [self.root / name if format_of(name).one_file_a_run else self.data for name in names]
 
     def shard(self, number: int, count: int) -> Path:
-        """Return the path of the data file number `number`, of `count`. Numbers begin at 0."""
+        """Return the path of the data file number `number`, from 0, of `count` files of up to RUNS_PER_SHARD runs."""
         return self.data / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
 
     def number_of_shards(self, good_runs: int) -> int:

@@ -1,4 +1,4 @@
-"""Compute amplitudes and phases of taps at multiples of the rotation frequency f_r, and orders above the noise."""
+"""Compute amplitudes and phases of taps, the true signals, at multiples of the rotation frequency f_r."""
 
 from dataclasses import dataclass
 from fractions import Fraction

@@ -55,12 +55,18 @@ def blade_harmonics(blades: int) -> FloatArray:
 
 
 def coupled(matrix: FloatArray) -> BoolArray:
-    """Return which entries of a matrix couple two coordinates: they exceed COUPLING_TOLERANCE times `scale_of`."""
+    """Return which entries of a matrix couple two coordinates. Smaller entries are rounding.
+
+    They exceed COUPLING_TOLERANCE times `scale_of`.
+    """
     return np.asarray(np.abs(matrix) > COUPLING_TOLERANCE * scale_of(matrix))
 
 
 def scale_of(matrix: FloatArray) -> FloatArray:
-    """Return for each entry of a matrix the geometric mean of its row's and its column's largest entry."""
+    """Return a scale for each entry of a matrix, against which it is small or not.
+
+    It is the geometric mean of the largest entries of its row and of its column.
+    """
     size = np.abs(matrix)
     scale = np.sqrt(np.maximum(size.max(axis=0), size.max(axis=1)))
     return np.asarray(np.multiply.outer(scale, scale))

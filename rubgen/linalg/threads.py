@@ -1,4 +1,4 @@
-"""One BLAS thread: more of them split sums otherwise, and change the last bits."""
+"""Keep BLAS to one thread: more threads split sums otherwise, and change the last bits."""
 
 from contextlib import AbstractContextManager
 from functools import cache
@@ -8,12 +8,12 @@ from threadpoolctl import ThreadpoolController
 
 
 def one_blas_thread() -> AbstractContextManager[object]:
-    """A context in which the BLAS libraries of numpy and scipy use one thread. Irregular motion magnifies last bits."""
+    """Let the BLAS libraries of numpy and scipy use one thread in the block. Irregular motion magnifies last bits."""
     limit: AbstractContextManager[object] = _controller().limit(limits=1, user_api="blas")
     return limit
 
 
 @cache
 def _controller() -> ThreadpoolController:
-    """The libraries of this process. It takes 3 ms to find them, so they are looked for once."""
+    """Return the libraries of this process. It takes 3 ms to find them, so they are looked for once."""
     return ThreadpoolController()

@@ -118,8 +118,8 @@ def whole_turn_weights(samples: int, turn: float) -> FloatArray | None:
 def resolved_impulse(row: Row, weights: FloatArray, noise_rms: float, step: float) -> float:
     """Return the smallest difference of impulse per turn, in N s, that the channel can show.
 
-    It is the sum of four known errors. `weights` are from `whole_turn_weights`; `noise_rms` and `step` are noise and
-    ADC step in N.
+    It is the sum of four known errors, for m recorded turns. `weights` are from `whole_turn_weights`; `noise_rms` and
+    `step` are noise and ADC step in N.
 
     - Noise of rms s and ADC steps d: the weighted mean has the standard error sqrt((s^2 + d^2 / 12) sum w^2).
     - The ADC's bias where noise does not dither it. The mean error of a rounded Gaussian is the series (d / pi) sum_k

@@ -52,7 +52,7 @@ def no_rub_warning(scenarios: Sequence[Scenario]) -> str | None:
 
 
 def with_clearance(scenario: Scenario) -> Scenario:
-    """The scenario with the clearance that gives its `free_penetration_m`; the same scenario where it has none.
+    """Return the scenario with the clearance that gives its `free_penetration_m`; the same scenario where it has none.
 
     A larger clearance moves the undeformed surface outward and leaves the rub-free motion as it is. One correction is
     therefore exact but for rounding, at the speed of the run and at the beginning of its record. Raises UserError where

@@ -39,7 +39,10 @@ def eigenvalues(system: SpinningSystem) -> ComplexArray:
 
 
 def slowest_decay(system: SpinningSystem) -> float:
-    """Return min(-Re s) in 1/s, which is 2 pi min(zeta f); negative for a linear system that grows by itself."""
+    """Return the decay rate of the slowest transient of the linear system, in 1/s; negative where it grows.
+
+    It is min(-Re s) over all `eigenvalues` s, which is 2 pi min(zeta f).
+    """
     return float(-eigenvalues(system).real.max())
 
 

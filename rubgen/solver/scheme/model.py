@@ -135,9 +135,9 @@ def at_speed(model: Model, part: SpeedPart, speed: float, angles: Angles, *, scr
 
 
 def angle_tables(system: SpinningSystem, theta: FloatArray, section: float = 0.0) -> Angles:
-    """Build the tables at the angles `theta` (steps + 2,) in rad of steps 0, ..., steps and -1.
+    """Tabulate sine and cosine of what depends on the blisk's angle, for the steps of a turn or part of one.
 
-    `section` is as in `Angles`.
+    `theta` (steps + 2,) are the angles of steps 0, ..., steps and -1 in rad. `section` is as in `Angles`.
     """
     orders = np.multiply.outer(theta, system.surface.order) - system.surface.order * system.surface.phase
     return frozen(Angles(theta, np.cos(theta), np.sin(theta), np.cos(orders), np.sin(orders), section))

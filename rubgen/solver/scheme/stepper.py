@@ -200,11 +200,14 @@ class Stepper:
         return self.touches._replace(ended=ended), Snapshots(self.snapshots.steps, z, step_gaps), results, ends
 
     def begin_record(self) -> None:
-        """Count the steps of present touches from here on."""
+        """Begin the record: a touch that is present counts its steps from here on."""
         self.touches.open[:, STEPS] = 0.0
 
     def end_record(self, clock: int) -> FloatArray:
-        """End the present touches at the step `clock`. Return them (any, 8), with the columns of `turn_kernels`."""
+        """End the record at the step `clock` of the run: end the touches that are present, and return them (any, 8).
+
+        The columns are those of `turn_kernels`: blade, first step, number of steps and so on.
+        """
         return self.touches.ended[: close_touches(self.touches, clock, 0)].copy()
 
     def clear_works(self) -> None:

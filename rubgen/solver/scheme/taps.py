@@ -107,14 +107,17 @@ def direction(angle_deg: float) -> tuple[float, float]:
 
 
 def along(angle_deg: float, first: int, second: int) -> FloatArray:
-    """Return the row that gives a vector's part along a direction, from the signals `first` (X) and `second` (Y)."""
+    """Return the row of a linear functional: the part of a vector along a direction, from two of the shaft's signals.
+
+    `first` and `second` are the numbers of its X and Y part in the signals.
+    """
     row = np.zeros(LANES)
     row[first], row[second] = direction(angle_deg)
     return row
 
 
 def only(signal: int) -> FloatArray:
-    """Return the row that gives one of the shaft's signals."""
+    """Return the row of a linear functional: one of the shaft's signals itself."""
     return np.asarray(np.eye(LANES)[signal])
 
 
