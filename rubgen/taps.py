@@ -1,4 +1,7 @@
-"""Taps: the signals that the solver can record at every step of a run, exactly, before any sensor. One class a kind."""
+"""Taps: the signals that the solver can record at every step of a run, exactly, before any sensor. One class a kind.
+
+O_d is the disk centre.
+"""
 
 from typing import Annotated, ClassVar
 

@@ -28,11 +28,12 @@ GAUSS_POINTS = 8
 
 @dataclass(frozen=True, kw_only=True)
 class BeamMatrices:
-    """One blade: dense (n, n) matrices and (n,) load, n = 6 (elements + 1), nodes from root to tip.
+    """The matrices of one blade: dense (n, n), with load (n,), n = 6 (elements + 1), nodes from root to tip.
 
-    The blade's share of the equation of motion in the turning frame at spin speed Omega is M q'' + 2 Omega G q' + (K +
-    Omega^2 (K_sigma - S)) q = Omega^2 f_c. `root_pull` is the axial force at the root at 1 rad/s, in N s^2. The rest of
-    the machine carries it and has its geometric stiffness.
+    M is mass, K elastic stiffness, G Coriolis (skew), S spin softening, K_sigma stiffness from centrifugal stress, f_c
+    centrifugal load at 1 rad/s. The blade's share of the equation of motion in the turning frame at spin speed Omega is
+    M q'' + 2 Omega G q' + (K + Omega^2 (K_sigma - S)) q = Omega^2 f_c. `root_pull` is the axial force at the root at 1
+    rad/s, in N s^2. The rest of the machine carries it and has its geometric stiffness.
     """
 
     M: FloatArray

@@ -1,4 +1,7 @@
-"""Assemble the full finite-element blisk in the turning frame: disk centre, disk, blades and their couplings."""
+"""Assemble the full finite-element blisk in the turning frame: disk centre, disk, blades and their couplings.
+
+O_d is the disk centre.
+"""
 
 from dataclasses import dataclass
 
@@ -25,10 +28,11 @@ CENTRE = np.arange(6)
 
 @dataclass(frozen=True, kw_only=True)
 class BliskModel:
-    """Full model: M q'' + 2 Omega G q' + (K + Omega^2 (K_sigma - S)) q = Omega^2 f_c + loads, K without supports.
+    """The full finite-element model of the blisk in the turning frame, without supports.
 
-    DoFs, six a node: O_d, the disk's nodes in o-xyz, then each blade's nodes from root to tip along the blade's own
-    axes. Matrices are (n, n).
+    M q'' + 2 Omega G q' + (K + Omega^2 (K_sigma - S)) q = Omega^2 f_c + loads. M is mass, G Coriolis (skew), K elastic
+    stiffness, S spin softening, K_sigma stiffness from centrifugal stress at 1 rad/s; matrices are (n, n). DoFs, six a
+    node: O_d, the disk's nodes in o-xyz, then each blade's nodes from root to tip along the blade's own axes.
     """
 
     M: SparseMatrix

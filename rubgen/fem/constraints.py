@@ -1,4 +1,7 @@
-"""Penalty couplings of the blisk, disk centre to bore and blade root to rim; its springs; direct solves."""
+"""Penalty couplings of the blisk, disk centre to bore and blade root to rim; its springs; direct solves.
+
+O_d is the disk centre.
+"""
 
 import numpy as np
 import scipy.sparse as sp

@@ -12,10 +12,11 @@ from rubgen.machine import Disk
 
 @dataclass(frozen=True, kw_only=True)
 class DiskModel:
-    """Matrices (6 n, 6 n) of the free disk: M mass, K elastic, G Coriolis (skew), S spin softening; f_c (6 n,).
+    """The free disk as shells: its mesh, and its matrices (6 n, 6 n) in the turning frame for n nodes.
 
-    The equations are M q'' + 2 Omega G q' + (K - Omega^2 S) q = Omega^2 f_c + loads, and the centrifugal stress is
-    added. `bore` (2 c,) are the nodes at the bore, `rim` (c,) the corner nodes at the rim, counter-clockwise from +x.
+    M is mass, K elastic stiffness, G Coriolis (skew), S spin softening, f_c (6 n,) centrifugal load at 1 rad/s. The
+    equations are M q'' + 2 Omega G q' + (K - Omega^2 S) q = Omega^2 f_c + loads, and the centrifugal stress is added.
+    `bore` (2 c,) are the nodes at the bore, `rim` (c,) the corner nodes at the rim, counter-clockwise from +x.
     """
 
     mesh: ShellMesh

@@ -17,10 +17,10 @@ BUBBLE_DOFS = np.array([51, 52])
 
 @dataclass(frozen=True)
 class ShellMesh:
-    """Nodes (n, 2) in m, elements (e, 8) in the order of serendipity nodes, thickness in m at points (..., 2).
+    """A mesh of eight-node shells: nodes (n, 2) in m, elements (e, 8) in the order of serendipity nodes.
 
-    In every group of `around` elements, the others are the first one turned about the origin by 2 pi / around, 4 pi /
-    around, ...
+    `thickness` returns the thickness in m at points (..., 2). In every group of `around` elements, the others are the
+    first one turned about the origin by 2 pi / around, 4 pi / around, ...
     """
 
     nodes: FloatArray
@@ -53,9 +53,10 @@ class ShellMesh:
 
 @dataclass(frozen=True)
 class Quadrature:
-    """Values at the points q of every element e: N (q, 9), dN/d(x, y) (e, q, 9, 2), h (e, q), dA (e, q).
+    """Values at the quadrature points q of every element e: N (q, 9), dN/d(x, y) (e, q, 9, 2), h (e, q), dA (e, q).
 
-    The ninth function is the bubble (1 - xi^2)(1 - eta^2); only the rotations have it.
+    N are the shape functions, h the thickness in m, dA the area of the point in m2. The ninth function is the bubble (1
+    - xi^2)(1 - eta^2); only the rotations have it.
     """
 
     N: FloatArray

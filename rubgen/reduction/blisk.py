@@ -1,4 +1,7 @@
-"""Reduce the blisk by Craig-Bampton in two steps, with its basis at rest."""
+"""Reduce the blisk by Craig-Bampton in two steps, with its basis at rest.
+
+O_d is the disk centre.
+"""
 
 from dataclasses import dataclass
 
@@ -18,7 +21,10 @@ from rubgen.scenario import Reduction
 
 @dataclass(frozen=True, kw_only=True)
 class ReducedBlisk:
-    """Blisk with n DoFs without supports: tips' translations along the blades' axes, O_d x and y, modes."""
+    """The reduced blisk with n DoFs, without supports.
+
+    The DoFs are the tips' translations along the blades' axes, x and y of the disk centre O_d, and modes.
+    """
 
     M: FloatArray
     """Mass (n, n)."""

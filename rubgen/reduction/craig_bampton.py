@@ -1,4 +1,7 @@
-"""Reduce one component by Craig and Bampton's method, with the rotational symmetry of the disk."""
+"""Reduce one component by Craig and Bampton's method, with the rotational symmetry of the disk.
+
+O_d is the disk centre.
+"""
 
 from dataclasses import dataclass
 

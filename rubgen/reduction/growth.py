@@ -1,4 +1,7 @@
-"""Compute the steady centrifugal displacement of the blade tips, from the full model."""
+"""Compute the steady centrifugal displacement of the blade tips, from the full model.
+
+O_d is the disk centre.
+"""
 
 from dataclasses import dataclass
 

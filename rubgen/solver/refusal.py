@@ -1,4 +1,7 @@
-"""Refuse runs that cannot be integrated: the reason, known before the run, and the response."""
+"""Refuse runs that cannot be integrated: the reason, known before the run, and the response.
+
+O_d is the disk centre.
+"""
 
 import math
 from collections.abc import Sequence

@@ -1,4 +1,7 @@
-"""Compute growth or decay of small disturbances of the rub-free motion, with uneven supports or a squeeze film."""
+"""Compute growth or decay of small disturbances of the rub-free motion, with uneven supports or a squeeze film.
+
+O_d is the disk centre.
+"""
 
 import math
 from dataclasses import replace

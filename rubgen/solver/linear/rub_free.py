@@ -1,4 +1,7 @@
-"""Compute the rub-free motion: static in the turning frame, or periodic with uneven supports or gravity."""
+"""Compute the rub-free motion: static in the turning frame, or periodic with uneven supports or gravity.
+
+O_d is the disk centre.
+"""
 
 import math
 from dataclasses import dataclass
