@@ -77,7 +77,7 @@ def test_all_other_runs_are_integrated(small_system, turning, operation, case, m
     def never(*_, **__):
         raise AssertionError("made from one turn")
 
-    monkeypatch.setattr(solver.RepeatedDriver, "run_turn", never)
+    monkeypatch.setattr(solver.RepeatedDriver, "run_turns", never)
     system, law, wants = small_system(**FREE), ContactLaw(), Wants(repeats_free_turn=True)
     short = operation(system, record_turns=5, settle_turns=45)
     with pytest.raises(AssertionError, match="one turn"):
