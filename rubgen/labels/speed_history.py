@@ -74,13 +74,13 @@ def speed_history(response: Response) -> SpeedHistory:
     )
 
 
-def changing_motion(rub: bool) -> Motions:
-    """Return the motion of a whole record whose speed changes: the forced whirl without rub, else undecided."""
-    return (
-        Motions(blisk=UNDECIDED, casing=UNDECIDED, system=UNDECIDED)
-        if rub
-        else Motions(blisk=FORCED, casing=AT_REST, system=FORCED)
-    )
+def changing_motion(response: Response, rub: bool) -> Motions:
+    """Return the motion of a whole record at a changing speed: the forced whirl if it is known and without rub.
+
+    It is undecided with rub, and where supports that are not linear leave the motion without rub unknown.
+    """
+    blisk = UNDECIDED if rub or not response.knows_free_motion else FORCED
+    return Motions(blisk=blisk, casing=UNDECIDED if rub else AT_REST, system=blisk)
 
 
 def changing_orders(windows: Windows) -> dict[str, TapOrders]:
@@ -173,7 +173,7 @@ def _rubbing(response: Response) -> BoolArray:
 
 def _state(response: Response, first: int, last: int, *, rub: bool) -> tuple[bool, Motion, Motion, Motion]:
     """Return rub, and motion of blisk, casing and both, of the turns first .. last - 1."""
-    if not rub:
+    if not rub and response.knows_free_motion:
         window = _cut(response, first, last)
         casing = AT_REST if casing_rests(window) else UNDECIDED
         return rub, FORCED.motion, casing.motion, FORCED.motion if casing is AT_REST else UNDECIDED.motion

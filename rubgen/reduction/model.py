@@ -1,7 +1,7 @@
 """The reduced system at one speed, as the solver takes it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.machine.faults.fault import Narrowing, Ramp
@@ -84,6 +84,16 @@ class TurningForces:
         """Whether a force depends on the angle alone, so that the rub-free motion moves in the turning frame."""
         return self.weight is not None or self.loads is not None
 
+    @property
+    def uneven(self) -> bool:
+        """Whether the forces of supports and laws depend on theta."""
+        return bool(self.stiffness or self.damping) or any(law.TURNS for law in self.laws)
+
+    @property
+    def stiffening(self) -> float:
+        """By how much uneven springs and laws stiffen the support at most, N/m."""
+        return abs(self.stiffness) + sum(law.stiffening_n_per_m for law in self.laws)
+
 
 @dataclass(frozen=True, kw_only=True)
 class SpinningSystem:
@@ -138,6 +148,15 @@ class SpinningSystem:
     """How the clearance closes within the record."""
     spring_load: FloatArray | None = None
     """Part (2,) of `force` on O_d that the lateral springs apply, because a bow moves their place of rest, N."""
+
+    @property
+    def starting(self) -> "SpinningSystem":
+        """The system without laws whose motion settles; itself where it has none. Its motion without rub is known."""
+        forces = self.turning
+        if forces is None or not any(law.SETTLES for law in forces.laws):
+            return self
+        known = tuple(law for law in forces.laws if not law.SETTLES)
+        return replace(self, turning=replace(forces, laws=known))
 
     @property
     def centre(self) -> int:

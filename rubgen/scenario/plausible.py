@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from rubgen.errors import warn
 from rubgen.machine import Machine
-from rubgen.machine.machine import blisk_mass
+from rubgen.machine.mass import blisk_mass
 from rubgen.machine.quantities import Place, usual_values
 from rubgen.machine.schema_nodes import digits
 from rubgen.scenario.costs import steps_per_turn
@@ -69,6 +69,13 @@ def _usual(scenario: Scenario) -> Iterator[str]:
         doubt = usual.doubt(value)
         if doubt:
             yield f"{_key(scenario, place)} = {value:g}: {doubt}"
+
+
+def _faults(scenario: Scenario) -> Iterator[str]:
+    for fault in scenario.machine.faults:
+        doubt = fault.doubt(scenario.machine, scenario.operation.speed_rad_per_s)
+        if doubt:
+            yield doubt
 
 
 def _key(scenario: Scenario, place: Place) -> str:
@@ -292,6 +299,7 @@ CHECKS = (
     _chains,
     _tones,
     _late_faults,
+    _faults,
 )
 
 

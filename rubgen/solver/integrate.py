@@ -92,7 +92,9 @@ def _steady(system: SpinningSystem, operation: Operation, contact: ContactLaw, w
     settle = settle_turns(system, operation, decay)
     stepper = rub_free_stepper(system, contact, steps, taps=wants.taps)
     surface = stepper.model.surface
-    penetration = free_penetration(rub_free_motion(system, steps), surface, stepper.model.tips)
+    penetration = math.inf
+    if system.starting is system:
+        penetration = free_penetration(rub_free_motion(system, steps), surface, stepper.model.tips)
     if wants.repeats_free_turn and never_touches(system, surface, penetration):
         return Integration(RepeatedDriver(stepper, settle, decay), system, operation, wants, penetration).response()
     response = Integration(SteadyDriver(stepper, settle), system, operation, wants, penetration).response()
@@ -117,7 +119,8 @@ def _changing(changing: ChangingSystem, operation: Operation, contact: ContactLa
     if refusal:
         return refused_response(changing.systems[-1], operation, steps, refusal)
     driver = changing.driver(contact, steps, wants.taps)
-    return Integration(driver, changing.start, operation, wants).response()
+    known = changing.start.starting is changing.start
+    return Integration(driver, changing.start, operation, wants, math.nan if known else math.inf).response()
 
 
 class Integration:

@@ -88,7 +88,8 @@ def refused_response(system: SpinningSystem, operation: Operation, steps: int, r
 
 def film_refusal(system: SpinningSystem, steps: int) -> Refusal | None:
     """Return the refusal where no rub-free motion fits the laws of the support at `steps` steps a turn; else None."""
-    if system.turning is None or not system.turning.laws:
+    forces = system.starting.turning
+    if forces is None or not forces.laws:
         return None
     missing = rub_free_motion(system, steps).residual
     if missing <= MOTION_TOLERANCE:

@@ -1,5 +1,6 @@
 """The result of the integration of one run."""
 
+import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -99,7 +100,7 @@ class EnergyBalance:
     friction_loss: float
     """Energy that contacts dissipate by friction, <= 0."""
     support_laws_loss: float
-    """Work of these laws in the inertial frame: the energy that a squeeze film turns into heat, <= 0."""
+    """Work of these laws in the inertial frame: minus the heat of a squeeze film, above 0 where it feeds a whirl."""
     speed_change: float
     """Energy added by the stiffness as it follows a changing speed."""
     absolute_work: float
@@ -229,13 +230,18 @@ class Response:
     free_penetration: float = float("nan")
     """How deep the tips of the rub-free motion would enter the casing at rest, m; negative is a clearance.
 
-    NaN where it is not known, and at a changing speed."""
+    Infinite where laws of the support leave that motion unknown; NaN at a changing speed."""
     window_orders: ComplexArray = field(default_factory=lambda: np.zeros((0, 0, 20), dtype=np.complex128))
     """Complex amplitudes of each tap at k f_r, k = 1 .. 20, in windows of 16 turns (windows, taps, 20).
 
     The windows are the last of the record that the taps cover. None (0, ..) where the speed changes."""
 
     __repr__ = brief
+
+    @property
+    def knows_free_motion(self) -> bool:
+        """Whether the motion without rub is known (see `free_penetration`), not of many periods or chaotic."""
+        return self.free_penetration != math.inf
 
     @property
     def turn_seconds(self) -> float:

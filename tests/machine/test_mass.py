@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 
 from rubgen.machine import load_machine
-from rubgen.machine.machine import blisk_mass
+from rubgen.machine.mass import blisk_mass
 from rubgen.reduction import reduce
 from rubgen.scenario import Reduction
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rubgen.machine import Machine, Material, Mistuning, SqueezeFilm, load_machine
-from rubgen.machine.machine import blisk_mass
+from rubgen.machine.mass import blisk_mass
 from rubgen.scenario import parse_recipe
 
 PRESET = load_machine("zeng2019")

@@ -7,6 +7,10 @@ import pytest
 from rubgen.arrays import FloatArray
 from rubgen.contact.geometry import periodic_derivative
 from rubgen.machine import SqueezeFilm
+from rubgen.machine.support_laws.breathing_spring import BreathingSpring
+from rubgen.machine.support_laws.law import SupportLaw
+from rubgen.machine.support_laws.loose_spring import LooseSpring
+from rubgen.machine.support_laws.whirling_film import WhirlingFilm
 from rubgen.reduction.model import CasingSurface, SpinningSystem, TurningForces
 from rubgen.reduction.reduced import rigid_shifts
 from rubgen.scenario import Operation
@@ -124,6 +128,9 @@ TURNING = {
     "dampers": {"stiffness": -4e5, "damping": 150.0},
     "film": {"film": FILM},
     "loads": {"loads": 90.0},
+    "loose": {"laws": (LooseSpring(lost_n_per_m=4e6, gap_m=2e-5, direction_rad=1.1),)},
+    "crack": {"gravity": 9.81, "laws": (BreathingSpring(lost_n_per_m=1e6, direction_rad=0.4),)},
+    "whirl": {"laws": (WhirlingFilm(swirl_n_per_m=1e6, soft_n_per_m=5e6, scale_m=2e-4),)},
     "all": {"stiffness": 6e5, "damping": 150.0, "film": FILM, "gravity": 9.81, "loads": 20.0},
 }
 
@@ -135,8 +142,9 @@ def build_turning(
     film: SqueezeFilm | None = None,
     gravity: float = 0.0,
     loads: float = 0.0,
+    laws: tuple[SupportLaw, ...] = (),
 ) -> SpinningSystem:
-    """The small system with uneven supports, a film, its weight, and loads of turning orders 1 to 4."""
+    """The small system with uneven supports, a film, other laws, its weight, and loads of turning orders 1 to 4."""
     weight = np.zeros((len(system.M), 2))
     start = system.casing_start
     weight[:start] = gravity * system.M[:start, :start] @ rigid_shifts(system.n_blades, start)
@@ -145,7 +153,7 @@ def build_turning(
     forces = TurningForces(
         stiffness=stiffness,
         damping=damping,
-        laws=(film,) if film else (),
+        laws=((film,) if film else ()) + laws,
         weight=weight if gravity else None,
         loads=loads * form if loads else None,
     )

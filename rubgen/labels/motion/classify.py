@@ -60,12 +60,15 @@ def motion(response: Response, exponent: Exponent | None = None) -> Motions:
 
     Each part is periodic or not by its own clusters. The 0-1 test uses the disk centre, the tips and the casing. The
     largest K counts for all parts: contact couples them into one system, which is chaotic as a whole. A lightly damped
-    blade with random excitation looks regular for longer than the record; the disk centre does not.
+    blade with random excitation looks regular for longer than the record; the disk centre does not. Without contact the
+    motion is the forced one, which repeats every turn, where that motion is known (`Response.knows_free_motion`). Else,
+    with a support that is not linear, the section decides as with contact, and the casing is at rest.
     """
     turns = response.section_q.shape[0]
     if turns < LEAST_TURNS:
         raise UserError(f"record_turns = {turns}: a motion needs at least {LEAST_TURNS} turns, reliably 500; raise it")
-    if response.contact_steps_per_turn.sum() == 0:
+    touches = response.contact_steps_per_turn.sum() > 0
+    if not touches and response.knows_free_motion:
         return Motions(blisk=FORCED, casing=AT_REST, system=FORCED)
     parts = [blisk_points(response)] if casing_rests(response) else [blisk_points(response), casing_points(response)]
     steps = response.events.steps
@@ -78,7 +81,7 @@ def motion(response: Response, exponent: Exponent | None = None) -> Motions:
         casing=classes[1],
         system=system,
         indicators=seen,
-        symmetric=is_symmetric(response) if system.motion is Motion.PERIOD_1 else None,
+        symmetric=is_symmetric(response) if touches and system.motion is Motion.PERIOD_1 else None,
         tip_chatter=_tips_alone_stray(parts, seen),
         segments=_switching(parts, system.motion),
     )

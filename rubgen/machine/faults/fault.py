@@ -96,6 +96,10 @@ class Fault(ABC):
         """Why this machine cannot have the fault, with the remedy; None where it can."""
         return None
 
+    def doubt(self, machine: Machine, speed: float) -> str | None:
+        """Why the fault is hardly intended at this speed, beginning with a key and its value; None where it may be."""
+        return None
+
     def altered(self, machine: Machine) -> Machine:
         """The machine that the fault makes of this one, for a fault of its shape or material."""
         return machine

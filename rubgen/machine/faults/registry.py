@@ -8,9 +8,12 @@ from rubgen.machine.faults.bearing_defect import BearingDefect
 from rubgen.machine.faults.bow import Bow
 from rubgen.machine.faults.casing_off_centre import CasingOffCentre
 from rubgen.machine.faults.closing_clearance import ClosingClearance
+from rubgen.machine.faults.crack import Crack
 from rubgen.machine.faults.fault import Fault
 from rubgen.machine.faults.growing_unbalance import GrowingUnbalance
+from rubgen.machine.faults.loose_support import LooseSupport
 from rubgen.machine.faults.misalignment import Misalignment
+from rubgen.machine.faults.oil_whirl import OilWhirl
 
 AnyFault = Annotated[
     Misalignment  #
@@ -18,7 +21,10 @@ AnyFault = Annotated[
     | CasingOffCentre
     | GrowingUnbalance
     | ClosingClearance
-    | BearingDefect,
+    | BearingDefect
+    | LooseSupport
+    | OilWhirl
+    | Crack,
     Field(discriminator="kind"),
 ]
 _KINDS: Any = AnyFault

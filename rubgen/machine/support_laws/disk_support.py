@@ -1,11 +1,14 @@
-"""The support of the disk centre, and the registry of its laws: one key of `DiskSupport` each."""
+"""The support of the disk centre, and the registry of laws: keys of `DiskSupport`, and laws of faults."""
 
 from pydantic.dataclasses import dataclass
 
 from rubgen.machine.quantities import STRICT, Anisotropy, Stiffness
 from rubgen.machine.registered import given, registered
+from rubgen.machine.support_laws.breathing_spring import BreathingSpring
 from rubgen.machine.support_laws.law import SupportLaw
+from rubgen.machine.support_laws.loose_spring import LooseSpring
 from rubgen.machine.support_laws.squeeze_film import SqueezeFilm
+from rubgen.machine.support_laws.whirling_film import WhirlingFilm
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -31,4 +34,6 @@ class DiskSupport:
 
 
 SUPPORT_LAWS: dict[str, type[SupportLaw]] = registered(DiskSupport, SupportLaw)
-"""Every law by its key; kernels know a law by its place."""
+"""Every law that is a key of `DiskSupport`, by its key."""
+LAWS: tuple[type[SupportLaw], ...] = (*SUPPORT_LAWS.values(), LooseSpring, BreathingSpring, WhirlingFilm)
+"""Every law, those of faults last; kernels know a law by its place."""

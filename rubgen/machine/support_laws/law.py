@@ -2,6 +2,7 @@
 
 import math
 from abc import ABC, abstractmethod
+from typing import ClassVar
 
 from rubgen.arrays import AnyArray, FloatArray
 
@@ -12,14 +13,27 @@ Terms = tuple[float, float, float, float, float, float]
 class SupportLaw(ABC):
     """A force s(u) - D(u) v on the disk centre, beside its linear springs and dampers.
 
-    u is the place of the disk centre in m and v its absolute velocity in m/s. The force must be alike in all
-    directions, so that its form is the same in the inertial and in the turning frame. The fields of a law are its keys
-    in a machine file. The law stands twice in its file: `force` for whole arrays, `terms` for the compiled step.
+    u is the place of the disk centre in m and v its absolute velocity in m/s, both along the axes of the turning frame,
+    which has turned by theta in rad. The law stands twice in its file: `force` for whole arrays, `terms` for the
+    compiled step. The fields of a law that is a key of `DiskSupport` are its keys in a machine file. Faults make other
+    laws.
     """
 
+    LINEAR: ClassVar[bool] = False
+    """Whether the force is linear in u and v, so that there is one motion without rub."""
+    TURNS: ClassVar[bool] = False
+    """Whether the force depends on theta: it is not alike in all directions."""
+    SETTLES: ClassVar[bool] = False
+    """Whether the motion without rub is not known before the run: it may be of many periods, chaotic or self-excited.
+
+    The run starts from the motion without this law and settles longer."""
+
     @abstractmethod
-    def force(self, u: AnyArray, v: AnyArray) -> AnyArray:
-        """Force (..., 2) in N of places u and absolute velocities v (..., 2), real or complex: an analytic function."""
+    def force(self, theta: AnyArray, u: AnyArray, v: AnyArray) -> AnyArray:
+        """Force (..., 2) in N at the angles theta (...), places u and absolute velocities v (..., 2).
+
+        u and v are real or complex. The function is analytic, or analytic in pieces that the real part of u chooses.
+        """
 
     @property
     @abstractmethod
@@ -28,8 +42,8 @@ class SupportLaw(ABC):
 
     @staticmethod
     @abstractmethod
-    def terms(numbers: FloatArray, x: float, y: float) -> Terms:
-        """Spring force and damping at u = (x, y).
+    def terms(numbers: FloatArray, cosine: float, sine: float, x: float, y: float) -> Terms:
+        """Spring force and damping at u = (x, y), from cos theta and sin theta.
 
         The solver compiles this function and calls it in every step. It may use arithmetic, `math` and constants of its
         own file. The scheme takes D implicitly, so a D that is not negative never adds energy.
@@ -39,3 +53,8 @@ class SupportLaw(ABC):
     def limit_m(self) -> float:
         """The eccentricity at which the law ends, and a run with it as `film-closed`, in m; infinite by default."""
         return math.inf
+
+    @property
+    def stiffening_n_per_m(self) -> float:
+        """By how much the law stiffens the support at most, in N/m; the stable step regards it."""
+        return 0.0

@@ -37,7 +37,7 @@ class SqueezeFilm(SupportLaw):
         """The clearance, in m."""
         return self.clearance_m
 
-    def force(self, u: AnyArray, v: AnyArray) -> AnyArray:
+    def force(self, _theta: AnyArray, u: AnyArray, v: AnyArray) -> AnyArray:
         """-C(u) v, C = C_0 (1 - eps^2)^(-3/2) [1 + 3 u u^T / (c^2 (1 - eps^2))]."""
         square = self.clearance_m**2
         rest = 1 - np.sum(u * u, axis=-1, keepdims=True) / square
@@ -50,7 +50,7 @@ class SqueezeFilm(SupportLaw):
         return self.centred_damping_n_s_per_m, self.clearance_m
 
     @staticmethod
-    def terms(numbers: FloatArray, x: float, y: float) -> Terms:
+    def terms(numbers: FloatArray, _cosine: float, _sine: float, x: float, y: float) -> Terms:
         """No spring, and C(u)."""
         centred, clearance = numbers[0], numbers[1]
         rest = 1.0 - (x * x + y * y) / (clearance * clearance)

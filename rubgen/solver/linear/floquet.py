@@ -97,7 +97,9 @@ def _derivatives(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the derivatives f_u and f_v (count, 2, 2) at each step along the rub-free motion."""
     theta = 2 * np.pi * np.arange(count) / steps
-    if not forces.laws:  # linear: the motion does not matter, and an undamped one may be infinite
+    if all(
+        law.LINEAR for law in forces.laws
+    ):  # linear: the motion does not matter, and an undamped one may be infinite
         return force_derivatives(forces, system.speed, theta, *np.zeros((2, count, 2)))
     centre = slice(system.centre, system.centre + 2)
     q = rub_free_motion(system).harmonics[:, centre]

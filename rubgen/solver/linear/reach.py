@@ -88,8 +88,11 @@ def deepest(scenario: Scenario) -> tuple[float, float]:
 
 
 def _penetration(model: ReducedModel, scenario: Scenario, speed: float) -> float:
+    """Return the free penetration, m; infinite where laws of the support leave the motion without rub unknown."""
     system = model.at_speed(speed)
     check_system(system)
+    if system.starting is not system:
+        return math.inf
     surface, tips = casing_surface(system, scenario.contact), blade_tips(system)
     return free_penetration(rub_free_motion(system), surface, tips)
 

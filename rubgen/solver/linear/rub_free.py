@@ -73,10 +73,13 @@ def never_touches(system: SpinningSystem, surface: Surface, penetration: float) 
     """Return whether a run at steady speed, which starts from its rub-free motion with this `penetration`, keeps to it.
 
     The supports must be linear, so that the motion is the only one, and the surface unlined. Uneven supports, gravity,
-    mistuned blades and steady loads are linear; laws of the support are not. Nothing may grow within the record.
+    mistuned blades, steady loads and a breathing crack are linear; other laws of the support are not. Nothing may grow
+    within the record.
     """
     forces = system.turning
-    if system.narrowings or surface.liner.bins or (forces is not None and (forces.laws or forces.growing)):
+    if forces is not None and (forces.growing or not all(law.LINEAR for law in forces.laws)):
+        return False
+    if system.narrowings or surface.liner.bins:
         return False
     bend = float(np.sum(np.abs(system.surface.amplitude) * np.square(system.surface.order)))
     return penetration < -(CLEARANCE_MARGIN + bend * (np.pi / CLEARANCE_PLACES) ** 2 / 2)
@@ -99,12 +102,14 @@ def rub_free_motion(system: SpinningSystem, steps: float = 0) -> RubFreeMotion:
     where it is linear). For the scheme's motion 2 (cos m phi - 1) / dt^2 replaces -(m Omega)^2 and i sin(m phi) / dt
     replaces i m Omega, phi = 2 pi / steps: a run that starts from it keeps it. With laws of the support there may be
     more than one motion. The iteration starts from the motion without f, shortened to within the range of the laws.
-    Where it finds none, nothing is raised: `residual` is large.
+    Where it finds none, nothing is raised: `residual` is large. Laws whose motion settles are left out
+    (`SpinningSystem.starting`): the motion is the one from which a run starts, not the one at which it arrives.
     """
+    system = system.starting
     forces = system.turning
     if forces is None:
         return RubFreeMotion(harmonics=steady_state(system)[None].astype(np.complex128), residual=0.0)
-    periodic = forces.stiffness or forces.damping or forces.is_periodic
+    periodic = forces.uneven or forces.is_periodic
     for samples in SAMPLES if periodic else (1,):
         balance = _Balance(system, forces, samples, steps)
         u = balance.solve()

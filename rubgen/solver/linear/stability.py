@@ -17,6 +17,8 @@ STEP_SAFETY = 0.95
 """The step stays below this share of the stability limit 2 / omega_max."""
 TRANSIENT_DECAY = 100.0
 """Transients have decayed when they are smaller by this factor."""
+SETTLING_DECAYS = 3
+"""So many times longer settles a run whose motion without rub is not known: first it leaves the motion of its start."""
 MOST_STEPS_PER_TURN = 2**22
 FLOQUET_STEPS = 1024
 """Least number of steps a turn for the transition over one period of a system with uneven supports."""
@@ -26,10 +28,12 @@ def eigenvalues(system: SpinningSystem) -> ComplexArray:
     """Return all 2 n eigenvalues s in 1/s of M q'' + C q' + K q = 0, blisk and casing apart.
 
     Laws of the support are linearised at the rub-free motion. With uneven supports, which turn against the blisk, these
-    are Floquet exponents, whose imaginary parts are known up to a multiple of 2 Omega (Omega with laws).
+    are Floquet exponents, whose imaginary parts are known up to a multiple of 2 Omega (Omega with laws). Laws whose
+    motion settles are left out.
     """
+    system = system.starting
     forces = system.turning
-    if forces and (forces.stiffness or forces.damping or (forces.laws and forces.is_periodic)):
+    if forces and (forces.uneven or (forces.laws and forces.is_periodic)):
         return floquet_exponents(system, steps_per_turn(system, FLOQUET_STEPS))
     constant = linearised(system) if forces and forces.laws else system
     parts = (slice(0, system.casing_start), slice(system.casing_start, None))
@@ -49,14 +53,14 @@ def slowest_decay(system: SpinningSystem) -> float:
 def stable_step(system: SpinningSystem) -> float:
     """Return the largest stable step 2 / omega_max in s, omega_max of (K, M) without gyroscopic terms.
 
-    Uneven supports count with their stiffer direction on both axes.
+    Uneven supports count with their stiffer direction on both axes, laws with the most by which they stiffen.
     """
     start, largest = system.casing_start, 0.0
     stiffness = system.K
-    if system.turning and system.turning.stiffness:
+    if system.turning and system.turning.stiffening:
         stiffness = system.K.copy()
         for i in (system.centre, system.centre + 1):
-            stiffness[i, i] += abs(system.turning.stiffness)
+            stiffness[i, i] += system.turning.stiffening
     for part in (slice(0, start), slice(start, None)):
         K, M = ((matrix[part, part] + matrix[part, part].T) / 2 for matrix in (stiffness, system.M))
         largest = max(largest, float(la.eigh(K, M, eigvals_only=True)[-1]))
@@ -86,13 +90,15 @@ def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0
 def automatic_settle_turns(system: SpinningSystem, closing_turns: int, decay: float | None = None) -> int:
     """Return the number of turns until the clearance is closed and transients have decayed to a hundredth.
 
-    It is closing_turns + ln(100) f_r / (2 pi min(zeta f)) with the eigenvalues at speed, rounded up. `decay` is the
-    slowest decay in 1/s where it is known already. Raises ValueError for an unstable system.
+    It is closing_turns + ln(100) f_r / (2 pi min(zeta f)) with the eigenvalues at speed, rounded up; three times as
+    many turns beside the closing where a law's motion must settle (`SupportLaw.SETTLES`). `decay` is the slowest decay
+    in 1/s where it is known already. Raises ValueError for an unstable system.
     """
     decay = slowest_decay(system) if decay is None else decay
     if decay <= 0:
         raise ValueError(f"the linear system grows by itself: largest real part {-decay:g} 1/s")
-    return closing_turns + math.ceil(math.log(TRANSIENT_DECAY) * system.speed / (2 * math.pi) / decay)
+    times = 1 if system.starting is system else SETTLING_DECAYS
+    return closing_turns + times * math.ceil(math.log(TRANSIENT_DECAY) * system.speed / (2 * math.pi) / decay)
 
 
 def settle_turns(system: SpinningSystem, operation: Operation, decay: float | None = None) -> int:

@@ -22,8 +22,8 @@ C and K are polynomials in Omega, and Omega dt is small in A = M / dt^2 + C / (2
 preset's interpolated matrices are exact except for rounding (tests/solver/speed/test_speed_interpolation.py)."""
 
 
-SUPPORT = ("columns", "compliance", "rows", "tip_columns", "tip_rows", "loads", "growing")
-"""The fields of `Support` that follow the speed: all products with A^-1, and the loads of faults."""
+SUPPORT = ("columns", "compliance", "rows", "tip_columns", "tip_rows", "laws", "loads", "growing")
+"""The fields of `Support` that follow the speed: all products with A^-1, and laws and loads of faults."""
 
 
 def chebyshev_speeds(slowest: float, fastest: float) -> FloatArray:

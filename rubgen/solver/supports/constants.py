@@ -5,7 +5,7 @@ import scipy.linalg as la
 
 from rubgen.arrays import AnyArray, ComplexArray, FloatArray
 from rubgen.linalg.blocks import Blocks, aligned
-from rubgen.machine.support_laws.disk_support import SUPPORT_LAWS
+from rubgen.machine.support_laws.disk_support import LAWS
 from rubgen.machine.support_laws.law import SupportLaw
 from rubgen.reduction.model import SpinningSystem, TurningForces
 from rubgen.solver.supports.support_kernels import Support
@@ -85,7 +85,6 @@ def _row_of_parts(loads: ComplexArray, orders: int) -> FloatArray:
 
 def law_rows(laws: tuple[SupportLaw, ...]) -> FloatArray:
     """A row for each law: its place in the registry, its numbers, and zeros behind."""
-    places = list(SUPPORT_LAWS.values())
-    rows = [(float(places.index(type(law))), *law.numbers) for law in laws]
+    rows = [(float(LAWS.index(type(law))), *law.numbers) for law in laws]
     width = max((len(row) for row in rows), default=1)
     return np.array([[*row, *[0.0] * (width - len(row))] for row in rows]).reshape(len(rows), width)

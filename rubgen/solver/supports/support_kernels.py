@@ -18,11 +18,11 @@ from rubgen.contact.contact_kernels import ContactWork
 from rubgen.jit import inlined_kernel, switch
 from rubgen.linalg.lanes_kernels import dot_rows
 from rubgen.linalg.vector_kernels import LANES
-from rubgen.machine.support_laws.disk_support import SUPPORT_LAWS
+from rubgen.machine.support_laws.disk_support import LAWS as ALL_LAWS
 
 ANISOTROPY, LAWS, GRAVITY, LOADS, LAWS_LOSS = range(5)
 SUPPORT_WORKS = 5
-law_terms = switch([law.terms for law in SUPPORT_LAWS.values()])
+law_terms = switch([law.terms for law in ALL_LAWS])
 """`SupportLaw.terms` of the law with the number that stands first."""
 
 
@@ -114,7 +114,7 @@ def build_drag(
         D[1, i] *= support.damping
     spring_x, spring_y = 0.0, 0.0
     for law in range(support.laws.shape[0]):
-        s_x, s_y, xx, xy, yx, yy = law_terms(int(support.laws[law, 0]), support.laws[law, 1:], x, y)
+        s_x, s_y, xx, xy, yx, yy = law_terms(int(support.laws[law, 0]), support.laws[law, 1:], cosine, sine, x, y)
         spring_x += s_x
         spring_y += s_y
         D[0, 0] += xx

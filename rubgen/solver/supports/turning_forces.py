@@ -12,7 +12,7 @@ from rubgen.reduction.model import TurningForces
 def turning_force(forces: TurningForces, speed: float, theta: AnyArray, u: AnyArray, v: AnyArray) -> AnyArray:
     """Force (..., 2) in N on O_d in the turning frame.
 
-    -k_a Q u - c_a Q v_abs and the laws of the support. The function is analytic, so complex steps differentiate it.
+    -k_a Q u - c_a Q v_abs and the laws of the support. Complex steps differentiate it: it is analytic in pieces.
 
     - forces: constants of the forces.
     - speed: Omega, rad/s.
@@ -22,7 +22,7 @@ def turning_force(forces: TurningForces, speed: float, theta: AnyArray, u: AnyAr
     absolute = v + speed * np.stack([-u[..., 1], u[..., 0]], axis=-1)
     f = -_uneven(theta, forces.stiffness * u + forces.damping * absolute)
     for law in forces.laws:
-        f = f + law.force(u, absolute)
+        f = f + law.force(theta, u, absolute)
     return np.asarray(f)
 
 

@@ -9,7 +9,11 @@ import pytest
 from kernel_arrays import contact_work
 
 from rubgen.linalg.blocks import aligned
-from rubgen.machine.support_laws.disk_support import SUPPORT_LAWS
+from rubgen.machine import SqueezeFilm
+from rubgen.machine.support_laws.breathing_spring import BreathingSpring
+from rubgen.machine.support_laws.disk_support import LAWS as LAWS_OF_SUPPORTS
+from rubgen.machine.support_laws.loose_spring import LooseSpring
+from rubgen.machine.support_laws.whirling_film import WhirlingFilm
 from rubgen.solver.supports.support_kernels import (
     ANISOTROPY,
     GRAVITY,
@@ -39,6 +43,9 @@ CASES = {
     "dampers": {"damping": 900.0},
     "film": {"film": 1.7e3},
     "loads": {"loads": 1},
+    "loose": {"law": LooseSpring(lost_n_per_m=3e6, gap_m=1e-5, direction_rad=-1.1)},
+    "crack": {"law": BreathingSpring(lost_n_per_m=3e6, direction_rad=0.4)},
+    "whirl": {"law": WhirlingFilm(swirl_n_per_m=2e6, soft_n_per_m=4e6, scale_m=2e-4)},
     "all": {"stiffness": 6e5, "damping": 900.0, "film": 1.7e3, "loads": 1},
 }
 STEP = 3
@@ -59,8 +66,13 @@ class Step:
         self.weight[PLACES] = rng.normal(size=(8, 2)) * 80
         inverse = np.linalg.inv(self.A)
         constants = {"stiffness": 0.0, "damping": 0.0, "film": 0.0, "loads": 0} | CASES[case]
-        film, loaded = constants.pop("film"), constants.pop("loads")
+        film, loaded, law = constants.pop("film"), constants.pop("loads"), constants.pop("law", None)
         count = 3 if loaded else 0
+        laws = np.zeros((0, 1))
+        if film:
+            laws = np.array([[LAWS_OF_SUPPORTS.index(SqueezeFilm), film, CLEARANCE]])
+        if law:
+            laws = np.array([[LAWS_OF_SUPPORTS.index(type(law)), *law.numbers]])
         self.support = Support(
             active=True,
             yields=case != "loads",
@@ -68,7 +80,7 @@ class Step:
             slopes=SLOPES[:count].copy(),
             growing=np.zeros((0, count, 4)),
             **constants,
-            laws=np.array([[list(SUPPORT_LAWS).index("squeeze_film"), film, CLEARANCE]] if film else np.zeros((0, 1))),
+            laws=laws,
             limit=CLEARANCE if film else np.inf,
             centre=CENTRE,
             places=PLACES,
@@ -90,7 +102,10 @@ class Step:
         rows = (LOAD_ROWS + STEP * SLOPES)[:count]
         turn = np.exp(1j * THETA * np.arange(count))
         self.load = np.array([(turn @ (rows[:, i] + 1j * rows[:, i + 1])).real for i in (0, 2)])
-        self.spring = -constants["stiffness"] * Q @ self.u + self.load
+        self.uneven_spring = -constants["stiffness"] * Q @ self.u
+        self.law = law.force(np.array(THETA), self.u, np.zeros(2)) if law else np.zeros(2)
+        assert np.any(self.law) == bool(law)
+        self.spring = self.uneven_spring + self.law + self.load
         self.with_drag = self.A + E @ self.D @ E.T / (2 * DT)
         self.state = SupportState(
             np.full((2, 2), np.nan), np.zeros((2, 2)), np.full((3, 2), np.nan), np.zeros(SUPPORT_WORKS)
@@ -178,13 +193,14 @@ def test_works_are_each_force_times_the_way(case):
     sizes = add_support_works(step.support, SPEED, DT, COSINE, SINE, step.now, change, step.state)
     velocity, way = step.absolute_velocity(after), change[CENTRE]
     expected = np.zeros(SUPPORT_WORKS)
-    expected[ANISOTROPY] = (step.spring - step.load - step.uneven @ velocity) @ way
+    expected[ANISOTROPY] = (step.uneven_spring - step.uneven @ velocity) @ way
     expected[LOADS] = step.load @ way
-    expected[LAWS] = -(step.squeeze @ velocity) @ way
+    expected[LAWS] = (step.law - step.squeeze @ velocity) @ way
     expected[GRAVITY] = -(step.weight @ [SINE, COSINE]) @ change
-    expected[LAWS_LOSS] = -DT * velocity @ step.squeeze @ velocity
+    expected[LAWS_LOSS] = DT * velocity @ (step.law - step.squeeze @ velocity)
     np.testing.assert_allclose(step.state.works, expected, rtol=1e-8, atol=1e-12)
     assert sizes == pytest.approx(np.abs(expected[:LAWS_LOSS]).sum(), rel=1e-8)
-    assert (step.state.works[LAWS_LOSS] < 0) == ("film" in CASES[case])
+    if "law" not in CASES[case]:
+        assert (step.state.works[LAWS_LOSS] < 0) == ("film" in CASES[case])
     add_support_works(step.support, SPEED, DT, COSINE, SINE, step.now, change, step.state)
     np.testing.assert_allclose(step.state.works, 2 * expected, rtol=1e-8, atol=1e-12)
