@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rubgen.machine.machine import Machine
+    from rubgen.machine.machine import BladeRow, Machine
 
 
 def blisk_mass(machine: Machine) -> float:
@@ -20,7 +20,11 @@ def blisk_mass(machine: Machine) -> float:
     slope = (disk.rim_thickness_m - disk.bore_thickness_m) / (b - a) if b > a else 0.0
     start = disk.bore_thickness_m - slope * a
     plate = 2 * math.pi * (start * (b**2 - a**2) / 2 + slope * (b**3 - a**3) / 3)
+    return abs(plate) * disk.material.density_kg_per_m3 + blades.count * blade_mass(blades)
+
+
+def blade_mass(blades: BladeRow) -> float:
+    """Mass of one blade in kg; its cross-sections count as chord times thickness, both linear in the radius."""
     c0, c1, t0, t1 = blades.root_chord_m, blades.tip_chord_m, blades.root_thickness_m, blades.tip_thickness_m
     cross_section = (2 * c0 * t0 + c0 * t1 + c1 * t0 + 2 * c1 * t1) / 6
-    blade = cross_section * blades.length_m
-    return abs(plate) * disk.material.density_kg_per_m3 + blades.count * blade * blades.material.density_kg_per_m3
+    return cross_section * blades.length_m * blades.material.density_kg_per_m3

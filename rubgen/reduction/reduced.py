@@ -12,10 +12,12 @@ from rubgen.fem.beam import blade_matrices, held_root_strain
 from rubgen.fem.constraints import support_stiffness
 from rubgen.linalg.threads import one_blas_thread
 from rubgen.machine import Damping, Machine, Unbalance
+from rubgen.machine.faults.fault import LostMass
 from rubgen.reduction.blisk import ReducedBlisk
 from rubgen.reduction.cache import cached_blisk
 from rubgen.reduction.casing import ReducedCasing, reduce_casing
 from rubgen.reduction.fault_loads import growing_loads, spring_load, steady_loads
+from rubgen.reduction.lost_mass import missing_pull, without_masses
 from rubgen.reduction.model import Recovery, SpinningSystem, TurningForces
 from rubgen.scenario import Reduction
 from rubgen.scenario.reducible import reduction_problem
@@ -83,6 +85,8 @@ class ReducedModel:
             K += acceleration * blisk.G
             force -= acceleration * self._euler_load(force / speed**2)
         if machine.faults:
+            growth, lost = blisk.growth.at(speed), lost_masses(machine)
+            force += speed**2 * missing_pull(lost, machine.tip_radius_m, growth, self.reduced_dof)
             force[3 * count : 3 * count + 2] += steady_loads(machine, speed)[0].real
         return SpinningSystem(
             speed=speed,
@@ -254,6 +258,7 @@ def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:
     try:
         with one_blas_thread():
             blisk = cached_blisk(machine.disk, machine.blades, machine.disk_support, reduction)
+            blisk = without_masses(blisk, lost_masses(machine), machine.tip_radius_m)
             casing = reduce_casing(machine, reduction.casing_modes)
     except (np.linalg.LinAlgError, RuntimeError) as error:  # of LAPACK, ARPACK and SuperLU
         raise UserError(
@@ -269,6 +274,11 @@ def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:
         dampers=support_damping(machine.damping, springs, blisk.rigid_inertia),
         beta=elastic_damping(machine.damping, blisk.blade_frequency),
     )
+
+
+def lost_masses(machine: Machine) -> list[LostMass]:
+    """The masses that faults have taken from tips."""
+    return [each for fault in machine.faults for each in fault.lost_masses(machine)]
 
 
 def _first_line(error: Exception) -> str:

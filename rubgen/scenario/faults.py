@@ -16,7 +16,7 @@ from rubgen.machine.faults.fault import Fault
 from rubgen.machine.faults.registry import FAULTS, AnyFault
 from rubgen.machine.problems import nearest, validated
 from rubgen.machine.sentences import toml_text
-from rubgen.scenario.distributions import Distribution
+from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.scenario import Scenario
 
 _STRICT = ConfigDict(extra="forbid", frozen=True)
@@ -46,6 +46,15 @@ def _is_share(share: Distribution) -> Distribution:
     return share
 
 
+def _is_whole(number: Distribution) -> Distribution:
+    if not isinstance(number, Constant | Choice):
+        raise ValueError("takes whole numbers only; give a number or a choice")  # noqa: TRY004
+    return number
+
+
+_WHOLE = Annotated[Distribution, AfterValidator(_is_whole)]
+
+
 def _words(hint: Any) -> tuple[str, ...]:
     """The words that a field allows; none where it is a number."""
     if get_origin(hint) is Literal:
@@ -61,7 +70,8 @@ def _table(kind: str, fault: type[Fault]) -> type[BaseModel]:
     hints = get_type_hints(fault)
     for field in fields(cast("Any", fault))[1:]:
         words = _words(hints[field.name])
-        allowed: Any = Literal[words] | WordChoice if words else Distribution
+        whole = hints[field.name] is int
+        allowed: Any = Literal[words] | WordChoice if words else _WHOLE if whole else Distribution
         values[field.name] = (allowed, ...) if field.default is MISSING else (allowed | None, None)
     return create_model(f"{fault.__name__}Table", __config__=_STRICT, __doc__=f"`[[faults]]` of {kind}.", **values)
 

@@ -9,9 +9,11 @@ from pydantic import TypeAdapter
 
 from rubgen.errors import UserError
 from rubgen.labels.faults import fault_labels
-from rubgen.machine import Machine, load_machine
+from rubgen.machine import Machine, Mistuning, load_machine
 from rubgen.machine.faults.bow import Bow
+from rubgen.machine.faults.cracked_blade import CrackedBlade
 from rubgen.machine.faults.fault import HarmonicLoad
+from rubgen.machine.faults.lost_tip import LostTip
 from rubgen.machine.faults.misalignment import Misalignment
 from rubgen.machine.faults.registry import FAULTS
 from rubgen.machine.load import machine_id
@@ -137,6 +139,42 @@ def test_a_rub_begins_where_the_closed_clearance_is_used_up():
 
 
 LATE = {"fault": "closing-clearance", "closing_m": 6e-4, "start_s": 0.5, "growth_s": 1.5}
+
+
+def test_a_cracked_blade_is_the_mistuned_blade_with_that_stiffness(preset):
+    """The same machine from two keys, and an own line below the family of the other blades."""
+    cracked = reduce(replace(preset, faults=(CrackedBlade(stiffness_loss=0.2, blade=3),)), Reduction())
+    softer = Mistuning(pattern=tuple(-0.2 * (k == 3) for k in range(36)))
+    mistuned = reduce(replace(preset, blades=replace(preset.blades, mistuning=softer)), Reduction())
+    np.testing.assert_array_equal(cracked.blisk.K, mistuned.blisk.K)
+    lines = cracked.blisk_frequencies_hz()
+    assert np.count_nonzero((lines > 138) & (lines < 142)) == 1
+    growth = cracked.at_speed(900.0).tip_static[:, 0]
+    assert np.argmax(growth) == 3
+
+
+def test_a_lost_tip_is_a_mass_that_is_missing_in_every_term(preset):
+    """A rigid turn of all feels m r^2 less, and a run keeps its motion and books its works."""
+    radius, lost, count = preset.tip_radius_m, 5e-3, 36
+    whole, light = (
+        reduce(replace(preset, faults=faults), Reduction()) for faults in ((), (LostTip(lost_kg=lost, blade=3),))
+    )
+    assert whole.blisk_mass - light.blisk_mass == pytest.approx(lost, rel=1e-9)
+    speed, push = 900.0, 50.0
+    pulls = [model.at_speed(speed, push).force for model in (whole, light)]
+    missing = pulls[1] - pulls[0]
+    static = whole.at_speed(speed).tip_static[3]
+    assert missing[9:12] == pytest.approx(
+        [-lost * (radius + static[0]) * speed**2, -lost * static[1] * speed**2 + lost * radius * push, 0], rel=1e-9
+    )
+    assert not missing[12 : 3 * count].any()
+    scenario = make_scenario(speed_rpm=9000, clearance_m=2e-3, lyapunov=False, signal_seconds=0.1, **LOST)
+    run = simulate(scenario)
+    assert run.response.energy.residual < 1e-11
+    assert run.labels.motion.value == "period-1"
+
+
+LOST = {"fault": "lost-tip", "lost_kg": 5e-3, "blade": 3}
 
 
 def test_a_machine_has_each_fault_once(preset):

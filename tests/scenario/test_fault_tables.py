@@ -97,6 +97,15 @@ BAD = {
     "text": ([{**BENT, "bow_m": "1e-6"}], "faults.0.bow_m = '1e-6': "),
     "twice": ([BENT, BENT], "faults.1.kind = 'bow': the recipe has this fault already; remove one"),
     "no size": ([{"kind": "misalignment"}], "faults.0: must have parallel_m or angular_deg; give one or both"),
+    "drawn whole number": (
+        [{"kind": "cracked-blade", "stiffness_loss": 0.1, "blade": {"uniform": [0, 35]}}],
+        "faults.0.blade = { uniform = [0, 35] }: takes whole numbers only; give a number or a choice",
+    ),
+    "no such blade": (
+        [{"kind": "lost-tip", "lost_kg": 1e-3, "blade": {"choice": [0, 36]}}],
+        "faults: lost-tip: blade = 36: there is no such blade; give 0 to 35",
+    ),
+    "half a blade": ([{"kind": "lost-tip", "lost_kg": 0.1}], "faults: lost-tip: lost_kg = 0.1: an eighth of a blade"),
     "no table": (["bow"], "faults.0 = 'bow': must be a table"),
 }
 

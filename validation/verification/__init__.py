@@ -27,6 +27,7 @@ _MODULES = (
     "rotors.loose_support",
     "rotors.oil_whirl",
     "rotors.cracked_shaft",
+    "rotors.blade_faults",
     "contact.integrator",
     "contact.bouncing_bar",
     "contact.impact_oscillator",

@@ -69,6 +69,14 @@ class Narrowing:
 
 
 @dataclass(frozen=True, kw_only=True)
+class LostMass:
+    """A mass that a blade has lost at its tip."""
+
+    blade: int
+    kg: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Severity:
     """The column of a fault's severity: name, unit and meaning."""
 
@@ -108,6 +116,10 @@ class Fault(ABC):
         """What it adds to the casing's inner surface."""
         return ()
 
+    def lost_masses(self, machine: Machine) -> tuple[LostMass, ...]:
+        """Masses that are missing at the tips of blades."""
+        return ()
+
     def narrowings(self, machine: Machine) -> tuple[Narrowing, ...]:
         """How the clearance closes within the record."""
         return ()
@@ -128,3 +140,9 @@ class Fault(ABC):
         - rng: random numbers.
         """
         return None
+
+
+def missing_blade(blade: int, machine: Machine) -> str | None:
+    """The problem of a blade that the machine does not have; None where it has it."""
+    last = machine.blades.count - 1
+    return f"blade = {blade}: there is no such blade; give 0 to {last}" if blade > last else None

@@ -9,9 +9,11 @@ from rubgen.machine.faults.bow import Bow
 from rubgen.machine.faults.casing_off_centre import CasingOffCentre
 from rubgen.machine.faults.closing_clearance import ClosingClearance
 from rubgen.machine.faults.crack import Crack
+from rubgen.machine.faults.cracked_blade import CrackedBlade
 from rubgen.machine.faults.fault import Fault
 from rubgen.machine.faults.growing_unbalance import GrowingUnbalance
 from rubgen.machine.faults.loose_support import LooseSupport
+from rubgen.machine.faults.lost_tip import LostTip
 from rubgen.machine.faults.misalignment import Misalignment
 from rubgen.machine.faults.oil_whirl import OilWhirl
 
@@ -24,7 +26,9 @@ AnyFault = Annotated[
     | BearingDefect
     | LooseSupport
     | OilWhirl
-    | Crack,
+    | Crack
+    | CrackedBlade
+    | LostTip,
     Field(discriminator="kind"),
 ]
 _KINDS: Any = AnyFault

@@ -1,0 +1,50 @@
+"""A blade with a crack."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+from pydantic.dataclasses import dataclass
+
+from rubgen.machine.faults.fault import Fault, Severity, missing_blade
+from rubgen.machine.quantities import STRICT, BladeNumber, real
+
+if TYPE_CHECKING:
+    from rubgen.machine.machine import Machine
+
+StiffnessLoss = Annotated[float, real(ge=0, le=0.9)]
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class CrackedBlade(Fault):
+    """Blade number `blade` has lost the share `stiffness_loss` of its elastic stiffness, alike along its length.
+
+    The crack stays open: in a turning blade the centrifugal pull holds it open. Its frequencies at rest fall by about
+    sqrt(1 - loss), out of the family of the other blades, and its tip grows more. Its mass is the same. A run with a
+    new loss needs a reduction of its own, about a second.
+    """
+
+    SEVERITY: ClassVar = Severity(
+        column="blade_stiffness_loss", unit="1", meaning="share of its stiffness that a cracked blade has lost"
+    )
+    kind: Literal["cracked-blade"] = "cracked-blade"
+    stiffness_loss: StiffnessLoss
+    blade: BladeNumber = 0
+
+    @property
+    def severity(self) -> float:
+        """The share of the stiffness."""
+        return self.stiffness_loss
+
+    def problem(self, machine: Machine) -> str | None:
+        """A blade that the machine does not have."""
+        return missing_blade(self.blade, machine)
+
+    def altered(self, machine: Machine) -> Machine:
+        """The machine with one softer blade."""
+        from rubgen.machine.machine import Mistuning  # the machine imports the registry of faults
+
+        deviations = list(machine.blades.stiffness_deviations)
+        deviations[self.blade] = (1 + deviations[self.blade]) * (1 - self.stiffness_loss) - 1
+        return replace(machine, blades=replace(machine.blades, mistuning=Mistuning(pattern=tuple(deviations))))

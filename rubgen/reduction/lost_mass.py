@@ -1,0 +1,39 @@
+"""A reduced blisk without masses at its tips."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.machine.faults.fault import LostMass
+from rubgen.reduction.blisk import ReducedBlisk
+
+CROSS = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+"""e_z x along the axes of a tip: radial, tangential, axial."""
+
+
+def without_masses(blisk: ReducedBlisk, lost: Iterable[LostMass], tip_radius: float) -> ReducedBlisk:
+    """The blisk without point masses at its tips, whose translations are coordinates: exact, but for the tension.
+
+    M, G and A = K_sigma - S lose m, m e_z x and -m diag(1, 1, 0) on a tip, and the load of an angular acceleration m r
+    along its tangent. The steady tension that the mass put into its blade stays in K_sigma.
+    """
+    M, G, A, euler = blisk.M.copy(), blisk.G.copy(), blisk.A.copy(), blisk.euler.copy()
+    for each in lost:
+        tip = slice(3 * each.blade, 3 * each.blade + 3)
+        M[tip, tip] -= each.kg * np.eye(3)
+        G[tip, tip] -= each.kg * CROSS
+        A[tip, tip] += each.kg * np.diag([1.0, 1.0, 0.0])
+        euler[3 * each.blade + 1] -= each.kg * tip_radius
+    return replace(blisk, M=M, G=G, A=A, euler=euler)
+
+
+def missing_pull(lost: Iterable[LostMass], tip_radius: float, tip_static: FloatArray, size: int) -> FloatArray:
+    """Minus the centrifugal force of the masses at 1 rad/s (size,), kg m, at tips displaced by `tip_static`, m."""
+    pull = np.zeros(size)
+    for each in lost:
+        radial, tangential, _ = tip_static[each.blade]
+        pull[3 * each.blade] -= each.kg * (tip_radius + radial)
+        pull[3 * each.blade + 1] -= each.kg * tangential
+    return pull
