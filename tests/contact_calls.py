@@ -3,7 +3,7 @@
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.contact.friction_kernels import friction_direction, slip_velocity
+from rubgen.contact.contact_kernels import friction_direction, slip_velocity
 from rubgen.contact.geometry_kernels import Surface, foot_of
 from rubgen.contact.lcp_kernels import RIGID, SOLVED, solve_normal
 

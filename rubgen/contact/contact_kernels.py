@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.clearance_kernels import radial_margin
-from rubgen.contact.friction_kernels import friction_direction, slip_velocity
 from rubgen.contact.geometry_kernels import Surface, Tips, casing_rows, foot_of, tip_position
+from rubgen.contact.liner_kernels import WORK, Liner, Wear, remove, worn_depth
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.vector_kernels import LANES, lowest_bit, not_above, square_of_farthest
 
@@ -131,6 +131,23 @@ def gap_at(
     return foot_of(surface, worn, q[casing_start:], opening, x, y, ends_work)[1]
 
 
+@allocation_free_kernel
+def slip_velocity(
+    tip: tuple[float, float, float], casing: tuple[float, float], tangent: tuple[float, float]
+) -> tuple[float, float]:
+    """Velocity of the tip relative to the casing along the surface's tangent and along e_z, m/s, all inertial."""
+    return (tip[0] - casing[0]) * tangent[0] + (tip[1] - casing[1]) * tangent[1], tip[2]
+
+
+@allocation_free_kernel
+def friction_direction(along: float, axial: float) -> tuple[float, float]:
+    """-v_rel / |v_rel| in the plane of tangent and e_z; zero without slip."""
+    speed = math.sqrt(along * along + axial * axial)
+    if speed == 0.0:
+        return 0.0, 0.0
+    return -along / speed, -axial / speed
+
+
 @inlined_kernel
 def contact_slip(
     tips: Tips, m: int, velocity: FloatArray, q: FloatArray, speed: float, cosine: float, sine: float, work: ContactWork
@@ -244,3 +261,31 @@ def largest_approach(
     for j in range(surface.mode_displacement.shape[0]):
         casing += abs(q_new[casing_start + j] - q_free[casing_start + j]) * surface.mode_displacement[j]
     return math.sqrt(tip) + casing
+
+
+@inlined_kernel
+def wear_where_lined(count: int, liner: Liner, dt: float, work: ContactWork, wear: Wear) -> None:
+    """`wear_liner` where there is one."""
+    if liner.bins > 0:
+        wear_liner(count, liner, dt, work, wear)
+
+
+@allocation_free_kernel
+def wear_liner(count: int, liner: Liner, dt: float, work: ContactWork, wear: Wear) -> None:
+    """Add the work on the receding surface, then wear it: volume = rate lam |v_rel| dt at each contact's foot.
+
+    Archard, J. Appl. Phys. 24 (1953): V = K F s / H; `liner.rate` is K / H. The gaps of this step used the present
+    depth. The gaps of two steps before used `wear.earlier[0]`. Per step the surface has therefore receded by half the
+    difference of the two depths.
+    """
+    for m in range(count):
+        if work.lam[m] > 0.0:
+            psi = work.psi[work.blade[m]]
+            receded = worn_depth(wear.depth, psi)[0] - worn_depth(wear.earlier[0], psi)[0]
+            wear.sums[WORK] += 0.5 * work.lam[m] * receded
+    for i in range(liner.bins):
+        wear.earlier[0, i] = wear.earlier[1, i]
+        wear.earlier[1, i] = wear.depth[i]
+    for m in range(count):
+        if work.lam[m] > 0.0:
+            remove(liner, work.psi[work.blade[m]], liner.rate * work.lam[m] * work.sliding[m] * dt, wear)

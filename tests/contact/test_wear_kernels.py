@@ -5,8 +5,8 @@ import pytest
 from kernel_arrays import contact_work
 from scipy.interpolate import BSpline
 
+from rubgen.contact.contact_kernels import wear_liner, wear_where_lined
 from rubgen.contact.liner_kernels import REMOVED, WORK, Liner, Wear, remove, spline_weights, worn_depth
-from rubgen.contact.wear_kernels import wear_liner, wear_where_lined
 
 LINER = Liner(bins=24, thickness=1e-3, rate=2e-11, area=5e-4)
 DT = 1e-5

@@ -10,8 +10,7 @@ from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.block_kernels import Product, quadratic
 from rubgen.solver.scheme.model_kernels import Laws, Model
 from rubgen.solver.scheme.motion_kernels import Motion, recover
-from rubgen.solver.scheme.snapshot_kernels import Snapshots
-from rubgen.solver.scheme.state_kernels import Scratch, State
+from rubgen.solver.scheme.state_kernels import Scratch, Snapshots, State
 from rubgen.solver.scheme.step_kernels import OK, advance, shift_gaps
 
 

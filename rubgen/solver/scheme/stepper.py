@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from rubgen.arrays import FloatArray, frozen
-from rubgen.contact.wear_kernels import wear_where_lined
+from rubgen.contact.contact_kernels import wear_where_lined
 from rubgen.linalg.block_kernels import bilinear
 from rubgen.linalg.vector_kernels import LANES
 from rubgen.reduction.model import SpinningSystem
@@ -15,9 +15,8 @@ from rubgen.solver.linear.system_blocks import system_blocks
 from rubgen.solver.scheme.energy_kernels import ABSOLUTE, SPEED_CHANGE, WORKS, stored_energy
 from rubgen.solver.scheme.model import angle_tables, at_speed, build_model, new_state, turned
 from rubgen.solver.scheme.motion_kernels import recover
-from rubgen.solver.scheme.snapshot_kernels import Snapshots
 from rubgen.solver.scheme.speed_part import SpeedPart
-from rubgen.solver.scheme.state_kernels import Coordinates
+from rubgen.solver.scheme.state_kernels import Coordinates, Snapshots
 from rubgen.solver.scheme.step_kernels import OK, advance, shift_gaps
 from rubgen.solver.scheme.taps import build_taps, sampled_taps, turned_taps
 from rubgen.solver.scheme.turn_kernels import STEPS, Touches, TurnEnds, TurnResult, close_touches, run_turns

@@ -5,14 +5,13 @@ from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.clearance_kernels import casing_displacement_bound
-from rubgen.contact.wear_kernels import wear_where_lined
+from rubgen.contact.contact_kernels import wear_where_lined
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.harmonic_kernels import Harmonics, recover_all
 from rubgen.solver.scheme.energy_kernels import ABSOLUTE, add_contact_works, add_linear_works, stored_energy
 from rubgen.solver.scheme.model_kernels import Model
 from rubgen.solver.scheme.motion_kernels import Motion
-from rubgen.solver.scheme.snapshot_kernels import Snapshots, keep_snapshot
-from rubgen.solver.scheme.state_kernels import Coordinates, Scratch, State
+from rubgen.solver.scheme.state_kernels import Coordinates, Scratch, Snapshots, State, keep_snapshot
 from rubgen.solver.scheme.step_kernels import OK, advance, change_contacts, recover_contacts, shift_gaps
 from rubgen.solver.scheme.tap_kernels import SPEED_X, SPEED_Y, Taps, X, Y, record_arrivals, record_taps
 from rubgen.solver.supports.support_kernels import add_support_works

@@ -4,7 +4,7 @@ import numpy as np
 from kernel_arrays import contact_work
 
 from rubgen.solver.scheme.motion_kernels import Motion
-from rubgen.solver.scheme.snapshot_kernels import Snapshots, keep_snapshot
+from rubgen.solver.scheme.state_kernels import Snapshots, keep_snapshot
 
 
 def test_a_snapshot_holds_two_states_and_their_gaps_under_its_number():
