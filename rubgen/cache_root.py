@@ -69,7 +69,7 @@ def problem_of(root: Path) -> str:
     return ""
 
 
-def keep(path: Path, content: bytes) -> None:
+def write_cached(path: Path, content: bytes) -> None:
     """Write `content` to a cache file, after its SHA-256. The file is written completely or not at all.
 
     A failure is only a warning.
@@ -85,15 +85,15 @@ def keep(path: Path, content: bytes) -> None:
             part.unlink(missing_ok=True)
 
 
-def kept(path: Path) -> bytes | None:
-    """Read the content that `keep` wrote to `path`.
+def read_cached(path: Path) -> bytes | None:
+    """Read the content that `write_cached` wrote to `path`.
 
     Returns None if there is no such file, or if it is damaged or belongs to another user.
     """
     try:
         with open(path, "rb", opener=_at_once) as file:
             foreign, content = _is_foreign(os.fstat(file.fileno())), file.read()
-    except (FileNotFoundError, IsADirectoryError):  # `keep` says that a folder is in the way
+    except (FileNotFoundError, IsADirectoryError):  # `write_cached` says that a folder is in the way
         return None
     except OSError as error:
         _say_once(f"the cache {wanted_root()} cannot be read ({error.strerror or error})")

@@ -19,7 +19,7 @@ import numba
 import numba.core.caching
 import numpy as np
 
-from rubgen.cache_root import cache_folder, keep, kept
+from rubgen.cache_root import cache_folder, read_cached, write_cached
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -189,16 +189,16 @@ class _SealedFiles(caching.IndexDataCacheFile):  # type: ignore[misc]
         return self._index_name, self._source_stamp, key
 
     def _load_index(self) -> Any:
-        content = kept(Path(self._index_path))
+        content = read_cached(Path(self._index_path))
         stamp, overloads = (None, {}) if content is None else pickle.loads(content)  # noqa: S301  # our own, whole
         return overloads if stamp == self._source_stamp else {}
 
     def _save_index(self, overloads: Any) -> None:
-        keep(Path(self._index_path), self._dump((self._source_stamp, overloads)))
+        write_cached(Path(self._index_path), self._dump((self._source_stamp, overloads)))
 
     def _load_data(self, name: str) -> Any:
-        content = kept(Path(self._data_path(name)))
+        content = read_cached(Path(self._data_path(name)))
         return None if content is None else pickle.loads(content)  # noqa: S301  # our own, whole
 
     def _save_data(self, name: str, data: Any) -> None:
-        keep(Path(self._data_path(name)), self._dump(data))
+        write_cached(Path(self._data_path(name)), self._dump(data))

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from rubgen import cache_root
-from rubgen.cache_root import CACHE_VARIABLE, FOLDERS, cache_folder, keep, kept, problem_of, wanted_root
+from rubgen.cache_root import CACHE_VARIABLE, FOLDERS, cache_folder, problem_of, read_cached, wanted_root, write_cached
 from rubgen.errors import RubgenWarning
 
 NAMED = rf"{CACHE_VARIABLE} names another folder"
@@ -114,39 +114,39 @@ def test_a_usable_folder_has_no_problem(tmp_path):
 def test_a_file_is_given_back_whole_or_not_at_all(tmp_path, monkeypatch):
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
     path = tmp_path / "deeper" / "file"
-    assert kept(path) is None
-    keep(path, b"content")
+    assert read_cached(path) is None
+    write_cached(path, b"content")
     good = path.read_bytes()
-    assert kept(path) == b"content"
+    assert read_cached(path) == b"content"
     for bad in (b"", good[:5], good[:-1], good + b"x", bytes([good[0] ^ 1]) + good[1:], good[:-1] + b"\0", b"content"):
         cache_root._say_once.cache_clear()
         path.write_bytes(bad)
         with pytest.warns(RubgenWarning, match="damaged.*" + NAMED):
-            assert kept(path) is None
+            assert read_cached(path) is None
 
 
 def test_a_file_of_another_user_is_not_believed(tmp_path):
     if os.geteuid() != 0:
         pytest.skip("only root can give a file away")
-    keep(tmp_path / "file", b"content")
+    write_cached(tmp_path / "file", b"content")
     os.chown(tmp_path / "file", NOBODY, NOBODY)
     with pytest.warns(RubgenWarning, match=NAMED):
-        assert kept(tmp_path / "file") is None
+        assert read_cached(tmp_path / "file") is None
 
 
 def test_a_pipe_in_the_place_of_a_file_is_replaced(tmp_path):
     os.mkfifo(tmp_path / "x")
     with pytest.warns(RubgenWarning, match="damaged"):
-        assert kept(tmp_path / "x") is None
-    keep(tmp_path / "x", b"content")
-    assert kept(tmp_path / "x") == b"content"
+        assert read_cached(tmp_path / "x") is None
+    write_cached(tmp_path / "x", b"content")
+    assert read_cached(tmp_path / "x") == b"content"
 
 
 def test_a_folder_in_the_place_of_a_file_costs_one_line(tmp_path):
     (tmp_path / "x").mkdir()
-    assert kept(tmp_path / "x") is None
+    assert read_cached(tmp_path / "x") is None
     with pytest.warns(RubgenWarning, match=NAMED) as said:
-        keep(tmp_path / "x", b"content")
+        write_cached(tmp_path / "x", b"content")
     assert len(said) == 1
     assert list(tmp_path.rglob("*")) == [tmp_path / "x"]
 
@@ -157,6 +157,6 @@ def test_a_full_disk_costs_one_line(tmp_path, monkeypatch):
 
     monkeypatch.setattr(Path, "write_bytes", full)
     with pytest.warns(RubgenWarning, match="No space left on device.*" + NAMED) as said:
-        [keep(tmp_path / name, b"content") for name in "ab"]
+        [write_cached(tmp_path / name, b"content") for name in "ab"]
     assert len(said) == 1
     assert list(tmp_path.iterdir()) == []

@@ -159,5 +159,5 @@ def test_kernels_are_compiled_when_the_last_one_is(monkeypatch, tmp_path):
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
     assert run_turns.__name__ == "run_turns"
     for name, compiled in (("step_kernels.advance-262", False), ("turn_kernels.run_turns-165", True)):
-        cache_root.keep(tmp_path / "kernels" / kernel_key() / "solver" / f"{name}.py311.1.nbc", b"code")
+        cache_root.write_cached(tmp_path / "kernels" / kernel_key() / "solver" / f"{name}.py311.1.nbc", b"code")
         assert kernels_are_compiled() is compiled

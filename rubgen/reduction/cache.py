@@ -15,7 +15,7 @@ import scipy
 from filelock import FileLock
 
 from rubgen.arrays import FloatArray
-from rubgen.cache_root import cache_folder, keep, kept
+from rubgen.cache_root import cache_folder, read_cached, write_cached
 from rubgen.machine import BladeRow, Disk, DiskSupport
 from rubgen.machine.support_laws.disk_support import SUPPORT_LAWS
 from rubgen.progress import step
@@ -48,7 +48,7 @@ def cached_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: 
         stored = _load(path)
         if stored is None:
             stored = _made(disk, blades, support, reduction)
-            keep(path, _packed(stored))
+            write_cached(path, _packed(stored))
     return stored
 
 
@@ -101,7 +101,7 @@ def _packed(blisk: ReducedBlisk) -> bytes:
 
 
 def _load(path: Path) -> ReducedBlisk | None:
-    content = kept(path)
+    content = read_cached(path)
     if content is None:
         return None
     with np.load(io.BytesIO(content), allow_pickle=False) as file:
