@@ -32,7 +32,7 @@ LAST_COMPILED = "turn_kernels.run_turns-*.nbc"
 
 @cache
 def kernel_key() -> str:
-    """A hash of everything that determines compiled kernels, except the processor.
+    """Return a hash of everything that determines compiled kernels, except the processor. It names their cache folder.
 
     It covers sources of kernels and laws, Python, numba, llvmlite, numpy and numba's environment variables. The number
     of threads, which workers set, is left out. Numba's own index distinguishes processors.
@@ -50,7 +50,7 @@ def kernel_key() -> str:
 
 
 def kernels_are_compiled() -> bool:
-    """Whether all kernels of this code were compiled before, so that a run need not wait for the compiler."""
+    """Return whether all kernels of this code were compiled before, so that a run need not wait for the compiler."""
     config: Any = numba.config
     folder = cache_folder("kernels")
     return bool(config.DISABLE_JIT) or (folder is not None and any((folder / kernel_key()).rglob(LAST_COMPILED)))
@@ -66,7 +66,7 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def allocation_free_kernel(function: Callable[P, R]) -> Callable[P, R]:
-    """A `kernel` for inner loops. It does not compile where it would allocate memory.
+    """Compile `function` as `kernel` does, for inner loops. It does not compile where it would allocate memory.
 
     Without allocation numba counts no references. With array fields in named tuples, counting takes a third of a step
     of the solver.
@@ -75,7 +75,7 @@ def allocation_free_kernel(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def inlined_kernel(function: Callable[P, R]) -> Callable[P, R]:
-    """An `allocation_free_kernel` that is compiled into its callers.
+    """Compile `function` as `allocation_free_kernel` does, into its callers.
 
     A call passes every field of every named tuple, 100 to 300 words. That takes longer than a short kernel itself.
     """
@@ -83,10 +83,10 @@ def inlined_kernel(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def switch(functions: Sequence[Callable[P, R]]) -> Callable[Concatenate[int, P], R]:
-    """An `inlined_kernel` that calls one of `functions`, by its number, with the arguments behind the number.
+    """Make an `inlined_kernel` that calls one of `functions`: the number that is its first argument says which.
 
-    The functions are plain Python in files of a room `*_laws`. A call costs a comparison of integers for each function
-    before the one that is called; a number behind the last calls the last.
+    The functions are plain Python in files of a room `*_laws`; they get the other arguments. A call costs a comparison
+    of integers for each function before the one that is called; a number behind the last calls the last.
     """
     first: Any = inlined_kernel(functions[0])
     others: Any = switch(functions[1:]) if len(functions) > 1 else None

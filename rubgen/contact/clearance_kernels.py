@@ -15,7 +15,7 @@ NEAREST_SHARE = 0.9
 
 @inlined_kernel
 def casing_displacement_bound(surface: Surface, q_casing: FloatArray) -> float:
-    """An upper bound of the casing's displacement anywhere on the ring, m: sum_j |q_j| mode_displacement_j."""
+    """Return an upper bound of the casing's displacement anywhere on the ring, m: sum_j |q_j| mode_displacement_j."""
     displacement: float = 0.0
     for j in range(q_casing.shape[0]):
         displacement += abs(q_casing[j]) * surface.mode_displacement[j]
@@ -24,7 +24,7 @@ def casing_displacement_bound(surface: Surface, q_casing: FloatArray) -> float:
 
 @allocation_free_kernel
 def largest_nodal_displacement(surface: Surface, q_casing: FloatArray) -> float:
-    """The largest displacement of a casing node, m; NaN when any is."""
+    """Return the largest displacement of a casing node, m; NaN when any displacement is NaN."""
     largest = 0.0
     for i in range(surface.table.shape[0]):
         x, y = 0.0, 0.0
@@ -39,7 +39,7 @@ def largest_nodal_displacement(surface: Surface, q_casing: FloatArray) -> float:
 
 @allocation_free_kernel
 def least_clearance(surface: Surface, tips: Tips, states: FloatArray, theta: FloatArray) -> float:
-    """The smallest r(angle of P) - |P| over all tips P and states (places, n) at angles `theta` (places,), m.
+    """Return the smallest r(angle of P) - |P| over all tips P and states (places, n) at angles `theta` (places,), m.
 
     r is the undeformed, unworn surface.
     """
@@ -56,7 +56,7 @@ def least_clearance(surface: Surface, tips: Tips, states: FloatArray, theta: Flo
 
 @inlined_kernel
 def tip_angle(tips: Tips, blade: int, displacement: FloatArray, theta: float) -> float:
-    """Polar angle of a blade's tip in rad. Its error is at most `angle_error`.
+    """Return the polar angle of a blade's tip in rad. Its error is at most `angle_error`.
 
     The tip stands at the radius a, t aside of the blade's axis. t / radius replaces arctan(t / a).
 
@@ -70,7 +70,7 @@ def tip_angle(tips: Tips, blade: int, displacement: FloatArray, theta: float) ->
 
 @inlined_kernel
 def angle_error(tip_shift: float) -> float:
-    """A bound of the error of `tip_angle` in rad, for |a - radius| and |t| up to s = `tip_shift` radii.
+    """Return a bound of the error of `tip_angle` in rad, for |a - radius| and |t| up to s = `tip_shift` radii.
 
     |t / radius - t / a| <= 4/3 s^2, and |x - arctan x| <= |x|^3 / 3 with |x| <= 4/3 s. Valid for s < LARGEST_TIP_SHIFT.
     """
@@ -123,7 +123,7 @@ def clearance_bounds(
 
 @inlined_kernel
 def deformation_bounds(surface: Surface, q_casing: FloatArray, tip_shift: float) -> tuple[float, float]:
-    """Two bounds of the deformed surface on the whole ring, for `tighten`.
+    """Return two bounds of the deformed surface on the whole ring, for `tighten`.
 
     The first is in m: how far its radius at a polar angle may lie below r + opening + u_r. There u_r is interpolated
     linearly between the nodes, at the angle of `tip_angle`. The second is the slope of r + opening + u_r by the angle,
@@ -146,9 +146,9 @@ def deformation_bounds(surface: Surface, q_casing: FloatArray, tip_shift: float)
 
 @inlined_kernel
 def radial_displacement(surface: Surface, casing: FloatArray, angle: float) -> float:
-    """u_r of the casing at a polar angle, linear between the nodes.
+    """Return the radial displacement u_r of the casing at a polar angle, linear between the nodes, m.
 
-    `casing` (a multiple of eight,) holds the casing's coordinates and zeros.
+    `casing` (a multiple of eight,) are the casing's coordinates and zeros.
     """
     nodes = surface.radial.shape[0]
     position = angle * (1.0 / surface.node_step)
@@ -161,7 +161,7 @@ def radial_displacement(surface: Surface, casing: FloatArray, angle: float) -> f
 
 @inlined_kernel
 def radial_margin(margin: float, limits: tuple[float, float]) -> float:
-    """The largest radial distance to the surface, m, of a point that is at most `margin` (m) from the surface.
+    """Return the largest radial distance to the surface, m, of a point that is at most `margin` (m) from the surface.
 
     It is the margin times the Lipschitz constant of the surface's radius. `limits` are the two `deformation_bounds`.
     """

@@ -1,4 +1,4 @@
-"""All blades that are near the casing in one step, and the contact forces between them.
+"""Find all blades near the casing in one step, set up the problem for the contact forces, and wear the liner by them.
 
 Geometry is evaluated at the free state q* and the angle theta of the new step. B_n lam is the normal force. B lam with
 B = B_n + mu B_tau is the whole force. Both matrices have entries only at three tip coordinates and the casing modes of
@@ -126,7 +126,14 @@ def gap_at(
     sin_theta: float,
     ends_work: FloatArray,
 ) -> float:
-    """The geometric gap of one blade in a given state."""
+    """Return the gap of one blade's tip to the deformed surface in the state q (n,), m; negative in penetration.
+
+    - worn (bins,): coefficients of the worn depth, m.
+    - casing_start: index of the first casing coordinate in q.
+    - opening: added to the radius of the surface, m.
+    - cos_theta, sin_theta: of the blisk's angle.
+    - ends_work (8,): scratch.
+    """
     x, y, _, _ = tip_position(tips, blade, q, cos_theta, sin_theta)
     return foot_of(surface, worn, q[casing_start:], opening, x, y, ends_work)[1]
 
@@ -135,13 +142,16 @@ def gap_at(
 def slip_velocity(
     tip: tuple[float, float, float], casing: tuple[float, float], tangent: tuple[float, float]
 ) -> tuple[float, float]:
-    """Velocity of the tip relative to the casing along the surface's tangent and along e_z, m/s, all inertial."""
+    """Return the velocity of the tip relative to the casing along the surface's tangent and along e_z, m/s.
+
+    `tip` is (x, y, z), `casing` and `tangent` (x, y), all in the inertial frame.
+    """
     return (tip[0] - casing[0]) * tangent[0] + (tip[1] - casing[1]) * tangent[1], tip[2]
 
 
 @allocation_free_kernel
 def friction_direction(along: float, axial: float) -> tuple[float, float]:
-    """-v_rel / |v_rel| in the plane of tangent and e_z; zero without slip."""
+    """Return the direction of Coulomb friction, -v_rel / |v_rel|, in the plane of tangent and e_z; 0 without slip."""
     speed = math.sqrt(along * along + axial * axial)
     if speed == 0.0:
         return 0.0, 0.0
@@ -152,9 +162,9 @@ def friction_direction(along: float, axial: float) -> tuple[float, float]:
 def contact_slip(
     tips: Tips, m: int, velocity: FloatArray, q: FloatArray, speed: float, cosine: float, sine: float, work: ContactWork
 ) -> tuple[float, float]:
-    """Velocity of the tip of contact m relative to the casing, along tangent and axis.
+    """Return the velocity of the tip of contact m relative to the casing, along tangent and axis, in m/s.
 
-    - velocity (n,): q' or d, in the coordinates' own frames.
+    - velocity (n,): q' or a step d of q, in the coordinates' own frames. With d the result is a path in m.
     - q (n,): coordinates, m.
     - speed: Omega, or Omega dt where `velocity` is d.
     - cosine, sine: of the blade's angle.
@@ -227,7 +237,10 @@ def build_casing_response(m: int, compliance: FloatArray, work: ContactWork) -> 
 
 @inlined_kernel
 def build_compliance(count: int, compliance: FloatArray, work: ContactWork) -> None:
-    """Write W = B_n^T A^-1 B of all contacts; `compliance[j]` is column j of A^-1 between tip coordinates."""
+    """Write W = B_n^T A^-1 B of all `count` contacts into `work`, the gaps' change per unit of each normal force.
+
+    `compliance[j]` is column j of A^-1 between tip coordinates.
+    """
     for row in range(count):
         base = 3 * work.blade[row]
         for column in range(count):
@@ -250,7 +263,7 @@ def largest_approach(
     q_free: FloatArray,
     casing_start: int,
 ) -> float:
-    """A bound of how much the contact forces may have closed any gap, m: movement of tip plus movement of casing.
+    """Bound how much the contact forces may have closed any gap, m: movement of tip plus movement of casing.
 
     - tips_new, tips_free (2, a multiple of eight): radial and tangential displacement with and without the forces, m.
     - q_new, q_free (n,): coordinates with and without the forces; only the casing's are read.
@@ -265,18 +278,18 @@ def largest_approach(
 
 @inlined_kernel
 def wear_where_lined(count: int, liner: Liner, dt: float, work: ContactWork, wear: Wear) -> None:
-    """`wear_liner` where there is one."""
+    """Wear the liner as `wear_liner` does, if there is one."""
     if liner.bins > 0:
         wear_liner(count, liner, dt, work, wear)
 
 
 @allocation_free_kernel
 def wear_liner(count: int, liner: Liner, dt: float, work: ContactWork, wear: Wear) -> None:
-    """Add the work on the receding surface, then wear it: volume = rate lam |v_rel| dt at each contact's foot.
+    """Wear the liner by the contacts of one step: volume = rate lam |v_rel| dt at each contact's foot.
 
-    Archard, J. Appl. Phys. 24 (1953): V = K F s / H; `liner.rate` is K / H. The gaps of this step used the present
-    depth. The gaps of two steps before used `wear.earlier[0]`. Per step the surface has therefore receded by half the
-    difference of the two depths.
+    Archard, J. Appl. Phys. 24 (1953): V = K F s / H; `liner.rate` is K / H. Before that the work of the forces on the
+    receding surface is added. The gaps of this step used the present depth. The gaps of two steps before used
+    `wear.earlier[0]`. Per step the surface has therefore receded by half the difference of the two depths.
     """
     for m in range(count):
         if work.lam[m] > 0.0:

@@ -74,7 +74,11 @@ class Tips(NamedTuple):
 
 @allocation_free_kernel
 def chord_radius(start: float, end: float, angle: float, step: float) -> tuple[float, float, float]:
-    """R and its derivatives on the straight line between two nodes, `angle` after the first: 1 / r is a sinusoid."""
+    """Return r, dr/dpsi and d2r/dpsi2 on the straight line between two nodes, `angle` after the first.
+
+    On it 1 / r is a sinusoid of the angle. `start` and `end` are the radii of the nodes, m; `step` is the angle between
+    them, rad.
+    """
     sine = math.sin(step)
     inverse = (math.sin(step - angle) / start + math.sin(angle) / end) / sine
     change = (math.cos(angle) / end - math.cos(step - angle) / start) / sine
@@ -85,7 +89,7 @@ def chord_radius(start: float, end: float, angle: float, step: float) -> tuple[f
 
 @inlined_kernel
 def undeformed_radius(surface: Surface, psi: float) -> tuple[float, float, float]:
-    """r, dr/dpsi and d2r/dpsi2 of the undeformed, unworn surface."""
+    """Return r, dr/dpsi and d2r/dpsi2 of the undeformed, unworn surface at the polar angle psi."""
     radius, slope, bend = smooth_radius(surface, psi)
     if surface.corners.shape[0] > 0:
         first, second, s = interval(psi, surface.node_step, surface.corners.shape[0])
@@ -96,7 +100,7 @@ def undeformed_radius(surface: Surface, psi: float) -> tuple[float, float, float
 
 @inlined_kernel
 def worn_radius(surface: Surface, worn: FloatArray, psi: float) -> tuple[float, float, float]:
-    """r, dr/dpsi and d2r/dpsi2 of the undeformed surface, worn by the depth with the coefficients `worn` (bins,)."""
+    """Return r, dr/dpsi and d2r/dpsi2 of the undeformed surface, worn by the depth of coefficients `worn` (bins,)."""
     radius, slope, bend = undeformed_radius(surface, psi)
     if worn.shape[0] > 0:
         depth, depth_slope, depth_bend = worn_depth(worn, psi)
@@ -106,7 +110,7 @@ def worn_radius(surface: Surface, worn: FloatArray, psi: float) -> tuple[float, 
 
 @inlined_kernel
 def smooth_radius(surface: Surface, psi: float) -> tuple[float, float, float]:
-    """r, dr/dpsi and d2r/dpsi2 of the smooth curve."""
+    """Return r, dr/dpsi and d2r/dpsi2 of the smooth curve r = R + sum_j a_j cos(n_j (psi - phase_j))."""
     radius, slope, bend = surface.mean_radius, 0.0, 0.0
     for j in range(surface.amplitude.shape[0]):
         order = surface.order[j]
@@ -120,7 +124,7 @@ def smooth_radius(surface: Surface, psi: float) -> tuple[float, float, float]:
 
 @allocation_free_kernel
 def interval(psi: float, node_step: float, nodes: int) -> tuple[int, int, float]:
-    """The two nodes around the polar angle, and the share of the way between them in [0, 1]."""
+    """Return the numbers of the two nodes around the polar angle psi, and the share of the way between, in [0, 1]."""
     position = psi / node_step
     first = math.floor(position)
     return int(first % nodes), int((first + 1) % nodes), position - first
@@ -128,7 +132,7 @@ def interval(psi: float, node_step: float, nodes: int) -> tuple[int, int, float]
 
 @allocation_free_kernel
 def load_interval(table: FloatArray, first: int, second: int, q_casing: FloatArray, ends_out: FloatArray) -> None:
-    """Displacement and slope (X, Y, X', Y') at two nodes, into `ends_out` (8,).
+    """Write displacement and slope (X, Y, X', Y') at the two nodes of an interval into `ends_out` (8,).
 
     Written out, so that the four numbers of a node, which stand side by side, are summed side by side.
     """
@@ -145,27 +149,33 @@ def load_interval(table: FloatArray, first: int, second: int, q_casing: FloatArr
 
 @allocation_free_kernel
 def hermite(s: float, h: float) -> tuple[float, float, float, float]:
-    """Weights of first value, second value, first slope, second slope at share s of an interval of length h."""
+    """Return the cubic Hermite weights of first value, second value, first slope, second slope.
+
+    s is the share of the way along an interval of length h.
+    """
     return (1 + 2 * s) * (1 - s) * (1 - s), s * s * (3 - 2 * s), h * s * (1 - s) * (1 - s), h * s * s * (s - 1)
 
 
 @allocation_free_kernel
 def hermite_slope(s: float, h: float) -> tuple[float, float, float, float]:
-    """Derivatives of the `hermite` weights by the polar angle."""
+    """Return the derivatives of the `hermite` weights by the polar angle."""
     bump = 6 * s * (1 - s) / h
     return -bump, bump, (1 - s) * (1 - 3 * s), s * (3 * s - 2)
 
 
 @allocation_free_kernel
 def hermite_bend(s: float, h: float) -> tuple[float, float, float, float]:
-    """Second derivatives of the `hermite` weights by the polar angle."""
+    """Return the second derivatives of the `hermite` weights by the polar angle."""
     bend = (12 * s - 6) / (h * h)
     return bend, -bend, (6 * s - 4) / h, (6 * s - 2) / h
 
 
 @allocation_free_kernel
 def blend(weights: tuple[float, float, float, float], ends: FloatArray, c: int) -> float:
-    """Component c (0: X, 1: Y) of the interpolated displacement, or of its derivative."""
+    """Return component c (0: X, 1: Y) of the displacement at the weights' place, from the ends of its interval.
+
+    With weights of `hermite_slope` or `hermite_bend` it is that derivative. `ends` (8,) are from `load_interval`.
+    """
     total: float = weights[0] * ends[c] + weights[1] * ends[4 + c]
     total += weights[2] * ends[2 + c] + weights[3] * ends[6 + c]
     return total
@@ -175,10 +185,10 @@ def blend(weights: tuple[float, float, float, float], ends: FloatArray, c: int) 
 def foot_of(
     surface: Surface, worn: FloatArray, q_casing: FloatArray, opening: float, x: float, y: float, ends_work: FloatArray
 ) -> tuple[float, float, float, float]:
-    """Foot of (x, y) on the deformed surface: polar parameter psi, gap, and the tangent's X and Y.
+    """Find the foot of the point (x, y) on the deformed surface: polar parameter psi, gap, and the tangent's X and Y.
 
-    Newton's method on (P - X(psi)).X'(psi) = 0, from the polar angle of P. The gap is n.(P - X) with the inward
-    normal n = e_z x t, positive inside the casing. With chords the foot is on the chord at the polar angle of P.
+    Newton's method on (P - X(psi)).X'(psi) = 0, from the polar angle of P. The gap is n.(P - X) with the inward normal
+    n = e_z x t, positive inside the casing. With chords the foot is on the chord at the polar angle of P.
 
     - worn (bins,): coefficients of the worn depth, m.
     - q_casing (n_casing,): the casing's coordinates.
@@ -222,7 +232,7 @@ def foot_of(
 
 @inlined_kernel
 def casing_rows(surface: Surface, psi: float, rows_out: FloatArray) -> None:
-    """X and Y displacement at psi per unit of each casing mode, into `rows_out` (2, n_casing)."""
+    """Write X and Y displacement at the polar angle psi per unit of each casing mode into `rows_out` (2, n_casing)."""
     first, second, s = interval(psi, surface.node_step, surface.table.shape[0])
     w = hermite(s, surface.node_step)
     table = surface.table
@@ -240,7 +250,10 @@ def casing_rows(surface: Surface, psi: float, rows_out: FloatArray) -> None:
 def tip_position(
     tips: Tips, blade: int, q: FloatArray, cos_theta: float, sin_theta: float
 ) -> tuple[float, float, float, float]:
-    """Inertial x, y of a blade's tip, then the cosine and sine of the blade's angle theta + blade_angle."""
+    """Return inertial x, y of a blade's tip in m, then cosine and sine of the blade's angle theta + blade_angle.
+
+    q (n,) are the coordinates; `cos_theta` and `sin_theta` are of the blisk's angle.
+    """
     cosine = cos_theta * tips.cos_angle[blade] - sin_theta * tips.sin_angle[blade]
     sine = sin_theta * tips.cos_angle[blade] + cos_theta * tips.sin_angle[blade]
     radial = tips.radius + tips.static[0, blade] + q[3 * blade]

@@ -1,4 +1,4 @@
-"""The normal forces of one step: of rigid contact, the complementarity problem 0 <= lam _|_ b + W lam >= 0."""
+"""Solve for the normal forces of one step. For rigid contact it is the problem 0 <= lam _|_ b + W lam >= 0."""
 
 import math
 
@@ -18,7 +18,7 @@ respond = switch([law.respond for law in NORMAL_LAWS])
 
 @allocation_free_kernel
 def is_positive_definite(W: FloatArray, m: int, work: FloatArray) -> bool:
-    """Whether the symmetric part of the leading m x m block of W is positive definite (by Cholesky, in `work`)."""
+    """Return whether the symmetric part of the leading m x m block of W is positive definite, by Cholesky in `work`."""
     for i in range(m):
         for j in range(i + 1):
             total = 0.5 * (W[i, j] + W[j, i])
@@ -37,9 +37,15 @@ def is_positive_definite(W: FloatArray, m: int, work: FloatArray) -> bool:
 def projected_gauss_seidel(
     law: FloatArray, W: FloatArray, b: FloatArray, before: FloatArray, m: int, lam_out: FloatArray
 ) -> int:
-    """Sweeps from zero until no multiplier moves by more than 1e-14 of the largest; SOLVED or UNSOLVED.
+    """Solve for the normal forces `lam_out` (m,) by projected Gauss-Seidel. Returns SOLVED or UNSOLVED.
 
-    `law` is the place of the law of the normal force and its numbers; `before` (m,) are the gaps at step n - 1.
+    Sweeps begin at zero and end when no force moves by more than 1e-14 of the largest.
+
+    - law: number of the law of the normal force in the registry, then its parameters.
+    - W (m, m): change of each gap per unit of each force, m/N.
+    - b (m,): gaps before the forces, m.
+    - before (m,): gaps at step n - 1, m, for a law with a rate.
+    - m: number of contacts.
     """
     place, numbers = int(law[0]), law[1:]
     for i in range(m):
@@ -61,7 +67,10 @@ def projected_gauss_seidel(
 
 @allocation_free_kernel
 def _leaving_row(tableau: FloatArray, entering: int, m: int) -> int:
-    """Row of the smallest ratio; ties go to the artificial variable's row if last, else the first; -1 on a ray."""
+    """Return the row of the smallest ratio; -1 on a ray.
+
+    Ties go to the artificial variable's row if last, else the first.
+    """
     best, row = math.inf, -1
     for i in range(m):
         if tableau[i, entering] > 1e-14:
@@ -85,7 +94,7 @@ def _pivot(tableau: FloatArray, row: int, column: int, m: int) -> None:
 
 @allocation_free_kernel
 def _fill_tableau(W: FloatArray, b: FloatArray, m: int, scale: float, tableau: FloatArray, basis: IntArray) -> int:
-    """I w - W z - 1 z0 = b, scaled so that lam = scale z. Return the row of the most negative b."""
+    """Write I w - W z - 1 z0 = b, scaled so that lam = scale z. Return the row of the most negative b."""
     worst = 0
     for i in range(m):
         for j in range(m):
@@ -102,9 +111,10 @@ def _fill_tableau(W: FloatArray, b: FloatArray, m: int, scale: float, tableau: F
 
 @allocation_free_kernel
 def lemke(W: FloatArray, b: FloatArray, m: int, lam_out: FloatArray, tableau: FloatArray, basis: IntArray) -> int:
-    """Lemke's complementary pivoting (Cottle, Pang, Stone, The Linear Complementarity Problem, 4.4).
+    """Solve 0 <= lam _|_ b + W lam >= 0 by Lemke's complementary pivoting.
 
-    `tableau` (m, 2 m + 2) and `basis` (m,) are scratch. SOLVED, or UNSOLVED when it ends on a ray.
+    Cottle, Pang, Stone, The Linear Complementarity Problem, 4.4. `tableau` (m, 2 m + 2) and `basis` (m,) are scratch.
+    Returns SOLVED, or UNSOLVED when it ends on a ray.
     """
     size = 0.0
     for i in range(m):
@@ -144,11 +154,12 @@ def solve_normal(
     tableau: FloatArray,
     basis: IntArray,
 ) -> int:
-    """The normal forces of the leading m contacts, into `lam_out`; SOLVED or UNSOLVED.
+    """Solve for the normal forces of the leading m contacts, into `lam_out`. Returns SOLVED or UNSOLVED.
 
-    W positive definite (symmetric part): the solution is unique and projected Gauss-Seidel is tried first; in every
-    other case of rigid contact Lemke's pivoting. `law` is the place of the law and its numbers. The first row of the
-    scratch `tableau` holds the gaps at step n - 1 where the law regards the rate.
+    Where W is positive definite (symmetric part) the solution is unique and projected Gauss-Seidel is tried first. In
+    every other case of rigid contact it is Lemke's pivoting. `law` is the number of the law in the registry and its
+    parameters; W and b are as in `projected_gauss_seidel`. The first row of the scratch `tableau` holds the gaps at
+    step n - 1 where the law regards the rate.
     """
     if is_positive_definite(W, m, square) and projected_gauss_seidel(law, W, b, tableau[0], m, lam_out) == SOLVED:
         return SOLVED

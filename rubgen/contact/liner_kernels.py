@@ -10,7 +10,7 @@ REMOVED, WORK = range(2)
 
 
 class Liner(NamedTuple):
-    """What does not change of a liner."""
+    """The constants of an abradable liner."""
 
     bins: int
     """Number of coefficients of the worn depth; 0 where there is no liner."""
@@ -35,14 +35,20 @@ class Wear(NamedTuple):
 
 @inlined_kernel
 def spline_weights(s: float) -> tuple[float, float, float, float]:
-    """Uniform cubic B-splines on one interval at share s: coefficients before, first, second, after."""
+    """Return the weights of four neighbouring coefficients of a uniform cubic B-spline.
+
+    The place is at share s between the second and the third of them.
+    """
     r = 1 - s
     return r * r * r / 6, (4 - 6 * s * s + 3 * s * s * s) / 6, (4 - 6 * r * r + 3 * r * r * r) / 6, s * s * s / 6
 
 
 @allocation_free_kernel
 def worn_depth(coefficients: FloatArray, psi: float) -> tuple[float, float, float]:
-    """The depth at a polar angle in m, and its first and second derivative by the angle."""
+    """Return the worn depth at a polar angle in m, and its first and second derivative by the angle.
+
+    `coefficients` (bins,) are those of the periodic spline.
+    """
     bins = coefficients.shape[0]
     per_angle = bins / (2 * math.pi)
     position = psi * per_angle

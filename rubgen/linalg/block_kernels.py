@@ -20,18 +20,18 @@ class Product(NamedTuple):
 
 @inlined_kernel
 def multiply(product: Product, z: FloatArray, out: FloatArray) -> None:
-    """Out += matrix z."""
+    """Add matrix times z to `out`: out += matrix z."""
     add_lines(product.lines, product.entries, z, out)
 
 
 @inlined_kernel
 def quadratic(product: Product, left: FloatArray, right: FloatArray) -> float:
-    """left^T matrix right."""
+    """Return left^T matrix right."""
     total: float = dot_lines(product.lines, product.entries, right, left)
     return total
 
 
 @allocation_free_kernel
 def bilinear(product: Product, left: FloatArray, right: FloatArray) -> float:
-    """`quadratic`, for callers outside of kernels."""
+    """Return left^T matrix right as `quadratic` does, for callers outside of kernels."""
     return quadratic(product, left, right)

@@ -1,4 +1,4 @@
-"""From z to physical coordinates and back: blade tips are harmonics over the blades, the others are unchanged."""
+"""Change z to physical coordinates and back: blade tips are harmonics over the blades, the others are unchanged."""
 
 from typing import NamedTuple
 
@@ -71,7 +71,7 @@ def recover_all(
 
 @inlined_kernel
 def spread_tip_force(harmonics: Harmonics, blade: int, force: FloatArray, scale: float, z_force: FloatArray) -> None:
-    """Add a force (3,) on one tip, times `scale`, to the force in z."""
+    """Add a force (3,) on the tip of one blade, times `scale`, to the force `z_force` in z."""
     for a in range(3):
         size = scale * force[a]
         for j in range(harmonics.basis.shape[0]):

@@ -1,7 +1,8 @@
 """Sums of products over rows of eight numbers, the solver's inner loops, written for vector registers.
 
 Each function stands twice, as plain Python and in vector code (`vector_kernels`). Both take C-contiguous arrays of
-float64 of any shape, read as rows of eight or as single numbers. Products are fused with the sums.
+float64 of any shape, read as rows of eight or as single numbers. Products are fused with the sums. A line describes one
+sum of products: which rows of entries are multiplied with which part of a vector, and where the sums go.
 """
 
 from collections.abc import Callable
@@ -24,12 +25,15 @@ many. See `line_kind`."""
 
 
 def line_kind(rows: int, *, scaled: bool) -> int:
-    """What stands at KIND: how many rows of results, 1 to `MOST_ROWS`, and whether single numbers of x are meant."""
+    """Return the number at KIND of a line with `rows` rows of results, 1 to `MOST_ROWS`.
+
+    With `scaled` the entries are multiplied with single numbers of x, else with rows of eight.
+    """
     return 2 * (rows - 1) + int(scaled)
 
 
 def line_sum(line: IntArray, a: FloatArray, x: FloatArray) -> FloatArray:
-    """The rows of results (rows, 8) of one line.
+    """Return the rows of results (rows, 8) of one line.
 
     Row r is the sum over j < COUNT of a[FIRST + j rows + r] times row or number START + j of x.
     """
@@ -45,7 +49,7 @@ def _results(line: IntArray) -> slice:
 
 
 def add_lines(lines: IntArray, a: FloatArray, x: FloatArray, out: FloatArray) -> None:
-    """Add each line's sums to its rows of `out`. `lines` (any, 5), `a` (any, 8) entries."""
+    """Add the sums of each line to its rows of `out`. `lines` is (any, 5), `a` (any, 8) the entries."""
     for line in lines:
         out.reshape(-1, LANES)[_results(line)] += line_sum(line, a, x)
 
@@ -53,7 +57,7 @@ def add_lines(lines: IntArray, a: FloatArray, x: FloatArray, out: FloatArray) ->
 def set_two_lines(
     lines: IntArray, a: FloatArray, b: FloatArray, x: FloatArray, y: FloatArray, base: FloatArray, out: FloatArray
 ) -> None:
-    """Set each row of `out` to the same row of `base` plus the sums of a, x and of b, y; lines have each row once."""
+    """Set each row of `out` to the same row of `base` plus the sums of a, x and of b, y. Lines have each row once."""
     for line in lines:
         row = _results(line)
         out.reshape(-1, LANES)[row] = base.reshape(-1, LANES)[row] + (line_sum(line, a, x) + line_sum(line, b, y))
@@ -62,9 +66,10 @@ def set_two_lines(
 def gather_lines(
     lines: IntArray, a: FloatArray, z: FloatArray, places: IntArray, first: int, second: int, out: FloatArray
 ) -> None:
-    """Each line's sums with the numbers of z at `places[c]`, into its rows of `out[c]`; c is `first`, then `second`.
+    """Write each line's sums with the numbers of z at `places[c]` into its rows of `out[c]`.
 
-    The lines are scaled ones; `places` (any, any), `out` (any, any). Both share each load of a.
+    c is `first`, then `second`; both share each load of a. The lines are scaled ones; `places` is (any, any), `out`
+    (any, any).
     """
     for line in lines:
         for c in (first, second):
@@ -72,12 +77,12 @@ def gather_lines(
 
 
 def dot_lines(lines: IntArray, a: FloatArray, x: FloatArray, left: FloatArray) -> float:
-    """The products of each line's sums with its rows of `left`, summed."""
+    """Multiply the sums of each line with its rows of `left` and return the sum of all products: left^T (matrix x)."""
     return sum(float((line_sum(line, a, x) * left.reshape(-1, LANES)[_results(line)]).sum()) for line in lines)
 
 
 def dot_rows(a: FloatArray, b: FloatArray, count: int) -> float:
-    """Sum of the products of the first `count` rows of a and b."""
+    """Return the sum of the products of the first `count` rows of eight of a and b."""
     return float(a.reshape(-1)[: LANES * count] @ b.reshape(-1)[: LANES * count])
 
 
@@ -91,7 +96,7 @@ class _Emitter(Emitter):
     def sum_products(
         self, sources: list[Source], first: Any, start: Any, count: Any, *, rows: int, broadcast: bool
     ) -> list[Any]:
-        """For each row the sum over sources and j < count of a[first + j rows + row] x[start + j].
+        """Return for each row the sum over sources and j < count of a[first + j rows + row] x[start + j].
 
         Each row has as many partial sums as fill `CHAINS`, the sources' apart.
         """
@@ -127,13 +132,13 @@ class _Emitter(Emitter):
                 builder.store(builder.call(self.fma, [left, right, builder.load(total)]), total)
 
     def _halves(self, parts: list[Any]) -> Any:
-        """The sum of one, two or four parts."""
+        """Return the sum of one, two or four parts."""
         while len(parts) > 1:
             parts = [self.builder.fadd(*parts[i : i + 2]) for i in range(0, len(parts), 2)]
         return parts[0]
 
     def sum_gathered(self, a: Any, z: Any, places: list[Any], line: list[Any], rows: int) -> list[list[Any]]:
-        """For each of the places and each row sum over j < COUNT of a[FIRST + j rows + row] z[places[START + j]]."""
+        """Return for each place and each row the sum over j < COUNT of a[FIRST + j rows + row] z[places[START + j]]."""
         builder = self.builder
         sums = [[cgutils.alloca_once_value(builder, self.zero) for _ in range(rows)] for _ in places]  # type: ignore[no-untyped-call]
         for total in [total for each in sums for total in each]:
@@ -155,7 +160,7 @@ Visit = Callable[[list[Any], int, bool], None]
 
 
 def _summed(emit: _Emitter, sources: list[Source], use: Callable[[Any, Any], None]) -> Visit:
-    """Give each row of results of a line and the sum over the sources there to `use`."""
+    """Return a visit that passes each row of results of a line, with the sum over the sources there, to `use`."""
 
     def visit(line: list[Any], rows: int, broadcast: bool) -> None:
         totals = emit.sum_products(sources, line[FIRST], line[START], line[COUNT], rows=rows, broadcast=broadcast)

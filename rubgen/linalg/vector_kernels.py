@@ -1,7 +1,7 @@
-"""Rows of eight numbers in vector registers, for kernels whose sums numba does not keep there by itself.
+"""Functions on rows of eight numbers in vector registers, for kernels whose sums numba does not keep there by itself.
 
-A function for registers stands twice: as plain Python, and as the same in LLVM's vector type, which compiled kernels
-take instead (`compile_as`). Arrays are C-contiguous. The compiled order of a sum is fixed, on every processor.
+Each function stands twice: as plain Python, and as the same in LLVM's vector type, which compiled kernels take instead
+(`compile_as`). Arrays are C-contiguous. The compiled order of a sum is fixed, on every processor.
 """
 
 from collections.abc import Callable
@@ -21,7 +21,7 @@ LANES = 8
 
 
 class Emitter:
-    """Writes the vector code of one function into LLVM's builder."""
+    """Writes the vector code of one function into LLVM's builder. Its methods return LLVM values."""
 
     def __init__(self, context: Any, builder: Any) -> None:
         self.context, self.builder = context, builder
@@ -32,45 +32,45 @@ class Emitter:
         self.fma = cgutils.get_or_insert_function(builder.module, kind, "llvm.fma.v8f64")  # type: ignore[no-untyped-call]
 
     def array(self, kind: Any, array: Any) -> Any:
-        """An argument of the function as an array."""
+        """Return an argument of the function as an array. `kind` is its numba type."""
         return self.context.make_array(kind)(self.context, self.builder, array)
 
     def shape(self, array: Any, axis: int) -> Any:
-        """Length of an array along an axis."""
+        """Return the length of an array along an axis."""
         return self.builder.extract_value(self.builder.load(array._get_ptr_by_name("shape")), axis)
 
     def line_of(self, array: Any, number: Any) -> Any:
-        """Where a line of a two-dimensional array begins."""
+        """Return the address at which line `number` of a two-dimensional array begins."""
         return self.builder.gep(array.data, [self.builder.mul(number, self.shape(array, 1))])
 
     def at_row(self, data: Any, row: Any) -> Any:
-        """Where a row of eight begins."""
+        """Return the address at which row of eight number `row` begins, from `data`."""
         place = self.builder.gep(data, [self.builder.mul(row, self.index(LANES))])
         return self.builder.bitcast(place, self.vector.as_pointer())
 
     def load(self, data: Any, row: Any) -> Any:
-        """A row of eight."""
+        """Load row of eight number `row` into a register."""
         value = self.builder.load(self.at_row(data, row))
         value.align = 8
         return value
 
     def store(self, value: Any, data: Any, row: Any) -> None:
-        """Write a row of eight."""
+        """Write a register to row of eight number `row`."""
         self.builder.store(value, self.at_row(data, row)).align = 8
 
     def broadcast(self, data: Any, place: Any) -> Any:
-        """One number of an array in all lanes."""
+        """Load number `place` of an array into all lanes of a register."""
         return self.in_all_lanes(self.builder.load(self.builder.gep(data, [place])))
 
     def in_all_lanes(self, number: Any) -> Any:
-        """One number in all lanes."""
+        """Put one number into all lanes of a register."""
         single = self.builder.insert_element(self.zero, number, ir.IntType(32)(0))
         return self.builder.shuffle_vector(
             single, self.zero, ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
         )
 
     def lane_sum(self, total: Any) -> Any:
-        """The sum of all lanes, by halves."""
+        """Add the eight lanes of a register, by halves."""
         lanes = [self.builder.extract_element(total, ir.IntType(32)(i)) for i in range(LANES)]
         while len(lanes) > 1:
             half = len(lanes) // 2
@@ -78,12 +78,17 @@ class Emitter:
         return lanes[0]
 
     def row_count(self, numbers: Any) -> Any:
-        """How many rows of eight so many numbers fill."""
+        """Return how many rows of eight so many numbers fill."""
         return self.builder.udiv(numbers, self.index(LANES))
 
 
 def compile_as(plain: Callable[..., Any], result: Any, vector_code: Callable[..., Any]) -> None:
-    """Let compiled kernels take the vector code where their source calls the plain function."""
+    """Register vector code for a plain function: compiled kernels take it wherever their source calls the function.
+
+    - plain: the function in Python, which runs without compiling.
+    - result: numba type of its result.
+    - vector_code: writes the code, with numba's arguments of a lowering (context, builder, signature, arguments).
+    """
 
     def generic(_template: Any, args: Any, _keywords: Any) -> Any:
         return typed(result, *args)  # type: ignore[no-untyped-call]
@@ -93,22 +98,28 @@ def compile_as(plain: Callable[..., Any], result: Any, vector_code: Callable[...
 
 
 def blended_product(a: FloatArray, first: int, second: int, share: float, x: FloatArray) -> float:
-    """x.(a_first + share (a_second - a_first)) with two lines of a (any, a multiple of eight), the length of x."""
+    """Return x.(a_first + share (a_second - a_first)): x times a line interpolated between two lines of a.
+
+    a is (any, a multiple of eight), x has the length of its lines.
+    """
     return float((a[first] + share * (a[second] - a[first])) @ x)
 
 
 def not_above(x: FloatArray, row: int, limit: float) -> int:
-    """Which numbers in a row of eight of x (a multiple of eight,) are not above the limit: bit i for number i."""
+    """Return which of the eight numbers in row `row` of x are not above the limit: bit i for number i.
+
+    x is (a multiple of eight,).
+    """
     return int(sum(1 << i for i, value in enumerate(x[LANES * row : LANES * (row + 1)]) if not value > limit))
 
 
 def lowest_bit(bits: int) -> int:
-    """The place of the lowest bit that is set, of one or more."""
+    """Return the place of the lowest bit that is set. `bits` is not zero."""
     return (bits & -bits).bit_length() - 1
 
 
 def square_of_farthest(a: FloatArray, b: FloatArray) -> float:
-    """The largest squared distance of two points in one column of a and b, both (2, a multiple of eight)."""
+    """Return the largest squared distance of two points in one column of a and b, both (2, a multiple of eight)."""
     return float(np.square(a[:2] - b[:2]).sum(axis=0).max(initial=0.0))
 
 

@@ -1,4 +1,4 @@
-"""Compiled loop of the sample-rate conversion."""
+"""The compiled loop of the sample-rate conversion."""
 
 import numpy as np
 import numpy.typing as npt

@@ -26,19 +26,19 @@ class BreathingSpring(SupportLaw):
     """Angle gamma of the direction in the turning frame, rad."""
 
     def force(self, theta: AnyArray, u: AnyArray, _v: AnyArray) -> AnyArray:
-        """Lost f(theta) s e."""
+        """Return the force lost f(theta) s e that cancels stiffness of the support along e."""
         e = np.array([math.cos(self.direction_rad), math.sin(self.direction_rad)])
         opening = (1 - np.sin(theta + self.direction_rad)) / 2
         return np.asarray(self.lost_n_per_m * opening[..., None] * np.sum(u * e, axis=-1, keepdims=True) * e)
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """Lost stiffness in N/m, cosine and sine of the direction."""
+        """Lost stiffness in N/m, cosine and sine of the direction's angle gamma."""
         return self.lost_n_per_m, math.cos(self.direction_rad), math.sin(self.direction_rad)
 
     @staticmethod
     def terms(numbers: FloatArray, cosine: float, sine: float, x: float, y: float) -> Terms:
-        """The spring force, no damping."""
+        """Return the spring force lost f(theta) s e at u = (x, y), and zero damping."""
         e_x, e_y = numbers[1], numbers[2]
         opening = 0.5 * (1.0 - (sine * e_x + cosine * e_y))
         force = numbers[0] * opening * (e_x * x + e_y * y)

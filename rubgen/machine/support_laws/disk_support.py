@@ -29,7 +29,7 @@ class DiskSupport:
 
     @property
     def laws(self) -> tuple[SupportLaw, ...]:
-        """The laws that are given."""
+        """The laws that the machine file gives, in the order of the keys."""
         return tuple(given(self, SupportLaw).values())
 
 

@@ -1,4 +1,4 @@
-"""What a law of the disk support is."""
+"""The base class of a law of the disk support."""
 
 import math
 from abc import ABC, abstractmethod
@@ -30,20 +30,24 @@ class SupportLaw(ABC):
 
     @abstractmethod
     def force(self, theta: AnyArray, u: AnyArray, v: AnyArray) -> AnyArray:
-        """Force (..., 2) in N at the angles theta (...), places u and absolute velocities v (..., 2).
+        """Return the force (..., 2) in N at the angles theta (...), places u and absolute velocities v (..., 2).
 
-        u and v are real or complex. The function is analytic, or analytic in pieces that the real part of u chooses.
+        u and v are real or complex, since derivatives are taken by complex steps. The function is analytic, or analytic
+        in pieces that the real part of u chooses.
         """
 
     @property
     @abstractmethod
     def numbers(self) -> tuple[float, ...]:
-        """The numbers that `terms` takes."""
+        """The constants of the law that `terms` takes."""
 
     @staticmethod
     @abstractmethod
     def terms(numbers: FloatArray, cosine: float, sine: float, x: float, y: float) -> Terms:
-        """Spring force and damping at u = (x, y), from cos theta and sin theta.
+        """Return the spring force s_x, s_y (N) and the damping D_xx, D_xy, D_yx, D_yy (N s/m) at u = (x, y) in m.
+
+        - numbers: the property `numbers`.
+        - cosine, sine: of theta.
 
         The solver compiles this function and calls it in every step. It may use arithmetic, `math` and constants of its
         own file. The scheme takes D implicitly, so a D that is not negative never adds energy.
@@ -51,10 +55,10 @@ class SupportLaw(ABC):
 
     @property
     def limit_m(self) -> float:
-        """The eccentricity at which the law ends, and a run with it as `film-closed`, in m; infinite by default."""
+        """Eccentricity in m at which the law ends, and a run with it as `film-closed`; infinite by default."""
         return math.inf
 
     @property
     def stiffening_n_per_m(self) -> float:
-        """By how much the law stiffens the support at most, in N/m; the stable step regards it."""
+        """Largest stiffness in N/m that the law adds to the support. It shortens the stable time step."""
         return 0.0

@@ -28,19 +28,19 @@ class LooseSpring(SupportLaw):
     """Angle of the direction, inertial, rad."""
 
     def force(self, theta: AnyArray, u: AnyArray, _v: AnyArray) -> AnyArray:
-        """Lost (s - gap) e where s > gap: the side is chosen by the real part of s."""
+        """Return the force lost (s - gap) e where s > gap, else 0. The real part of s chooses the side."""
         e = np.stack([np.cos(self.direction_rad - theta), np.sin(self.direction_rad - theta)], axis=-1)
         beyond = np.sum(u * e, axis=-1, keepdims=True) - self.gap_m
         return np.asarray(np.where(beyond.real > 0, self.lost_n_per_m * beyond, 0.0) * e)
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """Lost stiffness in N/m, gap in m, cosine and sine of the direction."""
+        """Lost stiffness in N/m, gap in m, cosine and sine of the direction's angle."""
         return self.lost_n_per_m, self.gap_m, math.cos(self.direction_rad), math.sin(self.direction_rad)
 
     @staticmethod
     def terms(numbers: FloatArray, cosine: float, sine: float, x: float, y: float) -> Terms:
-        """The spring force, no damping."""
+        """Return the spring force lost (s - gap) e where s > gap, at u = (x, y), and zero damping."""
         e_x = numbers[2] * cosine + numbers[3] * sine
         e_y = numbers[3] * cosine - numbers[2] * sine
         force = numbers[0] * max(e_x * x + e_y * y - numbers[1], 0.0)

@@ -29,16 +29,16 @@ class SqueezeFilm(SupportLaw):
 
     @property
     def centred_damping_n_s_per_m(self) -> float:
-        """C_0 = pi mu R (L / c)^3, in N s/m."""
+        """Damping of the centred film, C_0 = pi mu R (L / c)^3, in N s/m."""
         return float(np.pi * self.viscosity_pa_s * self.radius_m * (self.length_m / self.clearance_m) ** 3)
 
     @property
     def limit_m(self) -> float:
-        """The clearance, in m."""
+        """Eccentricity in m at which the film closes: the clearance."""
         return self.clearance_m
 
     def force(self, _theta: AnyArray, u: AnyArray, v: AnyArray) -> AnyArray:
-        """-C(u) v, C = C_0 (1 - eps^2)^(-3/2) [1 + 3 u u^T / (c^2 (1 - eps^2))]."""
+        """Return the film's force -C(u) v, with C = C_0 (1 - eps^2)^(-3/2) [1 + 3 u u^T / (c^2 (1 - eps^2))]."""
         square = self.clearance_m**2
         rest = 1 - np.sum(u * u, axis=-1, keepdims=True) / square
         along = 3 * u * np.sum(u * v, axis=-1, keepdims=True) / (square * rest)
@@ -46,12 +46,15 @@ class SqueezeFilm(SupportLaw):
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """C_0 in N s/m and the clearance in m."""
+        """C_0 in N s/m and the clearance c in m."""
         return self.centred_damping_n_s_per_m, self.clearance_m
 
     @staticmethod
     def terms(numbers: FloatArray, _cosine: float, _sine: float, x: float, y: float) -> Terms:
-        """No spring, and C(u)."""
+        """Return the spring force, which is zero, and the damping matrix C(u) of `force`: an oil film only damps.
+
+        The result is (0, 0, C_xx, C_xy, C_yx, C_yy) at u = (x, y), in N s/m.
+        """
         centred, clearance = numbers[0], numbers[1]
         rest = 1.0 - (x * x + y * y) / (clearance * clearance)
         even = centred / (rest * rest**0.5)

@@ -30,24 +30,27 @@ class WhirlingFilm(SupportLaw):
     """Eccentricity at which the mean speed of the oil has halved, m."""
 
     def force(self, _theta: AnyArray, u: AnyArray, _v: AnyArray) -> AnyArray:
-        """Cross-coupled and direct part, at any theta."""
+        """Return q (swirl e_z x u + soft u): the cross-coupled and the direct part, at any theta."""
         q = 1 / (1 + np.sum(u * u, axis=-1, keepdims=True) / self.scale_m**2)
         across = np.stack([-u[..., 1], u[..., 0]], axis=-1)
         return np.asarray(q * (self.swirl_n_per_m * across + self.soft_n_per_m * u))
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """Cross-coupled and lacking stiffness in N/m, scale in m."""
+        """Cross-coupled stiffness and lacking stiffness in N/m, scale in m."""
         return self.swirl_n_per_m, self.soft_n_per_m, self.scale_m
 
     @staticmethod
     def terms(numbers: FloatArray, _cosine: float, _sine: float, x: float, y: float) -> Terms:
-        """The spring force, no damping."""
+        """Return the spring force q (swirl e_z x u + soft u) at u = (x, y), and zero damping."""
         q = 1.0 / (1.0 + (x * x + y * y) / (numbers[2] * numbers[2]))
         across, along = q * numbers[0], q * numbers[1]
         return along * x - across * y, along * y + across * x, 0.0, 0.0, 0.0, 0.0
 
     @property
     def stiffening_n_per_m(self) -> float:
-        """A bound: radially the law stiffens by at most soft / 8, and its symmetric shear part is at most swirl / 4."""
+        """Bound of the stiffness in N/m that the law adds: the largest eigenvalue of its symmetric tangent stiffness.
+
+        Radially it stiffens by at most soft / 8, and its symmetric shear part is at most swirl / 4.
+        """
         return self.soft_n_per_m / 16 + math.hypot(self.soft_n_per_m / 16, self.swirl_n_per_m / 4)

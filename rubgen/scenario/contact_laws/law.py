@@ -1,4 +1,4 @@
-"""What a law of the normal contact force is."""
+"""The base class of a law of the normal contact force."""
 
 from abc import ABC, abstractmethod
 from typing import ClassVar
@@ -13,16 +13,16 @@ class NormalLaw(ABC):
     """
 
     REGARDS_RATE: ClassVar[bool] = False
-    """Whether `respond` takes the earlier gap."""
+    """Whether `respond` uses the gap two steps earlier, as a law that damps does."""
 
     @abstractmethod
     def numbers(self, dt: float) -> tuple[float, ...]:
-        """The numbers that `respond` takes, for time steps of `dt` (s)."""
+        """Return the constants of the law that `respond` takes, for time steps of `dt` (s)."""
 
     @staticmethod
     @abstractmethod
     def respond(numbers: FloatArray, force: float, gap: float, compliance: float, before: float) -> float:
-        """The force of one contact in N, >= 0, while the forces of all others stay.
+        """Return the force of one contact in N, >= 0, while the forces of all others stay as they are.
 
         `gap` (m, negative where the tip is in the casing) is the gap at the end of the step with the present `force`.
         It grows by `compliance` (m/N, > 0) for each newton more: the law must hold between the force that is returned
@@ -31,5 +31,5 @@ class NormalLaw(ABC):
         act, so a law may not pull.
 
         The solver compiles this function and calls it in every sweep over the contacts of a step. It may use
-        arithmetic, `math` and constants of its own file.
+        arithmetic, `math` and constants of its own file. `numbers` are those of the method with that name.
         """

@@ -1,4 +1,4 @@
-"""Rigid contact."""
+"""The law of rigid contact."""
 
 from dataclasses import dataclass
 
@@ -11,10 +11,10 @@ class Rigid(NormalLaw):
     """No tip enters the casing: 0 <= force, 0 <= gap, one of them 0 (Signorini)."""
 
     def numbers(self, _dt: float) -> tuple[float, ...]:
-        """None."""
+        """Return no constants: the law has none."""
         return ()
 
     @staticmethod
     def respond(_numbers: FloatArray, force: float, gap: float, compliance: float, _before: float) -> float:
-        """The force that closes the gap, or none."""
+        """Return the force that closes the gap, or 0 where the gap is open without one."""
         return max(0.0, force - gap / compliance)

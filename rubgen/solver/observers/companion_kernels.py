@@ -16,7 +16,10 @@ from rubgen.solver.scheme.step_kernels import OK, advance, shift_gaps
 
 @allocation_free_kernel
 def bring_back(main: FloatArray, scale: float, companion: FloatArray) -> None:
-    """Set companion = main + scale (companion - main). Where that is not finite, set companion = main."""
+    """Scale the companion's distance from the run: companion = main + scale (companion - main).
+
+    Where that is not finite, set companion = main.
+    """
     for i in range(companion.shape[0]):
         away = companion[i] - main[i]
         companion[i] = main[i] + scale * away if math.isfinite(away) else main[i]
@@ -24,7 +27,7 @@ def bring_back(main: FloatArray, scale: float, companion: FloatArray) -> None:
 
 @allocation_free_kernel
 def distance(laws: Laws, mass: Product, main: FloatArray, companion: tuple[Motion, Motion], scratch: Scratch) -> float:
-    """Sqrt(d_v^T M d_v + Omega^2 d_q^T M d_q), d the difference between the run and its companion.
+    """Return sqrt(d_v^T M d_v + Omega^2 d_q^T M d_q), d the difference between the run and its companion.
 
     `main` (2, any) is z of the run at two steps, `companion` its motions at these steps. `mass` is M in blocks.
     """

@@ -19,14 +19,17 @@ WORKS = 8
 
 @allocation_free_kernel
 def stored_energy(terms: EnergyTerms, before: FloatArray, now: FloatArray, difference: FloatArray, dt: float) -> float:
-    """v^T M v / 2 + now^T K_sym before / 2, all in z; `difference` is dt v = now - before."""
+    """Return the stored energy v^T M v / 2 + now^T K_sym before / 2, J, all in z. `difference` is now - before."""
     kinetic = quadratic(terms.M, difference, difference) / (dt * dt)
     return 0.5 * (kinetic + quadratic(terms.K, now, before))
 
 
 @inlined_kernel
 def add_linear_works(terms: EnergyTerms, now: FloatArray, change: FloatArray, dt: float, works: FloatArray) -> None:
-    """Add the works of unbalance, dampers and circulatory stiffness in one step; `change` is d, in z as `now`."""
+    """Add the works of unbalance, dampers and circulatory stiffness in one step to `works`.
+
+    `change` is d, in z as `now`.
+    """
     unbalance = 0.0
     for i in range(terms.force.shape[0]):
         unbalance += terms.force[i] * change[terms.force_places[i]]

@@ -13,7 +13,9 @@ class Scheme(NamedTuple):
     lines: IntArray
     """Lines of `now`, `before` and `inverse`."""
     now: FloatArray
+    """Matrix of q_n."""
     before: FloatArray
+    """Matrix of q_n-1."""
     constant: FloatArray
     """A^-1 times the unbalance force, in z."""
     inverse: FloatArray
@@ -22,5 +24,5 @@ class Scheme(NamedTuple):
 
 @inlined_kernel
 def free_step(scheme: Scheme, before: FloatArray, now: FloatArray, after: FloatArray) -> None:
-    """Write q* in z into `after`; `before` and `now` are z at steps n - 1 and n."""
+    """Write q* in z, the next coordinates without contact, into `after`. `before` and `now` are z at n - 1 and n."""
     set_two_lines(scheme.lines, scheme.now, scheme.before, now, before, scheme.constant, after)

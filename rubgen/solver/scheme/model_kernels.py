@@ -1,4 +1,4 @@
-"""The constants of a step: laws, tables over the angle, the model."""
+"""The constants of a step: laws and limits, tables over the angle, and the whole model."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ from rubgen.solver.supports.support_kernels import Support
 
 
 class Laws(NamedTuple):
-    """Numbers of a step."""
+    """The numbers of a step: speed, time step, contact law, and the limits within which it is valid."""
 
     speed: float
     """Omega, rad/s."""
@@ -57,7 +57,7 @@ class Angles(NamedTuple):
 
 
 class EnergyTerms(NamedTuple):
-    """Matrices of the energy terms in blocks."""
+    """The matrices of the energy terms, in blocks."""
 
     damping: Product
     """The lower triangle of C_sym with half its diagonal, so that d^T C d = 2 d^T (triangle d)."""

@@ -38,7 +38,7 @@ def recover_blade(harmonics: Harmonics, motion: Motion, blade: int) -> None:
 
 @inlined_kernel
 def copy_motion(source: Motion, target: Motion) -> None:
-    """Copy a motion."""
+    """Copy the coordinates of `source` into `target`."""
     for i in range(source.z.shape[0]):
         target.z[i] = source.z[i]
     for a in range(2):

@@ -1,4 +1,4 @@
-"""The state of a run, which every step changes, and the room in which a step works."""
+"""The state of a run, which every step changes, the scratch of a step, and the snapshots that a turn leaves."""
 
 from typing import NamedTuple
 
@@ -69,7 +69,7 @@ class Snapshots(NamedTuple):
 
 @inlined_kernel
 def keep_snapshot(snapshots: Snapshots, number: int, before: Motion, now: Motion, work: ContactWork) -> int:
-    """Keep a state under a number; returns the next number."""
+    """Copy the state at a step and the step before into snapshot `number`. Return the next number."""
     for i in range(now.z.shape[0]):
         snapshots.z[number, 0, i] = before.z[i]
         snapshots.z[number, 1, i] = now.z[i]

@@ -57,7 +57,7 @@ def previous_gap(
     sine: float,
     work: ContactWork,
 ) -> float:
-    """The gap of a blade at step n - 1, m: the scheme's where it was near, else from the geometry.
+    """Return the gap of a blade at step n - 1, m: the scheme's where it was near, else from the geometry.
 
     - worn (bins,): coefficients of the worn depth, m.
     - opening: added to the radius of the surface at step n - 1, m.
@@ -73,7 +73,10 @@ def previous_gap(
 
 @inlined_kernel
 def starting_margin(laws: Laws, step_gaps: FloatArray) -> float:
-    """The smallest margin, m: larger by restitution times the deepest penetration at step n - 1."""
+    """Return the smallest margin within which blades are solved together, m.
+
+    It is larger by restitution times the deepest penetration at step n - 1.
+    """
     deepest = 0.0
     if laws.restitution > 0.0:
         for k in range(step_gaps.shape[1]):
@@ -135,7 +138,7 @@ def solve_contacts(
 
 @inlined_kernel
 def apply_contacts(count: int, model: Model, after: Motion, state: State) -> None:
-    """Add A^-1 B lam to the motion `after`."""
+    """Move the motion `after` by the contact forces: add A^-1 B lam of `count` contacts."""
     work, force, harmonics = state.contact, state.scratch.z_force, model.harmonics
     start = harmonics.rest.shape[0] - work.rows.shape[1]
     force[:] = 0.0
@@ -164,7 +167,7 @@ def bound_clearances(
 ) -> bool:
     """Write into `work.bounds` how far each tip is inside the deformed surface at least, m; -inf without screening.
 
-    Return True if no tip can touch the surface.
+    Returns True if no tip can touch the surface.
 
     - inside: row of `model.angles` of the step.
     - opening: added to the radius of the surface, m.
@@ -258,7 +261,7 @@ def contact_step(
 
 @allocation_free_kernel
 def has_diverged(surface: Surface, laws: Laws, q: FloatArray, casing_start: int, n_blades: int) -> bool:
-    """Whether a casing node or a blade tip has moved beyond its limit or is NaN. `q` is (n,)."""
+    """Return whether a casing node or a blade tip has moved beyond its limit or is NaN. `q` is (n,)."""
     for k in range(3 * n_blades):
         if not abs(q[k]) <= laws.tip_limit:
             return True
@@ -270,7 +273,10 @@ def has_diverged(surface: Surface, laws: Laws, q: FloatArray, casing_start: int,
 
 @inlined_kernel
 def leaves_range(model: Model, motion: Motion, casing_bound: float, scratch: Scratch) -> bool:
-    """`has_diverged`, decided by bounds where they suffice: no tip coordinate is beyond the norm of z."""
+    """Return whether a motion has diverged, as `has_diverged` does, by bounds where they suffice.
+
+    No tip coordinate is beyond the norm of z. `casing_bound` is a bound of the casing's displacement, m.
+    """
     norm = dot_rows(motion.z, motion.z, motion.z.shape[0] // LANES)
     if norm <= model.laws.tip_limit**2 and casing_bound <= model.laws.casing_limit:
         return False
@@ -311,7 +317,7 @@ def advance(
 
 @inlined_kernel
 def shift_gaps(work: ContactWork) -> None:
-    """The gaps at steps n and n + 1 become those at n - 1 and n of the next step."""
+    """Move the gaps at steps n and n + 1 to n - 1 and n, for the next step."""
     for k in range(work.step_gaps.shape[1]):
         work.step_gaps[0, k] = work.step_gaps[1, k]
         work.step_gaps[1, k] = work.step_gaps[2, k]

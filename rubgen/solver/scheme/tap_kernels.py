@@ -1,6 +1,7 @@
-"""The true signals of a step: taps at step n, and the passages of blades under timing probes.
+"""Read the true signals of a step: taps at step n, and the passages of blades under timing probes.
 
-Every tap except the clearances is a linear functional. A row of `Taps.sums` holds eight of them.
+Every tap except the clearances is a linear functional. A row of `Taps.sums` holds eight of them. O_d is the disk
+centre.
 """
 
 import math
@@ -93,7 +94,7 @@ class Taps(NamedTuple):
 
 @inlined_kernel
 def tip_radius_on_ray(tips: Tips, rays: Rays, displacement: FloatArray, step: int, ray: int) -> float:
-    """Radius of the tips on a ray: linear in angle between the two blades around it."""
+    """Return the radius of the tips on a ray, m: linear in angle between the two blades around it."""
     radius = 0.0
     for side in range(2):
         k = rays.blade[step, ray, side]
@@ -106,7 +107,7 @@ def tip_radius_on_ray(tips: Tips, rays: Rays, displacement: FloatArray, step: in
 
 @inlined_kernel
 def casing_radius_on_ray(rays: Rays, sums: FloatArray, opening: float, ray: int) -> float:
-    """Radius at which the ray meets the deformed surface.
+    """Return the radius at which a ray from the axis meets the deformed surface, m.
 
     The point that comes to the ray stood u_t / r before it: r + u_r - (r' + u_r') u_t / r + u_t^2 / (2 r), right to
     second order in the displacements on a circle, where r' = r'' = 0.
@@ -120,7 +121,7 @@ def casing_radius_on_ray(rays: Rays, sums: FloatArray, opening: float, ray: int)
 
 @inlined_kernel
 def read_shaft(model: Model, taps: Taps, coordinates: Coordinates, support: SupportState, step: int) -> None:
-    """Into `taps.signals`: displacement and velocity of O_d and force on its support in the inertial frame."""
+    """Write displacement and velocity of O_d and force on its support, in the inertial frame, into `taps.signals`."""
     speed, dt = model.laws.speed, model.laws.dt
     cosine, sine = model.angles.cosine[step], model.angles.sine[step]
     x, y = coordinates.now[taps.centre], coordinates.now[taps.centre + 1]
@@ -142,7 +143,7 @@ def read_shaft(model: Model, taps: Taps, coordinates: Coordinates, support: Supp
 
 @inlined_kernel
 def sum_functionals(taps: Taps, coordinates: Coordinates, z: FloatArray, z_change: FloatArray, dt: float) -> None:
-    """All linear functionals into `taps.sums`; accelerations are central differences."""
+    """Write all linear functionals into `taps.sums`. Accelerations are central differences."""
     start = coordinates.now.shape[0] - taps.bend.shape[0]
     for j in range(start, coordinates.now.shape[0]):
         taps.bend[j - start] = (coordinates.after[j] - 2 * coordinates.now[j] + coordinates.before[j]) / (dt * dt)
@@ -188,7 +189,11 @@ def record_taps(
 
 @inlined_kernel
 def chord_displacement(tips: Tips, timing: Timing, blade: int, q: FloatArray) -> float:
-    """How far the tip's chord stands along the rotation, at any axial place, from where it stands at rest."""
+    """Return how far the chord of a blade's tip has moved along the rotation from its place at rest, m.
+
+    An axial displacement counts too: the chord is slanted by `timing.chord_slope`. The result is the same at any axial
+    place, since the chord is straight and does not turn.
+    """
     axial = tips.static[2, blade] + q[3 * blade + 2]
     moved: float = tips.static[1, blade] + q[3 * blade + 1] - timing.chord_slope * axial
     return moved
@@ -198,7 +203,11 @@ def chord_displacement(tips: Tips, timing: Timing, blade: int, q: FloatArray) ->
 def angle_beyond(
     tips: Tips, theta: FloatArray, timing: Timing, probe: int, blade: int, step: int, more: float
 ) -> float:
-    """How far a blade that stands `more` rad before its place on the disk is beyond a probe, rad in [-pi, pi]."""
+    """Return by which angle a blade has passed a probe, rad in [-pi, pi]; negative before it.
+
+    The blade stands `more` rad farther along the rotation than its place on the disk. `theta[step]` is the blisk's
+    angle.
+    """
     angle = theta[step] + tips.angle[blade] - timing.angle[probe] + more
     turned: float = angle - 2 * math.pi * math.floor(angle / (2 * math.pi) + 0.5)
     return turned
@@ -208,7 +217,10 @@ def angle_beyond(
 def is_near(
     tips: Tips, theta: FloatArray, timing: Timing, probe: int, blade: int, step: int, displacement: FloatArray
 ) -> bool:
-    """Whether a blade may pass the probe in this step, from its tangential `displacement` (2, any) alone."""
+    """Return whether a blade may pass the probe in this step, from its tangential `displacement` (2, any) alone.
+
+    It is a cheap test before `beyond_probe`: the blade is nearer to the probe than `timing.near_angle`.
+    """
     along = tips.static[1, blade] + displacement[1, blade] + timing.chord_slope * timing.axial[probe]
     near: bool = abs(angle_beyond(tips, theta, timing, probe, blade, step, along / tips.radius)) < timing.near_angle
     return near
@@ -218,7 +230,11 @@ def is_near(
 def beyond_probe(
     tips: Tips, theta: FloatArray, timing: Timing, probe: int, blade: int, step: int, q: FloatArray
 ) -> float:
-    """How far a blade's chord at the probe's axial place is beyond the probe, rad in [-pi, pi]."""
+    """Return by which angle a blade's chord, at the probe's axial place, has passed the probe, rad in [-pi, pi].
+
+    The value is negative before the passage and 0 under the probe. `q` (n,) are the coordinates at step `step`, with
+    this blade's tip recovered.
+    """
     along = chord_displacement(tips, timing, blade, q) + timing.chord_slope * timing.axial[probe]
     radial = tips.radius + tips.static[0, blade] + q[3 * blade]
     beyond: float = angle_beyond(tips, theta, timing, probe, blade, step, math.atan2(along, radial))
@@ -238,8 +254,8 @@ def record_arrivals(
 ) -> int:
     """Write blades that pass a probe between steps n and n + 1 into `arrivals`. Return the number of arrivals so far.
 
-    Between the steps the displacement is a parabola: d_n + s (d_n+1 - d_n) - s (1 - s) c / 2, with c the second
-    difference.
+    A blade passes where `beyond_probe` changes from negative to positive. Between the steps the displacement is a
+    parabola: d_n + s (d_n+1 - d_n) - s (1 - s) c / 2, with c the second difference.
 
     - motions: at steps n - 1, n, n + 1; tips in their q are recovered.
     - theta (steps + 2,): angle of the blisk, rad.

@@ -1,4 +1,4 @@
-"""Some turns of the blisk in one call: steps, works, taps, touches."""
+"""Run one turn of the blisk in one call: steps, works, taps, touches."""
 
 import math
 from typing import NamedTuple
@@ -47,7 +47,7 @@ class TurnResult(NamedTuple):
 
 @allocation_free_kernel
 def close_touch(touches: Touches, blade: int, ended: int) -> int:
-    """Move a blade's touch to the ended ones."""
+    """Move a blade's present touch to the ended ones. Return their new number; `ended` is the number before."""
     for c in range(touches.open.shape[1]):
         touches.ended[ended, c] = touches.open[blade, c]
     touches.open[blade, STEPS] = 0.0
@@ -58,7 +58,11 @@ def close_touch(touches: Touches, blade: int, ended: int) -> int:
 def add_touch(
     touches: Touches, blade: int, now: int, psi: float, impulse: float, friction: float, normal: float, ended: int
 ) -> int:
-    """Add one step of contact to the blade's touch; an older touch that was interrupted ends first."""
+    """Add one step of contact to the blade's touch; an older touch that was interrupted ends first.
+
+    `now` is the number of the step, `psi` the polar angle of the contact. `impulse` (N s), `friction` and `normal`
+    (losses, J) belong to the step. Returns the number of ended touches; `ended` is the number before.
+    """
     row = touches.open[blade]
     if row[STEPS] > 0.0 and touches.last[blade] != now - 1:
         ended = close_touch(touches, blade, ended)
@@ -127,7 +131,10 @@ def add_orbit(signals: FloatArray, out: FloatArray) -> None:
 
 @inlined_kernel
 def record_frame(frames: FloatArray, frame: int, step: int, steps: int, z: FloatArray) -> int:
-    """Copy z into `frames` where the next frame is due. Return the number of frames so far."""
+    """Copy z into `frames` where the next frame is due. Return the number of frames so far; `frame` is it before.
+
+    Frames are due at equal steps: frame i at step ceil(i steps / frames).
+    """
     if step * frames.shape[0] < frame * steps:
         return frame
     for i in range(z.shape[0]):
@@ -148,7 +155,13 @@ def add_contacts(
     summary: FloatArray,
     ended: int,
 ) -> tuple[float, float, int]:
-    """Add the contacts of one step to works, touches and `summary`. Return force, N, torque, N m, and ended touches."""
+    """Add the contacts of one step to works, touches and `summary`. Return force, N, torque, N m, and ended touches.
+
+    - count: number of contacts in `state.contact`.
+    - step, clock: number of the step in the turn, and of the turn's first step in the run.
+    - opening (steps + 2,): added to the radius of the surface, m.
+    - ended: number of ended touches so far.
+    """
     work, force, torque, dt = state.contact, 0.0, 0.0, model.laws.dt
     for m in range(count):
         lam, k = work.lam[m], work.blade[m]

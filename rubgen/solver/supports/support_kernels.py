@@ -80,7 +80,7 @@ class SupportState(NamedTuple):
 
 @inlined_kernel
 def turned(cosine: float, sine: float, x: float, y: float) -> tuple[float, float]:
-    """Q(theta) (x, y) from cos theta and sin theta."""
+    """Return Q(theta) (x, y) from cos theta and sin theta."""
     double_cosine, double_sine = cosine * cosine - sine * sine, 2.0 * cosine * sine
     return double_cosine * x - double_sine * y, -double_sine * x - double_cosine * y
 
@@ -106,7 +106,10 @@ def load_at(support: Support, step: int, cosine: float, sine: float, out: FloatA
 def build_drag(
     support: Support, cosine: float, sine: float, x: float, y: float, dt: float, state: SupportState
 ) -> tuple[float, float]:
-    """`state.drag` D at u = (x, y) and `yielding` (1 + D Y / 2 dt)^-1 D / 2 dt; the force s(u) of the laws' springs."""
+    """Write the damping D at u = (x, y) into `state.drag`, and `state.yielding`. Return the laws' spring force s(u).
+
+    D = c_a Q(theta) + D(u) of the laws; `yielding` is (1 + D Y / 2 dt)^-1 D / 2 dt. `cosine` and `sine` are of theta.
+    """
     D, Y = state.drag, support.compliance
     for i in range(2):
         D[0, i], D[1, i] = turned(cosine, sine, 1.0 - i, float(i))
@@ -189,7 +192,10 @@ def push_supports(
 
 @inlined_kernel
 def yield_to_contacts(count: int, support: Support, state: SupportState, work: ContactWork) -> None:
-    """Change W as if A were A + E D E^T / 2 dt: subtract (B_n^T A^-1 E) (1 + D Y / 2 dt)^-1 D / 2 dt (E^T A^-1 B)."""
+    """Change W of the contact problem for the damping D of the support, as if A were A + E D E^T / 2 dt.
+
+    Subtracts (B_n^T A^-1 E) (1 + D Y / 2 dt)^-1 D / 2 dt (E^T A^-1 B) from `work.W` of `count` contacts.
+    """
     S = state.yielding
     for column in range(count):
         other, x, y = 3 * work.blade[column], 0.0, 0.0
@@ -207,7 +213,7 @@ def yield_to_contacts(count: int, support: Support, state: SupportState, work: C
 
 @inlined_kernel
 def resist_contacts(support: Support, state: SupportState, force: FloatArray) -> None:
-    """Add to a contact `force` in z the change of f by the contact's jump of velocity."""
+    """Add to a contact `force` in z the change of f that the contact's jump of velocity causes."""
     x = dot_rows(support.rows[0], force, force.shape[0] // LANES)
     y = dot_rows(support.rows[1], force, force.shape[0] // LANES)
     S = state.yielding
@@ -230,8 +236,8 @@ def add_support_works(
 ) -> float:
     """Add the works of one step to `state.works`. Return the sum of their absolute values, J.
 
-    Works of uneven springs and dampers, of the laws, of gravity, and of the loads of faults are each force times d.
-    LAWS_LOSS is the force of the laws times dt v_abs. `now` and `change` (d) are in z.
+    Works of uneven springs and dampers, of the laws, and of gravity are each force times d. LAWS_LOSS is the force of
+    the laws times dt v_abs. `now` and `change` (d) are in z. `cosine` and `sine` are of theta at step n.
     """
     x, y = now[support.centre[0]], now[support.centre[1]]
     dx, dy = change[support.centre[0]], change[support.centre[1]]
