@@ -48,7 +48,7 @@ class Material:
 
     @property
     def shear_modulus_pa(self) -> float:
-        """G = E / (2 (1 + nu)), in Pa."""
+        """Shear modulus G = E / (2 (1 + nu)), in Pa."""
         return self.youngs_modulus_pa / (2 * (1 + self.poisson_ratio))
 
 
@@ -93,7 +93,7 @@ class Mistuning:
         return self
 
     def deviations(self, count: int) -> tuple[float, ...]:
-        """The pattern itself, or `count` values drawn by numpy's default generator: the same for the same seed."""
+        """Return the pattern itself, or `count` values drawn by numpy's default generator, the same for one seed."""
         if self.pattern is not None:
             return self.pattern
         drawn = np.random.default_rng(self.seed).standard_normal(count)

@@ -1,4 +1,4 @@
-"""The mass of a blisk."""
+"""Compute the mass of a blisk from the machine's numbers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def blisk_mass(machine: Machine) -> float:
-    """Mass of disk and blades in kg; blade cross-sections count as chord times thickness.
+    """Compute the mass of disk and blades in kg; blade cross-sections count as chord times thickness.
 
     Disk: 2 pi rho times the integral of r t(r), t linear from bore to rim; blades: rho L times the mean of the product
     of two linear functions. In the preset within 0.1 % of the finite-element model: tests/machine/test_mass.py.

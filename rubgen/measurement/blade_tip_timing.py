@@ -1,4 +1,4 @@
-"""Blade tip timing: passages of the blades at each probe, and the tip deflections from them."""
+"""Record passages of the blades at each timing probe, and compute the tip deflections from them."""
 
 from dataclasses import dataclass
 
@@ -23,12 +23,12 @@ class TipTimes:
 
 
 def tick(time: FloatArray, clock_hz: float) -> FloatArray:
-    """Times in the resolution of a counter of that frequency; exact for 0."""
+    """Round times down to the resolution of a counter of `clock_hz`; with 0 they stay exact."""
     return np.asarray(np.floor(time * clock_hz) / clock_hz) if clock_hz else time
 
 
 def blurred(sensor: TimingProbe | OncePerRev, time: FloatArray, noise: float, rng: np.random.Generator) -> FloatArray:
-    """Times with the jitter and the counter of a sensor.
+    """Return times with the jitter and the counter of a sensor.
 
     - time: exact times, s.
     - noise: factor of the jitter.
@@ -49,7 +49,9 @@ def tip_times(
     noise: float,
     rng: np.random.Generator,
 ) -> TipTimes:
-    """The passages of a probe within a recording, with jitter, counter and clock offset. Missed ones are left out.
+    """Record the passages of a probe within a recording, with jitter, counter and clock offset.
+
+    Missed passages are left out.
 
     - probe: the sensor.
     - arrivals: the true passages in steps.
@@ -73,11 +75,11 @@ def tip_times(
 
 
 def tip_deflections(times: TipTimes, once_per_rev: FloatArray, tip_radius: float) -> FloatArray:
-    """Tip deflections (n_arrivals,) in m along the rotation, without each blade's mean, from arrival times alone.
+    """Compute tip deflections (n_arrivals,) in m along the rotation from arrival times alone.
 
-    The angle of arrival is AoA = Omega (t - t_0) from the last pulse t_0, Omega = 2 pi over the turn's time. The
-    deflection is x = R (mean AoA of that blade - AoA): early is positive (S. Heath, M. Imregun, Int. J. Mech. Sci. 38,
-    1996). Arrivals before the first pulse or after the last are NaN.
+    Each blade's mean is lost. The angle of arrival is AoA = Omega (t - t_0) from the last pulse t_0, Omega = 2 pi over
+    the turn's time. The deflection is x = R (mean AoA of that blade - AoA): early is positive (S. Heath, M. Imregun,
+    Int. J. Mech. Sci. 38, 1996). Arrivals before the first pulse or after the last are NaN.
 
     - times: the probe's record.
     - once_per_rev (pulses,): times of the pulses, s.

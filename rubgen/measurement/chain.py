@@ -1,4 +1,4 @@
-"""The measuring chain of every channel: anti-alias filter and resampling, then noise, range and ADC."""
+"""The measuring chain of every channel: anti-alias filter and resampling, range and ADC."""
 
 from functools import lru_cache
 
@@ -21,7 +21,7 @@ even with the fewest steps."""
 
 
 def half_width_seconds(sample_rate_hz: float) -> float:
-    """Half the length of the anti-alias filter, in s.
+    """Return half the length of the anti-alias filter for a sample rate, in s.
 
     Kaiser's formula (Kaiser 1974): length = (A - 7.95) / (2.285 * 2 pi * transition width in Hz).
     """
@@ -30,7 +30,7 @@ def half_width_seconds(sample_rate_hz: float) -> float:
 
 
 def late_seconds(sensing: Sensing, seconds: float, *, sign: int = 1) -> float:
-    """How late, in s, the latest clock of the set takes a sample within `seconds`.
+    """Return how late, in s, the latest clock of the set takes a sample within `seconds`.
 
     With `sign` = -1, how early the earliest clock takes one.
     """
@@ -39,9 +39,9 @@ def late_seconds(sensing: Sensing, seconds: float, *, sign: int = 1) -> float:
 
 
 def start_seconds(sensing: Sensing, seconds: float, *, steps: int, dt: float) -> float:
-    """Time of the first sample, in s from the start of the record.
+    """Return the time of the first sample, in s from the start of the record.
 
-    - sensing: of the run.
+    - sensing: sample rate, and the clocks of the sensors.
     - seconds: length of the recording.
     - steps: number of steps of the record.
     - dt: time step, s.
@@ -52,10 +52,11 @@ def start_seconds(sensing: Sensing, seconds: float, *, steps: int, dt: float) ->
 
 
 def margin_seconds(sensing: Sensing, seconds: float = 0.0, frame: Frame | None = None) -> float:
-    """Signal in s that a recording of `seconds` needs beyond itself: half the filter's length on either side.
+    """Return the length of signal in s that a recording of `seconds` needs beyond itself.
 
-    Early or late clocks need more. The filters of sensors with dynamics and the modes of the `frame` that sensors feel
-    need their memory. Two sample periods are added, so that rounding to whole steps and samples is always covered.
+    It is half the filter's length on either side. Early or late clocks need more. The filters of sensors with dynamics
+    and the modes of the `frame` that sensors feel need their memory. Two sample periods are added, so that rounding to
+    whole steps and samples is always covered.
     """
     margin = 2 * half_width_seconds(sensing.sample_rate_hz) + 2 / sensing.sample_rate_hz
     margin += max((memory_seconds(each) for each in sensing.set.sampled), default=0.0)
@@ -64,7 +65,7 @@ def margin_seconds(sensing: Sensing, seconds: float = 0.0, frame: Frame | None =
 
 
 def impulse_response(time: FloatArray, sample_rate_hz: float) -> FloatArray:
-    """h(t) of the anti-alias filter in 1/s at `time` (any,) in s.
+    """Return h(t) of the anti-alias filter in 1/s at `time` (any,) in s.
 
     A sinc, cut off midway in the transition band, with a Kaiser window: h(t) = 2 f_c sinc(2 f_c t) I0(beta sqrt(1 -
     (t/W)^2)) / I0(beta) for |t| < W, else 0. It is even, hence without delay.
@@ -78,7 +79,7 @@ def impulse_response(time: FloatArray, sample_rate_hz: float) -> FloatArray:
 
 @lru_cache(maxsize=4)
 def filter_bank(dt: float, sample_rate_hz: float) -> FloatArray:
-    """Weights (PHASES + 1, 2 half) of the filter for positions between two steps of length dt; every row sums to 1."""
+    """Tabulate the filter's weights (PHASES + 1, 2 half) for places between two steps of length dt. Rows sum to 1."""
     half = int(np.ceil(half_width_seconds(sample_rate_hz) / dt))
     phase = np.linspace(0.0, 1.0, PHASES + 1)[:, None]
     steps = np.arange(-half + 1, half + 1)[None, :]
@@ -90,7 +91,7 @@ def filter_bank(dt: float, sample_rate_hz: float) -> FloatArray:
 
 
 def band_limit(signals: FloatArray, positions: FloatArray, *, dt: float, sample_rate_hz: float) -> FloatArray:
-    """Band-limited signals (samples, channels) at fractional step positions.
+    """Return band-limited signals (samples, channels) at fractional step positions.
 
     Filter and interpolation in one: y(t) = sum_j h(t - j dt) x_j dt, with the weights' sum set to 1. The gain is 1
     within 1e-4 up to sample_rate / 2.56 and below 1e-4 from sample_rate / 2 on. There is no delay. The step rate must
@@ -118,12 +119,12 @@ def band_limit(signals: FloatArray, positions: FloatArray, *, dt: float, sample_
 
 
 def adc_step(range_min: float, range_max: float, bits: int) -> float:
-    """Size of one ADC step: the range divided by 2^bits, in the unit of the range."""
+    """Return the size of one ADC step: the range divided by 2^bits, in the unit of the range."""
     return float((range_max - range_min) / 2**bits)
 
 
 def digitise(signal: FloatArray, *, range_min: float, range_max: float, bits: int) -> FloatArray:
-    """The signal after the ADC: clipped to its range, rounded to range_min + code * step, code 0 .. 2^bits - 1.
+    """Return the signal after the ADC: clipped to its range, rounded to range_min + code * step, code 0 .. 2^bits - 1.
 
     The highest value is one step below range_max. float32 has at most 24 bits: finer steps are lost in files.
     """

@@ -38,7 +38,7 @@ TEXTS, NUMBERS = ("unit", "quantity", "axis", "location"), ("range_min", "range_
 
 
 def quantity_key(quantity: str) -> str:
-    """A quantity in topics and entity paths, which allow no blanks."""
+    """Return a quantity as it stands in topics and entity paths, which allow no blanks."""
     return quantity.replace(" ", "_")
 
 
@@ -68,7 +68,7 @@ class Recording:
         return next(iter(self.channels.values())).values.size
 
     def by_quantity(self) -> dict[str, list[Channel]]:
-        """Channels by the key of their quantity, in one unit each, both in the order of the recording."""
+        """Group the channels by the key of their quantity, in one unit each, both in the order of the recording."""
         groups: dict[str, list[Channel]] = {}
         for channel in self.channels.values():
             key = quantity_key(channel.quantity)
@@ -91,7 +91,7 @@ class Preview:
 
 
 def preview(channels: Sequence[Channel], sample_rate_hz: float, rate_hz: float = PREVIEW_RATE_HZ) -> Preview:
-    """Minimum and maximum of channels of the same length, at least one, in bins.
+    """Compute minimum and maximum of channels of the same length, at least one, in equal bins.
 
     - channels: in the order of the columns.
     - sample_rate_hz: of the channels.
@@ -107,7 +107,7 @@ def preview(channels: Sequence[Channel], sample_rate_hz: float, rate_hz: float =
 
 
 def min_max(values: Float32Array, samples_per_bin: int) -> tuple[Float32Array, Float32Array]:
-    """Minima and maxima of `values` (n,) in bins of `samples_per_bin`, each (ceil(n / samples_per_bin),).
+    """Compute minima and maxima of `values` (n,) in bins of `samples_per_bin`, each (ceil(n / samples_per_bin),).
 
     The last bin may have fewer samples. An empty signal has empty arrays.
     """

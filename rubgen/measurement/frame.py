@@ -1,4 +1,4 @@
-"""Motion of the frame: what forces of the disk's support do to bearing housing and casing, one way."""
+"""Compute the motion of the frame: what forces of the disk's support do to bearing housing and casing, one way."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -24,11 +24,11 @@ class FrameMotion:
     """Time step, s."""
 
     def of_housing(self, angle_deg: float) -> FloatArray:
-        """Acceleration (steps,) of the bearing housing along a direction, in m/s2."""
+        """Return the acceleration (steps,) of the bearing housing in m/s2, along the direction `angle_deg` from +X."""
         return self._sum([_cosine(angle_deg - mode.direction_deg) for mode in self.frame.modes])
 
     def of_casing(self, angle_deg: float) -> FloatArray:
-        """Radial acceleration (steps,) of the casing, outward, at a polar angle, in m/s2."""
+        """Return the radial acceleration (steps,) of the casing in m/s2, outward, at the polar angle `angle_deg`."""
         turned = [mode.casing_order * (angle_deg - mode.casing_angle_deg) for mode in self.frame.modes]
         return self._sum([mode.casing_share * _cosine(a) for mode, a in zip(self.frame.modes, turned, strict=True)])
 
@@ -52,11 +52,11 @@ class FrameMotion:
 
 
 def accelerations(mode: FrameMode, force: FloatArray, dt: float) -> FloatArray:
-    """Acceleration q'' (steps,) in m/s2 of q'' + 2 d w q' + w^2 q = F / m, for a force linear between the steps.
+    """Compute the acceleration q'' (steps,) of a mode in m/s2: q'' + 2 d w q' + w^2 q = F / m.
 
-    Exact at the steps, by the recursion of Smallwood (1981, ramp invariant; ISO 18431-4): with E = exp(-d w dt) and
-    K = w dt sqrt(1 - d^2), H(z) = E sin(K) / K (1 - 1/z)^2 / (1 - 2 E cos(K) / z + E^2 / z^2). The mode starts at rest
-    under the first force.
+    F is linear between the steps, and the result is exact at the steps, by the recursion of Smallwood (1981, ramp
+    invariant; ISO 18431-4): with E = exp(-d w dt) and K = w dt sqrt(1 - d^2), H(z) = E sin(K) / K (1 - 1/z)^2 / (1 - 2
+    E cos(K) / z + E^2 / z^2). The mode starts at rest under the first force.
 
     - mode: w, d and m.
     - force (steps,): F, N.
@@ -76,9 +76,10 @@ def _cosine(angle_deg: float) -> float:
 
 
 def spread(frame: Frame, deviation: float, rng: np.random.Generator) -> Frame:
-    """The frame of another machine of the kind: frequencies and masses times exp(`deviation` x), x normal.
+    """Draw the frame of another machine of the same kind.
 
-    A frequency or a mass outside of its bounds is set to the bound.
+    Each frequency and each mass is multiplied by exp(`deviation` x), x standard normal. Values outside of their bounds
+    are set to the bound.
     """
     if deviation == 0:
         return frame

@@ -1,4 +1,4 @@
-"""Dynamics and saturation of a sensor before the anti-alias filter, and its faults after it."""
+"""Apply dynamics and saturation of a sensor before the anti-alias filter, and its errors after it."""
 
 import numpy as np
 
@@ -10,10 +10,10 @@ FORGOTTEN = np.log(1e4)
 
 
 def resonance(frequency_hz: float, damping: float, dt: float) -> tuple[FloatArray, FloatArray]:
-    """Digital filter b, a of a seismic mass on its mounting, w^2 / (s^2 + 2 d w s + w^2), exact at its resonance.
+    """Return the digital filter b, a of a seismic mass on its mounting, w^2 / (s^2 + 2 d w s + w^2).
 
-    Below the resonance the gain rises as 1 / (1 - (f / f_r)^2), as in data sheets (ISO 5348, mounted resonance).
-    Bilinear with the frequency prewarped; needs at least 2.56 steps a period.
+    It is exact at its resonance. Below the resonance the gain rises as 1 / (1 - (f / f_r)^2), as in data sheets (ISO
+    5348, mounted resonance). Bilinear with the frequency prewarped; needs at least 2.56 steps a period.
 
     - frequency_hz: of the resonance.
     - damping: ratio d.
@@ -27,7 +27,7 @@ def resonance(frequency_hz: float, damping: float, dt: float) -> tuple[FloatArra
 
 
 def front_end(sensor: SampledSensor, signal: FloatArray, dt: float) -> FloatArray:
-    """The signal (steps,) after bandwidth, resonance and saturation of a sensor.
+    """Return the signal (steps,) after bandwidth, resonance and saturation of a sensor.
 
     The filters start at rest on its first value. `dt` is the time step in s.
     """
@@ -52,7 +52,7 @@ def _behind_filters(sensor: SampledSensor, signal: FloatArray, dt: float) -> Flo
 
 
 def memory_seconds(sensor: SampledSensor) -> float:
-    """Memory of the sensor's filters in s: the signal that is needed before the first sample."""
+    """Return the memory of the sensor's filters in s: the signal that is needed before the first sample."""
     seconds = 0.0
     if sensor.bandwidth_hz is not None:
         seconds += float(FORGOTTEN / (2 * np.pi * sensor.bandwidth_hz * np.sqrt(0.5)))
@@ -62,7 +62,7 @@ def memory_seconds(sensor: SampledSensor) -> float:
 
 
 def miscalibrate(sensor: SampledSensor, signal: FloatArray, *, zero: float, sample_rate_hz: float) -> FloatArray:
-    """Zero + (1 + gain error) (x - zero) + offset + drift t, in the sensor's unit.
+    """Return zero + (1 + gain error) (x - zero) + offset + drift t, in the sensor's unit.
 
     - sensor: with its errors.
     - signal (samples,): x.
@@ -79,7 +79,7 @@ def miscalibrate(sensor: SampledSensor, signal: FloatArray, *, zero: float, samp
 def noise(
     sensor: SampledSensor, samples: int, sample_rate_hz: float, scale: float, rng: np.random.Generator
 ) -> FloatArray:
-    """Gaussian noise (samples,): white of `noise_rms`, and of the one-sided density D^2 (1 + f_c / f).
+    """Draw Gaussian noise (samples,): white of `noise_rms`, and of the one-sided density D^2 (1 + f_c / f).
 
     The second is white noise shaped in the frequency domain. Its mean is zero, and it repeats after the recording's
     length.
@@ -98,7 +98,7 @@ def noise(
 
 
 def noise_level(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> float:
-    """Rms of the noise of a recording of `samples` samples at `sample_rate_hz`, in the sensor's unit."""
+    """Return the rms of the noise of a recording of `samples` samples at `sample_rate_hz`, in the sensor's unit."""
     if sensor.noise_density == 0:
         return sensor.noise_rms
     shape = _shape(sensor, samples, sample_rate_hz)
@@ -108,7 +108,7 @@ def noise_level(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> f
 
 
 def _shape(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> FloatArray:
-    """Gain at each frequency of a recording that turns white noise of rms 1 into noise of the sensor's density."""
+    """Return the gain at each frequency that turns white noise of rms 1 into noise of the sensor's density."""
     frequency = np.fft.rfftfreq(samples, 1 / sample_rate_hz)
     shape = np.zeros_like(frequency)
     shape[1:] = np.sqrt(1 + sensor.noise_corner_hz / frequency[1:])
@@ -116,7 +116,7 @@ def _shape(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> FloatA
 
 
 def drop_out(sensor: SampledSensor, values: FloatArray, sample_rate_hz: float, rng: np.random.Generator) -> FloatArray:
-    """The samples with gaps at random times. In a gap the last good value repeats.
+    """Put gaps at random times into the samples. In a gap the last good value repeats.
 
     The starts of the gaps are a Poisson process of rate `dropouts_per_s` of the sensor; each lasts `dropout_s`.
 

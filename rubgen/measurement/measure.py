@@ -1,4 +1,4 @@
-"""All channels and events of one run."""
+"""Record all channels and events of one run."""
 
 import zlib
 from collections.abc import Sequence
@@ -43,7 +43,7 @@ def measure(
     frame: Frame | None = None,
     faults: Sequence[Fault] = (),
 ) -> Recording:
-    """The channels and events of a run by the sensors of `sensing.set`.
+    """Record the channels and events of a run with the sensors of `sensing.set`.
 
     The last sample is half a filter length before the end of the tail, so that no sample is affected by its edge. The
     step after the tail's last one has theta = 0 mod 2 pi. Each sensor has its own child of `rng`, by its place in the
@@ -94,11 +94,13 @@ def measure(
 
 
 def sample_positions(response: Response, sensing: Sensing, seconds: float) -> FloatArray:
-    """Times of the samples (samples,) in steps from the start of the tail; round(seconds * sample rate) of them.
+    """Return the times of the samples (samples,) in steps from the start of the tail; round(seconds * rate) of them.
 
     - response: with the tail.
     - sensing: sample rate and filter.
     - seconds: length of the recording.
+
+    Raises UserError as `measure` does.
     """
     dt, rate = response.dt, sensing.sample_rate_hz
     if dt * rate * STEPS_PER_SAMPLE > 1 + 1e-9:
@@ -128,7 +130,7 @@ def _channels(
     angle: FloatArray,
     streams: dict[str, np.random.Generator],
 ) -> dict[str, Channel]:
-    """The sampled channels and the pulse, in the order of the set."""
+    """Return the sampled channels and the pulse, in the order of the set."""
     feeds = [feed_of(sensor, source, sensing.set) for sensor in sensing.set.sampled]
     samples = filtered(feeds, positions, dt=source.response.dt, sensing=sensing)
     channels: dict[str, Channel] = {}

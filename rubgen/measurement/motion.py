@@ -1,4 +1,4 @@
-"""Touches and the motion of the whole machine during a recording."""
+"""Select the touches and the motion of the whole machine during a recording."""
 
 from dataclasses import dataclass
 
@@ -34,7 +34,7 @@ class MotionFrames:
 
 
 def motion_frames(response: Response, recording: Recording) -> MotionFrames | None:
-    """The frames of a run within its recording: its replay track, and Poincare sections once a turn or less often.
+    """Return the frames of a run within its recording: its replay track, and Poincare sections once a turn or rarer.
 
     None where the response has no track.
     """
@@ -64,14 +64,14 @@ def motion_frames(response: Response, recording: Recording) -> MotionFrames | No
 
 
 def _turn_steps(response: Response) -> IntArray:
-    """The first step of each turn of the record."""
+    """Return the first step of each turn of the record."""
     if response.changing_speed is not None:
         return response.changing_speed.turn_steps[:-1]
     return np.arange(response.record_turns) * response.steps_per_turn
 
 
 def _angle(step: IntArray, response: Response) -> FloatArray:
-    """Angle of the blisk at steps, in [0, 2 pi)."""
+    """Return the angle of the blisk at steps, in [0, 2 pi)."""
     if response.changing_speed is not None:
         return np.asarray(np.mod(response.changing_speed.rotation.angle(step * response.dt), 2 * np.pi))
     steps = response.steps_per_turn
@@ -88,7 +88,7 @@ def _inside(step: IntArray, response: Response, recording: Recording) -> IntArra
 
 
 def _even_choice(starts: IntArray, response: Response, recording: Recording) -> IntArray:
-    """Numbers of the turns that begin inside, at most `COARSE_FRAMES`, at equal distances."""
+    """Return the numbers of the turns that begin inside, at most `COARSE_FRAMES`, at equal distances."""
     inside = _inside(starts, response, recording)
     return np.asarray(inside[:: max(1, -(-inside.size // COARSE_FRAMES))], dtype=np.int64)
 
@@ -114,7 +114,7 @@ class ContactIntervals:
 
 
 def contact_intervals(response: Response, recording: Recording) -> ContactIntervals:
-    """The contact events of `response` that overlap `recording`, in the time of its samples."""
+    """Return the touches of `response` that overlap `recording`, in the time of its samples."""
     events, rate = response.events, recording.sample_rate_hz
     start = np.asarray(events.start_step * response.dt - recording.start_seconds, dtype=np.float64)
     duration = np.asarray(events.steps * response.dt, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""Sampled sensors: from the tap to the recorded channel."""
+"""Turn the tap of a sampled sensor into its recorded channel."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ class Source:
     """The surroundings at the sensors; None without any."""
 
     def truth(self, tap: Tap) -> FloatArray:
-        """The true signal (steps,) of a tap. Raises UserError where it needs a frame and there is none."""
+        """Return the true signal (steps,) of a tap. Raises UserError where it needs a frame and there is none."""
         if not isinstance(tap, HousingAcceleration):
             return self.response.taps[tap.name]
         if self.frame is None:
@@ -42,7 +42,7 @@ class Source:
 
 @dataclass(frozen=True)
 class Feed:
-    """Input of the filter from one sensor."""
+    """The input of the anti-alias filter from one sensor."""
 
     sensor: SampledSensor
     """The sensor."""
@@ -53,7 +53,7 @@ class Feed:
 
     @property
     def clock(self) -> tuple[float, float]:
-        """Offset in s and slowness in ppm of its clock."""
+        """Offset in s and slowness in ppm of the sensor's clock."""
         return self.sensor.clock_offset_s, self.sensor.clock_ppm
 
 
@@ -66,10 +66,10 @@ class Samples:
 
 
 def feed_of(sensor: SampledSensor, source: Source, sensors: SensorSet) -> Feed:
-    """The input of the filter from one sensor. The real signal includes the surroundings, the ideal signal does not.
+    """Make the input of the filter from one sensor. The real signal includes the surroundings, the ideal one does not.
 
     - sensor: the sensor.
-    - source: true response with the sensor's tap, and all else that it feels.
+    - source: true response with the sensor's tap, and all else that the sensor feels.
     - sensors: the set, with the shaft's profile.
     """
     true = source.truth(sensor.tap)
@@ -85,14 +85,15 @@ def feed_of(sensor: SampledSensor, source: Source, sensors: SensorSet) -> Feed:
 
 
 def filtered(feeds: Sequence[Feed], positions: FloatArray, *, dt: float, sensing: Sensing) -> dict[str, Samples]:
-    """Every feed after the anti-alias filter, by the sensor's name. Sensors with one clock share one pass.
+    """Filter and resample every feed. Returns the samples by the sensor's name.
 
-    Sample i of a sensor whose clock is late by o and slow by p ppm is taken at o + (1 + 1e-6 p) i / rate.
+    Sample i of a sensor whose clock is late by o and slow by p ppm is taken at o + (1 + 1e-6 p) i / rate. Sensors with
+    one clock share one pass.
 
     - feeds: inputs at every step.
     - positions (samples,): times of the samples without clock errors, in steps.
     - dt: time step, s.
-    - sensing: sample rate, and whether clean channels are recorded.
+    - sensing: sample rate, and whether channels without noise are recorded too.
     """
     rate = sensing.sample_rate_hz
     time = np.arange(positions.size) / rate
@@ -113,7 +114,7 @@ def filtered(feeds: Sequence[Feed], positions: FloatArray, *, dt: float, sensing
 
 
 def recorded(sensor: SampledSensor, samples: Samples, sensing: Sensing, rng: np.random.Generator) -> Channel:
-    """The channel of a sensor: calibration errors, noise, range, ADC and dropouts on its samples.
+    """Make the channel of a sensor: calibration errors, noise, range, ADC and dropouts on its samples.
 
     - sensor: the sensor.
     - samples: its band-limited samples.

@@ -1,4 +1,4 @@
-"""The shaft: its angle over the steps of a tail, and the pulse once per revolution at theta = 0."""
+"""Compute the shaft's angle over the steps of a tail, and the pulse once per revolution at theta = 0."""
 
 import math
 from typing import Any
@@ -15,7 +15,10 @@ NOTCH_ANGLE = np.pi / 6
 
 
 def pulse_channel(angle: FloatArray, name: str = "once_per_rev", *, keep_clean: bool = False) -> Channel:
-    """The pulse at blisk angles `angle` (samples,) in rad: 1 from theta = 0 to NOTCH_ANGLE, else 0; logic, no noise."""
+    """Make the channel of the pulse: 1 from theta = 0 to NOTCH_ANGLE, else 0. It is logic, without noise.
+
+    `angle` (samples,) is that of the blisk at the samples, rad.
+    """
     values = (np.mod(angle, 2 * np.pi) < NOTCH_ANGLE).astype(np.float32)
     return Channel(
         name=name,
@@ -33,7 +36,7 @@ def pulse_channel(angle: FloatArray, name: str = "once_per_rev", *, keep_clean: 
 
 
 def arrival_times(first_angle: float, speed: float, seconds: float) -> FloatArray:
-    """Exact times in [0, seconds) at which theta = first_angle + speed t passes 0 mod 2 pi, in s."""
+    """Return the exact times in [0, seconds) at which theta = first_angle + speed t passes 0 mod 2 pi, in s."""
     first = np.mod(-first_angle, 2 * np.pi) / speed
     count = int(np.ceil((seconds - first) * speed / (2 * np.pi)))
     times = first + np.arange(max(count, 0)) * 2 * np.pi / speed
@@ -41,7 +44,7 @@ def arrival_times(first_angle: float, speed: float, seconds: float) -> FloatArra
 
 
 def shaft_angle(response: Response, positions: npt.NDArray[np.floating] | npt.NDArray[np.integer]) -> FloatArray:
-    """Theta in [0, 2 pi) at positions in steps from the start of the tail; exact at a changing speed too."""
+    """Return theta in [0, 2 pi) at positions in steps from the start of the tail; exact at a changing speed too."""
     back = positions - response.tail_steps
     if response.changing_speed is None:
         return in_turn(back * (2 * np.pi / response.steps_per_turn))
@@ -49,7 +52,7 @@ def shaft_angle(response: Response, positions: npt.NDArray[np.floating] | npt.ND
 
 
 def shaft_speed(response: Response, positions: npt.NDArray[np.floating] | npt.NDArray[np.integer]) -> FloatArray:
-    """Spin speed in rad/s at positions, counted in steps from the start of the tail."""
+    """Return the spin speed in rad/s at positions, counted in steps from the start of the tail."""
     if response.changing_speed is None:
         return np.full(positions.size, response.speed)
     time = (response.record_steps + positions - response.tail_steps) * response.dt
@@ -57,7 +60,7 @@ def shaft_speed(response: Response, positions: npt.NDArray[np.floating] | npt.ND
 
 
 def pulse_times(response: Response, first_angle: float, start: float, seconds: float) -> FloatArray:
-    """Exact times (any,) in [0, seconds) at which theta passes 0 mod 2 pi, in s.
+    """Return the exact times (any,) in [0, seconds) at which theta passes 0 mod 2 pi, in s.
 
     - response: of the run.
     - first_angle: theta at time 0, rad.
@@ -74,6 +77,6 @@ def pulse_times(response: Response, first_angle: float, start: float, seconds: f
 
 
 def in_turn(angle: npt.NDArray[np.floating[Any]]) -> FloatArray:
-    """The angle in [0, 2 pi)."""
+    """Reduce an angle to [0, 2 pi)."""
     turned = np.mod(angle, 2 * np.pi)
     return np.asarray(np.where(turned < 2 * np.pi, turned, 0.0))

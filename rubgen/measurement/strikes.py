@@ -1,4 +1,4 @@
-"""Forces of the blows that faults give the frame."""
+"""Compute the forces of the blows that faults give the frame."""
 
 import numpy as np
 
@@ -7,9 +7,10 @@ from rubgen.machine.faults.strikes import Strikes
 
 
 def force_of(strikes: Strikes, turned: FloatArray, dt: float) -> tuple[FloatArray, FloatArray]:
-    """Forces (steps,) of blows along X and Y in N, linear between the steps, with each blow's impulse and time.
+    """Compute the forces (steps,) of blows along X and along Y in N.
 
-    A blow of impulse J at the time (n + s) dt is the force (1 - s) J / dt at step n and s J / dt at step n + 1.
+    The forces are linear between the steps and keep the impulse and the time of each blow. A blow of impulse J at the
+    time (n + s) dt is the force (1 - s) J / dt at step n and s J / dt at step n + 1.
 
     - strikes: the blows; those outside of the steps are left out.
     - turned (steps,): angle of the shaft at the steps, rad, rising, on the scale of `strikes.turned`.

@@ -1,4 +1,4 @@
-"""The signals that the surroundings add to what sensors feel. The motion and its labels know nothing of them."""
+"""Compute the signals that the surroundings add to sensors. The motion and its labels know nothing of them."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Tail:
 
     @property
     def time(self) -> FloatArray:
-        """Time (steps,) in s before the step after the last one: it does not depend on how long the tail is."""
+        """Time (steps,) in s before the step after the last one. It does not depend on how long the tail is."""
         return np.asarray(self.dt * np.arange(-self.angle.size, 0), dtype=np.float64)
 
     @cached_property
@@ -52,7 +52,7 @@ class Tail:
         return np.asarray(angle - angle[-1] + self.angle[-1] - 2 * np.pi)
 
     def resolved(self, order: float) -> npt.NDArray[np.bool_]:
-        """Whether an order of the rotation has two steps a period (steps,). What has fewer is left out."""
+        """Return whether an order of the rotation has two steps a period (steps,). With fewer it is left out."""
         return np.asarray(order * self.speed * self.dt < np.pi)
 
 
@@ -85,7 +85,7 @@ class Disturbances:
         self._background = background
 
     def by(self, tap: Tap) -> FloatArray | None:
-        """What is added to the true signal (steps,) of a tap, in its unit; None where nothing is."""
+        """Return the signal (steps,) that is added to a tap, in its unit; None where nothing is added."""
         if isinstance(tap, CasingAcceleration):
             return self._on_the_casing(np.deg2rad(tap.angle_deg), tap.angle_deg)
         if isinstance(tap, HousingAcceleration):
@@ -128,7 +128,7 @@ class Disturbances:
         return length, lines, amplitudes[:, : lines.stop - lines.start]
 
     def _broadband(self, weights: FloatArray) -> FloatArray:
-        """The background where its parts have these weights.
+        """Return the background (steps,) where its parts have these weights (2 n + 1,).
 
         A line of rms r is r sqrt(2) Re(z exp(i w t)), |z| = 1 in the mean.
         """
@@ -150,7 +150,7 @@ class Disturbances:
         return np.asarray(self.surroundings.blade_passing_m_per_s2 * sum(waves))
 
     def _under_a_probe(self, tap: CentreDisplacement) -> FloatArray:
-        """Runout at phi - theta, amplitudes falling as 1/order, and the slow drift along one direction."""
+        """Return runout at phi - theta, amplitudes falling as 1/order, and the slow drift along one direction."""
         around = np.deg2rad(tap.angle_deg)
         seen = around - self.tail.angle
         orders = np.arange(1, RUNOUT_ORDERS + 1)
@@ -161,7 +161,7 @@ class Disturbances:
 
 
 def _tone_field(rng: np.random.Generator) -> ComplexArray:
-    """The parts of a tone (2 n + 1,): drawn, and scaled to a mean square of 1 over the circumference."""
+    """Draw the parts of a tone (2 n + 1,), scaled to a mean square of 1 over the circumference."""
     parts = _complex_normal(rng, (2 * HIGHEST_CIRCUMFERENTIAL + 1,))
     square = np.abs(parts) ** 2
     mean = (square[0] + square[1:].sum() / 2) / (HIGHEST_CIRCUMFERENTIAL + 1)
@@ -169,19 +169,22 @@ def _tone_field(rng: np.random.Generator) -> ComplexArray:
 
 
 def _complex_normal(rng: np.random.Generator, shape: tuple[int, ...]) -> ComplexArray:
-    """Complex normal numbers with a mean square of 1."""
+    """Draw complex normal numbers with a mean square of 1."""
     return np.asarray((rng.standard_normal(shape) + 1j * rng.standard_normal(shape)) / np.sqrt(2))
 
 
 def _elastic(around: float) -> FloatArray:
-    """Weights (2 n + 1,) of a field's parts at a polar angle of the casing, in rad; their mean square is 1."""
+    """Return the weights (2 n + 1,) of a field's parts at a polar angle of the casing, in rad; mean square 1."""
     n = np.arange(1, HIGHEST_CIRCUMFERENTIAL + 1)
     parts = [[1.0], np.cos(n * around), np.sin(n * around)]
     return np.asarray(np.concatenate(parts) / np.sqrt(HIGHEST_CIRCUMFERENTIAL + 1))
 
 
 def _rigid(along: float) -> FloatArray:
-    """Weights (2 n + 1,) of a field's parts in the motion of one body along a direction, in rad: order 1 alone."""
+    """Return the weights (2 n + 1,) of a field's parts in the motion of one body along a direction, in rad.
+
+    Only order 1 counts.
+    """
     weights = np.zeros(2 * HIGHEST_CIRCUMFERENTIAL + 1)
     weights[1], weights[1 + HIGHEST_CIRCUMFERENTIAL] = np.cos(along), np.sin(along)
     return weights

@@ -54,7 +54,7 @@ def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
 
 
 def with_harmonics(casing: ReducedCasing, harmonics: Sequence[SurfaceHarmonic]) -> ReducedCasing:
-    """The casing with further harmonics of its inner surface. The modes are those of the ring without them."""
+    """Return the casing with further harmonics of its inner surface. The modes stay those of the ring without them."""
     surface = casing.surface
     added = CasingSurface(
         mean_radius=surface.mean_radius,

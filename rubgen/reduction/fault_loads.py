@@ -1,4 +1,4 @@
-"""Loads of faults on the disk centre, from the inertial frame into the turning one."""
+"""Turn the loads of faults on the disk centre from the inertial frame into the turning one."""
 
 from collections.abc import Iterable
 
@@ -11,12 +11,12 @@ from rubgen.reduction.model import GrowingLoad
 
 
 def steady_loads(machine: Machine, speed: float) -> ComplexArray:
-    """The loads that are always there, as `turning_harmonics`, at `speed` in rad/s."""
+    """Return the loads that do not grow, as `turning_harmonics`, at `speed` in rad/s."""
     return turning_harmonics(load for load in _loads(machine, speed) if load.ramp is None)
 
 
 def growing_loads(machine: Machine, speed: float) -> tuple[GrowingLoad, ...]:
-    """Each load that grows within the record, at `speed` in rad/s."""
+    """Return each load that grows within the record, at `speed` in rad/s."""
     return tuple(
         GrowingLoad(ramp=load.ramp, loads=turning_harmonics([load]), of_springs=load.of_springs)
         for load in _loads(machine, speed)
@@ -25,13 +25,16 @@ def growing_loads(machine: Machine, speed: float) -> tuple[GrowingLoad, ...]:
 
 
 def spring_load(machine: Machine, speed: float) -> FloatArray:
-    """The part (2,) of the steady loads that the lateral springs apply, constant in the turning frame, N."""
+    """Return the part (2,) of the steady loads that the lateral springs apply, in N, constant in the turning frame.
+
+    A bow makes it: it moves the place where the springs are at rest.
+    """
     loads = [load for load in _loads(machine, speed) if load.of_springs and load.ramp is None]
     return np.asarray(turning_harmonics(loads)[0].real)
 
 
 def turning_harmonics(loads: Iterable[HarmonicLoad]) -> ComplexArray:
-    """The sum of inertial loads in the turning frame, p (orders, 2) in N: f = Re sum_m p_m e^(i m theta).
+    """Sum inertial loads in the turning frame: p (orders, 2) in N, with f = Re sum_m p_m e^(i m theta).
 
     f_x = cos theta F_X + sin theta F_Y and f_y = -sin theta F_X + cos theta F_Y. An inertial load of order k has the
     orders k - 1 and k + 1 there, and of order 0 the order 1 alone.

@@ -81,7 +81,7 @@ class TurningForces:
 
     @property
     def is_periodic(self) -> bool:
-        """Whether a force depends on the angle alone, so that the rub-free motion moves in the turning frame."""
+        """Whether a force depends on the angle alone, so that O_d moves in the turning frame without rub."""
         return self.weight is not None or self.loads is not None
 
     @property
@@ -91,7 +91,7 @@ class TurningForces:
 
     @property
     def stiffening(self) -> float:
-        """By how much uneven springs and laws stiffen the support at most, N/m."""
+        """Largest stiffness in N/m that uneven springs and laws add to the support."""
         return abs(self.stiffness) + sum(law.stiffening_n_per_m for law in self.laws)
 
 
@@ -151,7 +151,10 @@ class SpinningSystem:
 
     @property
     def starting(self) -> "SpinningSystem":
-        """The system without laws whose motion settles; itself where it has none. Its motion without rub is known."""
+        """The system without the laws whose motion must settle; itself where it has none.
+
+        Its motion without rub is known before the run, so a run starts from it.
+        """
         forces = self.turning
         if forces is None or not any(law.SETTLES for law in forces.laws):
             return self

@@ -1,4 +1,4 @@
-"""The reduced machine: matrices as functions of speed."""
+"""Reduce a machine, and give its matrices as functions of the speed."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -52,13 +52,13 @@ class ReducedModel:
         return len(self.blisk.M) + len(self.casing.frequencies_hz)
 
     def stiffness(self, speed: float) -> FloatArray:
-        """Undamped symmetric stiffness K_e + K_s + Omega^2 (K_sigma - S) of the blisk at `speed` (rad/s), in N/m."""
+        """Return the undamped symmetric stiffness K_e + K_s + Omega^2 (K_sigma - S) of the blisk at `speed` (rad/s)."""
         T = self.blisk.centre
         K: FloatArray = self.blisk.K + T.T @ (self.springs[:, None] * T) + speed**2 * self.blisk.A
         return K
 
     def at_speed(self, speed: float, acceleration: float = 0.0) -> SpinningSystem:
-        """The system at `speed` (rad/s, positive) and `acceleration` (rad/s2): matrices of the turning frame.
+        """Return the system at `speed` (rad/s, positive) and `acceleration` (rad/s2): matrices of the turning frame.
 
         Blisk: C = 2 Omega G + C_s + beta K_e, K = K_e + K_s + Omega^2 (K_sigma - S) + Omega H_s, with C_s = T^T D T and
         H_s = T^T D S6 T. T (6, n) gives the motion of O_d. The dampers D = diag(c) are in the inertial frame and act on
@@ -112,9 +112,9 @@ class ReducedModel:
         )
 
     def root_strain(self, blade: int, speed: float) -> FloatArray:
-        """Spanwise strain at a blade's root per unit of each of the blisk's DoFs, (blisk DoFs,), at `speed` (rad/s).
+        """Return the row (blisk DoFs,) that gives the spanwise strain at a blade's root from the blisk's DoFs.
 
-        Tip and root come from the reduced basis. The blade between them has its static shape at that speed
+        Tip and root come from the reduced basis. The blade between them has its static shape at `speed` in rad/s
         (`held_root_strain`). The basis of rest alone underestimates the strain by 37 % at 8,500 rev/min in the preset.
         Bending by inertia between tip and root is left out.
         """
@@ -145,7 +145,7 @@ class ReducedModel:
         return float(shift @ self.blisk.M @ shift)
 
     def _turning_forces(self, speed: float) -> TurningForces | None:
-        """The forces of supports, gravity and faults that turn against the blisk or are not linear; None without any.
+        """Return the forces of supports, gravity and faults that turn against the blisk or are not linear; or None.
 
         A steady load of a fault that is constant in the turning frame is in the system's `force`.
         """
@@ -193,10 +193,11 @@ class ReducedModel:
         return load
 
     def blisk_frequencies_hz(self, speed: float = 0.0) -> FloatArray:
-        """Undamped natural frequencies (blisk DoFs,) in Hz of the turning frame at `speed` (rad/s), ascending.
+        """Compute the undamped natural frequencies (blisk DoFs,) in Hz of the turning frame, ascending.
 
-        An inertial-frame whirl at omega appears at omega - Omega (forward) or omega + Omega (backward), without sign.
-        Above a critical speed the stiffness is indefinite, so the quadratic problem is solved directly.
+        `speed` is in rad/s. An inertial-frame whirl at omega appears at omega - Omega (forward) or omega + Omega
+        (backward), without sign. Above a critical speed the stiffness is indefinite, so the quadratic problem is solved
+        directly.
         """
         M, K = self.blisk.M, self.stiffness(speed)
         with one_blas_thread():
@@ -230,7 +231,7 @@ class ReducedModel:
 
 
 def rigid_shifts(blades: int, size: int) -> FloatArray:
-    """Coordinates (size, 2) of the reduced blisk moved as a rigid body by 1 m along x and along y.
+    """Return the coordinates (size, 2) of the reduced blisk moved as a rigid body by 1 m along x and along y.
 
     Exact: constraint modes represent every rigid motion that does not strain the springs of the basis. Lateral shifts
     strain none, so the modes are zero.
@@ -244,7 +245,7 @@ def rigid_shifts(blades: int, size: int) -> FloatArray:
 
 
 def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:
-    """The reduced model of `machine`: two-step Craig-Bampton for the blisk, modes for the casing.
+    """Reduce a machine: two-step Craig-Bampton for the blisk, modes for the casing.
 
     The blisk comes from the cache where possible. The result has the same bits then, and with any number of BLAS
     threads. Raises UserError for meshes, mode numbers or lobes that do not fit, for more memory than a reduction may
@@ -286,7 +287,7 @@ def _first_line(error: Exception) -> str:
 
 
 def _materials(machine: Machine) -> str:
-    """Modulus and density of each part, as in its keys."""
+    """Return modulus and density of each part, as in its keys."""
     parts = {"disk": machine.disk.material, "blades": machine.blades.material, "casing": machine.casing.material}
     return ", ".join(
         f"{part} {each.youngs_modulus_pa:g} Pa and {each.density_kg_per_m3:g} kg/m3" for part, each in parts.items()
@@ -294,12 +295,12 @@ def _materials(machine: Machine) -> str:
 
 
 def support_damping(damping: Damping, stiffness: FloatArray, inertia: FloatArray) -> FloatArray:
-    """Dampers (6,) beside the springs of O_d, in N s/m and N m s/rad: c = 2 zeta sqrt(k m).
+    """Return the constants (6,) of the dampers beside the springs of O_d, in N s/m and N m s/rad: c = 2 zeta sqrt(k m).
 
-    `stiffness` (6,) holds the springs and `inertia` (6,) m, m, m, I_d, I_d, I_p, so zeta is the ratio of the blisk
-    moving as a rigid body on that spring. The elastic mode that bears the motion has nearly the same ratio where it
-    stands clear of the blades' modes. It is not used to size c because near a veering with a blade mode its modal
-    mass doubles: c would double too, an artefact within the range of stiffness that data sets vary.
+    `stiffness` (6,) are the springs and `inertia` (6,) m, m, m, I_d, I_d, I_p, so zeta is the ratio of the blisk moving
+    as a rigid body on that spring. The elastic mode that bears the motion has nearly the same ratio where it stands
+    clear of the blades' modes. It is not used to size c because near a veering with a blade mode its modal mass
+    doubles: c would double too, an artefact within the range of stiffness that data sets vary.
     """
     ratio = np.array([damping.lateral, damping.lateral, damping.axial, damping.tilt, damping.tilt, damping.torsion])
     constants: FloatArray = 2 * ratio * np.sqrt(stiffness * inertia)
@@ -307,5 +308,8 @@ def support_damping(damping: Damping, stiffness: FloatArray, inertia: FloatArray
 
 
 def elastic_damping(damping: Damping, blade_frequency: float) -> float:
-    """Beta of the internal damping beta K_e, in s: ratio `damping.blade` at a clamped blade's first mode (rad/s)."""
+    """Return beta of the internal damping beta K_e, in s, for the ratio `damping.blade` at `blade_frequency` (rad/s).
+
+    That frequency is the first of a clamped blade.
+    """
     return 2 * damping.blade / blade_frequency

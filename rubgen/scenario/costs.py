@@ -1,4 +1,4 @@
-"""Memory of a machine's reduction and of a run, from their numbers alone, before anything is built."""
+"""Estimate the memory of a machine's reduction and of a run, from their numbers alone, before anything is built."""
 
 import math
 from dataclasses import replace
@@ -22,7 +22,7 @@ GIGA = 1e9
 
 
 def reduction_bytes(machine: Machine, reduction: Reduction) -> float:
-    """Largest memory of the reduction of a machine in bytes: 14 kB n + 8 (1.5 n_d m + 4 j^2 + 4 (3 c)^2).
+    """Estimate the largest memory of the reduction of a machine, in bytes: 14 kB n + 8 (1.5 n_d m + 4 j^2 + 4 (3 c)^2).
 
     n are the DoFs of the full blisk, n_d of its disk, m = 6 + 6 blades + disk modes the columns of the disk's basis, j
     the DoFs of disk and blades joined, c the nodes of the casing. Measured growth of memory of `reduce_blisk` in a
@@ -39,7 +39,7 @@ def reduction_bytes(machine: Machine, reduction: Reduction) -> float:
 
 
 def memory_problem(machine: Machine, reduction: Reduction) -> str | None:
-    """The problem where the reduction takes too much memory, with the remedy; None without one."""
+    """Return the problem where the reduction takes too much memory, with the remedy; None without one."""
     disk, blades, most = machine.disk, machine.blades, f"at most {MOST_REDUCTION_BYTES / GIGA:g} GB"
     if _fits(machine, reduction):
         return None
@@ -66,7 +66,7 @@ def _fits(machine: Machine, reduction: Reduction) -> bool:
 
 
 def steps_per_turn(scenario: Scenario) -> int:
-    """Steps of a turn at the highest speed: the operation's, doubled until they are enough for the sensors.
+    """Return the steps of a turn at the highest speed: the operation's, doubled until they are enough for the sensors.
 
     Stability may double them further, which is known only from the reduced model.
     """
@@ -77,15 +77,16 @@ def steps_per_turn(scenario: Scenario) -> int:
 
 
 def bytes_a_turn(scenario: Scenario) -> float:
-    """Bytes recorded of each turn: state and velocity once a turn, orders at a changing speed."""
+    """Return the bytes recorded of each turn: state and velocity once a turn, orders at a changing speed."""
     orders = 0 if scenario.operation.profile == "steady" else 20 * 16 * _taps(scenario)
     return 8 * 2 * coordinates(scenario) + orders
 
 
 def bytes_a_second(scenario: Scenario) -> float:
-    """Bytes of each second of signal: taps at every step, twice while they are joined; channels, clean ones too.
+    """Return the bytes of each second of signal: taps at every step, twice while they are joined; channels.
 
-    Surroundings and a frame add arrays: 12, and 17 with eight modes, measured (tracemalloc) in the set default.
+    Channels count three times where those without noise are recorded too, else twice. Surroundings and a frame add
+    arrays: 12, and 17 with eight modes, measured (tracemalloc) in the set default.
     """
     operation, sensing = scenario.operation, scenario.sensing
     steps = steps_per_turn(scenario) * operation.rotation.fastest / (2 * math.pi)
@@ -96,13 +97,13 @@ def bytes_a_second(scenario: Scenario) -> float:
 
 
 def coordinates(scenario: Scenario) -> int:
-    """Degrees of freedom of the reduced model: three a blade, two of the disk centre, modes of blisk and casing."""
+    """Return the number of DoFs of the reduced model: three a blade, two of the disk centre, all modes."""
     modes = scenario.reduction.blisk_modes + scenario.reduction.casing_modes
     return 3 * scenario.machine.blades.count + 2 + modes
 
 
 def stored_bytes(scenario: Scenario) -> float:
-    """Bytes of a run's channels and states in a file, unpacked: numbers of 4 bytes."""
+    """Return the bytes of a run's channels and states in a file, unpacked: numbers of 4 bytes."""
     sensing = scenario.sensing
     channels = (2 if sensing.keep_clean else 1) * len(sensing.set.sensors)
     states = 2 * coordinates(scenario) * scenario.operation.recorded_turns
@@ -110,7 +111,7 @@ def stored_bytes(scenario: Scenario) -> float:
 
 
 def run_problem(scenario: Scenario) -> str | None:
-    """The problem where a run records more than fits in memory, with a number that fits; None without one."""
+    """Return the problem where a run records more than fits in memory, with a number that fits; None without one."""
     operation = scenario.operation
     turn, second = bytes_a_turn(scenario), bytes_a_second(scenario)
     if operation.recorded_turns * turn > MOST_RUN_BYTES:

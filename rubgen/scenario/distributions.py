@@ -28,11 +28,11 @@ class Constant(RootModel[Finite]):
     model_config = ConfigDict(frozen=True)
 
     def quantile(self, _u: float) -> float:
-        """The value itself."""
+        """Return the value itself."""
         return self.root
 
     def extremes(self) -> tuple[float, ...]:
-        """The values that bound what can be drawn."""
+        """Return the values that bound what can be drawn."""
         return (self.root,)
 
 
@@ -47,12 +47,12 @@ class Uniform(BaseModel):
         return _check_order(self, *self.uniform)
 
     def quantile(self, u: float) -> float:
-        """The value a + u (b - a)."""
+        """Return a + u (b - a)."""
         low, high = self.uniform
         return low + u * (high - low)
 
     def extremes(self) -> tuple[float, ...]:
-        """The values that bound what can be drawn."""
+        """Return the values that bound what can be drawn."""
         return self.uniform
 
 
@@ -69,12 +69,12 @@ class LogUniform(BaseModel):
         return _check_order(self, *self.log_uniform)
 
     def quantile(self, u: float) -> float:
-        """The value a (b / a)^u."""
+        """Return a (b / a)^u."""
         low, high = self.log_uniform
         return float(low * (high / low) ** u)
 
     def extremes(self) -> tuple[float, ...]:
-        """The values that bound what can be drawn."""
+        """Return the values that bound what can be drawn."""
         return self.log_uniform
 
 
@@ -110,18 +110,18 @@ class Normal(BaseModel):
         return self
 
     def quantile(self, u: float) -> float:
-        """The value mean + std Phi^-1(Phi(a) + u (Phi(b) - Phi(a))), a and b the standardised min and max."""
+        """Return mean + std Phi^-1(Phi(a) + u (Phi(b) - Phi(a))), a and b the standardised min and max."""
         shape = self.normal
         low, high = self._shares()
         value = shape.mean + shape.std * float(ndtri(low + u * (high - low)))
         return min(max(value, shape.min), shape.max)
 
     def extremes(self) -> tuple[float, ...]:
-        """The values that bound what can be drawn."""
+        """Return the values that bound what can be drawn."""
         return (self.normal.min, self.normal.max)
 
     def _shares(self) -> tuple[float, float]:
-        """Shares of the whole density below min and below max."""
+        """Return the shares of the whole density below min and below max."""
         shape = self.normal
         low, high = (float(ndtr((end - shape.mean) / shape.std)) for end in (shape.min, shape.max))
         return low, high
@@ -134,11 +134,11 @@ class Choice(BaseModel):
     choice: Annotated[tuple[Finite, ...], Field(min_length=1)]
 
     def quantile(self, u: float) -> float:
-        """The value number floor(u n)."""
+        """Return the value number floor(u n)."""
         return self.choice[min(math.floor(u * len(self.choice)), len(self.choice) - 1)]
 
     def extremes(self) -> tuple[float, ...]:
-        """Every value that can be drawn."""
+        """Return every value that can be drawn."""
         return self.choice
 
 
@@ -146,7 +146,7 @@ DISTRIBUTIONS = ("uniform", "log_uniform", "normal", "choice")
 
 
 def _kind(value: object) -> str | None:
-    """The tag of the union; in angle brackets, so that no key of a recipe has the same name."""
+    """Return the tag of the union; in angle brackets, so that no key of a recipe has the same name."""
     if isinstance(value, Constant) or _are_numbers(value):
         return "<number>"
     names = list(value) if isinstance(value, Mapping) else list(getattr(type(value), "model_fields", ()))
@@ -154,14 +154,14 @@ def _kind(value: object) -> str | None:
 
 
 def _known(value: object) -> object:
-    """The value, where it is a distribution of any kind."""
+    """Return the value, where it is a distribution of any kind."""
     if _kind(value) is None:
         raise PydanticCustomError("distribution", "{message}", {"message": _unknown(value)})
     return value
 
 
 def _unknown(value: object) -> str:
-    """What to write for a value that is no distribution."""
+    """Say what to write for a value that is no distribution."""
     allowed = f"give a number or a table of one key: {', '.join(DISTRIBUTIONS)}"
     match value:
         case [low, high] if _are_numbers(low, high):

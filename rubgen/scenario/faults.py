@@ -1,4 +1,4 @@
-"""`[[faults]]` of a recipe: which runs have which fault, and how severe it is.
+"""Draw the faults of `[[faults]]` in a recipe: which runs have which fault, and how severe it is.
 
 The tables are made from the fields of each kind (`rubgen.machine.faults.registry`), so a new kind needs nothing here.
 """
@@ -32,11 +32,11 @@ class WordChoice(BaseModel):
     choice: Annotated[tuple[str, ...], Field(min_length=1)]
 
     def quantile(self, u: float) -> str:
-        """The word number floor(u n)."""
+        """Return the word number floor(u n), for u in [0, 1)."""
         return self.choice[int(u * len(self.choice))]
 
     def extremes(self) -> tuple[str, ...]:
-        """Every word."""
+        """Return every word."""
         return self.choice
 
 
@@ -56,14 +56,14 @@ _WHOLE = Annotated[Distribution, AfterValidator(_is_whole)]
 
 
 def _words(hint: Any) -> tuple[str, ...]:
-    """The words that a field allows; none where it is a number."""
+    """Return the words that a field allows; none where it is a number."""
     if get_origin(hint) is Literal:
         return get_args(hint)
     return next((words for part in get_args(hint) if (words := _words(part))), ())
 
 
 def _table(kind: str, fault: type[Fault]) -> type[BaseModel]:
-    """The table of one kind: each number of it may be drawn, each word chosen."""
+    """Make the table of one kind: each number of it may be drawn, each word chosen."""
     share = Annotated[Distribution, AfterValidator(_is_share)]
     about = "share of the runs that have this fault; all where not given"
     values: dict[str, Any] = {"kind": (Literal[kind], ...), "share": (share | None, Field(None, description=about))}
@@ -84,14 +84,15 @@ else:
 
 
 def kind_of(fault: Fault | BaseModel) -> str:
-    """The kind of a fault, or of its table."""
+    """Return the kind of a fault, or of its table in a recipe."""
     return str(cast("Any", fault).kind)
 
 
 def with_faults(scenario: Scenario, tables: Sequence[BaseModel]) -> Scenario:
-    """The scenario with the faults that are drawn for its seed and index, and the kinds that its recipe names.
+    """Draw the scenario's faults from the tables of its recipe, by its seed and index. Return the scenario with them.
 
-    Each key of each kind has random numbers of its own, whatever other keys and kinds there are.
+    `fault_kinds` becomes every kind that machine or recipe name. Each key of each kind has random numbers of its own,
+    whatever other keys and kinds there are.
     """
 
     def number(name: str) -> float:
@@ -109,7 +110,7 @@ def with_faults(scenario: Scenario, tables: Sequence[BaseModel]) -> Scenario:
 
 
 def with_given_faults(scenario: Scenario, kinds: str | Sequence[str], values: Mapping[str, object]) -> Scenario:
-    """The scenario with faults of these kinds, each value at the kind that has its key.
+    """Return the scenario with faults of these kinds; each of `values` goes to the kind that has its key.
 
     Raises UserError of one line for an unknown kind, a key that none or several of the kinds have, and a value that is
     not allowed.
@@ -136,7 +137,7 @@ def with_given_faults(scenario: Scenario, kinds: str | Sequence[str], values: Ma
 
 
 def _keys(kind: str) -> list[str]:
-    """The keys of a kind, except for `kind`."""
+    """Return the keys of a kind, except for `kind`."""
     return [field.name for field in fields(cast("Any", FAULTS[kind]))[1:]]
 
 
@@ -149,7 +150,7 @@ FAULT_KEYS = tuple(dict.fromkeys(key for kind in FAULTS for key in _keys(kind)))
 
 
 def extremes(scenario: Scenario, tables: Sequence[BaseModel], source: str) -> Iterator[Scenario]:
-    """The scenario with each fault alone, at its least and its largest values, and with all at their largest.
+    """Yield the scenario with each fault alone, at its least and its largest values, then with all at their largest.
 
     Raises UserError, beginning with `source`, for a value that is not allowed, and for a kind that stands there twice.
     """
@@ -169,13 +170,13 @@ def extremes(scenario: Scenario, tables: Sequence[BaseModel], source: str) -> It
 
 
 def named_kinds(recipe: dict[str, Any], machine: dict[str, Any]) -> tuple[str, ...]:
-    """The kinds of fault that the documents of a recipe and of its machine name, in the order of the registry."""
+    """Return the kinds of fault that a recipe and its machine name in their documents, in the order of the registry."""
     named = {each["kind"] for document in (machine, recipe) for each in document.get("faults") or ()}
     return tuple(kind for kind in FAULTS if kind in named)
 
 
 def kinds_of(faults: Iterable[Fault | BaseModel]) -> tuple[str, ...]:
-    """The kinds of these faults or tables, in the order of the registry."""
+    """Return the kinds of these faults or tables, in the order of the registry."""
     kinds = {kind_of(each) for each in faults}
     return tuple(kind for kind in FAULTS if kind in kinds)
 
@@ -187,7 +188,7 @@ def _having(scenario: Scenario, tables: Sequence[BaseModel], faults: tuple[Fault
 
 
 def _fault(table: BaseModel, value: Value, source: str = "", number: int = 0) -> Fault:
-    """The fault with the values of its table; `source` and the table's `number` are for messages."""
+    """Make the fault with the values of its table; `source` and the table's `number` are for messages."""
     given = [(key, getattr(table, key)) for key in type(table).model_fields if key not in ("kind", "share")]
     values = {key: entry if isinstance(entry, str) else value(key, entry) for key, entry in given if entry is not None}
     return validated(source, {"kind": kind_of(table), **values}, _FAULT, lambda path: ("faults", number, *path))

@@ -1,4 +1,4 @@
-"""Rules of a scenario beyond the ranges of its single values, checked before anything is computed."""
+"""Check a scenario beyond the ranges of its single values, before anything is computed."""
 
 import math
 
@@ -20,7 +20,7 @@ example)."""
 
 
 def check_feasible(scenario: Scenario, source: str = "") -> None:
-    """Raise UserError where the scenario cannot be run. Keys are named as in a recipe, after `source` (its file)."""
+    """Check that the scenario can be run. Raises UserError where not; keys are named as in a recipe, after `source`."""
     for problem in (*PROBLEMS, *SENSOR_PROBLEMS, _cost_problem):
         text = problem(scenario)
         if text:
@@ -67,12 +67,12 @@ def _sample_problem(scenario: Scenario) -> str | None:
 
 
 def _highest_hz(scenario: Scenario) -> float:
-    """The highest sample rate for which the largest number of steps a turn is enough."""
+    """Return the highest sample rate for which the largest number of steps a turn is enough."""
     return MOST_STEPS * _highest_speed_rpm(scenario) / 60 / STEPS_PER_SAMPLE
 
 
 def _highest_speed_rpm(scenario: Scenario) -> float:
-    """The speed that determines the step."""
+    """Return the speed that determines the step."""
     operation = scenario.operation
     return max(operation.speed_rpm, operation.end_speed_rpm or 0.0) + operation.fluctuation_rpm
 

@@ -1,4 +1,4 @@
-"""Keys of the surroundings, and faults, that change no channel."""
+"""Find keys of the surroundings, and faults, that change no channel."""
 
 from collections.abc import Sequence
 
@@ -23,9 +23,9 @@ SCALED_BY = {
 
 
 def idle_surroundings(scenario: Scenario) -> dict[str, str]:
-    """Every key of the surroundings that changes no channel, with the words of a warning.
+    """Return every key of the surroundings that changes no channel, with the words of a warning.
 
-    A key that it does not concern, and one with its default value, is as good as not given.
+    A key that the sensors do not feel, and one with its default value, is as good as not given.
     """
     around, sensors = scenario.surroundings, scenario.sensing.set
     values, usual = vars(around), vars(Surroundings())

@@ -1,4 +1,4 @@
-"""A single run by its keys: the same names, units and checks for Python and for `rubgen simulate`."""
+"""Make a single run from its keys: the same names, units and checks for Python and for `rubgen simulate`."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -36,7 +36,7 @@ _SURROUNDINGS = TypeAdapter(Surroundings)
 
 
 def _known_keys(function: Callable[P, Scenario]) -> Callable[P, Scenario]:
-    """The function, with a check that refuses an unknown key and names the nearest known one."""
+    """Return the function with a check that refuses an unknown key and names the nearest known one."""
     known = [name for name, each in signature(function).parameters.items() if each.kind is not each.VAR_KEYWORD]
 
     @wraps(function)
@@ -87,7 +87,7 @@ def make_scenario(
     lyapunov: bool | None = None,
     **fault_keys: float | str,
 ) -> Scenario:
-    """One run of a machine, ready for `simulate`; a key that is not given keeps the machine's value.
+    """Describe one run of a machine for `simulate`; a key that is not given keeps the machine's value.
 
     - `machine`: name of a preset ("zeng2019"), or path of a machine TOML
     - `speed_rpm`: spin speed in rev/min, of a run-up or coast-down at its start, > 0; 10,000 when not given
@@ -148,7 +148,7 @@ def _checked_scenario(given: dict[str, Any], fault_keys: dict[str, Any]) -> Scen
 
 
 def _recipe_values(given: dict[str, Any]) -> dict[str, Any]:
-    """The values of a recipe of one run: all given keys except the keys of `[vary]`."""
+    """Return the values of a recipe of one run: all given keys except the keys of `[vary]`."""
     values: dict[str, Any] = {"name": "run", "runs": 1}
     for table, keys in TABLES.items():
         used = {key: given[key] for key in keys if key in given}
@@ -160,10 +160,10 @@ def _recipe_values(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def _text(value: Any) -> Any:
-    """A path as text."""
+    """Return a path as text."""
     return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 
 def _key_alone(path: tuple[int | str, ...]) -> tuple[int | str, ...]:
-    """The key of `make_scenario` for a place of the recipe."""
+    """Return the key of `make_scenario` for a place of the recipe."""
     return ("sensors",) if path == ("sensors", "set") else path[-1:]

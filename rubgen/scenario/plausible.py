@@ -1,4 +1,4 @@
-"""Values that are allowed but hardly intended, from the machine's own sizes; one line each.
+"""Find values that are allowed but hardly intended, from the machine's own sizes, in one line each.
 
 Each check yields "key = value: why; was ... meant?". A question names the unit in which the value would fit, and is
 left out where none would. The limits are far outside of real machines, and far inside of what can be computed.
@@ -46,7 +46,7 @@ _QUARTERS = ("", "pi / 2", "pi", "3 pi / 2", "2 pi")
 def warn_of(scenarios: Iterable[Scenario], source: str = "") -> None:
     """Warn of each implausible key once, with its value in the first of the scenarios where it is implausible.
 
-    What changes no channel is told where that is so in all of them.
+    A key that changes no channel is named where that is so in all of the scenarios.
     """
     checked = list(scenarios)
     found: dict[str, str] = {}
@@ -59,7 +59,7 @@ def warn_of(scenarios: Iterable[Scenario], source: str = "") -> None:
 
 
 def implausible(scenario: Scenario) -> Iterator[str]:
-    """Every value of a scenario that is hardly intended."""
+    """Yield a line for every value of a scenario that is hardly intended."""
     for check in CHECKS:
         yield from check(scenario)
 
@@ -79,7 +79,7 @@ def _faults(scenario: Scenario) -> Iterator[str]:
 
 
 def _key(scenario: Scenario, place: Place) -> str:
-    """The key of a place of the scenario, as in a recipe, a machine or a sensor set."""
+    """Return the key of a place of the scenario, as in a recipe, a machine or a sensor set."""
     match place:
         case ("sensing", "set", "sensors", int(number), key, *_):
             return f"{key} of {scenario.sensing.set.sensors[number].name}"
@@ -99,12 +99,12 @@ class Share(NamedTuple):
 
     @property
     def question(self) -> str:
-        """The question whether the value was given in another unit."""
+        """The question whether the value was given in another unit; empty where no unit fits."""
         return length_question(self.value, self.most * self.whole)
 
 
 def shares(scenario: Scenario) -> Iterator[Share]:
-    """Every length that is part of another."""
+    """Yield every length of a scenario that is part of another length, with its plausible share."""
     machine, casing, film = scenario.machine, scenario.machine.casing, scenario.machine.disk_support.squeeze_film
     tip, tips = machine.tip_radius_m, "the radius of the blade tips"
     mean, ring = machine.casing_mean_radius_m, "the radius of the casing"
@@ -125,7 +125,7 @@ def shares(scenario: Scenario) -> Iterator[Share]:
 
 
 def _tones(scenario: Scenario) -> Iterator[str]:
-    """Tones above half the sample rate, which no channel shows."""
+    """Yield tones above half the sample rate, which no channel shows."""
     limit, speed = scenario.sensing.sample_rate_hz / 2, scenario.operation.rotation_frequency_hz
     for number, tone in enumerate(scenario.surroundings.tones if scenario.surroundings else ()):
         hertz = tone.order_at(speed) * speed
@@ -267,7 +267,7 @@ def _arrivals(scenario: Scenario) -> Iterator[str]:
 
 
 def _chains(scenario: Scenario) -> Iterator[str]:
-    """Sensors whose signal is lost: noise, offset or drift as large as the range, or gaps without end."""
+    """Yield sensors whose signal is lost: noise, offset or drift as large as the range, or gaps without end."""
     for sensor in scenario.sensing.set.sampled:
         low, high = sensor.full_range
         seconds, rate = scenario.signal_seconds, scenario.sensing.sample_rate_hz
@@ -304,24 +304,27 @@ CHECKS = (
 
 
 def unbalances(machine: Machine) -> Iterator[tuple[str, float]]:
-    """Every unbalance of a machine in kg m, with its key."""
+    """Yield every unbalance of a machine in kg m, after its key."""
     yield "unbalance_kg_m", machine.unbalance_kg_m
     for number, each in enumerate(machine.unbalances):
         yield f"unbalances.{number}.kg_m", each.kg_m
 
 
 def eccentricity(machine: Machine, unbalance: float) -> float:
-    """How far an unbalance (kg m) moves the centre of mass of the blisk from the axis, in m."""
+    """Return how far an unbalance (kg m) moves the centre of mass of the blisk from the axis, in m."""
     return unbalance / blisk_mass(machine)
 
 
 def gram(unbalance: float) -> str:
-    """The question whether an unbalance was given in g mm."""
+    """Return the question whether an unbalance was given in g mm; empty where it is too small for that."""
     return f"; were g mm meant, {unbalance * 1e-6:g} kg m?" if unbalance >= LEAST_GRAM_MILLIMETRES else ""
 
 
 def length_question(value: float, most: float) -> str:
-    """The question whether a length was given in mm or um, where it would fit."""
+    """Return the question whether a length was given in mm or um; empty where it would not fit.
+
+    `most` is the largest plausible length in m.
+    """
     for unit, size in LENGTHS:
         if LEAST_SHARE * most <= value * size <= most:
             return f"; were {unit} meant, {value * size:g} m?"

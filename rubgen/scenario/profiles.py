@@ -1,4 +1,4 @@
-"""Rules for the keys of an operation's speed profile."""
+"""Check the keys of an operation's speed profile."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -27,7 +27,7 @@ LEAST_PERIOD_TURNS = 0.1
 
 
 def check_used(source: str, recipe: Mapping[str, Any], place: Callable[[Place], Place] = lambda path: path) -> None:
-    """Raise UserError for a key in the data of a recipe that its profile would ignore.
+    """Check that the profile of a recipe uses every key that is given. Raises UserError for a key that it would ignore.
 
     - source: beginning of messages.
     - recipe: the TOML values.
@@ -42,7 +42,7 @@ def check_used(source: str, recipe: Mapping[str, Any], place: Callable[[Place], 
 
 
 def profile_problem(operation: Operation) -> str | None:
-    """The problem of an operation's profile: key, value, what is allowed and the remedy; None without one."""
+    """Return the problem of an operation's profile: key, value, what is allowed and the remedy; None without one."""
     return _key_problem(operation) or _value_problem(operation) or _band_problem(operation)
 
 

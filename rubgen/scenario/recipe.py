@@ -185,18 +185,18 @@ class Recipe(BaseModel):
         return Sensing(set=self._sensor_set or load_sensor_set(self.sensors.set, self._folder), **rest)
 
     def machine_named(self) -> AbstractContextManager[None]:
-        """A context in which errors about the machine name its file."""
+        """Name the machine's file in errors that the block raises about the machine."""
         return file_named(self.machine, self._folder)
 
     def distributions(self) -> Iterator[tuple[Parameter, Distribution]]:
-        """The keys of the recipe with their distributions, in the order of the registry."""
+        """Yield the keys of the recipe with their distributions, in the order of PARAMETERS."""
         for entry in DRAWN:
             distribution = getattr(self.vary, entry.key)
             if distribution is not None:
                 yield entry, distribution
 
     def scenario(self, index: int) -> Scenario:
-        """Run number `index` from 0, complete. It depends on no other run and not on the number of runs."""
+        """Draw run number `index` from 0, complete. It depends on no other run and not on the number of runs."""
         if isinstance(index, bool) or not isinstance(index, int | np.integer) or not 0 <= index < MOST_RUNS:
             raise UserError(f"index = {index!r:.100}: give the number of a run, from 0 to below {MOST_RUNS:,}")
         point = sobol_point(self.seed, index)
@@ -211,7 +211,7 @@ class Recipe(BaseModel):
         return kinds_of((*self.base.machine.faults, *(self.faults or ())))
 
     def corners(self, source: str = "") -> Iterator[Scenario]:
-        """Scenarios at the extreme values of each key, the other keys at their first value. Checks use them.
+        """Yield scenarios at the extreme values of each key, the other keys at their first value. Checks use them.
 
         Raises UserError, beginning with `source`, where an extreme value is not allowed.
         """
@@ -228,7 +228,7 @@ class Recipe(BaseModel):
 
 
 def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> Recipe:
-    """The recipe in that TOML file, or the default recipe of rubgen; `runs` overrides its number of runs.
+    """Load the recipe in that TOML file, or the default recipe of rubgen; `runs` overrides its number of runs.
 
     Raises UserError with file, key, value, what is allowed and the remedy, before anything is computed.
     """
@@ -241,7 +241,7 @@ def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> R
 def parse_recipe(
     data: dict[str, Any], *, source: str = "recipe", folder: Path | None = None, runs: int | None = None
 ) -> Recipe:
-    """The recipe of these TOML values.
+    """Make the recipe of TOML values and check it.
 
     - data: the TOML values.
     - source: beginning of messages.
@@ -259,21 +259,21 @@ def parse_recipe(
 
 
 def checked_runs(runs: int) -> int:
-    """A number of runs that replaces the recipe's number. Raises UserError where a recipe would not allow it."""
+    """Return a number of runs that replaces the recipe's. Raises UserError where a recipe would not allow it."""
     if isinstance(runs, bool) or not isinstance(runs, int) or not 1 <= runs <= MOST_RUNS:
         raise UserError(f"--runs {runs}: must be at least 1 and at most {MOST_RUNS:,}; give a whole number of runs")
     return runs
 
 
 def recorded_recipe(data: object, machine: object, sensors: object, source: str = "manifest") -> Recipe:
-    """The recipe of a data set from its manifest, with the recorded machine and sensors.
+    """Make the recipe of a data set from its manifest, with the recorded machine and sensors.
 
     Changes of the machine's or sensors' files since then have no effect.
 
     - data, machine, sensors: the three documents of the manifest.
     - source: beginning of messages.
 
-    Raises UserError where this rubgen cannot read them.
+    Raises UserError where this version of rubgen cannot read them.
     """
     recipe: Recipe = _recorded(Recipe, data, f"{source}: recipe")
     recipe._checked = True
@@ -291,12 +291,14 @@ def _recorded(kind: Any, data: object, source: str) -> Any:
 
 
 def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | None = None) -> None:
-    """Raise UserError where some run of the recipe is not possible: single values, and the extremes of `[vary]`.
+    """Check that every run of the recipe is possible, at single values and at the extremes of `[vary]`.
 
     Warns once of each value that is hardly intended.
 
     - source: beginning of messages.
     - data: the TOML values of the recipe; without them, fields that are set count as given.
+
+    Raises UserError where some run is not possible.
     """
     validated(
         source, recipe.model_dump(mode="json", warnings=False), TypeAdapter(Recipe)

@@ -1,4 +1,4 @@
-"""Whether a machine can be reduced as asked, from its numbers alone, before anything is built."""
+"""Check whether a machine can be reduced as asked, from its numbers alone, before anything is built."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rubgen.scenario.scenario import Reduction
 
 
 def reduction_problem(machine: Machine, reduction: Reduction) -> str | None:
-    """Why the machine cannot be reduced, with the key, its value and the remedy; None where it can."""
+    """Return why the machine cannot be reduced, with the key, its value and the remedy; None where it can."""
     return (
         pitch_problem(machine.disk, machine.blades)
         or node_problem(machine.casing)
@@ -23,7 +23,10 @@ def reduction_problem(machine: Machine, reduction: Reduction) -> str | None:
 
 
 def casing_problem(machine: Machine, modes: int) -> str | None:
-    """The problem of `modes` casing modes: more than DoFs, or too few for the order of its lobes; None without one."""
+    """Return the problem of `modes` casing modes: more than DoFs, or too few for the order of the casing's lobes.
+
+    None without a problem.
+    """
     lobes, most = machine.casing.lobes, 3 * machine.casing.nodes
     if not 1 <= modes <= most:
         return f"reduction.casing_modes = {modes}: a ring of {machine.casing.nodes} nodes has {most}; give 1 to {most}"
@@ -37,11 +40,11 @@ def casing_problem(machine: Machine, modes: int) -> str | None:
 
 
 def carried_orders(machine: Machine, modes: int) -> tuple[int, ...]:
-    """Circumferential orders that the first `modes` modes of the casing carry in full, ascending.
+    """Return the circumferential orders that the first `modes` modes of the casing carry in full, ascending.
 
-    Ranked by the thin inextensible circular ring on an elastic foundation, omega_n^2 =
-    [E I n^2 (n^2 - 1)^2 / R^4 + k_r n^2 + k_t] / [rho A (n^2 + 1)], k_r and k_t per length: one mode of order 0, two of
-    each other. With k_t <= k_r these are 0 to (modes - 1) // 2; stiffer tangential springs raise the low orders.
+    Ranked by the thin inextensible circular ring on an elastic foundation, omega_n^2 = [E I n^2 (n^2 - 1)^2 / R^4 + k_r
+    n^2 + k_t] / [rho A (n^2 + 1)], k_r and k_t per length: one mode of order 0, two of each other. With k_t <= k_r
+    these are 0 to (modes - 1) // 2; stiffer tangential springs raise the low orders.
     """
     casing = machine.casing
     order = np.arange(max(modes, 1) + 2)
@@ -55,7 +58,7 @@ def carried_orders(machine: Machine, modes: int) -> tuple[int, ...]:
 
 
 def _modes_problem(machine: Machine, reduction: Reduction) -> str | None:
-    """The problem of more modes than DoFs with mass between the masters.
+    """Return the problem of more modes than DoFs with mass between the masters.
 
     A node of a blade has six such DoFs, a node of the disk five (no drilling).
     """

@@ -48,18 +48,18 @@ class Rotation:
         return (self.end - self.start) / self.seconds
 
     def speed(self, time: npt.ArrayLike) -> FloatArray:
-        """Omega in rad/s at `time` (any shape)."""
+        """Return Omega in rad/s at `time` (any shape) in s."""
         ramp = self.start + self.rate * np.clip(time, 0.0, self.seconds)
         return np.asarray(ramp + self.swing * np.sin(self._phase(time)))
 
     def acceleration(self, time: npt.ArrayLike) -> FloatArray:
-        """Omega' in rad/s2 at `time` (any shape). At the ramp's two corners it is the ramp's."""
+        """Return Omega' in rad/s2 at `time` (any shape) in s. At the ramp's two corners it is the ramp's."""
         time = np.asarray(time)
         ramp = np.where((time >= 0) & (time <= self.seconds), self.rate, 0.0)
         return np.asarray(ramp + self.swing * (2 * np.pi / self.period) * np.cos(self._phase(time)))
 
     def angle(self, time: npt.ArrayLike) -> FloatArray:
-        """Theta in rad, the integral of Omega from 0."""
+        """Return theta in rad at `time` (any shape) in s: the integral of Omega from 0."""
         time = np.asarray(time, dtype=np.float64)
         within = np.clip(time, 0.0, self.seconds)
         after = np.maximum(time - self.seconds, 0.0)
@@ -69,7 +69,7 @@ class Rotation:
         return np.asarray(ramp + wave)
 
     def time_of(self, angle: float) -> float:
-        """Time in s at which theta is `angle` (rad): the ramp in closed form, a fluctuation by Newton's method."""
+        """Return the time in s at which theta is `angle` (rad): a ramp in closed form, a fluctuation by Newton."""
         time = self._ramp_time(angle)
         if self.swing == 0:
             return time
@@ -81,11 +81,11 @@ class Rotation:
         return time
 
     def mean_speed(self, angle: float) -> float:
-        """Mean speed in rad/s from theta = 0 to `angle` (rad, positive)."""
+        """Return the mean speed in rad/s from theta = 0 to `angle` (rad, positive)."""
         return self.start if self.is_steady else angle / self.time_of(angle)
 
     def _ramp_time(self, angle: float) -> float:
-        """The time of an angle without fluctuation."""
+        """Return the time of an angle without fluctuation."""
         ramped = 0.5 * (self.start + self.end) * self.seconds
         if angle <= 0:
             return angle / self.start
@@ -99,5 +99,5 @@ class Rotation:
 
 
 def steady_rotation(speed: float) -> Rotation:
-    """Rotation at a constant speed in rad/s."""
+    """Return the rotation at a constant speed in rad/s."""
     return Rotation(start=speed, end=speed)

@@ -109,7 +109,7 @@ class Operation:
 
     @property
     def rotation_frequency_hz(self) -> float:
-        """f_r in Hz."""
+        """Rotation frequency f_r in Hz."""
         return self.speed_rpm / 60
 
 
@@ -184,10 +184,10 @@ class Scenario:
 
 
 def scenario_dict(scenario: Scenario) -> dict[str, object]:
-    """The scenario as nested JSON-ready Python values, keys as in the dataclasses, complete with its machine.
+    """Return the scenario as nested plain values for JSON, keys as in the dataclasses, complete with its machine.
 
-    `TypeAdapter(Scenario).validate_python(scenario_dict(s)) == s`: every float keeps all its bits in JSON. A
-    run without surroundings has no such key, and neither has one of a recipe without faults.
+    `TypeAdapter(Scenario).validate_python(scenario_dict(s)) == s`: every float keeps all its bits in JSON. A run
+    without surroundings has no such key, and neither has one of a recipe without faults.
     """
     values = cast("dict[str, object]", TypeAdapter(Scenario).dump_python(scenario, mode="json"))
     if scenario.surroundings is None:

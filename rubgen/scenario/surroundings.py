@@ -49,7 +49,7 @@ class Tone:
         return self
 
     def order_at(self, rotation_frequency_hz: float) -> float:
-        """Its frequency over that of the rotation."""
+        """Return the tone's frequency over that of the rotation."""
         return self.order if self.order is not None else (self.frequency_hz or 0.0) / rotation_frequency_hz
 
 
@@ -100,7 +100,7 @@ SURROUNDINGS = (
 
 
 def surroundings_values(around: Surroundings) -> dict[str, float | list[float]]:
-    """The values of a run by column: one for each key, and three lists with one value for each tone."""
+    """Return the values of a run by column: one for each key, and three lists with one value for each tone."""
     values: dict[str, float | list[float]] = {each.key: getattr(around, each.key) for each in SURROUNDINGS}
     values["tones_order"] = [tone.order or 0.0 for tone in around.tones]
     values["tones_frequency_hz"] = [tone.frequency_hz or 0.0 for tone in around.tones]
@@ -135,7 +135,7 @@ SurroundingsTable = create_model(
 
 
 def drawn(table: BaseModel, seed: int, index: int) -> Surroundings:
-    """The values of run number `index`: each key has random numbers of its own, whatever other keys there are."""
+    """Draw the values of run number `index`. Each key has random numbers of its own, whatever other keys there are."""
 
     def value(key: str, distribution: Distribution) -> float:
         generator = np.random.default_rng([seed, index, zlib.crc32(key.encode())])
@@ -145,13 +145,16 @@ def drawn(table: BaseModel, seed: int, index: int) -> Surroundings:
 
 
 def extremes(table: BaseModel, source: str = "") -> tuple[Surroundings, Surroundings]:
-    """All least and all largest values that can be drawn; UserError, beginning with `source`, where not allowed."""
+    """Return all least and all largest values that can be drawn.
+
+    Raises UserError, beginning with `source`, where one of them is not allowed.
+    """
     least = _with(table, lambda _, distribution: min(distribution.extremes()), source)
     return least, _with(table, lambda _, distribution: max(distribution.extremes()), source)
 
 
 def _with(table: BaseModel, value: Callable[[str, Distribution], float], source: str) -> Surroundings:
-    """The values that `value` gives for the key and the distribution of each entry of the table."""
+    """Return the values that `value` gives for the key and the distribution of each entry of the table."""
 
     def of(part: BaseModel, place: str) -> dict[str, Any]:
         given = [(key, getattr(part, key)) for key in type(part).model_fields if key != "tones"]

@@ -55,7 +55,7 @@ class Parameter:
         return self.quantity is Lobes
 
     def read(self, scenario: Scenario) -> float:
-        """The value in that scenario. A scenario without end speed or duration has the values of its record."""
+        """Return the value in that scenario. Without end speed or duration it is that of the record."""
         value: float | None = attrgetter(self.places[0])(scenario)
         if value is not None:
             return value
@@ -65,7 +65,7 @@ class Parameter:
         return operation.record_turns / operation.rotation_frequency_hz
 
     def apply(self, scenario: Scenario, value: float) -> Scenario:
-        """The scenario with that value."""
+        """Return the scenario with that value at all places of the key."""
         for place in self.places:
             scenario = _changed(scenario, place.split("."), value)
         return scenario
@@ -188,7 +188,7 @@ _VALUES: TypeAdapter[Any] = TypeAdapter(create_model("Values", __config__=STRICT
 
 
 def vary(scenario: Scenario, values: Mapping[str, float], source: str = "", table: tuple[str, ...] = ()) -> Scenario:
-    """The scenario with these keys of `[vary]` changed.
+    """Return the scenario with these keys of `[vary]` changed.
 
     - values: by key, in the key's unit.
     - source, table: file and table, for messages.
@@ -203,18 +203,18 @@ def vary(scenario: Scenario, values: Mapping[str, float], source: str = "", tabl
 
 
 def varied_values(scenario: Scenario) -> dict[str, float]:
-    """The value of every key of `[vary]` in this scenario, in the order of the keys."""
+    """Return the value of every key of `[vary]` in this scenario, in the order of the keys."""
     return {entry.key: entry.read(scenario) for entry in PARAMETERS}
 
 
 def _changed(record: Any, place: list[str], value: float) -> Any:
-    """The record with another value at that place."""
+    """Return the record with another value at that place."""
     name, *rest = place
     return replace(record, **{name: _changed(getattr(record, name), rest, value) if rest else value})
 
 
 def sobol_point(seed: int, index: int) -> dict[str, float]:
-    """One u in [0, 1) for each key of `[vary]`: point `index` of the Sobol sequence scrambled by `seed`.
+    """Return one u in [0, 1) for each key of `[vary]`: point `index` of the Sobol sequence scrambled by `seed`.
 
     Each key has a fixed dimension, whether it is drawn or fixed: fixing one key changes no other key.
     """

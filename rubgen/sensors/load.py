@@ -1,4 +1,4 @@
-"""Sensor sets from TOML files: the sets of rubgen, and the user's own in the same form."""
+"""Load sensor sets from TOML files: the sets of rubgen, and the user's own in the same form."""
 
 from functools import cache
 from pathlib import Path
@@ -21,18 +21,18 @@ OF_ONE = ("name", "kind")
 
 
 def sensor_set_names() -> list[str]:
-    """Names of the sets of rubgen, sorted."""
+    """Return the names of the sets of rubgen, sorted."""
     return sorted(path.stem for path in SETS.glob("*.toml"))
 
 
 @cache
 def default_sensor_set() -> SensorSet:
-    """The set of a recipe that names none."""
+    """Return the set of a recipe that names none."""
     return load_sensor_set(DEFAULT_SET)
 
 
 def load_sensor_set(name_or_path: str, folder: Path | None = None) -> SensorSet:
-    """The set of that name, or the set in that TOML file; relative paths start from `folder`.
+    """Load the set with that name, or the set in that TOML file; relative paths start from `folder`.
 
     A table `[kinds.<kind>]` has default values for all sensors of a kind. Raises UserError with file, key, value and
     what is allowed where there is none or it is not a valid set.
@@ -46,7 +46,7 @@ def load_sensor_set(name_or_path: str, folder: Path | None = None) -> SensorSet:
 
 
 def parse_sensor_set(path: Path) -> SensorSet:
-    """The set in a TOML file."""
+    """Read the sensor set in the TOML file at `path`. Raises UserError as `load_sensor_set` does."""
     data = read_toml(path)
     check_kind(path, data, "sensor set")
     check_plain(path, data)
@@ -68,7 +68,7 @@ def parse_sensor_set(path: Path) -> SensorSet:
 
 
 def _kinds(path: Path, kinds: Any) -> dict[str, dict[str, Any]]:
-    """The tables `[kinds.<kind>]`, each with default values for all sensors of a kind."""
+    """Return the tables `[kinds.<kind>]`, each with default values for all sensors of a kind."""
     if not isinstance(kinds, dict):
         raise UserError(f"{path}: kinds = {toml_text(kinds):.60}: must be tables; write [kinds.proximity], say")
     for kind, table in kinds.items():
@@ -90,7 +90,7 @@ def _check_used(path: Path, kinds: dict[str, dict[str, Any]], listed: list[Any])
 
 
 def _completed(path: Path, number: int, sensor: Any, kinds: dict[str, dict[str, Any]]) -> Any:
-    """A sensor's table with the values of its kind."""
+    """Return a sensor's table with the values of its kind."""
     if not isinstance(sensor, dict):
         return sensor
     if "kind" not in sensor:

@@ -42,7 +42,10 @@ class RunoutOrder:
 
 
 def runout(angle: FloatArray, shaft: tuple[RunoutOrder, ...]) -> FloatArray:
-    """Profile of the shaft in m at `angle` (any,) in rad from its mark: sum of amplitude cos(order (angle - phase))."""
+    """Return the profile of the shaft in m at `angle` (any,) in rad from its mark.
+
+    It is the sum of amplitude cos(order (angle - phase)) over the orders in `shaft`.
+    """
     profile = np.zeros_like(angle)
     for part in shaft:
         profile += part.amplitude_m * np.cos(part.order * (angle - np.deg2rad(part.phase_deg)))
@@ -115,18 +118,18 @@ class SampledSensor(Sensor, ABC):
 
     @property
     def front_end_hz(self) -> float:
-        """The highest frequency of the sensor's own dynamics, 0 without any."""
+        """The highest frequency of the sensor's own dynamics; 0 without any."""
         return max(self.bandwidth_hz or 0.0, self.resonance_hz or 0.0)
 
     @property
     @abstractmethod
     def tap(self) -> Tap:
-        """The true signal of the sensor."""
+        """The true signal that the sensor measures."""
 
     @property
     @abstractmethod
     def description(self) -> Description:
-        """The description of its channel."""
+        """Quantity, axis and location of its channel."""
 
     @property
     def scale(self) -> tuple[float, float]:
@@ -134,7 +137,7 @@ class SampledSensor(Sensor, ABC):
         return self.UNITS[self.unit], 0.0
 
     def disturbed(self, signal: FloatArray, _angle: FloatArray, _shaft: tuple[RunoutOrder, ...]) -> FloatArray:
-        """The input of the sensor for the true `signal` (steps,), in the SI unit: the signal itself, by default.
+        """Return the input of the sensor for the true `signal` (steps,), in the SI unit: the signal itself, by default.
 
         `angle` (steps,) is the shaft's angle theta in rad, `shaft` its profile.
         """
@@ -149,5 +152,5 @@ class SampledSensor(Sensor, ABC):
 
 
 def axis_of(angle_deg: float) -> str:
-    """A direction as an axis: X, Y or the angle."""
+    """Name a direction as an axis: "X", "Y" or the angle in degrees."""
     return {0.0: "X", 90.0: "Y"}.get(angle_deg, f"{angle_deg:g} deg")

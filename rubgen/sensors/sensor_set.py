@@ -48,7 +48,7 @@ class SensorSet:
 
     @property
     def front_end_hz(self) -> float:
-        """The highest frequency of any sensor's own dynamics, 0 without any."""
+        """The highest frequency of any sensor's own dynamics; 0 without any."""
         return max((sensor.front_end_hz for sensor in self.sampled), default=0.0)
 
     @property

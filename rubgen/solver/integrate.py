@@ -1,4 +1,4 @@
-"""One run: from the rub-free motion through the closing of the clearance to the record."""
+"""Integrate one run: from the rub-free motion through the closing of the clearance to the record."""
 
 import math
 from dataclasses import replace
@@ -43,7 +43,7 @@ NO_WANTS = Wants()
 def integrate(
     model: SpinningSystem | SpeedModel, operation: Operation, contact: ContactLaw, wants: Wants = NO_WANTS
 ) -> Response:
-    """The response of a spinning system with contact between blade tips and casing.
+    """Integrate a spinning system with contact between blade tips and casing, and return its response.
 
     Central differences with Lagrange multipliers in forward increments (Carpenter, Taylor, Katona 1991), see
     `step_kernels`. The run starts in the exact rub-free motion, with the surface opened so that nothing touches. The
@@ -106,7 +106,7 @@ def _steady(system: SpinningSystem, operation: Operation, contact: ContactLaw, w
 
 
 def _settled_too_soon(response: Response) -> bool:
-    """Whether the motion has changed since the companion stopped."""
+    """Return whether the motion has changed since the companion stopped."""
     exponent, turns = lyapunov(response.companion_growth), response.companion_growth.size
     if response.status is not Status.OK or exponent is None or turns == response.record_turns:
         return False

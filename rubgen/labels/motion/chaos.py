@@ -1,4 +1,4 @@
-"""The 0-1 test for chaos, and its use on the parts of a Poincare section."""
+"""Apply the 0-1 test for chaos to the parts of a Poincare section."""
 
 from functools import lru_cache
 
@@ -24,13 +24,12 @@ DAMPED_FROM = 200
 
 
 def chaos_indicator(points: FloatArray) -> float:
-    """Largest K of the groups of points (turns, groups, values).
+    """Return the largest K of the 0-1 test among the groups of points (turns, groups, values).
 
-    For a blisk the first group is the disk centre, the others are the tips.
-
-    Each K is the median of the 0-1 test over the leading principal components of the points without their periodic
-    part. Where the first half of the record is more than twice as far from the clusters as the second half, the motion
-    is still settling, and only the second half is tested. A group whose distance is below ROUNDING has K = 0.
+    For a blisk the first group is the disk centre, the others are the tips. Each K is the median of the 0-1 test over
+    the leading principal components of the points without their periodic part. Where the first half of the record is
+    more than twice as far from the clusters as the second half, the motion is still settling, and only the second half
+    is tested. A group whose distance is below ROUNDING has K = 0.
     """
     half = points.shape[0] // 2
     first, second = (rms(without_periodic_part(part)) for part in (points[:half], points[half:]))
@@ -46,7 +45,7 @@ def _group_indicator(points: FloatArray) -> float:
 
 
 def principal_components(points: FloatArray) -> FloatArray:
-    """The leading principal components (1 .. OBSERVABLES, turns) of the section, each without its mean.
+    """Return the leading principal components (1 .. OBSERVABLES, turns) of the section, each without its mean.
 
     Components below 1 % of the leading one's variance are left out: they may be rounding.
     """
@@ -59,15 +58,14 @@ def principal_components(points: FloatArray) -> FloatArray:
 
 
 def growth_correlation(observable: FloatArray) -> float:
-    """K of a scalar observable (n,), n >= 32 points of a Poincare section: near 1 for chaos, near 0 for regular motion.
+    """Compute K of the 0-1 test for a scalar observable (n,): near 1 for chaos, near 0 for regular motion.
 
-    The translation is p_c(n) = sum_{j <= n} phi_j exp(i c j). Its mean square displacement is M_c(n) = mean_j |p_c(j +
-    n) - p_c(j)|^2 over n = 1 .. N/10. Without its oscillation it is D_c(n) = M_c(n) - mean(phi)^2 (1 - cos n c)/(1 -
-    cos c). The damped variant is D*_c(n) = D_c(n) + DAMPING var(phi) sin(sqrt(2) n): its oscillation is far larger than
-    the slow growth that a little noise adds to regular motion. K_c = corr(n, D*_c(n)), and K is the median of K_c over
-    all c. The authors scale the oscillation by mean(phi)^2, which depends on the zero of the observable; var(phi) does
-    not.
-
+    The observable has n >= 32 points of a Poincare section. The test is that of Gottwald and Melbourne. The translation
+    is p_c(n) = sum_{j <= n} phi_j exp(i c j). Its mean square displacement is M_c(n) = mean_j |p_c(j + n) - p_c(j)|^2
+    over n = 1 .. N/10. Without its oscillation it is D_c(n) = M_c(n) - mean(phi)^2 (1 - cos n c)/(1 - cos c). The
+    damped variant is D*_c(n) = D_c(n) + DAMPING var(phi) sin(sqrt(2) n): its oscillation is far larger than the slow
+    growth that a little noise adds to regular motion. K_c = corr(n, D*_c(n)), and K is the median of K_c over all c.
+    The authors scale the oscillation by mean(phi)^2, which depends on the zero of the observable; var(phi) does not.
     Not valid for a constant with rounding noise: test for clusters first.
     """
     displacement = _mean_square_displacement(observable)
@@ -80,7 +78,7 @@ def growth_correlation(observable: FloatArray) -> float:
 
 
 def _mean_square_displacement(observable: FloatArray) -> FloatArray:
-    """M_c(n), (frequencies, n_cut), every mean over the same L = N - n_cut starts.
+    """Return M_c(n), (frequencies, n_cut), every mean over the same L = N - n_cut starts.
 
     L M_c(n) = sum |p(j + n)|^2 + sum |p(j)|^2 - 2 Re sum conj(p(j)) p(j + n), the last by Fourier transform.
     """
@@ -96,14 +94,14 @@ def _mean_square_displacement(observable: FloatArray) -> FloatArray:
 
 @lru_cache(maxsize=4)
 def _turns(size: int) -> ComplexArray:
-    """exp(i c j) (frequencies, size), cached: all observables of a run have one size, and the exponentials are slow."""
+    """Return exp(i c j) (frequencies, size), cached: all observables of a run have one size, and it is slow."""
     turns = np.exp(1j * FREQUENCIES[:, None] * np.arange(1, size + 1))
     turns.setflags(write=False)
     return np.asarray(turns)
 
 
 def _correlation(steps: FloatArray, curves: FloatArray) -> FloatArray:
-    """Pearson correlation of each row of `curves` with `steps`; 0 for a constant row."""
+    """Return the Pearson correlation of each row of `curves` with `steps`; 0 for a constant row."""
     s = steps - steps.mean()
     d = curves - curves.mean(axis=1, keepdims=True)
     norm = np.linalg.norm(d, axis=1) * np.linalg.norm(s)

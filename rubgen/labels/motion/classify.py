@@ -1,4 +1,4 @@
-"""Class of the steady motion of blisk, casing and both, and further facts of the section."""
+"""Classify the steady motion of blisk, casing and both, from the Poincare section."""
 
 from dataclasses import dataclass
 
@@ -56,7 +56,7 @@ class Motions:
 
 
 def motion(response: Response, exponent: Exponent | None = None) -> Motions:
-    """The motion classes of a run from its Poincare section and its exponent. Raises UserError below 32 turns.
+    """Classify the motion of a run from its Poincare section and its exponent. Raises UserError below 32 turns.
 
     Each part is periodic or not by its own clusters. The 0-1 test uses the disk centre, the tips and the casing. The
     largest K counts for all parts: contact couples them into one system, which is chaotic as a whole. A lightly damped
@@ -88,7 +88,10 @@ def motion(response: Response, exponent: Exponent | None = None) -> Motions:
 
 
 def indicators(parts: list[FloatArray], exponent: Exponent | None, *, resolved: bool = True) -> tuple[Indicators, ...]:
-    """Clusters, 0-1 test and exponent of each part."""
+    """Compute the indicators of each part: period of its clusters, K of the 0-1 test, exponent, settling.
+
+    `parts` are points (turns, groups, any) of the section, as `blisk_points` returns them.
+    """
     periods = [cluster_period(part) for part in parts]
     strays = [stray(part, period) for part, period in zip(parts, periods, strict=True)]
     growth = max(chaos_indicator(part) for part in parts)
@@ -100,13 +103,13 @@ def indicators(parts: list[FloatArray], exponent: Exponent | None, *, resolved: 
 
 
 def _tips_alone_stray(parts: list[FloatArray], seen: tuple[Indicators, ...]) -> bool:
-    """Whether the blisk does not repeat, but the disk centre and the casing by themselves do."""
+    """Return whether the blisk does not repeat, but the disk centre and the casing by themselves do."""
     blisk, *casing = (part.period for part in seen)
     return blisk is None and None not in casing and cluster_period(parts[0][:, :1]) is not None
 
 
 def _switching(parts: list[FloatArray], whole: Motion) -> tuple[Segment, ...]:
-    """The segments of a motion that is not regular as a whole, where it switches."""
+    """Return the segments of a motion that is not regular as a whole, where it switches."""
     if whole not in (Motion.CHAOTIC, Motion.UNDECIDED):
         return ()
     found = segments(parts)

@@ -1,4 +1,4 @@
-"""Whether the points of a Poincare section repeat after some turns."""
+"""Test whether the points of a Poincare section repeat after some turns."""
 
 import math
 
@@ -14,7 +14,7 @@ EXCURSION = 0.03
 
 
 def cluster_period(points: FloatArray) -> int | None:
-    """Smallest k <= 16 after which the points (turns, groups, values) repeat, or None.
+    """Return the smallest k <= 16 after which the points (turns, groups, values) repeat, or None.
 
     Only the second half of the record is used, where transients have decayed. A point's distance to the mean of its
     cluster is the distance of its farthest group, so that one chattering tip counts. The distances must be at most
@@ -29,12 +29,10 @@ def cluster_period(points: FloatArray) -> int | None:
 
 
 def stray(points: FloatArray, period: int | None) -> float:
-    """Rms distance of the second half's points from their clusters, over the motion.
+    """Return the rms distance of the second half's points from their k clusters, over the size of the motion.
 
-    Without `period`, with the best k <= 16.
-
-    The means of k clusters of n points lie nearer to the points than the true ones. Division by n - k in the mean
-    square corrects this.
+    k is `period`, or with None the best k <= 16. The means of k clusters of n points lie nearer to the points than the
+    true ones. Division by n - k in the mean square corrects this.
     """
     late = _late(points)
     periods = range(1, _longest(late) + 1) if period is None else (period,)
@@ -42,12 +40,15 @@ def stray(points: FloatArray, period: int | None) -> float:
 
 
 def cluster_distances(points: FloatArray, period: int) -> FloatArray:
-    """Distance of each point (turns, groups, values) to the mean of its cluster: the largest of its groups (turns,)."""
+    """Return the distance (turns,) of each point (turns, groups, values) to the mean of its cluster.
+
+    It is that of the farthest group. A cluster is every period-th point.
+    """
     return farthest(off_cluster(points, period))
 
 
 def farthest(points: FloatArray) -> FloatArray:
-    """The largest norm of the groups of each of the points (turns, groups, values)."""
+    """Return the largest norm of the groups of each of the points (turns, groups, values), as (turns,)."""
     squares = points * points
     # Few values a group: column by column, as a sum of fewer than eight goes anyway, but over whole arrays.
     if 0 < points.shape[2] < 8:
@@ -60,10 +61,11 @@ def farthest(points: FloatArray) -> FloatArray:
 
 
 def without_periodic_part(points: FloatArray) -> FloatArray:
-    """The points less the means of their k clusters. k <= 16 is the number with the least remaining variance.
+    """Subtract from the points (turns, groups, values) the means of their k clusters.
 
-    A motion that wanders within bands, and visits the bands in turn, would otherwise look regular, because the bands
-    are larger. The variance is divided by turns - k, so that more clusters alone are no gain.
+    k <= 16 is the number with the least remaining variance. A motion that wanders within bands, and visits the bands in
+    turn, would otherwise look regular, because the bands are larger. The variance is divided by turns - k, so that more
+    clusters alone are no gain.
     """
     turns = points.shape[0]
     left = [off_cluster(points, k) for k in range(1, min(LONGEST_PERIOD, turns // 8) + 1)]
@@ -72,7 +74,7 @@ def without_periodic_part(points: FloatArray) -> FloatArray:
 
 
 def off_cluster(points: FloatArray, period: int) -> FloatArray:
-    """Points less the mean of every period-th point."""
+    """Subtract from each point the mean of its cluster, which is every period-th point."""
     turns = len(points)
     whole = turns - turns % period
     # Summed turn after turn, as a mean of every period-th point would be: the same bits.
@@ -88,7 +90,7 @@ def off_cluster(points: FloatArray, period: int) -> FloatArray:
 
 
 def settles(points: FloatArray) -> bool:
-    """Whether the points (turns, groups, values) still approach a steady motion.
+    """Return whether the points (turns, groups, values) still approach a steady motion.
 
     In the second half of the record, the rms distance from the clusters falls by more than half from the first quarter
     to the last, from above CLUSTER_RADIUS. The clusters are those of the k <= 16 with the smallest distance.
@@ -100,7 +102,7 @@ def settles(points: FloatArray) -> bool:
 
 
 def rms(values: FloatArray) -> float:
-    """Root of the mean square."""
+    """Return the root of the mean square of values."""
     return float(np.sqrt(np.mean(values**2)))
 
 

@@ -1,4 +1,4 @@
-"""The class of a motion from three indicators: clusters of the section, the 0-1 test, the Lyapunov exponent."""
+"""Decide the class of a motion from three indicators: clusters of the section, the 0-1 test, the Lyapunov exponent."""
 
 from dataclasses import dataclass, field
 from math import erf, hypot, lcm, log10, sqrt
@@ -66,7 +66,7 @@ FORCED = MotionClass(motion=Motion.PERIOD_1, period=1)
 
 
 def decide(seen: Indicators) -> MotionClass:
-    """The class on which the indicators agree, else undecided.
+    """Return the class of motion on which the indicators agree, else undecided.
 
     - Clusters: periodic at the scale of the motion. The rest may be chaotic at a far smaller scale. Where it is not far
       smaller (CLOSE) and both other indicators find chaos, the part is undecided.
@@ -101,7 +101,7 @@ def _class_of(seen: Indicators) -> Motion:
 
 
 def _confidence(seen: Indicators, motion: Motion) -> float:
-    """Probability that half the step keeps the class.
+    """Return the probability that half the step keeps the class.
 
     It is KEPT times the probabilities that each indicator stays on its side of its bound, by normal deviates of the
     spreads: log10 of the stray, K, the exponent. They are multiplied as if they were independent. Spreads and KEPT were
@@ -152,11 +152,11 @@ def _normal(deviate: float) -> float:
 
 
 def combined(blisk: MotionClass, casing: MotionClass) -> MotionClass:
-    """The less regular of the two; undecided where either is undecided and neither is chaotic.
+    """Combine the classes of blisk and casing into that of both: the less regular of the two.
 
-    The period is the least common multiple of both periods; a part at rest counts as 1. The confidence is taken from
-    the part which decides. For two equal classes it is the larger one where the motion does not repeat, and the smaller
-    one where it does.
+    It is undecided where either is undecided and neither is chaotic. The period is the least common multiple of both
+    periods; a part at rest counts as 1. The confidence is taken from the part which decides. For two equal classes it
+    is the larger one where the motion does not repeat, and the smaller one where it does.
     """
     worst = max(blisk, casing, key=lambda part: _REGULARITY.index(part.motion))
     alike = [part.confidence for part in (blisk, casing) if part.motion is worst.motion]

@@ -1,4 +1,4 @@
-"""Motion that switches between regular and irregular."""
+"""Find motion that switches between regular and irregular."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ class Segment:
 
 
 def segments(parts: list[FloatArray]) -> list[Segment]:
-    """The record cut where its motion becomes regular or irregular.
+    """Cut the record where its motion becomes regular or irregular, and return the segments in order.
 
     - parts: the points (turns, groups, values) of blisk and casing, each over its motion.
 
@@ -42,7 +42,10 @@ def segments(parts: list[FloatArray]) -> list[Segment]:
 
 
 def is_intermittent(found: list[Segment]) -> bool:
-    """At least two regular segments with an irregular one between, each kind with a tenth of the turns."""
+    """Return whether a motion with these segments switches: regular, irregular and regular again.
+
+    Each kind must have at least a tenth of the turns.
+    """
     regular = [segment.period > 0 for segment in found]
     turns = found[-1].end - found[0].start
     share = sum(segment.end - segment.start for segment in found if segment.period) / turns
@@ -50,7 +53,7 @@ def is_intermittent(found: list[Segment]) -> bool:
 
 
 def _stretches(flags: BoolArray) -> list[tuple[int, int]]:
-    """First and one past the last index of each run of true values."""
+    """Return the first and one past the last index of each run of true values."""
     edges = np.diff(np.concatenate([[0], flags.astype(np.int8), [0]]))
     return list(zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True))
 
@@ -62,7 +65,7 @@ def _cut(period: np.ndarray) -> list[Segment]:
 
 
 def _joined(cut: list[Segment]) -> list[Segment]:
-    """Without irregular segments shorter than SHORTEST, and neighbours of one period as one."""
+    """Join irregular segments shorter than SHORTEST to their neighbours, and neighbours of one period."""
     out: list[Segment] = []
     for segment in cut:
         short = segment.period == 0 and segment.end - segment.start < SHORTEST

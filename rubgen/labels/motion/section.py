@@ -1,4 +1,4 @@
-"""Points of the Poincare section of blisk and casing, and whether the motion has the symmetry of the lobes."""
+"""Scale the Poincare section of blisk and casing, and test whether the motion has the symmetry of the lobes."""
 
 import numpy as np
 
@@ -11,16 +11,16 @@ REST_ENERGY = 5e-12
 
 
 def blisk_points(response: Response) -> FloatArray:
-    """Section of the blisk (turns, groups, 4) over the size of its motion, the orbital speed of O_d.
+    """Return the section of the blisk (turns, groups, 4), divided by the size of its motion, the orbital speed of O_d.
 
-    Group 0 is O_d: Omega x, Omega y, v_x, v_y; groups 1 .. are the tips: Omega times their three displacements.
-    The absolute velocity of O_d, v + Omega e_z x u, has the orbit's size even where it rests in the turning frame.
+    Group 0 is O_d: Omega x, Omega y, v_x, v_y; groups 1 .. are the tips: Omega times their three displacements. The
+    absolute velocity of O_d, v + Omega e_z x u, has the orbit's size even where it rests in the turning frame.
     """
     return blisk_states(response, response.section_q, response.section_v)
 
 
 def blisk_states(response: Response, q: FloatArray, v: FloatArray) -> FloatArray:
-    """States q, v (states, n) of the run as points of the blisk, see `blisk_points`, over the size of its motion."""
+    """Return states q, v (states, n) of the run as points of the blisk, scaled as in `blisk_points`."""
     speed, centre = response.speed, 3 * response.n_blades
     points = np.zeros((len(q), response.n_blades + 1, 4))
     points[:, 0] = np.stack([speed * q[:, centre], speed * q[:, centre + 1], v[:, centre], v[:, centre + 1]], axis=1)
@@ -35,16 +35,17 @@ def _orbital_speed(response: Response) -> float:
 
 
 def casing_points(response: Response) -> FloatArray:
-    """Section of the casing (turns, 1, 2 modes): Omega times modal displacement, and speed, over their rms norm.
+    """Return the section of the casing (turns, 1, 2 modes), divided by its rms norm.
 
-    Between two touches the casing swings freely about its rest shape, so its displacement there is motion. Touches that
-    end do not offset the section. Only a touch that never ends would.
+    It has Omega times the modal displacements, and the modal velocities. Between two touches the casing swings freely
+    about its rest shape, so its displacement there is motion. Touches that end do not offset the section. Only a touch
+    that never ends would.
     """
     return casing_states(response, response.section_q, response.section_v)
 
 
 def casing_states(response: Response, q: FloatArray, v: FloatArray) -> FloatArray:
-    """States q, v (states, n) of the run as points of the casing, see `casing_points`, over the size of its motion."""
+    """Return states q, v (states, n) of the run as points of the casing, scaled as in `casing_points`."""
     size = np.sqrt(np.mean(np.sum(_casing(response, response.section_q, response.section_v) ** 2, axis=1)))
     return np.asarray(_casing(response, q, v)[:, None, :] / size, dtype=np.float64)
 
@@ -55,17 +56,18 @@ def _casing(response: Response, q: FloatArray, v: FloatArray) -> FloatArray:
 
 
 def casing_rests(response: Response) -> bool:
-    """Whether the casing's energy (mass-normalised modes) stays below REST_ENERGY in the second half of the record."""
+    """Return whether the casing's energy stays below REST_ENERGY in the second half of the record."""
     half = response.section_q.shape[0] // 2
     states = _casing(response, response.section_q[half:], response.section_v[half:])
     return bool(np.sum(states**2, axis=1).max() / 2 < REST_ENERGY)
 
 
 def asymmetry(response: Response) -> float | None:
-    """Largest distance between the states after each Nth of the last turn, over the part's motion; None without lobes.
+    """Return the largest distance between the states after each Nth of the last turn, N the number of lobes.
 
-    For the blisk it is the largest distance of disk centre and tips, as in the clusters. The casing is turned back by
-    the angle that the blisk turned.
+    It is a share of the size of the motion, and 0 for motion with the symmetry of the lobes. For the blisk it is the
+    largest distance of disk centre and tips, as in the clusters. The casing is turned back by the angle that the blisk
+    turned. None without lobes.
     """
     q, v = response.symmetry_states[:, 0], response.symmetry_states[:, 1]
     if len(q) < 2:
@@ -77,6 +79,6 @@ def asymmetry(response: Response) -> float | None:
 
 
 def is_symmetric(response: Response) -> bool | None:
-    """Whether the states differ by at most EXCURSION, 3 %; None without lobes."""
+    """Return whether the motion has the symmetry of the lobes: `asymmetry` at most 3 %. None without lobes."""
     found = asymmetry(response)
     return None if found is None else found <= EXCURSION

@@ -1,4 +1,4 @@
-"""Direction of the disk centre's whirl: forward, with the rotation, or backward."""
+"""Find the direction of the disk centre's whirl: forward, with the rotation, or backward."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -28,7 +28,7 @@ class Whirl:
 
 
 def whirl(orbit: FloatArray) -> Whirl | None:
-    """The whirl of an orbit from its means over turns (turns, 5), as in `Response.orbit`; None where it rests.
+    """Return the whirl of an orbit from its means over turns (turns, 5), as in `Response.orbit`; None where it rests.
 
     index = mean(r x v) / (rms(r) rms(v)), r = (X, Y) less its mean: the areal velocity of the orbit over the largest
     possible one for its size and speed (Cauchy-Schwarz). A forward circle has 1, a backward circle -1, a line 0. The

@@ -79,19 +79,22 @@ class BearingDefect(Fault):
 
     @property
     def order(self) -> float:
-        """Blows a turn of the shaft, in the mean; of a ball those on both races."""
+        """Mean number of blows in a turn of the shaft; a defect of a ball strikes both races."""
         return self.orders[self.place] * (2 if self.place == "ball" else 1)
 
     @property
     def orders(self) -> dict[str, float]:
-        """The characteristic orders of each place; `ball` is the spin of the ball (BSF), half of its blows."""
+        """Defect frequency of each place over that of the shaft.
+
+        `ball` is the spin of a ball (BSF), half of its blows.
+        """
         ratio = self.ball_diameter_m / self.pitch_diameter_m * math.cos(math.radians(self.contact_angle_deg))
         spin = self.pitch_diameter_m / self.ball_diameter_m * (1 - ratio**2) / 2
         cage, outer, inner = (1 - ratio) / 2, self.balls * (1 - ratio) / 2, self.balls * (1 + ratio) / 2
         return {"outer": outer, "inner": inner, "ball": spin, "cage": cage}
 
     def impulse(self, speed: FloatArray) -> FloatArray:
-        """Impulse of a blow under full load in N s at speeds (any,) of the shaft in rad/s."""
+        """Return the impulse of a blow under full load, in N s, at speeds (any,) of the shaft in rad/s."""
         mass = BALL_DENSITY * math.pi / 6 * self.ball_diameter_m**3
         along = {
             "outer": self.orders["cage"] * self.pitch_diameter_m / 2,
@@ -102,7 +105,10 @@ class BearingDefect(Fault):
         return np.asarray(2 * mass * speed * along[self.place] * self.width_m / self.ball_diameter_m)
 
     def strikes(self, turned: FloatArray, speed: FloatArray, rng: np.random.Generator) -> Strikes:
-        """Its blows, drawn back from the last angle: earlier ones change with no other."""
+        """Draw the blows of the defect, as described at `Fault.strikes`.
+
+        They are drawn back from the last angle, so that the last blows do not depend on how long the record is.
+        """
         mean = 2 * math.pi / self.order
         start, cage, defect = rng.uniform(0, 1, 3)
         spread = rng.spawn(1)[0].standard_normal(2 + int((turned[-1] - turned[0]) / mean / (1 - self.slip)))
@@ -123,5 +129,5 @@ class BearingDefect(Fault):
 
 
 def load_share(angle: FloatArray) -> FloatArray:
-    """Load of a ball over the largest one at angles (any,) in rad from the load's direction (Stribeck)."""
+    """Return the load of a ball over the largest one at angles (any,) in rad from the load's direction (Stribeck)."""
     return np.asarray(np.maximum(1 - (1 - np.cos(angle)) / (2 * LOAD_ZONE), 0.0) ** LOAD_EXPONENT)

@@ -44,7 +44,7 @@ class Bow(Fault):
         return self.bow_m
 
     def loads(self, machine: Machine, speed: float) -> tuple[HarmonicLoad, ...]:
-        """The force k b in the turning frame."""
+        """Return the force k b of the lateral springs, constant in the turning frame."""
         force = machine.disk_support.lateral_stiffness_n_per_m * self.bow_m
         turned = cmath.rect(force, math.radians(self.angle_deg))
         ramp = None if self.growth_s is None else Ramp(start_s=self.start_s, duration_s=self.growth_s)

@@ -37,5 +37,5 @@ class CasingOffCentre(Fault):
         return self.offset_m
 
     def surface_harmonics(self, machine: Machine) -> tuple[SurfaceHarmonic, ...]:
-        """Order 1."""
+        """Return the harmonic of order 1 by which the offset changes the casing's inner surface."""
         return (SurfaceHarmonic(order=1, amplitude_m=self.offset_m, phase_rad=math.radians(self.direction_deg)),)

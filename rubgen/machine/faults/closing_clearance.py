@@ -39,5 +39,5 @@ class ClosingClearance(Fault):
         return self.closing_m
 
     def narrowings(self, machine: Machine) -> tuple[Narrowing, ...]:
-        """The closing."""
+        """Return the closing by `closing_m` over its time."""
         return (Narrowing(amount_m=self.closing_m, ramp=Ramp(start_s=self.start_s, duration_s=self.growth_s)),)

@@ -40,17 +40,17 @@ class Crack(Fault):
 
     @property
     def severity(self) -> float:
-        """The lost share."""
+        """The share of the lateral stiffness that the open crack takes."""
         return self.crack_loss
 
     def problem(self, machine: Machine) -> str | None:
-        """Without gravity nothing opens and closes it."""
+        """Return the problem of a machine without gravity: nothing opens and closes the crack."""
         if machine.gravity_m_per_s2 > 0:
             return None
         return "gravity_m_per_s2 = 0, and a crack breathes under the weight; give the machine gravity_m_per_s2 = 9.81"
 
     def doubt(self, machine: Machine, speed: float) -> str | None:
-        """Where the unbalance moves the disk by more than the weight does."""
+        """Return a doubt where the unbalance moves the disk by more than the weight does."""
         mass, stiffness = blisk_mass(machine), machine.disk_support.lateral_stiffness_n_per_m
         drag = 2 * machine.damping.lateral * math.sqrt(stiffness * mass)
         sag = mass * machine.gravity_m_per_s2 / stiffness
@@ -63,6 +63,6 @@ class Crack(Fault):
         )
 
     def support_laws(self, machine: Machine, speed: float) -> tuple[SupportLaw, ...]:
-        """The stiffness that is lost, as a spring that pushes."""
+        """Return the stiffness that the crack takes, as a spring that pushes."""
         stiffness = machine.disk_support.lateral_stiffness_n_per_m
         return (BreathingSpring(lost_n_per_m=self.crack_loss * stiffness, direction_rad=math.radians(self.angle_deg)),)

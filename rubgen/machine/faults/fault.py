@@ -1,4 +1,4 @@
-"""What a fault is, and the forms in which faults act."""
+"""The base class of faults, and the forms in which faults act on a machine."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Ramp:
     duration_s: float
 
     def share(self, time: FloatArray) -> FloatArray:
-        """The share at times in s, 0 to 1."""
+        """Return the share (any,) that has grown at times (any,) in s from the start of the record, 0 to 1."""
         if self.duration_s == 0:
             return np.where(time >= self.start_s, 1.0, 0.0)
         return np.asarray(np.clip((time - self.start_s) / self.duration_s, 0.0, 1.0))
@@ -47,7 +47,10 @@ class HarmonicLoad:
 
     @classmethod
     def rotating(cls, force: complex, ramp: Ramp | None = None, *, of_springs: bool = False) -> Self:
-        """The force f_x + i f_y that is constant in the turning frame: of order 1, forward."""
+        """Make the load that is the constant force `force` = f_x + i f_y (N) in the turning frame: order 1, forward.
+
+        `ramp` and `of_springs` are the fields of that name.
+        """
         return cls(order=1, x=force, y=-1j * force, ramp=ramp, of_springs=of_springs)
 
 
@@ -98,22 +101,25 @@ class Fault(ABC):
     @property
     @abstractmethod
     def severity(self) -> float:
-        """How severe it is, in the unit of `SEVERITY`."""
+        """How severe the fault is, in the unit of `SEVERITY`."""
 
     def problem(self, machine: Machine) -> str | None:
-        """Why this machine cannot have the fault, with the remedy; None where it can."""
+        """Return why this machine cannot have the fault, with the remedy; None where it can."""
         return None
 
     def doubt(self, machine: Machine, speed: float) -> str | None:
-        """Why the fault is hardly intended at this speed, beginning with a key and its value; None where it may be."""
+        """Return why the fault is hardly intended at this speed; None without doubt.
+
+        The text begins with a key and its value.
+        """
         return None
 
     def altered(self, machine: Machine) -> Machine:
-        """The machine that the fault makes of this one, for a fault of its shape or material."""
+        """Return the machine that the fault makes of this one. Faults of shape or material override it."""
         return machine
 
     def surface_harmonics(self, machine: Machine) -> tuple[SurfaceHarmonic, ...]:
-        """What it adds to the casing's inner surface."""
+        """Return the harmonics that the fault adds to the casing's inner surface."""
         return ()
 
     def lost_masses(self, machine: Machine) -> tuple[LostMass, ...]:
@@ -121,19 +127,19 @@ class Fault(ABC):
         return ()
 
     def narrowings(self, machine: Machine) -> tuple[Narrowing, ...]:
-        """How the clearance closes within the record."""
+        """Return how the fault closes the clearance within the record."""
         return ()
 
     def loads(self, machine: Machine, speed: float) -> tuple[HarmonicLoad, ...]:
-        """Forces on the disk centre that do not depend on the motion."""
+        """Return the forces of the fault on the disk centre that do not depend on the motion."""
         return ()
 
     def support_laws(self, machine: Machine, speed: float) -> tuple[SupportLaw, ...]:
-        """Forces on the disk centre that depend on the motion."""
+        """Return the laws of the fault's forces on the disk centre that depend on its motion."""
         return ()
 
     def strikes(self, turned: FloatArray, speed: FloatArray, rng: np.random.Generator) -> Strikes | None:
-        """Return its blows on the machine's frame, which move sensors and not the disk; None without any.
+        """Draw the blows of the fault on the machine's frame, which move sensors and not the disk; None without any.
 
         - turned (steps,): angle of the shaft at the steps, rad, rising. Blows are drawn back from the last one.
         - speed (steps,): of the shaft there, rad/s.

@@ -41,6 +41,6 @@ class GrowingUnbalance(Fault):
         return self.kg_m
 
     def loads(self, machine: Machine, speed: float) -> tuple[HarmonicLoad, ...]:
-        """The force U Omega^2 in the turning frame."""
+        """Return the force U Omega^2, constant in the turning frame, with its growth."""
         force = cmath.rect(self.kg_m * speed**2, math.radians(self.angle_deg))
         return (HarmonicLoad.rotating(force, Ramp(start_s=self.start_s, duration_s=self.growth_s)),)

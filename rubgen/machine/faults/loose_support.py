@@ -38,11 +38,11 @@ class LooseSupport(Fault):
 
     @property
     def severity(self) -> float:
-        """The lost share."""
+        """The share of the stiffness that is lost where the support is loose."""
         return self.lost_stiffness
 
     def support_laws(self, machine: Machine, speed: float) -> tuple[SupportLaw, ...]:
-        """The stiffness that is lost, as a spring that pushes."""
+        """Return the stiffness that is lost beyond the gap, as a spring that pushes."""
         stiffness = machine.disk_support.lateral_stiffness_n_per_m
         return (
             LooseSpring(

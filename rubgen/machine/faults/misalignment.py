@@ -57,11 +57,11 @@ class Misalignment(Fault):
 
     @property
     def severity(self) -> float:
-        """Delta + alpha Z / 2, in m."""
+        """Offset of the shafts at the coupling, Delta + alpha Z / 2, in m."""
         return (self.parallel_m or 0.0) + math.radians(self.angular_deg or 0.0) * self.coupling_length_m / 2
 
     def loads(self, machine: Machine, speed: float) -> tuple[HarmonicLoad, ...]:
-        """The reaction at orders 0 to 3, along the direction of the misalignment."""
+        """Return the reaction of the coupling at orders 0 to 3, along the direction of the misalignment."""
         reaction = self.coupling_stiffness_n_per_m * self.severity
         along = cmath.rect(reaction, math.radians(self.direction_deg))
         shares = (1.0, self.share_1x, self.share_2x, self.share_3x)

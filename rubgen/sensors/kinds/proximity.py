@@ -34,9 +34,12 @@ class Proximity(SampledSensor):
 
     @property
     def scale(self) -> tuple[float, float]:
-        """In V the gap voltage, bias + sensitivity x: the voltage is negative and rises as the shaft comes nearer."""
+        """Factor and zero of the reading; in V those of the gap voltage, bias + sensitivity x.
+
+        The voltage is negative and rises as the shaft comes nearer.
+        """
         return (self.sensitivity_v_per_m, self.bias_v) if self.unit == "V" else super().scale
 
     def disturbed(self, signal: FloatArray, angle: FloatArray, shaft: tuple[RunoutOrder, ...]) -> FloatArray:
-        """A probe at angle phi sees the shaft's profile at phi - theta: high spots come nearer."""
+        """Add the shaft's profile: a probe at angle phi sees it at phi - theta, and high spots come nearer."""
         return signal + runout(np.deg2rad(self.angle_deg) - angle, shaft) if shaft else signal

@@ -1,4 +1,4 @@
-"""A companion trajectory beside the run. The growth of their distance is the largest Lyapunov exponent."""
+"""Run a companion trajectory beside the run. The growth of their distance is the largest Lyapunov exponent."""
 
 import math
 from typing import Any
@@ -27,7 +27,7 @@ LEAST_TURNS = 32
 
 
 def check_turns(record_turns: int) -> None:
-    """Raise UserError where a record is too short for an exponent."""
+    """Check that a record is long enough for an exponent. Raises UserError where it is too short."""
     if record_turns < LEAST_TURNS:
         raise UserError(
             f"record_turns = {record_turns}: a Lyapunov exponent needs at least {LEAST_TURNS} turns, reliably 500; "
@@ -36,13 +36,13 @@ def check_turns(record_turns: int) -> None:
 
 
 def piece_ends(steps: int) -> list[int]:
-    """The steps of a turn that end its pieces, as even as whole steps can be."""
+    """Return the steps of a turn that end its pieces, as even as whole steps can be."""
     pieces = min(PIECES, steps)
     return [round(steps * piece / pieces) for piece in range(1, pieces + 1)]
 
 
 class CompanionGrowth(Observer):
-    """The growth of a companion's distance in each turn of a record; with `stops` until it settles the exponent."""
+    """Measures the growth of a companion's distance in each turn of a record; with `stops` until it is settled."""
 
     def __init__(self, stepper: Stepper, *, stops: bool) -> None:
         self.stepper, self.stops, self.growth = stepper, stops, list[float]()
@@ -67,12 +67,12 @@ class CompanionGrowth(Observer):
             self.companion = None
 
     def result(self) -> dict[str, Any]:
-        """`companion_growth` (turns that the companion ran,)."""
+        """Return the field `companion_growth` (turns that the companion ran,)."""
         return {"companion_growth": np.array(self.growth)}
 
 
 class DecayGrowth(Observer):
-    """The growth beside a motion that never touches: every turn the distance shrinks by the slowest decay."""
+    """States the growth beside a motion that never touches: every turn the distance shrinks by the slowest decay."""
 
     def __init__(self, decay_per_turn: float, record: int) -> None:
         growth = np.full(record, -decay_per_turn)
@@ -80,7 +80,7 @@ class DecayGrowth(Observer):
         self.growth = growth[:ASKED_FROM] if settled else growth
 
     def result(self) -> dict[str, Any]:
-        """`companion_growth`, of as many turns as a companion would have run."""
+        """Return the field `companion_growth`, of as many turns as a companion would have run."""
         return {"companion_growth": self.growth}
 
 
@@ -105,7 +105,10 @@ class Companion:
             recover(stepper.model.harmonics, motion, self.state.scratch.share)
 
     def run_turn(self, opening: FloatArray) -> FloatArray:
-        """Ln of the growth of the distance between the snapshots of the last turn; NaN where the companion failed."""
+        """Run the companion's turn. Return ln of the growth of the distance between the snapshots of the last turn.
+
+        NaN where the companion failed. `opening` (steps + 2,) is added to the radius of the surface, m.
+        """
         stepper, growth = self.stepper, np.full(len(self.stepper.snapshots.steps), np.nan)
         self.state.wear.depth[:] = stepper.state.wear.depth
         code = run_companion(stepper.model, opening, stepper.snapshots, self.closeness, self.state, growth)
@@ -120,7 +123,7 @@ class Companion:
 
     @staticmethod
     def _away(stepper: Stepper) -> FloatArray:
-        """A direction with a share of every mode: displacements and Omega times as large velocities."""
+        """Return a direction with a share of every mode: displacements and Omega times as large velocities."""
         phase = 1.0 + np.arange(stepper.system.M.shape[0]) ** 2
         now, speed = np.cos(phase), stepper.system.speed * np.sin(phase)
         return 1e-9 * np.stack([stepper.blocks.to_z(now - stepper.dt * speed), stepper.blocks.to_z(now)])

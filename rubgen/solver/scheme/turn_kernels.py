@@ -264,7 +264,7 @@ class TurnEnds(NamedTuple):
 
 @inlined_kernel
 def moved_on(state: State, steps: int) -> State:
-    """The state after `steps` steps: in each step the three motions have changed places."""
+    """Return the state after `steps` steps: in each step the three motions have changed places."""
     a, b, c = state.motions
     motions = (a, b, c)
     if steps % 3 == 1:

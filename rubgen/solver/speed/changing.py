@@ -1,4 +1,4 @@
-"""A stepper prepared for a changing speed."""
+"""Prepare a stepper for a changing speed."""
 
 import numpy as np
 
@@ -26,11 +26,11 @@ class ChangingSystem:
         self.speeds, self.start = speeds, model.at_speed(self.rotation.start, 0.0)
 
     def least_stable(self) -> SpinningSystem:
-        """The system with the slowest decay; the decay is negative where it grows by itself."""
+        """Return the system with the slowest decay; the decay is negative where it grows by itself."""
         return min(self.systems, key=slowest_decay)
 
     def steps(self, sample_rate_hz: float) -> int:
-        """Steps in a turn at the highest speed: `steps_per_turn` there, doubled until all speeds are stable."""
+        """Return the steps in a turn at the highest speed: `steps_per_turn`, doubled until all speeds are stable."""
         steps = steps_per_turn(self.systems[-1], self.operation.steps_per_turn, sample_rate_hz)
         longest = STEP_SAFETY * min(stable_step(system) for system in self.systems)
         while 2 * np.pi / self.systems[-1].speed / steps > longest:
@@ -38,7 +38,7 @@ class ChangingSystem:
         return steps
 
     def driver(self, contact: ContactLaw, steps: int, taps: tuple[Tap, ...] = DEFAULT_TAPS) -> ChangingDriver:
-        """A driver in the rub-free motion of the first instant, with `steps` a turn at the highest speed."""
+        """Return a driver in the rub-free motion of the first instant, with `steps` a turn at the highest speed."""
         push = largest_acceleration(self.rotation)
         pushed = [self.model.at_speed(speed, push) for speed in (self.rotation.slowest, self.rotation.fastest)]
         stepper = Stepper(self.systems[-1], contact, steps, taps=taps, alike=[*self.systems, *pushed])
@@ -54,5 +54,5 @@ class ChangingSystem:
 
 
 def largest_acceleration(rotation: Rotation) -> float:
-    """A bound of |Omega'| in rad/s2."""
+    """Return a bound of |Omega'| in rad/s2."""
     return abs(rotation.rate) + 2 * np.pi / rotation.period * abs(rotation.swing)

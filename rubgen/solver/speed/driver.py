@@ -1,4 +1,4 @@
-"""Drivers run a stepper turn by turn: at a steady speed in one call a turn, at a changing speed in short parts."""
+"""Run a stepper turn by turn: at a steady speed in one call a turn, at a changing speed in short parts."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -40,7 +40,7 @@ class SpeedDriver(Protocol):
     rotation: Rotation
 
     def first_step(self, number: int) -> int:
-        """Number of the step at which a turn begins."""
+        """Return the number of the step at which a turn begins."""
         ...
 
     def run_turns(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
@@ -62,7 +62,7 @@ class SteadyDriver:
         self.places = np.arange(-1, stepper.steps + 1) / stepper.steps
 
     def first_step(self, number: int) -> int:
-        """Number of the step at which a turn begins."""
+        """Return the number of the step at which a turn begins."""
         return number * self.stepper.steps
 
     def run_turns(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
@@ -128,7 +128,7 @@ class ChangingDriver:
         self.stepper.clear_works()
 
     def first_step(self, number: int) -> int:
-        """Number of the step at which a turn begins."""
+        """Return the number of the step at which a turn begins."""
         return round(self._time_of(number) / self.stepper.dt)
 
     def run_turns(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
@@ -174,7 +174,7 @@ class ChangingDriver:
         return _joined(done)
 
     def _tables(self, number: int, first: int, last: int, opening: Opening) -> tuple[FloatArray, FloatArray]:
-        """Theta at the steps first - 1, ..., last of a turn, and the surface's opening less the tips' growth."""
+        """Return theta at the steps first - 1, ..., last of a turn, and the surface's opening less the tips' growth."""
         time = np.arange(first - 1, last + 1) * self.stepper.dt
         theta = self.rotation.angle(time) - 2 * np.pi * number
         growth = self.matrices.mean_growth(self.rotation.speed(time))
@@ -186,7 +186,7 @@ class ChangingDriver:
         return self.rotation.time_of(2 * math.pi * number)
 
     def _part_starts(self, number: int) -> IntArray:
-        """First step of each part of a turn, and of the next turn."""
+        """Return the first step of each part of a turn, and of the next turn."""
         first, last = self.first_step(number), self.first_step(number + 1)
         times = np.linspace(first, last, 9) * self.stepper.dt
         rate = np.abs(self.rotation.acceleration(times) / self.rotation.speed(times)).max()
@@ -197,7 +197,7 @@ class ChangingDriver:
 
 
 def _frames(result: TurnResult, first: int, steps: int) -> TurnFrames:
-    """The frames of a turn or part of so many steps from number `first` on; see `turn_kernels.record_frame`."""
+    """Return the frames of a turn or part of so many steps from number `first` on; see `turn_kernels.record_frame`."""
     places = _frame_steps(len(result.frames), steps)
     return TurnFrames(first + places, result.frames[: len(places)])
 
@@ -210,17 +210,17 @@ def _frame_steps(frames: int, steps: int) -> IntArray:
 
 
 def _copied(result: TurnResult) -> TurnResult:
-    """A copy of a part's result that the next part does not overwrite. Its taps are new in every part."""
+    """Return a copy of a part's result that the next part does not overwrite. Its taps are new in every part."""
     return result._replace(section=result.section.copy(), summary=result.summary.copy(), orbit=result.orbit.copy())
 
 
 def _arrivals(stepper: Stepper) -> FloatArray:
-    """Arrivals under timing probes in what was just run."""
+    """Return the arrivals under timing probes in what was just run."""
     return stepper.taps.timing.arrivals[: int(stepper.result.summary[3])].copy()
 
 
 def _joined(parts: list[Turn]) -> Turn:
-    """One turn from its parts."""
+    """Join the parts of a turn into one."""
     results = [part.result for part in parts]
     summary = np.sum([result.summary for result in results], axis=0)
     summary[2] = max(result.summary[2] for result in results)

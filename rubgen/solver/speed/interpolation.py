@@ -27,7 +27,7 @@ SUPPORT = ("columns", "compliance", "rows", "tip_columns", "tip_rows", "laws", "
 
 
 def chebyshev_speeds(slowest: float, fastest: float) -> FloatArray:
-    """NODES speeds in rad/s from the slowest to the fastest, both included, densest at the ends."""
+    """Return NODES speeds in rad/s from the slowest to the fastest, both included, densest at the ends."""
     nodes = -np.cos(np.pi * np.arange(NODES) / (NODES - 1))
     speeds = 0.5 * (slowest + fastest) + 0.5 * (fastest - slowest) * nodes
     speeds[0], speeds[-1] = slowest, fastest
@@ -35,7 +35,7 @@ def chebyshev_speeds(slowest: float, fastest: float) -> FloatArray:
 
 
 def lagrange_weights(nodes: FloatArray, at: FloatArray) -> FloatArray:
-    """Weights (at, nodes) of the polynomial through values at `nodes`, for the points `at`."""
+    """Return the weights (at, nodes) of the polynomial through values at `nodes`, for the points `at`."""
     others = np.array([np.delete(nodes, j) for j in range(len(nodes))])
     return np.asarray(np.prod((at[:, None, None] - others) / (nodes[:, None] - others), axis=2))
 
@@ -59,7 +59,7 @@ class SpeedInterpolation:
         self.growth = Chebyshev.fit(speeds, growth, deg=NODES - 1, domain=[speeds[0], speeds[-1]])
 
     def at(self, speeds: FloatArray, accelerations: FloatArray) -> Iterator[SpeedPart]:
-        """The part at each speed and acceleration (any number,)."""
+        """Yield the part at each speed (rad/s) and acceleration (rad/s2), both (any number,)."""
         weights = lagrange_weights(self.speeds, speeds)
         rows = aligned(weights @ self.values + (accelerations[:, None] * weights) @ self.slopes)
         rows.flags.writeable = False
@@ -67,7 +67,7 @@ class SpeedInterpolation:
             yield _unpacked(self.template, row, self.layout)
 
     def mean_growth(self, speeds: FloatArray) -> FloatArray:
-        """The tips' mean steady radial growth in m at each speed (any number,)."""
+        """Return the tips' mean steady radial growth in m at each speed (any number,)."""
         return np.asarray(self.growth(speeds))
 
 
@@ -75,7 +75,7 @@ PartLayout = dict[str, tuple[slice, tuple[int, ...]]]
 
 
 def _arrays(part: SpeedPart) -> dict[str, FloatArray]:
-    """All that may change with the speed, by name."""
+    """Return all that may change with the speed, by name."""
     scheme, energy = part.scheme, part.energy
     return {
         "static": part.tips.static,
@@ -93,7 +93,7 @@ def _arrays(part: SpeedPart) -> dict[str, FloatArray]:
 
 
 def _layout(parts: list[SpeedPart]) -> PartLayout:
-    """Place and shape of what differs between parts, each array from a multiple of eight on."""
+    """Return place and shape of what differs between parts, each array from a multiple of eight on."""
     arrays, start = [_arrays(part) for part in parts], 0
     layout: PartLayout = {}
     for name, first in arrays[0].items():
@@ -138,7 +138,7 @@ def _unpacked(template: SpeedPart, row: FloatArray, layout: PartLayout) -> Speed
 
 
 def _keep_lines(parts: list[SpeedPart]) -> SpeedPart:
-    """The first part, its circulatory stiffness without the lines that are zero in all parts."""
+    """Return the first part, its circulatory stiffness without the lines that are zero in all parts."""
     energy = parts[0].energy
     kind, _, first, _, count = energy.circulatory.lines.T
     used = count * (kind // 2 + 1)

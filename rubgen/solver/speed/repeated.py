@@ -1,4 +1,4 @@
-"""A run that provably never touches: one turn of its exact rub-free motion, handed out again and again."""
+"""Run what provably never touches: one turn of its exact rub-free motion, repeated again and again."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -26,11 +26,11 @@ class RepeatedDriver(SteadyDriver):
 
     @property
     def times(self) -> float:
-        """Turns of the run over those that were integrated: what the works of the stepper stand for."""
+        """Turns of the run over those that were integrated: the works of the stepper count so many times."""
         return (self.integrated + self.repeated) / self.integrated
 
     def run_turns(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
-        """The turns of these numbers."""
+        """Yield the turns of these numbers: one is integrated, the others repeat it with their own numbers."""
         for number in numbers:
             yield self._run_turn(number, opening, recording=recording)
 

@@ -1,4 +1,4 @@
-"""The start of a run: in the rub-free motion, with the surface opened so that nothing touches."""
+"""Start a run: in the rub-free motion, with the surface opened so that nothing touches."""
 
 from dataclasses import dataclass
 
@@ -24,7 +24,7 @@ def rub_free_stepper(
     screen: bool = True,
     taps: tuple[Tap, ...] = DEFAULT_TAPS,
 ) -> Stepper:
-    """A stepper at the beginning of a turn of the scheme's own rub-free motion.
+    """Make a stepper at the beginning of a turn of the scheme's own rub-free motion.
 
     Parameters and errors as for `Stepper`; `start_angle` is theta at the beginning of the turn, rad.
     """
@@ -39,7 +39,7 @@ def set_motion(stepper: Stepper, motion: RubFreeMotion, start_angle: float = 0.0
 
 
 def start_opening(system: SpinningSystem, inset: float = 0.0) -> float:
-    """The opening of the surface, m, that leaves the start clearance to every tip of the rub-free motion.
+    """Return the opening of the surface, m, that leaves the start clearance to every tip of the rub-free motion.
 
     `inset` (m) is how far the surface may lie inside the smooth curve.
     """
@@ -51,13 +51,16 @@ def start_opening(system: SpinningSystem, inset: float = 0.0) -> float:
 
 
 def closing_ramp(share: FloatArray) -> FloatArray:
-    """1 - (10 x^3 - 15 x^4 + 6 x^5) for x clipped to [0, 1]: from one to zero with continuous second derivative."""
+    """Return 1 - (10 x^3 - 15 x^4 + 6 x^5) for x = `share` clipped to [0, 1].
+
+    It falls from one to zero with a continuous second derivative.
+    """
     x = np.clip(share, 0.0, 1.0)
     return np.asarray(1 - x**3 * (10 - 15 * x + 6 * x**2))
 
 
 def narrowed(system: SpinningSystem, time: FloatArray) -> FloatArray:
-    """How far the clearance has closed within the record, m, at times in s from its start."""
+    """Return how far the clearance has closed within the record, in m, at times (any,) in s from its start."""
     return np.asarray(sum(each.amount_m * each.ramp.share(time) for each in system.narrowings))
 
 
@@ -71,7 +74,7 @@ class Closing:
     """Turns after which it is closed."""
 
     def after(self, turns: FloatArray) -> FloatArray:
-        """Opening in m after `turns` turns from the start; they must rise."""
+        """Return the opening in m after `turns` turns from the start; they must rise."""
         if turns[0] >= self.turns:
             return np.zeros(len(turns))
         return self.opening * closing_ramp(turns / self.turns)

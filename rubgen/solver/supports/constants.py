@@ -1,4 +1,4 @@
-"""Turning forces as the kernels of the scheme take them."""
+"""Make the turning forces in the form that the kernels of the scheme take."""
 
 import numpy as np
 import scipy.linalg as la
@@ -12,7 +12,7 @@ from rubgen.solver.supports.support_kernels import Support
 
 
 def support_of(system: SpinningSystem, blocks: Blocks, dt: float) -> Support:
-    """The system's turning forces as constants of the kernels, for a step of dt (s); not active where it has none."""
+    """Build the kernels' constants of a system's turning forces for a step of dt (s); not active where it has none."""
     forces = system.turning
     if forces is None:
         return _support(TurningForces(), active=False)
@@ -45,7 +45,7 @@ def _support(
     places: AnyArray | None = None,
     **arrays: FloatArray,
 ) -> Support:
-    """The kernels' record; arrays that are not given are empty."""
+    """Make the kernels' record; arrays that are not given are empty."""
     none = np.zeros(0, dtype=np.int64)
     empty = np.zeros((0, 2))
     names = ("columns", "weight", "compliance", "rows", "tip_columns", "tip_rows")
@@ -65,7 +65,7 @@ def _support(
 
 
 def load_tables(forces: TurningForces) -> dict[str, FloatArray]:
-    """`Support.loads`, `slopes` and `growing`."""
+    """Return the tables `Support.loads`, `slopes` and `growing` by name; the slopes are still zero."""
     parts = [each.loads for each in forces.growing]
     steady = np.zeros((0, 2), dtype=np.complex128) if forces.loads is None else forces.loads
     orders = max(map(len, [steady, *parts]))
@@ -77,14 +77,14 @@ def load_tables(forces: TurningForces) -> dict[str, FloatArray]:
 
 
 def _row_of_parts(loads: ComplexArray, orders: int) -> FloatArray:
-    """Real and imaginary part of x and y (orders, 4), zeros behind."""
+    """Return real and imaginary part of x and y (orders, 4), with zeros behind the given orders."""
     padded = np.zeros((orders, 2), dtype=np.complex128)
     padded[: len(loads)] = loads
     return padded.view(np.float64)
 
 
 def law_rows(laws: tuple[SupportLaw, ...]) -> FloatArray:
-    """A row for each law: its place in the registry, its numbers, and zeros behind."""
+    """Return a row for each law: its place in the registry, its constants, and zeros behind."""
     rows = [(float(LAWS.index(type(law))), *law.numbers) for law in laws]
     width = max((len(row) for row in rows), default=1)
     return np.array([[*row, *[0.0] * (width - len(row))] for row in rows]).reshape(len(rows), width)

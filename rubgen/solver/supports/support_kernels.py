@@ -236,8 +236,8 @@ def add_support_works(
 ) -> float:
     """Add the works of one step to `state.works`. Return the sum of their absolute values, J.
 
-    Works of uneven springs and dampers, of the laws, and of gravity are each force times d. LAWS_LOSS is the force of
-    the laws times dt v_abs. `now` and `change` (d) are in z. `cosine` and `sine` are of theta at step n.
+    Works of uneven springs and dampers, of the laws, of gravity, and of the loads of faults are each force times d.
+    LAWS_LOSS is the force of the laws times dt v_abs. `now` and `change` (d) are in z. `cosine`, `sine`: of theta at n.
     """
     x, y = now[support.centre[0]], now[support.centre[1]]
     dx, dy = change[support.centre[0]], change[support.centre[1]]

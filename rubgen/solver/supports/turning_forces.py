@@ -1,6 +1,6 @@
-"""Forces that no constant matrix contains: uneven supports, laws of the support, gravity, faults. In plain numpy.
+"""Compute the forces that no constant matrix contains: uneven supports, laws of the support, gravity, faults.
 
-`support_kernels` applies the same law in the steps of a run.
+It is plain numpy. `support_kernels` applies the same law in the steps of a run.
 """
 
 import numpy as np
@@ -10,9 +10,9 @@ from rubgen.reduction.model import TurningForces
 
 
 def turning_force(forces: TurningForces, speed: float, theta: AnyArray, u: AnyArray, v: AnyArray) -> AnyArray:
-    """Force (..., 2) in N on O_d in the turning frame.
+    """Return the force (..., 2) in N on O_d in the turning frame: -k_a Q u - c_a Q v_abs and the laws of the support.
 
-    -k_a Q u - c_a Q v_abs and the laws of the support. Complex steps differentiate it: it is analytic in pieces.
+    Complex steps differentiate it: it is analytic in pieces.
 
     - forces: constants of the forces.
     - speed: Omega, rad/s.
@@ -29,7 +29,7 @@ def turning_force(forces: TurningForces, speed: float, theta: AnyArray, u: AnyAr
 def force_derivatives(
     forces: TurningForces, speed: float, theta: FloatArray, u: FloatArray, v: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Derivatives by u and by v (..., 2, 2) of `turning_force`, by a complex step; parameters as there."""
+    """Return the derivatives by u and by v (..., 2, 2) of `turning_force`, by a complex step; parameters as there."""
     by_u, by_v = [], []
     for i in range(2):
         step = 1e-30j * np.eye(2)[i]
@@ -39,18 +39,18 @@ def force_derivatives(
 
 
 def gravity_force(forces: TurningForces, theta: float) -> FloatArray | float:
-    """Weight (n,) in N in the turning frame, along -Y: -g M T (sin theta, cos theta); 0 without gravity."""
+    """Return the weight (n,) in N in the turning frame, along -Y: -g M T (sin theta, cos theta); 0 without gravity."""
     return 0.0 if forces.weight is None else -forces.weight @ np.array([np.sin(theta), np.cos(theta)])
 
 
 def fault_force(forces: TurningForces, theta: float) -> FloatArray | float:
-    """The steady loads of faults on O_d (2,) in N, in the turning frame; 0 without any."""
+    """Return the steady loads of faults on O_d (2,) in N, in the turning frame; 0 without any."""
     if forces.loads is None:
         return 0.0
     return np.asarray((np.exp(1j * theta * np.arange(len(forces.loads))) @ forces.loads).real)
 
 
 def _uneven(theta: AnyArray, w: AnyArray) -> AnyArray:
-    """Q(theta) w of (..., 2)."""
+    """Return Q(theta) w of (..., 2)."""
     c, s = np.cos(2 * theta), np.sin(2 * theta)
     return np.stack([c * w[..., 0] - s * w[..., 1], -s * w[..., 0] - c * w[..., 1]], axis=-1)
