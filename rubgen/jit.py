@@ -130,7 +130,7 @@ class _KernelCache(caching.NullCache):  # type: ignore[misc]
         return self._cache.cache_path
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """The kernel compiled for these types, or None."""
+        """Return the kernel compiled for these types, or None."""
         return self._cache.load_overload(sig, target_context)
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -171,7 +171,7 @@ class _Locator(caching._SourceFileBackedLocatorMixin, caching._CacheLocator):  #
         return self._cache_path
 
     def ensure_cache_path(self) -> None:
-        """Nothing to do: the folder is made when a file is written."""
+        """Do nothing: the folder is made when a file is written."""
 
 
 class _SealedFiles(caching.IndexDataCacheFile):  # type: ignore[misc]
@@ -181,7 +181,7 @@ class _SealedFiles(caching.IndexDataCacheFile):  # type: ignore[misc]
         super().save(key, (self._owner(key), data))
 
     def load(self, key: Any) -> Any:
-        """The data of `key`; None where another process has just written other types into that file."""
+        """Return the data of `key`; None where another process has just written other types into that file."""
         owner, data = super().load(key) or (None, None)
         return data if owner == self._owner(key) else None
 

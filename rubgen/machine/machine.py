@@ -1,6 +1,7 @@
 """What is simulated: a bladed disk on elastic supports inside a flexible casing.
 
-All lengths in m, stiffness in N/m or N m/rad, density in kg/m3. Values are checked when an object is made.
+All lengths in m, stiffness in N/m or N m/rad, density in kg/m3. Values are checked when an object is made. O_d is the
+disk centre.
 """
 
 from typing import Annotated, Any, Self

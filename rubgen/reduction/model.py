@@ -1,4 +1,7 @@
-"""The reduced system at one speed, as the solver takes it."""
+"""The reduced system at one speed, as the solver takes it.
+
+O_d is the disk centre.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -1,4 +1,7 @@
-"""Reduce a machine, and give its matrices as functions of the speed."""
+"""Reduce a machine, and give its matrices as functions of the speed.
+
+O_d is the disk centre.
+"""
 
 from dataclasses import dataclass
 from functools import partial

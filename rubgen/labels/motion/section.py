@@ -1,4 +1,7 @@
-"""Scale the Poincare section of blisk and casing, and test whether the motion has the symmetry of the lobes."""
+"""Scale the Poincare section of blisk and casing, and test whether the motion has the symmetry of the lobes.
+
+O_d is the disk centre.
+"""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Run one turn of the blisk in one call: steps, works, taps, touches."""
+"""Run some turns of the blisk in one call: steps, works, taps, touches."""
 
 import math
 from typing import NamedTuple

@@ -1,6 +1,6 @@
 """Compute the forces that no constant matrix contains: uneven supports, laws of the support, gravity, faults.
 
-It is plain numpy. `support_kernels` applies the same law in the steps of a run.
+It is plain numpy. `support_kernels` applies the same law in the steps of a run. O_d is the disk centre.
 """
 
 import numpy as np
