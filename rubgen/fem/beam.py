@@ -185,7 +185,7 @@ def root_strain_row(blades: BladeRow, root_radius: float, beam: BeamMatrices) ->
     return np.asarray(strains[0] + half * (np.cos(angle) * strains[4] + np.sin(angle) * strains[5]))
 
 
-def held_root_strain(
+def static_root_strain(
     blades: BladeRow, root_radius: float, beam: BeamMatrices, *, speed: float, stiffness: float = 1.0
 ) -> tuple[FloatArray, FloatArray]:
     """Return a blade's root strain per displacement of its tip (3,) and of its root (6,), without inertia.

@@ -12,7 +12,7 @@ from rubgen.arrays import FloatArray, IntArray, SparseMatrix
 from rubgen.errors import UserError
 from rubgen.fem.beam import BeamMatrices, blade_matrices
 from rubgen.fem.constraints import (
-    HeldStiffness,
+    FixedCentreStiffness,
     blade_rotation,
     link_stress_stiffness,
     rigid_link,
@@ -58,7 +58,7 @@ class BliskModel:
     """Radii of a blade's nodes, m."""
     penalty: float
     """Penalty stiffness k_p."""
-    held: HeldStiffness
+    fixed_centre: FixedCentreStiffness
     """Solves static problems of the blisk with O_d fixed laterally."""
     plate: DiskModel
     """Matrices of the disk."""
@@ -98,8 +98,8 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
     K_apart = sp.csr_array(_blocks(plate.K, beam.K, stiffness) + penalty * (link.T @ link))
     K = sp.csr_array(K_apart + penalty * (joint.T @ joint))
     f_c = np.concatenate([np.zeros(6), plate.f_c, *[beam.f_c] * blades.count])
-    held = HeldStiffness(K, support)
-    static = held.solve(f_c)
+    fixed_centre = FixedCentreStiffness(K, support)
+    static = fixed_centre.solve(f_c)
     K_plate = shell_stress_stiffness(plate.mesh, disk.material, static[6:disk_size])
     link_force = -penalty * (link @ static).reshape(-1, 6)[:, :3]
     return BliskModel(
@@ -117,7 +117,7 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
         angles=angles,
         blade_radius=disk.rim_radius_m + np.linspace(0.0, blades.length_m, blades.elements + 1),
         penalty=penalty,
-        held=held,
+        fixed_centre=fixed_centre,
         plate=plate,
         beam=beam,
         blade_stiffness=stiffness,

@@ -102,7 +102,7 @@ def on_springs(K: SparseMatrix, stiffness: FloatArray) -> SparseMatrix:
     return (K + sp.diags_array(diagonal)).tocsr()
 
 
-class HeldStiffness:
+class FixedCentreStiffness:
     """The blisk's K on its axial, tilt and torsion springs, with x and y of O_d fixed at zero; factorised once.
 
     It solves static problems. By symmetry the centrifugal load of two or more equal blades does not push O_d sideways.

@@ -86,8 +86,8 @@ def reduce_blisk(
     model = assemble_blisk(disk, blades, support)
     joined = _join_components(model, reduction, _turning(disk, blades) if cyclic else None)
     masters = np.concatenate([joined.tips[:, :3].ravel(), [0, 1]])
-    held = on_springs(sp.csr_array(joined.K), support_stiffness(support))
-    V = craig_bampton(sp.csr_array(joined.M), held, masters, reduction.blisk_modes)
+    supported = on_springs(sp.csr_array(joined.K), support_stiffness(support))
+    V = craig_bampton(sp.csr_array(joined.M), supported, masters, reduction.blisk_modes)
     R = rigid_motions(model)
     return ReducedBlisk(
         M=symmetric(V.T @ joined.M @ V),

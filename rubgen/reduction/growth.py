@@ -53,16 +53,16 @@ def centrifugal_growth(model: BliskModel) -> CentrifugalGrowth:
     `unbalance`: the reduced model takes it over as a load.
     """
     equal = bool(np.ptp(model.blade_stiffness) == 0)
-    K, A = model.held.K, model.K_sigma - model.S
+    K, A = model.fixed_centre.K, model.K_sigma - model.S
     basis = np.zeros((len(model.f_c), 0))
-    vector = model.held.solve(model.f_c)
+    vector = model.fixed_centre.solve(model.f_c)
     for _ in range(BASIS_SIZE if equal else MISTUNED_BASIS_SIZE):
         # Twice is enough: Gram-Schmidt in the inner product of K.
         for _ in range(2):
             vector = vector - basis @ (basis.T @ (K @ vector))
         vector = vector / np.sqrt(vector @ (K @ vector))
         basis = np.column_stack([basis, vector])
-        vector = model.held.solve(A @ vector)
+        vector = model.fixed_centre.solve(A @ vector)
     moment = (model.S @ rigid_motions(model)[:, :2]).T @ basis
     return CentrifugalGrowth(
         K=basis.T @ (K @ basis),

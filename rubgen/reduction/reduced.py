@@ -11,7 +11,7 @@ from scipy.linalg import block_diag, eig, eigh
 
 from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
-from rubgen.fem.beam import blade_matrices, held_root_strain
+from rubgen.fem.beam import blade_matrices, static_root_strain
 from rubgen.fem.constraints import support_stiffness
 from rubgen.linalg.threads import one_blas_thread
 from rubgen.machine import Damping, Machine, Unbalance
@@ -118,12 +118,12 @@ class ReducedModel:
         """Return the row (blisk DoFs,) that gives the spanwise strain at a blade's root from the blisk's DoFs.
 
         Tip and root come from the reduced basis. The blade between them has its static shape at `speed` in rad/s
-        (`held_root_strain`). The basis of rest alone underestimates the strain by 37 % at 8,500 rev/min in the preset.
-        Bending by inertia between tip and root is left out.
+        (`static_root_strain`). The basis of rest alone underestimates the strain by 37 % at 8,500 rev/min in the
+        preset. Bending by inertia between tip and root is left out.
         """
         blades, rim = self.machine.blades, self.machine.disk.rim_radius_m
         stiffness = 1 + blades.stiffness_deviations[blade]
-        tip, root = held_root_strain(blades, rim, blade_matrices(blades, rim), speed=speed, stiffness=stiffness)
+        tip, root = static_root_strain(blades, rim, blade_matrices(blades, rim), speed=speed, stiffness=stiffness)
         row: FloatArray = root @ self.blisk.roots[blade]
         row[3 * blade : 3 * blade + 3] += tip
         return row

@@ -114,7 +114,7 @@ def unordered(
     running: set[Future[R]] = set()
     while True:
         room = workers * WAITING_PER_WORKER - len(running)
-        with _interrupts_held():
+        with _interrupts_delayed():
             running |= {pool.submit(work, *job) for job in islice(remaining, room)}
         if not running:
             return
@@ -153,9 +153,9 @@ def _started(workers: int, context: _OwnMain) -> ProcessPoolExecutor | None:
     pool, reason = None, "this process is a daemon, which may have no children"
     if not multiprocessing.current_process().daemon:
         try:
-            with _interrupts_held():
+            with _interrupts_delayed():
                 pool = ProcessPoolExecutor(workers, context, initializer=_start_worker)
-            with _interrupts_held():  # anew: Python's tracker of semaphores, just started, lets Ctrl-C through again
+            with _interrupts_delayed():  # anew: Python's tracker of semaphores, just started, lets Ctrl-C through again
                 pool.submit(os.getpid)  # the first job starts every process
         except (OSError, ImportError, RuntimeError) as error:  # no semaphores, too many processes, threads or files
             reason = error.strerror or str(error) if isinstance(error, OSError) else str(error)
@@ -212,17 +212,17 @@ def _end_with_parent() -> None:
 
 
 @contextmanager
-def _interrupts_held() -> Iterator[None]:
+def _interrupts_delayed() -> Iterator[None]:
     """Delay Ctrl-C and SIGTERM to the end of the block.
 
     A process that is being started needs its parent until it has started. The mask is for the new processes, which
     inherit it until they ignore Ctrl-C. The handlers are for this process, where a signal may reach another thread.
     """
-    held: list[int] = []
+    delayed: list[int] = []
     mask = _set_mask("SIG_BLOCK", {signal.SIGINT})
     main = threading.current_thread() is threading.main_thread()
     handlers = {
-        name: signal.signal(name, lambda number, _frame: held.append(number))
+        name: signal.signal(name, lambda number, _frame: delayed.append(number))
         for name in (signal.SIGINT, signal.SIGTERM)
         if main and signal.getsignal(name) is not None  # None: not set from Python, so it could not be put back
     }
@@ -232,8 +232,8 @@ def _interrupts_held() -> Iterator[None]:
         _set_mask("SIG_SETMASK", mask)
         for name, handler in handlers.items():
             signal.signal(name, handler)
-    if held:
-        signal.raise_signal(held[0])
+    if delayed:
+        signal.raise_signal(delayed[0])
 
 
 def _set_mask(how: str, signals: Iterable[int]) -> set[signal.Signals | int]:

@@ -56,9 +56,9 @@ def _raised(check: Callable[[], object]) -> list[str]:
 
 def _check_run(content: McapContent, run_id: str) -> None:
     index = run_of(content).scenario.get("index")
-    held = f"run-{index:06d}" if isinstance(index, int) else "no run that rubgen numbers"
-    if run_id and run_id != held:
-        raise DamageError(f"holds {held}")
+    recorded = f"run-{index:06d}" if isinstance(index, int) else "no run that rubgen numbers"
+    if run_id and run_id != recorded:
+        raise DamageError(f"holds {recorded}")
 
 
 def _document_problems(content: McapContent) -> Iterator[str]:

@@ -146,14 +146,14 @@ def _send_supports(stream: rr.RecordingStream, replay: Replay, factor: float) ->
     ]
     stream.log("/machine/casing/springs", rr.LineStrips3D(springs, colors=rgba(GREY), radii=0.0012), static=True)
     reach, bore = SHAFT_SHARE * machine.tip_radius_m, machine.disk.bore_radius_m
-    held = [
+    supports = [
         spring(
             np.array([bore * np.cos(a), bore * np.sin(a), z]), np.array([3 * bore * np.cos(a), 3 * bore * np.sin(a), z])
         )
         for a in np.pi / 2 * np.arange(4)
         for z in (-reach, reach)
     ]
-    stream.log("/machine/supports", rr.LineStrips3D(held, colors=rgba(BLUE), radii=0.002), static=True)
+    stream.log("/machine/supports", rr.LineStrips3D(supports, colors=rgba(BLUE), radii=0.002), static=True)
 
 
 def _send_contact_points(stream: rr.RecordingStream, replay: Replay, frames: MotionFrames, factor: float) -> None:
