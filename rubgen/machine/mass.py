@@ -1,4 +1,4 @@
-"""Compute the mass of a blisk from the machine's numbers."""
+"""Compute the masses of a blisk and of a blade from the machine's numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A reduced blisk without masses at its tips."""
+"""Take masses from the tips of a reduced blisk."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -30,7 +30,10 @@ def without_masses(blisk: ReducedBlisk, lost: Iterable[LostMass], tip_radius: fl
 
 
 def missing_pull(lost: Iterable[LostMass], tip_radius: float, tip_static: FloatArray, size: int) -> FloatArray:
-    """Minus the centrifugal force of the masses at 1 rad/s (size,), kg m, at tips displaced by `tip_static`, m."""
+    """Return minus the centrifugal force (size,) of the lost masses at 1 rad/s, in kg m.
+
+    `tip_static` (blades, 3) is the steady displacement of the tips in m, `tip_radius` their radius at rest in m.
+    """
     pull = np.zeros(size)
     for each in lost:
         radial, tangential, _ = tip_static[each.blade]

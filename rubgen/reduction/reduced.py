@@ -281,7 +281,7 @@ def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:
 
 
 def lost_masses(machine: Machine) -> list[LostMass]:
-    """The masses that faults have taken from tips."""
+    """Return the masses that the faults of a machine have taken from tips."""
     return [each for fault in machine.faults for each in fault.lost_masses(machine)]
 
 

@@ -34,15 +34,15 @@ class CrackedBlade(Fault):
 
     @property
     def severity(self) -> float:
-        """The share of the stiffness."""
+        """The share of the blade's stiffness that is lost."""
         return self.stiffness_loss
 
     def problem(self, machine: Machine) -> str | None:
-        """A blade that the machine does not have."""
+        """Return the problem of a blade that the machine does not have."""
         return missing_blade(self.blade, machine)
 
     def altered(self, machine: Machine) -> Machine:
-        """The machine with one softer blade."""
+        """Return the machine with one softer blade."""
         from rubgen.machine.machine import Mistuning  # the machine imports the registry of faults
 
         deviations = list(machine.blades.stiffness_deviations)

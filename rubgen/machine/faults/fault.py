@@ -123,7 +123,7 @@ class Fault(ABC):
         return ()
 
     def lost_masses(self, machine: Machine) -> tuple[LostMass, ...]:
-        """Masses that are missing at the tips of blades."""
+        """Return the masses that the fault has taken from the tips of blades."""
         return ()
 
     def narrowings(self, machine: Machine) -> tuple[Narrowing, ...]:
@@ -149,6 +149,6 @@ class Fault(ABC):
 
 
 def missing_blade(blade: int, machine: Machine) -> str | None:
-    """The problem of a blade that the machine does not have; None where it has it."""
+    """Return the problem of a blade number that the machine does not have; None where it has that blade."""
     last = machine.blades.count - 1
     return f"blade = {blade}: there is no such blade; give 0 to {last}" if blade > last else None

@@ -37,12 +37,12 @@ class LostTip(Fault):
         return self.lost_kg
 
     def problem(self, machine: Machine) -> str | None:
-        """A blade that the machine does not have, or more mass than its tip moves."""
+        """Return the problem of a blade that the machine does not have, or of more lost mass than its tip can spare."""
         most = blade_mass(machine.blades) / 8
         if self.lost_kg > most:
             return f"lost_kg = {self.lost_kg:g}: an eighth of a blade, {most:.3g} kg, is the most; lower it"
         return missing_blade(self.blade, machine)
 
     def lost_masses(self, machine: Machine) -> tuple[LostMass, ...]:
-        """The lost mass."""
+        """Return the lost mass and its blade."""
         return (LostMass(blade=self.blade, kg=self.lost_kg),)
