@@ -24,7 +24,7 @@ def blisk_mass(machine: Machine) -> float:
 
 
 def blade_mass(blades: BladeRow) -> float:
-    """Mass of one blade in kg; its cross-sections count as chord times thickness, both linear in the radius."""
+    """Compute the mass of one blade in kg: cross-sections of chord times thickness, both linear in the radius."""
     c0, c1, t0, t1 = blades.root_chord_m, blades.tip_chord_m, blades.root_thickness_m, blades.tip_thickness_m
     cross_section = (2 * c0 * t0 + c0 * t1 + c1 * t0 + 2 * c1 * t1) / 6
     return cross_section * blades.length_m * blades.material.density_kg_per_m3

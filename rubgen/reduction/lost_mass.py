@@ -14,10 +14,14 @@ CROSS = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 
 
 def without_masses(blisk: ReducedBlisk, lost: Iterable[LostMass], tip_radius: float) -> ReducedBlisk:
-    """The blisk without point masses at its tips, whose translations are coordinates: exact, but for the tension.
+    """Return the blisk without point masses at its tips, whose translations are coordinates.
 
-    M, G and A = K_sigma - S lose m, m e_z x and -m diag(1, 1, 0) on a tip, and the load of an angular acceleration m r
-    along its tangent. The steady tension that the mass put into its blade stays in K_sigma.
+    It is exact, except for the tension. M, G and A = K_sigma - S lose m, m e_z x and -m diag(1, 1, 0) on a tip, and the
+    load of an angular acceleration loses m r along its tangent. The steady tension that the mass put into its blade
+    stays in K_sigma.
+
+    - lost: masses and their blades.
+    - tip_radius: r, radius of the tips at rest, m.
     """
     M, G, A, euler = blisk.M.copy(), blisk.G.copy(), blisk.A.copy(), blisk.euler.copy()
     for each in lost:
