@@ -6,6 +6,7 @@ from typing import Annotated
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
+from rubgen.brief import brief
 from rubgen.machine.quantities import (
     STRICT,
     CasingShare,
@@ -47,6 +48,8 @@ class Frame:
     One way: the frame moves sensors, and not the disk or the ring. Modes are uncoupled, as of a linear structure whose
     damping is small (Ewins, Modal Testing, 2000, chapter 2).
     """
+
+    __repr__ = brief
 
     modes: Annotated[tuple[FrameMode, ...], Field(min_length=1, max_length=MOST_FRAME_MODES)]
 
