@@ -1,6 +1,6 @@
 """Take masses from the tips of a reduced blisk."""
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +13,7 @@ CROSS = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 """e_z x along the axes of a tip: radial, tangential, axial."""
 
 
-def without_masses(blisk: ReducedBlisk, lost: Iterable[LostMass], tip_radius: float) -> ReducedBlisk:
+def without_masses(blisk: ReducedBlisk, lost: Sequence[LostMass], tip_radius: float) -> ReducedBlisk:
     """Return the blisk without point masses at its tips, whose translations are coordinates.
 
     It is exact, except for the tension. M, G and A = K_sigma - S lose m, m e_z x and -m diag(1, 1, 0) on a tip, and the
@@ -23,6 +23,8 @@ def without_masses(blisk: ReducedBlisk, lost: Iterable[LostMass], tip_radius: fl
     - lost: masses and their blades.
     - tip_radius: r, radius of the tips at rest, m.
     """
+    if not lost:
+        return blisk
     M, G, A, euler = blisk.M.copy(), blisk.G.copy(), blisk.A.copy(), blisk.euler.copy()
     for each in lost:
         tip = slice(3 * each.blade, 3 * each.blade + 3)
@@ -33,7 +35,7 @@ def without_masses(blisk: ReducedBlisk, lost: Iterable[LostMass], tip_radius: fl
     return replace(blisk, M=M, G=G, A=A, euler=euler)
 
 
-def missing_pull(lost: Iterable[LostMass], tip_radius: float, tip_static: FloatArray, size: int) -> FloatArray:
+def missing_pull(lost: Sequence[LostMass], tip_radius: float, tip_static: FloatArray, size: int) -> FloatArray:
     """Return minus the centrifugal force (size,) of the lost masses at 1 rad/s, in kg m.
 
     `tip_static` (blades, 3) is the steady displacement of the tips in m, `tip_radius` their radius at rest in m.
