@@ -21,7 +21,7 @@ FIGURE = re.compile(r"\{\{(.+?)\|(.*?)(\??)\}\}")
 
 
 def page(text: str, rows: Sequence[Row], facts: dict[str, str]) -> str:
-    """The text with its figures; `facts` by name stand for themselves. Raises LookupError with every missing figure."""
+    """The text with figures from `rows`, or from `facts` by name. Raises LookupError that names what is missing."""
     missing = []
 
     def figure(found: re.Match[str]) -> str:

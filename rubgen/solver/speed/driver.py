@@ -22,8 +22,8 @@ SPEED_SHARE = 2e-4
 """Within a part the matrices are constant, at its middle speed. The speed changes by at most this share."""
 MOST_PARTS = 64
 MOST_STEPS_AT_ONCE = 4096
-"""Turns of more steps are run one by one: there the way into the kernel costs nothing, and room for their touches much.
-"""
+"""Turns of more steps are run one by one: entering the kernel is a small share of such a turn, and room for the touches
+of several such turns is large."""
 NEVER = 2**62
 """A step number that no part reaches."""
 
