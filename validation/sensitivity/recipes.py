@@ -26,8 +26,8 @@ RECIPES = ("zeng2019-mini", "thousand", "rig", "speed-sweep", "three-lobes")
 """Those with a steady speed. At a changing speed the motion of a run with contact is always undecided."""
 SEEDS = {"fit": 101, "check": 202}
 """Constants of the confidence may be fitted to the first only; the second shows what the confidence is worth."""
-RUNS = 48
-"""Runs of each recipe and seed: 480, some twenty minutes of CPU time."""
+RUNS = 32
+"""Runs of each recipe and seed: 320, some ten minutes of CPU time."""
 SEEN = 16
 """So many runs of each recipe with the second seed were known when the constants were set; the later ones were not."""
 Found = Callable[[Piece], Arrays | None]
