@@ -24,6 +24,8 @@ def _introduction() -> str:
 
 `{COMMAND}` makes this page from runs of the preset `zeng2019`. [Sensitivity](sensitivity.md) defines the cases.
 [The model](model.md#options-of-contact) defines the options. Each option is off by default.
+Classes of motion are those of data sets: with a Lyapunov exponent whose companion trajectory stops once the exponent is
+settled.
 """
 
 
