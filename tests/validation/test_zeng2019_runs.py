@@ -11,6 +11,7 @@ from rubgen.reduction import reduce
 from rubgen.solver.integrate import integrate
 from rubgen.solver.response import ContactEvents
 from validation.zeng2019 import reproduce
+from validation.zeng2019.changes import AT_CENTRE, changed, tally
 from validation.zeng2019.conclusions.causes import _by_modes
 from validation.zeng2019.conclusions.conclusion3 import indices
 from validation.zeng2019.conclusions.scale import reaches
@@ -264,6 +265,18 @@ def test_a_difference_has_the_cause_that_an_experiment_shows():
     assert cause_of(verdict("differs", by_words="agrees"), None, None, search).name == WORDS
     assert "candidates of the search" in cause_of(verdict("differs"), None, None, search).experiment
     assert cause_of(verdict("differs"), None, None, []).name == UNKNOWN
+
+
+def test_a_verdict_that_changed_has_its_reason():
+    section, words_ = "Figure 12: region II from near", "Region II: the blisk moves in period-1 motion."
+    now = Statement(statement=words_, verdict="agrees", found="x")
+    tips = Statement(statement=f"{words_} (tips)", verdict="differs", found="x", apart="tips")
+    rows = changed({(section, one.statement): one for one in (now, tips)})
+    row = next(each for each in rows if each[:2] == ("Figure 12", words_))
+    assert row[2:] == ("differs", "agrees", AT_CENTRE)
+    assert tally({(section, one.statement): one for one in (now, tips)})[2] == ["after", "1", "0", "0", "0", "1"]
+    same = {(section, words_): replace(now, verdict="differs")}
+    assert not [each for each in changed(same) if each[:2] == ("Figure 12", words_)]
 
 
 def test_words_of_the_search_belong_to_a_statement():

@@ -38,4 +38,6 @@ def test_every_section_is_computed_judged_and_drawn(tmp_path, monkeypatch):
     assert len(pictures) >= 19
     assert "nan" not in text.replace("resonan", "")
     assert "| main cause | meaning | statements |" in text
+    assert "| before, the paper's statements | 46 | 19 | 36 | 6 | 107 |" in text
+    assert "not asked any more" not in text
     assert reproduce(tmp_path, size=TINY, workers=1).made == 0

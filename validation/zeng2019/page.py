@@ -8,9 +8,12 @@ from dataclasses import dataclass
 from html import escape
 
 from validation.markdown import table
+from validation.zeng2019.changes import changed, tally
 from validation.zeng2019.differences import MEANINGS, cause_of
 from validation.zeng2019.fitting.evidence import read_evidence
 from validation.zeng2019.remarks import (
+    CHANGES,
+    CHANGES_TEXT,
     DIFFERENCES,
     DIFFERENCES_TEXT,
     EVERY_REMARK,
@@ -32,6 +35,7 @@ STYLE = (
 HEADER = ("statement", "verdict", "found")
 COMPARED_HEADER = ("statement", MACHINE, AS_COMPUTED, f"found with {MACHINE}", f"found with {AS_COMPUTED}")
 DIFFERENCE_HEADER = ("figure", "statement", MACHINE, AS_COMPUTED, "main cause", "experiment")
+CHANGE_HEADER = ("figure", "statement", "before", "after", "reason")
 VERDICTS = ("agrees", "agrees within", "differs", "unknowable")
 COUNT_HEADER = ("statements", "agrees", "agrees within X", "differs", "unknowable", "all")
 HEADER_BY_FIGURE = f"by figure, {MACHINE}"
@@ -71,9 +75,8 @@ def markdown(judged: Sequence[Judged], size: Size) -> str:
         parts += [f"![{picture.caption}]({picture.name})\n\n*{picture.caption}.*" for picture in each.drawn]
         header, rows = _statements(each)
         parts.append(table(header, rows))
-    rows, counts = _differences(judged)
-    parts += [f"## {DIFFERENCES}", DIFFERENCES_TEXT, table(("main cause", "meaning", "statements"), counts)]
-    parts.append(table(DIFFERENCE_HEADER, rows))
+    for title, text, tables in _closing(judged):
+        parts += [f"## {title}", text, *(table(header, rows) for header, rows in tables if rows)]
     return "\n\n".join(parts) + "\n"
 
 
@@ -87,9 +90,9 @@ def html(judged: Sequence[Judged], size: Size) -> str:
         parts.append(f"<p><code>{escape(each.section.command + size.option)}</code></p>")
         parts += [_figure(picture) for picture in each.drawn]
         parts.append(_html_table(*_statements(each)))
-    rows, counts = _differences(judged)
-    parts += [f"<h2>{DIFFERENCES}</h2>", f"<p>{_inline(DIFFERENCES_TEXT)}</p>"]
-    parts += [_html_table(("main cause", "meaning", "statements"), counts), _html_table(DIFFERENCE_HEADER, rows)]
+    for title, text, tables in _closing(judged):
+        parts += [f"<h2>{title}</h2>", f"<p>{_inline(text)}</p>"]
+        parts += [_html_table(header, rows) for header, rows in tables if rows]
     body = "\n".join(parts)
     head = f'<meta charset="utf-8"><title>{escape(TITLE)}</title><style>{STYLE}</style>'
     return f"<!doctype html><html><head>{head}</head><body>{body}</body></html>\n"
@@ -118,6 +121,21 @@ def _verdict(one: Statement) -> str:
 def _found(one: Statement) -> str:
     eye = f"By {one.other_bound}: `{one.by_eye}`" if one.by_eye and one.by_eye != one.verdict else ""
     return ". ".join(part.rstrip(".") for part in (one.found, eye, one.why) if part)
+
+
+def _closing(judged: Sequence[Judged]) -> list[tuple[str, str, list[tuple[Sequence[str], Rows]]]]:
+    """Title, text and tables of what ends the page: causes of the differences; the tally before and after."""
+    rows, counts = _differences(judged)
+    verdicts = {(each.section.title, one.statement): one for each in judged for one in each.statements}
+    causes: list[tuple[Sequence[str], Rows]] = [
+        (("main cause", "meaning", "statements"), counts),
+        (DIFFERENCE_HEADER, rows),
+    ]
+    parts = [(DIFFERENCES, DIFFERENCES_TEXT, causes)]
+    if len(judged) > 1:
+        moved: list[tuple[Sequence[str], Rows]] = [(COUNT_HEADER, tally(verdicts)), (CHANGE_HEADER, changed(verdicts))]
+        parts.append((CHANGES, CHANGES_TEXT, moved))
+    return parts
 
 
 def _differences(judged: Sequence[Judged]) -> tuple[Rows, Rows]:

@@ -31,6 +31,13 @@ all machines; `{AS_COMPUTED}` agrees (contact geometry if `{TWIN}` does not); an
 agrees; the twin agrees; some candidate of the search agrees. No verdict changes by this."""
 
 
+CHANGES = "The tally before and after"
+CHANGES_TEXT = f"""Version 0.1.0 judged the statements on the blisk by the worst of disk centre and tips, and counted \
+our own experiments. This page judges the disk centre and counts the statements of the paper only. These are the \
+numbers with `{MACHINE}` before and after, and each statement whose kind of verdict changed. The rules of the verdicts \
+are the same."""
+
+
 def rules(size: Size) -> str:
     """How verdicts are given, with the turns of the runs of that size."""
     return f"""Verdicts follow rules that were set before the runs. A number agrees if it is within {

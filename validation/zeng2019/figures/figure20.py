@@ -88,9 +88,9 @@ SECTION = Section(
     title="Figure 20: stiffness of the casing's support",
     text="The speed is 10,000 rev/min. The scan prints 1e6 N/m, which is read as 1e2 N/m (`docs/preset-zeng2019.md`). "
     "The casing of `zeng2019` has five times the mass of the lightest casing with these frequencies, and so five "
-    "times its springs. Therefore the sweep is run twice: with the printed numbers, and with the corresponding "
-    "numbers for the heavier casing. Each statement says which. Runs that leave the range of a linear casing are "
-    "`diverged`; the shares do not include them.",
+    "times its springs; that of `zeng2019-as-computed` has eight times both. So the sweep is run twice: with the "
+    "printed numbers, and with the corresponding numbers for the heavier casing. Each statement says which. Runs that "
+    "leave the range of a linear casing are `diverged`; the shares do not include them.",
     pieces=pieces,
     statements=statements,
     figures=figures,
