@@ -72,6 +72,10 @@ def test_a_blow_turns_the_velocity_of_the_ball_by_the_angle_of_the_spall():
     mass, velocity = 7800 * np.pi / 6 * 7.94e-3**3, 0.39831 * SPEED * 19.52e-3
     expected = 2 * mass * velocity * 0.5 / 7.94
     assert defect().impulse(np.array([SPEED, 2 * SPEED])) == pytest.approx([expected, 2 * expected], rel=1e-4)
+    # Balls roll along the inner race as fast as it is ahead of the cage; a ball spins 2.357 times a turn.
+    inner, ball = (defect(place).impulse(np.array([SPEED]))[0] for place in ("inner", "ball"))
+    assert inner == pytest.approx(expected * 0.60169 / 0.39831, rel=1e-4)
+    assert ball == pytest.approx(expected * 2.3567 * 3.97 / (0.39831 * 19.52), rel=1e-3)
 
 
 def test_the_force_of_blows_has_their_impulse_and_their_time():

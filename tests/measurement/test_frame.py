@@ -62,6 +62,7 @@ def test_a_force_moves_the_housing_along_the_direction_of_the_mode_alone():
     moved = motion(turned, y=100)
     assert np.abs(moved.of_housing(90)).max() > 1
     assert np.abs(moved.of_housing(0)).max() < 1e-12
+    assert moved.of_housing(90) == pytest.approx(motion(MODE, x=100).of_housing(0), abs=1e-12)
     assert moved.of_housing(150) == pytest.approx(moved.of_housing(90) * np.cos(np.deg2rad(60)), abs=1e-12)
 
 

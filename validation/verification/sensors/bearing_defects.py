@@ -67,7 +67,7 @@ def envelope_rows() -> Iterator[Row]:
         channel = recorded(run, defect_at(place))
         orders, spectrum = envelope(channel, sensing.sample_rate_hz, run.scenario.operation.rotation_frequency_hz)
         found = line_near(orders, spectrum, order)
-        yield within(f"{place}: line in the envelope, orders", "table of the SKF 6205", order, found, 0.04)
+        yield relative(f"{place}: line in the envelope, order", "table of the SKF 6205", order, found, 0.01)
         away = np.abs(orders - order)
         beside = np.median(spectrum[(away > 0.1) & (away < 0.35)])
         share = float(beside / spectrum[np.abs(orders - found).argmin()])
