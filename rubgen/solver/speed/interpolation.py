@@ -125,6 +125,7 @@ def _unpacked(template: SpeedPart, row: FloatArray, layout: PartLayout) -> Speed
             rows=new["rows"],
             tip_columns=new["tip_columns"],
             tip_rows=new["tip_rows"],
+            laws=_with_places(template.support.laws, new["laws"]),
             loads=new["loads"],
             growing=new["growing"],
         ),
@@ -135,6 +136,13 @@ def _unpacked(template: SpeedPart, row: FloatArray, layout: PartLayout) -> Speed
             force=new["force"],
         ),
     )
+
+
+def _with_places(laws: FloatArray, numbers: FloatArray) -> FloatArray:
+    """Return the numbers of laws with the places of `laws`, whole numbers; a read-only array, as all of a part."""
+    rows = np.hstack([laws[:, :1], numbers[:, 1:]])
+    rows.flags.writeable = False
+    return rows
 
 
 def _keep_lines(parts: list[SpeedPart]) -> SpeedPart:

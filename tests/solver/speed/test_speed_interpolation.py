@@ -1,7 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from rubgen.machine import load_machine
+from rubgen.machine.faults.loose_support import LooseSupport
+from rubgen.machine.faults.oil_whirl import OilWhirl
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
 from rubgen.solver.scheme.model import speed_part
@@ -23,7 +27,8 @@ def test_lagrange_weights_give_back_a_polynomial():
 
 @pytest.mark.parametrize("acceleration", [0.0, -210.0])
 def test_interpolated_matrices_are_those_made_at_that_speed(acceleration):
-    model = reduce(load_machine("zeng2019"), Reduction())
+    faults = (OilWhirl(), LooseSupport(lost_stiffness=0.5))
+    model = reduce(replace(load_machine("zeng2019"), faults=faults), Reduction())
     speeds = chebyshev_speeds(rad_per_s(3000), rad_per_s(12000))
     alike = [model.at_speed(speed, push) for speed in (speeds[0], speeds[-1]) for push in (0.0, 300.0)]
     stepper = Stepper(alike[2], ContactLaw(), 1024, alike=alike)
@@ -45,3 +50,5 @@ def test_interpolated_matrices_are_those_made_at_that_speed(acceleration):
         np.testing.assert_allclose(part.energy.force, exact.energy.force, rtol=1e-11, atol=1e-9)
         np.testing.assert_allclose(part.tips.static, exact.tips.static, rtol=1e-9, atol=1e-15)
         assert interpolation.mean_growth(np.array(speed)) == pytest.approx(exact.tips.static[0].mean(), rel=1e-9)
+        np.testing.assert_array_equal(part.support.laws[:, 0].astype(int), exact.support.laws[:, 0].astype(int))
+        np.testing.assert_allclose(part.support.laws, exact.support.laws, rtol=1e-12)
