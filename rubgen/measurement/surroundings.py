@@ -11,7 +11,7 @@ import numpy.typing as npt
 from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.errors import UserError
 from rubgen.measurement.frame import FrameMotion
-from rubgen.scenario.surroundings import Surroundings
+from rubgen.scenario.surroundings import Surroundings, Tone
 from rubgen.scenario.vary import DEFAULT_SPEED_RPM
 from rubgen.taps import CasingAcceleration, CentreDisplacement, HousingAcceleration, Tap
 from rubgen.units import rad_per_s
@@ -105,20 +105,32 @@ class Disturbances:
         added = np.zeros(self.tail.angle.size)
         if self.surroundings.background_m_per_s2:
             added += self.level * self._broadband(weights)
-        for tone, parts in zip(self.surroundings.tones, self._tones, strict=True):
-            if tone.order is None:
-                frequency = 2 * np.pi * (tone.frequency_hz or 0.0)
-                phase, heard = frequency * self.tail.time, np.asarray(frequency * self.tail.dt < np.pi)
-            else:
-                phase, heard = tone.order * self.tail.turned, self.tail.resolved(tone.order)
-            wave = np.sqrt(2) * np.real(weights @ parts * np.exp(1j * phase))
-            added += heard * tone.level_m_per_s2 * wave
+        for waves, parts in zip(self._waves, self._tones, strict=True):
+            amplitude = weights @ parts
+            cosine, sine = waves
+            added += amplitude.real * cosine - amplitude.imag * sine
         return added
+
+    @cached_property
+    def _waves(self) -> list[tuple[FloatArray, FloatArray]]:
+        """Cosine and sine (steps,) of each tone with its level, once for all sensors."""
+        return [self._wave(tone) for tone in self.surroundings.tones]
+
+    def _wave(self, tone: Tone) -> tuple[FloatArray, FloatArray]:
+        if tone.order is None:
+            frequency = 2 * np.pi * (tone.frequency_hz or 0.0)
+            phase, heard = frequency * self.tail.time, np.asarray(frequency * self.tail.dt < np.pi)
+        else:
+            phase, heard = tone.order * self.tail.turned, self.tail.resolved(tone.order)
+        level = np.sqrt(2) * tone.level_m_per_s2 * heard
+        return np.asarray(level * np.cos(phase)), np.asarray(level * np.sin(phase))
 
     @cached_property
     def _lines(self) -> tuple[int, slice, ComplexArray]:
         """Length of the transform, its lines in the band, and their amplitudes (2 n + 1, lines): one draw for all."""
-        length = round((self.tail.seconds + PERIOD_MARGIN_S) / self.tail.dt)
+        from scipy.fft import next_fast_len  # slow to import
+
+        length = next_fast_len(round((self.tail.seconds + PERIOD_MARGIN_S) / self.tail.dt), real=True)
         resolution = 1 / (length * self.tail.dt)
         first, end = int(np.ceil(BAND_HZ[0] / resolution)), int(BAND_HZ[1] / resolution) + 1
         power = np.arange(first, end, dtype=np.float64) ** -self.surroundings.background_slope

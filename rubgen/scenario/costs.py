@@ -90,7 +90,8 @@ def bytes_a_second(scenario: Scenario) -> float:
     """
     operation, sensing = scenario.operation, scenario.sensing
     steps = steps_per_turn(scenario) * operation.rotation.fastest / (2 * math.pi)
-    added = SURROUNDINGS_ARRAYS if scenario.surroundings else 0
+    around = scenario.surroundings
+    added = SURROUNDINGS_ARRAYS + 2 * len(around.tones) if around else 0
     added += FRAME_ARRAYS + len(scenario.frame.modes) if scenario.frame else 0
     samples = (3 if sensing.keep_clean else 2) * sensing.sample_rate_hz
     return 8 * (_taps(scenario) * (2 * steps + samples) + added * steps)
