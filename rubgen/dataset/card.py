@@ -94,7 +94,7 @@ def _record(recipe: dict[str, Any]) -> str:
     record = f"{recipe['simulation']['record_turns']} turns" if steady else "the whole record, `duration_s`"
     text = f"The labels come from {record}; the signals are\nthe last {recipe['output']['signal_seconds']:g} s of it."
     if "surroundings" in recipe:
-        felt = "Accelerometers on the casing and proximity probes also feel surroundings"
+        felt = "Accelerometers on casing and bearing housing and proximity probes also feel surroundings"
         text += f"\n{felt}; labels and clean channels do not."
     return text
 
