@@ -44,7 +44,7 @@ class Run:
         return html_table(*self._shown())
 
     def _shown(self) -> tuple[str, dict[str, str]]:
-        """The title of the run and its main facts by name."""
+        """Return the title of the run and its main facts by name."""
         scenario, response, recording, labels = self.scenario, self.response, self.recording, self.labels
         title = f"{scenario.run_id}: {scenario.machine.name}, {scenario.operation.title}"
         if recording is None or labels is None:

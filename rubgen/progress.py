@@ -87,12 +87,12 @@ def _way(wanted: bool | None) -> Show | None:
 
 
 def _nothing(_done: int, _total: int) -> None:
-    """A report that shows nothing."""
+    """Report nothing."""
 
 
 @contextmanager
 def _bar(text: str, unit: str, *, long: bool) -> Iterator[Report]:
-    """A bar on the terminal; it disappears when the step ends."""
+    """Show a bar on the terminal; it disappears when the step ends."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 

@@ -97,7 +97,7 @@ def _scenario(options: dict[str, Any]) -> Scenario:
 
 
 def _fault_keys(given: dict[str, str], options: dict[str, Any]) -> dict[str, Any]:
-    """The values of faults by their keys. Raises UserError for an option that is none of a fault either."""
+    """Return the values of faults by their keys. Raises UserError for an option that is no key of a fault either."""
     found: dict[str, Any] = {}
     for name, text in given.items():
         key = name.replace("-", "_")

@@ -236,7 +236,7 @@ class Machine:
 
     @model_serializer(mode="wrap")
     def _without_absent_parts(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """The values without parts that the machine does not have: a key that is new changes no old machine's JSON."""
+        """Leave out the parts that the machine does not have: a new key changes no old machine's JSON."""
         values: dict[str, Any] = handler(self)
         absent = [key for key, part in (("frame", self.frame), ("faults", self.faults)) if not part]
         return {key: value for key, value in values.items() if key not in absent}

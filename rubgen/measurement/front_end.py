@@ -81,8 +81,8 @@ def noise(
 ) -> FloatArray:
     """Draw Gaussian noise (samples,): white of `noise_rms`, and of the one-sided density D^2 (1 + f_c / f).
 
-    The second is white noise shaped in the frequency domain. Its mean is zero, and it repeats after the recording's
-    length.
+    D is `noise_density` per sqrt(Hz), f_c `noise_corner_hz`. The second noise is white noise shaped in the frequency
+    domain. Its mean is zero, and it repeats after the recording's length.
 
     - sensor: with its noise, in its unit.
     - samples: their number.

@@ -125,7 +125,7 @@ def _axial_problem(scenario: Scenario) -> str | None:
 
 
 def _frame_problem(scenario: Scenario) -> str | None:
-    """A sensor or a level that needs the machine's frame, where it has none."""
+    """Return the problem of a sensor or a level that needs the machine's frame, where it has none; else None."""
     if scenario.machine.frame is not None:
         return None
     remedy = "the machine has no [frame]; give it one, or leave this out"

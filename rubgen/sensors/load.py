@@ -57,7 +57,7 @@ def parse_sensor_set(path: Path) -> SensorSet:
     data["sensors"] = [_completed(path, number, each, kinds) for number, each in enumerate(listed)]
 
     def place(where: Place) -> Place:
-        """A value that a sensor has from its kind stands in the table of that kind."""
+        """Return the place of a value in the file: one from the kind stands in the table of that kind."""
         match where:
             case ("sensors", int(number), str(key), *rest) if key not in listed[number]:
                 kind = listed[number]["kind"]

@@ -139,7 +139,7 @@ class _Reading:
             raise DamageError("does not end like an MCAP file")
 
     def _parsed(self, opcode: int, body: bytes) -> list[McapRecord]:
-        """The records of a chunk, or the single record of this body; none of a kind that is not used here."""
+        """Return the records of a chunk, or the single record of this body; none of a kind that is not used here."""
         what = f"the record at byte {self.record_start:,}"
         try:
             with damage_found(what):

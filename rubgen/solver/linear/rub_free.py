@@ -70,11 +70,14 @@ def free_penetration(motion: RubFreeMotion, surface: Surface, tips: Tips) -> flo
 
 
 def never_touches(system: SpinningSystem, surface: Surface, penetration: float) -> bool:
-    """Return whether a run at steady speed, which starts from its rub-free motion with this `penetration`, keeps to it.
+    """Return whether a run at steady speed that starts in its rub-free motion provably never touches.
 
     The supports must be linear, so that the motion is the only one, and the surface unlined. Uneven supports, gravity,
     mistuned blades, steady loads and a breathing crack are linear; other laws of the support are not. Nothing may grow
     within the record.
+
+    - system, surface: of the run.
+    - penetration: free penetration of the motion in m; negative, with its gap as the size, where it does not touch.
     """
     forces = system.turning
     if forces is not None and (forces.growing or not all(law.LINEAR for law in forces.laws)):

@@ -181,7 +181,7 @@ class Stepper:
             yield (OK, self.steps, int(ends.touches[t])) if t < whole else (code, last, int(ends.touches[t]))
 
     def _rows(self, turns: int) -> tuple[Touches, Snapshots, TurnResult, TurnEnds]:
-        """Outputs with a row for each turn; those of one turn are its own arrays."""
+        """Return outputs with a row for each turn; for a single turn they are its own arrays."""
         present = self.touches.ended, self.snapshots.z, self.snapshots.step_gaps, *self.result[:-1]
         if turns == 1:
             rows = [each[None] for each in present]

@@ -97,7 +97,10 @@ class SteadyDriver:
             )
 
     def _at_once(self, *, recording: bool) -> int:
-        """Turns in a call: one where every turn has arrivals, a worn surface or loads of its own, or many steps."""
+        """Return the number of turns in a call.
+
+        It is one where every turn has arrivals, a worn surface or loads of its own, or many steps.
+        """
         model, probes = self.stepper.model, len(self.stepper.taps.timing.angle)
         own = model.surface.liner.bins or len(model.support.growing) or (recording and probes)
         return 1 if own or self.stepper.steps > MOST_STEPS_AT_ONCE else TURNS
@@ -204,7 +207,7 @@ def _frames(result: TurnResult, first: int, steps: int) -> TurnFrames:
 
 @lru_cache(maxsize=16)
 def _frame_steps(frames: int, steps: int) -> IntArray:
-    """The steps of a turn or part that have frames."""
+    """Return the steps of a turn or part that have frames."""
     number = np.arange(min(frames, steps))
     return np.maximum(-(-number * steps // frames), number)
 
