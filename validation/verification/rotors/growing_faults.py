@@ -85,9 +85,7 @@ def growth_rows() -> Iterator[Row]:
             ("bow", bow, 2e-5 * STIFFNESS * np.exp(-1j * np.deg2rad(40.0))),
         ):
             error, size = linear_growth(fault, start, duration, full)
-            quantity = (
-                f"{name} that grows within {turns} turns of {TURN:.3g} s: largest error of the whirl over its growth"
-            )
+            quantity = f"{name} that grows within {duration:.3f} s: largest error of the whirl over its growth"
             yield within(quantity, source, 0.0, error / size, 2e-4)
 
 
