@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.contact_kernels import ContactWork
-from rubgen.jit import inlined_kernel, switch
+from rubgen.jit import allocation_free_kernel, inlined_kernel, switch
 from rubgen.linalg.lanes_kernels import dot_rows
 from rubgen.linalg.vector_kernels import LANES
 from rubgen.machine.support_laws.disk_support import LAWS as ALL_LAWS
@@ -102,6 +102,24 @@ def load_at(support: Support, step: int, cosine: float, sine: float, out: FloatA
     out[0], out[1] = x, y
 
 
+@allocation_free_kernel
+def add_laws(laws: FloatArray, cosine: float, sine: float, x: float, y: float, D: FloatArray) -> tuple[float, float]:
+    """Add the damping of all laws at u = (x, y) to D (2, 2), N s/m. Return the force of their springs, N.
+
+    A call, not inlined: a machine without laws then does not step slower.
+    """
+    spring_x, spring_y = 0.0, 0.0
+    for law in range(laws.shape[0]):
+        s_x, s_y, xx, xy, yx, yy = law_terms(int(laws[law, 0]), laws[law, 1:], cosine, sine, x, y)
+        spring_x += s_x
+        spring_y += s_y
+        D[0, 0] += xx
+        D[0, 1] += xy
+        D[1, 0] += yx
+        D[1, 1] += yy
+    return spring_x, spring_y
+
+
 @inlined_kernel
 def build_drag(
     support: Support, cosine: float, sine: float, x: float, y: float, dt: float, state: SupportState
@@ -115,15 +133,7 @@ def build_drag(
         D[0, i], D[1, i] = turned(cosine, sine, 1.0 - i, float(i))
         D[0, i] *= support.damping
         D[1, i] *= support.damping
-    spring_x, spring_y = 0.0, 0.0
-    for law in range(support.laws.shape[0]):
-        s_x, s_y, xx, xy, yx, yy = law_terms(int(support.laws[law, 0]), support.laws[law, 1:], cosine, sine, x, y)
-        spring_x += s_x
-        spring_y += s_y
-        D[0, 0] += xx
-        D[0, 1] += xy
-        D[1, 0] += yx
-        D[1, 1] += yy
+    spring_x, spring_y = add_laws(support.laws, cosine, sine, x, y, D)
     a = 1.0 + (D[0, 0] * Y[0, 0] + D[0, 1] * Y[1, 0]) / (2 * dt)
     b = (D[0, 0] * Y[0, 1] + D[0, 1] * Y[1, 1]) / (2 * dt)
     c = (D[1, 0] * Y[0, 0] + D[1, 1] * Y[1, 0]) / (2 * dt)
