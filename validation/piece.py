@@ -8,7 +8,7 @@ import inspect
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -38,7 +38,7 @@ class Piece:
     arguments: tuple[object, ...] = ()
     apart: str = ""
 
-    @property
+    @cached_property
     def key(self) -> str:
         """Hash of the arguments, of everything between a machine and its labels, and of the module of `make`.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -63,11 +64,13 @@ def case(size: Size, friction: float = 0.0, **values: float) -> Scenario:
     return replace(scenario, contact=replace(scenario.contact, friction=friction))
 
 
+@cache
 def at_speed(size: Size, rpm: float, friction: float = 0.0) -> Piece:
     """A run of the speed sweep."""
     return run_piece(case(size, friction, speed_rpm=rpm))
 
 
+@cache
 def on_disk_support(size: Size, stiffness: float) -> Piece:
     """A run of the sweep of the disk's support at 10,000 rev/min."""
     return run_piece(case(size, speed_rpm=SUPPORT_RPM, disk_support_stiffness_n_per_m=stiffness))
@@ -81,6 +84,7 @@ def readings(size: Size) -> dict[str, float]:
     return {PRINTED: 1.0, SCALED: round(size.scenario().machine.casing.width_m / LIGHTEST_WIDTH_M, 2)}
 
 
+@cache
 def on_casing_support(size: Size, printed: float, reading: str) -> Piece:
     """A run of the sweep of the casing's support at 10,000 rev/min; `printed` is the paper's number."""
     stiffness = readings(size)[reading] * printed
