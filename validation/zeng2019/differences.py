@@ -71,7 +71,7 @@ def cause_of(one: Statement, chords: Statement | None, twin: Statement | None, s
 def _by_search(one: Statement, search: Sequence[Score]) -> Cause:
     places = words_of(one.statement)
     if not places:
-        return Cause(name=UNKNOWN, experiment="none of the three machines agrees")
+        return Cause(name=UNKNOWN, experiment="no machine that was run agrees")
     agree = [score for score in search if sum(score.hits[place] for place in places) >= HALF * len(places)]
     told = f"{len(agree)} of the {len(search)} candidates of the search confirm half or more of its {len(places)} words"
     return Cause(name=DIMENSION if agree else UNKNOWN, experiment=told)

@@ -173,7 +173,8 @@ def _by_kind(judged: Sequence[Judged]) -> Rows:
 
 
 def _by_figure(judged: Sequence[Judged]) -> Rows:
-    return [_counts(each.section.title, [one for one in each.statements if not one.apart]) for each in judged]
+    counted = {each.section.title: [one for one in each.statements if not one.apart] for each in judged}
+    return [_counts(title, ones) for title, ones in counted.items() if ones]
 
 
 def _counts(name: str, chosen: Sequence[Statement]) -> list[str]:

@@ -14,8 +14,9 @@ says so.
 
 Two machines stand side by side (`docs/preset-zeng2019.md`). `{MACHINE}` is the machine of rubgen: contact on the \
 smooth curve. `{AS_COMPUTED}` is the machine as the paper discretised it: contact on chords between the casing's \
-nodes, unbalance and clearance fitted for chords, and the casing that fits the paper's words best \
-(`docs/zeng2019-fit.md`). It is for comparison, never for data. A third run of some statements, `{TWIN}`, has its \
+nodes, unbalance and clearance fitted for chords, and the mass of the casing that fits the paper's words best on \
+chords, without friction and with the published frequencies (`docs/zeng2019-fit.md`). \
+It is for comparison, never for data. A third run of some statements, `{TWIN}`, has its \
 casing and the same air, but the smooth curve, at every fourth speed and every second support: it separates chords \
 from the casing. Figures show `{MACHINE}`.
 
