@@ -86,9 +86,10 @@ def write_cached(path: Path, content: bytes) -> None:
 
 
 def read_cached(path: Path) -> bytes | None:
-    """Read the content that `write_cached` wrote to `path`.
+    """Read the content that `write_cached` wrote to `path`; None where it must be made anew. Raises no OSError.
 
-    Returns None if there is no such file, or if it is damaged or belongs to another user.
+    That is where there is no such file. It is also, with a warning that is given once, where the file cannot be read,
+    is damaged, belongs to another user, or may be written by every user.
     """
     try:
         with open(path, "rb", opener=_at_once) as file:

@@ -194,12 +194,17 @@ def build_rows(
     sin_theta: float,
     work: ContactWork,
 ) -> None:
-    """Write B_n and B of contact m, and its direction of friction, into `work`.
+    """Write B_n and B of contact m, and the direction of its friction, into row m of `work`.
 
-    - q (n,), velocity (n,): free state q* and its velocity.
+    Needs `blade`, `psi` and `tangent` of `work`, as `find_near` leaves them. Writes `normal_tip`, `full_tip`,
+    `normal_casing`, `full_casing` and `slip`, a unit vector along tangent and axis that is 0 where nothing slips. With
+    friction or a liner it also writes `sliding`. Without both `slip` is 0.
+
+    - m: number of the contact, not of the blade.
+    - q (n,), velocity (n,): free state q* and its velocity. Of the tips only coordinates of this blade are read.
     - speed: Omega, rad/s.
-    - friction: coefficient of friction.
-    - cos_theta, sin_theta: of the blisk's angle.
+    - friction: coefficient of friction, 0 for none.
+    - cos_theta, sin_theta: of the blisk's angle at the new step.
     """
     k = work.blade[m]
     _, _, cosine, sine = tip_position(tips, k, q, cos_theta, sin_theta)

@@ -104,10 +104,12 @@ def spectrum_turns(response: Response) -> int:
 
 
 def order_lines(tap: FloatArray, response: Response) -> ComplexArray:
-    """Compute peak amplitudes and phases (complex) of a tap at orders 0, 1/turns, 2/turns, ...: 2 X / n of a DFT.
+    """Compute peak amplitudes and phases of a tap (steps,): complex A e^(i phase) of A cos(k theta + phase).
 
-    It covers the last n = turns * steps values. The record ends with a turn, so the first value is at theta = 0. Raises
-    ValueError where the tap is shorter.
+    Line j (n // 2 + 1,) is at order j / turns: 2 X_j / n, with X the DFT of the last n = turns * steps_per_turn values
+    and turns from `spectrum_turns`. The unit is the tap's. Line 0 is twice the mean. The record ends with a turn, so
+    the first of these values is at theta = 0, at a constant speed. Raises ValueError where the tap has fewer than n
+    values.
     """
     count = spectrum_turns(response) * response.steps_per_turn
     if tap.size < count:

@@ -168,9 +168,10 @@ def _example(row: dict[str, Any], replay: Replay) -> dict[str, str]:
 
 
 def loading(data: DataSet, replay: Replay) -> dict[str, str]:
-    """Return ways to load the set by title, each a few lines of Python. DIR in them stands for its directory.
+    """Return snippets of Python that load the set, by the name of the library: rubgen's own, and those of its formats.
 
-    Channel and run are those of `replay`.
+    RUN and CHANNEL in them become the run of `replay` and its first channel. DIR stays: the reader replaces it by the
+    directory of the set.
     """
     formats = data.manifest.identity.recipe["output"]["formats"]
     ways = {"rubgen": RUBGEN}

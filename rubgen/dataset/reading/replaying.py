@@ -42,15 +42,18 @@ class FoundReplay:
 
 
 def find_replay(source: Path, run_id: str | None = None, where: str | None = None) -> FoundReplay:
-    """Find the run that the user wants to see and return its replay.
+    """Find the run that the user wants to see. Return its replay, with remarks for the user.
 
-    - source: an MCAP file, or the directory of a data set.
-    - run_id: name of the run in the set.
-    - where: a condition in duckdb's SQL on the columns of `runs.parquet`; the first good run that meets it is taken.
+    - source: an MCAP file, which is one run, or the directory of a data set.
+    - run_id: name of a good run (status ok) of the set.
+    - where: a condition in duckdb's SQL, without the word WHERE, on the columns of `runs.parquet`. Of the good runs
+      that meet it, the first by name is taken.
 
-    With neither `run_id` nor `where` it is the first good run of the set. A run without an MCAP file is simulated
-    again. Raises UserError where there is no such source or run, no run meets the condition, or it cannot be
-    understood.
+    Give at most one of `run_id` and `where`, and neither with a file. Without both it is the first good run. A run of
+    the set without an MCAP file is simulated again. The remarks say so, and name what a damaged file has lost and how
+    many runs met the condition. Raises UserError where there is no such source or run, the run failed, a choice does
+    not fit, no good run meets the condition, the condition is not valid, or the file does not fit the set or this
+    version.
     """
     if source.is_dir():
         return _from_data_set(source, run_id, where)

@@ -43,7 +43,17 @@ def distance(laws: Laws, mass: Product, main: FloatArray, companion: tuple[Motio
 def renormalise(
     model: Model, snapshots: Snapshots, number: int, closeness: float, companion: tuple[Motion, Motion], state: State
 ) -> float:
-    """Scale the companion's distance to `closeness`. Return ln of the distance's growth; NaN where it is 0 or NaN."""
+    """Bring the companion back to the distance `closeness` from the run, in the direction in which it is now.
+
+    Returns ln(distance / closeness), the growth since the last renormalisation. Where the distance is 0 or NaN, returns
+    NaN and leaves the companion as it is.
+
+    - snapshots: of the run's turn.
+    - number: the snapshot that the companion has reached.
+    - closeness: distance to leave, in the energy norm of `distance`, sqrt(J).
+    - companion: the companion's motions at the step before the snapshot and at it; changed.
+    - state: the companion's own, not the run's; its `contact.step_gaps` are scaled alike.
+    """
     size = distance(model.laws, model.energy.M, snapshots.z[number], companion, state.scratch)
     if not size > 0.0:
         return math.nan

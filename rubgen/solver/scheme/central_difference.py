@@ -11,10 +11,13 @@ from rubgen.solver.scheme.model_kernels import EnergyTerms
 
 
 def scheme(M: FloatArray, C: FloatArray, K: FloatArray, force: FloatArray, dt: float, blocks: Blocks) -> Scheme:
-    """Build the free step q* = P1 q_n + P2 q_n-1 + p0, and A^-1, in blocks.
+    """Build the step without contact forces, q* = P1 q_n + P2 q_n-1 + p0, and A^-1, packed in `blocks`.
 
     A = M / dt^2 + C / (2 dt), P1 = A^-1 (2 M / dt^2 - K), P2 = -A^-1 (M / dt^2 - C / (2 dt)), p0 = A^-1 force. C and K
-    may be unsymmetric (Carpenter, Taylor, Katona 1991). Matrices are (n, n), `force` is (n,) in N, `dt` in s.
+    may be unsymmetric (Carpenter, Taylor, Katona 1991). The arguments are in the coordinates q: matrices (n, n), the
+    constant `force` (n,) in N, `dt` in s. The result is in z, the coordinates of `Blocks`: P1 is `now`, P2 `before`, p0
+    `constant` and A^-1 `inverse`. Entries between blocks are dropped, so `blocks` must be those of these matrices.
+    Stability at `dt` is not checked.
     """
     inertia, drag = M / dt**2, C / (2 * dt)
     inverse = la.inv(inertia + drag)

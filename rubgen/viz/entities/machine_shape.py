@@ -218,10 +218,11 @@ def blade_placements(machine: Machine) -> FloatArray:
 
 
 def blade_leanings(machine: Machine, frames: MotionFrames, factor: float) -> FloatArray:
-    """Return matrices (frames, n_blades, 3, 3) that turn `blade_mesh` into place and lean it to its drawn tip.
+    """Return matrices (frames, n_blades, 3, 3) that turn `blade_mesh` to each blade's direction and lean it to its tip.
 
-    The matrix of blade k is R_k (I + s d e_x^T / L) with R_k the turn to its place, s the `factor`, L the length and d
-    the tip's displacement relative to the disk centre: a straight lean from root to tip.
+    They hold in the blisk's turning frame, about the root: `blade_placements` adds the place of the root. The matrix of
+    blade k is R_k (I + s d e_x^T / L), with R_k the rotation about Z by its angle on the disk, s the factor of the
+    drawing, L the blade's length and d the tip's displacement relative to the disk centre (radial, tangential, axial).
     """
     angle = blade_angles(machine.blades)
     cosine, sine = np.cos(angle), np.sin(angle)
