@@ -159,7 +159,7 @@ def test_machine_id_is_of_the_machine_before_vary():
     recipe = load_recipe()
     first, second = recipe.scenario(0), recipe.scenario(1)
     assert first.machine != second.machine
-    assert first.machine_id == second.machine_id == make_scenario().machine_id
+    assert first.machine_id == second.machine_id == make_scenario(path_gain=1.0).machine_id
     assert len(first.machine_id) == 12
 
 

@@ -13,7 +13,7 @@ from rubgen.labels.compact_record import CompactRecord, response_of
 from rubgen.labels.motion.classify import Motions, motion
 from rubgen.machine.toml_file import read_toml
 from rubgen.scenario import Recipe, Scenario
-from rubgen.scenario.recipe import DEFAULT_RECIPE, parse_recipe
+from rubgen.scenario.recipe import parse_recipe
 from rubgen.solver.exponent import lyapunov
 from validation.confusion.runs import rubs, run_piece
 from validation.piece import Arrays, Piece
@@ -22,7 +22,7 @@ from validation.sensitivity.halving import STEPS
 from validation.sensitivity.results import Shorten
 
 DATASETS = Path(__file__).parents[2] / "datasets"
-RECIPES = ("zeng2019-mini", "thousand", "rig", "speed-sweep", "three-lobes")
+RECIPES = ("laboratory", "thousand", "rig", "speed-sweep", "three-lobes")
 """Those with a steady speed. At a changing speed the motion of a run with contact is always undecided."""
 SEEDS = {"fit": 101, "check": 202}
 """Constants of the confidence may be fitted to the first only; the second shows what the confidence is worth."""
@@ -114,8 +114,5 @@ def motions(kept: CompactRecord) -> Motions:
 
 @cache
 def _recipe(name: str, seed: int) -> Recipe:
-    if name == "thousand":
-        data = tomllib.loads(RECIPE.format(runs=1000))
-    else:
-        data = read_toml(DEFAULT_RECIPE if name == DEFAULT_RECIPE.stem else DATASETS / f"{name}.toml")
+    data = tomllib.loads(RECIPE.format(runs=1000)) if name == "thousand" else read_toml(DATASETS / f"{name}.toml")
     return parse_recipe({**data, "seed": seed}, folder=DATASETS)
