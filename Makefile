@@ -57,6 +57,7 @@ zeng2019-fit: $(VENV)/.installed-dev
 
 pictures: $(VENV)/.installed-dev
 	$(BIN)/python docs/pictures.py
+	$(BIN)/python docs/fault_pictures.py
 
 schemas: $(VENV)/.installed-dev
 	$(BIN)/python -m schemas.make schemas docs/labels.md
