@@ -1,0 +1,1 @@
+"""How hard it is to tell a rub from no rub by what the sensors record."""
