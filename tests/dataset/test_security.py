@@ -71,7 +71,7 @@ def test_a_pickle_in_the_cache_of_blisks_is_not_opened(tmp_path, monkeypatch):
 
     trap, packed = tmp_path / "sprung", tmp_path / "trap.npz"
     np.savez(packed, M=np.array([_Trap(trap)], dtype=object), allow_pickle=True)
-    monkeypatch.setattr(cache, "kept", lambda _path: packed.read_bytes())
+    monkeypatch.setattr(cache, "read_cached", lambda _path: packed.read_bytes())
     with pytest.raises(ValueError, match="allow_pickle=False"):
         cache._load(tmp_path / "x.blisk")
     assert not trap.exists()
