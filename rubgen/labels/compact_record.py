@@ -4,7 +4,7 @@ Every label except the orders is computed from the compact record, most of it in
 record read back from a file are therefore equal.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -39,7 +39,7 @@ def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
 
     They have about 0.27 MB for 500 turns and 36 blades, and 26 bytes a touch.
 
-    - `scalars` (9,): the numbers named by `SCALARS`.
+    - `scalars` (9,): the numbers named by `SCALARS`; a tenth, 1, follows where a fault grows (`Response.grows`).
     - `section` (turns, 3 blades + 4 + 2 casing modes), once a turn: displacements of the tips, x, y, v_x, v_y of the
       disk centre, displacements and velocities of the casing modes.
     - `fractions` (N, as many): the same for each of `Response.symmetry_states`.
@@ -52,7 +52,9 @@ def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
     changing = response.changing_speed
     states = response.symmetry_states
     record: dict[str, npt.NDArray[Any]] = {
-        "scalars": np.array([getattr(response, name) for name in SCALARS], dtype=np.float64),
+        "scalars": np.array(
+            [*(getattr(response, name) for name in SCALARS), *([1.0] if response.grows else [])], dtype=np.float64
+        ),
         "section": _narrow(response.section_q, response.section_v, response),
         "fractions": _narrow(states[:, 0], states[:, 1], response) if states.size else np.zeros((0, 0), "f4"),
         "growth": response.companion_growth.astype(np.float32),
@@ -69,7 +71,7 @@ def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
 
 def response_of(record: CompactRecord) -> Response:
     """Make a response from a compact record. It has no taps and orders, energy, blisk modes and velocities of tips."""
-    scalars = dict(zip(SCALARS, record["scalars"].tolist(), strict=True))
+    scalars = named_scalars(record["scalars"].tolist())
     blades, casing = int(scalars["n_blades"]), int(scalars["n_casing"])
     q, v = _wide(record["section"], blades, casing)
     return Response(
@@ -95,7 +97,14 @@ def response_of(record: CompactRecord) -> Response:
         orbit=record["orbit"].astype(np.float64),
         blisk_mass=scalars["blisk_mass"],
         free_penetration=scalars["free_penetration"],
+        grows="grows" in scalars,
     )
+
+
+def named_scalars(values: Sequence[float]) -> dict[str, float]:
+    """Return the numbers of a record by name, `grows` only where there is one. Raises ValueError for another number."""
+    names = (*SCALARS, "grows") if len(values) == len(SCALARS) + 1 else SCALARS
+    return dict(zip(names, values, strict=True))
 
 
 def in_record_precision(response: Response) -> Response:

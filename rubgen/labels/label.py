@@ -30,7 +30,7 @@ def label(response: Response) -> Labels:
     zones = contact_zones(by_angle(response), steps_per_turn=response.steps_per_turn)
     exponent = lyapunov(response.companion_growth)
     history = speed_history(response) if response.changing_speed else None
-    parts = changing_motion(response, rub) if history else motion(response, exponent)
+    parts = changing_motion(response, rub) if history or response.grows else motion(response, exponent)
     cut = windows(response)
     orders = changing_orders(cut) if history else harmonics(response)
     present = orders[MARKED_TAP].present if rub and orders else ()

@@ -75,7 +75,7 @@ def speed_history(response: Response) -> SpeedHistory:
 
 
 def changing_motion(response: Response, rub: bool) -> Motions:
-    """Return the motion of a whole record at a changing speed: the forced whirl if it is known and without rub.
+    """Return the motion of a record in which speed or machine change: the forced whirl if it is known and without rub.
 
     It is undecided with rub, and where supports that are not linear leave the motion without rub unknown.
     """

@@ -165,6 +165,12 @@ class SpinningSystem:
         return replace(self, turning=replace(forces, laws=known))
 
     @property
+    def ramps(self) -> tuple[Ramp, ...]:
+        """How each fault grows that grows within the record; empty where the machine stays as it is."""
+        growing = tuple(load.ramp for load in self.turning.growing) if self.turning else ()
+        return (*growing, *(narrowing.ramp for narrowing in self.narrowings))
+
+    @property
     def centre(self) -> int:
         """Index of O_d x in q; O_d y follows."""
         return 3 * self.n_blades

@@ -57,7 +57,8 @@ def integrate(
     All taps of step n belong to one time: displacements q_n, velocities and accelerations from q_n-1, q_n, q_n+1, and
     the contact force lam_n. The last value belongs to the last step of the record. The companion trajectory
     (`observers.companion`) stops once it has settled the exponent. If the motion becomes another after that, the run is
-    made again with a companion that does not stop. At a changing speed the time steps are equal and the Poincare
+    made again with a companion that does not stop. There is no companion where a fault grows within the record: its
+    exponent would mix the motions before and after. At a changing speed the time steps are equal and the Poincare
     section lies between steps (`turn_kernels.record_section`). There are then no companion and no symmetry states.
 
     A run that fails has the status and the reason. Nothing else in it is data. Raises UserError for a system that
@@ -90,6 +91,8 @@ def _steady(system: SpinningSystem, operation: Operation, contact: ContactLaw, w
     if refusal:
         return refused_response(system, operation, steps, refusal)
     settle = settle_turns(system, operation, decay)
+    grows = any(ramp.start_s < 2 * math.pi / system.speed * operation.record_turns for ramp in system.ramps)
+    wants = replace(wants, companion=wants.companion and not grows)
     stepper = rub_free_stepper(system, contact, steps, taps=wants.taps)
     surface = stepper.model.surface
     penetration = math.inf
@@ -98,6 +101,7 @@ def _steady(system: SpinningSystem, operation: Operation, contact: ContactLaw, w
     if wants.repeats_free_turn and never_touches(system, surface, penetration):
         return Integration(RepeatedDriver(stepper, settle, decay), system, operation, wants, penetration).response()
     response = Integration(SteadyDriver(stepper, settle), system, operation, wants, penetration).response()
+    response = replace(response, grows=grows)
     if _settled_too_soon(response):
         driver = SteadyDriver(rub_free_stepper(system, contact, steps, taps=wants.taps), settle)
         throughout = replace(wants, companion_stops=False)

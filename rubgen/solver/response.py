@@ -236,6 +236,9 @@ class Response:
 
     The windows are the last of the record that the taps cover. None (0, ..) where the speed changes."""
 
+    grows: bool = False
+    """Whether a fault grows within the record, at a steady speed. A rub then has no single class of motion."""
+
     __repr__ = brief
 
     @property

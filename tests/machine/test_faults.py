@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
-from rubgen.errors import UserError
+from rubgen.errors import RubgenWarning, UserError
+from rubgen.labels.compact_record import compact_record
 from rubgen.labels.faults import fault_labels
+from rubgen.labels.labels import Motion
+from rubgen.labels.to_json import labels_to_json, remade_labels
 from rubgen.machine import Machine, Mistuning, load_machine
 from rubgen.machine.faults.bow import Bow
 from rubgen.machine.faults.cracked_blade import CrackedBlade
@@ -136,6 +139,25 @@ def test_a_rub_begins_where_the_closed_clearance_is_used_up():
     assert labels["rub_onset_s"] == pytest.approx(0.5 + 1.5 * gap / 6e-4, abs=60 / 9000)
     assert labels["clearance_closing_m"] == 6e-4
     assert run.labels.rub
+
+
+def test_a_rub_that_begins_within_the_record_has_no_class_of_motion():
+    """The rub itself repeats every turn; the record around its onset looks chaotic to the section."""
+    keys = {"speed_rpm": 10_500, "signal_seconds": 0.2}
+    closing = {"fault": "closing-clearance", "closing_m": 1.75e-3, "start_s": 0.1, "growth_s": 1.0, "clearance_m": 2e-3}
+    assert simulate(make_scenario(**keys)).labels.motion is Motion.PERIOD_1
+    run = simulate(make_scenario(**keys, **closing))
+    assert run.labels.rub
+    assert (run.labels.motion, run.labels.motion_casing) == (Motion.UNDECIDED, Motion.UNDECIDED)
+    assert run.labels.lyapunov is None
+    assert run.response.companion_growth.size == 0
+    stored = labels_to_json(run.labels)
+    assert remade_labels(compact_record(run.response)).items() <= stored.items()
+    with pytest.warns(RubgenWarning, match="it never begins"):
+        scenario = make_scenario(**keys, **closing | {"start_s": 1e3, "clearance_m": 2.5e-4})
+    later = simulate(scenario)
+    assert later.labels.motion is not Motion.UNDECIDED
+    assert later.labels.lyapunov is not None
 
 
 LATE = {"fault": "closing-clearance", "closing_m": 6e-4, "start_s": 0.5, "growth_s": 1.5}

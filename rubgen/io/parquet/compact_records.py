@@ -11,7 +11,7 @@ import pyarrow as pa
 
 from rubgen.errors import UserError
 from rubgen.io.parquet.write import write_table
-from rubgen.labels.compact_record import SCALARS, TOUCHES, CompactRecord, compact_record
+from rubgen.labels.compact_record import SCALARS, TOUCHES, CompactRecord, compact_record, named_scalars
 from rubgen.solver.response import Response
 
 RECORD_COLUMNS: dict[str, tuple[pa.DataType, str]] = {
@@ -66,7 +66,7 @@ def read_record(table: pa.Table, row: int, path: Path) -> CompactRecord:
     try:
         for name in RECORD_COLUMNS:
             record[name] = _listed(table, name, row)
-        scalars = dict(zip(SCALARS, record["scalars"].tolist(), strict=True))
+        scalars = named_scalars(record["scalars"].tolist())
         width = 3 * int(scalars["n_blades"]) + 4 + 2 * int(scalars["n_casing"])
         for name, columns in (("section", width), ("fractions", width), ("orbit", 5)):
             record[name] = record[name].reshape(-1, columns)

@@ -80,9 +80,9 @@ def never_touches(system: SpinningSystem, surface: Surface, penetration: float) 
     - penetration: free penetration of the motion in m; negative, with its gap as the size, where it does not touch.
     """
     forces = system.turning
-    if forces is not None and (forces.growing or not all(law.LINEAR for law in forces.laws)):
+    if forces is not None and not all(law.LINEAR for law in forces.laws):
         return False
-    if system.narrowings or surface.liner.bins:
+    if system.ramps or surface.liner.bins:
         return False
     bend = float(np.sum(np.abs(system.surface.amplitude) * np.square(system.surface.order)))
     return penetration < -(CLEARANCE_MARGIN + bend * (np.pi / CLEARANCE_PLACES) ** 2 / 2)
