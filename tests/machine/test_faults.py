@@ -205,3 +205,16 @@ def test_a_machine_has_each_fault_once(preset):
         replace(preset, faults=twice)
     with pytest.raises(UserError, match="the machine has this fault already"):
         make_scenario(fault=["bow", "bow"], bow_m=1e-6)
+
+
+def test_healthy_is_a_machine_without_a_fault_and_without_a_rub():
+    keys = {"speed_rpm": 10_500, "signal_seconds": 0.2, "lyapunov": False}
+    found = {}
+    for name, more in {"rub": {}, "air": {"clearance_m": 2e-3}}.items():
+        scenario = replace(make_scenario(**keys, **more), fault_kinds=("bow",))
+        found[name] = fault_labels(scenario, simulate(scenario).response)
+    assert [each["healthy"] for each in found.values()] == [False, True]
+    assert [each["faults"] for each in found.values()] == [[], []]
+    assert [each["bow_m"] for each in found.values()] == [0.0, 0.0]
+    bent = make_scenario(**keys, clearance_m=2e-3, fault="bow", bow_m=1e-6)
+    assert fault_labels(bent, simulate(bent).response)["healthy"] is False
