@@ -20,31 +20,22 @@ from PIL import Image
 import rubgen
 from rubgen.report.figures import Choice, make_figure
 from rubgen.scenario.surroundings import Surroundings, Tone
-from rubgen.viz.figures import dataset_overview, overview, save_png
+from rubgen.viz.figures import overview, save_png
 from rubgen.viz.replay import Replay, replay_of
 from rubgen.viz.rerun import write_replay
 
 DOCS = Path(__file__).parent
 OUT = DOCS.parent / "out"
-RUNS: dict[str, dict[str, float]] = {
-    "overview": {"speed_rpm": 8500},
-    "period-1": {"speed_rpm": 10500},
-    "three-lobes": {"speed_rpm": 9000, "lobes": 3},
-}
 TOP_BAR = 36
 """Pixels of the viewer's own bar, which is cut off."""
 
 
 def main() -> None:
-    """Simulate the named runs, and make or take the data sets of `make demo` and of the sweep."""
-    for name, values in RUNS.items():
-        run = rubgen.simulate(rubgen.make_scenario("zeng2019", **values))
-        save_png(overview(run), DOCS / f"{name}.png")
-        if name == "overview":
-            save_viewer(replay_of(run), DOCS / "replay.png")
+    """Simulate the runs, and make or take the data set of the sweep."""
+    run = rubgen.simulate(rubgen.make_scenario("zeng2019", speed_rpm=8500))
+    save_png(overview(run), DOCS / "overview.png")
+    save_viewer(replay_of(run), DOCS / "replay.png")
     save_png(surroundings_figure(), DOCS / "surroundings.png")
-    rubgen.generate(None, OUT / "demo")
-    save_png(dataset_overview(rubgen.open(OUT / "demo").runs), DOCS / "data-set.png")
     rubgen.generate(DOCS.parent / "datasets" / "speed-sweep.toml", OUT / "speed-sweep")
     save_png(make_figure("bifurcation", OUT / "speed-sweep", Choice()), DOCS / "bifurcation.png")
 
