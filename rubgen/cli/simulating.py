@@ -120,7 +120,8 @@ def run_summary(run: Run) -> Iterator[tuple[str, str]]:
         yield "failed", f"{run.response.status.value}; {run.response.reason}"
     for fault in run.scenario.machine.faults:
         about = fault.SEVERITY
-        yield "fault", f"{kind_of(fault)}, {fault.severity:.4g} {about.unit}, {about.meaning}"
+        value = f"{fault.severity:.4g}" if about.unit == "1" else f"{fault.severity:.4g} {about.unit}"
+        yield "fault", f"{kind_of(fault)}: {about.meaning} {value}"
     if run.labels is not None:
         yield from _contact(run.labels)
         yield from _motion(run.labels)

@@ -56,10 +56,10 @@ def _introduction(found: Cases, recipe: str) -> str:
 # How hard a rub is to find
 
 `make difficulty` makes this page from {found.rub.size} runs of `datasets/{recipe}.toml`; {found.rub.sum()} of them rub.
-Each run is simulated once and measured twice: in the plant, with its surroundings, and in silence, without them. Faults
-of the motion are in both. The score is the balanced accuracy, the mean of the shares of rubs and of other runs that are
-called so: 0.5 is a guess, 1 is always right. Each channel has {len(NAMES)} features: {len(OF_SIGNAL)} of the signal,
-{len(OF_SPECTRUM)} of its spectrum, and {orders} amplitudes at orders of the speed
+Each run is simulated once and measured twice: in the plant, with its surroundings, and in silence, without them. The
+faults of the machine are in both. The score is the balanced accuracy, the mean of the shares of rubs and of other runs
+that are called so: 0.5 is a guess, 1 is always right. Each channel has {len(NAMES)} features: {len(OF_SIGNAL)} of the
+signal, {len(OF_SPECTRUM)} of its spectrum, and {orders} amplitudes at orders of the speed
 (`validation/difficulty/features.py`).
 """
 

@@ -49,10 +49,16 @@ def features_of_run(scenario: Scenario) -> Arrays:
     if run.labels is None or run.recording is None:
         return {}
     rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(scenario.index,)))
+    machine = scenario.machine
     silent = measure(
-        run.response, scenario.sensing, seconds=scenario.signal_seconds, rng=rng, frame=scenario.machine.frame
+        run.response,
+        scenario.sensing,
+        seconds=scenario.signal_seconds,
+        rng=rng,
+        frame=machine.frame,
+        faults=machine.faults,
     )
-    blades = scenario.machine.blades.count
+    blades = machine.blades.count
     recorded = zip(PLACES, (run.recording, silent), strict=True)
     return {"rub": np.array(run.labels.rub)} | {place: _features(each, blades) for place, each in recorded}
 
