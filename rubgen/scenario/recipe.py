@@ -210,6 +210,19 @@ class Recipe(BaseModel):
         """The kinds of fault that its runs may have, of the recipe or of its machine."""
         return kinds_of((*self.base.machine.faults, *(self.faults or ())))
 
+    @property
+    def split_names(self) -> tuple[str, ...]:
+        """The splits of its runs, in the order of the recipe."""
+        return ("train",)
+
+    def split_of(self, index: int) -> str:
+        """Return the split of run number `index`: that of its machine, whatever the number of runs."""
+        return self.split_names[self.machine_number(index) % len(self.split_names)]
+
+    def machine_number(self, index: int) -> int:
+        """Return the number of the machine of run number `index`; the runs of a machine follow each other."""
+        return index // MOST_RUNS
+
     def corners(self, source: str = "") -> Iterator[Scenario]:
         """Yield scenarios at the extreme values of each key, the other keys at their first value. Checks use them.
 
