@@ -5,30 +5,20 @@ from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, TypeAdapter, ValidationError, create_model
 
 from rubgen.brief import counted
 from rubgen.errors import UserError, warn
-from rubgen.format_names import FORMAT_NAMES, FormatName
 from rubgen.machine import Machine, load_machine
 from rubgen.machine.load import FOR_COMPARISON, file_named, machine_id
 from rubgen.machine.problems import first_problem, validated
 from rubgen.machine.quantities import (
     MOST_RUNS,
-    AdcBits,
-    Duration,
-    NoiseScale,
-    Rate,
     RunCount,
     Seed,
-    Speed,
-    SpeedSwing,
-    StepCount,
-    Switch,
-    TurnCount,
 )
 from rubgen.machine.sentences import FILE_NAME
 from rubgen.machine.toml_file import check_kind, read_toml, toml_path
@@ -39,8 +29,9 @@ from rubgen.scenario.faults import extremes as fault_extremes
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.profiles import check_used
-from rubgen.scenario.scenario import Labelling, Operation, ProfileName, Reduction, Scenario, Sensing
+from rubgen.scenario.scenario import Labelling, Operation, Reduction, Scenario, Sensing
 from rubgen.scenario.surroundings import SurroundingsTable, drawn, extremes
+from rubgen.scenario.tables.run import Output, Profile, Sensors, Simulation
 from rubgen.scenario.vary import (
     DEFAULT_SPEED_RPM,
     DRAWN,
@@ -50,7 +41,7 @@ from rubgen.scenario.vary import (
     sobol_point,
     vary,
 )
-from rubgen.sensors.load import DEFAULT_SET, load_sensor_set
+from rubgen.sensors.load import load_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
 
 DEFAULT_RECIPE = Path(__file__).parent / "zeng2019-mini.toml"
@@ -59,51 +50,6 @@ NOT_FOR_DATA = (
     'where every node of the mesh hits the tips; name "zeng2019" instead'
 )
 _STRICT = ConfigDict(extra="forbid", frozen=True)
-
-
-class Simulation(BaseModel):
-    """`[simulation]`: turns and steps of every run, as in `Operation`."""
-
-    model_config = _STRICT
-    settle_turns: TurnCount | Literal["auto"] = "auto"
-    record_turns: TurnCount = 500
-    steps_per_turn: StepCount = 1024
-    closing_turns: TurnCount = 40
-
-
-class Profile(BaseModel):
-    """`[operation]`: the profile of the speed, as in `Operation`; it starts at `speed_rpm` of `[vary]`."""
-
-    model_config = _STRICT
-    profile: ProfileName = "steady"
-    end_speed_rpm: Speed | None = None
-    duration_s: Duration | None = None
-    fluctuation_rpm: SpeedSwing = 0.0
-    fluctuation_period_s: Duration = 1.0
-    forbidden_speed_rpm: tuple[tuple[Speed, Speed], ...] = ()
-
-
-class Output(BaseModel):
-    """`[output]`: the files to write, and the length of the signals: the end of the record."""
-
-    model_config = _STRICT
-    formats: Annotated[tuple[FormatName, ...], Field(min_length=1, max_length=len(FORMAT_NAMES))] = (
-        "parquet",
-        "mcap",
-        "rrd",
-    )
-    signal_seconds: Duration = 1.0
-
-
-class Sensors(BaseModel):
-    """`[sensors]`: a set of rubgen or the path of a TOML file, and the other keys of `Sensing`."""
-
-    model_config = _STRICT
-    set: Annotated[str, Field(min_length=1)] = DEFAULT_SET
-    sample_rate_hz: Rate = 25600.0
-    noise: NoiseScale = 1.0
-    adc_bits: AdcBits = 16
-    keep_clean: Switch = False
 
 
 def _vary_fields() -> dict[str, Any]:

@@ -13,7 +13,7 @@ from rubgen.machine import Machine, Mistuning, SqueezeFilm, Unbalance, load_mach
 from rubgen.scenario import Liner, Scenario, make_scenario
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.plausible import implausible
-from rubgen.scenario.recipe import Output, Profile, Sensors, Simulation
+from rubgen.scenario.tables.run import Output, Profile, Sensors, Simulation
 from rubgen.sensors.load import load_sensor_set
 from rubgen.sensors.registry import AnySensor
 from rubgen.sensors.sensor_set import SensorSet

@@ -1,0 +1,1 @@
+"""Tables of a recipe, as users write them."""
