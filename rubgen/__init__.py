@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rubgen.dataset.making.generate import generate
+    from rubgen.dataset.making.resense import resense
     from rubgen.dataset.reading.open import DataSet
     from rubgen.errors import RubgenError, UserError
     from rubgen.pipeline import Run
@@ -24,6 +25,7 @@ __all__ = [
     "load_recipe",
     "make_scenario",
     "open",
+    "resense",
     "simulate",
     "verify",
 ]
@@ -36,6 +38,7 @@ _HOMES = {
     "generate": "rubgen.dataset.making.generate",
     "load_recipe": "rubgen.scenario",
     "make_scenario": "rubgen.scenario",
+    "resense": "rubgen.dataset.making.resense",
 }
 """The modules of names that are imported on first use."""
 

@@ -56,6 +56,22 @@ def generate(
 
 
 @app.command
+def resense(
+    directory: Directory,
+    /,
+    *,
+    sensors: Annotated[str, _option("Sensor set: default, rig, field, or the path of a TOML.")],
+    out: Annotated[Path, _option("New or empty directory, or the one of the same command, which is then completed.")],
+    workers: Annotated[int | None, _whole_number("Number of processes; the number of cores when not given.")] = None,
+    json: Json = False,
+) -> int:
+    """Make a data set again with other sensors on the same motions; every run is simulated again."""
+    from rubgen.cli.generating import resense_command
+
+    return resense_command(directory, sensors, out, workers, as_json=json)
+
+
+@app.command
 def simulate(
     *,
     machine: MachineName = "zeng2019",

@@ -1,9 +1,10 @@
-"""The command `rubgen generate`: progress for people, a summary for programs."""
+"""The commands `rubgen generate` and `rubgen resense`: progress for people, a summary for programs."""
 
 import dataclasses
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from shutil import which
 
@@ -12,6 +13,7 @@ from rubgen.cli.interrupts import terminable
 from rubgen.cli.printing import print_json, say
 from rubgen.dataset.making.generate import Generated, generate
 from rubgen.dataset.making.outcome import finished_runs
+from rubgen.dataset.making.resense import resense
 from rubgen.formats import run_formats
 
 
@@ -20,9 +22,23 @@ def generate_command(recipe: Path | None, out: Path, runs: int | None, workers: 
 
     Returns the exit code 0. After Ctrl-C it prints how to continue and returns 130.
     """
+    made = partial(generate, recipe, out, runs=runs, workers=workers, progress=not as_json)
+    return _made_in(out, made, as_json=as_json)
+
+
+def resense_command(directory: Path, sensors: str, out: Path, workers: int | None, *, as_json: bool) -> int:
+    """Make a data set again with other sensors and print a summary. The parameters are those of `resense`.
+
+    Returns the exit code 0. After Ctrl-C it prints how to continue and returns 130.
+    """
+    made = partial(resense, directory, sensors, out, workers=workers, progress=not as_json)
+    return _made_in(out, made, as_json=as_json)
+
+
+def _made_in(out: Path, make: Callable[[], Generated], *, as_json: bool) -> int:
     try:
         with terminable():
-            made = generate(recipe, out, runs=runs, workers=workers, progress=not as_json)
+            made = make()
     except KeyboardInterrupt:
         sys.stderr.write(
             f"rubgen: interrupted; kept in {out}: {counted(finished_runs(out), 'finished run')}; "

@@ -57,6 +57,7 @@ def test_public_names():
         "load_recipe",
         "make_scenario",
         "open",
+        "resense",
         "simulate",
         "verify",
     ]
