@@ -51,15 +51,11 @@ class Layout:
 
     def staged(self, run_id: str) -> Path:
         """Return the path of a finished run's row. Its existence proves that all files of the run are complete."""
-        return self.staging / "runs" / f"{run_id}.parquet"
+        return self.staged_row("runs", run_id)
 
-    def staged_section(self, run_id: str) -> Path:
-        """Return the path of the compact record of a finished run."""
-        return self.staging / "sections" / f"{run_id}.parquet"
-
-    def section_shard(self, number: int, count: int) -> Path:
-        """Return the path of the file with the compact records of the runs in data file `number` of `count`."""
-        return self.sections / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
+    def staged_row(self, table: str, run_id: str) -> Path:
+        """Return the path of a finished run's row in the table of that name."""
+        return self.staging / table / f"{run_id}.parquet"
 
     def export(self, kind: str, run_id: str) -> Path:
         """Return the path of a run's file in the format `kind`, whose name is its folder and its ending."""
@@ -69,9 +65,9 @@ class Layout:
         """Return the folders of the formats `names`: `data` for Parquet, else the folder with the format's name."""
         return [self.root / name if format_of(name).one_file_a_run else self.data for name in names]
 
-    def shard(self, number: int, count: int) -> Path:
-        """Return the path of the data file number `number`, from 0, of `count` files of up to RUNS_PER_SHARD runs."""
-        return self.data / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
+    def shard(self, table: str, number: int, count: int) -> Path:
+        """Return the path of file `number`, from 0, of the `count` files of a table, of up to RUNS_PER_SHARD runs."""
+        return self.root / table / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
 
     def number_of_shards(self, good_runs: int) -> int:
         """Return the number of data files, and of files of sections, for this number of good runs: at least one."""

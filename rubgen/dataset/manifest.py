@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, NonNegativeInt, TypeAdapter, 
 
 from rubgen.dataset.files import json_text, sha256_of, write_text
 from rubgen.dataset.layout import Layout
+from rubgen.dataset.tables import tables_of
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
 from rubgen.io.files import check_regular, read_json
@@ -191,14 +192,13 @@ def content_of(layout: Layout, formats: Sequence[str]) -> tuple[list[Path], list
 
     They follow from `runs.parquet` and the formats. Other files in the folders are ignored.
     """
-    rows = read_table(layout.runs, ["run_id", "status"]).to_pylist()
-    good = [row["run_id"] for row in rows if row["status"] == "ok"]
+    facts = read_table(layout.runs, ["run_id", "status"]).to_pylist()
+    good = [row["run_id"] for row in facts if row["status"] == "ok"]
     shards = layout.number_of_shards(len(good))
-    data = [layout.shard(number, shards) for number in range(shards)] if "parquet" in formats else []
-    sections = [layout.section_shard(number, shards) for number in range(shards)]
+    rows = [layout.shard(table.name, number, shards) for table in tables_of(formats) for number in range(shards)]
     hashed = [layout.export(each.name, name) for each in run_formats(formats) if not each.remake for name in good]
     derived = [layout.export(each.name, name) for each in run_formats(formats) if each.remake for name in good]
-    return [layout.card, layout.croissant, layout.runs, *data, *sections, *hashed], derived
+    return [layout.card, layout.croissant, layout.runs, *rows, *hashed], derived
 
 
 def entry_of(path: Path, root: Path) -> FileEntry:

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
@@ -9,11 +10,11 @@ import pyarrow as pa
 
 from rubgen.dataset.layout import RUNS_PER_ROW_GROUP, RUNS_PER_SHARD, Layout
 from rubgen.dataset.rows import asked_bytes
+from rubgen.dataset.tables import RUNS, tables_of
 from rubgen.errors import RubgenError, UserError
 from rubgen.io.files import sync_directory
-from rubgen.io.parquet.compact_records import SCHEMA
 from rubgen.io.parquet.read import read_table
-from rubgen.io.parquet.write import recipe_schema, write_table
+from rubgen.io.parquet.write import write_table
 from rubgen.scenario import Recipe
 
 T = TypeVar("T")
@@ -28,13 +29,12 @@ def assemble(recipe: Recipe, layout: Layout) -> Counter[str]:
     """
     staged = [layout.staged(f"run-{index:06d}") for index in range(recipe.runs)]
     asked = asked_bytes(recipe)
-    status = _write_runs(staged, layout, recipe_schema(recipe, signals=False), asked)
+    status = _write_runs(staged, layout, RUNS.schema(recipe), asked)
     valid = [path for path, code in zip(staged, status, strict=True) if code == "ok"]
-    if "parquet" in recipe.output.formats:
-        _write_shards(valid, valid, layout.shard, recipe_schema(recipe, signals=True), asked)
-        sync_directory(layout.data)
-    _write_shards([layout.staged_section(path.stem) for path in valid], valid, layout.section_shard, SCHEMA, asked)
-    sync_directory(layout.sections)
+    for table in tables_of(recipe.output.formats):
+        rows = [layout.staged_row(table.name, path.stem) for path in valid]
+        _write_shards(rows, valid, partial(layout.shard, table.name), table.schema(recipe), asked)
+        sync_directory(layout.root / table.name)
     sync_directory(layout.root)
     return Counter(status)
 

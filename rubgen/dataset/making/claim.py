@@ -12,11 +12,12 @@ from filelock import BaseFileLock, FileLock, SoftFileLock, Timeout
 from rubgen.dataset.files import is_system_file, remove_parts, write_json
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Identity, read_manifest
+from rubgen.dataset.tables import RUNS, TABLES
 from rubgen.errors import UserError, warn
 from rubgen.format_names import FORMAT_NAMES
 from rubgen.io.files import PART, sync_directory
 
-_STAGED = ("runs", "sections")
+_STAGED = tuple(table.name for table in (RUNS, *TABLES))
 """Folders of `.staging`."""
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EINVAL)
 """Errors of file systems without locks, such as NFS without its lock daemon."""

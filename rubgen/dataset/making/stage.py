@@ -5,7 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from rubgen.cache_root import pending_warnings
-from rubgen.dataset.layout import Layout
+from rubgen.dataset.layout import SPLIT, Layout
+from rubgen.dataset.tables import RUNS, tables_of
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
 from rubgen.progress import COMPILING, step
@@ -24,8 +25,7 @@ def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
     - root: directory of the set.
     - formats: names of the formats in which runs are written.
     """
-    from rubgen.io.parquet.compact_records import write_record
-    from rubgen.io.parquet.write import run_table, write_table
+    from rubgen.io.parquet.write import write_table
     from rubgen.pipeline import refused, simulate
 
     layout = Layout(root)
@@ -36,9 +36,11 @@ def stage_run(scenario: Scenario, root: Path, formats: tuple[str, ...]) -> str:
     if run.labels is not None:
         for each in run_formats(formats):
             each.write(run, layout.export(each.name, scenario.run_id))
-        write_record(scenario.run_id, run.response, layout.staged_section(scenario.run_id))
-    table = run_table(run, signals="parquet" in formats)
-    write_table([table], table.schema, layout.staged(scenario.run_id))
+        for table in tables_of(formats):
+            row = table.row(run, SPLIT)
+            write_table([row], row.schema, layout.staged_row(table.name, scenario.run_id))
+    row = RUNS.row(run, SPLIT)
+    write_table([row], row.schema, layout.staged(scenario.run_id))
     return run.response.status.code
 
 
@@ -60,7 +62,8 @@ def is_staged(layout: Layout, index: int, formats: tuple[str, ...], asked_bytes:
     except UserError:
         return False
     files = [layout.export(each.name, run_id) for each in run_formats(formats)]
-    return status != ["ok"] or all(file.exists() for file in (layout.staged_section(run_id), *files))
+    files += [layout.staged_row(table.name, run_id) for table in tables_of(formats)]
+    return status != ["ok"] or all(file.exists() for file in files)
 
 
 def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple[Scenario, ...]) -> list[str]:

@@ -1,0 +1,57 @@
+"""The tables of a data set: folder, columns, and the row of a run. Making and checking a set go over this list."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import pyarrow as pa
+
+from rubgen.io.parquet.compact_records import SCHEMA, record_table
+from rubgen.io.parquet.write import recipe_schema, run_table
+from rubgen.scenario import Recipe
+
+if TYPE_CHECKING:  # Run carries the solver's imports; who reads a set needs none of them
+    from rubgen.pipeline import Run
+
+
+@dataclass(frozen=True, kw_only=True)
+class SetTable:
+    """One table of a data set, with one row a run."""
+
+    name: str
+    """Folder of its files."""
+    schema: Callable[[Recipe], pa.Schema]
+    """Columns in the set of a recipe."""
+    row: Callable[[Run, str], pa.Table]
+    """The row of a run in the split of that name."""
+    wanted: Callable[[Sequence[str]], bool] = lambda _formats: True
+    """Whether a set with these formats has this table."""
+
+
+RUNS = SetTable(
+    name="runs",
+    schema=lambda recipe: recipe_schema(recipe, signals=False),
+    row=lambda run, split: run_table(run, split=split, signals=False),
+)
+"""Every run, failed ones too: the one file `runs.parquet`."""
+TABLES = (
+    SetTable(
+        name="data",
+        schema=lambda recipe: recipe_schema(recipe, signals=True),
+        row=lambda run, split: run_table(run, split=split),
+        wanted=lambda formats: "parquet" in formats,
+    ),
+    SetTable(
+        name="sections",
+        schema=lambda _recipe: SCHEMA,
+        row=lambda run, _split: record_table(run.scenario.run_id, run.response),
+    ),
+)
+"""Tables with a row for each good run, each a folder of files of many runs."""
+
+
+def tables_of(formats: Sequence[str]) -> list[SetTable]:
+    """Return the tables with a row for each good run in a set with these formats."""
+    return [table for table in TABLES if table.wanted(formats)]
