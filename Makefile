@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check bench verification sensitivity confusion contact difficulty faults fuzz zeng2019 zeng2019-fit pictures schemas clean
+.PHONY: setup demo test check docs bench verification sensitivity confusion contact difficulty faults fuzz zeng2019 zeng2019-fit pictures schemas clean
 
 setup: $(VENV)/.installed-dev
 
@@ -19,6 +19,11 @@ check: $(VENV)/.installed-dev
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(MAKE) --no-print-directory docs
+
+# The site, into site/. A link that leads nowhere ends the build.
+docs: $(VENV)/.installed-dev
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
 
 bench: $(VENV)/.installed-dev
 	$(BIN)/python -m benchmarks
@@ -63,7 +68,7 @@ schemas: $(VENV)/.installed-dev
 	$(BIN)/python -m schemas.make schemas docs/labels.md
 
 clean:
-	rm -rf $(VENV) out build *.egg-info
+	rm -rf $(VENV) out build site *.egg-info
 
 $(VENV)/bin/python:
 	$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit("rubgen needs Python 3.11 or newer: make PYTHON=python3.12 ...")'
