@@ -17,6 +17,7 @@ from rubgen.io.columns import Column, label_columns, scalar_columns, tap_columns
 from rubgen.io.mcap.messages import MESSAGES, PACKAGE
 from rubgen.labels import registry
 from rubgen.machine import Machine
+from rubgen.machine.descriptions import complete
 from rubgen.machine.faults.registry import FAULTS
 from rubgen.scenario import Recipe
 from rubgen.sensors.load import default_sensor_set
@@ -41,10 +42,10 @@ def schemas() -> dict[str, dict[str, Any]]:
         "recipe.schema.json": Recipe.model_json_schema(),
         "machine.schema.json": TypeAdapter(Machine).json_schema(),
         "manifest.schema.json": Manifest.model_json_schema(),
-        "run.schema.json": _run_schema(),
         "sensor-set.schema.json": _sensor_set_schema(),
     }
-    return {name: {"$schema": DIALECT, **document} for name, document in documents.items()}
+    completed = {name: complete(document) for name, document in documents.items()} | {"run.schema.json": _run_schema()}
+    return {name: {"$schema": DIALECT, **document} for name, document in completed.items()}
 
 
 def write_schemas(directory: Path) -> None:
@@ -108,7 +109,10 @@ def _sensor_set_schema() -> dict[str, Any]:
         "additionalProperties": {"type": "object"},
         "propertyNames": {"enum": list(SENSOR_KINDS)},
     }
-    schema["properties"]["kinds"] = {"description": "values of every sensor of a kind", **tables}
+    schema["properties"]["kinds"] = {
+        "description": "Values of every sensor of a kind, by the name of the kind.",
+        **tables,
+    }
     return schema
 
 

@@ -18,6 +18,7 @@ from rubgen.io.files import check_regular, read_json
 from rubgen.io.parquet.read import read_table
 from rubgen.machine import Machine
 from rubgen.machine.problems import first_problem
+from rubgen.machine.quantities import about
 from rubgen.scenario import Recipe
 from rubgen.scenario.faults import named_kinds
 from rubgen.scenario.recipe import recorded_recipe
@@ -35,19 +36,19 @@ class FileEntry(BaseModel):
     """A file of the set, its size and digest."""
 
     model_config = _STRICT
-    path: InnerPath
-    bytes: NonNegativeInt
-    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+    path: Annotated[InnerPath, about("Path of the file within the set.")]
+    bytes: Annotated[NonNegativeInt, about("Size of the file.")]
+    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$"), about("SHA-256 of its content, in hexadecimal digits.")]
 
 
 class Identity(BaseModel):
     """Everything that decides the bytes of a data set on one computer: recipe, machine, sensors, package versions."""
 
     model_config = _STRICT
-    recipe: dict[str, Any]
-    machine: dict[str, Any]
-    sensors: dict[str, Any]
-    packages: dict[str, str]
+    recipe: Annotated[dict[str, Any], about("The recipe with every value that was given or is a default.")]
+    machine: Annotated[dict[str, Any], about("The machine with all its values.")]
+    sensors: Annotated[dict[str, Any], about("The sensor set with all its values.")]
+    packages: Annotated[dict[str, str], about("Version of each package on which the bytes depend.")]
 
     def same_recipe(self, other: "Identity") -> bool:
         """Return whether both describe the same data set, ignoring versions."""
@@ -87,15 +88,17 @@ class Manifest(BaseModel):
     """
 
     model_config = _STRICT
-    format: Literal["rubgen data set 1"] = FORMAT
-    name: str
-    license: str
-    seed: int
-    runs: int
-    status: dict[str, NonNegativeInt]
-    identity: Identity
-    files: tuple[FileEntry, ...]
-    derived: tuple[InnerPath, ...]
+    format: Annotated[
+        Literal["rubgen data set 1"], about("Format of the set. It changes where a new version cannot read old sets.")
+    ] = FORMAT
+    name: Annotated[str, about("Name of the data set.")]
+    license: Annotated[str, about("License of the data, as an SPDX name.")]
+    seed: Annotated[int, about("Seed of all random numbers.")]
+    runs: Annotated[int, about("Number of runs, failed ones included.")]
+    status: Annotated[dict[str, NonNegativeInt], about("Number of runs by their status.")]
+    identity: Annotated[Identity, about("Everything that decides the bytes of the set on one computer.")]
+    files: Annotated[tuple[FileEntry, ...], about("Every file whose bytes are reproducible, with its hash.")]
+    derived: Annotated[tuple[InnerPath, ...], about("Paths of files that can be made again from the others.")]
 
     def listed(self, folder: str) -> list[str]:
         """Return the paths of the set's files below `folder`, sorted. Unlisted files there are ignored."""

@@ -15,6 +15,7 @@ from rubgen.machine.quantities import (
     FrameFrequency,
     FrameOrder,
     ModalMass,
+    about,
 )
 
 MOST_FRAME_MODES = 64
@@ -32,13 +33,28 @@ class FrameMode:
     the polar angle phi.
     """
 
-    frequency_hz: FrameFrequency
-    damping: FrameDamping
-    modal_mass_kg: ModalMass
-    direction_deg: Direction
-    casing_share: CasingShare = 1.0
-    casing_order: FrameOrder = 1
-    casing_angle_deg: Direction = 0.0
+    frequency_hz: Annotated[
+        FrameFrequency, about("Natural frequency of the mode. Take it from a modal test or a model of the frame.")
+    ]
+    damping: Annotated[FrameDamping, about("Damping ratio of the mode. A lower one lets the mode ring longer.")]
+    modal_mass_kg: Annotated[
+        ModalMass, about("Mass that moves with the bearing housing. A smaller one makes a louder mode.")
+    ]
+    direction_deg: Annotated[Direction, about("Direction in which the bearing housing moves, from +X.")]
+    casing_share: Annotated[
+        CasingShare,
+        about("Motion of the casing over that of the housing, at its largest. 0 keeps the mode off the casing."),
+    ] = 1.0
+    casing_order: Annotated[
+        FrameOrder,
+        about(
+            "Number of waves of the casing's motion around it. 0 breathes, 1 moves the casing as a "
+            "whole, 2 makes it oval."
+        ),
+    ] = 1
+    casing_angle_deg: Annotated[
+        Direction, about("Angle of the first largest outward motion of the casing, from +X.")
+    ] = 0.0
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -51,7 +67,9 @@ class Frame:
 
     __repr__ = brief
 
-    modes: Annotated[tuple[FrameMode, ...], Field(min_length=1, max_length=MOST_FRAME_MODES)]
+    modes: Annotated[
+        tuple[FrameMode, ...], Field(min_length=1, max_length=MOST_FRAME_MODES), about("The modes of the frame.")
+    ]
 
     @property
     def memory_seconds(self) -> float:

@@ -35,6 +35,7 @@ from rubgen.machine.quantities import (
     Stiffness,
     StiffnessDeviation,
     UnbalanceSize,
+    about,
 )
 from rubgen.machine.support_laws.disk_support import DiskSupport
 
@@ -43,9 +44,13 @@ from rubgen.machine.support_laws.disk_support import DiskSupport
 class Material:
     """Linear isotropic elastic material."""
 
-    youngs_modulus_pa: Modulus
-    poisson_ratio: PoissonRatio
-    density_kg_per_m3: Density
+    youngs_modulus_pa: Annotated[
+        Modulus, about("Young's modulus, from the data sheet: steel has 2.06e11, titanium 1.1e11, aluminium 7e10.")
+    ]
+    poisson_ratio: Annotated[PoissonRatio, about("Poisson's ratio, from the data sheet: metals have 0.25 to 0.35.")]
+    density_kg_per_m3: Annotated[
+        Density, about("Mass per volume, from the data sheet: steel has 7,850, titanium 4,430, aluminium 2,700.")
+    ]
 
     @property
     def shear_modulus_pa(self) -> float:
@@ -57,13 +62,27 @@ class Material:
 class Disk:
     """Annular disk whose thickness is linear in the radius, and its mesh of eight-node shells."""
 
-    material: Material
-    bore_radius_m: Length
-    rim_radius_m: Length
-    bore_thickness_m: Length
-    rim_thickness_m: Length
-    radial_elements: RadialElements = 7
-    circumferential_elements: CircumferentialElements = 72
+    material: Annotated[Material, about("Material of the disk.")]
+    bore_radius_m: Annotated[Length, about("Inner radius of the disk, from the drawing.")]
+    rim_radius_m: Annotated[Length, about("Outer radius of the disk, where the blades begin, from the drawing.")]
+    bore_thickness_m: Annotated[
+        Length,
+        about(
+            "Axial thickness at the bore. From there it is linear in the radius. A thicker disk is heavier and stiffer."
+        ),
+    ]
+    rim_thickness_m: Annotated[Length, about("Axial thickness at the rim. A thicker rim couples the blades less.")]
+    radial_elements: Annotated[
+        RadialElements,
+        about("Number of shell elements from bore to rim. Raise it until `rubgen modes` no longer changes."),
+    ] = 7
+    circumferential_elements: Annotated[
+        CircumferentialElements,
+        about(
+            "Number of shell elements around the disk, a multiple of the number of blades. Raise it "
+            "until `rubgen modes` no longer changes."
+        ),
+    ] = 72
 
     @model_validator(mode="after")
     def _bore_is_inside(self) -> Self:
@@ -82,9 +101,21 @@ class Mistuning:
     independent and normal with mean 0, so the mean of one draw is not exactly 0.
     """
 
-    pattern: Annotated[tuple[StiffnessDeviation, ...], Field(min_length=1)] | None = None
-    relative_std: DeviationSpread | None = None
-    seed: Seed | None = None
+    pattern: Annotated[
+        Annotated[tuple[StiffnessDeviation, ...], Field(min_length=1)] | None,
+        about(
+            "Relative deviation of the stiffness of each blade, beginning with blade 0. Give it where "
+            "the deviations were measured; else give relative_std and seed."
+        ),
+    ] = None
+    relative_std: Annotated[
+        DeviationSpread | None,
+        about(
+            "Standard deviation from which the deviation of each blade is drawn. Give it, with seed, "
+            "where only the scatter of the blades is known."
+        ),
+    ] = None
+    seed: Annotated[Seed | None, about("Seed of that draw. Another seed is another blisk of the same scatter.")] = None
 
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:
@@ -109,17 +140,45 @@ class BladeRow:
     blades have the material's stiffness.
     """
 
-    material: Material
-    count: BladeCount
-    length_m: Length
-    root_chord_m: Length
-    tip_chord_m: Length
-    root_thickness_m: Length
-    tip_thickness_m: Length
-    root_angle_deg: Angle
-    tip_angle_deg: Angle
-    elements: BladeElements = 20
-    mistuning: Mistuning | None = None
+    material: Annotated[Material, about("Material of the blades.")]
+    count: Annotated[BladeCount, about("Number of blades. It is also the order of blade passing.")]
+    length_m: Annotated[
+        Length, about("Length of a blade from the rim to its tip. Longer blades have lower frequencies.")
+    ]
+    root_chord_m: Annotated[
+        Length,
+        about(
+            "Chord of the profile at the root. The profile is a rectangle of chord and thickness, "
+            "both linear to the tip."
+        ),
+    ]
+    tip_chord_m: Annotated[Length, about("Chord of the profile at the tip.")]
+    root_thickness_m: Annotated[
+        Length, about("Thickness of the profile at the root. A thicker root raises the frequencies of the blade.")
+    ]
+    tip_thickness_m: Annotated[
+        Length, about("Thickness of the profile at the tip. A thinner tip is lighter and more flexible.")
+    ]
+    root_angle_deg: Annotated[
+        Angle,
+        about(
+            "Angle between the thickness normal of the profile and the axis of rotation, at the root. "
+            "It couples bending with the axial direction."
+        ),
+    ]
+    tip_angle_deg: Annotated[
+        Angle, about("The same angle at the tip. Another angle than at the root is a twisted blade.")
+    ]
+    elements: Annotated[
+        BladeElements, about("Number of beam elements of a blade. Raise it until `rubgen modes` no longer changes.")
+    ] = 20
+    mistuning: Annotated[
+        Mistuning | None,
+        about(
+            "Deviations of the blades' stiffness from each other. Without it all blades are equal; "
+            "real blisks differ by a few percent."
+        ),
+    ] = None
 
     @model_validator(mode="after")
     def _every_blade_is_stiff(self) -> Self:
@@ -144,16 +203,53 @@ class Casing:
     r_mean = tip radius + clearance + ovality / 2: the smallest gap at rest is the clearance.
     """
 
-    material: Material
-    thickness_m: Length
-    width_m: Length
-    clearance_m: Length
-    ovality_m: Height
-    lobes: Lobes = 2
-    lobe_angle_deg: Angle = 0.0
-    radial_support_stiffness_n_per_m: Stiffness
-    circumferential_support_stiffness_n_per_m: Stiffness
-    nodes: CasingNodes = 180
+    material: Annotated[Material, about("Material of the casing ring.")]
+    thickness_m: Annotated[
+        Length, about("Radial thickness of the ring. A thinner ring yields more to a rub and has lower frequencies.")
+    ]
+    width_m: Annotated[Length, about("Axial width of the ring. A wider ring is heavier and stiffer.")]
+    clearance_m: Annotated[
+        Length,
+        about(
+            "Smallest gap between blade tips and casing at rest. A smaller one makes a rub that "
+            "begins earlier and is harder."
+        ),
+    ]
+    ovality_m: Annotated[
+        Height,
+        about(
+            "Largest minus smallest radius of the inner surface. 0 is a round casing, which blades "
+            "touch all around or on one side."
+        ),
+    ]
+    lobes: Annotated[
+        Lobes,
+        about(
+            "Number of narrow places around the inner surface. 2 is an oval; 3 is what a three-jaw "
+            "chuck or three supports leave."
+        ),
+    ] = 2
+    lobe_angle_deg: Annotated[
+        Angle, about("Angle of the first narrow place from +X. Change it to rub elsewhere relative to the sensors.")
+    ] = 0.0
+    radial_support_stiffness_n_per_m: Annotated[
+        Stiffness,
+        about(
+            "Radial stiffness of the spring under each node of the ring. A higher one makes contact "
+            "forces larger and shorter."
+        ),
+    ]
+    circumferential_support_stiffness_n_per_m: Annotated[
+        Stiffness,
+        about("Circumferential stiffness of the spring under each node of the ring. It carries the friction of a rub."),
+    ]
+    nodes: Annotated[
+        CasingNodes,
+        about(
+            "Number of nodes around the ring, a multiple of 4 and of the number of lobes. Raise it "
+            "until `rubgen modes` no longer changes."
+        ),
+    ] = 180
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -166,12 +262,27 @@ class Damping:
     clamped at its root. casing: the same ratio for every casing mode.
     """
 
-    lateral: DampingRatio
-    tilt: DampingRatio
-    axial: DampingRatio
-    torsion: DampingRatio
-    blade: DampingRatio
-    casing: DampingRatio
+    lateral: Annotated[
+        DampingRatio,
+        about(
+            "Damping ratio of the blisk that moves laterally as a rigid body. It decides the "
+            "amplitude at the critical speed."
+        ),
+    ]
+    tilt: Annotated[DampingRatio, about("Damping ratio of the blisk that tilts as a rigid body.")]
+    axial: Annotated[DampingRatio, about("Damping ratio of the blisk that moves axially as a rigid body.")]
+    torsion: Annotated[DampingRatio, about("Damping ratio of the blisk that turns against its drive as a rigid body.")]
+    blade: Annotated[
+        DampingRatio,
+        about(
+            "Damping ratio of the first mode of a clamped blade. Blisks have little; a lower one "
+            "makes blades ring longer after a touch."
+        ),
+    ]
+    casing: Annotated[
+        DampingRatio,
+        about("Damping ratio of every mode of the casing. A lower one makes the casing ring longer after a touch."),
+    ]
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -182,9 +293,21 @@ class Unbalance:
     where the speed changes, bends it. An unbalance on the disk acts only on O_d.
     """
 
-    kg_m: UnbalanceSize
-    angle_deg: Angle | None = None
-    blade: BladeNumber | None = None
+    kg_m: Annotated[UnbalanceSize, about("Mass times radius of this unbalance.")]
+    angle_deg: Annotated[
+        Angle | None,
+        about(
+            "Angle on the disk from blade 0, in the sense of rotation. Give it for an unbalance on "
+            "the disk; else give blade."
+        ),
+    ] = None
+    blade: Annotated[
+        BladeNumber | None,
+        about(
+            "Number of the blade at whose tip the unbalance is. Give it for a heavy or light blade; "
+            "else give angle_deg."
+        ),
+    ] = None
 
     @model_validator(mode="after")
     def _one_place(self) -> Self:
@@ -203,18 +326,38 @@ class Machine:
     of fault a machine has at most one (docs/faults.md).
     """
 
-    name: Annotated[str, Field(min_length=1)]
-    disk: Disk
-    blades: BladeRow
-    casing: Casing
-    disk_support: DiskSupport
-    damping: Damping
-    unbalance_kg_m: UnbalanceSize
-    unbalance_angle_deg: Angle = 0.0
-    unbalances: tuple[Unbalance, ...] = ()
-    gravity_m_per_s2: Gravity = 0.0
-    frame: Frame | None = None
-    faults: tuple[AnyFault, ...] = ()
+    name: Annotated[str, Field(min_length=1), about("Name of the machine in tables, figures and messages.")]
+    disk: Annotated[Disk, about("The disk and its mesh.")]
+    blades: Annotated[BladeRow, about("The blades and their mesh.")]
+    casing: Annotated[Casing, about("The casing ring, its gap to the blades, its shape and its mesh.")]
+    disk_support: Annotated[DiskSupport, about("Springs that carry the disk centre, and laws beside them.")]
+    damping: Annotated[Damping, about("Damping ratios of the parts.")]
+    unbalance_kg_m: Annotated[
+        UnbalanceSize,
+        about(
+            "Mass times radius of the unbalance on the disk. It drives the whirl that closes the gap; "
+            "grade G 2.5 of ISO 21940 is 0.0025 m/s over the speed in rad/s, times the mass of the "
+            "blisk."
+        ),
+    ]
+    unbalance_angle_deg: Annotated[
+        Angle, about("Angle of unbalance_kg_m from blade 0, in the sense of rotation. It decides which blades touch.")
+    ] = 0.0
+    unbalances: Annotated[tuple[Unbalance, ...], about("Further unbalances, on the disk or at tips of blades.")] = ()
+    gravity_m_per_s2: Annotated[
+        Gravity, about("Gravity along -Y on the blisk. Give 9.81 for a horizontal axis; 0 is a vertical one.")
+    ] = 0.0
+    frame: Annotated[
+        Frame | None,
+        about(
+            "Modes of the frame that carry forces of the disk's support to the casing's and the "
+            "housing's sensors. Without it those sensors feel no such forces."
+        ),
+    ] = None
+    faults: Annotated[
+        tuple[AnyFault, ...],
+        about("Faults of the machine, of each kind at most one. Without it the machine is healthy."),
+    ] = ()
 
     __repr__ = brief
 

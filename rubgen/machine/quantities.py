@@ -89,6 +89,14 @@ def real(**bounds: Any) -> Any:
     return _whole(allow_inf_nan=False, **bounds)
 
 
+def about(text: str) -> Any:
+    """Return the description of a field, for schemas, reference pages and help texts: what it is, when to change it.
+
+    Unit, default and allowed range are left out of the text: `rubgen.machine.descriptions` adds them from the field.
+    """
+    return Field(description=text)
+
+
 STRICT = ConfigDict(extra="forbid")
 MOST_RUNS = 1_000_000
 MOST_STEPS = 16_384

@@ -14,7 +14,7 @@ from pydantic_core import PydanticCustomError
 from scipy.special import ndtr, ndtri
 
 from rubgen.machine.problems import nearest
-from rubgen.machine.quantities import Finite, Positive
+from rubgen.machine.quantities import Finite, Positive, about
 
 T = TypeVar("T")
 LEAST_PROBABILITY = 1e-4
@@ -40,7 +40,7 @@ class Uniform(BaseModel):
     """`{ uniform = [a, b] }`: equal density between a and b."""
 
     model_config = _FROZEN
-    uniform: tuple[Finite, Finite]
+    uniform: Annotated[tuple[Finite, Finite], about("Lower and upper end; every value between is equally likely.")]
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -60,7 +60,12 @@ class LogUniform(BaseModel):
     """`{ log_uniform = [a, b] }`: equal density of the logarithm between a and b, both above 0."""
 
     model_config = _FROZEN
-    log_uniform: tuple[Finite, Finite]
+    log_uniform: Annotated[
+        tuple[Finite, Finite],
+        about(
+            "Lower and upper end, both above 0; every ratio is equally likely. Take it for a value that spans decades."
+        ),
+    ]
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -82,10 +87,10 @@ class NormalShape(BaseModel):
     """Mean and standard deviation of the normal density before it is cut off at min and max."""
 
     model_config = _FROZEN
-    mean: Finite
-    std: Positive
-    min: Finite
-    max: Finite
+    mean: Annotated[Finite, about("Mean of the normal density before it is cut off.")]
+    std: Annotated[Positive, about("Standard deviation of the normal density before it is cut off, above 0.")]
+    min: Annotated[Finite, about("Least value that is drawn.")]
+    max: Annotated[Finite, about("Largest value that is drawn.")]
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -96,7 +101,10 @@ class Normal(BaseModel):
     """`{ normal = { mean, std, min, max } }`: the normal density between min and max."""
 
     model_config = _FROZEN
-    normal: NormalShape
+    normal: Annotated[
+        NormalShape,
+        about("Mean, standard deviation, least and largest value of a normal density that is cut off at both ends."),
+    ]
 
     @model_validator(mode="after")
     def _reaches_its_ends(self) -> Self:
@@ -131,7 +139,7 @@ class Choice(BaseModel):
     """`{ choice = [a, b, ...] }`: each listed value with the same probability."""
 
     model_config = _FROZEN
-    choice: Annotated[tuple[Finite, ...], Field(min_length=1)]
+    choice: Annotated[tuple[Finite, ...], Field(min_length=1), about("Values of which each is equally likely.")]
 
     def quantile(self, u: float) -> float:
         """Return the value number floor(u n)."""

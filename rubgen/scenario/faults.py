@@ -12,9 +12,11 @@ import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, create_model
 
 from rubgen.errors import UserError
+from rubgen.machine.descriptions import draws
 from rubgen.machine.faults.fault import Fault
 from rubgen.machine.faults.registry import FAULTS, AnyFault
 from rubgen.machine.problems import nearest, validated
+from rubgen.machine.quantities import about
 from rubgen.machine.sentences import toml_text
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.scenario import Scenario
@@ -29,7 +31,7 @@ class WordChoice(BaseModel):
     """`{ choice = ["a", "b"] }`: each listed word with the same probability."""
 
     model_config = _STRICT
-    choice: Annotated[tuple[str, ...], Field(min_length=1)]
+    choice: Annotated[tuple[str, ...], Field(min_length=1), about("Words of which each is equally likely.")]
 
     def quantile(self, u: float) -> str:
         """Return the word number floor(u n), for u in [0, 1)."""
@@ -65,14 +67,22 @@ def _words(hint: Any) -> tuple[str, ...]:
 def _table(kind: str, fault: type[Fault]) -> type[BaseModel]:
     """Make the table of one kind: each number of it may be drawn, each word chosen."""
     share = Annotated[Distribution, AfterValidator(_is_share)]
-    about = "share of the runs that have this fault; all where not given"
-    values: dict[str, Any] = {"kind": (Literal[kind], ...), "share": (share | None, Field(None, description=about))}
-    hints = get_type_hints(fault)
+    values: dict[str, Any] = {
+        "kind": (Annotated[Literal[kind], about("Kind of this fault.")], ...),
+        "share": (Annotated[share | None, about("Share of the runs that have this fault. All where not given.")], None),
+    }
+    hints, quantities = get_type_hints(fault), get_type_hints(fault, include_extras=True)
     for field in fields(cast("Any", fault))[1:]:
         words = _words(hints[field.name])
         whole = hints[field.name] is int
         allowed: Any = Literal[words] | WordChoice if words else _WHOLE if whole else Distribution
-        values[field.name] = (allowed, ...) if field.default is MISSING else (allowed | None, None)
+        text = cast("Any", fault).__pydantic_fields__[field.name].description
+        if field.default is MISSING:
+            extra = draws(quantities[field.name])
+            values[field.name] = (Annotated[allowed, Field(description=text, json_schema_extra=extra)], ...)
+        else:
+            extra = draws(quantities[field.name], field.default)
+            values[field.name] = (Annotated[allowed | None, Field(description=text, json_schema_extra=extra)], None)
     return create_model(f"{fault.__name__}Table", __config__=_STRICT, __doc__=f"`[[faults]]` of {kind}.", **values)
 
 

@@ -13,12 +13,14 @@ from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, TypeAdapter, Val
 from rubgen.brief import counted
 from rubgen.errors import UserError, warn
 from rubgen.machine import Machine, load_machine
+from rubgen.machine.descriptions import draws
 from rubgen.machine.load import FOR_COMPARISON, file_named, machine_id
 from rubgen.machine.problems import first_problem, validated
 from rubgen.machine.quantities import (
     MOST_RUNS,
     RunCount,
     Seed,
+    about,
 )
 from rubgen.machine.sentences import FILE_NAME
 from rubgen.machine.toml_file import check_kind, read_toml, toml_path
@@ -54,7 +56,10 @@ _STRICT = ConfigDict(extra="forbid", frozen=True)
 
 def _vary_fields() -> dict[str, Any]:
     return {
-        entry.key: (Distribution | None, Field(default=None, description=f"{entry.meaning}, {entry.unit}"))
+        entry.key: (
+            Annotated[Distribution | None, Field(description=entry.about, json_schema_extra=draws(entry.quantity))],
+            None,
+        )
         for entry in DRAWN
     }
 
@@ -68,21 +73,40 @@ class Recipe(BaseModel):
     """The definition of a data set: a machine, what varies, the length of each run, the files."""
 
     model_config = _STRICT
-    name: Annotated[str, Field(pattern=FILE_NAME)]
-    seed: Seed = 0
-    runs: RunCount
-    machine: Annotated[str, Field(min_length=1)]
-    license: Annotated[str, Field(min_length=1)] = "CC-BY-4.0"
-    vary: Vary = Vary()
-    surroundings: SurroundingsTable | None = None
-    faults: tuple[FaultTable, ...] | None = None
-    operation: Profile = Profile()
-    simulation: Simulation = Simulation()
-    sensors: Sensors = Sensors()
-    labels: Labelling = Labelling()
-    output: Output = Output()
-    reduction: Reduction = Reduction()
-    contact: ContactLaw = ContactLaw()
+    name: Annotated[str, Field(pattern=FILE_NAME), about("Name of the data set, in its files and its card.")]
+    seed: Annotated[
+        Seed,
+        about(
+            "Seed of all random numbers. The same recipe and seed make the same bytes; another seed makes other runs."
+        ),
+    ] = 0
+    runs: Annotated[RunCount, about("Number of runs. Each takes from seconds to minutes; `rubgen plan` estimates it.")]
+    machine: Annotated[
+        str, Field(min_length=1), about("A preset of rubgen by its name, or the path of a machine in TOML.")
+    ]
+    license: Annotated[str, Field(min_length=1), about("License of the data, as an SPDX name.")] = "CC-BY-4.0"
+    vary: Annotated[Vary, about("What differs between the runs. A number fixes a value, a table draws it.")] = Vary()
+    surroundings: Annotated[
+        SurroundingsTable | None,
+        about(
+            "What sensors feel besides the machine's motion: background, blade passing, runout, "
+            "tones. Without it they feel the motion alone."
+        ),
+    ] = None
+    faults: Annotated[
+        tuple[FaultTable, ...] | None,
+        about(
+            "Faults that runs may have besides the rub, each drawn on its own. Without it only the "
+            "machine's own faults are there."
+        ),
+    ] = None
+    operation: Annotated[Profile, about("How the speed changes within a run.")] = Profile()
+    simulation: Annotated[Simulation, about("Turns and integration steps of every run.")] = Simulation()
+    sensors: Annotated[Sensors, about("The sensors and how their signals are recorded.")] = Sensors()
+    labels: Annotated[Labelling, about("What is computed only for the labels.")] = Labelling()
+    output: Annotated[Output, about("Which files are written, and how much of each run they hold.")] = Output()
+    reduction: Annotated[Reduction, about("How many modes stand for the parts of the machine.")] = Reduction()
+    contact: Annotated[ContactLaw, about("What happens where a blade touches the casing.")] = ContactLaw()
     _folder: Path = PrivateAttr(default_factory=Path)
     _checked: bool = PrivateAttr(default=False)
     _machine: Machine | None = PrivateAttr(default=None)

@@ -4,7 +4,7 @@ Frozen and validated on creation, like the machine.
 """
 
 import math
-from typing import Literal, cast
+from typing import Annotated, Literal, cast
 
 import numpy as np
 from pydantic import Field, TypeAdapter
@@ -28,6 +28,7 @@ from rubgen.machine.quantities import (
     StepCount,
     Switch,
     TurnCount,
+    about,
 )
 from rubgen.scenario.contact_laws.contact_law import ContactLaw
 from rubgen.scenario.rotation import Rotation
@@ -43,10 +44,20 @@ ProfileName = Literal["steady", "run-up", "coast-down", "fluctuating"]
 class Reduction:
     """Numbers of Craig-Bampton modes: per blade, of the disk, of the coupled blisk, of the casing."""
 
-    blade_modes: ModeCount = 4
-    disk_modes: ModeCount = 4
-    blisk_modes: ModeCount = 4
-    casing_modes: CasingModeCount = 11
+    blade_modes: Annotated[
+        ModeCount,
+        about("Modes of each blade, clamped at its root, beside the motion of its tip. Raise it for sharp touches."),
+    ] = 4
+    disk_modes: Annotated[
+        ModeCount, about("Modes of the disk between the blades. Raise it where the disk is thin.")
+    ] = 4
+    blisk_modes: Annotated[
+        ModeCount, about("Modes of the coupled blisk. Raise it to check that a result does not depend on it.")
+    ] = 4
+    casing_modes: Annotated[
+        CasingModeCount,
+        about("Modes of the casing ring. Raise it for short contact zones, which bend the ring in many waves."),
+    ] = 11
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -139,7 +150,13 @@ class Sensing:
 class Labelling:
     """What is computed only for the labels: the Lyapunov exponent, which needs a second trajectory."""
 
-    lyapunov: Switch = True
+    lyapunov: Annotated[
+        Switch,
+        about(
+            "Whether the largest Lyapunov exponent of each steady run is computed. It takes about "
+            "half as long again; turn it off where no chaos is studied."
+        ),
+    ] = True
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)

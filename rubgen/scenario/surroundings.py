@@ -8,12 +8,13 @@ from __future__ import annotations
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass as plain_dataclass
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Self, get_type_hints
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, create_model, model_validator
 from pydantic.dataclasses import dataclass
 
+from rubgen.machine.descriptions import draws
 from rubgen.machine.problems import validated
 from rubgen.machine.quantities import (
     STRICT,
@@ -25,6 +26,7 @@ from rubgen.machine.quantities import (
     SpectralSlope,
     SpeedExponent,
     Spread,
+    about,
 )
 from rubgen.scenario.distributions import Distribution
 
@@ -38,9 +40,16 @@ class Tone:
     `level_m_per_s2` is its rms acceleration, averaged over the circumference.
     """
 
-    order: Order | None = None
-    frequency_hz: Rate | None = None
-    level_m_per_s2: BackgroundLevel = 0.0
+    order: Annotated[
+        Order | None,
+        about("Frequency over that of the rotation. Give it for a gear that the shaft drives; else give frequency_hz."),
+    ] = None
+    frequency_hz: Annotated[
+        Rate | None, about("Fixed frequency. Give it for a neighbouring machine or the mains; else give order.")
+    ] = None
+    level_m_per_s2: Annotated[
+        BackgroundLevel, about("Rms acceleration of the tone over the circumference of the casing.")
+    ] = 0.0
 
     @model_validator(mode="after")
     def _has_one_frequency(self) -> Self:
@@ -63,15 +72,54 @@ class Surroundings:
     modal mass of each of its modes are those of the machine times exp(`frame_spread` x), x normal and independent.
     """
 
-    background_m_per_s2: BackgroundLevel = 0.0
-    background_slope: SpectralSlope = 1.0
-    speed_exponent: SpeedExponent = 1.5
-    blade_passing_m_per_s2: BackgroundLevel = 0.0
-    runout_m: Height = 0.0
-    shaft_drift_m: Height = 0.0
-    path_gain: PathGain = 0.0
-    frame_spread: Spread = 0.0
-    tones: Annotated[tuple[Tone, ...], Field(max_length=MOST_TONES)] = ()
+    background_m_per_s2: Annotated[
+        BackgroundLevel,
+        about(
+            "Rms of the casing's broadband background from 10 Hz to 20 kHz, at 10,000 rev/min. "
+            "Machines shake with 0.1 to 1,000; raise it to hide a rub."
+        ),
+    ] = 0.0
+    background_slope: Annotated[
+        SpectralSlope,
+        about("Exponent by which the power of the background falls with frequency. 0 is white, 1 pink, 2 red."),
+    ] = 1.0
+    speed_exponent: Annotated[
+        SpeedExponent, about("Exponent by which background and blade passing rise with the speed.")
+    ] = 1.5
+    blade_passing_m_per_s2: Annotated[
+        BackgroundLevel,
+        about(
+            "Rms of the casing's answer to the pressure of the blades, at 10,000 rev/min. Raise it to "
+            "hide contacts of all blades, which have the same frequency."
+        ),
+    ] = 0.0
+    runout_m: Annotated[
+        Height,
+        about(
+            "Amplitude of order 1 of the shaft's runout under the proximity probes. Orders 2 and 3 "
+            "have a half and a third of it."
+        ),
+    ] = 0.0
+    shaft_drift_m: Annotated[
+        Height, about("Slow movement of the shaft over the recorded signals, as bearings warm up.")
+    ] = 0.0
+    path_gain: Annotated[
+        PathGain,
+        about(
+            "Share of the motion of the machine's frame that the casing's sensors feel. 1 is all of "
+            "it; 0 keeps the frame off them."
+        ),
+    ] = 0.0
+    frame_spread: Annotated[
+        Spread,
+        about(
+            "Spread of the frequencies and masses of the frame's modes about the machine's. Give it "
+            "so that a model cannot learn one frame by heart."
+        ),
+    ] = 0.0
+    tones: Annotated[
+        tuple[Tone, ...], Field(max_length=MOST_TONES), about("Tones of gears and of neighbouring machines.")
+    ] = ()
 
 
 @plain_dataclass(frozen=True)
@@ -112,24 +160,35 @@ _TABLE = ConfigDict(extra="forbid", frozen=True)
 _VALUES: TypeAdapter[Any] = TypeAdapter(Surroundings)
 
 
+def _drawn(record: Any, key: str) -> Any:
+    """Return the description of a field of the values, with the range of what may be drawn for it."""
+    hint, field = get_type_hints(record, include_extras=True)[key], record.__pydantic_fields__[key]
+    return Field(description=field.description, json_schema_extra=draws(hint, field.default))
+
+
 class ToneTable(BaseModel):
-    """`[[surroundings.tones]]`: a sine at an `order` of the speed, or at a fixed `frequency_hz`."""
+    """`[[surroundings.tones]]`: a tone at an order of the rotation or at a fixed frequency."""
 
     model_config = _TABLE
-    order: Distribution | None = Field(default=None, description="frequency over that of the rotation")
-    frequency_hz: Distribution | None = Field(default=None, description="fixed frequency, Hz")
-    level_m_per_s2: Distribution = Field(description="rms acceleration over the circumference, m/s2")
+    order: Annotated[Distribution | None, _drawn(Tone, "order")] = None
+    frequency_hz: Annotated[Distribution | None, _drawn(Tone, "frequency_hz")] = None
+    level_m_per_s2: Annotated[Distribution, _drawn(Tone, "level_m_per_s2")]
 
 
+_RECORD: Any = Surroundings
 _FIELDS: dict[str, Any] = {
-    each.key: (Distribution | None, Field(default=None, description=f"{each.meaning}, {each.unit}"))
-    for each in SURROUNDINGS
+    each.key: (Annotated[Distribution | None, _drawn(Surroundings, each.key)], None) for each in SURROUNDINGS
 }
+_TONES: Any = Annotated[
+    tuple[ToneTable, ...],
+    Field(max_length=MOST_TONES),
+    Field(description=_RECORD.__pydantic_fields__["tones"].description),
+]
 SurroundingsTable = create_model(
     "SurroundingsTable",
     __config__=_TABLE,
     __doc__="`[surroundings]`: a number fixes a level, a table draws it.",
-    tones=(Annotated[tuple[ToneTable, ...], Field(max_length=MOST_TONES)], ()),
+    tones=(_TONES, ()),
     **_FIELDS,
 )
 

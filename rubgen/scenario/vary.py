@@ -54,6 +54,20 @@ class Parameter:
         """Whether the key takes only whole numbers."""
         return self.quantity is Lobes
 
+    @property
+    def about(self) -> str:
+        """Its description: that of its field in the scenario, or its meaning where it is two fields."""
+        kind: Any = Scenario
+        text = None
+        for name in self.places[0].split("."):
+            field = kind.__pydantic_fields__[name]
+            kind, text = field.annotation, field.description
+        if len(self.places) > 1 or text is None:
+            text = f"{self.meaning[0].upper()}{self.meaning[1:]}."
+        if self.places[0].startswith("machine."):
+            return f"{text} Without it the machine's own value."
+        return f"{text} Without it {DEFAULT_SPEED_RPM:,.0f}." if self.key == "speed_rpm" else text
+
     def read(self, scenario: Scenario) -> float:
         """Return the value in that scenario. Without end speed or duration it is that of the record."""
         value: float | None = attrgetter(self.places[0])(scenario)

@@ -25,6 +25,7 @@ from rubgen.machine.quantities import (
     Reading,
     ResonanceDamping,
     RunoutHarmonic,
+    about,
 )
 from rubgen.machine.sentences import CHANNEL_NAME
 from rubgen.taps import Tap
@@ -36,9 +37,12 @@ Interval = tuple[Reading, Reading]
 class RunoutOrder:
     """One order of the shaft's profile under the proximity probes: `amplitude_m` cos(order (angle - phase))."""
 
-    order: RunoutHarmonic
-    amplitude_m: Height
-    phase_deg: Angle = 0.0
+    order: Annotated[
+        RunoutHarmonic,
+        about("How many waves of the profile the shaft has around it. 1 is an eccentric track, 2 an oval one."),
+    ]
+    amplitude_m: Annotated[Height, about("Amplitude of these waves.")]
+    phase_deg: Annotated[Angle, about("Angle of the first high spot from the mark of the shaft.")] = 0.0
 
 
 def runout(angle: FloatArray, shaft: tuple[RunoutOrder, ...]) -> FloatArray:
@@ -65,7 +69,11 @@ class Description:
 class Sensor:
     """A sensor. Its channel or topic has its name. Its random numbers depend on its place in the set."""
 
-    name: Annotated[str, Field(pattern=CHANNEL_NAME)]
+    name: Annotated[
+        str,
+        Field(pattern=CHANNEL_NAME),
+        about("Name of the sensor. Its channel has it too, so names must differ within a set."),
+    ]
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -85,23 +93,65 @@ class SampledSensor(Sensor, ABC):
     RANGE: ClassVar[tuple[float, float]] = (0.0, 0.0)
     """The kind's range, in the SI unit."""
 
-    unit: str = ""
-    bandwidth_hz: Rate | None = None
-    resonance_hz: Rate | None = None
-    resonance_damping: ResonanceDamping = 0.02
-    saturation: Interval | None = None
-    gain_error: GainError = 0.0
-    offset: Reading = 0.0
-    drift_per_s: Reading = 0.0
-    noise_rms: Level = 0.0
-    noise_density: Level = 0.0
-    noise_corner_hz: RateOrNone = 0.0
-    range: Interval | None = None
-    adc_bits: AdcBits | None = None
-    dropouts_per_s: RateOrNone = 0.0
-    dropout_s: Duration = 1e-3
-    clock_offset_s: ClockOffset = 0.0
-    clock_ppm: ClockDrift = 0.0
+    unit: Annotated[
+        str, about("Unit of the channel, and of every value of this sensor. Without it the first unit of the kind.")
+    ] = ""
+    bandwidth_hz: Annotated[
+        Rate | None,
+        about("Cut-off frequency of the sensor's own second-order low-pass. Without it the sensor has none."),
+    ] = None
+    resonance_hz: Annotated[
+        Rate | None,
+        about(
+            "Resonance of the sensor on its mounting. Without it the sensor has none; magnets have one at a few kHz."
+        ),
+    ] = None
+    resonance_damping: Annotated[
+        ResonanceDamping, about("Damping ratio of that resonance. A lower one is a higher peak.")
+    ] = 0.02
+    saturation: Annotated[
+        Interval | None,
+        about(
+            "Lower and upper limit at which the amplifier cuts off, before the anti-alias filter, in "
+            "the sensor's unit. Without it nothing is cut off there."
+        ),
+    ] = None
+    gain_error: Annotated[GainError, about("Relative error of the calibration: 0.02 reads 2 % too much.")] = 0.0
+    offset: Annotated[Reading, about("Constant that is added to each reading, in the sensor's unit.")] = 0.0
+    drift_per_s: Annotated[
+        Reading, about("Slope that is added from the first sample on, in the sensor's unit a second.")
+    ] = 0.0
+    noise_rms: Annotated[
+        Level, about("Rms of white noise in the recorded band, in the sensor's unit. Take it from the data sheet.")
+    ] = 0.0
+    noise_density: Annotated[
+        Level,
+        about(
+            "Noise density above the corner, in the sensor's unit over sqrt(Hz). Give it where a data "
+            "sheet gives a density instead of an rms."
+        ),
+    ] = 0.0
+    noise_corner_hz: Annotated[
+        RateOrNone, about("Frequency below which the power of that noise rises as 1/f. 0 is white noise.")
+    ] = 0.0
+    range: Annotated[
+        Interval | None,
+        about("Lower and upper limit of the converter, in the sensor's unit. Without it the range of the kind."),
+    ] = None
+    adc_bits: Annotated[AdcBits | None, about("Bits of this sensor's converter. Without it those of the recipe.")] = (
+        None
+    )
+    dropouts_per_s: Annotated[
+        RateOrNone,
+        about(
+            "Mean number of gaps a second, in which the last value repeats. Give it for a loose cable or a radio link."
+        ),
+    ] = 0.0
+    dropout_s: Annotated[Duration, about("Length of a gap.")] = 1e-3
+    clock_offset_s: Annotated[
+        ClockOffset, about("How late the sensor's own clock is. Give it to study channels that are not synchronous.")
+    ] = 0.0
+    clock_ppm: Annotated[ClockDrift, about("How slow the sensor's own clock is, in parts per million.")] = 0.0
 
     @model_validator(mode="after")
     def _has_a_unit(self) -> Self:

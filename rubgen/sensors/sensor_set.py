@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from pydantic.dataclasses import dataclass
 
 from rubgen.brief import brief
-from rubgen.machine.quantities import STRICT
+from rubgen.machine.quantities import STRICT, about
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
 from rubgen.sensors.kinds.once_per_rev import OncePerRev
 from rubgen.sensors.registry import AnySensor
@@ -19,9 +19,16 @@ from rubgen.taps import DEFAULT_TAPS, HousingAcceleration, Tap
 class SensorSet:
     """All sensors of a machine, and the profile of its shaft."""
 
-    name: Annotated[str, Field(min_length=1)]
-    sensors: Annotated[tuple[AnySensor, ...], Field(min_length=1)]
-    shaft_runout: tuple[RunoutOrder, ...] = ()
+    name: Annotated[str, Field(min_length=1), about("Name of the set, in messages and in the manifest.")]
+    sensors: Annotated[
+        tuple[AnySensor, ...],
+        Field(min_length=1),
+        about("The sensors. The order decides their random numbers, so append new ones at the end."),
+    ]
+    shaft_runout: Annotated[
+        tuple[RunoutOrder, ...],
+        about("The profile of the shaft under the proximity probes, by orders. Without it the shaft is round."),
+    ] = ()
 
     __repr__ = brief
 

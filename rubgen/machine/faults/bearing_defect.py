@@ -12,7 +12,7 @@ from pydantic.dataclasses import dataclass
 from rubgen.arrays import FloatArray
 from rubgen.machine.faults.fault import Fault, Severity
 from rubgen.machine.faults.strikes import Strikes
-from rubgen.machine.quantities import STRICT, BallCount, Direction, Length, real
+from rubgen.machine.quantities import STRICT, BallCount, Direction, Length, about, real
 
 BALL_DENSITY = 7800.0
 """Of steel, kg/m3."""
@@ -52,15 +52,32 @@ class BearingDefect(Fault):
     SEVERITY: ClassVar = Severity(
         column="bearing_defect_m", unit="m", meaning="width of the bearing's defect along the way of the balls"
     )
-    kind: Literal["bearing-defect"] = "bearing-defect"
-    place: Literal["outer", "inner", "ball", "cage"] = "outer"
-    width_m: DefectWidth
-    balls: BallCount = 13
-    ball_diameter_m: Length = 0.022
-    pitch_diameter_m: Length = 0.115
-    contact_angle_deg: ContactAngle = 0.0
-    slip: Slip = 0.015
-    load_deg: Direction = 270.0
+    kind: Annotated[Literal["bearing-defect"], about("Kind of this fault.")] = "bearing-defect"
+    place: Annotated[
+        Literal["outer", "inner", "ball", "cage"],
+        about("Where the bearing is damaged. It decides the order of the blows and how they are modulated."),
+    ] = "outer"
+    width_m: Annotated[
+        DefectWidth, about("Width of the defect along the way of the balls. Blows are proportional to it.")
+    ]
+    balls: Annotated[BallCount, about("Number of balls, from the bearing's data sheet.")] = 13
+    ball_diameter_m: Annotated[Length, about("Diameter of a ball, from the bearing's data sheet.")] = 0.022
+    pitch_diameter_m: Annotated[
+        Length, about("Diameter of the circle of the balls' centres, from the bearing's data sheet.")
+    ] = 0.115
+    contact_angle_deg: Annotated[
+        ContactAngle, about("Angle between the load on a ball and the radial plane, from the bearing's data sheet.")
+    ] = 0.0
+    slip: Annotated[
+        Slip,
+        about(
+            "Scatter of the distances of two blows as a share of their mean. 0 makes a strictly "
+            "periodic train, which no bearing has."
+        ),
+    ] = 0.015
+    load_deg: Annotated[
+        Direction, about("Direction of the load on the bearing from +X. 270 is downwards, along gravity.")
+    ] = 270.0
 
     @model_validator(mode="after")
     def _balls_have_room(self) -> Self:

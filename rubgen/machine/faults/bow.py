@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic.dataclasses import dataclass
 
 from rubgen.machine.faults.fault import Fault, HarmonicLoad, Ramp, Severity
-from rubgen.machine.quantities import STRICT, Angle, real
+from rubgen.machine.quantities import STRICT, Angle, about, real
 
 if TYPE_CHECKING:
     from rubgen.machine.machine import Machine
@@ -32,11 +32,22 @@ class Bow(Fault):
     """
 
     SEVERITY: ClassVar = Severity(column="bow_m", unit="m", meaning="residual bow of the shaft at the disk centre")
-    kind: Literal["bow"] = "bow"
-    bow_m: BowSize
-    angle_deg: Angle = 0.0
-    start_s: Moment = 0.0
-    growth_s: Moment | None = None
+    kind: Annotated[Literal["bow"], about("Kind of this fault.")] = "bow"
+    bow_m: Annotated[BowSize, about("How far the disk centre stands off the axis without load.")]
+    angle_deg: Annotated[
+        Angle,
+        about(
+            "Angle of the bow from blade 0, in the sense of rotation. Opposite to the unbalance it "
+            "cancels a part of it."
+        ),
+    ] = 0.0
+    start_s: Annotated[Moment, about("Time of the record at which a thermal bow begins to grow.")] = 0.0
+    growth_s: Annotated[
+        Moment | None,
+        about(
+            "Time in which the bow grows from 0. Give it for a thermal bow; without it the bow is there from the start."
+        ),
+    ] = None
 
     @property
     def severity(self) -> float:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic.dataclasses import dataclass
 
 from rubgen.machine.faults.fault import Fault, Severity, SurfaceHarmonic
-from rubgen.machine.quantities import STRICT, Angle, real
+from rubgen.machine.quantities import STRICT, Angle, about, real
 
 if TYPE_CHECKING:
     from rubgen.machine.machine import Machine
@@ -27,9 +27,14 @@ class CasingOffCentre(Fault):
     SEVERITY: ClassVar = Severity(
         column="casing_offset_m", unit="m", meaning="distance of the casing's centre from the axis of rotation"
     )
-    kind: Literal["casing-off-centre"] = "casing-off-centre"
-    offset_m: Offset
-    direction_deg: Angle = 0.0
+    kind: Annotated[Literal["casing-off-centre"], about("Kind of this fault.")] = "casing-off-centre"
+    offset_m: Annotated[
+        Offset,
+        about("Distance of the casing's centre from the axis of rotation. The gap becomes smaller by it on one side."),
+    ]
+    direction_deg: Annotated[
+        Angle, about("Direction in which the casing stands off, from +X. The gap is smallest on the opposite side.")
+    ] = 0.0
 
     @property
     def severity(self) -> float:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic.dataclasses import dataclass
 
 from rubgen.machine.faults.fault import Fault, Narrowing, Ramp, Severity
-from rubgen.machine.quantities import STRICT, Duration, real
+from rubgen.machine.quantities import STRICT, Duration, about, real
 
 if TYPE_CHECKING:
     from rubgen.machine.machine import Machine
@@ -28,10 +28,15 @@ class ClosingClearance(Fault):
     SEVERITY: ClassVar = Severity(
         column="clearance_closing_m", unit="m", meaning="how far the clearance closes within the record"
     )
-    kind: Literal["closing-clearance"] = "closing-clearance"
-    closing_m: Closing
-    start_s: Moment = 0.0
-    growth_s: Duration = 1.0
+    kind: Annotated[Literal["closing-clearance"], about("Kind of this fault.")] = "closing-clearance"
+    closing_m: Annotated[Closing, about("How far the clearance closes all around.")]
+    start_s: Annotated[
+        Moment, about("Time of the record at which the closing begins. Set it within the record to see a rub begin.")
+    ] = 0.0
+    growth_s: Annotated[
+        Duration,
+        about("Time in which the clearance closes. Seconds are a thermal closing, less than a turn a hard landing."),
+    ] = 1.0
 
     @property
     def severity(self) -> float:

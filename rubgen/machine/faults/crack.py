@@ -9,7 +9,7 @@ from pydantic.dataclasses import dataclass
 
 from rubgen.machine.faults.fault import Fault, Severity
 from rubgen.machine.mass import blisk_mass
-from rubgen.machine.quantities import PERCENT, STRICT, Angle, Usual, real
+from rubgen.machine.quantities import PERCENT, STRICT, Angle, Usual, about, real
 from rubgen.machine.support_laws.breathing_spring import BreathingSpring
 
 if TYPE_CHECKING:
@@ -34,9 +34,14 @@ class Crack(Fault):
     SEVERITY: ClassVar = Severity(
         column="crack_loss", unit="1", meaning="share of the lateral stiffness that the open crack takes"
     )
-    kind: Literal["crack"] = "crack"
-    crack_loss: CrackShare
-    angle_deg: Angle = 0.0
+    kind: Annotated[Literal["crack"], about("Kind of this fault.")] = "crack"
+    crack_loss: Annotated[
+        CrackShare,
+        about(
+            "Share of the lateral stiffness that the open crack takes. A crack of half the diameter takes about 0.3."
+        ),
+    ]
+    angle_deg: Annotated[Angle, about("Direction of the crack from blade 0, in the sense of rotation.")] = 0.0
 
     @property
     def severity(self) -> float:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic.dataclasses import dataclass
 
 from rubgen.machine.faults.fault import Fault, Severity, missing_blade
-from rubgen.machine.quantities import STRICT, BladeNumber, real
+from rubgen.machine.quantities import STRICT, BladeNumber, about, real
 
 if TYPE_CHECKING:
     from rubgen.machine.machine import Machine
@@ -28,9 +28,14 @@ class CrackedBlade(Fault):
     SEVERITY: ClassVar = Severity(
         column="blade_stiffness_loss", unit="1", meaning="share of its stiffness that a cracked blade has lost"
     )
-    kind: Literal["cracked-blade"] = "cracked-blade"
-    stiffness_loss: StiffnessLoss
-    blade: BladeNumber = 0
+    kind: Annotated[Literal["cracked-blade"], about("Kind of this fault.")] = "cracked-blade"
+    stiffness_loss: Annotated[
+        StiffnessLoss,
+        about(
+            "Share of the blade's stiffness that the crack takes. The frequency of the blade falls by about half of it."
+        ),
+    ]
+    blade: Annotated[BladeNumber, about("Number of the cracked blade.")] = 0
 
     @property
     def severity(self) -> float:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic.dataclasses import dataclass
 
 from rubgen.machine.faults.fault import Fault, HarmonicLoad, Ramp, Severity
-from rubgen.machine.quantities import STRICT, Angle, UnbalanceSize, real
+from rubgen.machine.quantities import STRICT, Angle, UnbalanceSize, about, real
 
 if TYPE_CHECKING:
     from rubgen.machine.machine import Machine
@@ -29,11 +29,13 @@ class GrowingUnbalance(Fault):
     SEVERITY: ClassVar = Severity(
         column="growing_unbalance_kg_m", unit="kg m", meaning="unbalance that grows within the record, at its end"
     )
-    kind: Literal["growing-unbalance"] = "growing-unbalance"
-    kg_m: UnbalanceSize
-    angle_deg: Angle = 0.0
-    start_s: Moment = 0.0
-    growth_s: Moment = 0.0
+    kind: Annotated[Literal["growing-unbalance"], about("Kind of this fault.")] = "growing-unbalance"
+    kg_m: Annotated[UnbalanceSize, about("Mass times radius of the unbalance that comes in addition.")]
+    angle_deg: Annotated[Angle, about("Angle of this unbalance from blade 0, in the sense of rotation.")] = 0.0
+    start_s: Annotated[
+        Moment, about("Time of the record at which it begins to grow. Set it within the record to see the change.")
+    ] = 0.0
+    growth_s: Annotated[Moment, about("Time in which it grows to its full size. 0 is a lost part.")] = 0.0
 
     @property
     def severity(self) -> float:

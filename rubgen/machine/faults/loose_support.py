@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic.dataclasses import dataclass
 
 from rubgen.machine.faults.fault import Fault, Severity
-from rubgen.machine.quantities import PERCENT, STRICT, Angle, Usual, real
+from rubgen.machine.quantities import PERCENT, STRICT, Angle, Usual, about, real
 from rubgen.machine.support_laws.loose_spring import LooseSpring
 
 if TYPE_CHECKING:
@@ -31,10 +31,14 @@ class LooseSupport(Fault):
     SEVERITY: ClassVar = Severity(
         column="lost_stiffness", unit="1", meaning="share of the support's stiffness that is lost where it is loose"
     )
-    kind: Literal["loose-support"] = "loose-support"
-    lost_stiffness: LostShare
-    gap_m: Gap = 0.0
-    direction_deg: Angle = 90.0
+    kind: Annotated[Literal["loose-support"], about("Kind of this fault.")] = "loose-support"
+    lost_stiffness: Annotated[
+        LostShare, about("Share of the lateral stiffness that is lost where the support is lifted.")
+    ]
+    gap_m: Annotated[Gap, about("Displacement of the disk centre from which on the stiffness is lost.")] = 0.0
+    direction_deg: Annotated[
+        Angle, about("Direction of that displacement from +X. 90 is upwards, against gravity.")
+    ] = 90.0
 
     @property
     def severity(self) -> float:

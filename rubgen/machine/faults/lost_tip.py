@@ -8,7 +8,7 @@ from pydantic.dataclasses import dataclass
 
 from rubgen.machine.faults.fault import Fault, LostMass, Severity, missing_blade
 from rubgen.machine.mass import blade_mass
-from rubgen.machine.quantities import STRICT, BladeNumber, real
+from rubgen.machine.quantities import STRICT, BladeNumber, about, real
 
 if TYPE_CHECKING:
     from rubgen.machine.machine import Machine
@@ -27,9 +27,9 @@ class LostTip(Fault):
     """
 
     SEVERITY: ClassVar = Severity(column="lost_tip_kg", unit="kg", meaning="mass that a blade has lost at its tip")
-    kind: Literal["lost-tip"] = "lost-tip"
-    lost_kg: LostPiece
-    blade: BladeNumber = 0
+    kind: Annotated[Literal["lost-tip"], about("Kind of this fault.")] = "lost-tip"
+    lost_kg: Annotated[LostPiece, about("Mass that the tip has lost. At most an eighth of the blade can be lost.")]
+    blade: Annotated[BladeNumber, about("Number of the damaged blade.")] = 0
 
     @property
     def severity(self) -> float:

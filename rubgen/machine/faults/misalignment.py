@@ -10,7 +10,7 @@ from pydantic import model_validator
 from pydantic.dataclasses import dataclass
 
 from rubgen.machine.faults.fault import Fault, HarmonicLoad, Severity
-from rubgen.machine.quantities import STRICT, Angle, Length, Stiffness, real
+from rubgen.machine.quantities import STRICT, Angle, Length, Stiffness, about, real
 
 if TYPE_CHECKING:
     from rubgen.machine.machine import Machine
@@ -39,15 +39,27 @@ class Misalignment(Fault):
     SEVERITY: ClassVar = Severity(
         column="misalignment_m", unit="m", meaning="offset of the shafts at the coupling, an angle as its offset"
     )
-    kind: Literal["misalignment"] = "misalignment"
-    parallel_m: Offset | None = None
-    angular_deg: SmallAngle | None = None
-    direction_deg: Angle = 0.0
-    coupling_stiffness_n_per_m: Stiffness = 2e7
-    coupling_length_m: Length = 0.1
-    share_1x: LoadShare = 0.3
-    share_2x: LoadShare = 0.5
-    share_3x: LoadShare = 0.1
+    kind: Annotated[Literal["misalignment"], about("Kind of this fault.")] = "misalignment"
+    parallel_m: Annotated[
+        Offset | None, about("Offset of the two shafts at the coupling. Give it, angular_deg or both.")
+    ] = None
+    angular_deg: Annotated[
+        SmallAngle | None, about("Angle between the two shafts at the coupling. Give it, parallel_m or both.")
+    ] = None
+    direction_deg: Annotated[Angle, about("Direction of the misalignment from +X.")] = 0.0
+    coupling_stiffness_n_per_m: Annotated[
+        Stiffness, about("Lateral stiffness of the coupling, from its data sheet. The reaction is proportional to it.")
+    ] = 2e7
+    coupling_length_m: Annotated[Length, about("Distance of the two flexible elements of the coupling.")] = 0.1
+    share_1x: Annotated[
+        LoadShare,
+        about(
+            "Amplitude of the reaction at the speed of rotation, as a share of the mean reaction. It "
+            "depends on the coupling."
+        ),
+    ] = 0.3
+    share_2x: Annotated[LoadShare, about("The same at twice the speed, which is large for many couplings.")] = 0.5
+    share_3x: Annotated[LoadShare, about("The same at three times the speed.")] = 0.1
 
     @model_validator(mode="after")
     def _has_a_size(self) -> Self:

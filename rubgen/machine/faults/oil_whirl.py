@@ -9,7 +9,7 @@ from pydantic.dataclasses import dataclass
 
 from rubgen.machine.faults.fault import Fault, Severity
 from rubgen.machine.mass import blisk_mass
-from rubgen.machine.quantities import STRICT, Length, Usual, real
+from rubgen.machine.quantities import STRICT, Length, Usual, about, real
 from rubgen.machine.support_laws.whirling_film import WhirlingFilm
 
 if TYPE_CHECKING:
@@ -33,10 +33,20 @@ class OilWhirl(Fault):
     SEVERITY: ClassVar = Severity(
         column="oil_swirl_ratio", unit="1", meaning="mean speed of the oil in the centred film over the rotor's"
     )
-    kind: Literal["oil-whirl"] = "oil-whirl"
-    swirl_ratio: SwirlRatio = 0.47
-    film_stiffness: FilmShare = 0.1
-    film_scale_m: Length = 1e-3
+    kind: Annotated[Literal["oil-whirl"], about("Kind of this fault.")] = "oil-whirl"
+    swirl_ratio: Annotated[
+        SwirlRatio,
+        about("Mean speed of the oil in the centred film over the speed of the rotor. Films have 0.42 to 0.48."),
+    ] = 0.47
+    film_stiffness: Annotated[
+        FilmShare,
+        about(
+            "Stiffness of the centred film over that of the support. A smaller one starts the whirl at a lower speed."
+        ),
+    ] = 0.1
+    film_scale_m: Annotated[
+        Length, about("Eccentricity at which the oil has half of its mean speed. A larger one makes a larger whirl.")
+    ] = 1e-3
 
     @property
     def severity(self) -> float:

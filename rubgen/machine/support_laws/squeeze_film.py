@@ -1,10 +1,12 @@
 """A squeeze film damper at the disk centre."""
 
+from typing import Annotated
+
 import numpy as np
 from pydantic.dataclasses import dataclass
 
 from rubgen.arrays import AnyArray, FloatArray
-from rubgen.machine.quantities import STRICT, Length, Viscosity
+from rubgen.machine.quantities import STRICT, Length, Viscosity, about
 from rubgen.machine.support_laws.law import SupportLaw, Terms
 
 
@@ -22,10 +24,10 @@ class SqueezeFilm(SupportLaw):
     about half of C_0 and a stiffness of its own. Fluid inertia, supply grooves and end seals are left out.
     """
 
-    radius_m: Length
-    length_m: Length
-    clearance_m: Length
-    viscosity_pa_s: Viscosity
+    radius_m: Annotated[Length, about("Radius of the journal.")]
+    length_m: Annotated[Length, about("Axial length of the film. The damping grows with its third power.")]
+    clearance_m: Annotated[Length, about("Radial gap of the film. The damping falls with its third power.")]
+    viscosity_pa_s: Annotated[Viscosity, about("Dynamic viscosity of the oil at its temperature: 0.001 to 1.")]
 
     @property
     def centred_damping_n_s_per_m(self) -> float:

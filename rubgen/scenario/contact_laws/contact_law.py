@@ -1,11 +1,11 @@
 """What happens where a blade touches the casing, and the registry of its laws: one key of `ContactLaw` each."""
 
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import model_validator
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine.quantities import STRICT, Friction, Length, LinerBins, Restitution, Switch, WearRate
+from rubgen.machine.quantities import STRICT, Friction, Length, LinerBins, Restitution, Switch, WearRate, about
 from rubgen.machine.registered import given, registered
 from rubgen.scenario.contact_laws.law import NormalLaw
 from rubgen.scenario.contact_laws.rigid import Rigid
@@ -20,10 +20,17 @@ class Liner:
     `thickness_m` the casing does not wear.
     """
 
-    thickness_m: Length
-    wear_m2_per_n: WearRate
-    width_m: Length
-    bins: LinerBins = 360
+    thickness_m: Annotated[
+        Length, about("Thickness of the lining. Where it is worn through, the casing does not wear.")
+    ]
+    wear_m2_per_n: Annotated[
+        WearRate, about("Volume worn for each newton and metre of sliding. Linings have 1e-14 to 1e-9 m2/N.")
+    ]
+    width_m: Annotated[Length, about("Axial width of the track that wears. A wider one wears less deep.")]
+    bins: Annotated[
+        LinerBins,
+        about("Number of equal steps of the angle in which the depth is kept. Raise it for short contact zones."),
+    ] = 360
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -36,11 +43,29 @@ class ContactLaw:
     touch.
     """
 
-    friction: Friction = 0.0
-    restitution: Restitution = 0.0
-    half_thickness: Switch = False
-    surface: Literal["smooth", "chords"] = "smooth"
-    liner: Liner | None = None
+    friction: Annotated[
+        Friction,
+        about(
+            "Coulomb coefficient of sliding friction. More drives blades along the casing and can make them chatter."
+        ),
+    ] = 0.0
+    restitution: Annotated[
+        Restitution, about("Speed after an impact over the speed before it. 0 is a plastic impact, 1 loses no energy.")
+    ] = 0.0
+    half_thickness: Annotated[
+        Switch,
+        about(
+            "Whether contact acts on the inner surface of the ring instead of its centre line, so "
+            "that friction also turns the ring."
+        ),
+    ] = False
+    surface: Annotated[
+        Literal["smooth", "chords"],
+        about('The casing\'s inner surface between its nodes. "chords" is for the comparison with the paper only.'),
+    ] = "smooth"
+    liner: Annotated[
+        Liner | None, about("An abradable lining that wears where blades touch. Without it the casing does not wear.")
+    ] = None
 
     @model_validator(mode="after")
     def _one_normal_law(self) -> Self:

@@ -15,6 +15,7 @@ from rubgen.machine.quantities import (
     StepCount,
     Switch,
     TurnCount,
+    about,
 )
 from rubgen.scenario.scenario import ProfileName
 from rubgen.sensors.load import DEFAULT_SET
@@ -26,42 +27,98 @@ class Simulation(BaseModel):
     """`[simulation]`: turns and steps of every run, as in `Operation`."""
 
     model_config = _STRICT
-    settle_turns: TurnCount | Literal["auto"] = "auto"
-    record_turns: TurnCount = 500
-    steps_per_turn: StepCount = 1024
-    closing_turns: TurnCount = 40
+    settle_turns: Annotated[
+        TurnCount | Literal["auto"],
+        about(
+            'Turns before the record, in which transients decay. "auto" takes them from the slowest '
+            "decay of the model; give a number to study transients."
+        ),
+    ] = "auto"
+    record_turns: Annotated[
+        TurnCount,
+        about(
+            "Turns of the record of a steady run, from which its labels come. Labels need at least "
+            "500; more resolve slow motions better."
+        ),
+    ] = 500
+    steps_per_turn: Annotated[
+        StepCount,
+        about(
+            "Least number of integration steps in a turn. It is doubled where stability or the sample "
+            "rate needs it; raise it to check that a result does not depend on the step."
+        ),
+    ] = 1024
+    closing_turns: Annotated[
+        TurnCount, about("Turns at the start in which the clearance closes to its value. Fewer start the rub harder.")
+    ] = 40
 
 
 class Profile(BaseModel):
     """`[operation]`: the profile of the speed, as in `Operation`; it starts at `speed_rpm` of `[vary]`."""
 
     model_config = _STRICT
-    profile: ProfileName = "steady"
-    end_speed_rpm: Speed | None = None
-    duration_s: Duration | None = None
-    fluctuation_rpm: SpeedSwing = 0.0
-    fluctuation_period_s: Duration = 1.0
-    forbidden_speed_rpm: tuple[tuple[Speed, Speed], ...] = ()
+    profile: Annotated[
+        ProfileName, about("How the speed changes: not at all, linearly up, linearly down, or as a sine.")
+    ] = "steady"
+    end_speed_rpm: Annotated[Speed | None, about("Speed at the end of a run-up or coast-down, which need it.")] = None
+    duration_s: Annotated[
+        Duration | None,
+        about(
+            'Duration of a record whose speed changes; every profile but "steady" needs it. A longer '
+            "one passes a critical speed more slowly."
+        ),
+    ] = None
+    fluctuation_rpm: Annotated[SpeedSwing, about("Amplitude of a fluctuating speed, which needs it.")] = 0.0
+    fluctuation_period_s: Annotated[Duration, about("Period of a fluctuating speed.")] = 1.0
+    forbidden_speed_rpm: Annotated[
+        tuple[tuple[Speed, Speed], ...],
+        about(
+            "Bands of speed, each with its lower and upper end, that no run may enter, as an "
+            "operator's manual forbids them."
+        ),
+    ] = ()
 
 
 class Output(BaseModel):
     """`[output]`: the files to write, and the length of the signals: the end of the record."""
 
     model_config = _STRICT
-    formats: Annotated[tuple[FormatName, ...], Field(min_length=1, max_length=len(FORMAT_NAMES))] = (
+    formats: Annotated[
+        tuple[FormatName, ...],
+        Field(min_length=1, max_length=len(FORMAT_NAMES)),
+        about(
+            "Files of each run. Parquet is for learning, MCAP for robotics tools and Foxglove, .rrd "
+            "for the Rerun viewer; each holds the whole run, so leave out what you do not need."
+        ),
+    ] = (
         "parquet",
         "mcap",
         "rrd",
     )
-    signal_seconds: Duration = 1.0
+    signal_seconds: Annotated[
+        Duration,
+        about(
+            "Length of the recorded signals: the end of the record. Longer signals make larger files "
+            "and cost little time."
+        ),
+    ] = 1.0
 
 
 class Sensors(BaseModel):
     """`[sensors]`: a set of rubgen or the path of a TOML file, and the other keys of `Sensing`."""
 
     model_config = _STRICT
-    set: Annotated[str, Field(min_length=1)] = DEFAULT_SET
-    sample_rate_hz: Rate = 25600.0
-    noise: NoiseScale = 1.0
-    adc_bits: AdcBits = 16
-    keep_clean: Switch = False
+    set: Annotated[
+        str, Field(min_length=1), about("A sensor set of rubgen by its name, or the path of a sensor set in TOML.")
+    ] = DEFAULT_SET
+    sample_rate_hz: Annotated[
+        Rate, about("Samples a second of every recorded channel. A higher rate may need more integration steps.")
+    ] = 25600.0
+    noise: Annotated[NoiseScale, about("Factor of every sensor's own noise. 0 switches noise off; 2 doubles it.")] = 1.0
+    adc_bits: Annotated[AdcBits, about("Bits of the converter, where a sensor has none of its own.")] = 16
+    keep_clean: Annotated[
+        Switch,
+        about(
+            "Whether each channel is also recorded as an ideal sensor would record it. Turn it on to learn denoising."
+        ),
+    ] = False

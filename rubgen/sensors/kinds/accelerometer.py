@@ -1,10 +1,10 @@
 """Accelerometer on the casing."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine.quantities import STRICT, Direction
+from rubgen.machine.quantities import STRICT, Direction, about
 from rubgen.sensors.sensor import Description, SampledSensor
 from rubgen.taps import CasingAcceleration, name_of
 from rubgen.units import STANDARD_GRAVITY
@@ -16,8 +16,8 @@ class Accelerometer(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"m/s2": 1.0, "g": 1 / STANDARD_GRAVITY}
     RANGE: ClassVar[tuple[float, float]] = (-5e4, 5e4)
-    kind: Literal["accelerometer"] = "accelerometer"
-    angle_deg: Direction
+    kind: Annotated[Literal["accelerometer"], about("Kind of this sensor.")] = "accelerometer"
+    angle_deg: Annotated[Direction, about("Place on the casing, from +X. Near a narrow place it is near the rub.")]
 
     @property
     def tap(self) -> CasingAcceleration:

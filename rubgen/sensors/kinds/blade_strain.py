@@ -1,10 +1,10 @@
 """Strain gauge at the root of a blade."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine.quantities import STRICT, BladeNumber
+from rubgen.machine.quantities import STRICT, BladeNumber, about
 from rubgen.sensors.sensor import Description, SampledSensor
 from rubgen.taps import RootStrain
 
@@ -15,8 +15,8 @@ class BladeStrain(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"1": 1.0, "um/m": 1e6}
     RANGE: ClassVar[tuple[float, float]] = (-5e-3, 5e-3)
-    kind: Literal["blade_strain"] = "blade_strain"
-    blade: BladeNumber
+    kind: Annotated[Literal["blade_strain"], about("Kind of this sensor.")] = "blade_strain"
+    blade: Annotated[BladeNumber, about("Number of the blade with the gauge at its root.")]
 
     @property
     def tap(self) -> RootStrain:

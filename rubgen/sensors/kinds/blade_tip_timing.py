@@ -1,10 +1,10 @@
 """Probe of blade tip timing: the passage of each blade."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine.quantities import STRICT, AxialPlace, ClockOffset, Direction, Jitter, MissedShare, RateOrNone
+from rubgen.machine.quantities import STRICT, AxialPlace, ClockOffset, Direction, Jitter, MissedShare, RateOrNone, about
 from rubgen.sensors.sensor import Sensor
 from rubgen.taps import TipTiming
 
@@ -17,13 +17,21 @@ class TimingProbe(Sensor):
     `missed` is the share of passages that the probe misses.
     """
 
-    kind: Literal["blade_tip_timing"] = "blade_tip_timing"
-    angle_deg: Direction
-    axial_m: AxialPlace = 0.0
-    jitter_s: Jitter = 0.0
-    clock_hz: RateOrNone = 0.0
-    clock_offset_s: ClockOffset = 0.0
-    missed: MissedShare = 0.0
+    kind: Annotated[Literal["blade_tip_timing"], about("Kind of this sensor.")] = "blade_tip_timing"
+    angle_deg: Annotated[
+        Direction, about("Place on the casing, from +X. Uneven places of several probes tell engine orders apart.")
+    ]
+    axial_m: Annotated[
+        AxialPlace,
+        about(
+            "Axial place of the probe from the middle of the tips' chords. Another place than 0 sees "
+            "torsion of the blades."
+        ),
+    ] = 0.0
+    jitter_s: Annotated[Jitter, about("Rms of the random error of each arrival time.")] = 0.0
+    clock_hz: Annotated[RateOrNone, about("Frequency of the counter that rounds the times. 0 is exact.")] = 0.0
+    clock_offset_s: Annotated[ClockOffset, about("Shift of all arrival times.")] = 0.0
+    missed: Annotated[MissedShare, about("Share of the passages that the probe misses.")] = 0.0
 
     @property
     def tap(self) -> TipTiming:

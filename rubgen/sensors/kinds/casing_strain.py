@@ -1,10 +1,10 @@
 """Strain gauge on the outer face of the casing, around the ring."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine.quantities import STRICT, Direction
+from rubgen.machine.quantities import STRICT, Direction, about
 from rubgen.sensors.sensor import Description, SampledSensor
 from rubgen.taps import RingStrain, name_of
 
@@ -15,8 +15,8 @@ class CasingStrain(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"1": 1.0, "um/m": 1e6}
     RANGE: ClassVar[tuple[float, float]] = (-5e-3, 5e-3)
-    kind: Literal["casing_strain"] = "casing_strain"
-    angle_deg: Direction
+    kind: Annotated[Literal["casing_strain"], about("Kind of this sensor.")] = "casing_strain"
+    angle_deg: Annotated[Direction, about("Place on the casing, from +X.")]
 
     @property
     def tap(self) -> RingStrain:

@@ -1,10 +1,10 @@
 """The contact force, recorded although no probe can measure it: it is the cause of everything else."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine.quantities import STRICT
+from rubgen.machine.quantities import STRICT, about
 from rubgen.sensors.sensor import Description, SampledSensor
 from rubgen.taps import ContactForce
 
@@ -15,7 +15,10 @@ class ContactForceSensor(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"N": 1.0, "kN": 1e-3}
     RANGE: ClassVar[tuple[float, float]] = (-1e5, 1e5)
-    kind: Literal["contact_force"] = "contact_force"
+    kind: Annotated[
+        Literal["contact_force"],
+        about("Kind of this sensor. No real sensor measures it; it is the truth for learning."),
+    ] = "contact_force"
 
     @property
     def tap(self) -> ContactForce:

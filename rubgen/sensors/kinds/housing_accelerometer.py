@@ -1,10 +1,10 @@
 """Accelerometer on the bearing housing."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine.quantities import STRICT, Direction
+from rubgen.machine.quantities import STRICT, Direction, about
 from rubgen.sensors.sensor import Description, SampledSensor, axis_of
 from rubgen.taps import HousingAcceleration, name_of_direction
 from rubgen.units import STANDARD_GRAVITY
@@ -19,8 +19,8 @@ class HousingAccelerometer(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"m/s2": 1.0, "g": 1 / STANDARD_GRAVITY}
     RANGE: ClassVar[tuple[float, float]] = (-5e3, 5e3)
-    kind: Literal["housing_accelerometer"] = "housing_accelerometer"
-    angle_deg: Direction
+    kind: Annotated[Literal["housing_accelerometer"], about("Kind of this sensor.")] = "housing_accelerometer"
+    angle_deg: Annotated[Direction, about("Direction in which it measures, from +X. The machine must have a frame.")]
 
     @property
     def tap(self) -> HousingAcceleration:

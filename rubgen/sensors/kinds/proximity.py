@@ -1,12 +1,12 @@
 """Proximity probe: displacement of the disk centre, and the profile of the shaft that it cannot tell from it."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic.dataclasses import dataclass
 
 from rubgen.arrays import FloatArray
-from rubgen.machine.quantities import STRICT, Bias, Direction, Sensitivity
+from rubgen.machine.quantities import STRICT, Bias, Direction, Sensitivity, about
 from rubgen.sensors.sensor import Description, RunoutOrder, SampledSensor, axis_of, runout
 from rubgen.taps import CentreDisplacement, name_of_direction
 
@@ -17,10 +17,15 @@ class Proximity(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"m": 1.0, "mm": 1e3, "um": 1e6, "V": 0.0}
     RANGE: ClassVar[tuple[float, float]] = (-2e-3, 2e-3)
-    kind: Literal["proximity"] = "proximity"
-    angle_deg: Direction
-    sensitivity_v_per_m: Sensitivity = 7874.0
-    bias_v: Bias = -10.0
+    kind: Annotated[Literal["proximity"], about("Kind of this sensor.")] = "proximity"
+    angle_deg: Annotated[
+        Direction, about("Direction in which the probe measures, from +X. Two probes at right angles show the orbit.")
+    ]
+    sensitivity_v_per_m: Annotated[
+        Sensitivity,
+        about('Change of the gap voltage with the displacement. 7,874 is 200 mV/mil. It counts where unit is "V".'),
+    ] = 7874.0
+    bias_v: Annotated[Bias, about('Gap voltage at rest. It counts where unit is "V".')] = -10.0
 
     @property
     def tap(self) -> CentreDisplacement:

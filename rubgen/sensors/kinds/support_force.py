@@ -1,10 +1,10 @@
 """Force washer in the support of the disk."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine.quantities import STRICT, Direction
+from rubgen.machine.quantities import STRICT, Direction, about
 from rubgen.sensors.sensor import Description, SampledSensor, axis_of
 from rubgen.taps import SupportForce, name_of_direction
 
@@ -15,8 +15,8 @@ class SupportForceSensor(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"N": 1.0, "kN": 1e-3}
     RANGE: ClassVar[tuple[float, float]] = (-2.5e5, 2.5e5)
-    kind: Literal["support_force"] = "support_force"
-    angle_deg: Direction
+    kind: Annotated[Literal["support_force"], about("Kind of this sensor.")] = "support_force"
+    angle_deg: Annotated[Direction, about("Direction in which it measures, from +X.")]
 
     @property
     def tap(self) -> SupportForce:

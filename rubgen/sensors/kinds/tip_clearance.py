@@ -1,10 +1,10 @@
 """Probe of the gap between the blade tips and the casing."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine.quantities import STRICT, Direction
+from rubgen.machine.quantities import STRICT, Direction, about
 from rubgen.sensors.sensor import Description, SampledSensor
 from rubgen.taps import TipClearance, name_of
 
@@ -15,8 +15,8 @@ class ClearanceProbe(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"m": 1.0, "mm": 1e3, "um": 1e6}
     RANGE: ClassVar[tuple[float, float]] = (-1e-3, 1.2e-2)
-    kind: Literal["tip_clearance"] = "tip_clearance"
-    angle_deg: Direction
+    kind: Annotated[Literal["tip_clearance"], about("Kind of this sensor.")] = "tip_clearance"
+    angle_deg: Annotated[Direction, about("Place on the casing, from +X.")]
 
     @property
     def tap(self) -> TipClearance:

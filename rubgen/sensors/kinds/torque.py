@@ -1,10 +1,10 @@
 """Torque on the blisk: of its drive, as measured by a torque flange, or of the contact, which no sensor measures."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic.dataclasses import dataclass
 
-from rubgen.machine.quantities import STRICT
+from rubgen.machine.quantities import STRICT, about
 from rubgen.sensors.sensor import Description, SampledSensor
 from rubgen.taps import ContactTorque, DriveTorque
 
@@ -15,8 +15,14 @@ class Torque(SampledSensor):
 
     UNITS: ClassVar[dict[str, float]] = {"N m": 1.0, "kN m": 1e-3}
     RANGE: ClassVar[tuple[float, float]] = (-2e4, 2e4)
-    kind: Literal["torque"] = "torque"
-    of: Literal["drive", "contact"] = "drive"
+    kind: Annotated[Literal["torque"], about("Kind of this sensor.")] = "torque"
+    of: Annotated[
+        Literal["drive", "contact"],
+        about(
+            "Which torque: the drive's, which a torque flange measures, or that of the contact, which "
+            "no sensor measures."
+        ),
+    ] = "drive"
 
     @property
     def tap(self) -> DriveTorque | ContactTorque:
