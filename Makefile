@@ -66,6 +66,7 @@ pictures: $(VENV)/.installed-dev
 
 schemas: $(VENV)/.installed-dev
 	$(BIN)/python -m schemas.make schemas docs/labels.md
+	$(BIN)/python -m schemas.features_page docs/features.md
 
 clean:
 	rm -rf $(VENV) out build site *.egg-info

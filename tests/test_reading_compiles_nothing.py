@@ -11,6 +11,7 @@ READERS = [
     "rubgen.cli.inspecting",
     "rubgen.cli.drawing",
     "rubgen.report.page",
+    "rubgen.cli.featuring",
     "rubgen.viz.rerun",
     "rubgen.dataset.making.generate",  # the parent of workers: they compile
 ]

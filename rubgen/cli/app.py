@@ -194,6 +194,28 @@ def report(
 
 
 @app.command
+def features(
+    directory: Directory,
+    /,
+    *,
+    out: Annotated[Path, _option("File to write: .parquet.")],
+    window: Annotated[str | None, _option("Length such as 0.25s or 16turns; the whole signal when not given.")] = None,
+    channels: Annotated[str | None, _option("Names with commas; all but contact_force when not given.")] = None,
+    set_: Annotated[
+        str | None,
+        Parameter(name="--set", help="time, order, envelope, orbit, tsfel, with commas; all but tsfel when not given."),
+    ] = None,
+    workers: Annotated[int | None, _whole_number("Number of processes; the number of cores when not given.")] = None,
+    force: Force = False,
+    json: Json = False,
+) -> int:
+    """Compute features of the recorded channels, one row a window: from channels and pulses alone, without labels."""
+    from rubgen.cli.featuring import features_command
+
+    return features_command(directory, out, window, channels, set_, workers, force=force, as_json=json)
+
+
+@app.command
 def modes(machine: MachineName = "zeng2019", /, *, json: Json = False) -> int:
     """Print degrees of freedom and natural frequencies of a machine, beside the published ones for zeng2019."""
     from rubgen.cli.modes import modes_command

@@ -29,6 +29,7 @@ from rubgen.io.parquet.write import recipe_schema
 from rubgen.machine.problems import nearest
 from rubgen.measurement.channel import Float32Array
 from rubgen.scenario import Recipe, Sensing
+from rubgen.sensors.sensor_set import SensorSet
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -85,6 +86,11 @@ class DataSet:
         return tuple(self.units)
 
     @property
+    def sensors(self) -> SensorSet:
+        """The sensors of the machine."""
+        return self._sensing.set
+
+    @property
     def sample_rate_hz(self) -> float:
         """Samples per second of every channel."""
         return self._sensing.sample_rate_hz
@@ -119,14 +125,24 @@ class DataSet:
         with damage_named(self._sections.places[run_id].file):
             return touches_frame(table, self._sensing, self._recipe.output.signal_seconds)
 
+    def recorded(
+        self, run_ids: Sequence[str], channels: Sequence[str] | None = None
+    ) -> Iterator[tuple[str, dict[str, Float32Array], FloatArray]]:
+        """Yield for each of these good runs its name, its channels by name and the arrival times of its pulses (s).
+
+        One run is in memory at a time. Channels are as in `signals`, which also names what raises UserError.
+        """
+        names = self._known(channels)
+        for run_id, table in self._tables(run_ids, names):
+            yield run_id, row_signals(table, 0), np.asarray(table[PULSES][0].values, dtype=np.float64)
+
     def each_channel(self, name: str) -> Iterator[tuple[str, Float32Array, FloatArray]]:
         """Yield for each good run its name, the samples of the channel `name` and the arrival times of its pulses (s).
 
         Nothing else is read, one run at a time. Raises UserError where that channel was not recorded.
         """
-        names = self._known([name])
-        for run_id, table in self._tables(list(self.ok.index), names):
-            yield run_id, row_signals(table, 0)[name], np.asarray(table[PULSES][0].values, dtype=np.float64)
+        for run_id, signals, pulses in self.recorded(list(self.ok.index), [name]):
+            yield run_id, signals[name], pulses
 
     def check_has_signals(self, run_id: str) -> None:
         """Check that the run exists and did not fail. Raises UserError where it has no signals."""

@@ -1,0 +1,1 @@
+"""Features of recorded channels: names with units, windows, and the table of a data set."""

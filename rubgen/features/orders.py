@@ -1,0 +1,54 @@
+"""Features at orders of the speed, and of the orbit of a shaft."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubgen.arrays import ComplexArray, FloatArray
+from rubgen.features.turns import circles
+from rubgen.features.vocabulary import FRACTIONS, ORDERS, SIDES
+
+
+def order_features(turned: FloatArray) -> FloatArray:
+    """Compute the features `vocabulary.ORDER` of signals by turn (channels, turns, points): (channels, features).
+
+    What needs more turns than there are is NaN.
+    """
+    count, turns, _ = turned.shape
+    whole = np.array([circles(turned, order) for order in ORDERS])
+    parts = np.array([circles(turned, p, q) for p, q in FRACTIONS.values()])
+    phase = np.where(np.abs(whole[0]) > 0, np.mod(-np.rad2deg(np.angle(whole[0])), 360), np.nan)
+    if not turns:
+        return np.column_stack([np.zeros(count), *(2 * np.abs([*whole, *parts])), phase, *np.full((3, count), np.nan)])
+    mean_turn = turned.mean(axis=1)
+    synchronous = mean_turn.var(axis=1)
+    variance = turned.var(axis=(1, 2))
+    not_1x = np.sqrt(np.maximum(variance - 2 * np.abs(whole[0]) ** 2, 0))
+    rest = np.sqrt(np.maximum(variance - synchronous, 0)) if turns > 1 else np.full(count, np.nan)
+    amplitudes = 2 * np.abs([*whole, *parts])
+    return np.column_stack([np.full(count, turns), *amplitudes, phase, np.sqrt(synchronous), rest, not_1x])
+
+
+def orbit_features(turned: FloatArray, angles_deg: tuple[float, float]) -> FloatArray:
+    """Compute the features `vocabulary.ORBIT` (features,) of two shaft probes by turn (2, turns, points).
+
+    - angles_deg: directions of the probes. They must not be parallel.
+
+    The full spectrum is the Fourier series of x + iy over the angle of the shaft. Source: API 670; Bently and Hatch,
+    Fundamentals of Rotating Machinery Diagnostics, chapter 8.
+    """
+    angle = np.deg2rad(angles_deg)
+    probes = np.column_stack([np.cos(angle), np.sin(angle)])
+    x, y = np.tensordot(np.linalg.inv(probes), turned, axes=1)
+    place: ComplexArray = (x + 1j * y)[None]
+    sides = []
+    for name in SIDES:
+        p, q = FRACTIONS.get(name, (int(name.split("_")[0]), 1))
+        sides += [circles(place, p, q)[0], circles(place, -p, q)[0]]
+    one = 2 * SIDES.index("1")
+    forward, backward = sides[one : one + 2]
+    inclination = np.mod(np.rad2deg(np.angle(forward) + np.angle(backward)) / 2, 180)
+    distance = np.abs(place - place.mean()).max(initial=0.0) if place.size else np.nan
+    sizes = np.abs(sides)
+    major, minor = sizes[one] + sizes[one + 1], sizes[one] - sizes[one + 1]
+    return np.array([major, minor, inclination, distance, *sizes])

@@ -1,0 +1,65 @@
+"""Cut a recording into windows of a time or of whole turns."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.errors import UserError
+
+LEAST_SAMPLES = 64
+"""The fewest samples in a window that features are computed from."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """The length of a window; windows follow each other without a gap, and the rest of a signal is left out."""
+
+    length: float
+    unit: Literal["s", "turns"]
+
+    def __str__(self) -> str:
+        return f"{self.length:g}{self.unit}"
+
+    def cuts(self, samples: int, rate_hz: float, pulses: FloatArray) -> list[tuple[int, int]]:
+        """Return first sample and number of samples of each window of a signal.
+
+        A window of turns has all samples from its first to its last pulse. The list is empty where a signal has no
+        whole window.
+        """
+        if self.unit == "s":
+            size = round(self.length * rate_hz)
+            return [(size * number, size) for number in range(samples // size)]
+        inside = pulses[(pulses >= 0) & (pulses <= (samples - 1) / rate_hz)]
+        first = np.floor(inside[:: int(self.length)] * rate_hz).astype(int)
+        last = np.ceil(inside[:: int(self.length)] * rate_hz).astype(int)
+        return [(int(a), int(b - a + 1)) for a, b in zip(first[:-1], last[1:], strict=True)]
+
+    def longest(self, samples: int, rate_hz: float, pulses: FloatArray) -> str:
+        """Say how long the longest window of such a signal may be, in the unit of this one."""
+        if self.unit == "s":
+            return f"{samples / rate_hz:g}s"
+        inside = pulses[(pulses >= 0) & (pulses <= (samples - 1) / rate_hz)]
+        return f"{max(inside.size - 1, 0)}turns"
+
+
+def parse_window(text: str, rate_hz: float) -> Window:
+    """Read a length such as "0.25s" or "16turns". Raises UserError for any other text and for too short a window."""
+    found = re.fullmatch(r"(\d+\.?\d*|\.\d+) ?(s|turns?)", text.strip())
+    if not found:
+        raise UserError(f"--window {text:.40}: unknown length; give seconds such as 0.25s, or turns such as 16turns")
+    length = float(found[1])
+    if found[2] != "s":
+        if length < 1 or length != int(length):
+            raise UserError(f"--window {text}: must be whole turns, at least one; give for example 16turns")
+        return Window(length, "turns")
+    if round(length * rate_hz) < LEAST_SAMPLES:
+        least = f"{LEAST_SAMPLES / rate_hz:g}s"
+        raise UserError(
+            f"--window {text}: has fewer than {LEAST_SAMPLES} samples at {rate_hz:g} Hz; give {least} or more"
+        )
+    return Window(length, "s")
