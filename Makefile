@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check docs bench verification sensitivity confusion contact difficulty faults fuzz zeng2019 zeng2019-fit pictures schemas clean
+.PHONY: setup demo test check docs bench verification sensitivity confusion contact difficulty faults fuzz zeng2019 zeng2019-fit pictures schemas reference clean
 
 setup: $(VENV)/.installed-dev
 
@@ -67,6 +67,9 @@ pictures: $(VENV)/.installed-dev
 schemas: $(VENV)/.installed-dev
 	$(BIN)/python -m schemas.make schemas docs/labels.md
 	$(BIN)/python -m schemas.features_page docs/features.md
+	$(BIN)/python -m schemas.reference docs/reference
+
+reference: schemas
 
 clean:
 	rm -rf $(VENV) out build site *.egg-info

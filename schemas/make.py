@@ -36,15 +36,20 @@ JSON_TYPES: dict[str, dict[str, Any]] = {
 }
 
 
-def schemas() -> dict[str, dict[str, Any]]:
-    """File name to schema: recipe, machine, sensor set, manifest, and one row of `runs.parquet`."""
-    documents = {
+def documents() -> dict[str, dict[str, Any]]:
+    """File name to schema as pydantic makes it: recipe, machine, sensor set, manifest."""
+    return {
         "recipe.schema.json": Recipe.model_json_schema(),
         "machine.schema.json": TypeAdapter(Machine).json_schema(),
         "manifest.schema.json": Manifest.model_json_schema(),
         "sensor-set.schema.json": _sensor_set_schema(),
     }
-    completed = {name: complete(document) for name, document in documents.items()} | {"run.schema.json": _run_schema()}
+
+
+def schemas() -> dict[str, dict[str, Any]]:
+    """File name to schema with whole descriptions; one more is of a row of `runs.parquet`."""
+    completed = {name: complete(document) for name, document in documents().items()}
+    completed["run.schema.json"] = _run_schema()
     return {name: {"$schema": DIALECT, **document} for name, document in completed.items()}
 
 

@@ -7,6 +7,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from schemas.make import schemas, write_schemas
+from schemas.reference import pages
 
 ROOT = Path(__file__).parents[2]
 
@@ -15,6 +16,29 @@ ROOT = Path(__file__).parents[2]
 def test_checked_in_schemas_are_those_of_the_code(name, tmp_path):
     write_schemas(tmp_path)
     assert (ROOT / "schemas" / name).read_text() == (tmp_path / name).read_text(), "run `make schemas`"
+
+
+@pytest.mark.parametrize("name", sorted(pages()))
+def test_checked_in_reference_pages_are_those_of_the_code(name):
+    assert (ROOT / "docs/reference" / name).read_text(encoding="utf-8") == pages()[name], "run `make reference`"
+
+
+def property_names(node):
+    if isinstance(node, dict):
+        yield from node.get("properties", {})
+        for value in node.values():
+            yield from property_names(value)
+    elif isinstance(node, list):
+        for value in node:
+            yield from property_names(value)
+
+
+@pytest.mark.parametrize("name", ["recipe.schema.json", "machine.schema.json", "sensor-set.schema.json"])
+def test_reference_pages_have_every_key_of_the_schemas(name):
+    text = "".join(pages().values())
+    names = set(property_names(schemas()[name]))
+    assert len(names) > 30
+    assert {each for each in names if f"`{each}`" not in text} == set()
 
 
 def test_no_schema_is_left_over():
