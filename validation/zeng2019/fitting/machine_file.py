@@ -9,6 +9,7 @@ from validation.zeng2019.fitting.candidate import Candidate, machine_of
 from validation.zeng2019.size import AS_COMPUTED, MACHINE
 
 HEAD = """\
+#:schema ../../../schemas/machine.schema.json
 # The machine of Zeng et al. (2019), doi 10.1016/j.ast.2019.105481, as the paper discretised it. It is for comparison
 # with the paper, never for data: `[contact] surface = "chords"` belongs to it, so every node of the casing's mesh hits
 # the tips. `make zeng2019-fit` found it. See docs/zeng2019-fit.md and docs/preset-zeng2019.md.
