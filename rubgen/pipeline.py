@@ -89,6 +89,8 @@ def simulate(scenario: Scenario) -> Run:
     """
     if not isinstance(scenario, Scenario):
         raise UserError(f"{scenario!r:.200}: is no scenario; give rubgen.make_scenario(...) or recipe.scenario(0)")
+    if scenario.virtual and scenario.virtual.problem:
+        raise UserError(scenario.virtual.problem)
     operation, sensing, seconds = scenario.operation, scenario.sensing, scenario.signal_seconds
     with one_blas_thread():
         scenario = with_clearance(scenario)

@@ -20,6 +20,7 @@ from rubgen.machine import Machine
 from rubgen.machine.descriptions import complete
 from rubgen.machine.faults.registry import FAULTS
 from rubgen.scenario import Recipe
+from rubgen.scenario.machines.keys import own_keys
 from rubgen.sensors.load import default_sensor_set
 from rubgen.sensors.registry import SENSOR_KINDS
 from rubgen.sensors.sensor_set import SensorSet
@@ -93,11 +94,13 @@ def with_tables(page: str) -> str:
 
 def _run_schema() -> dict[str, Any]:
     columns, endings = scalar_columns(default_sensor_set()), "|".join(registry.TAP_ENDINGS)
-    around = scalar_columns(default_sensor_set(), surroundings=True, faults=FAULTS)[len(columns) :]
+    around = scalar_columns(default_sensor_set(), surroundings=True, faults=FAULTS, machines=own_keys(frame=True))[
+        len(columns) :
+    ]
     return {
         "title": "Run",
         "description": "One row of runs.parquet. Labels are null where a run failed or has no such value; levels of "
-        "surroundings and labels of faults are there where the recipe has them.",
+        "surroundings, labels of faults and values of virtual machines are there where the recipe has them.",
         "type": "object",
         "properties": {column.name: _property(column) for column in (*columns, *around)},
         "required": [column.name for column in columns],

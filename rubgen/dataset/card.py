@@ -33,7 +33,9 @@ def card(identity: Identity, status: dict[str, int]) -> str:
     formats = recipe["output"]["formats"]
     sensors = identity.sensor_set
     signals = signal_columns(sensors, clean=recipe["sensors"]["keep_clean"])
-    columns = scalar_columns(sensors, surroundings="surroundings" in recipe, faults=identity.fault_kinds)
+    columns = scalar_columns(
+        sensors, surroundings="surroundings" in recipe, faults=identity.fault_kinds, machines=identity.machine_keys
+    )
     columns += signals if "parquet" in formats else ()
     channel = next((column.name for column in signals if column.kind == "signal"), "rotation_angle_rad")
     loading = "\n\n".join(format_of(name).loading for name in FORMAT_NAMES if name in formats)

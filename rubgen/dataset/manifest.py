@@ -7,7 +7,16 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, NonNegativeInt, TypeAdapter, ValidationError
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    NonNegativeInt,
+    SerializerFunctionWrapHandler,
+    TypeAdapter,
+    ValidationError,
+    model_serializer,
+)
 
 from rubgen.dataset.files import json_text, sha256_of, write_text
 from rubgen.dataset.layout import Layout
@@ -21,6 +30,7 @@ from rubgen.machine.problems import first_problem
 from rubgen.machine.quantities import about
 from rubgen.scenario import Recipe
 from rubgen.scenario.faults import named_kinds
+from rubgen.scenario.machines.keys import MachineKey, own_keys
 from rubgen.scenario.recipe import recorded_recipe
 from rubgen.sensors.sensor_set import SensorSet
 
@@ -46,13 +56,30 @@ class Identity(BaseModel):
 
     model_config = _STRICT
     recipe: Annotated[dict[str, Any], about("The recipe with every value that was given or is a default.")]
-    machine: Annotated[dict[str, Any], about("The machine with all its values.")]
+    machine: Annotated[
+        dict[str, Any] | list[dict[str, Any]],
+        about("The machine with all its values; of a recipe with several machine files, a list in their order."),
+    ]
     sensors: Annotated[dict[str, Any], about("The sensor set with all its values.")]
     packages: Annotated[dict[str, str], about("Version of each package on which the bytes depend.")]
+    split_sensors: Annotated[
+        dict[str, dict[str, Any]],
+        about("Sensor sets of splits that have their own, by the name in the recipe. Left out where there are none."),
+    ] = {}
+
+    @model_serializer(mode="wrap")
+    def _without_absent_sensors(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave the sensor sets of splits out where there are none: manifests of other recipes stay as they were."""
+        values: dict[str, Any] = handler(self)
+        return values if self.split_sensors else {key: each for key, each in values.items() if key != "split_sensors"}
 
     def same_recipe(self, other: "Identity") -> bool:
         """Return whether both describe the same data set, ignoring versions."""
-        return (self.recipe, self.machine, self.sensors) == (other.recipe, other.machine, other.sensors)
+        return self._described == other._described
+
+    @property
+    def _described(self) -> tuple[object, ...]:
+        return self.recipe, self.machine, self.sensors, self.split_sensors
 
     def checked(self, source: str) -> "Identity":
         """Return the identity with every key of its recipe present. It may come from a file.
@@ -68,7 +95,7 @@ class Identity(BaseModel):
 
         Raises UserError, beginning with `source`, where a key or value is not valid.
         """
-        return recorded_recipe(self.recipe, self.machine, self.sensors, source)
+        return recorded_recipe(self.recipe, self.machine, self.sensors, source, self.split_sensors)
 
     @property
     def sensor_set(self) -> SensorSet:
@@ -78,7 +105,17 @@ class Identity(BaseModel):
     @property
     def fault_kinds(self) -> tuple[str, ...]:
         """The kinds of fault that the runs may have."""
-        return named_kinds(self.recipe, self.machine)
+        return named_kinds(self.recipe, *self.machines)
+
+    @property
+    def machines(self) -> list[dict[str, Any]]:
+        """The machines of the recipe's files, in their order."""
+        return self.machine if isinstance(self.machine, list) else [self.machine]
+
+    @property
+    def machine_keys(self) -> tuple[MachineKey, ...]:
+        """The keys of virtual machines that have columns of their own."""
+        return own_keys(frame=bool(self.machines[0].get("frame"))) if "machines" in self.recipe else ()
 
 
 class Manifest(BaseModel):
@@ -112,11 +149,17 @@ def identity_of(recipe: Recipe) -> Identity:
 
 
 def _identity(recipe: Recipe, packages: dict[str, str]) -> Identity:
+    machines = [TypeAdapter(Machine).dump_python(base.machine, mode="json") for base in recipe.bases]
     return Identity(
         recipe=recipe.model_dump(mode="json", exclude_none=True),
-        machine=TypeAdapter(Machine).dump_python(recipe.base.machine, mode="json"),
+        machine=machines if len(machines) > 1 else machines[0],
         sensors=TypeAdapter(SensorSet).dump_python(recipe.sensing.set, mode="json"),
         packages=packages,
+        split_sensors={
+            part.sensors.set: TypeAdapter(SensorSet).dump_python(part.sensing.set, mode="json")
+            for part in recipe.parts.values()
+            if part.sensors.set != recipe.sensors.set
+        },
     )
 
 

@@ -7,6 +7,7 @@ from enum import StrEnum
 from rubgen.errors import UserError
 from rubgen.labels.registry import ENERGY_LABELS, LABELS, TAP_LABELS, WINDOW_LABELS, Label
 from rubgen.machine.faults.registry import FAULTS
+from rubgen.scenario.machines.keys import MachineKey, own_keys
 from rubgen.scenario.surroundings import SURROUNDINGS
 from rubgen.scenario.vary import PARAMETERS
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
@@ -114,6 +115,18 @@ def _surroundings() -> list[Column]:
     ]
 
 
+def _machines(keys: Iterable[MachineKey]) -> list[Column]:
+    kinds = {True: "integer", False: "number"}
+    columns = [
+        Column("machine_number", "integer", "", "number of the virtual machine"),
+        Column(
+            "machine_candidate", "integer", "", "its candidate that was used; all candidates before it were refused"
+        ),
+        *(Column(each.key, kinds[each.whole], each.unit, each.meaning) for each in keys),
+    ]
+    return columns if keys else []
+
+
 def _faults(kinds: Iterable[str]) -> list[Column]:
     severities = [FAULTS[kind].SEVERITY for kind in kinds]
     columns = [
@@ -130,12 +143,18 @@ def _ordered_taps(sensors: SensorSet) -> tuple[Tap, ...]:
     return (*(tap for tap in sensors.taps if not isinstance(tap, TipTiming)), *FIELDS)
 
 
-def scalar_columns(sensors: SensorSet, *, surroundings: bool = False, faults: Iterable[str] = ()) -> tuple[Column, ...]:
+def scalar_columns(
+    sensors: SensorSet,
+    *,
+    surroundings: bool = False,
+    faults: Iterable[str] = (),
+    machines: Iterable[MachineKey] = (),
+) -> tuple[Column, ...]:
     """Return the columns of `runs.parquet` for runs with the sensor set `sensors`.
 
     They are identity, parameters, operation, labels, the orders of each tap of a sensor, and energies. With
     `surroundings`, as for a recipe that has this table, the levels of the disturbances follow. The labels of `faults`
-    are last, for the kinds of fault that the runs may have.
+    follow, for the kinds of fault that the runs may have. The values `machines` of virtual machines are last.
     """
     orders = [column for tap in _ordered_taps(sensors) for column in tap_columns(tap.name, tap.UNIT)]
     around = _surroundings() if surroundings else []
@@ -148,6 +167,7 @@ def scalar_columns(sensors: SensorSet, *, surroundings: bool = False, faults: It
         *_energy(),
         *around,
         *_faults(faults),
+        *_machines(machines),
     )
 
 
@@ -178,7 +198,8 @@ def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
 
 
 def _check_names(sensors: SensorSet, columns: list[Column]) -> None:
-    taken = [column.name for column in (*scalar_columns(sensors, surroundings=True, faults=FAULTS), *columns)]
+    scalars = scalar_columns(sensors, surroundings=True, faults=FAULTS, machines=own_keys(frame=True))
+    taken = [column.name for column in (*scalars, *columns)]
     for name in taken:
         if taken.count(name) > 1:
             raise UserError(f"sensor set {sensors.name}: two columns would be called {name}; rename that sensor")

@@ -187,6 +187,8 @@ BladeNumber = Annotated[int, _whole(ge=0, lt=1000)]
 ModeCount = Annotated[int, _whole(ge=0, le=MOST_MODES)]
 CasingModeCount = Annotated[int, _whole(ge=1, le=MOST_MODES)]
 RunCount = Annotated[int, _whole(ge=1, le=MOST_RUNS)]
+TryCount = Annotated[int, _whole(ge=1, le=1000)]
+Share = Annotated[float, real(gt=0, le=1)]
 
 # Speeds, turns and times.
 Speed = Annotated[float, real(ge=1e-3, le=1e6)]

@@ -63,7 +63,7 @@ def render_report(directory: Path) -> str:
     identity = data.manifest.identity
     return environment.get_template("report.html.j2").render(
         name=data.manifest.name,
-        machine=identity.machine["name"],
+        machine=", ".join(machine["name"] for machine in identity.machines),
         runs=len(data.runs),
         good=len(good),
         rubbing=int(good["rub"].sum()),

@@ -179,9 +179,9 @@ def extremes(scenario: Scenario, tables: Sequence[BaseModel], source: str) -> It
     yield _having(scenario, tables, tuple(largest))
 
 
-def named_kinds(recipe: dict[str, Any], machine: dict[str, Any]) -> tuple[str, ...]:
-    """Return the kinds of fault that a recipe and its machine name in their documents, in the order of the registry."""
-    named = {each["kind"] for document in (machine, recipe) for each in document.get("faults") or ()}
+def named_kinds(*documents: dict[str, Any]) -> tuple[str, ...]:
+    """Return the kinds of fault that documents of a recipe and its machines name, in the order of the registry."""
+    named = {each["kind"] for document in documents for each in document.get("faults") or ()}
     return tuple(kind for kind in FAULTS if kind in named)
 
 

@@ -1,19 +1,21 @@
 """A recipe: the TOML file that defines a whole data set, run by run."""
 
-from collections.abc import Iterator
-from contextlib import AbstractContextManager
+from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
+from pkgutil import resolve_name
+from types import MappingProxyType
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, TypeAdapter, ValidationError, create_model
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, TypeAdapter, ValidationError, model_validator
 
 from rubgen.brief import counted
 from rubgen.errors import UserError, warn
 from rubgen.machine import Machine, load_machine
-from rubgen.machine.descriptions import draws
 from rubgen.machine.load import FOR_COMPARISON, file_named, machine_id
 from rubgen.machine.problems import first_problem, validated
 from rubgen.machine.quantities import (
@@ -29,11 +31,17 @@ from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.faults import FaultTable, kinds_of, with_faults
 from rubgen.scenario.faults import extremes as fault_extremes
 from rubgen.scenario.feasible import check_feasible
+from rubgen.scenario.machines.check import check_machines, check_splits, machine_extremes
+from rubgen.scenario.machines.draw import Population
+from rubgen.scenario.machines.keys import MachineKey, own_keys
 from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.profiles import check_used
 from rubgen.scenario.scenario import Labelling, Operation, Reduction, Scenario, Sensing
 from rubgen.scenario.surroundings import SurroundingsTable, drawn, extremes
+from rubgen.scenario.tables.machines import MachineTable, replaced_runs, with_runs
 from rubgen.scenario.tables.run import Output, Profile, Sensors, Simulation
+from rubgen.scenario.tables.splits import ONE_SPLIT, Splits, SplitTable, changes_of, split_of_machine
+from rubgen.scenario.tables.vary import Vary
 from rubgen.scenario.vary import (
     DEFAULT_SPEED_RPM,
     DRAWN,
@@ -51,28 +59,24 @@ NOT_FOR_DATA = (
     'for comparison with the paper, never for data: it belongs to [contact] surface = "chords", '
     'where every node of the mesh hits the tips; name "zeng2019" instead'
 )
+CANDIDATE_CHECK = "rubgen.solver.candidate:candidate_problem"
+"""The check of a virtual machine. It needs the solver, above this room, so it is named here and imported when used."""
 _STRICT = ConfigDict(extra="forbid", frozen=True)
 
 
-def _vary_fields() -> dict[str, Any]:
-    return {
-        entry.key: (
-            Annotated[Distribution | None, Field(description=entry.about, json_schema_extra=draws(entry.quantity))],
-            None,
-        )
-        for entry in DRAWN
-    }
+def _runs_or_count(schema: dict[str, Any]) -> None:
+    """Require `runs`, or `machines`, whose `count` stands in its place."""
+    schema["required"].remove("runs")
+    schema["anyOf"] = [{"required": ["runs"]}, {"required": ["machines"]}]
 
 
-Vary = create_model(
-    "Vary", __config__=_STRICT, __doc__="`[vary]`: a number fixes a value, a table draws it.", **_vary_fields()
-)
+MachineFile = Annotated[str, Field(min_length=1)]
 
 
 class Recipe(BaseModel):
     """The definition of a data set: a machine, what varies, the length of each run, the files."""
 
-    model_config = _STRICT
+    model_config = ConfigDict(**_STRICT, json_schema_extra=_runs_or_count)
     name: Annotated[str, Field(pattern=FILE_NAME), about("Name of the data set, in its files and its card.")]
     seed: Annotated[
         Seed,
@@ -82,9 +86,24 @@ class Recipe(BaseModel):
     ] = 0
     runs: Annotated[RunCount, about("Number of runs. Each takes from seconds to minutes; `rubgen plan` estimates it.")]
     machine: Annotated[
-        str, Field(min_length=1), about("A preset of rubgen by its name, or the path of a machine in TOML.")
+        MachineFile | Annotated[tuple[MachineFile, ...], Field(min_length=1)],
+        about(
+            "A preset of rubgen by its name, or the path of a machine in TOML; or a list of such, which "
+            "`[machines]` takes in turn."
+        ),
     ]
     license: Annotated[str, Field(min_length=1), about("License of the data, as an SPDX name.")] = "CC-BY-4.0"
+    machines: Annotated[
+        MachineTable | None,
+        about("Virtual machines, each with its own values. Without it all runs have the machine of the file."),
+    ] = None
+    splits: Annotated[
+        Splits | None,
+        about(
+            "Splits by their names: a share of the machines, or a table with the share and ranges of its own. Without "
+            "it all runs are in `train`."
+        ),
+    ] = None
     vary: Annotated[Vary, about("What differs between the runs. A number fixes a value, a table draws it.")] = Vary()
     surroundings: Annotated[
         SurroundingsTable | None,
@@ -109,8 +128,14 @@ class Recipe(BaseModel):
     contact: Annotated[ContactLaw, about("What happens where a blade touches the casing.")] = ContactLaw()
     _folder: Path = PrivateAttr(default_factory=Path)
     _checked: bool = PrivateAttr(default=False)
-    _machine: Machine | None = PrivateAttr(default=None)
-    _sensor_set: SensorSet | None = PrivateAttr(default=None)
+    _machines: tuple[Machine, ...] = PrivateAttr(default=())
+    _sensor_sets: dict[str, SensorSet] = PrivateAttr(default_factory=dict)
+    _whole: "Recipe | None" = PrivateAttr(default=None)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_runs(cls, data: Any) -> Any:
+        return with_runs(data)
 
     def __repr__(self) -> str:
         varied = ", ".join(entry.key for entry, _ in self.distributions()) or "nothing"
@@ -119,44 +144,83 @@ class Recipe(BaseModel):
 
     __str__ = __repr__
 
-    @cached_property
-    def base(self) -> Scenario:
-        """The scenario before `[vary]`: the machine of the file, at the default speed.
+    @property
+    def files(self) -> tuple[str, ...]:
+        """The presets or files of its machines."""
+        return (self.machine,) if isinstance(self.machine, str) else self.machine
 
-        Its frame is left out where no sensor feels it: the machine has the same digits and JSON as one without.
+    @property
+    def base(self) -> Scenario:
+        """The scenario before `[vary]`: the machine of the first file, at the default speed."""
+        return self.bases[0]
+
+    @cached_property
+    def bases(self) -> tuple[Scenario, ...]:
+        """The scenario before `[vary]` of each machine file, at the default speed.
+
+        A frame is left out where no sensor feels it: the machine has the same digits and JSON as one without.
         """
-        machine = self._machine or load_machine(self.machine, self._folder)
+        machines = self._machines or tuple(load_machine(name, self._folder) for name in self.files)
         if not self.feels_frame:
-            machine = replace(machine, frame=None)
-        return Scenario(
-            machine=machine,
-            operation=Operation(
-                speed_rpm=DEFAULT_SPEED_RPM, **self.simulation.model_dump(), **self.operation.model_dump()
-            ),
-            contact=self.contact,
-            reduction=self.reduction,
-            sensing=self.sensing,
-            labelling=self.labels,
-            signal_seconds=self.output.signal_seconds,
-            seed=self.seed,
-            machine_id=machine_id(machine),
+            machines = tuple(replace(machine, frame=None) for machine in machines)
+        operation = {**self.simulation.model_dump(), **self.operation.model_dump()}
+        return tuple(
+            Scenario(
+                machine=machine,
+                operation=Operation(speed_rpm=DEFAULT_SPEED_RPM, **operation),
+                contact=self.contact,
+                reduction=self.reduction,
+                sensing=self.sensing,
+                labelling=self.labels,
+                signal_seconds=self.output.signal_seconds,
+                seed=self.seed,
+                machine_id=machine_id(machine),
+            )
+            for machine in machines
         )
 
     @property
     def feels_frame(self) -> bool:
-        """Whether some run's sensors may feel the machine's frame."""
-        path = self.surroundings and self.surroundings.path_gain  # type: ignore[attr-defined]
-        return bool(self.sensing.set.on_housing or path is not None)
+        """Whether some run's sensors may feel a machine's frame."""
+        return any(
+            part.sensing.set.on_housing or getattr(part.surroundings, "path_gain", None) is not None
+            for part in (self._whole or self).parts.values()
+        )
 
     @cached_property
     def sensing(self) -> Sensing:
         """`[sensors]` with the set that it names."""
-        rest = self.sensors.model_dump(exclude={"set"})
-        return Sensing(set=self._sensor_set or load_sensor_set(self.sensors.set, self._folder), **rest)
+        rest, name = self.sensors.model_dump(exclude={"set"}), self.sensors.set
+        return Sensing(set=self._sensor_sets.get(name) or load_sensor_set(name, self._folder), **rest)
+
+    @cached_property
+    def parts(self) -> "dict[str, Recipe]":
+        """The recipe of each split by its name: this one without splits, with what the split changes."""
+        if not self.splits:
+            return dict.fromkeys(ONE_SPLIT, self)
+        plain = self._part({})
+        changed = {
+            name: self._part(changes_of(self, split))
+            for name, split in self.splits.items()
+            if isinstance(split, SplitTable) and split.changes
+        }
+        return {name: changed.get(name, plain) for name in self.splits}
+
+    def _part(self, changes: dict[str, Any]) -> "Recipe":
+        part = Recipe(**{key: getattr(self, key) for key in self.model_fields_set - {"splits"}} | changes)
+        part._folder, part._machines, part._sensor_sets = self._folder, self._machines, self._sensor_sets
+        part._checked, part._whole = self._checked, self
+        return part
+
+    @cached_property
+    def population(self) -> Population:
+        """The virtual machines of its runs."""
+        files = tuple(base.machine for base in self.bases)
+        return Population(self.machines or MachineTable(), files, self.seed, self._candidate_problem)
 
     def machine_named(self) -> AbstractContextManager[None]:
-        """Name the machine's file in errors that the block raises about the machine."""
-        return file_named(self.machine, self._folder)
+        """Name the machine's file in errors that the block raises about the machine; of several files none."""
+        return file_named(self.machine, self._folder) if isinstance(self.machine, str) else nullcontext()
 
     def distributions(self) -> Iterator[tuple[Parameter, Distribution]]:
         """Yield the keys of the recipe with their distributions, in the order of PARAMETERS."""
@@ -169,37 +233,93 @@ class Recipe(BaseModel):
         """Draw run number `index` from 0, complete. It depends on no other run and not on the number of runs."""
         if isinstance(index, bool) or not isinstance(index, int | np.integer) or not 0 <= index < MOST_RUNS:
             raise UserError(f"index = {index!r:.100}: give the number of a run, from 0 to below {MOST_RUNS:,}")
+        part = self.parts[self.split_of(index)]
+        if part is not self:
+            return part.scenario(index)
         point = sobol_point(self.seed, index)
         values = {entry.key: distribution.quantile(point[entry.key]) for entry, distribution in self.distributions()}
         around = drawn(self.surroundings, self.seed, index) if self.surroundings else None
-        scenario = vary(replace(self.base, index=index, surroundings=around), values)
+        scenario = vary(replace(self._base_of(index), index=index, surroundings=around), values)
         return with_faults(scenario, self.faults or ()) if self.fault_kinds else scenario
+
+    def _base_of(self, index: int) -> Scenario:
+        """Return the scenario before `[vary]` of a run, with its machine."""
+        if self.machines is None:
+            return self.base
+        machine, virtual = self.population.machine(self.machine_number(index))
+        base = self.bases[virtual.number % len(self.bases)]
+        digits = "" if virtual.problem else machine_id(machine)
+        return replace(base, machine=machine, machine_id=digits, virtual=virtual)
+
+    def _candidate_problem(self, number: int, machine: Machine) -> str | None:
+        """Return why that candidate of machine `number` is not used; None where it is sane."""
+        corners = list(self.corners_of(self.bases[number % len(self.bases)], machine))
+        for corner in corners:
+            check_feasible(corner)
+        rotations = [corner.operation.rotation for corner in corners]
+        slowest, fastest = min(each.slowest for each in rotations), max(each.fastest for each in rotations)
+        problem: str | None = resolve_name(CANDIDATE_CHECK)(corners[0], self.machines, slowest, fastest)
+        return problem
 
     @property
     def fault_kinds(self) -> tuple[str, ...]:
-        """The kinds of fault that its runs may have, of the recipe or of its machine."""
-        return kinds_of((*self.base.machine.faults, *(self.faults or ())))
+        """The kinds of fault that its runs may have, of the recipe or of its machines."""
+        own = [fault for base in self.bases for fault in base.machine.faults]
+        return kinds_of((*own, *(self.faults or ())))
+
+    @property
+    def machine_keys(self) -> tuple[MachineKey, ...]:
+        """The keys of virtual machines that have columns of their own; none without `[machines]`."""
+        return own_keys(frame=self.base.machine.frame is not None) if self.machines else ()
 
     @property
     def split_names(self) -> tuple[str, ...]:
         """The splits of its runs, in the order of the recipe."""
-        return ("train",)
+        return tuple(self.splits or ONE_SPLIT)
 
     def split_of(self, index: int) -> str:
         """Return the split of run number `index`: that of its machine, whatever the number of runs."""
-        return self.split_names[self.machine_number(index) % len(self.split_names)]
+        return split_of_machine(self.splits, self.seed, self.machine_number(index)) if self.splits else ONE_SPLIT[0]
 
     def machine_number(self, index: int) -> int:
         """Return the number of the machine of run number `index`; the runs of a machine follow each other."""
-        return index // MOST_RUNS
+        return index // self.machines.runs_per_machine if self.machines else 0
+
+    @property
+    def machine_count(self) -> int:
+        """The number of machines that its runs have."""
+        return self.machine_number(self.runs - 1) + 1
+
+    def named_parts(self, source: str = "") -> "Iterator[tuple[str, Recipe]]":
+        """Yield each different recipe of its splits, after the name of it in messages, which begins with `source`."""
+        seen: list[Recipe] = []
+        for name, part in self.parts.items():
+            if all(part is not each for each in seen):
+                seen.append(part)
+                split = (self.splits or {}).get(name)
+                own = isinstance(split, SplitTable) and split.changes
+                yield f"{source}: splits.{name}".removeprefix(": ") if own else source, part
 
     def corners(self, source: str = "") -> Iterator[Scenario]:
         """Yield scenarios at the extreme values of each key, the other keys at their first value. Checks use them.
 
-        Raises UserError, beginning with `source`, where an extreme value is not allowed.
+        Virtual machines are those of the files with the largest number of blades. Raises UserError, beginning with
+        `source`, where an extreme value is not allowed.
         """
+        for where, part in self.named_parts(source):
+            yield from part.own_corners(where)
+
+    def own_corners(self, source: str = "") -> Iterator[Scenario]:
+        """Yield the `corners` of a recipe without its splits."""
+        for base in self.bases:
+            machine = self.machines.largest(base.machine) if self.machines else base.machine
+            yield from self.corners_of(base, machine, source)
+
+    def corners_of(self, base: Scenario, machine: Machine, source: str = "") -> Iterator[Scenario]:
+        """Yield the `corners` with that machine in place of the one of `base`."""
+        base = replace(base, machine=machine)
         ends = {entry.key: distribution.extremes() for entry, distribution in self.distributions()}
-        first = vary(self.base, {key: values[0] for key, values in ends.items()}, source, ("vary",))
+        first = vary(base, {key: values[0] for key, values in ends.items()}, source, ("vary",))
         yield first
         for around in extremes(self.surroundings, source) if self.surroundings else ():
             yield replace(first, surroundings=around)
@@ -234,7 +354,7 @@ def parse_recipe(
     Raises UserError for anything that is not allowed.
     """
     if runs is not None:
-        data = {**data, "runs": checked_runs(runs)}
+        data = replaced_runs(data, checked_runs(runs))
     recipe = validated(source, data, TypeAdapter(Recipe))
     recipe._folder = folder or Path()
     check_recipe(recipe, source, data)
@@ -248,20 +368,29 @@ def checked_runs(runs: int) -> int:
     return runs
 
 
-def recorded_recipe(data: object, machine: object, sensors: object, source: str = "manifest") -> Recipe:
-    """Make the recipe of a data set from its manifest, with the recorded machine and sensors.
+def recorded_recipe(
+    data: object,
+    machine: object,
+    sensors: object,
+    source: str = "manifest",
+    split_sensors: Mapping[str, object] = MappingProxyType({}),
+) -> Recipe:
+    """Make the recipe of a data set from its manifest, with the recorded machines and sensors.
 
-    Changes of the machine's or sensors' files since then have no effect.
+    Changes of the machines' or sensors' files since then have no effect.
 
-    - data, machine, sensors: the three documents of the manifest.
+    - data, machine, sensors: the three documents of the manifest. Several machines stand in a list.
     - source: beginning of messages.
+    - split_sensors: the sensor sets of splits that have their own, by the name in the recipe.
 
     Raises UserError where this version of rubgen cannot read them.
     """
     recipe: Recipe = _recorded(Recipe, data, f"{source}: recipe")
     recipe._checked = True
-    recipe._machine = _recorded(Machine, machine, f"{source}: machine")
-    recipe._sensor_set = _recorded(SensorSet, sensors, f"{source}: sensors")
+    machines = machine if isinstance(machine, list | tuple) else [machine]
+    recipe._machines = tuple(_recorded(Machine, each, f"{source}: machine") for each in machines)
+    sets = {recipe.sensors.set: sensors, **split_sensors}
+    recipe._sensor_sets = {name: _recorded(SensorSet, each, f"{source}: sensors") for name, each in sets.items()}
     return recipe
 
 
@@ -290,20 +419,22 @@ def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | 
         _check_used(recipe, source, data)
     if len(set(recipe.output.formats)) != len(recipe.output.formats):
         raise UserError(f"{source}: output.formats = {list(recipe.output.formats)}: name each format once")
-    _check_whole(recipe, source)
-    if {"clearance_m", FREE_PENETRATION.key} <= {entry.key for entry, _ in recipe.distributions()}:
-        raise UserError(f"{source}: vary.{TWO_CLEARANCES}")
+    for where, part in recipe.named_parts(source):
+        _check_drawn(part, where)
     try:
-        recipe.base  # noqa: B018  (reads the machine file)
+        recipe.base  # noqa: B018  (reads the machine files)
     except UserError as error:
         text = str(error)
         raise UserError(f"{source}: {text}" if text.startswith(("machine = ", "sensors.set = ")) else text) from None
+    check_machines(recipe, source)
+    check_splits(recipe, source)
     with recipe.machine_named():
-        for scenario in recipe.corners(source):
-            check_feasible(scenario, f"{source}: ")
+        for where, part in recipe.named_parts(source):
+            for scenario in part.own_corners(where):
+                check_feasible(scenario, f"{where}: ")
     if not recipe._checked:
-        warn_of(recipe.corners(), f"{source}: ")
-        if recipe.base.machine.name == FOR_COMPARISON:
+        warn_of(chain(recipe.corners(), machine_extremes(recipe)), f"{source}: ")
+        if FOR_COMPARISON in (base.machine.name for base in recipe.bases):
             warn(f"{source}: machine = {recipe.machine!r}: {NOT_FOR_DATA}")
     recipe._checked = True
 
@@ -316,7 +447,9 @@ def _check_used(recipe: Recipe, source: str, data: dict[str, Any] | None) -> Non
         check_used(f"{source}: ", given)
 
 
-def _check_whole(recipe: Recipe, source: str) -> None:
+def _check_drawn(recipe: Recipe, source: str) -> None:
     for entry, distribution in recipe.distributions():
         if entry.whole and not isinstance(distribution, Constant | Choice):
             raise UserError(f"{source}: vary.{entry.key}: takes whole numbers only; give a number or a choice")
+    if {"clearance_m", FREE_PENETRATION.key} <= {entry.key for entry, _ in recipe.distributions()}:
+        raise UserError(f"{source}: vary.{TWO_CLEARANCES}")

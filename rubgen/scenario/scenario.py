@@ -160,12 +160,25 @@ class Labelling:
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
+class VirtualMachine:
+    """Which virtual machine of its recipe a run has.
+
+    `candidate` is the number of the candidate that is used; those before it were refused. `problem` is the reason where
+    none can be used, and the run is then refused.
+    """
+
+    number: Seed
+    candidate: Seed = 0
+    problem: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
 class Scenario:
     """One run, complete. The same scenario always makes the same bytes.
 
     `fault_kinds` are the kinds of fault that runs of its recipe may have; those of this run are in its machine.
     With `free_penetration_m` the clearance follows from the rub-free motion (`solver.linear.reach.with_clearance`);
-    until then the machine has another clearance.
+    until then the machine has another clearance. `virtual` is given where the recipe has virtual machines.
     """
 
     machine: Machine
@@ -181,6 +194,7 @@ class Scenario:
     seed: Seed = 0
     index: Seed = 0
     machine_id: str = ""
+    virtual: VirtualMachine | None = None
 
     def __repr__(self) -> str:
         friction, sensing = self.contact.friction, self.sensing
@@ -211,6 +225,7 @@ def scenario_dict(scenario: Scenario) -> dict[str, object]:
         del values["surroundings"]
     if not scenario.fault_kinds:
         del values["fault_kinds"]
-    if scenario.free_penetration_m is None:
-        del values["free_penetration_m"]
+    for key in ("free_penetration_m", "virtual"):
+        if getattr(scenario, key) is None:
+            del values[key]
     return values

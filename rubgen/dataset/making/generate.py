@@ -24,8 +24,8 @@ from rubgen.scenario import Recipe, load_recipe, parse_recipe
 from rubgen.scenario.recipe import check_recipe, checked_runs
 
 KEPT = "finished runs are kept"
-LOOKED_AT = 16
-"""Number of first runs of which one must be able to rub. In a recipe where none can, runs rub rarely at best."""
+LOOKED_AT, MACHINES = 16, 4
+"""Numbers of first runs and machines of which one must be able to rub. Where none can, runs rub rarely at best."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,8 +143,12 @@ def _make_missing(recipe: Recipe, layout: Layout, workers: int, progress: Report
         progress(done, recipe.runs)
     if not missing:
         return 0
-    first_runs = tuple(recipe.scenario(index) for index in range(min(recipe.runs, LOOKED_AT)))
-    first = recipe.scenario(missing[0]), tuple(recipe.corners()), first_runs
+    looked_at = min(
+        recipe.runs, LOOKED_AT, recipe.machines.runs_per_machine * MACHINES if recipe.machines else LOOKED_AT
+    )
+    first_runs = tuple(recipe.scenario(index) for index in range(looked_at))
+    corners = () if recipe.machines else tuple(recipe.corners())  # each virtual machine is checked when it is drawn
+    first = recipe.scenario(missing[0]), corners, first_runs
     with worker_pool(min(workers, len(missing))) as pool:
         with warming_up(), recipe.machine_named():
             remarks = list(unordered(pool, 1, warm_up, [first]))

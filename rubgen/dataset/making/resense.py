@@ -57,27 +57,30 @@ def resense(
 
 
 def _with_sensors(identity: Identity, name: str, new: SensorSet, directory: Path) -> Recipe:
-    """Return the recorded recipe with the sensor set `new`, and with the machine's frame where they feel it."""
+    """Return the recorded recipe with the sensor set `new`, and with the machines' frames where they feel them."""
     table = {**identity.recipe.get("sensors", {}), "set": name}
     document = TypeAdapter(SensorSet).dump_python(new, mode="json")
     changed = identity.model_copy(update={"recipe": {**identity.recipe, "sensors": table}, "sensors": document})
     recipe = changed.recorded(str(directory))
     if not recipe.feels_frame or recipe.base.machine.frame is not None:
         return recipe
-    machine = TypeAdapter(Machine).dump_python(_with_frame(recipe, name, directory), mode="json")
+    found = [
+        _with_frame(file, base.machine, name, directory) for file, base in zip(recipe.files, recipe.bases, strict=True)
+    ]
+    machines = [TypeAdapter(Machine).dump_python(each, mode="json") for each in found]
+    machine = machines if len(machines) > 1 else machines[0]
     return changed.model_copy(update={"machine": machine}).recorded(str(directory))
 
 
-def _with_frame(recipe: Recipe, name: str, directory: Path) -> Machine:
+def _with_frame(file: str, recorded: Machine, name: str, directory: Path) -> Machine:
     """Return the recorded machine with the frame of its file: a set whose sensors feel no frame does not record it."""
-    recorded = recipe.base.machine
     needs = f"--sensors {name}: needs the machine's [frame], which {directory} does not record"
     try:
-        named = load_machine(recipe.machine)
+        named = load_machine(file)
     except UserError as error:
         raise UserError(f"{needs}; {error}: give the command in the directory of the recipe") from None
     if replace(named, frame=None) != recorded:
-        raise UserError(f"{needs}, and machine = {recipe.machine!r} has changed; put back the file as it was")
+        raise UserError(f"{needs}, and machine = {file!r} has changed; put back the file as it was")
     return named
 
 

@@ -69,12 +69,12 @@ def is_staged(layout: Layout, index: int, formats: tuple[str, ...], asked_bytes:
 def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple[Scenario, ...]) -> list[str]:
     """Find out before the first run whether a recipe is possible, compile the kernels and cache the reduced model.
 
-    The machine is reduced at the extremes of `[vary]`, where an impossible recipe raises UserError. Then a few turns of
-    `scenario` are run. Returns warnings: problems of a worker with caches, and that none of the first runs can be made
-    or can rub.
+    The machine is reduced at the extremes of `[vary]`, where an impossible recipe raises UserError, and so does a first
+    virtual machine that cannot be drawn. Then a few turns of `scenario` are run. Returns warnings: problems of a worker
+    with caches, and that none of the first runs can be made or can rub.
 
     - scenario: its machine is reduced and run.
-    - corners: scenarios at the extremes of `[vary]`.
+    - corners: scenarios at the extremes of `[vary]`; none where each machine of a recipe is checked on its own.
     - first_runs: the first runs of the recipe.
     """
     from rubgen.pipeline import simulate
@@ -82,6 +82,8 @@ def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple
     from rubgen.solver.linear.reach import no_rub_warning
     from rubgen.solver.refusal import no_run_warning
 
+    if scenario.virtual and scenario.virtual.problem:
+        raise UserError(scenario.virtual.problem)
     for corner in corners:
         reduce(corner.machine, corner.reduction)
     operation = replace(scenario.operation, settle_turns=2 * WARM_UP_TURNS, record_turns=WARM_UP_TURNS)

@@ -23,6 +23,7 @@ from rubgen.labels.to_json import labels_to_json, window_labels
 from rubgen.measurement.channel import Recording
 from rubgen.measurement.motion import contact_intervals
 from rubgen.scenario import Recipe
+from rubgen.scenario.machines.keys import MachineKey, machine_values, own_keys
 from rubgen.scenario.surroundings import surroundings_values
 from rubgen.scenario.vary import varied_values
 from rubgen.sensors.load import default_sensor_set
@@ -51,6 +52,7 @@ def schema(
     sensors: SensorSet | None = None,
     surroundings: bool = False,
     faults: tuple[str, ...] = (),
+    machines: tuple[MachineKey, ...] = (),
 ) -> pa.Schema:
     """Return the Arrow schema of `runs.parquet`, or with `signals` of the data files. Fields name unit and meaning.
 
@@ -59,9 +61,10 @@ def schema(
     - sensors: the sensor set of the runs; None is the default set.
     - surroundings: include the levels of the disturbances from the surroundings.
     - faults: kinds of fault whose labels are included.
+    - machines: keys of virtual machines whose values are included.
     """
     used = sensors or default_sensor_set()
-    columns = scalar_columns(used, surroundings=surroundings, faults=faults)
+    columns = scalar_columns(used, surroundings=surroundings, faults=faults, machines=machines)
     columns += signal_columns(used, clean=clean) if signals else ()
     return pa.schema([_field(column) for column in columns])
 
@@ -78,6 +81,7 @@ def recipe_schema(recipe: Recipe, *, signals: bool) -> pa.Schema:
         sensors=sensing.set,
         surroundings=around is not None,
         faults=recipe.fault_kinds,
+        machines=recipe.machine_keys,
     )
 
 
@@ -91,6 +95,9 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
     row = _identity(run, split) | varied_values(run.scenario) | _operation(run)
     if around:
         row |= surroundings_values(around)
+    if run.scenario.virtual:
+        row |= {"machine_number": run.scenario.virtual.number, "machine_candidate": run.scenario.virtual.candidate}
+        row |= machine_values(run.scenario.machine)
     if run.labels is not None:
         row |= labels_to_json(run.labels)
         row |= {each.name: each.value(run.response.energy) for each in ENERGY_LABELS}
@@ -104,6 +111,7 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
         sensors=sensing.set,
         surroundings=around is not None,
         faults=run.scenario.fault_kinds,
+        machines=own_keys(frame=run.scenario.machine.frame is not None) if run.scenario.virtual else (),
     )
     unknown = sorted(set(row) - set(types.names))
     if unknown:

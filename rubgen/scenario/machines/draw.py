@@ -1,0 +1,92 @@
+"""Draw a virtual machine: candidates in a fixed order, of which the first sane one is used."""
+
+import zlib
+from collections import Counter, OrderedDict
+from collections.abc import Callable
+
+import numpy as np
+
+from rubgen.arrays import FloatArray
+from rubgen.brief import counted
+from rubgen.errors import UserError
+from rubgen.machine import Machine
+from rubgen.scenario.machines.keys import MACHINE_KEYS, with_values
+from rubgen.scenario.scenario import VirtualMachine
+from rubgen.scenario.tables.machines import MachineTable
+
+DIMENSIONS = 64
+"""Dimensions that are always generated, so a key that is added later changes no machine of an existing recipe."""
+MOST_REMEMBERED = 16
+"""Machines that are remembered: the runs of a machine follow each other."""
+Problem = Callable[[int, Machine], str | None]
+"""Why a candidate of the machine of that number is not used; None where it is sane."""
+
+
+def candidate(table: MachineTable, files: tuple[Machine, ...], seed: int, number: int, tried: int) -> Machine:
+    """Draw candidate `tried` of machine `number`. It depends on no other machine.
+
+    Machine m is of file m modulo their number. Its candidate 0 is the next point of that file's own scrambled Sobol
+    sequence. Candidate k > 0 has a random stream of its own. Raises UserError where the values make no machine.
+    """
+    of, place = number % len(files), number // len(files)
+    point = _sobol(seed, of, place) if tried == 0 else _stream(seed, number, tried).random(DIMENSIONS)
+    drawn = dict(zip((entry.key for entry in MACHINE_KEYS), point.tolist(), strict=False))
+    values = {entry.key: each.quantile(drawn[entry.key]) for entry, each in table.distributions()}
+    if not values:
+        return files[of]
+    return with_values(files[of], values, int(_stream(seed, number, 0).integers(2**31)))
+
+
+class Population:
+    """The virtual machines of a recipe. Each is drawn and checked when it is first asked for."""
+
+    def __init__(self, table: MachineTable, files: tuple[Machine, ...], seed: int, problem: Problem) -> None:
+        """Take ranges and bounds, the machines of the files, the seed, and the check of a candidate."""
+        self.table, self.files, self.seed, self.problem = table, files, seed, problem
+        self.known: dict[int, int] = {}
+        """The candidate of each machine that was checked before, as recorded."""
+        self._recent: OrderedDict[int, tuple[Machine, VirtualMachine]] = OrderedDict()
+
+    def machine(self, number: int) -> tuple[Machine, VirtualMachine]:
+        """Return the first sane candidate of machine `number`, and which one it is.
+
+        Where none of `table.tries` is sane, it is the machine of the file, with the reason why it cannot be used.
+        """
+        if number not in self._recent:
+            self._recent[number] = self._chosen(number)
+            if len(self._recent) > MOST_REMEMBERED:
+                self._recent.popitem(last=False)
+        return self._recent[number]
+
+    def _chosen(self, number: int) -> tuple[Machine, VirtualMachine]:
+        refused: Counter[str] = Counter()
+        for tried in range(self.known.get(number, 0), self.table.tries):
+            try:
+                machine = candidate(self.table, self.files, self.seed, number, tried)
+                reason = None if number in self.known else self.problem(number, machine)
+            except UserError as error:
+                reason = str(error)
+            if reason is None:
+                return machine, VirtualMachine(number=number, candidate=tried)
+            refused[reason.partition(" = ")[0][:60]] += 1
+        causes = ", ".join(f"{cause} {times} times" for cause, times in refused.most_common(3))
+        text = (
+            f"machine {number}: none of {counted(self.table.tries, 'candidate')} is sane ({causes}); the last: "
+            f"{reason}; change the ranges of machines.vary or the bounds of [machines], or raise machines.tries"
+        )
+        virtual = VirtualMachine(number=number, candidate=self.table.tries, problem=text)
+        return self.files[number % len(self.files)], virtual
+
+
+def _sobol(seed: int, of: int, place: int) -> FloatArray:
+    from scipy.stats import qmc  # slow to import, and only needed here
+
+    engine = qmc.Sobol(d=DIMENSIONS, scramble=True, rng=np.random.default_rng([seed, of, zlib.crc32(b"machines")]))
+    if place:
+        engine.fast_forward(place)  # fast_forward(0) overflows
+    point: FloatArray = engine.random(1)[0]
+    return point
+
+
+def _stream(seed: int, number: int, tried: int) -> np.random.Generator:
+    return np.random.default_rng([seed, number, tried, zlib.crc32(b"candidate")])
