@@ -16,6 +16,7 @@ from rubgen.dataset.manifest import Manifest
 from rubgen.io.columns import Column, label_columns, scalar_columns, tap_columns
 from rubgen.io.mcap.messages import MESSAGES, PACKAGE
 from rubgen.labels import registry
+from rubgen.labels.classes import class_numbers
 from rubgen.machine import Machine
 from rubgen.machine.descriptions import complete
 from rubgen.machine.faults.registry import FAULTS
@@ -30,6 +31,7 @@ JSON_TYPES: dict[str, dict[str, Any]] = {
     "text": {"type": "string"},
     "texts": {"type": "array", "items": {"type": "string"}},
     "flag": {"type": "boolean"},
+    "class": {"type": "integer"},
     "integer": {"type": "integer"},
     "number": {"type": "number"},
     "integers": {"type": "array", "items": {"type": "integer"}},
@@ -126,10 +128,13 @@ def _sensor_set_schema() -> dict[str, Any]:
 
 def _property(column: Column) -> dict[str, Any]:
     kind = dict(JSON_TYPES[column.kind])
-    if column.words:
-        kind["enum"] = [member.value for member in column.words]
+    numbers = class_numbers(column.words) if column.words else {}
+    if column.kind == "class":
+        kind["enum"] = sorted(numbers.values())
     nullable = {"anyOf": [kind, {"type": "null"}]} if column.nullable else kind
-    return {"description": f"{column.meaning}{f', in {column.unit}' if column.unit else ''}", **nullable}
+    meaning = f"{column.meaning}{f', in {column.unit}' if column.unit else ''}"
+    classes = {"classes": numbers} if numbers else {}
+    return {"description": meaning, "role": column.role.value, **classes, **nullable}
 
 
 if __name__ == "__main__":

@@ -129,9 +129,9 @@ def _head(recipe: dict[str, object]) -> str:
 
 
 def column_table(columns: Sequence[Column]) -> str:
-    """Write the columns as a table in Markdown: name, type, unit, meaning."""
-    head = "| column | type | unit | meaning |\n|---|---|---|---|\n"
-    return head + "\n".join(f"| `{c.name}` | {c.kind} | {c.unit} | {c.meaning} |" for c in columns)
+    """Write the columns as a table in Markdown: name, role, type, unit, meaning."""
+    head = "| column | role | type | unit | meaning |\n|---|---|---|---|---|\n"
+    return head + "\n".join(f"| `{c.name}` | {c.role.value} | {c.kind} | {c.unit} | {c.meaning} |" for c in columns)
 
 
 def _section_table() -> str:

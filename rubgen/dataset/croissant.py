@@ -13,6 +13,7 @@ TYPES = {
     "text": "sc:Text",
     "texts": "sc:Text",
     "flag": "sc:Boolean",
+    "class": "sc:Integer",
     "integer": "sc:Integer",
     "number": "sc:Float",
     "integers": "sc:Integer",

@@ -1,7 +1,7 @@
-"""The columns of `runs.parquet` and of the data files, in their fixed order: name, type, unit, meaning."""
+"""The columns of `runs.parquet` and of the data files, in their fixed order: name, role, type, unit, meaning."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from rubgen.errors import UserError
@@ -14,7 +14,43 @@ from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
 from rubgen.sensors.kinds.once_per_rev import OncePerRev
 from rubgen.sensors.sensor import SampledSensor
 from rubgen.sensors.sensor_set import SensorSet
-from rubgen.taps import CasingAcceleration, Tap, TipTiming
+from rubgen.taps import CasingAcceleration, ContactForce, ContactTorque, Tap, TipTiming
+
+
+class Role(StrEnum):
+    """What a column is for."""
+
+    ID = "id"
+    """Names a run, its machine or its split; never to be learned from."""
+    TIME = "time"
+    """Says when samples were taken."""
+    INPUT = "input"
+    """Recorded by a sensor: what a model may see."""
+    TARGET = "target"
+    """An answer that a model may learn."""
+    PARAMETER = "parameter"
+    """A value of machine, operation, surroundings or simulation. A plant does not know most of them."""
+    TRUTH = "truth"
+    """Comes from the true motion, which no sensor shows."""
+    DIAGNOSTIC = "diagnostic"
+    """Says how good the simulation or a label is."""
+
+
+TARGETS = frozenset(
+    {
+        "rub", "contact_duty", "contact_impulse_per_turn_n_s", "contact_severity", "blades_touched", "contact_zones",
+        "contact_zone_centres_rad", "contact_zone_widths_rad", "rub_extent", "motion", "period", "onset_speed_rpm",
+    }
+)  # fmt: skip
+"""Labels that are answers. All others come from the true motion or say how good a label is."""
+DIAGNOSTICS = frozenset(
+    {
+        "motion_confidence", "motion_settling", "stray_blisk", "stray_casing", "zero_one_k", "lyapunov_error",
+        "lyapunov_convergence", "lyapunov_turns", "energy_residual",
+    }
+)  # fmt: skip
+UNMEASURABLE = (ContactForce, ContactTorque)
+"""Taps that no probe measures: a channel of them is truth, not input."""
 
 
 @dataclass(frozen=True)
@@ -23,43 +59,69 @@ class Column:
 
     name: str
     kind: str
-    """text, texts (list), flag, integer, integers (list), number, numbers (list of float64) or signal (float32)."""
+    """text, texts (list), flag, class (integer of a word), integer, integers (list), number, numbers (list of float64)
+    or signal (list of float32)."""
     unit: str
     meaning: str
     nullable: bool = False
     """Whether a failed run has null."""
     words: type[StrEnum] | None = None
-    """The values of a text with fixed values."""
+    """The words whose numbers (`class_numbers`) it has."""
+    role: Role = Role.TRUTH
 
 
 def _identity() -> list[Column]:
     return [
-        Column("run_id", "text", "", "name of the run and of its MCAP and .rrd file"),
-        Column("machine_id", "text", "", "hash of the machine before [vary]; splits never share one"),
-        Column("split", "text", "", "split of the data set"),
-        Column("seed", "integer", "", "seed of the recipe; with the number of the run it makes the run again"),
-        Column("status", "text", "", "ok, or why the run failed"),
-        Column("reason", "text", "", "where and by how much a run failed; empty for ok"),
+        Column("run_id", "text", "", "name of the run and of its MCAP and .rrd file", role=Role.ID),
+        Column("machine_id", "text", "", "hash of the machine before [vary]; splits never share one", role=Role.ID),
+        Column("split", "text", "", "split of the data set", role=Role.ID),
+        Column(
+            "seed",
+            "integer",
+            "",
+            "seed of the recipe; with the number of the run it makes the run again",
+            role=Role.ID,
+        ),
+        Column("status", "text", "", "ok, or why the run failed", role=Role.DIAGNOSTIC),
+        Column("reason", "text", "", "where and by how much a run failed; empty for ok", role=Role.DIAGNOSTIC),
     ]
 
 
 def _parameters() -> list[Column]:
     kinds = {True: "integer", False: "number"}
-    return [Column(entry.key, kinds[entry.whole], entry.unit, entry.meaning) for entry in PARAMETERS]
+    return [
+        Column(entry.key, kinds[entry.whole], entry.unit, entry.meaning, role=Role.PARAMETER) for entry in PARAMETERS
+    ]
 
 
 def _operation() -> list[Column]:
     return [
-        Column("steps_per_turn", "integer", "", "steps of the integration in one turn"),
-        Column("settle_turns", "integer", "", "turns before the record"),
-        Column("record_turns", "integer", "", "turns from which the labels come"),
-        Column("sample_rate_hz", "number", "Hz", "samples a second of every channel"),
+        Column("steps_per_turn", "integer", "", "steps of the integration in one turn", role=Role.PARAMETER),
+        Column("settle_turns", "integer", "", "turns before the record", role=Role.PARAMETER),
+        Column("record_turns", "integer", "", "turns from which the labels come", role=Role.PARAMETER),
+        Column("sample_rate_hz", "number", "Hz", "samples a second of every channel", role=Role.TIME),
     ]
 
 
 def label_columns(labels: Iterable[Label] = LABELS) -> list[Column]:
     """Return one column for each of the labels `labels`."""
-    return [Column(x.name, x.kind, x.unit, x.meaning, nullable=True, words=x.words) for x in labels]
+    return [
+        Column(
+            x.name,
+            "class" if x.words and x.kind == "text" else x.kind,
+            x.unit,
+            x.meaning,
+            nullable=True,
+            words=x.words,
+            role=_role(x.name),
+        )
+        for x in labels
+    ]
+
+
+def _role(label: str) -> Role:
+    """Return the role of a label by its name."""
+    return Role.TARGET if label in TARGETS else Role.DIAGNOSTIC if label in DIAGNOSTICS else Role.TRUTH
 
 
 FIELDS = tuple(CasingAcceleration(name=f"casing_{part}", angle_deg=0) for part in ("even", "odd"))
@@ -75,22 +137,24 @@ def tap_columns(name: str, unit: str) -> list[Column]:
 
 
 def _energy() -> list[Column]:
-    return [Column(x.name, "number", x.unit, x.meaning, True) for x in ENERGY_LABELS]
+    return [Column(x.name, "number", x.unit, x.meaning, True, role=_role(x.name)) for x in ENERGY_LABELS]
 
 
-def _channel(sensor: SampledSensor | OncePerRev) -> tuple[str, str]:
-    """Return unit and meaning of a channel."""
+def _channel(sensor: SampledSensor | OncePerRev) -> Column:
+    """Return the column of a recorded channel."""
     if isinstance(sensor, OncePerRev):
-        return "1", "one pulse a turn, from theta = 0"
+        return Column(sensor.name, "signal", "1", "one pulse a turn, from theta = 0", role=Role.INPUT)
     about = sensor.description
-    return sensor.unit, f"{about.quantity} {about.axis}, {about.location}"
+    role = Role.TRUTH if isinstance(sensor.tap, UNMEASURABLE) else Role.INPUT
+    meaning = f"{about.quantity} {about.axis}, {about.location}"
+    return Column(sensor.name, "signal", sensor.unit, meaning, role=role)
 
 
 def _arrivals(probe: TimingProbe) -> list[Column]:
     name, place = probe.name, f"{probe.angle_deg:g} deg"
     return [
-        Column(f"{name}_s", "numbers", "s", f"arrival times of blades at {place} on the casing"),
-        Column(f"{name}_blade", "integers", "", "number of the blade of each arrival"),
+        Column(f"{name}_s", "numbers", "s", f"arrival times of blades at {place} on the casing", role=Role.INPUT),
+        Column(f"{name}_blade", "integers", "", "number of the blade of each arrival", role=Role.INPUT),
         Column(f"{name}_true_m", "numbers", "m", "true displacement of that blade's tip along the rotation"),
     ]
 
@@ -107,12 +171,13 @@ def _touches() -> list[Column]:
 
 
 def _surroundings() -> list[Column]:
-    return [
+    levels = [
         *(Column(each.key, "number", each.unit, each.meaning) for each in SURROUNDINGS),
         Column("tones_order", "numbers", "1", "order of each tone; 0 where its frequency is fixed"),
         Column("tones_frequency_hz", "numbers", "Hz", "fixed frequency of each tone; 0 where it has an order"),
         Column("tones_m_per_s2", "numbers", "m/s2", "rms acceleration of each tone on the casing"),
     ]
+    return [replace(level, role=Role.PARAMETER) for level in levels]
 
 
 def _machines(keys: Iterable[MachineKey]) -> list[Column]:
@@ -135,7 +200,7 @@ def _faults(kinds: Iterable[str]) -> list[Column]:
         Column("rub_onset_s", "number", "s", "time of the first touch, from the record's start; null without", True),
         *(Column(each.column, "number", each.unit, f"{each.meaning}; 0 without this fault") for each in severities),
     ]
-    return columns if severities else []
+    return [replace(column, role=Role.TARGET) for column in columns] if severities else []
 
 
 def _ordered_taps(sensors: SensorSet) -> tuple[Tap, ...]:
@@ -177,13 +242,14 @@ def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
     With `clean` each channel's signal without noise is included. Raises UserError where a sensor has the name of
     another column.
     """
-    facts = {each.name: _channel(each) for each in sensors.sensors if isinstance(each, SampledSensor | OncePerRev)}
+    channels = [_channel(each) for each in sensors.sensors if isinstance(each, SampledSensor | OncePerRev)]
+    seen = Role.INPUT if any(isinstance(each, OncePerRev) for each in sensors.sensors) else Role.TRUTH
     columns = [
         Column("signal_start_s", "number", "s", "time of the first sample from the record's start"),
         Column("rotation_angle_rad", "number", "rad", "angle of the blisk at the first sample"),
-        Column("once_per_rev_s", "numbers", "s", "arrival times of the once_per_rev pulses"),
+        Column("once_per_rev_s", "numbers", "s", "arrival times of the once_per_rev pulses", role=seen),
+        *channels,
     ]
-    columns += [Column(name, "signal", *fact) for name, fact in facts.items()]
     columns += _touches()
     columns += [
         Column(f"{tap.name}_{x.ending}", "numbers", tap.UNIT, x.meaning)
@@ -191,7 +257,7 @@ def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
         for x in WINDOW_LABELS
     ]
     if clean:
-        columns += [Column(f"{name}_clean", "signal", unit, f"{text}, clean") for name, (unit, text) in facts.items()]
+        columns += [Column(f"{x.name}_clean", "signal", x.unit, f"{x.meaning}, clean") for x in channels]
     columns += [column for probe in sensors.sensors if isinstance(probe, TimingProbe) for column in _arrivals(probe)]
     _check_names(sensors, columns)
     return tuple(columns)

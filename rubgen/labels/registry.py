@@ -12,6 +12,7 @@ from enum import StrEnum
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.labels.classes import MOTION_CLASSES
 from rubgen.labels.contact.amounts import RubExtent
 from rubgen.labels.harmonics import FRACTIONS, TapOrders
 from rubgen.labels.labels import Labels, Motion
@@ -35,7 +36,7 @@ class Label:
     value: Callable[[Labels], object]
     """Its value: a Python value, None where it is undefined, any iterable for a list. NaN becomes None."""
     words: type[StrEnum] | None = None
-    """The values that a text may have."""
+    """The words that a text may be, or whose numbers (`class_numbers`) a list has."""
     from_taps: bool = False
     """Whether it needs the signals at every step, which the compact record does not have."""
 
@@ -103,9 +104,7 @@ def _rpm(speed: float | None) -> float | None:
     return None if speed is None else rev_per_min(speed)
 
 
-_CLASSES = list(Motion)
-"""Classes of motion by their number in `change_motion_classes`."""
-_NUMBERED = ", ".join(f"{number} {motion.value}" for number, motion in enumerate(_CLASSES))
+_NUMBERED = ", ".join(f"{number} {word}" for word, number in MOTION_CLASSES.items())
 
 CONTACT = (
     _flag("rub", "a blade touched the casing within the record", lambda x: x.rub),
@@ -259,10 +258,13 @@ HISTORY = (
         "mean normal impulse a turn until the next",
         lambda x: [change.impulse for change in x.changes],
     ),
-    _counts(
+    Label(
         "change_motion_classes",
+        "integers",
+        "",
         f"class of motion from there on: {_NUMBERED}",
-        lambda x: [_CLASSES.index(change.motion) for change in x.changes],
+        lambda x: [MOTION_CLASSES[change.motion] for change in x.changes],
+        words=Motion,
     ),
 )
 WINDOWS = (

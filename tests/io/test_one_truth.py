@@ -8,6 +8,7 @@ from rerun.chunk import RrdReader
 
 from rubgen.io.mcap import check_mcap, read_mcap, write_mcap
 from rubgen.io.parquet.read import read_table
+from rubgen.io.parquet.words import with_words
 from rubgen.io.parquet.write import write_parquet
 from rubgen.labels.labels import Motion
 from rubgen.labels.speed_history import Change, SpeedHistory
@@ -59,7 +60,7 @@ def test_rerun_shows_the_same_samples(run, folder):
 
 def test_labels_agree(run, folder):
     memory = labels_to_json(run.labels)
-    row = read_table(folder / "run.parquet").to_pylist()[0]
+    row = with_words(read_table(folder / "run.parquet")).to_pylist()[0]
     assert read_mcap(folder / "run.mcap").labels == memory
     columns = [column.name for column in SCALARS if column.name in memory]
     assert len(columns) > 20
@@ -68,7 +69,7 @@ def test_labels_agree(run, folder):
 
 def test_pulses_agree(run, folder):
     pulses = run.recording.once_per_rev
-    row = read_table(folder / "run.parquet").to_pylist()[0]
+    row = with_words(read_table(folder / "run.parquet")).to_pylist()[0]
     assert read_mcap(folder / "run.mcap").once_per_rev.tobytes() == pulses.tobytes()
     assert np.array(row["once_per_rev_s"]).tobytes() == pulses.tobytes()
 

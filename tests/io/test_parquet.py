@@ -10,6 +10,7 @@ import pytest
 from rubgen.errors import UserError
 from rubgen.io.parquet.read import read_table, row_groups
 from rubgen.io.parquet.write import run_table, schema, write_parquet, write_table
+from rubgen.labels import MOTION_CLASSES
 from rubgen.solver.response import Status
 from tests.default_columns import CHANNELS, CLEAN_SIGNALS, SCALARS, SIGNALS
 
@@ -82,7 +83,7 @@ def test_polars_and_duckdb_read_the_same_floats(rub_run, file):
 
 def test_labels_and_parameters_stand_in_the_row(rub_run, file):
     row = pq.read_table(file, columns=[column.name for column in SCALARS]).to_pylist()[0]
-    assert row["motion_casing"] == "period-k"
+    assert row["motion_casing"] == MOTION_CLASSES["period-k"] == 1
     assert row["period"] == 3
     assert row["contact_impulse_per_turn_n_s"] == 1.5
     assert row["contact_zone_centres_rad"] == [0.0, np.pi]
@@ -136,7 +137,7 @@ def test_encodings_are_those_that_were_measured(file):
     assert {column.compression for column in columns.values()} == {"ZSTD"}
     signal = columns["proximity_x.list.element"]
     assert "BYTE_STREAM_SPLIT" in signal.encodings
-    assert "RLE_DICTIONARY" in columns["motion"].encodings
+    assert "RLE_DICTIONARY" in columns["machine_id"].encodings
     assert not any("DICTIONARY" in e for name in columns if "orders" in name for e in columns[name].encodings)
 
 

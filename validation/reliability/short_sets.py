@@ -18,6 +18,7 @@ from rubgen.dataset.checking.channel_check import Row, resolved_impulse, samples
 from rubgen.dataset.checking.consistency import label_problems, signal_problems
 from rubgen.dataset.reading.open import row_signals
 from rubgen.io.parquet.read import row_groups
+from rubgen.io.parquet.words import with_words
 from rubgen.labels.labels import Motion
 from rubgen.measurement.channel import Float32Array
 from rubgen.scenario import Sensing
@@ -97,7 +98,7 @@ def _count(directory: Path, recipe: dict[str, object], counts: Counts) -> None:
     sensing = Sensing(set=load_sensor_set(sensors["set"] if isinstance(sensors, dict) else "default"))
     for path in sorted((directory / "data").glob("train-*.parquet")):
         for table in row_groups(path):
-            for number, row in enumerate(table.to_pylist()):
+            for number, row in enumerate(with_words(table).to_pylist()):
                 counts.runs += 1
                 counts.rubbing += row["rub"]
                 _count_wrong(row, row_signals(table, number), sensing, counts)

@@ -15,6 +15,7 @@ from rubgen.dataset.rows import asked_bytes
 from rubgen.errors import UserError
 from rubgen.io.parquet.compact_records import SCHEMA, read_record
 from rubgen.io.parquet.read import row_groups
+from rubgen.io.parquet.words import with_words
 from rubgen.labels.registry import TAP_ENDINGS
 from rubgen.labels.to_json import remade_labels
 
@@ -70,7 +71,7 @@ def _good_rows(layout: Layout) -> Iterator[dict[str, Any]]:
     """Yield the runs that ended well, in order, without the columns of orders."""
     for table in row_groups(layout.runs):
         names = [name for name in table.schema.names if not name.endswith(TAP_ENDINGS)]
-        yield from (row for row in table.select(names).to_pylist() if row["status"] == "ok")
+        yield from (row for row in with_words(table.select(names)).to_pylist() if row["status"] == "ok")
 
 
 def _remade(layout: Layout, names: list[str], asked: float) -> Iterator[tuple[str, dict[str, object]]]:

@@ -15,6 +15,7 @@ from rubgen.errors import UserError
 from rubgen.formats import run_formats
 from rubgen.io.parquet.compact_records import SCHEMA
 from rubgen.io.parquet.read import ParquetSource
+from rubgen.io.parquet.words import with_words
 from rubgen.io.parquet.write import recipe_schema
 from rubgen.scenario import Recipe, Sensing
 
@@ -45,7 +46,7 @@ def table_problems(layout: Layout, manifest: Manifest, closed: set[str]) -> Iter
         types = recipe_schema(recorded, signals=False)
         for table, problem in _groups(layout, layout.runs.name, types, "run-{:06d}".format, asked):
             yield from problem
-            rows |= {row["run_id"]: row for row in (table.to_pylist() if table is not None else ())}
+            rows |= {row["run_id"]: row for row in (with_words(table).to_pylist() if table is not None else ())}
         yield from _run_problems(layout.runs.name, rows, manifest)
     good = {name: row for name, row in rows.items() if row["status"] == "ok"}
     for name, row in good.items():
@@ -101,7 +102,7 @@ def _data_problems(
         for table, problem in groups if name not in closed else CLOSED:
             yield from problem
             whole &= table is not None
-            for number, row in enumerate(table.select(scalars).to_pylist() if table is not None else ()):
+            for number, row in enumerate(with_words(table.select(scalars)).to_pylist() if table is not None else ()):
                 seen.add(row["run_id"])
                 yield from _row_problems(name, row, good.get(row["run_id"]), table, number, sensing)
     yield from _difference(seen, set(good), "signals", "no signals", whole=whole)

@@ -10,6 +10,7 @@ from rubgen.dataset.layout import Layout
 from rubgen.errors import UserError
 from rubgen.io.files import read_json
 from rubgen.io.parquet.read import read_table
+from rubgen.io.parquet.words import with_words
 
 COLUMNS = ["run_id", "status", "reason", "rub", "motion"]
 
@@ -44,7 +45,7 @@ class Outcome:
 
 def outcome_of(layout: Layout) -> Outcome:
     """Count the runs of a data set whose `runs.parquet` is written: rub, classes of motion, failures."""
-    rows = read_table(layout.runs, COLUMNS).to_pylist()
+    rows = with_words(read_table(layout.runs, COLUMNS)).to_pylist()
     good = [row for row in rows if row["status"] == "ok"]
     rubbing = sum(bool(row["rub"]) for row in good)
     return Outcome(

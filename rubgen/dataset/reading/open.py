@@ -11,24 +11,30 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 import pyarrow as pa
 
 from rubgen.arrays import FloatArray
 from rubgen.brief import counted
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, read_manifest
+from rubgen.dataset.reading.cutting import cut_of
+from rubgen.dataset.reading.folds import Fold, base_runs, folds
+from rubgen.dataset.reading.samples import Arrays, Windows, arrays, windows
 from rubgen.dataset.reading.stored_run import StoredRun, stored_run
 from rubgen.dataset.reading.tables import COLUMNS, check_runs, runs_frame, touches_frame
 from rubgen.dataset.rows import RunRows, asked_bytes
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
-from rubgen.io.columns import signal_columns
+from rubgen.io.columns import Column, Role, scalar_columns, signal_columns
 from rubgen.io.parquet.compact_records import SCHEMA
 from rubgen.io.parquet.read import damage_named, read_table
+from rubgen.io.parquet.words import with_words
 from rubgen.io.parquet.write import recipe_schema
 from rubgen.machine.problems import nearest
 from rubgen.measurement.channel import Float32Array
 from rubgen.scenario import Recipe, Sensing
+from rubgen.sensors.kinds.once_per_rev import OncePerRev
 from rubgen.sensors.sensor_set import SensorSet
 
 if TYPE_CHECKING:
@@ -91,6 +97,28 @@ class DataSet:
         return self._sensing.set
 
     @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the channels that a model may see: what a sensor could record, without the true contact force."""
+        columns = signal_columns(self._sensing.set, clean=False)
+        return tuple(x.name for x in columns if x.kind == "signal" and x.role is Role.INPUT)
+
+    @property
+    def run_columns(self) -> tuple[Column, ...]:
+        """The columns of `runs`."""
+        around = self._recipe.surroundings is not None
+        return scalar_columns(self._sensing.set, surroundings=around, faults=self.fault_kinds)
+
+    @property
+    def fault_kinds(self) -> tuple[str, ...]:
+        """Kinds of fault that the runs may have, in the order of the answers of `faults`."""
+        return self._recipe.fault_kinds
+
+    @property
+    def signal_seconds(self) -> float:
+        """Length of the signals in s."""
+        return self._recipe.output.signal_seconds
+
+    @property
     def sample_rate_hz(self) -> float:
         """Samples per second of every channel."""
         return self._sensing.sample_rate_hz
@@ -109,7 +137,7 @@ class DataSet:
         there is no such run or channel, the run failed, a file is damaged, or the set has neither Parquet data nor MCAP
         files.
         """
-        names = self._known(channels)
+        names = self.known_channels(channels)
         self.check_has_signals(run_id)
         ((_, table),) = self._tables([run_id], names)
         return row_signals(table, 0)
@@ -121,9 +149,89 @@ class DataSet:
         damaged.
         """
         self.check_has_signals(run_id)
-        ((_, table),) = self._sections.each([run_id], COLUMNS)
-        with damage_named(self._sections.places[run_id].file):
-            return touches_frame(table, self._sensing, self._recipe.output.signal_seconds)
+        ((_, touches),) = self.each_touches([run_id])
+        return touches
+
+    def each_touches(self, run_ids: Sequence[str]) -> Iterator[tuple[str, pd.DataFrame]]:
+        """Yield name and touches of each of these good runs, in that order. See `touches`."""
+        for run_id, table in self._sections.each(run_ids, COLUMNS):
+            with damage_named(self._sections.places[run_id].file):
+                yield run_id, touches_frame(table, self._sensing, self.signal_seconds)
+
+    def arrays(
+        self,
+        channels: Sequence[str] | None = None,
+        target: str = "rub",
+        split: str | None = None,
+        *,
+        runs: Sequence[str] | None = None,
+        out: Path | str | None = None,
+    ) -> Arrays:
+        """Read whole runs for learning: `X, y, groups = data.arrays(["proximity_x"], "rub", "train")`.
+
+        X (runs, channels, time) is float32, one row a good run, each channel in its unit. y is the answer: a flag as 0
+        or 1; a class as its number, as in `rubgen.labels.MOTION_CLASSES`, -1 where it is undecided or undefined; a
+        number, NaN where it is undefined; `faults` as (runs, kinds), 1 where the run has that kind of `fault_kinds`.
+        groups is what must stay on one side of a split, as `groups_of` returns it.
+
+        - channels: names; by default `inputs`, all that a sensor could record.
+        - target: a column with one value a run.
+        - split: name of a split; by default all runs. Or `runs`: names of runs, as from `folds`.
+        - out: path of a new .npy file that holds X, mapped into memory. So X may be larger than the memory.
+
+        Raises UserError for an unknown channel, target, split or run, and where there is no run. Warns where all runs
+        have the same class.
+        """
+        return arrays(self, channels, target, split, runs, out)
+
+    def windows(
+        self,
+        channels: Sequence[str] | None = None,
+        *,
+        seconds: float | None = None,
+        turns: int | None = None,
+        hop: float | None = None,
+        target: str = "rub",
+        split: str | None = None,
+        runs: Sequence[str] | None = None,
+        out: Path | str | None = None,
+    ) -> Windows:
+        """Cut runs into windows for learning: `X, y, groups, start, run_ids = data.windows(seconds=0.25)`.
+
+        A window has `seconds`, or `turns` of the shaft between its recorded pulses, in 256 samples a turn. Windows
+        start every `hop`, in the same unit; by default they do not overlap. A rest that is shorter is left out.
+
+        The answers of `rub`, `contact_duty`, `contact_impulse_per_turn_n_s` and `motion` are those of the window
+        itself: a rub that begins later in the run is none yet. Its motion is -1 where it changes within the window.
+        Every other answer is that of the run. All windows of a run, and of its machine, are one group: a score of
+        windows that were split in another way is worth nothing. The rest is as in `arrays`.
+
+        Raises UserError also where no length or both are given, windows are longer than the signals, or turns are
+        asked for of a set without a once_per_rev sensor.
+        """
+        tacho = any(isinstance(sensor, OncePerRev) for sensor in self._sensing.set.sensors)
+        cut = cut_of(seconds, turns, hop, self.sample_rate_hz, tacho=tacho)
+        return windows(self, channels, cut, target, split, runs, out)
+
+    def folds(self, k: int, by: str = "machine_id", split: str | None = None) -> list[Fold]:
+        """Divide the good runs into k folds: `for train, test in data.folds(5): data.arrays(runs=train)`.
+
+        Each group, the runs with one value of the column `by`, is on the test side of exactly one fold, and never on
+        both sides. Groups are dealt by size and then by name, so the folds are the same each time. Raises UserError
+        where there are fewer groups than folds, and where `by` would put runs of one machine, or a run and its twin,
+        on both sides.
+        """
+        return folds(self, k, by, split)
+
+    def groups_of(self, run_ids: Sequence[str]) -> npt.NDArray[np.str_]:
+        """Return for each run what must stay on one side of a split (runs,).
+
+        It is the machine where the set has several, else the run, or the run that a twin was made from.
+        """
+        several = self.ok["machine_id"].nunique() > 1
+        rows = self.runs.loc[list(run_ids)]
+        names = rows["machine_id"] if several else base_runs(rows)
+        return names.to_numpy(dtype=np.str_)
 
     def recorded(
         self, run_ids: Sequence[str], channels: Sequence[str] | None = None
@@ -132,7 +240,7 @@ class DataSet:
 
         One run is in memory at a time. Channels are as in `signals`, which also names what raises UserError.
         """
-        names = self._known(channels)
+        names = self.known_channels(channels)
         for run_id, table in self._tables(run_ids, names):
             yield run_id, row_signals(table, 0), np.asarray(table[PULSES][0].values, dtype=np.float64)
 
@@ -164,7 +272,7 @@ class DataSet:
         types = recipe_schema(self._recipe, signals=False)
         table = read_table(self.layout.runs, types.names)
         with damage_named(self.layout.runs):
-            table = table.cast(types)
+            table = with_words(table.cast(types))
         check_runs(table, self.manifest, self.layout.runs)
         return table
 
@@ -206,7 +314,8 @@ class DataSet:
                 raise UserError(f"{path}: holds the run of index {run.index}; run rubgen verify")
             yield run_id, pa.table({name: [run.channels[name]] for name in names} | {PULSES: [run.once_per_rev]})
 
-    def _known(self, channels: Sequence[str] | None) -> tuple[str, ...]:
+    def known_channels(self, channels: Sequence[str] | None) -> tuple[str, ...]:
+        """Return the names of these channels, each once; None is all. Raises UserError for an unknown one."""
         if isinstance(channels, str):
             raise UserError(f"channels = {channels!r}: give a list of names, [{channels!r}]")
         try:

@@ -17,6 +17,7 @@ from rubgen.errors import UserError
 from rubgen.io.mcap.messages import CONTACT_FIELDS
 from rubgen.io.mcap.read import McapRun
 from rubgen.io.parquet.read import read_table
+from rubgen.io.parquet.words import with_words
 from rubgen.measurement.blade_tip_timing import TipTimes
 from rubgen.measurement.channel import NUMBERS, TEXTS, Channel, Recording
 from rubgen.measurement.motion import ContactIntervals
@@ -108,7 +109,7 @@ def find_runs(data: DataSet, where: str) -> list[str]:
     """
     import duckdb
 
-    runs = read_table(data.layout.runs)
+    runs = with_words(read_table(data.layout.runs))
     query = f"SELECT run_id FROM runs WHERE status = 'ok' AND ({where}\n) ORDER BY run_id"  # noqa: S608
     try:
         with duckdb.connect(config=ONLY_READ) as connection:

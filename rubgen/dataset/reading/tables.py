@@ -28,6 +28,8 @@ NUMBERS = ("contact_duty", "contact_impulse_per_turn_n_s", "speed_rpm", "sample_
 MOTIONS = ("motion", "motion_blisk", "motion_casing")
 COLUMNS = ("scalars", "turn_steps", *TOUCHES)
 """The columns of the files in `sections/` that are read here."""
+FIRST_SAMPLE = "first_sample_s"
+"""Attribute of a frame of touches: the time of the first sample from the record's start, in s."""
 UNITS = {
     "start_s": "s", "end_s": "s", "blade": "", "angle_rad": "rad", "impulse_n_s": "N s", "friction_work_j": "J",
     "normal_work_j": "J",
@@ -91,7 +93,7 @@ def touches_frame(table: pa.Table, sensing: Sensing, seconds: float) -> pd.DataF
 
     `start_s` and `end_s` count from the first sample of the signals: earlier touches have negative times. `angle_rad`
     is the polar angle on the casing, a mean weighted by impulse. The works are <= 0. `attrs["units"]` maps each column
-    to its unit.
+    to its unit. `attrs["first_sample_s"]` is the time of the first sample from the start of the record.
     """
     import pandas as pd
 
@@ -115,5 +117,5 @@ def touches_frame(table: pa.Table, sensing: Sensing, seconds: float) -> pd.DataF
         }
     )
     frame = frame.sort_values("start_s", kind="stable", ignore_index=True)
-    frame.attrs = {"units": dict(UNITS)}
+    frame.attrs = {"units": dict(UNITS), FIRST_SAMPLE: first}
     return frame

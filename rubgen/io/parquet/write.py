@@ -6,6 +6,7 @@ the rows alone.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,9 @@ import pyarrow.parquet as pq
 from rubgen.arrays import FloatArray
 from rubgen.io.columns import Column, scalar_columns, signal_columns
 from rubgen.io.files import write_durably
+from rubgen.io.parquet.features import features_json
+from rubgen.io.parquet.words import with_numbers
+from rubgen.labels.classes import class_numbers
 from rubgen.labels.faults import fault_labels
 from rubgen.labels.registry import ENERGY_LABELS
 from rubgen.labels.to_json import labels_to_json, window_labels
@@ -36,6 +40,7 @@ TYPES = {
     "text": pa.string(),
     "texts": pa.list_(pa.string()),
     "flag": pa.bool_(),
+    "class": pa.int64(),
     "integer": pa.int64(),
     "number": pa.float64(),
     "integers": pa.list_(pa.int64()),
@@ -54,7 +59,7 @@ def schema(
     faults: tuple[str, ...] = (),
     machines: tuple[MachineKey, ...] = (),
 ) -> pa.Schema:
-    """Return the Arrow schema of `runs.parquet`, or with `signals` of the data files. Fields name unit and meaning.
+    """Return the Arrow schema of `runs.parquet`, or with `signals` of the data files. Fields have metadata.
 
     - signals: include the recorded channels, touches and windows of each run.
     - clean: include the channels without noise.
@@ -66,7 +71,7 @@ def schema(
     used = sensors or default_sensor_set()
     columns = scalar_columns(used, surroundings=surroundings, faults=faults, machines=machines)
     columns += signal_columns(used, clean=clean) if signals else ()
-    return pa.schema([_field(column) for column in columns])
+    return table_schema(columns)
 
 
 def recipe_schema(recipe: Recipe, *, signals: bool) -> pa.Schema:
@@ -104,6 +109,7 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
     if signals and run.recording is not None and run.labels is not None:
         row |= _signals(run.recording) | _touches(run, run.recording) | window_labels(run.labels)
     row |= fault_labels(run.scenario, run.response)
+    row = with_numbers(row)
     sensing = run.scenario.sensing
     types = schema(
         signals=signals,
@@ -143,8 +149,18 @@ def write_parquet(run: Run, path: Path) -> None:
     write_table([table], table.schema, path)
 
 
+def table_schema(columns: Iterable[Column]) -> pa.Schema:
+    """Return the Arrow schema of a table with these columns. It also describes them to Hugging Face's `datasets`."""
+    columns = list(columns)
+    fields = [_field(column) for column in columns]
+    return pa.schema(fields, metadata={"huggingface": features_json(columns, fields)})
+
+
 def _field(column: Column) -> pa.Field:
-    return pa.field(column.name, TYPES[column.kind], metadata={"unit": column.unit, "meaning": column.meaning})
+    facts = {"unit": column.unit, "meaning": column.meaning, "role": column.role.value}
+    if column.words:
+        facts["classes"] = json.dumps(class_numbers(column.words))
+    return pa.field(column.name, TYPES[column.kind], metadata=facts)
 
 
 def _settings(types: pa.Schema) -> dict[str, Any]:

@@ -35,7 +35,7 @@ def looks(directory):
 @pytest.mark.parametrize(
     ("column", "value", "message"),
     [
-        ("motion", "round", r"runs\.parquet: run-000001: motion = 'round'"),
+        ("motion", 17, r"runs\.parquet: run-000001: motion = 'class 17'"),
         ("motion", None, r"runs\.parquet: run-000001: motion = None"),
         ("rub", None, r"runs\.parquet: run-000001: rub = None"),
         ("blades_touched", None, r"runs\.parquet: run-000001: blades_touched = None"),

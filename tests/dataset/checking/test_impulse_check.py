@@ -15,6 +15,7 @@ from rubgen.dataset.checking.channel_check import (
 )
 from rubgen.dataset.checking.consistency import label_problems, signal_problems
 from rubgen.dataset.reading.open import row_signals
+from rubgen.io.parquet.words import with_words
 from rubgen.scenario import Sensing
 
 RATE = 25600.0
@@ -131,7 +132,7 @@ def test_turns_that_scatter_are_no_contradiction():
 @pytest.fixture(scope="module")
 def rub_row(small_set):
     table = pq.read_table(small_set.directory / "data/train-00000-of-00001.parquet")
-    rows = [(row, row_signals(table, i)) for i, row in enumerate(table.to_pylist())]
+    rows = [(row, row_signals(table, i)) for i, row in enumerate(with_words(table).to_pylist())]
     row, signals = next((row, signals) for row, signals in rows if row["rub"])
     return row | {"motion": "period-1", "motion_blisk": "period-1", "motion_casing": "period-1"}, signals
 

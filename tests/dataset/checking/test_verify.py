@@ -14,6 +14,7 @@ from rubgen.dataset.checking.consistency import label_problems, signal_problems
 from rubgen.dataset.files import sha256_of
 from rubgen.dataset.reading.open import row_signals
 from rubgen.errors import UserError
+from rubgen.io.parquet.words import with_words
 from rubgen.io.parquet.write import write_table
 from rubgen.scenario import Sensing
 
@@ -26,7 +27,7 @@ SENSING = Sensing()
 def rows(small_set):
     """Rows with labels and signals of a run without and one with rub."""
     table = pq.read_table(small_set.directory / DATA)
-    rows = {row["rub"]: (row, row_signals(table, i)) for i, row in enumerate(table.to_pylist())}
+    rows = {row["rub"]: (row, row_signals(table, i)) for i, row in enumerate(with_words(table).to_pylist())}
     assert set(rows) == {True, False}
     return rows
 

@@ -1,5 +1,6 @@
 """Counts of a finished set: rub, classes, and the shortest reason of each way to fail."""
 
+import pyarrow as pa
 import pytest
 
 from rubgen.dataset.layout import Layout
@@ -7,18 +8,12 @@ from rubgen.dataset.making import outcome
 from rubgen.dataset.making.outcome import Failure, outcome_of
 
 
-class Table:
-    def __init__(self, rows):
-        self.rows = rows
-
-    def to_pylist(self):
-        return [dict(zip(outcome.COLUMNS, row, strict=True)) for row in self.rows]
-
-
 @pytest.fixture
 def counted(monkeypatch, tmp_path):
     def counted(*rows):
-        monkeypatch.setattr(outcome, "read_table", lambda _path, _columns: Table(rows))
+        monkeypatch.setattr(
+            outcome, "read_table", lambda _path, columns: pa.table(list(zip(*rows, strict=True)), columns)
+        )
         return outcome_of(Layout(tmp_path))
 
     return counted

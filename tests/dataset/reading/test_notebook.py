@@ -15,6 +15,7 @@ from rubgen.dataset.reading.tables import runs_frame
 from rubgen.errors import UserError
 from rubgen.io.mcap import read_mcap
 from rubgen.io.parquet.read import read_table
+from rubgen.io.parquet.words import with_words
 from rubgen.io.parquet.write import schema
 from rubgen.sensors.load import default_sensor_set
 from tests.default_columns import CHANNELS, SCALARS
@@ -34,7 +35,7 @@ def with_a_failed_run(small_set):
     nullable = [column.name for column in SCALARS if column.nullable]
     rows = table.to_pylist()
     rows[2] |= dict.fromkeys(nullable) | {"status": "diverged", "reason": "in turn 3"}
-    return runs_frame(pa.Table.from_pylist(rows, schema=schema(signals=False)), default_sensor_set())
+    return runs_frame(with_words(pa.Table.from_pylist(rows, schema=schema(signals=False))), default_sensor_set())
 
 
 def test_run_id_has_one_home(data):

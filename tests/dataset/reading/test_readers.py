@@ -75,7 +75,7 @@ def test_the_card_describes_every_column_and_its_head_is_yaml(small_set):
     assert values["license"] == "cc-by-4.0"
     assert [config["config_name"] for config in values["configs"]] == ["signals", "runs", "sections"]
     for column in SCALARS + SIGNALS:
-        assert f"| `{column.name}` | {column.kind} | {column.unit} |" in body
+        assert f"| `{column.name}` | {column.role.value} | {column.kind} | {column.unit} |" in body
     for name, (kind, meaning) in RECORD_COLUMNS.items():
         assert f"| `{name}` | {kind} | {meaning} |" in body
     assert "4 runs" in body

@@ -9,6 +9,7 @@ import pytest
 import rubgen
 from rubgen.dataset.checking.relabel import relabel
 from rubgen.io.parquet.read import read_table
+from rubgen.io.parquet.words import with_words
 
 DATASETS = Path(__file__).parents[3] / "datasets"
 
@@ -22,7 +23,7 @@ def test_a_steady_recipe_makes_a_set_that_verifies(name, short_records, tmp_path
     rubgen.generate(recipe, tmp_path / "set", workers=1)
     assert rubgen.verify(tmp_path / "set") == []
     assert relabel(tmp_path / "set").differences == ()
-    rows = read_table(next((tmp_path / "set/data").glob("*.parquet"))).to_pylist()
+    rows = with_words(read_table(next((tmp_path / "set/data").glob("*.parquet")))).to_pylist()
     assert any(row["rub"] for row in rows)
     for row in rows:
         assert len(row["window_starts_s"]) == 7

@@ -1,0 +1,65 @@
+"""Divide the runs of a set for cross-validation, so that what belongs together stays on one side."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from rubgen.dataset.reading.samples import chosen_runs
+from rubgen.errors import UserError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rubgen.dataset.reading.open import DataSet
+
+
+class Fold(NamedTuple):
+    """One way to divide runs."""
+
+    train: tuple[str, ...]
+    """Names of the runs to learn from, in the order of the set."""
+    test: tuple[str, ...]
+    """Names of the runs to test with."""
+
+
+def folds(data: DataSet, k: int, by: str, split: str | None) -> list[Fold]:
+    """Divide runs into folds. See `DataSet.folds`."""
+    runs = chosen_runs(data, split, None)
+    groups = _groups(data, runs, by)
+    sizes = groups.value_counts().sort_index(kind="stable").sort_values(ascending=False, kind="stable")
+    if isinstance(k, bool) or not isinstance(k, int) or k < 2:
+        raise UserError(f"k = {k!r:.60}: must be a whole number of at least 2")
+    if len(sizes) < k:
+        one = "; with one machine, by='run_id' tests other runs of the same machine" if by == "machine_id" else ""
+        raise UserError(f"{data.layout.root}: k = {k}: there are only {len(sizes)} groups by {by!r}{one}")
+    filled, side = [0] * k, dict.fromkeys(sizes.index, 0)
+    for name, size in sizes.items():
+        side[name] = filled.index(min(filled))
+        filled[side[name]] += int(size)
+    places = groups.map(side)
+    return [
+        Fold(train=tuple(groups.index[places != fold]), test=tuple(groups.index[places == fold])) for fold in range(k)
+    ]
+
+
+def base_runs(rows: pd.DataFrame) -> pd.Series[str]:
+    """Return the run that each run of a frame was made from: itself, or the one of which it is a twin."""
+    names = rows.index.to_series().astype("string")
+    return rows["twin_of"].fillna(names) if "twin_of" in rows else names
+
+
+def _groups(data: DataSet, runs: list[str], by: str) -> pd.Series[str]:
+    """Return the group of each run. Raises UserError where groups would part what belongs together."""
+    rows = data.runs.loc[runs]
+    if by != "run_id" and by not in rows:
+        raise UserError(f"by = {by!r}: the set has no such column; use 'machine_id'")
+    groups = base_runs(rows) if by == "run_id" else rows[by].astype("string")
+    machines = rows["machine_id"]
+    for together, what in ((machines, "machine"), (base_runs(rows), "run and its twins")):
+        parted = groups.groupby(together).nunique(dropna=False)
+        several = what != "machine" or machines.nunique() > 1
+        if several and (parted > 1).any():
+            name = parted.index[parted > 1][0]
+            leak = f"runs of the {what} {name} would be on both sides, and the score would be too good"
+            raise UserError(f"{data.layout.root}: by = {by!r}: {leak}; use by='machine_id'")
+    return groups
