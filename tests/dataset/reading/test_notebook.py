@@ -60,7 +60,7 @@ def test_a_flag_selects_runs_though_some_failed(with_a_failed_run):
 
 
 def test_what_is_missing_leaves_the_type_of_a_column_alone(with_a_failed_run, data):
-    kinds = {"flag": "boolean", "integer": "Int64", "text": "string", "number": "float64"}
+    kinds = {"flag": "boolean", "integer": "Int64", "text": "string", "class": "string", "number": "float64"}
     for runs in (with_a_failed_run, data.runs):
         for column in SCALARS[1:]:
             assert runs[column.name].dtype == kinds.get(column.kind, "object"), column.name
