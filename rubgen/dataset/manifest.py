@@ -30,8 +30,8 @@ from rubgen.machine.problems import first_problem
 from rubgen.machine.quantities import about
 from rubgen.scenario import Recipe
 from rubgen.scenario.faults import named_kinds
+from rubgen.scenario.load import recorded_recipe
 from rubgen.scenario.machines.keys import MachineKey, own_keys
-from rubgen.scenario.recipe import recorded_recipe
 from rubgen.sensors.sensor_set import SensorSet
 
 PACKAGES = ("rubgen", "numpy", "scipy", "numba", "llvmlite", "pyarrow", "mcap", "protobuf", "zstandard", "rerun-sdk")

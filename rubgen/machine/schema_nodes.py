@@ -29,7 +29,7 @@ class SchemaNodes:
         nodes = list(self._branches(self.root, data))
         for part in path:
             data = _within(data, part)
-            found = (node.get("items") if isinstance(part, int) else _properties(node).get(part) for node in nodes)
+            found = (node.get("items") if isinstance(part, int) else _value_of(node, part) for node in nodes)
             nodes = [branch for node in found if isinstance(node, Mapping) for branch in self._branches(node, data)]
         return nodes
 
@@ -97,6 +97,12 @@ def _chosen(node: Node, data: object) -> Node | None:
 def _properties(node: Node) -> Mapping[str, Any]:
     found = node.get("properties", {})
     return found if isinstance(found, Mapping) else {}
+
+
+def _value_of(node: Node, key: str) -> object:
+    """Return the node of a key: its own, or the one for keys that the user names, such as splits."""
+    named = next(iter(node.get("patternProperties", {}).values()), None)
+    return _properties(node).get(key, named)
 
 
 def _within(data: object, part: int | str) -> object:

@@ -12,7 +12,9 @@ from rubgen.machine.schema_nodes import limit
 DECIMAL_COMMA = re.compile(r"[-+]?(\d+),(\d+)")
 FILE_NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
 CHANNEL_NAME = r"^[A-Za-z][A-Za-z0-9_]*$"
+SPLIT_NAME = r"^[a-z][a-z0-9_]{0,30}$"
 PATTERNS = {
+    SPLIT_NAME: "must begin with a small letter and go on with small letters, digits and '_' alone, at most 31 in all",
     FILE_NAME: "must begin with a letter or digit and go on with letters, digits, '.', '_' and '-' alone",
     CHANNEL_NAME: "must begin with a letter and go on with letters, digits and '_' alone",
 }

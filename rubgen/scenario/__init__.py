@@ -1,8 +1,9 @@
 """What is varied: scenarios of single runs, and the recipes that draw them."""
 
 from rubgen.scenario.contact_laws.contact_law import ContactLaw, Liner
+from rubgen.scenario.load import load_recipe, parse_recipe
 from rubgen.scenario.make import make_scenario
-from rubgen.scenario.recipe import Recipe, load_recipe, parse_recipe
+from rubgen.scenario.recipe import Recipe
 from rubgen.scenario.scenario import Labelling, Operation, Reduction, Scenario, Sensing
 
 __all__ = [

@@ -1,23 +1,20 @@
 """A recipe: the TOML file that defines a whole data set, run by run."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from functools import cached_property
-from itertools import chain
 from pathlib import Path
 from pkgutil import resolve_name
-from types import MappingProxyType
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, TypeAdapter, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
 
 from rubgen.brief import counted
-from rubgen.errors import UserError, warn
+from rubgen.errors import UserError
 from rubgen.machine import Machine, load_machine
-from rubgen.machine.load import FOR_COMPARISON, file_named, machine_id
-from rubgen.machine.problems import first_problem, validated
+from rubgen.machine.load import file_named, machine_id
 from rubgen.machine.quantities import (
     MOST_RUNS,
     RunCount,
@@ -25,28 +22,22 @@ from rubgen.machine.quantities import (
     about,
 )
 from rubgen.machine.sentences import FILE_NAME
-from rubgen.machine.toml_file import check_kind, read_toml, toml_path
 from rubgen.scenario.contact_laws.contact_law import ContactLaw
-from rubgen.scenario.distributions import Choice, Constant, Distribution
+from rubgen.scenario.distributions import Distribution
 from rubgen.scenario.faults import FaultTable, kinds_of, with_faults
 from rubgen.scenario.faults import extremes as fault_extremes
 from rubgen.scenario.feasible import check_feasible
-from rubgen.scenario.machines.check import check_machines, check_splits, machine_extremes
 from rubgen.scenario.machines.draw import Population
 from rubgen.scenario.machines.keys import MachineKey, own_keys
-from rubgen.scenario.plausible import warn_of
-from rubgen.scenario.profiles import check_used
 from rubgen.scenario.scenario import Labelling, Operation, Reduction, Scenario, Sensing
 from rubgen.scenario.surroundings import SurroundingsTable, drawn, extremes
-from rubgen.scenario.tables.machines import MachineTable, replaced_runs, with_runs
+from rubgen.scenario.tables.machines import MachineTable, with_runs
 from rubgen.scenario.tables.run import Output, Profile, Sensors, Simulation
 from rubgen.scenario.tables.splits import ONE_SPLIT, Splits, SplitTable, changes_of, split_of_machine
 from rubgen.scenario.tables.vary import Vary
 from rubgen.scenario.vary import (
     DEFAULT_SPEED_RPM,
     DRAWN,
-    FREE_PENETRATION,
-    TWO_CLEARANCES,
     Parameter,
     sobol_point,
     vary,
@@ -54,11 +45,6 @@ from rubgen.scenario.vary import (
 from rubgen.sensors.load import load_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
 
-DEFAULT_RECIPE = Path(__file__).parent / "zeng2019-mini.toml"
-NOT_FOR_DATA = (
-    'for comparison with the paper, never for data: it belongs to [contact] surface = "chords", '
-    'where every node of the mesh hits the tips; name "zeng2019" instead'
-)
 CANDIDATE_CHECK = "rubgen.solver.candidate:candidate_problem"
 """The check of a virtual machine. It needs the solver, above this room, so it is named here and imported when used."""
 _STRICT = ConfigDict(extra="forbid", frozen=True)
@@ -130,6 +116,7 @@ class Recipe(BaseModel):
     _checked: bool = PrivateAttr(default=False)
     _machines: tuple[Machine, ...] = PrivateAttr(default=())
     _sensor_sets: dict[str, SensorSet] = PrivateAttr(default_factory=dict)
+    _known: dict[int, int] = PrivateAttr(default_factory=dict)
     _whole: "Recipe | None" = PrivateAttr(default=None)
 
     @model_validator(mode="before")
@@ -209,14 +196,18 @@ class Recipe(BaseModel):
     def _part(self, changes: dict[str, Any]) -> "Recipe":
         part = Recipe(**{key: getattr(self, key) for key in self.model_fields_set - {"splits"}} | changes)
         part._folder, part._machines, part._sensor_sets = self._folder, self._machines, self._sensor_sets
-        part._checked, part._whole = self._checked, self
+        part._checked, part._known, part._whole = self._checked, self._known, self
         return part
 
     @cached_property
     def population(self) -> Population:
         """The virtual machines of its runs."""
         files = tuple(base.machine for base in self.bases)
-        return Population(self.machines or MachineTable(), files, self.seed, self._candidate_problem)
+        return Population(self.machines or MachineTable(), files, self.seed, self._candidate_problem, self._known)
+
+    def remember(self, number: int, candidate: int) -> None:
+        """Take candidate `candidate` for machine `number` as sane, as it was recorded, without checking it again."""
+        self._known[number] = candidate
 
     def machine_named(self) -> AbstractContextManager[None]:
         """Name the machine's file in errors that the block raises about the machine; of several files none."""
@@ -328,128 +319,3 @@ class Recipe(BaseModel):
         for key, values in ends.items():
             for value in values[1:]:
                 yield vary(first, {key: value}, source, ("vary",))
-
-
-def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> Recipe:
-    """Load the recipe in that TOML file, or the default recipe of rubgen; `runs` overrides its number of runs.
-
-    Raises UserError with file, key, value, what is allowed and the remedy, before anything is computed.
-    """
-    file = DEFAULT_RECIPE if path is None else toml_path(path)
-    data = read_toml(file)
-    check_kind(file, data, "recipe")
-    return parse_recipe(data, source=str(file), folder=file.parent, runs=runs)
-
-
-def parse_recipe(
-    data: dict[str, Any], *, source: str = "recipe", folder: Path | None = None, runs: int | None = None
-) -> Recipe:
-    """Make the recipe of TOML values and check it.
-
-    - data: the TOML values.
-    - source: beginning of messages.
-    - folder: start of relative paths.
-    - runs: overrides the number of runs.
-
-    Raises UserError for anything that is not allowed.
-    """
-    if runs is not None:
-        data = replaced_runs(data, checked_runs(runs))
-    recipe = validated(source, data, TypeAdapter(Recipe))
-    recipe._folder = folder or Path()
-    check_recipe(recipe, source, data)
-    return recipe
-
-
-def checked_runs(runs: int) -> int:
-    """Return a number of runs that replaces the recipe's. Raises UserError where a recipe would not allow it."""
-    if isinstance(runs, bool) or not isinstance(runs, int) or not 1 <= runs <= MOST_RUNS:
-        raise UserError(f"--runs {runs}: must be at least 1 and at most {MOST_RUNS:,}; give a whole number of runs")
-    return runs
-
-
-def recorded_recipe(
-    data: object,
-    machine: object,
-    sensors: object,
-    source: str = "manifest",
-    split_sensors: Mapping[str, object] = MappingProxyType({}),
-) -> Recipe:
-    """Make the recipe of a data set from its manifest, with the recorded machines and sensors.
-
-    Changes of the machines' or sensors' files since then have no effect.
-
-    - data, machine, sensors: the three documents of the manifest. Several machines stand in a list.
-    - source: beginning of messages.
-    - split_sensors: the sensor sets of splits that have their own, by the name in the recipe.
-
-    Raises UserError where this version of rubgen cannot read them.
-    """
-    recipe: Recipe = _recorded(Recipe, data, f"{source}: recipe")
-    recipe._checked = True
-    machines = machine if isinstance(machine, list | tuple) else [machine]
-    recipe._machines = tuple(_recorded(Machine, each, f"{source}: machine") for each in machines)
-    sets = {recipe.sensors.set: sensors, **split_sensors}
-    recipe._sensor_sets = {name: _recorded(SensorSet, each, f"{source}: sensors") for name, each in sets.items()}
-    return recipe
-
-
-def _recorded(kind: Any, data: object, source: str) -> Any:
-    adapter: TypeAdapter[Any] = TypeAdapter(kind)
-    try:
-        return adapter.validate_python(data)
-    except ValidationError as error:
-        raise first_problem(source, error, data, adapter) from None
-
-
-def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | None = None) -> None:
-    """Check that every run of the recipe is possible, at single values and at the extremes of `[vary]`.
-
-    Warns once of each value that is hardly intended.
-
-    - source: beginning of messages.
-    - data: the TOML values of the recipe; without them, fields that are set count as given.
-
-    Raises UserError where some run is not possible.
-    """
-    validated(
-        source, recipe.model_dump(mode="json", warnings=False), TypeAdapter(Recipe)
-    )  # it may be a copy with other values
-    if not recipe._checked:
-        _check_used(recipe, source, data)
-    if len(set(recipe.output.formats)) != len(recipe.output.formats):
-        raise UserError(f"{source}: output.formats = {list(recipe.output.formats)}: name each format once")
-    for where, part in recipe.named_parts(source):
-        _check_drawn(part, where)
-    try:
-        recipe.base  # noqa: B018  (reads the machine files)
-    except UserError as error:
-        text = str(error)
-        raise UserError(f"{source}: {text}" if text.startswith(("machine = ", "sensors.set = ")) else text) from None
-    check_machines(recipe, source)
-    check_splits(recipe, source)
-    with recipe.machine_named():
-        for where, part in recipe.named_parts(source):
-            for scenario in part.own_corners(where):
-                check_feasible(scenario, f"{where}: ")
-    if not recipe._checked:
-        warn_of(chain(recipe.corners(), machine_extremes(recipe)), f"{source}: ")
-        if FOR_COMPARISON in (base.machine.name for base in recipe.bases):
-            warn(f"{source}: machine = {recipe.machine!r}: {NOT_FOR_DATA}")
-    recipe._checked = True
-
-
-def _check_used(recipe: Recipe, source: str, data: dict[str, Any] | None) -> None:
-    """Raise UserError for a key that the profile would ignore. A manifest's recipe has every key of every profile."""
-    left_out = {"labels"} if data is None else set()  # a dataclass does not tell what was set in it
-    given = data or recipe.model_dump(mode="json", exclude_unset=True, exclude=left_out)
-    if all(given != recipe.model_dump(mode="json", exclude=left_out, exclude_none=short) for short in (True, False)):
-        check_used(f"{source}: ", given)
-
-
-def _check_drawn(recipe: Recipe, source: str) -> None:
-    for entry, distribution in recipe.distributions():
-        if entry.whole and not isinstance(distribution, Constant | Choice):
-            raise UserError(f"{source}: vary.{entry.key}: takes whole numbers only; give a number or a choice")
-    if {"clearance_m", FREE_PENETRATION.key} <= {entry.key for entry, _ in recipe.distributions()}:
-        raise UserError(f"{source}: vary.{TWO_CLEARANCES}")

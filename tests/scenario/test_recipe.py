@@ -13,7 +13,7 @@ from scipy.stats import qmc
 import rubgen
 from rubgen.errors import RubgenWarning, UserError
 from rubgen.scenario import Recipe, load_recipe, make_scenario, parse_recipe
-from rubgen.scenario.recipe import check_recipe
+from rubgen.scenario.load import check_recipe
 from rubgen.scenario.vary import DIMENSIONS, KEYS, PARAMETERS, sobol_point, varied_values
 
 MINIMAL = {"name": "small", "runs": 4, "machine": "zeng2019"}

@@ -13,7 +13,7 @@ from rubgen.labels.compact_record import CompactRecord, response_of
 from rubgen.labels.motion.classify import Motions, motion
 from rubgen.machine.toml_file import read_toml
 from rubgen.scenario import Recipe, Scenario
-from rubgen.scenario.recipe import parse_recipe
+from rubgen.scenario.load import parse_recipe
 from rubgen.solver.exponent import lyapunov
 from validation.confusion.runs import rubs, run_piece
 from validation.piece import Arrays, Piece

@@ -21,7 +21,7 @@ from rubgen.errors import UserError, warn, write_problems
 from rubgen.io.columns import signal_columns
 from rubgen.progress import Report, count, shown, step
 from rubgen.scenario import Recipe, load_recipe, parse_recipe
-from rubgen.scenario.recipe import check_recipe, checked_runs
+from rubgen.scenario.load import check_recipe, checked_runs
 
 KEPT = "finished runs are kept"
 LOOKED_AT, MACHINES = 16, 4

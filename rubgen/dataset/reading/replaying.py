@@ -22,7 +22,7 @@ from rubgen.measurement.blade_tip_timing import TipTimes
 from rubgen.measurement.channel import NUMBERS, TEXTS, Channel, Recording
 from rubgen.measurement.motion import ContactIntervals
 from rubgen.scenario import Scenario
-from rubgen.scenario.recipe import check_recipe
+from rubgen.scenario.load import check_recipe
 from rubgen.viz.replay import Replay, sorted_touches
 
 ONLY_READ: dict[str, bool | int | float | str | list[str]] = {
@@ -131,7 +131,10 @@ def _meant(where: str, columns: Iterable[str]) -> str:
 
 def scenario_of(data: DataSet, run_id: str) -> Scenario:
     """Return the scenario of a run, drawn again from the recipe and machine in the manifest."""
-    return data.manifest.identity.recorded().scenario(int(run_id.removeprefix("run-")))
+    recipe, row = data.manifest.identity.recorded(), data.row(run_id)
+    if row["status"] == "ok" and "machine_candidate" in row:
+        recipe.remember(row["machine_number"], row["machine_candidate"])
+    return recipe.scenario(int(run_id.removeprefix("run-")))
 
 
 def _from_data_set(directory: Path, run_id: str | None, where: str | None) -> FoundReplay:

@@ -76,8 +76,8 @@ def _check_count(recipe: Recipe, table: MachineTable, source: str) -> None:
     if recipe.machine_count <= files or table.never_twice:
         return
     raise UserError(
-        f"{source}: machines: {recipe.machine_count} machines, but {files} different ones: without a key drawn from a "
-        "range some would be equal, and stand in two splits; add a range or mistuning to machines.vary, or take "
+        f"{source}: machines: {recipe.machine_count} machines, of which only {files} can differ: without a key drawn "
+        "from a range some would be equal, and stand in two splits; add a range or mistuning to machines.vary, or take "
         f"{files * table.runs_per_machine} runs"
     )
 
@@ -110,10 +110,7 @@ def _check_columns(recipe: Recipe, split: SplitTable, source: str) -> None:
             "table, with levels of 0 where nothing disturbs"
         )
     if split.sensors:
-        try:
-            own = recipe.parts[source.rpartition(".")[2]].sensing.set
-        except UserError as error:
-            raise UserError(f"{source}.{str(error).replace('sensors.set', 'sensors', 1)}") from None
+        own = recipe.parts[source.rpartition(".")[2]].sensing.set
         if _columns(own) != _columns(recipe.sensing.set):
             raise UserError(
                 f"{source}.sensors = {split.sensors!r}: other sensors than sensors.set = {recipe.sensors.set!r}, and "

@@ -2,7 +2,7 @@
 
 import zlib
 from collections import Counter, OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -40,11 +40,14 @@ def candidate(table: MachineTable, files: tuple[Machine, ...], seed: int, number
 class Population:
     """The virtual machines of a recipe. Each is drawn and checked when it is first asked for."""
 
-    def __init__(self, table: MachineTable, files: tuple[Machine, ...], seed: int, problem: Problem) -> None:
-        """Take ranges and bounds, the machines of the files, the seed, and the check of a candidate."""
-        self.table, self.files, self.seed, self.problem = table, files, seed, problem
-        self.known: dict[int, int] = {}
-        """The candidate of each machine that was checked before, as recorded."""
+    def __init__(
+        self, table: MachineTable, files: tuple[Machine, ...], seed: int, problem: Problem, known: Mapping[int, int]
+    ) -> None:
+        """Take ranges and bounds, the machines of the files, the seed, and the check of a candidate.
+
+        `known` is the candidate of each machine that was checked before, as recorded.
+        """
+        self.table, self.files, self.seed, self.problem, self.known = table, files, seed, problem, known
         self._recent: OrderedDict[int, tuple[Machine, VirtualMachine]] = OrderedDict()
 
     def machine(self, number: int) -> tuple[Machine, VirtualMachine]:

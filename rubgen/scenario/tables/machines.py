@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field, create_model, model_validator
 
 from rubgen.machine import Machine
 from rubgen.machine.descriptions import draws
-from rubgen.machine.quantities import Length, RunCount, Speed, TryCount
+from rubgen.machine.quantities import MOST_RUNS, Length, RunCount, Speed, TryCount
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.machines.keys import MACHINE_KEYS, MachineKey, with_values
 
@@ -107,6 +107,11 @@ def with_runs(data: Any) -> Any:
     if not all(isinstance(number, int) and number > 0 for number in (count, each)):
         return data
     runs = data.get("runs", count * each)
+    if count * each > MOST_RUNS:
+        raise ValueError(
+            f"machines.count = {count}: with {each} runs each they make {count * each:,} runs, at most {MOST_RUNS:,}; "
+            "lower machines.count or machines.runs_per_machine"
+        )
     if runs != count * each:
         raise ValueError(
             f"runs = {runs!r:.60}: machines.count = {count} with {each} runs each make {count * each}; "

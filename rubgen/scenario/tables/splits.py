@@ -5,15 +5,15 @@ from collections.abc import Mapping
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from rubgen.machine.quantities import MOST_RUNS, Share
+from rubgen.machine.sentences import SPLIT_NAME
 from rubgen.scenario.surroundings import SurroundingsTable
 from rubgen.scenario.tables.machines import MachineTable, MachineVary, merged
 from rubgen.scenario.tables.run import Profile
 from rubgen.scenario.tables.vary import Vary
 
-SPLIT_NAME = r"^[a-z][a-z0-9_]{0,30}$"
 RESERVED = "all"
 """`load_dataset(split="all")` means every split."""
 ONE_SPLIT = ("train",)
@@ -68,8 +68,14 @@ def _checked(splits: dict[str, float | SplitTable]) -> dict[str, float | SplitTa
     return splits
 
 
+def _kind(split: object) -> str:
+    """Return the tag of the union; in angle brackets, so that no key of a recipe has the same name."""
+    return "<table>" if isinstance(split, Mapping | SplitTable) else "<share>"
+
+
 SplitName = Annotated[str, Field(pattern=SPLIT_NAME)]
-Splits = Annotated[dict[SplitName, Share | SplitTable], AfterValidator(_checked)]
+Split = Annotated[Annotated[Share, Tag("<share>")] | Annotated[SplitTable, Tag("<table>")], Discriminator(_kind)]
+Splits = Annotated[dict[SplitName, Split], AfterValidator(_checked)]
 
 
 def share_of(split: float | SplitTable) -> float:
