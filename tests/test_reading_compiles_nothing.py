@@ -12,6 +12,7 @@ READERS = [
     "rubgen.cli.drawing",
     "rubgen.report.page",
     "rubgen.cli.featuring",
+    "rubgen.cli.exporting",
     "rubgen.viz.rerun",
     "rubgen.dataset.making.generate",  # the parent of workers: they compile
 ]

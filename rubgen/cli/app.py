@@ -200,7 +200,7 @@ def features(
     *,
     out: Annotated[Path, _option("File to write: .parquet.")],
     window: Annotated[str | None, _option("Length such as 0.25s or 16turns; the whole signal when not given.")] = None,
-    channels: Annotated[str | None, _option("Names with commas; all but contact_force when not given.")] = None,
+    channels: Annotated[str | None, _option("Names with commas; all that a probe can measure when not given.")] = None,
     set_: Annotated[
         str | None,
         Parameter(name="--set", help="time, order, envelope, orbit, tsfel, with commas; all but tsfel when not given."),
@@ -213,6 +213,23 @@ def features(
     from rubgen.cli.featuring import features_command
 
     return features_command(directory, out, window, channels, set_, workers, force=force, as_json=json)
+
+
+@app.command
+def export(
+    directory: Directory,
+    /,
+    *,
+    format_: Annotated[str, Parameter(name="--format", help="uff58, mat, hdf5, csv, wav, ts or webdataset.")],
+    out: Annotated[Path, _option("New or empty folder, or one of the same export, which is then completed.")],
+    split: Annotated[str | None, _option("Only this split; all when not given.")] = None,
+    channels: Annotated[str | None, _option("Names with commas; all recorded channels when not given.")] = None,
+    json: Json = False,
+) -> int:
+    """Write the runs of a data set in a file format of other programs, with units and sensors."""
+    from rubgen.cli.exporting import export_command
+
+    return export_command(directory, out, format_, split, channels, as_json=json)
 
 
 @app.command

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from rubgen.brief import counted
 from rubgen.cli.interrupts import terminable
+from rubgen.cli.names import names_in
 from rubgen.cli.printing import check_new_file, print_json, say
 from rubgen.dataset.making.workers import usable_cores
 from rubgen.errors import UserError, write_problems
@@ -36,8 +37,8 @@ def features_command(
             directory,
             out,
             window=window,
-            channels=_names("--channels", channels),
-            sets=_names("--set", sets),
+            channels=names_in("--channels", channels),
+            sets=names_in("--set", sets),
             workers=workers or usable_cores(),
         )
     if as_json:
@@ -47,12 +48,3 @@ def features_command(
         say(f"{out}: {counted(made.windows, 'window')} of {counted(made.runs, 'run')}")
         say(f"  {made.columns} features ({kinds}) of {counted(len(made.channels), 'channel')}; docs/features.md")
     return 0
-
-
-def _names(option: str, text: str | None) -> list[str] | None:
-    if text is None:
-        return None
-    names = [name.strip() for name in text.split(",")]
-    if not all(names):
-        raise UserError(f"{option} {text!r:.60}: has an empty name; give names with commas between them")
-    return names

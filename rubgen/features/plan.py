@@ -14,7 +14,6 @@ from rubgen.errors import UserError
 from rubgen.features.vocabulary import GENERIC, NEED_PULSES, ORBIT, SAME, SETS, Feature, of_channel
 from rubgen.features.windows import Window, parse_window
 from rubgen.machine.problems import nearest
-from rubgen.sensors.kinds.contact_force import ContactForceSensor
 from rubgen.sensors.kinds.once_per_rev import OncePerRev
 from rubgen.sensors.kinds.proximity import Proximity
 from rubgen.sensors.sensor_set import SensorSet
@@ -92,7 +91,7 @@ def make_plan(data: DataSet, window: str | None, channels: Sequence[str] | None,
 
 def _channels(data: DataSet, channels: Sequence[str] | None) -> tuple[str, ...]:
     if channels is None:
-        return tuple(sensor.name for sensor in data.sensors.sampled if not isinstance(sensor, ContactForceSensor))
+        return tuple(sensor.name for sensor in data.sensors.sampled if sensor.name in data.inputs)
     names = [sensor.name for sensor in data.sensors.sampled]
     for name in channels:
         if name not in names:

@@ -92,6 +92,11 @@ class DataSet:
         return tuple(self.units)
 
     @property
+    def recipe(self) -> Recipe:
+        """The recipe of the set."""
+        return self._recipe
+
+    @property
     def sensors(self) -> SensorSet:
         """The sensors of the machine."""
         return self._sensing.set

@@ -1,0 +1,30 @@
+"""The command `rubgen export`: a data set in the file format of other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rubgen.brief import counted
+from rubgen.cli.interrupts import terminable
+from rubgen.cli.names import names_in
+from rubgen.cli.printing import print_json, say
+from rubgen.errors import write_problems
+from rubgen.export.write import export
+from rubgen.progress import step
+
+
+def export_command(
+    directory: Path, out: Path, name: str, split: str | None, channels: str | None, *, as_json: bool
+) -> int:
+    """Write the data set in the format `name` to the folder `out` and print what it contains. Returns the exit code 0.
+
+    `channels` is a list with commas. The other parameters are those of `export`.
+    """
+    with step("export", "files"), terminable(), write_problems(out, named=f"--out {out}", kept="files so far are kept"):
+        made = export(directory, out, name, split=split, channels=names_in("--channels", channels))
+    if as_json:
+        print_json({"out": str(out), **vars(made)})
+    else:
+        say(f"{out}: {counted(made.runs, 'run')} in {counted(made.files, 'file')} of {name}, {', '.join(made.splits)}")
+        say("  channels.csv has the sensors, runs.csv parameters and labels")
+    return 0

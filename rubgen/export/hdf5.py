@@ -1,0 +1,38 @@
+"""HDF5 files: one data set a channel, unit and sensor as its attributes (h5py)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from rubgen.export.run import ExportedRun
+
+
+def write_hdf5(runs: Iterator[ExportedRun], path: Path) -> None:
+    """Write one run: `channels/<name>` with attributes, and `once_per_rev_s`.
+
+    Parameters and labels are attributes of `/`; an undefined label has none.
+    """
+    import h5py
+
+    (run,) = runs
+    with h5py.File(path, "w") as file:
+        group = file.create_group("channels")
+        for channel in run.channels:
+            stored = group.create_dataset(
+                channel.name, data=channel.values, compression="gzip", shuffle=True, track_times=False
+            )
+            stored.attrs["units"] = channel.unit
+            stored.attrs["sample_rate_hz"] = run.sample_rate_hz
+            for name, fact in channel.facts.items():
+                stored.attrs[name] = fact
+        pulses = file.create_dataset("once_per_rev_s", data=run.pulses, track_times=False)
+        pulses.attrs["units"] = "s"
+        for name, value in run.row.items():
+            if value is not None:
+                file.attrs[name] = _attribute(value, h5py)
+
+
+def _attribute(value: Any, h5py: Any) -> Any:
+    return h5py.Empty("f8") if isinstance(value, list) and not value else value

@@ -1,0 +1,71 @@
+"""What a file of another format holds of one run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rubgen.arrays import FloatArray
+from rubgen.dataset.reading.open import DataSet
+from rubgen.measurement.channel import Float32Array
+from rubgen.sensors.sensor import SampledSensor
+
+
+@dataclass(frozen=True)
+class ExportedChannel:
+    """One recorded channel with its sensor."""
+
+    name: str
+    unit: str
+    values: Float32Array
+    sensor: SampledSensor | None
+    """None is the pulse of the shaft."""
+
+    @property
+    def facts(self) -> dict[str, str | float]:
+        """What the sensor says of itself: kind, quantity, axis, location, angle, range."""
+        if self.sensor is None:
+            return {"kind": "once_per_rev", "quantity": "pulse", "axis": "", "location": "shaft"}
+        about, (low, high) = self.sensor.description, self.sensor.full_range
+        facts: dict[str, str | float] = {
+            "kind": str(getattr(self.sensor, "kind", "")),
+            "quantity": about.quantity,
+            "axis": about.axis,
+            "location": about.location,
+            "range_min": low,
+            "range_max": high,
+        }
+        angle = getattr(self.sensor, "angle_deg", None)
+        return facts if angle is None else facts | {"angle_deg": float(angle)}
+
+
+@dataclass(frozen=True)
+class ExportedRun:
+    """One run of a data set."""
+
+    run_id: str
+    split: str
+    row: dict[str, Any]
+    """Its parameters and labels by column, as plain values; None where one is undefined."""
+    sample_rate_hz: float
+    channels: tuple[ExportedChannel, ...]
+    pulses: FloatArray
+    """Times of the pulses in s from the first sample on."""
+    tip_radius: float
+    """Of the blades, m: the place of the sensors on the casing."""
+
+    @property
+    def samples(self) -> int:
+        """Number of samples of every channel."""
+        return self.channels[0].values.size
+
+
+def exported_runs(data: DataSet, run_ids: Sequence[str], channels: Sequence[str]) -> Iterator[ExportedRun]:
+    """Read these good runs one after the other."""
+    sensors = {sensor.name: sensor for sensor in data.sensors.sampled}
+    radius = data.recipe.base.machine.tip_radius_m
+    for run_id, signals, pulses in data.recorded(run_ids, channels):
+        row = data.row(run_id)
+        found = tuple(ExportedChannel(name, data.units[name], signals[name], sensors.get(name)) for name in channels)
+        yield ExportedRun(run_id, str(row["split"]), row, data.sample_rate_hz, found, pulses, radius)

@@ -1,0 +1,18 @@
+"""WAV files of 32-bit floats, a track a channel."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from rubgen.export.run import ExportedRun
+
+
+def write_wav(runs: Iterator[ExportedRun], path: Path) -> None:
+    """Write one run in the order of `channels.csv`, in the units named there: a player clips what is beyond 1."""
+    from scipy.io import wavfile
+
+    (run,) = runs
+    wavfile.write(path, int(run.sample_rate_hz), np.column_stack([channel.values for channel in run.channels]))

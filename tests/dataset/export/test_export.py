@@ -1,0 +1,170 @@
+"""Each format through a reader of its own: signals bit for bit, units, sensors, labels; and mistakes."""
+
+import json
+import shutil
+
+import h5py
+import numpy as np
+import pandas as pd
+import pytest
+import pyuff
+from scipy.io import loadmat, wavfile
+
+import datasets
+import rubgen
+from rubgen.cli import main
+from rubgen.export.formats import FORMATS
+from rubgen.export.write import export
+
+CHANNELS = ["proximity_x", "casing_acc_90", "once_per_rev"]
+RUN = "run-000001"
+
+
+@pytest.fixture(scope="module")
+def data(small_set):
+    return rubgen.open(small_set.directory)
+
+
+@pytest.fixture
+def exported(small_set, tmp_path):
+    def make(name, channels=CHANNELS):
+        export(small_set.directory, tmp_path / name, name, channels=channels)
+        return tmp_path / name
+
+    return make
+
+
+def test_uff_has_signals_units_and_geometry(data, exported):
+    file = pyuff.UFF(str(exported("uff58") / "train" / f"{RUN}.uff"))
+    assert list(file.get_set_types()) == [151, 164, 15, 82, 58, 58, 58]
+    assert file.read_sets(1)["units_code"] == 1
+    nodes, signals = file.read_sets(2), data.signals(RUN)
+    for number, name in enumerate(CHANNELS):
+        found = file.read_sets(4 + number)
+        assert np.array_equal(found["data"].astype(np.float32), signals[name])
+        assert (found["id1"].strip(), found["id2"].strip()) == (name, RUN)
+        assert found["ordinate_axis_units_lab"].strip() == data.units[name]
+        assert found["abscissa_inc"] == 1 / 25600
+    acceleration = file.read_sets(5)
+    assert (acceleration["ordinate_spec_data_type"], acceleration["rsp_dir"]) == (12, 2)
+    place = nodes["x"][acceleration["rsp_node"] - 1], nodes["y"][acceleration["rsp_node"] - 1]
+    assert place == pytest.approx((0, data.recipe.base.machine.tip_radius_m), abs=1e-6)
+
+
+def test_mat_has_signals_units_and_labels(data, exported):
+    found = loadmat(exported("mat") / "train" / f"{RUN}.mat", simplify_cells=True)
+    assert np.array_equal(found["casing_acc_90"]["values"], data.signals(RUN)["casing_acc_90"])
+    assert found["casing_acc_90"]["values"].dtype == np.float32
+    assert (found["casing_acc_90"]["unit"], found["casing_acc_90"]["angle_deg"]) == ("m/s2", 90)
+    assert found["run"]["speed_rpm"] == data.row(RUN)["speed_rpm"]
+    assert bool(found["run"]["rub"]) is data.row(RUN)["rub"]
+    assert found["once_per_rev_s"].size > 50
+
+
+def test_hdf5_has_signals_units_and_labels(data, exported):
+    with h5py.File(exported("hdf5") / "train" / f"{RUN}.h5") as file:
+        channel = file["channels/casing_acc_90"]
+        assert np.array_equal(channel[:], data.signals(RUN)["casing_acc_90"])
+        assert (channel.attrs["units"], channel.attrs["location"]) == ("m/s2", "casing at 90 deg")
+        assert channel.attrs["sample_rate_hz"] == 25600
+        assert (file.attrs["motion"], file.attrs["speed_rpm"]) == (data.row(RUN)["motion"], data.row(RUN)["speed_rpm"])
+
+
+def test_csv_keeps_every_digit(data, exported):
+    found = pd.read_csv(exported("csv") / "train" / f"{RUN}.csv")
+    assert list(found) == ["time_s", "proximity_x [m]", "casing_acc_90 [m/s2]", "once_per_rev [1]"]
+    assert np.array_equal(found["proximity_x [m]"].astype(np.float32), data.signals(RUN)["proximity_x"])
+    assert found["time_s"][1000] == 1000 / 25600
+
+
+def test_wav_has_a_track_a_channel(data, exported):
+    rate, found = wavfile.read(exported("wav") / "train" / f"{RUN}.wav")
+    assert rate == 25600
+    assert np.array_equal(found[:, 1], data.signals(RUN)["casing_acc_90"])
+
+
+def test_ts_has_a_case_a_run(data, exported):
+    lines = (exported("ts") / "train.ts").read_text().splitlines()
+    head, cases = lines[: lines.index("@data")], lines[lines.index("@data") + 1 :]
+    assert "@dimensions 3" in head
+    assert f"@seriesLength {len(data.signals(RUN)['proximity_x'])}" in head
+    *dimensions, rub = cases[1].split(":")
+    assert np.array_equal(np.array(dimensions[1].split(","), dtype=np.float32), data.signals(RUN)["casing_acc_90"])
+    assert [case.rsplit(":", 1)[1] for case in cases] == [str(rub).lower() for rub in data.ok.rub]
+    assert rub == str(data.row(RUN)["rub"]).lower()
+
+
+def test_webdataset_is_read_by_datasets(data, exported, tmp_path):
+    files = str(exported("webdataset") / "*.tar")
+    found = datasets.load_dataset("webdataset", data_files=files, split="train", cache_dir=str(tmp_path / "hub"))
+    row = found[1]
+    assert row["__key__"] == RUN
+    assert np.array_equal(np.array(row["npy"], dtype=np.float32)[1], data.signals(RUN)["casing_acc_90"])
+    assert row["json"]["rub"] is data.row(RUN)["rub"]
+    assert row["json"]["channels"][1]["unit"] == "m/s2"
+
+
+def test_tables_beside_the_files(data, exported):
+    folder = exported("csv")
+    channels, runs = pd.read_csv(folder / "channels.csv"), pd.read_csv(folder / "runs.csv", index_col="run_id")
+    assert channels.set_index("name").unit["casing_acc_90"] == "m/s2"
+    assert channels.set_index("name").angle_deg["casing_acc_90"] == 90
+    assert list(runs.rub) == list(data.ok.rub)
+    assert json.loads((folder / "export.json").read_text())["format"] == "csv"
+
+
+@pytest.mark.parametrize("name", ["uff58", "mat", "hdf5", "webdataset"])
+def test_a_stopped_export_is_completed_to_the_same_bytes(small_set, tmp_path, name):
+    export(small_set.directory, tmp_path / "whole", name, channels=CHANNELS)
+    shutil.copytree(tmp_path / "whole", tmp_path / "part")
+    (tmp_path / "part/export.json").rename(tmp_path / "part/.export.json")
+    sorted((tmp_path / "part").rglob(f"*{FORMATS[name].ending}"))[0].unlink()
+    (tmp_path / "part/runs.csv").unlink()
+    export(small_set.directory, tmp_path / "part", name, channels=CHANNELS)
+    files = [each.relative_to(tmp_path / "whole") for each in (tmp_path / "whole").rglob("*") if each.is_file()]
+    assert len(files) >= 4
+    assert all((tmp_path / "whole" / each).read_bytes() == (tmp_path / "part" / each).read_bytes() for each in files)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--format", "matt"], "did you mean mat?"),
+        (["--format", "csv", "--split", "tests"], "no good run has this split"),
+        (["--format", "csv", "--channels", "proximity"], "no recorded channel 'proximity'"),
+    ],
+)
+def test_a_mistake_is_one_line_and_nothing_is_written(small_set, tmp_path, capsys, options, message):
+    said = _refused(capsys, small_set.directory, tmp_path / "out", *options)
+    assert message in said
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_a_format_cannot_hold_is_refused(small_set, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("rubgen.dataset.reading.open.DataSet.sample_rate_hz", 25600.5)
+    assert "holds whole sample rates, not 25600.5 Hz" in _refused(
+        capsys, small_set.directory, tmp_path / "out", "--format", "wav"
+    )
+    monkeypatch.setattr("rubgen.export.write.BYTES", 10**6)
+    assert "choose fewer --channels, or hdf5" in _refused(
+        capsys, small_set.directory, tmp_path / "out", "--format", "mat"
+    )
+    monkeypatch.setattr("rubgen.export.write.find_spec", lambda _name: None)
+    assert "the package h5py is not installed; pip install 'rubgen[export]'" in _refused(
+        capsys, small_set.directory, tmp_path / "out", "--format", "hdf5"
+    )
+
+
+def test_another_folder_is_never_overwritten(small_set, tmp_path, capsys):
+    (tmp_path / "mine.txt").write_text("mine")
+    assert "is not empty (mine.txt)" in _refused(capsys, small_set.directory, tmp_path, "--format", "csv")
+    export(small_set.directory, tmp_path / "out", "csv", channels=CHANNELS)
+    assert "has another export" in _refused(capsys, small_set.directory, tmp_path / "out", "--format", "wav")
+
+
+def _refused(capsys, directory, out, *options):
+    with pytest.raises(SystemExit) as ended:
+        main(["export", str(directory), "--out", str(out), *options])
+    said = capsys.readouterr().err
+    assert (ended.value.code, said.count("\n")) == (2, 1)
+    return said
