@@ -8,8 +8,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from pydantic import TypeAdapter
-
 from rubgen.dataset.card import column_table
 from rubgen.dataset.files import write_json, write_text
 from rubgen.dataset.manifest import Manifest
@@ -17,16 +15,12 @@ from rubgen.io.columns import Column, label_columns, scalar_columns, tap_columns
 from rubgen.io.mcap.messages import MESSAGES, PACKAGE
 from rubgen.labels import registry
 from rubgen.labels.classes import class_numbers
-from rubgen.machine import Machine
 from rubgen.machine.descriptions import complete
 from rubgen.machine.faults.registry import FAULTS
-from rubgen.scenario import Recipe
+from rubgen.planning.user_schemas import DIALECT, FILE_NAMES, user_schema
 from rubgen.scenario.machines.keys import own_keys
 from rubgen.sensors.load import default_sensor_set
-from rubgen.sensors.registry import SENSOR_KINDS
-from rubgen.sensors.sensor_set import SensorSet
 
-DIALECT = "https://json-schema.org/draft/2020-12/schema"
 JSON_TYPES: dict[str, dict[str, Any]] = {
     "text": {"type": "string"},
     "texts": {"type": "array", "items": {"type": "string"}},
@@ -41,12 +35,8 @@ JSON_TYPES: dict[str, dict[str, Any]] = {
 
 def documents() -> dict[str, dict[str, Any]]:
     """File name to schema as pydantic makes it: recipe, machine, sensor set, manifest."""
-    return {
-        "recipe.schema.json": Recipe.model_json_schema(),
-        "machine.schema.json": TypeAdapter(Machine).json_schema(),
-        "manifest.schema.json": Manifest.model_json_schema(),
-        "sensor-set.schema.json": _sensor_set_schema(),
-    }
+    users = {name: user_schema(kind) for kind, name in FILE_NAMES.items()}
+    return {**users, "manifest.schema.json": Manifest.model_json_schema()}
 
 
 def schemas() -> dict[str, dict[str, Any]]:
@@ -109,21 +99,6 @@ def _run_schema() -> dict[str, Any]:
         "patternProperties": {f"^[A-Za-z]\\w*({endings})$": {"description": "of a further true signal"}},
         "additionalProperties": False,
     }
-
-
-def _sensor_set_schema() -> dict[str, Any]:
-    """A file's `[kinds.<kind>]` tables are merged into its sensors before anything is validated."""
-    schema: dict[str, Any] = TypeAdapter(SensorSet).json_schema()
-    tables = {
-        "type": "object",
-        "additionalProperties": {"type": "object"},
-        "propertyNames": {"enum": list(SENSOR_KINDS)},
-    }
-    schema["properties"]["kinds"] = {
-        "description": "Values of every sensor of a kind, by the name of the kind.",
-        **tables,
-    }
-    return schema
 
 
 def _property(column: Column) -> dict[str, Any]:

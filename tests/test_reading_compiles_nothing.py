@@ -9,6 +9,7 @@ READERS = [
     "rubgen.dataset.checking.relabel",
     "rubgen.dataset.reading.replaying",
     "rubgen.cli.inspecting",
+    "rubgen.cli.starting",
     "rubgen.cli.drawing",
     "rubgen.report.page",
     "rubgen.cli.featuring",

@@ -72,6 +72,30 @@ def resense(
 
 
 @app.command
+def init(
+    kind: Annotated[Literal["recipe", "machine", "sensors"], _option("What to begin.")],
+    file: Annotated[Path | None, _option("File to write; the kind with the ending .toml when not given.")] = None,
+    /,
+    *,
+    origin: Annotated[
+        str | None, Parameter(name="--from", help="A recipe, machine or sensor set of rubgen list to begin from.")
+    ] = None,
+) -> int:
+    """Write a file to begin with: a recipe, machine or sensor set of rubgen, with a comment for each key."""
+    from rubgen.cli.starting import init_command
+
+    return init_command(kind, origin, file)
+
+
+@app.command(name="list")
+def list_offered(*, json: Json = False) -> int:
+    """Print the recipes, machines, sensor sets and faults that come with rubgen."""
+    from rubgen.cli.starting import list_command
+
+    return list_command(as_json=json)
+
+
+@app.command
 def simulate(
     *,
     machine: MachineName = "zeng2019",

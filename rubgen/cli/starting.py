@@ -1,0 +1,41 @@
+"""The commands `rubgen list` and `rubgen init`."""
+
+from pathlib import Path
+
+from rubgen.cli.printing import check_new_file, print_json, say
+from rubgen.errors import UserError
+from rubgen.planning.begin import USES, begin
+from rubgen.planning.offered import DEFAULTS, offered, offered_faults
+
+TITLES = {"recipe": "recipes", "machine": "machines", "sensors": "sensor sets"}
+
+
+def list_command(*, as_json: bool) -> int:
+    """Print what comes with rubgen, each name with one sentence. Returns the exit code 0."""
+    found = {TITLES[kind]: offered(kind) for kind in TITLES} | {"faults": offered_faults()}
+    if as_json:
+        print_json({title.replace(" ", "_"): names for title, names in found.items()})
+        return 0
+    width = max(len(name) for names in found.values() for name in names)
+    for title, names in found.items():
+        say(title)
+        for name, about in names.items():
+            say(f"  {name:<{width}}  {about}")
+    return 0
+
+
+def init_command(kind: str, origin: str | None, path: Path | None) -> int:
+    """Write a commented file of that kind and print what to do with it. Returns the exit code 0.
+
+    - origin: name of the file of rubgen to begin from.
+    - path: file to write; by default the kind with the ending .toml, in the current directory.
+    """
+    path = path or Path(f"{kind}.toml")
+    if path.exists():
+        raise UserError(f"FILE {path}: exists already, and rubgen init overwrites nothing; give another name")
+    check_new_file("FILE", path, (".toml",))
+    written = begin(kind, origin or DEFAULTS[kind], path)
+    also = f", and {written[1].name} beside it, by which editors explain its keys" if len(written) > 1 else ""
+    say(f"written {path}{also}")
+    say(USES[kind].format(file=path))
+    return 0

@@ -1,0 +1,40 @@
+"""Begin a file: write a recipe, a machine or a sensor set of rubgen with a comment for each key."""
+
+from pathlib import Path
+
+from rubgen.dataset.files import json_text
+from rubgen.errors import write_problems
+from rubgen.io.files import write_durably
+from rubgen.machine.descriptions import complete
+from rubgen.machine.toml_file import read_toml
+from rubgen.planning.commented import Commented
+from rubgen.planning.offered import file_of
+from rubgen.planning.user_schemas import DIALECT, FILE_NAMES, user_schema
+
+USES = {
+    "recipe": "rubgen plan {file} says what it will do; rubgen generate {file} --out DIR makes the data set",
+    "machine": "rubgen modes {file} prints its frequencies; a recipe names it by machine = '{file}'",
+    "sensors": "a recipe names it by set = '{file}' in [sensors]",
+}
+"""What to do with a file of each kind."""
+
+
+def commented(kind: str, name: str) -> str:
+    """Return the file `name` of a kind with a comment for each key. It has the same meaning as the file of rubgen."""
+    head = (
+        f"#:schema {FILE_NAMES[kind]}\n# Begun from {name} by `rubgen init {kind}`. Lines without # are in force.\n\n"
+    )
+    return head + Commented(user_schema(kind)).text(read_toml(file_of(kind, name)))
+
+
+def begin(kind: str, name: str, path: Path) -> list[Path]:
+    """Write that file to `path`, and beside it the schema for editors where there is none. Return what was written."""
+    text = commented(kind, name)
+    schema = path.with_name(FILE_NAMES[kind])
+    with write_problems(path, named=f"FILE {path}"):
+        made = [] if schema.exists() else [schema]
+        if made:
+            document = {"$schema": DIALECT, **complete(user_schema(kind))}
+            write_durably(schema, lambda part: part.write_bytes(json_text(document).encode()))
+        write_durably(path, lambda part: part.write_bytes(text.encode()))
+    return [path, *made]
