@@ -10,6 +10,7 @@ from rubgen.labels.labels import Labels
 from rubgen.labels.motion.classify import motion
 from rubgen.labels.motion.whirl import whirl
 from rubgen.labels.speed_history import by_angle, changing_motion, changing_orders, speed_history
+from rubgen.labels.stretches import window_motions
 from rubgen.labels.windows import windows
 from rubgen.solver.exponent import lyapunov
 from rubgen.solver.response import Response
@@ -32,6 +33,7 @@ def label(response: Response) -> Labels:
     history = speed_history(response) if response.changing_speed else None
     parts = changing_motion(response, rub) if history or response.grows else motion(response, exponent)
     cut = windows(response)
+    cut = replace(cut, motion=window_motions(response, parts, history))
     orders = changing_orders(cut) if history else harmonics(response)
     present = orders[MARKED_TAP].present if rub and orders else ()
     turn = response.turn_seconds

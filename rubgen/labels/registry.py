@@ -5,6 +5,7 @@ of a DataFrame and the tables of docs/labels.md come from here. A new label is o
 Meanings stand in the files: another wording changes their bytes.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
@@ -277,6 +278,20 @@ WINDOWS = (
         "window_contact_duty", "1", "share of the time in which any blade touches, of each", lambda x: x.windows.duty
     ),
     _numbers("window_impulse_per_turn_n_s", "N s", "mean normal impulse a turn of each", lambda x: x.windows.impulse),
+    Label(
+        "window_motion_classes",
+        "integers",
+        "",
+        f"class of motion of each: {_NUMBERED} or changing",
+        lambda x: [MOTION_CLASSES[motion] for motion, _ in x.windows.motion],
+        words=Motion,
+    ),
+    _numbers(
+        "window_motion_confidence",
+        "1",
+        "chance that half the time step keeps that class; null where it was not measured",
+        lambda x: [math.nan if sure is None else sure for _, sure in x.windows.motion],
+    ),
 )
 
 LABELS = (*CONTACT, *MOTION, *ORDERS, *EXPONENT, *HISTORY, *WINDOWS)

@@ -7,6 +7,7 @@ import numpy as np
 
 from rubgen.arrays import ComplexArray, FloatArray, IntArray
 from rubgen.labels.harmonics import with_casing_fields
+from rubgen.labels.labels import Motion
 from rubgen.solver.response import WINDOW_TURNS, ChangingSpeed, Response
 
 
@@ -22,6 +23,8 @@ class Windows:
     """Impulse a turn (windows,), N s."""
     duty: FloatArray
     """Share of steps with contact (windows,)."""
+    motion: tuple[tuple[Motion, float | None], ...] = ()
+    """Class of motion of each window, with its confidence: `rubgen.labels.stretches`."""
     orders: dict[str, FloatArray]
     """By tap (windows, 20): |mean over turns of the complex amplitude at k f_r|, k = 1 .. 20. At a steady speed only
     the last windows, which the taps cover."""

@@ -13,7 +13,6 @@ from rubgen.dataset.reading.tables import FIRST_SAMPLE
 from rubgen.errors import UserError, warn
 from rubgen.io.columns import Role
 from rubgen.io.parquet.words import NUMBERS
-from rubgen.labels.classes import MOTION_CLASSES
 from rubgen.machine.problems import nearest
 from rubgen.solver.response import WINDOW_TURNS
 
@@ -103,15 +102,8 @@ def _impulse(row: Row, touches: pd.DataFrame, edges: FloatArray) -> FloatArray:
 
 
 def _motion(row: Row, touches: pd.DataFrame, edges: FloatArray) -> npt.NDArray[Any]:
-    """Return the class of motion of each window; -1 where it changes within the window or is not known."""
-    if row["change_times_s"]:
-        times, classes = np.asarray(row["change_times_s"]), np.asarray(row["change_motion_classes"])
-    elif row["motion_intermittent"]:
-        times, periods = np.asarray(row["motion_segment_starts_s"]), np.asarray(row["motion_segment_periods"])
-        words = np.where(periods == 1, "period-1", np.where(periods > 1, "period-k", row["motion"]))
-        classes = np.array([MOTION_CLASSES[word] for word in words])
-    else:
-        return np.full(len(edges), MOTION_CLASSES[row["motion"]])
+    """Return the class of motion of each window; -1 where the labelled windows that it touches differ."""
+    times, classes = np.asarray(row["window_starts_s"]), np.asarray(row["window_motion_classes"])
     edges = edges + touches.attrs[FIRST_SAMPLE]
     begin = np.maximum(np.searchsorted(times, edges[:, 0], side="right") - 1, 0)
     end = np.searchsorted(times, edges[:, 1], side="left")

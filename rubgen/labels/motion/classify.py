@@ -41,13 +41,18 @@ class Motions:
     """Whether the motion has the symmetry of the lobes; None unless it is period-1 in contact."""
     tip_chatter: bool = False
     """Whether the tips do not repeat while disk centre and casing do."""
-    segments: tuple[Segment, ...] = ()
-    """Segments of an `intermittent` motion; else empty."""
+    stretches: tuple[Segment, ...] = ()
+    """Regular and irregular stretches of a motion that is chaotic or undecided as a whole; else empty."""
 
     @property
     def settling(self) -> bool:
         """Whether the motion still settles in the second half of the record."""
         return any(part.settling for part in self.indicators)
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        """The stretches of an intermittent motion, which switches between regular and irregular; else empty."""
+        return self.stretches if self.stretches and is_intermittent(list(self.stretches)) else ()
 
     @property
     def intermittent(self) -> bool:
@@ -83,7 +88,7 @@ def motion(response: Response, exponent: Exponent | None = None) -> Motions:
         indicators=seen,
         symmetric=is_symmetric(response) if touches and system.motion is Motion.PERIOD_1 else None,
         tip_chatter=_tips_alone_stray(parts, seen),
-        segments=_switching(parts, system.motion),
+        stretches=_stretches(parts, system.motion),
     )
 
 
@@ -108,9 +113,6 @@ def _tips_alone_stray(parts: list[FloatArray], seen: tuple[Indicators, ...]) -> 
     return blisk is None and None not in casing and cluster_period(parts[0][:, :1]) is not None
 
 
-def _switching(parts: list[FloatArray], whole: Motion) -> tuple[Segment, ...]:
-    """Return the segments of a motion that is not regular as a whole, where it switches."""
-    if whole not in (Motion.CHAOTIC, Motion.UNDECIDED):
-        return ()
-    found = segments(parts)
-    return tuple(found) if is_intermittent(found) else ()
+def _stretches(parts: list[FloatArray], whole: Motion) -> tuple[Segment, ...]:
+    """Return the stretches of a motion that is not regular as a whole."""
+    return tuple(segments(parts)) if whole in (Motion.CHAOTIC, Motion.UNDECIDED) else ()

@@ -38,7 +38,7 @@ def test_all_labels_but_orders_come_back(small_set):
     assert done.differences == ()
     assert done.runs == 4
     names = [column.name for column in scalar_columns(default_sensor_set())]
-    first, last = names.index("rub"), names.index("window_impulse_per_turn_n_s")
+    first, last = names.index("rub"), names.index("window_motion_confidence")
     assert done.labels == 4 * len([name for name in names[first : last + 1] if name not in FROM_TAPS])
 
 

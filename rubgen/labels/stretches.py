@@ -1,0 +1,61 @@
+"""The class of motion of each window of a record: what can be said of a stretch of 16 turns."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubgen.labels.labels import Motion
+from rubgen.labels.motion.classify import Motions
+from rubgen.labels.speed_history import SpeedHistory
+from rubgen.labels.windows import turn_times, window_edges
+from rubgen.solver.response import Response
+
+NOT_KNOWN = (Motion.UNDECIDED, None)
+
+
+def window_motions(
+    response: Response, whole: Motions, history: SpeedHistory | None
+) -> tuple[tuple[Motion, float | None], ...]:
+    """Return class and confidence of the motion in each window of `Windows`.
+
+    - A motion that repeats or is quasi-periodic over the whole record has that class in every window.
+    - A motion that is chaotic or undecided as a whole has stretches. A window within a stretch that repeats is period-1
+      or period-k; how sure that is was not measured. A window within an irregular stretch of a chaotic motion is
+      chaotic. A window across the end of a stretch is undecided.
+    - While the speed changes, a window has the class of the changes of motion (`SpeedHistory`), where there is one
+      throughout; how sure that is was not measured.
+
+    - response: of the whole record.
+    - whole: its motion.
+    - history: its changes, where the speed changes.
+    """
+    edges = window_edges(response)
+    windows = list(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True))
+    if history is not None:
+        return _of_changes(response, history)
+    system = whole.system
+    sure = None if system.motion is Motion.UNDECIDED else system.confidence
+    if not whole.stretches:
+        return ((system.motion, sure),) * len(windows)
+    found: list[tuple[Motion, float | None]] = []
+    for first, last in windows:
+        period = next((each.period for each in whole.stretches if each.start <= first and last <= each.end), None)
+        if period is None:
+            found.append(NOT_KNOWN)
+        elif period == 0:
+            found.append((system.motion, sure))
+        else:
+            found.append((Motion.PERIOD_1 if period == 1 else Motion.PERIOD_K, None))
+    return tuple(found)
+
+
+def _of_changes(response: Response, history: SpeedHistory) -> tuple[tuple[Motion, float | None], ...]:
+    times = turn_times(response, response.changing_speed)[window_edges(response)]
+    begins = np.array([change.time for change in history.changes])
+    first = np.maximum(np.searchsorted(begins, times[:-1], side="right") - 1, 0)
+    last = np.searchsorted(begins, times[1:], side="left")
+    found = []
+    for a, b in zip(first.tolist(), last.tolist(), strict=True):
+        classes = {change.motion for change in history.changes[a:b]}
+        found.append((classes.pop(), None) if len(classes) == 1 else NOT_KNOWN)
+    return tuple(found)
