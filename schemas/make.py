@@ -29,7 +29,7 @@ JSON_TYPES: dict[str, dict[str, Any]] = {
     "integer": {"type": "integer"},
     "number": {"type": "number"},
     "integers": {"type": "array", "items": {"type": "integer"}},
-    "numbers": {"type": "array", "items": {"type": "number"}},
+    "numbers": {"type": "array", "items": {"type": ["number", "null"]}},
 }
 
 

@@ -104,7 +104,7 @@ def test_windows_of_turns_have_equal_angles_whatever_the_speed():
 
 
 def test_windows_of_turns_are_read(data):
-    found = data.windows(["proximity_x"], turns=16, target="motion")
+    found = data.windows(["proximity_x"], turns=16)
     assert found.X.shape[1:] == (1, 16 * SAMPLES_PER_TURN)
     assert set(found.run_ids) == set(data)
     assert (np.diff(found.start[found.run_ids == "run-000000"]) > 0).all()
