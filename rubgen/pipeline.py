@@ -110,7 +110,7 @@ def simulate(scenario: Scenario) -> Run:
             )
         if response.status is not Status.OK:
             return Run(scenario=scenario, response=response, recording=None, labels=None)
-        rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(scenario.index,)))
+        rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(scenario.drawn_as,)))
         recording = measure(
             response, sensing, seconds=seconds, rng=rng, surroundings=scenario.surroundings, frame=scenario.frame,
             faults=scenario.machine.faults,

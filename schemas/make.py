@@ -11,14 +11,12 @@ from typing import Any
 from rubgen.dataset.card import column_table
 from rubgen.dataset.files import write_json, write_text
 from rubgen.dataset.manifest import Manifest
-from rubgen.io.columns import Column, label_columns, scalar_columns, tap_columns
+from rubgen.io.columns import Column, every_scalar, label_columns, scalar_columns, tap_columns
 from rubgen.io.mcap.messages import MESSAGES, PACKAGE
 from rubgen.labels import registry
 from rubgen.labels.classes import class_numbers
 from rubgen.machine.descriptions import complete
-from rubgen.machine.faults.registry import FAULTS
 from rubgen.planning.user_schemas import DIALECT, FILE_NAMES, user_schema
-from rubgen.scenario.machines.keys import own_keys
 from rubgen.sensors.load import default_sensor_set
 
 JSON_TYPES: dict[str, dict[str, Any]] = {
@@ -86,13 +84,12 @@ def with_tables(page: str) -> str:
 
 def _run_schema() -> dict[str, Any]:
     columns, endings = scalar_columns(default_sensor_set()), "|".join(registry.TAP_ENDINGS)
-    around = scalar_columns(default_sensor_set(), surroundings=True, faults=FAULTS, machines=own_keys(frame=True))[
-        len(columns) :
-    ]
+    around = every_scalar(default_sensor_set())[len(columns) :]
     return {
         "title": "Run",
         "description": "One row of runs.parquet. Labels are null where a run failed or has no such value; levels of "
-        "surroundings, labels of faults and values of virtual machines are there where the recipe has them.",
+        "surroundings, labels of faults, values of virtual machines and the partners of twins are there where the "
+        "recipe has them.",
         "type": "object",
         "properties": {column.name: _property(column) for column in (*columns, *around)},
         "required": [column.name for column in columns],

@@ -34,7 +34,11 @@ def card(identity: Identity, status: dict[str, int]) -> str:
     sensors = identity.sensor_set
     signals = signal_columns(sensors, clean=recipe["sensors"]["keep_clean"])
     columns = scalar_columns(
-        sensors, surroundings="surroundings" in recipe, faults=identity.fault_kinds, machines=identity.machine_keys
+        sensors,
+        surroundings="surroundings" in recipe,
+        faults=identity.fault_kinds,
+        machines=identity.machine_keys,
+        drawing=recipe,
     )
     columns += signals if "parquet" in formats else ()
     channel = next((column.name for column in signals if column.kind == "signal"), "rotation_angle_rad")

@@ -62,7 +62,9 @@ def croissant(layout: Layout, identity: Identity) -> dict[str, Any]:
     }
     distribution = [runs_file]
     around, faults = "surroundings" in recipe, identity.fault_kinds
-    scalars = scalar_columns(identity.sensor_set, surroundings=around, faults=faults, machines=identity.machine_keys)
+    scalars = scalar_columns(
+        identity.sensor_set, surroundings=around, faults=faults, machines=identity.machine_keys, drawing=recipe
+    )
     records = [_record_set("runs", scalars, {"fileObject": {"@id": "runs.parquet"}})]
     if "parquet" in recipe["output"]["formats"]:
         includes = f"data/{SPLIT}-*.parquet"

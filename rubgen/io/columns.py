@@ -1,6 +1,6 @@
 """The columns of `runs.parquet` and of the data files, in their fixed order: name, role, type, unit, meaning."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -51,6 +51,9 @@ DIAGNOSTICS = frozenset(
 )  # fmt: skip
 UNMEASURABLE = (ContactForce, ContactTorque)
 """Taps that no probe measures: a channel of them is truth, not input."""
+
+DRAWING = ("twins",)
+"""Tables of a recipe on which runs are drawn. They have columns of their own."""
 
 
 @dataclass(frozen=True)
@@ -203,6 +206,11 @@ def _faults(kinds: Iterable[str]) -> list[Column]:
     return [replace(column, role=Role.TARGET) for column in columns] if severities else []
 
 
+def _twins() -> list[Column]:
+    about = "the run that this one differs from in one thing; null for others"
+    return [Column("twin_of", "text", "", about, nullable=True, role=Role.ID)]
+
+
 def _ordered_taps(sensors: SensorSet) -> tuple[Tap, ...]:
     """Return the true signals with amplitudes at orders: all but passages under a probe, and the parts in FIELDS."""
     return (*(tap for tap in sensors.taps if not isinstance(tap, TipTiming)), *FIELDS)
@@ -214,12 +222,14 @@ def scalar_columns(
     surroundings: bool = False,
     faults: Iterable[str] = (),
     machines: Iterable[MachineKey] = (),
+    drawing: Collection[str] = (),
 ) -> tuple[Column, ...]:
     """Return the columns of `runs.parquet` for runs with the sensor set `sensors`.
 
     They are identity, parameters, operation, labels, the orders of each tap of a sensor, and energies. With
     `surroundings`, as for a recipe that has this table, the levels of the disturbances follow. The labels of `faults`
-    follow, for the kinds of fault that the runs may have. The values `machines` of virtual machines are last.
+    follow, for the kinds of fault that the runs may have, and the values `machines` of virtual machines. `drawing` are
+    names of tables of the recipe: "twins" adds the partner of a twin.
     """
     orders = [column for tap in _ordered_taps(sensors) for column in tap_columns(tap.name, tap.UNIT)]
     around = _surroundings() if surroundings else []
@@ -233,7 +243,13 @@ def scalar_columns(
         *around,
         *_faults(faults),
         *_machines(machines),
+        *(_twins() if "twins" in drawing else []),
     )
+
+
+def every_scalar(sensors: SensorSet) -> tuple[Column, ...]:
+    """Return the columns of `runs.parquet` of a recipe with every table."""
+    return scalar_columns(sensors, surroundings=True, faults=FAULTS, machines=own_keys(frame=True), drawing=DRAWING)
 
 
 def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
@@ -264,8 +280,7 @@ def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
 
 
 def _check_names(sensors: SensorSet, columns: list[Column]) -> None:
-    scalars = scalar_columns(sensors, surroundings=True, faults=FAULTS, machines=own_keys(frame=True))
-    taken = [column.name for column in (*scalars, *columns)]
+    taken = [column.name for column in (*every_scalar(sensors), *columns)]
     for name in taken:
         if taken.count(name) > 1:
             raise UserError(f"sensor set {sensors.name}: two columns would be called {name}; rename that sensor")

@@ -13,6 +13,8 @@ from rubgen.machine.schema_nodes import Path, SchemaNodes, bounds_in_words
 from rubgen.machine.sentences import DECIMAL_COMMA, OWN, key_text, sentence, toml_text
 
 T = TypeVar("T")
+REPEATING = ("twins",)
+"""Tables of a recipe with the keys of other tables. Nobody is sent there for a key."""
 UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 DEEPEST = 16
 NEAR, FAR = 0.6, 0.75
@@ -194,14 +196,15 @@ def _instead(path: Path, data: object, schema: SchemaNodes | None) -> str:
     wanted = OTHER_NAMES.get(name, name)
     if wanted in here:
         return f"did you mean {wanted}? allowed: {', '.join(here)}"
-    elsewhere = [key for key in schema.every_key() if key[-1] == wanted and key != path[:-1]]
+    places = [key for key in schema.every_key() if key[0] not in REPEATING]
+    elsewhere = [key for key in places if key[-1] == wanted and key != path[:-1]]
     if elsewhere:
         parts = [part for part in path[:-1] if isinstance(part, str)]
         best = max(elsewhere, key=lambda key: sum(a == b for a, b in zip(key, parts, strict=False)))
         return f"did you mean {'.'.join(best)}? allowed: {', '.join(here)}"
     if _closest(name, here):
         return nearest(name, here)
-    every = {key[-1]: key for key in schema.every_key()}
+    every = {key[-1]: key for key in places}
     far = _closest(name, list(every), FAR)
     return f"did you mean {'.'.join(every[far])}? {nearest(name, here)}" if far else nearest(name, here)
 

@@ -182,6 +182,8 @@ def extremes(scenario: Scenario, tables: Sequence[BaseModel], source: str) -> It
 def named_kinds(*documents: dict[str, Any]) -> tuple[str, ...]:
     """Return the kinds of fault that documents of a recipe and its machines name, in the order of the registry."""
     named = {each["kind"] for document in documents for each in document.get("faults") or ()}
+    twins: list[dict[str, Any]] = [document.get("twins") or {} for document in documents]
+    named |= {each["fault"]["kind"] for each in twins if each.get("fault")}
     return tuple(kind for kind in FAULTS if kind in named)
 
 

@@ -22,6 +22,7 @@ from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.profiles import check_used
 from rubgen.scenario.recipe import Recipe
 from rubgen.scenario.tables.machines import replaced_runs
+from rubgen.scenario.tables.twins import check_twins
 from rubgen.scenario.vary import FREE_PENETRATION, TWO_CLEARANCES
 from rubgen.sensors.sensor_set import SensorSet
 
@@ -127,6 +128,11 @@ def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | 
         recipe.base  # noqa: B018  (reads the machine files)
     check_machines(recipe, source)
     check_splits(recipe, source)
+    for where, part in recipe.named_parts(source):
+        if part.twins:
+            check_twins(part.twins, part.surroundings, tuple(part.own_corners(where)), where)
+            if part.machines and part.machines.runs_per_machine == 1:
+                raise UserError(f"{where}: twins: machines.runs_per_machine = 1: a twin is another run; give 2 or more")
     with recipe.machine_named():
         for where, part in recipe.named_parts(source):
             for scenario in part.own_corners(where):

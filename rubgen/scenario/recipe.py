@@ -34,6 +34,7 @@ from rubgen.scenario.surroundings import SurroundingsTable, drawn, extremes
 from rubgen.scenario.tables.machines import MachineTable, with_runs
 from rubgen.scenario.tables.run import Output, Profile, Sensors, Simulation
 from rubgen.scenario.tables.splits import ONE_SPLIT, Splits, SplitTable, changes_of, split_of_machine
+from rubgen.scenario.tables.twins import Twins, fault_of, paired, partner_of, with_twin
 from rubgen.scenario.tables.vary import Vary
 from rubgen.scenario.vary import (
     DEFAULT_SPEED_RPM,
@@ -112,6 +113,10 @@ class Recipe(BaseModel):
     output: Annotated[Output, about("Which files are written, and how much of each run they hold.")] = Output()
     reduction: Annotated[Reduction, about("How many modes stand for the parts of the machine.")] = Reduction()
     contact: Annotated[ContactLaw, about("What happens where a blade touches the casing.")] = ContactLaw()
+    twins: Annotated[
+        Twins | None,
+        about("The one key in which a twin differs from its run. Without it no run has a twin."),
+    ] = None
     _folder: Path = PrivateAttr(default_factory=Path)
     _checked: bool = PrivateAttr(default=False)
     _machines: tuple[Machine, ...] = PrivateAttr(default=())
@@ -170,8 +175,9 @@ class Recipe(BaseModel):
     def feels_frame(self) -> bool:
         """Whether some run's sensors may feel a machine's frame."""
         return any(
-            part.sensing.set.on_housing or getattr(part.surroundings, "path_gain", None) is not None
+            part.sensing.set.on_housing or getattr(table, "path_gain", None) is not None
             for part in (self._whole or self).parts.values()
+            for table in (part.surroundings, part.twins)
         )
 
     @cached_property
@@ -227,11 +233,21 @@ class Recipe(BaseModel):
         part = self.parts[self.split_of(index)]
         if part is not self:
             return part.scenario(index)
+        return paired(self.twins, self.twin_of(index), index, self._drawn) if self.twins else self._drawn(index)
+
+    def twin_of(self, index: int) -> int | None:
+        """Return the number of the run whose twin run number `index` is; None for any other run."""
+        count = self.machines.runs_per_machine if self.machines else MOST_RUNS
+        return partner_of(index, self.twins.share, index // count * count, count) if self.twins else None  # type: ignore[attr-defined]
+
+    def _drawn(self, index: int) -> Scenario:
         point = sobol_point(self.seed, index)
         values = {entry.key: distribution.quantile(point[entry.key]) for entry, distribution in self.distributions()}
         around = drawn(self.surroundings, self.seed, index) if self.surroundings else None
         scenario = vary(replace(self._base_of(index), index=index, surroundings=around), values)
-        return with_faults(scenario, self.faults or ()) if self.fault_kinds else scenario
+        if not self.fault_kinds:
+            return scenario
+        return replace(with_faults(scenario, self.faults or ()), fault_kinds=self.fault_kinds)
 
     def _base_of(self, index: int) -> Scenario:
         """Return the scenario before `[vary]` of a run, with its machine."""
@@ -256,7 +272,7 @@ class Recipe(BaseModel):
     def fault_kinds(self) -> tuple[str, ...]:
         """The kinds of fault that its runs may have, of the recipe or of its machines."""
         own = [fault for base in self.bases for fault in base.machine.faults]
-        return kinds_of((*own, *(self.faults or ())))
+        return kinds_of((*own, *(self.faults or ()), *fault_of(self.twins)))
 
     @property
     def machine_keys(self) -> tuple[MachineKey, ...]:
@@ -294,8 +310,8 @@ class Recipe(BaseModel):
     def corners(self, source: str = "") -> Iterator[Scenario]:
         """Yield scenarios at the extreme values of each key, the other keys at their first value. Checks use them.
 
-        Virtual machines are those of the files with the largest number of blades. Raises UserError, beginning with
-        `source`, where an extreme value is not allowed.
+        Virtual machines are those of the files with the largest number of blades. Each is followed by its twin where
+        the recipe has twins. Raises UserError, beginning with `source`, where an extreme value is not allowed.
         """
         for where, part in self.named_parts(source):
             yield from part.own_corners(where)
@@ -304,7 +320,8 @@ class Recipe(BaseModel):
         """Yield the `corners` of a recipe without its splits."""
         for base in self.bases:
             machine = self.machines.largest(base.machine) if self.machines else base.machine
-            yield from self.corners_of(base, machine, source)
+            for corner in self.corners_of(base, machine, source):
+                yield from with_twin(corner, self.twins, source)
 
     def corners_of(self, base: Scenario, machine: Machine, source: str = "") -> Iterator[Scenario]:
         """Yield the `corners` with that machine in place of the one of `base`."""

@@ -4,6 +4,7 @@ Frozen and validated on creation, like the machine.
 """
 
 import math
+from dataclasses import replace
 from typing import Annotated, Literal, cast
 
 import numpy as np
@@ -173,12 +174,20 @@ class VirtualMachine:
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
+class Pairing:
+    """Which run of a recipe with `[twins]` this is: the twin of the run with the index `twin_of`, or no twin."""
+
+    twin_of: Annotated[Seed | None, about("Index of the run whose twin this is. Without it the run is no twin.")] = None
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
 class Scenario:
     """One run, complete. The same scenario always makes the same bytes.
 
     `fault_kinds` are the kinds of fault that runs of its recipe may have; those of this run are in its machine.
     With `free_penetration_m` the clearance follows from the rub-free motion (`solver.linear.reach.with_clearance`);
-    until then the machine has another clearance. `virtual` is given where the recipe has virtual machines.
+    until then the machine has another clearance. `virtual` is given where the recipe has virtual machines, `pairing`
+    where it has twins.
     """
 
     machine: Machine
@@ -190,6 +199,7 @@ class Scenario:
     surroundings: Surroundings | None = None
     fault_kinds: tuple[str, ...] = ()
     free_penetration_m: Penetration | None = None
+    pairing: Pairing | None = None
     signal_seconds: Duration = 1.0
     seed: Seed = 0
     index: Seed = 0
@@ -209,6 +219,21 @@ class Scenario:
         return self.machine.frame if felt else None
 
     @property
+    def twin_of(self) -> int | None:
+        """Index of the run whose twin this is; None for any other run."""
+        return self.pairing.twin_of if self.pairing else None
+
+    @property
+    def partner(self) -> str | None:
+        """Name of the run whose twin this is; None for any other run."""
+        return None if self.twin_of is None else replace(self, index=self.twin_of).run_id
+
+    @property
+    def drawn_as(self) -> int:
+        """Index of the run whose random numbers this run has: a twin has those of its partner."""
+        return self.index if self.twin_of is None else self.twin_of
+
+    @property
     def run_id(self) -> str:
         """Name of the run in files and tables."""
         return f"run-{self.index:06d}"
@@ -218,14 +243,14 @@ def scenario_dict(scenario: Scenario) -> dict[str, object]:
     """Return the scenario as nested plain values for JSON, keys as in the dataclasses, complete with its machine.
 
     `TypeAdapter(Scenario).validate_python(scenario_dict(s)) == s`: every float keeps all its bits in JSON. A run
-    without surroundings has no such key, and neither has one of a recipe without faults.
+    without surroundings has no such key, and neither has one of a recipe without faults or twins.
     """
     values = cast("dict[str, object]", TypeAdapter(Scenario).dump_python(scenario, mode="json"))
     if scenario.surroundings is None:
         del values["surroundings"]
     if not scenario.fault_kinds:
         del values["fault_kinds"]
-    for key in ("free_penetration_m", "virtual"):
+    for key in ("free_penetration_m", "virtual", "pairing"):
         if getattr(scenario, key) is None:
             del values[key]
     return values

@@ -13,10 +13,9 @@ import pyarrow.compute as pc
 from rubgen.arrays import FloatArray
 from rubgen.dataset.manifest import Manifest
 from rubgen.errors import UserError
-from rubgen.io.columns import scalar_columns
+from rubgen.io.columns import every_scalar
 from rubgen.labels.compact_record import SCALARS, TOUCHES
 from rubgen.labels.labels import Motion
-from rubgen.machine.faults.registry import FAULTS
 from rubgen.scenario import Sensing
 from rubgen.sensors.sensor_set import SensorSet
 
@@ -45,7 +44,7 @@ def runs_frame(table: pa.Table, sensors: SensorSet) -> pd.DataFrame:
     """
     frame: pd.DataFrame = table.to_pandas(types_mapper=_nullable)
     frame = frame.set_index("run_id")
-    every = scalar_columns(sensors, surroundings=True, faults=FAULTS)
+    every = every_scalar(sensors)
     columns = {column.name: column for column in every if column.name in frame}
     frame.attrs = {
         "units": {name: column.unit for name, column in columns.items()},

@@ -7,7 +7,7 @@ the rows alone.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from rubgen.arrays import FloatArray
-from rubgen.io.columns import Column, scalar_columns, signal_columns
+from rubgen.io.columns import DRAWING, Column, scalar_columns, signal_columns
 from rubgen.io.files import write_durably
 from rubgen.io.parquet.features import features_json
 from rubgen.io.parquet.words import with_numbers
@@ -58,6 +58,7 @@ def schema(
     surroundings: bool = False,
     faults: tuple[str, ...] = (),
     machines: tuple[MachineKey, ...] = (),
+    drawing: Collection[str] = (),
 ) -> pa.Schema:
     """Return the Arrow schema of `runs.parquet`, or with `signals` of the data files. Fields have metadata.
 
@@ -67,9 +68,10 @@ def schema(
     - surroundings: include the levels of the disturbances from the surroundings.
     - faults: kinds of fault whose labels are included.
     - machines: keys of virtual machines whose values are included.
+    - drawing: tables of the recipe whose columns are included, of DRAWING.
     """
     used = sensors or default_sensor_set()
-    columns = scalar_columns(used, surroundings=surroundings, faults=faults, machines=machines)
+    columns = scalar_columns(used, surroundings=surroundings, faults=faults, machines=machines, drawing=drawing)
     columns += signal_columns(used, clean=clean) if signals else ()
     return table_schema(columns)
 
@@ -87,6 +89,7 @@ def recipe_schema(recipe: Recipe, *, signals: bool) -> pa.Schema:
         surroundings=around is not None,
         faults=recipe.fault_kinds,
         machines=recipe.machine_keys,
+        drawing=[name for name in DRAWING if getattr(recipe, name) is not None],
     )
 
 
@@ -110,7 +113,11 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
         row |= _signals(run.recording) | _touches(run, run.recording) | window_labels(run.labels)
     row |= fault_labels(run.scenario, run.response)
     row = with_numbers(row)
+    drawn: list[str] = []
     sensing = run.scenario.sensing
+    if run.scenario.pairing:
+        drawn.append("twins")
+        row["twin_of"] = run.scenario.partner
     types = schema(
         signals=signals,
         clean=sensing.keep_clean,
@@ -118,6 +125,7 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
         surroundings=around is not None,
         faults=run.scenario.fault_kinds,
         machines=own_keys(frame=run.scenario.machine.frame is not None) if run.scenario.virtual else (),
+        drawing=drawn,
     )
     unknown = sorted(set(row) - set(types.names))
     if unknown:

@@ -1,0 +1,163 @@
+"""`[twins]`: runs that differ from their partner in one thing alone."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from pkgutil import resolve_name
+from typing import Annotated, Any, Self, get_type_hints
+
+from pydantic import BaseModel, ConfigDict, Field, create_model, model_validator
+
+from rubgen.errors import UserError
+from rubgen.machine.faults.fault import Fault
+from rubgen.machine.faults.registry import AnyFault
+from rubgen.machine.quantities import about
+from rubgen.scenario.faults import kind_of
+from rubgen.scenario.scenario import Pairing, Scenario
+from rubgen.scenario.surroundings import SURROUNDINGS, Surroundings, extremes
+from rubgen.scenario.vary import DRAWN, FREE_PENETRATION, vary
+
+AROUND = tuple(each.key for each in SURROUNDINGS)
+CLEARANCES = ("clearance_m", FREE_PENETRATION.key)
+KEEPS_MOTION = ("friction", *CLEARANCES, *AROUND)
+"""Keys that leave the rub-free motion as it is, and so the clearance that follows from a free penetration."""
+WITH_CLEARANCE = "rubgen.solver.linear.reach:with_clearance"
+"""It needs the solver, above this room, so it is named here and imported when used."""
+_WEYL = math.sqrt(2)
+_HINTS = get_type_hints(Surroundings, include_extras=True)
+_SHARE = "Share of the runs that have a twin. Fewer twins leave more runs that stand alone."
+_FAULT = "A fault of the twin: its kind and its values. It replaces a fault of the same kind that the run has."
+
+
+class _OneChange(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    @property
+    def changed(self) -> str:
+        """The key that differs."""
+        return next(iter(self._given()))
+
+    def _given(self) -> list[str]:
+        return [key for key in type(self).model_fields if key != "share" and getattr(self, key) is not None]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _has_one_sensor_set(cls, given: Any) -> Any:
+        if isinstance(given, dict) and "sensors" in given:
+            raise ValueError("a data set has one sensor set; make it, then other sensors with rubgen resense")
+        return given
+
+    @model_validator(mode="after")
+    def _changes_one_key(self) -> Self:
+        given = self._given()
+        if len(given) != 1:
+            said = f"{' and '.join(given)} differ" if given else "nothing differs"
+            raise ValueError(f"{said}: a twin differs from its partner in one thing; give one key beside share")
+        return self
+
+
+def _fields() -> dict[str, Any]:
+    drawn = {each.key: (each.quantity, each.about) for each in DRAWN}
+    around = {each.key: (_HINTS[each.key], each.meaning) for each in SURROUNDINGS}
+    return {
+        key: (Annotated[kind | None, about(f"The twin's value, in place of that of its run. {text}")], None)
+        for key, (kind, text) in (drawn | around).items()
+    }
+
+
+Twins = create_model(
+    "Twins",
+    __base__=_OneChange,
+    __doc__="`[twins]`: the one key that differs between a run and its twin, with the twin's value.",
+    share=(Annotated[float, Field(gt=0, le=1), about(_SHARE)], 1.0),
+    fault=(Annotated[AnyFault | None, about(_FAULT)], None),
+    **_fields(),
+)
+
+
+def partner_of(index: int, share: float, first: int, count: int) -> int | None:
+    """Return the run whose twin run number `index` is; None where it is no twin.
+
+    A machine's runs, `count` from number `first`, are slots of two neighbours. Slot k of all machines together is a
+    pair where frac(k sqrt(2)) < p: a Weyl sequence, so pairs are evenly spread (Kuipers and Niederreiter, Uniform
+    Distribution of Sequences, 1974). With p = 2 share / (1 + share) that share of the runs that are no twins has one.
+    An odd last run of a machine has no twin: p makes up for it, up to one pair in each slot.
+    """
+    slots, number = count // 2, index - first
+    if number % 2 == 0 or not slots:
+        return None
+    wanted = 2 * share / (1 + share) * (count / (2 * slots))
+    slot = first // count * slots + number // 2
+    return index - 1 if math.modf(slot * _WEYL)[0] < wanted else None
+
+
+def twin(partner: Scenario, twins: BaseModel, source: str = "") -> Scenario:
+    """Return the scenario with the one change of `[twins]`.
+
+    Raises UserError, beginning with `source`, where the value is not allowed.
+    """
+    key = twins.changed  # type: ignore[attr-defined]
+    value = getattr(twins, key)
+    if key == "fault":
+        kept = tuple(fault for fault in partner.machine.faults if kind_of(fault) != kind_of(value))
+        return replace(partner, machine=replace(partner.machine, faults=(*kept, value)))
+    if key in AROUND:
+        return replace(partner, surroundings=replace(partner.surroundings or Surroundings(), **{key: value}))
+    if key in CLEARANCES:
+        partner = replace(partner, free_penetration_m=None)
+    return vary(partner, {key: value}, source, ("twins",))
+
+
+def with_twin(scenario: Scenario, twins: BaseModel | None, source: str) -> Iterator[Scenario]:
+    """Yield the scenario, and its twin behind it where there is the table `[twins]`.
+
+    Raises UserError, beginning with `source`, where the twin's value is not allowed.
+    """
+    yield scenario
+    if twins:
+        yield twin(scenario, twins, source)
+
+
+def paired(twins: BaseModel, partner: int | None, index: int, draw: Callable[[int], Scenario]) -> Scenario:
+    """Return run number `index` of a recipe with `[twins]`.
+
+    - partner: number of the run whose twin it is, or None.
+    - draw: draws a run without twins by its number.
+
+    A twin keeps the clearance of its partner, also where its change would give another one by a free penetration.
+    """
+    run = draw(index if partner is None else partner)
+    if partner is not None:
+        if twins.changed not in KEEPS_MOTION:  # type: ignore[attr-defined]
+            with suppress(UserError):  # of the partner, which is then refused
+                run = resolve_name(WITH_CLEARANCE)(run)
+        run = replace(twin(run, twins), index=index)
+    return replace(run, pairing=Pairing(twin_of=partner))
+
+
+def check_twins(twins: BaseModel, around: BaseModel | None, corners: Sequence[Scenario], source: str) -> None:
+    """Check that twins differ from their partners.
+
+    - twins: the table.
+    - around: the recipe's surroundings.
+    - corners: runs at the extreme values of the recipe, each with its twin behind it.
+    - source: beginning of messages.
+
+    Raises UserError of one line where no twin differs, or where the tables of the set lack the columns of the change.
+    """
+    key = twins.changed  # type: ignore[attr-defined]
+    if key in AROUND and around is None:
+        raise UserError(f"{source}: twins.{key}: the recipe has no [surroundings]; add the table with this key")
+    ends = extremes(around) if around and key in AROUND else None
+    pairs = [(one, twin(one, twins)) for one in (replace(corners[0], surroundings=end) for end in ends or ())]
+    if all(one == other for one, other in pairs or zip(corners[::2], corners[1::2], strict=True)):
+        value = getattr(twins, key)
+        shown = f"{value:g}" if isinstance(value, int | float) else kind_of(value)
+        raise UserError(f"{source}: twins.{key} = {shown}: every run has it already; give another value")
+
+
+def fault_of(twins: BaseModel | None) -> tuple[Fault, ...]:
+    """Return the fault that twins have, in a tuple; it is empty where they have none."""
+    fault: Fault | None = getattr(twins, "fault", None)
+    return (fault,) if fault else ()
