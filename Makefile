@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check docs bench verification sensitivity confusion contact difficulty faults fuzz zeng2019 zeng2019-fit pictures schemas reference clean
+.PHONY: setup demo test check docs tutorial bench verification sensitivity confusion contact difficulty faults fuzz zeng2019 zeng2019-fit pictures schemas reference clean
 
 setup: $(VENV)/.installed-dev
 
@@ -24,6 +24,10 @@ check: $(VENV)/.installed-dev
 # The site, into site/. A link that leads nowhere ends the build.
 docs: $(VENV)/.installed-dev
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
+
+# The tutorial, run from its page, as docs/tutorial.ipynb.
+tutorial: $(VENV)/.installed-dev
+	$(BIN)/python docs/notebook.py
 
 bench: $(VENV)/.installed-dev
 	$(BIN)/python -m benchmarks
