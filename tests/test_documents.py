@@ -11,6 +11,7 @@ import pytest
 
 import rubgen
 from rubgen.cli.app import app
+from rubgen.io.columns import label_columns
 from rubgen.labels.registry import LABELS, TAP_ENDINGS
 from rubgen.labels.to_json import labels_to_json
 from rubgen.scenario import load_recipe, parse_recipe
@@ -134,7 +135,9 @@ def test_the_rooms_of_the_package_are_those_that_the_architecture_names():
 def test_tables_of_labels_are_those_of_the_registry():
     page = DOCUMENTS["docs/labels.md"]
     assert page == with_tables(page), "run `make schemas`"
-    assert [label.name for label in LABELS if f"| `{label.name}` | {label.kind} | {label.unit} |" not in page] == []
+    columns = label_columns(LABELS)
+    rows = [f"| `{each.name}` | {each.role.value} | {each.kind} | {each.unit} |" for each in columns]
+    assert [row for row in rows if row not in page] == []
 
 
 def test_labels_and_statuses_are_described(rub_run):
