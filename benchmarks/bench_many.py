@@ -148,10 +148,10 @@ def on_processes(runs: list[Scenario]) -> tuple[float, float, set[str]]:
     """
     wall, busy, digests = list[float](), list[float](), set[str]()
     with worker_pool(PROCESSES) as pool:
-        list(unordered(pool, PROCESSES, timed, [(runs[0],)] * PROCESSES))  # the processes have loaded their kernels
+        list(unordered(pool, timed, [(runs[0],)] * PROCESSES))  # the processes have loaded their kernels
         for _ in range(ROUNDS):
             start = time.perf_counter()
-            found = list(unordered(pool, PROCESSES, timed, [(scenario,) for scenario in runs]))
+            found = list(unordered(pool, timed, [(scenario,) for scenario in runs]))
             steps = sum(run.steps for run in found)
             wall.append((time.perf_counter() - start) / steps)
             busy.append(sum(run.seconds for run in found) / steps / PROCESSES)

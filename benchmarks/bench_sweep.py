@@ -38,7 +38,7 @@ def measure() -> list[dict[str, object]]:
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     begun = time.perf_counter()
     with worker_pool(WORKERS) as pool:
-        done = list(unordered(pool, WORKERS, run, ((speed,) for speed in SPEEDS_RPM)))
+        done = list(unordered(pool, run, ((speed,) for speed in SPEEDS_RPM)))
         seconds = time.perf_counter() - begun
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime

@@ -124,15 +124,15 @@ def _shown_step() -> AbstractContextManager[None]:
     return step("simulate" if compiled else COMPILING, "turns", long=not compiled)
 
 
-def refused(scenario: Scenario, reason: str) -> Run:
-    """Make the run of a scenario for which `simulate` raised a UserError, so that it has a row in its data set.
+def refused(scenario: Scenario, reason: str, status: Status = Status.REFUSED) -> Run:
+    """Make the run of a scenario for which `simulate` returned nothing, so that it has a row in its data set.
 
-    Its status is REFUSED and its reason `reason`. The response is empty; recording and labels are None.
+    Its status is `status` and its reason `reason`. The response is empty; recording and labels are None.
     """
     operation = scenario.operation
     turn = 1 / operation.rotation_frequency_hz
     response = no_response(
-        Status.REFUSED,
+        status,
         reason,
         speed=operation.speed_rad_per_s,
         dt=turn / operation.steps_per_turn,

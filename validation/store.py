@@ -103,8 +103,8 @@ class Store:
 def _made(missing: dict[str, Piece], workers: int) -> Iterator[tuple[str, Arrays]]:
     jobs = sorted(missing.items(), key=lambda job: not _is_run(job[1]))  # sorting is stable: runs come first
     with worker_pool(min(workers, len(jobs))) as pool:
-        yield from unordered(pool, 1, _make, jobs[:1])
-        yield from unordered(pool, workers, _make, jobs[1:])
+        yield from unordered(pool, _make, jobs[:1])
+        yield from unordered(pool, _make, jobs[1:])
 
 
 def _is_run(piece: Piece) -> bool:

@@ -45,14 +45,24 @@ def generate(
     /,
     *,
     out: Annotated[Path, _option("New or empty directory, or one of the same recipe, which is then completed.")],
-    runs: Annotated[int | None, _whole_number("Number of runs, instead of the recipe's.")] = None,
+    runs: Annotated[
+        int | None, _whole_number("Number of runs, instead of the recipe's; a larger one lets a finished set grow.")
+    ] = None,
     workers: Annotated[int | None, _whole_number("Number of processes; the number of cores when not given.")] = None,
+    scheduler: Annotated[str | None, _option("Address of a Dask scheduler, whose workers make the runs.")] = None,
+    shard: Annotated[str | None, _option("Make only this part, such as 17/200; the last call has --finish.")] = None,
+    finish: Annotated[bool, Parameter(negative=(), help="Complete the set from its parts; make no run.")] = False,
     json: Json = False,
 ) -> int:
-    """Make the data set of a recipe, or complete it where it was interrupted."""
-    from rubgen.cli.generating import generate_command
+    """Make the data set of a recipe, or complete it where it was interrupted.
 
-    return generate_command(recipe, out, runs, workers, as_json=json)
+    One job of an array makes one part with --shard; after the last, --finish completes the set. All write to the same
+    directory.
+    """
+    from rubgen.cli.generating import Work, generate_command
+
+    work = Work(workers=workers, scheduler=scheduler, shard=shard, finish=finish)
+    return generate_command(recipe, out, runs, work, as_json=json)
 
 
 @app.command
@@ -284,11 +294,19 @@ def label(directory: Directory, /, *, json: Json = False) -> int:
 
 
 @app.command
-def verify(directory: Directory, /, *, json: Json = False) -> int:
+def verify(
+    directory: Directory,
+    /,
+    *,
+    sample: Annotated[
+        int | None, _whole_number("Read only that many shards, drawn anew; of the rest, presence and size.")
+    ] = None,
+    json: Json = False,
+) -> int:
     """Check hashes, checksums, schemas, and labels against signals; exit 1 where something is wrong."""
     from rubgen.cli.inspecting import verify_command
 
-    return verify_command(directory, as_json=json)
+    return verify_command(directory, sample, as_json=json)
 
 
 @app.command

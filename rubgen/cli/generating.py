@@ -4,6 +4,7 @@ import dataclasses
 import os
 import sys
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from shutil import which
@@ -17,12 +18,22 @@ from rubgen.dataset.making.resense import resense
 from rubgen.formats import run_formats
 
 
-def generate_command(recipe: Path | None, out: Path, runs: int | None, workers: int | None, *, as_json: bool) -> int:
+@dataclass(frozen=True, kw_only=True)
+class Work:
+    """Who makes the runs, and which; the keys are parameters of `rubgen.generate`."""
+
+    workers: int | None
+    scheduler: str | None
+    shard: str | None
+    finish: bool
+
+
+def generate_command(recipe: Path | None, out: Path, runs: int | None, work: Work, *, as_json: bool) -> int:
     """Generate a data set and print a summary. The parameters are those of `rubgen.generate`.
 
     Returns the exit code 0. After Ctrl-C it prints how to continue and returns 130.
     """
-    made = partial(generate, recipe, out, runs=runs, workers=workers, progress=not as_json)
+    made = partial(generate, recipe, out, runs=runs, progress=not as_json, **dataclasses.asdict(work))
     return _made_in(out, made, as_json=as_json)
 
 
@@ -53,6 +64,9 @@ def _report(made: Generated, *, as_json: bool) -> None:
     if as_json:
         print_json(dataclasses.asdict(made) | {"directory": str(made.directory)})
         return
+    if made.part:
+        say(f"{made.directory}: part {made.part}: {made.made} new; after the last part: --finish in place of --shard")
+        return
     for line in (*_what_was_made(made), *_ways_to_look(made.directory)):
         say(line)
 
@@ -61,7 +75,7 @@ def _what_was_made(made: Generated) -> Iterator[str]:
     """Yield counts of runs, rub and classes, then each kind of failure with its shortest reason."""
     outcome = made.outcome
     status = ", ".join(f"{made.status[name]} {name}" for name in sorted(made.status, key=lambda name: name != "ok"))
-    done = "nothing to do, verified" if made.verified else f"{made.made} new"
+    done = "nothing to do, all files are there" if made.verified else f"{made.made} new"
     yield f"{made.directory}: {counted(made.runs, 'run')}, {done}: {status}; {outcome.rub} rub, {outcome.no_rub} do not"
     if outcome.motion:
         yield f"  motion: {', '.join(f'{count} {name}' for name, count in outcome.motion.items())}"
@@ -73,9 +87,10 @@ def _ways_to_look(directory: Path) -> Iterator[str]:
     """Yield the places of the files, and the commands that show them."""
     yield f"  {directory}/runs.parquet, data/: parameters, labels, signals; for pandas, polars, datasets"
     for each in run_formats():
-        files = sorted((directory / each.name).glob(f"*{each.suffix}"))
-        if files and each.look:
-            yield f"  {each.look.format(folder=files[0].parent, first=files[0], rerun=_command('rerun'))}"
+        folder = min((directory / each.name).glob("*"), default=directory)
+        first = min(folder.glob(f"*{each.suffix}"), default=None)
+        if first and each.look:
+            yield f"  {each.look.format(folder=folder, first=first, rerun=_command('rerun'))}"
     yield f"  count classes:  {_command('rubgen')} info {directory}"
     yield f"  check it all:   {_command('rubgen')} verify {directory}"
     yield f"  {directory}/README.md tells what every column means and how to load it"

@@ -56,13 +56,13 @@ def _tell_unfinished(directory: Path, begun: Unfinished, *, as_json: bool) -> in
     return 0
 
 
-def verify_command(directory: Path, *, as_json: bool) -> int:
+def verify_command(directory: Path, sample: int | None, *, as_json: bool) -> int:
     """Check the data set in `directory` and print its problems with their remedy.
 
-    Returns the exit code 1 if there is a problem, else 0.
+    With `sample` the content of that many shards is read. Returns the exit code 1 if there is a problem, else 0.
     """
     with step("verify"):
-        found = findings(directory)
+        found = findings(directory, sample=sample)
     return _tell(directory, found, {}, as_json=as_json)
 
 

@@ -1,26 +1,29 @@
 """Paths of the files of a data set. Nothing is read or written here."""
 
-import math
 from collections.abc import Iterable
 from pathlib import Path
 
 from rubgen.errors import UserError
 from rubgen.formats import format_of
+from rubgen.scenario.run_id import index_of
 
 SPLIT = "train"
-"""The only split: splits go by machine, never by run, and a recipe has one machine."""
-RUNS_PER_SHARD = 256
-"""About 160 MB of signals of one second."""
+"""The split of a recipe without splits."""
 RUNS_PER_ROW_GROUP = 8
 """Measured on 32 runs of 1 s: as small (634 kB a run; 723 with 1) and as fast to stream as 16, and one run is read in
 20 ms (35 with 16, 6 with 1)."""
+RUNS_PER_FOLDER = 1000
+"""Number of files of single runs in a folder: more are slow to list on the file systems of clusters."""
 
 
 class Layout:
     """Paths of the files of a data set in the directory `root`."""
 
-    def __init__(self, root: Path | str) -> None:
-        """Derive all paths from `root`. Raises UserError for what is no path."""
+    def __init__(self, root: Path | str, staging: str = ".staging") -> None:
+        """Derive all paths from `root`; `staging` names the folder of an unfinished set.
+
+        Raises UserError for what is no path.
+        """
         try:
             root = Path(root)
         except TypeError:
@@ -44,31 +47,34 @@ class Layout:
         """Folder of the Parquet files with signals."""
         self.sections = root / "sections"
         """Folder of the compact records, from which labels can be made again."""
-        self.staging = root / ".staging"
-        """Finished runs until the set is complete."""
+        self.staging = root / staging
+        """Kept runs and closed shards until the set is complete."""
         self.identity = self.staging / "identity.json"
         """The identity of an unfinished set."""
 
-    def staged(self, run_id: str) -> Path:
-        """Return the path of a finished run's row. Its existence proves that all files of the run are complete."""
-        return self.staged_row("runs", run_id)
+    def kept(self, shard: str) -> Path:
+        """Return the folder of the finished runs of an open shard."""
+        return self.staging / "kept" / shard
 
-    def staged_row(self, table: str, run_id: str) -> Path:
-        """Return the path of a finished run's row in the table of that name."""
-        return self.staging / table / f"{run_id}.parquet"
+    def closed(self, shard: str) -> Path:
+        """Return the path of the record of a closed shard. Its existence proves that all files of it are complete."""
+        return self.staging / "closed" / f"{shard}.json"
+
+    def staged(self, table: str, shard: str) -> Path:
+        """Return the path of a closed shard's file of a table, until the set is complete."""
+        return self.staging / table / f"{shard}.parquet"
+
+    def shard(self, table: str, shard: str) -> Path:
+        """Return the path of a shard's file of a table in the complete set."""
+        return self.root / table / f"{shard}.parquet"
 
     def export(self, kind: str, run_id: str) -> Path:
-        """Return the path of a run's file in the format `kind`, whose name is its folder and its ending."""
-        return self.root / kind / f"{run_id}.{kind}"
+        """Return the path of a run's file in the format `kind`, whose name is its folder and its ending.
+
+        A folder there has up to RUNS_PER_FOLDER runs. Raises ValueError for a text that names no run.
+        """
+        return self.root / kind / f"{index_of(run_id) // RUNS_PER_FOLDER:04d}" / f"{run_id}.{kind}"
 
     def folders(self, names: Iterable[str]) -> list[Path]:
         """Return the folders of the formats `names`: `data` for Parquet, else the folder with the format's name."""
         return [self.root / name if format_of(name).one_file_a_run else self.data for name in names]
-
-    def shard(self, table: str, number: int, count: int) -> Path:
-        """Return the path of file `number`, from 0, of the `count` files of a table, of up to RUNS_PER_SHARD runs."""
-        return self.root / table / f"{SPLIT}-{number:05d}-of-{count:05d}.parquet"
-
-    def number_of_shards(self, good_runs: int) -> int:
-        """Return the number of data files, and of files of sections, for this number of good runs: at least one."""
-        return max(1, math.ceil(good_runs / RUNS_PER_SHARD))

@@ -20,11 +20,8 @@ from pydantic import (
 
 from rubgen.dataset.files import json_text, sha256_of, write_text
 from rubgen.dataset.layout import Layout
-from rubgen.dataset.tables import tables_of
 from rubgen.errors import UserError
-from rubgen.formats import run_formats
 from rubgen.io.files import check_regular, read_json
-from rubgen.io.parquet.read import read_table
 from rubgen.machine import Machine
 from rubgen.machine.problems import first_problem
 from rubgen.machine.quantities import about
@@ -80,6 +77,10 @@ class Identity(BaseModel):
     @property
     def _described(self) -> tuple[object, ...]:
         return self.recipe, self.machine, self.sensors, self.split_sensors
+
+    def with_runs(self, runs: int) -> "Identity":
+        """Return the identity of the same recipe with another number of runs."""
+        return self.model_copy(update={"recipe": {**self.recipe, "runs": runs}})
 
     def checked(self, source: str) -> "Identity":
         """Return the identity with every key of its recipe present. It may come from a file.
@@ -163,15 +164,22 @@ def _identity(recipe: Recipe, packages: dict[str, str]) -> Identity:
     )
 
 
-def write_manifest(layout: Layout, identity: Identity, status: dict[str, int]) -> Manifest:
-    """Finish a data set: hash every file, then write the digests of derived files, the manifest, and its digest.
+def write_manifest(
+    layout: Layout,
+    identity: Identity,
+    status: dict[str, int],
+    files: Sequence[FileEntry],
+    derived: Sequence[FileEntry],
+) -> Manifest:
+    """Finish a data set: write the digests of derived files, the manifest, and its digest.
 
     - layout: paths of the set, whose other files are complete.
     - identity: recipe, machine, sensors and versions.
     - status: number of runs by status.
+    - files: sizes and digests of the files of the set.
+    - derived: those of the files that can be made again.
     """
     recipe = identity.recipe
-    hashed, derived = content_of(layout, recipe["output"]["formats"])
     manifest = Manifest(
         name=recipe["name"],
         license=recipe["license"],
@@ -179,13 +187,27 @@ def write_manifest(layout: Layout, identity: Identity, status: dict[str, int]) -
         runs=recipe["runs"],
         status=status,
         identity=identity,
-        files=tuple(entry_of(path, layout.root) for path in hashed),
-        derived=tuple(path.relative_to(layout.root).as_posix() for path in derived),
+        files=tuple(files),
+        derived=tuple(entry.path for entry in derived),
     )
-    write_derived(layout, manifest.derived)
+    _write_derived(layout, derived)
     write_text(layout.manifest, json_text(manifest.model_dump(mode="json")))
     write_text(layout.digest, _digest_text(layout, layout.manifest.read_bytes()))
     return manifest
+
+
+def read_identity(layout: Layout) -> Identity:
+    """Read the identity of an unfinished data set.
+
+    Raises UserError where it is damaged, OSError where there is none.
+    """
+    try:
+        return Identity.model_validate(read_json(layout.identity.read_bytes()))
+    except ValueError as error:
+        reason = " ".join(str(error).split())[:100]
+        raise UserError(
+            f"{layout.identity}: damaged ({reason}), so nothing tells what the runs there are; give another directory"
+        ) from None
 
 
 def read_manifest(layout: Layout) -> Manifest:
@@ -233,20 +255,6 @@ def _checked(manifest: Manifest, path: Path) -> Manifest:
     return manifest.model_copy(update={"identity": identity})
 
 
-def content_of(layout: Layout, formats: Sequence[str]) -> tuple[list[Path], list[Path]]:
-    """Return the files whose sha256 the manifest has, and the derived files that it only names, each in order.
-
-    They follow from `runs.parquet` and the formats. Other files in the folders are ignored.
-    """
-    facts = read_table(layout.runs, ["run_id", "status"]).to_pylist()
-    good = [row["run_id"] for row in facts if row["status"] == "ok"]
-    shards = layout.number_of_shards(len(good))
-    rows = [layout.shard(table.name, number, shards) for table in tables_of(formats) for number in range(shards)]
-    hashed = [layout.export(each.name, name) for each in run_formats(formats) if not each.remake for name in good]
-    derived = [layout.export(each.name, name) for each in run_formats(formats) if each.remake for name in good]
-    return [layout.card, layout.croissant, layout.runs, *rows, *hashed], derived
-
-
 def entry_of(path: Path, root: Path) -> FileEntry:
     """Hash the file at `path` and return its entry, with the path relative to `root`."""
     return FileEntry(path=path.relative_to(root).as_posix(), bytes=path.stat().st_size, sha256=sha256_of(path))
@@ -257,10 +265,12 @@ def write_derived(layout: Layout, names: Sequence[str]) -> bool:
 
     Without derived files nothing is written.
     """
-    if not names:
-        return False
-    text = _derived_text(tuple(entry_of(layout.root / name, layout.root) for name in names))
-    if layout.derived.is_file() and layout.derived.read_bytes() == text.encode():
+    return _write_derived(layout, [entry_of(layout.root / name, layout.root) for name in names])
+
+
+def _write_derived(layout: Layout, entries: Sequence[FileEntry]) -> bool:
+    text = _derived_text(tuple(entries))
+    if not entries or (layout.derived.is_file() and layout.derived.read_bytes() == text.encode()):
         return False
     write_text(layout.derived, text)
     return True

@@ -1,8 +1,9 @@
 """Find the rows of single runs in Parquet files with many runs."""
 
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
-from functools import cached_property
-from itertools import groupby
+from functools import cached_property, lru_cache
+from itertools import accumulate, groupby
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,6 +14,9 @@ from rubgen.errors import UserError
 from rubgen.io.parquet.read import ParquetSource, damage_named
 from rubgen.scenario import Recipe
 from rubgen.scenario.costs import stored_bytes
+
+GROUPS_IN_MEMORY = 8
+"""Of `runs.parquet`: shards of several splits lie beside each other in the order of runs."""
 
 
 def asked_bytes(recipe: Recipe) -> float:
@@ -81,3 +85,24 @@ def _whole(row: pa.Table, run_id: str, path: Path) -> pa.Table:
         if row[name].null_count:
             raise UserError(f"{run_id}: {path}: has no {name} of this run; generate the set again")
     return row
+
+
+class RunTable:
+    """Rows of `runs.parquet` by the number of the run. A few row groups at a time are in memory."""
+
+    def __init__(self, path: Path) -> None:
+        """Open the file. Raises UserError where it is missing or damaged."""
+        self._file = ParquetSource(path)
+        sizes = [self._file.rows_of(group) for group in range(self._file.num_row_groups)]
+        self._starts = list(accumulate(sizes, initial=0))
+        self._group = lru_cache(GROUPS_IN_MEMORY)(self._file.read_row_group)
+
+    def rows(self, indexes: Sequence[int]) -> pa.Table:
+        """Return the rows of these runs, in that order, which ascends. Raises UserError where one cannot be read."""
+        if indexes and indexes[-1] >= self._starts[-1]:
+            raise UserError(f"{self._file.path}: has no run number {indexes[-1]}")
+        pieces = []
+        for group, members in groupby(indexes, key=lambda index: bisect_right(self._starts, index) - 1):
+            places = [index - self._starts[group] for index in members]
+            pieces.append(self._group(group).take(places))
+        return pa.concat_tables(pieces or [self._file.schema_arrow.empty_table()])

@@ -36,13 +36,15 @@ RUNS = SetTable(
     row=lambda run, split: run_table(run, split=split, signals=False),
 )
 """Every run, failed ones too: the one file `runs.parquet`."""
+SIGNALS = SetTable(
+    name="data",
+    schema=lambda recipe: recipe_schema(recipe, signals=True),
+    row=lambda run, split: run_table(run, split=split),
+    wanted=lambda formats: "parquet" in formats,
+)
+"""The recorded channels of each run, beside its columns of `runs`."""
 TABLES = (
-    SetTable(
-        name="data",
-        schema=lambda recipe: recipe_schema(recipe, signals=True),
-        row=lambda run, split: run_table(run, split=split),
-        wanted=lambda formats: "parquet" in formats,
-    ),
+    SIGNALS,
     SetTable(
         name="sections",
         schema=lambda _recipe: SCHEMA,

@@ -67,7 +67,7 @@ def write_features(
             worker_pool(min(workers, len(jobs))) as pool,
             pq.ParquetWriter(part, plan.schema(), compression="zstd") as file,
         ):
-            done = unordered(pool, min(workers, len(jobs)), _features_of, jobs)
+            done = unordered(pool, _features_of, jobs)
             for table in _in_order(done):
                 file.write_table(table, row_group_size=table.num_rows)
                 windows += table.num_rows

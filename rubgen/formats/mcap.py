@@ -36,13 +36,14 @@ FORMAT = Format(
     name="mcap",
     about="MCAP, for Foxglove and rubgen replay",
     loading="""\
-`mcap/<run_id>.mcap`: one file a run; `rubgen.io.mcap.read_mcap(path)`, the `mcap` package, or Foxglove. Blocks of
-1024 samples on `/raw/<channel>`, contacts on `/contact`, labels and scenario as metadata.""",
+`mcap/0000/<run_id>.mcap`: one file a run, a folder for a thousand runs; `rubgen.io.mcap.read_mcap(path)`, the `mcap`
+package, or Foxglove. Blocks of 1024 samples on `/raw/<channel>`, contacts on `/contact`, labels and
+scenario as metadata.""",
     ways={
         "MCAP": """from pathlib import Path
 from rubgen.io.mcap import read_mcap
 
-run = read_mcap(Path("DIR/mcap/RUN.mcap"))
+run = read_mcap(Path("DIR/mcap/0000/RUN.mcap"))
 signal = run.signals["CHANNEL"]
 labels = run.labels"""
     },

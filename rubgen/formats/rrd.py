@@ -36,7 +36,7 @@ FORMAT = Format(
     name="rrd",
     about="for the Rerun viewer",
     loading="""\
-`rrd/<run_id>.rrd`: the same run to look at, `rerun rrd/run-000000.rrd`. A derived view, whose
+`rrd/0000/<run_id>.rrd`: the same run to look at, `rerun rrd/0000/run-000000.rrd`. A derived view, whose
 bytes differ from writing to writing: their sha256 stands in `derived.json`, not in the manifest.""",
     look="see a run:      {rerun} {first}",
     write=_write,

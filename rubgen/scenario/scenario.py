@@ -33,6 +33,7 @@ from rubgen.machine.quantities import (
 )
 from rubgen.scenario.contact_laws.contact_law import ContactLaw
 from rubgen.scenario.rotation import Rotation
+from rubgen.scenario.run_id import run_id_of
 from rubgen.scenario.surroundings import Surroundings
 from rubgen.sensors.load import default_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
@@ -236,7 +237,7 @@ class Scenario:
     @property
     def run_id(self) -> str:
         """Name of the run in files and tables."""
-        return f"run-{self.index:06d}"
+        return run_id_of(self.index)
 
 
 def scenario_dict(scenario: Scenario) -> dict[str, object]:

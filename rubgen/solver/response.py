@@ -26,6 +26,7 @@ class Status(StrEnum):
     ENERGY = "energy: the energy identity of the scheme was not kept"
     REFUSED = "refused: these values make no run"
     FILM_CLOSED = "film-closed: the disk centre reached the clearance of its squeeze film damper"
+    DIED = "died: the process that made this run ended without a result, twice"
 
     @property
     def code(self) -> str:

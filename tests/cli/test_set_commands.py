@@ -54,7 +54,7 @@ def test_only_a_set_that_was_verified_is_called_so():
     made = Generated(directory=Path("set"), runs=3, made=0, status={"ok": 3}, outcome=outcome)
     assert next(_what_was_made(made)) == "set: 3 runs, 0 new: 3 ok; 2 rub, 1 do not"
     verified = replace(made, verified=True)
-    assert next(_what_was_made(verified)) == "set: 3 runs, nothing to do, verified: 3 ok; 2 rub, 1 do not"
+    assert next(_what_was_made(verified)) == "set: 3 runs, nothing to do, all files are there: 3 ok; 2 rub, 1 do not"
 
 
 def test_generate_for_programs(generate, tmp_path):
@@ -72,6 +72,7 @@ def test_generate_for_programs(generate, tmp_path):
             "failures": [{"status": "diverged", "count": 1, "run_id": "run-000002", "reason": "in turn 7"}],
         },
         "verified": False,
+        "part": "",
     }
 
 
@@ -79,7 +80,7 @@ def test_another_number_of_runs_is_refused(generate):
     generate()
     code, _, errors = generate("--runs", "2")
     assert code == 2
-    assert "holds the output of another recipe (runs = 3, asked for 2); give another directory" in errors
+    assert "holds 3 runs of this recipe, asked for 2; it can only grow" in errors
 
 
 def test_info_counts(generate, run, tmp_path):
@@ -103,28 +104,28 @@ def test_info_counts(generate, run, tmp_path):
 
 def test_verify_ends_with_1_where_something_is_wrong(generate, run, tmp_path):
     generate()
-    (tmp_path / "set/mcap/run-000000.mcap").unlink()
+    (tmp_path / "set/mcap/0000/run-000000.mcap").unlink()
     code, output, _ = run("verify", str(tmp_path / "set"), "--json")
     values = json.loads(output)
     assert (code, values["ok"]) == (1, False)
-    assert "mcap/run-000000.mcap: listed in the manifest, but not there" in values["problems"]
+    assert "mcap/0000/run-000000.mcap: listed in the manifest, but not there" in values["problems"]
     code, output, _ = run("verify", str(tmp_path / "set"))
     assert code == 1
-    assert "mcap/run-000000.mcap: listed in the manifest, but not there" in output
+    assert "mcap/0000/run-000000.mcap: listed in the manifest, but not there" in output
 
 
 def test_ctrl_c_says_how_to_go_on(generate, run, tmp_path, monkeypatch):
-    from rubgen.dataset.making import generate as generating
+    from rubgen.dataset.making.keep import Keeper
 
-    stage = generating.stage_run
+    true = Keeper.begin
 
-    def interrupted(scenario, root, formats):
-        if scenario.index == 1:
+    def interrupted(keeper, index):
+        if index == 1:
             raise KeyboardInterrupt
-        return stage(scenario, root, formats)
+        true(keeper, index)
 
     with monkeypatch.context() as patch:
-        patch.setattr(generating, "stage_run", interrupted)
+        patch.setattr(Keeper, "begin", interrupted)
         code, _, errors = generate()
     assert code == 130
     directory = str(tmp_path / "set")

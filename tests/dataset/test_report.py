@@ -105,15 +105,15 @@ def test_a_failed_run_is_listed_with_its_reason(small_set, tmp_path, monkeypatch
 
 
 def test_a_flipped_bit_of_an_mcap_stands_on_the_page_and_costs_no_page(shown_set, copied_shown_set, tmp_path):
-    path = copied_shown_set / "mcap/run-000000.mcap"
+    path = copied_shown_set / "mcap/0000/run-000000.mcap"
     for part in (3, 5, 7):
-        content = bytearray((shown_set / "mcap/run-000000.mcap").read_bytes())
+        content = bytearray((shown_set / "mcap/0000/run-000000.mcap").read_bytes())
         content[part * len(content) // 10] ^= 4
         path.write_bytes(content)
         write_report(copied_shown_set, tmp_path / "report.html")
         text = (tmp_path / "report.html").read_text(encoding="utf-8")
-        assert "mcap/run-000000.mcap: its sha256 is not the one in the manifest" in text
-        assert "mcap/run-000000.mcap: damaged (" in text
+        assert "mcap/0000/run-000000.mcap: its sha256 is not the one in the manifest" in text
+        assert "mcap/0000/run-000000.mcap: damaged (" in text
         assert "Passed: digest" not in text
 
 

@@ -57,7 +57,7 @@ class _Trap:
         return Path.touch, (self.path,)
 
 
-@pytest.mark.parametrize("name", ["manifest.json", "runs.parquet", "mcap/run-000000.mcap"])
+@pytest.mark.parametrize("name", ["manifest.json", "runs.parquet", "mcap/0000/run-000000.mcap"])
 def test_a_pickle_in_the_place_of_a_file_is_not_opened(name, copied_set, tmp_path):
     trap = tmp_path / "sprung"
     (copied_set / name).write_bytes(pickle.dumps(_Trap(trap)))

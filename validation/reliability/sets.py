@@ -111,7 +111,7 @@ def undisturbed(formats: tuple[str, ...] = ("parquet", "mcap"), runs: int = RUNS
             raise RuntimeError(f"the undisturbed set cannot be made: {process.output}")
         truth.seconds[1] = time.monotonic() - begun
         truth.digests |= digests(truth.directory)
-        if "mcap/run-000001.mcap" not in truth.digests:
+        if "mcap/0000/run-000001.mcap" not in truth.digests:
             raise RuntimeError(f"a run of the undisturbed set has no recording: {process.output}")
         yield truth
 

@@ -2,7 +2,7 @@
 
 import os
 import stat
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -38,19 +38,33 @@ class Finding:
     """Whether the file must not be opened: there is none, it is no regular file, or it is outside of the set."""
 
 
-def file_findings(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
+def file_findings(layout: Layout, manifest: Manifest, chosen: Callable[[str], bool]) -> Iterator[Finding]:
     """Yield a finding for every file that the manifest lists and that is missing, unreadable or of other content.
 
-    Compared are size and sha256, for derived files (.rrd) with those in derived.json.
+    Compared are size and, for `chosen` paths, sha256; for derived files (.rrd) with those in derived.json.
     """
-    remade = {layout.card.name, layout.croissant.name}
     for entry in manifest.files:
-        kind = Kind.DERIVED if entry.path in remade else Kind.DATA
-        yield from _entry_findings(layout.root, entry.path, entry, "the manifest", kind)
+        kind, read = _kind(layout, entry.path), chosen(entry.path)
+        yield from _entry_findings(layout.root, entry.path, entry, "the manifest", kind, read=read)
     digests, found = derived_digests(layout, manifest)
     yield from found
     for name in manifest.derived:
-        yield from _entry_findings(layout.root, name, digests.get(name), layout.derived.name, Kind.DERIVED)
+        known, read = digests.get(name), chosen(name)
+        yield from _entry_findings(layout.root, name, known, layout.derived.name, Kind.DERIVED, read=read)
+
+
+def size_findings(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
+    """Yield a finding for every listed file that is missing or has another size. No file is read."""
+    for entry in manifest.files:
+        yield from _entry_findings(
+            layout.root, entry.path, entry, "the manifest", _kind(layout, entry.path), read=False
+        )
+    for name in manifest.derived:
+        yield from _entry_findings(layout.root, name, None, layout.derived.name, Kind.DERIVED)
+
+
+def _kind(layout: Layout, path: str) -> Kind:
+    return Kind.DERIVED if path in (layout.card.name, layout.croissant.name) else Kind.DATA
 
 
 def derived_digests(layout: Layout, manifest: Manifest) -> tuple[dict[str, FileEntry], list[Finding]]:
@@ -71,13 +85,15 @@ def derived_digests(layout: Layout, manifest: Manifest) -> tuple[dict[str, FileE
     return digests, []
 
 
-def _entry_findings(root: Path, name: str, entry: FileEntry | None, where: str, kind: Kind) -> Iterator[Finding]:
+def _entry_findings(
+    root: Path, name: str, entry: FileEntry | None, where: str, kind: Kind, *, read: bool = True
+) -> Iterator[Finding]:
     path = root / name
     try:
         size = _check_within(root, path)
         if entry is not None and size != entry.bytes:
             yield Finding(text=f"{name}: has {size:,} bytes, {where} says {entry.bytes:,}", kind=kind, path=name)
-        elif entry is not None and sha256_of(path) != entry.sha256:
+        elif read and entry is not None and sha256_of(path) != entry.sha256:
             yield Finding(text=f"{name}: its sha256 is not the one in {where}", kind=kind, path=name)
     except (OSError, UserError) as error:
         yield Finding(text=f"{name}: {_reason(error)}", kind=kind, path=name, closed=True)

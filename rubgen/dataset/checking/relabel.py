@@ -11,7 +11,8 @@ import pyarrow as pa
 
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import read_manifest
-from rubgen.dataset.rows import asked_bytes
+from rubgen.dataset.rows import RunTable, asked_bytes
+from rubgen.dataset.shards import shards_of
 from rubgen.errors import UserError
 from rubgen.io.parquet.compact_records import SCHEMA, read_record
 from rubgen.io.parquet.read import row_groups
@@ -50,40 +51,41 @@ def relabel(directory: Path) -> Relabelled:
     """
     layout = Layout(directory)
     manifest = read_manifest(layout)
-    sections, asked = manifest.listed("sections"), asked_bytes(manifest.identity.recorded(str(layout.manifest)))
+    recorded = manifest.identity.recorded(str(layout.manifest))
+    if not manifest.listed("sections"):
+        raise UserError(f"{layout.root}: no sections/ to make labels from; generate the set again with this rubgen")
     runs = labels = 0
     found: list[Difference] = []
-    for row, section in zip_longest(_good_rows(layout), _remade(layout, sections, asked)):
-        run_id, again = section or ("", {})
-        if row is None or row["run_id"] != run_id:
-            name = row["run_id"] if row else run_id
-            raise UserError(f"{layout.root}: sections/ and runs.parquet differ at {name}; check it: rubgen verify")
-        runs, labels = runs + 1, labels + len(again)
-        found += [
-            Difference(run_id, name, row.get(name), value)
-            for name, value in again.items()
-            if name not in row or not equal(row[name], value)
-        ]
+    table, asked = RunTable(layout.runs), asked_bytes(recorded)
+    for shard in shards_of(recorded):
+        path = layout.shard("sections", shard.name)
+        for row, section in zip_longest(_good_rows(table.rows(shard.indexes)), _remade(path, asked)):
+            run_id, again = section or ("", {})
+            if row is None or row["run_id"] != run_id:
+                name = row["run_id"] if row else run_id
+                raise UserError(f"{layout.root}: sections/ and runs.parquet differ at {name}; check it: rubgen verify")
+            runs, labels = runs + 1, labels + len(again)
+            found += [
+                Difference(run_id, name, row.get(name), value)
+                for name, value in again.items()
+                if name not in row or not equal(row[name], value)
+            ]
     return Relabelled(runs=runs, labels=labels, differences=tuple(found))
 
 
-def _good_rows(layout: Layout) -> Iterator[dict[str, Any]]:
+def _good_rows(table: pa.Table) -> Iterator[dict[str, Any]]:
     """Yield the runs that ended well, in order, without the columns of orders."""
-    for table in row_groups(layout.runs):
-        names = [name for name in table.schema.names if not name.endswith(TAP_ENDINGS)]
-        yield from (row for row in with_words(table.select(names)).to_pylist() if row["status"] == "ok")
+    names = [name for name in table.schema.names if not name.endswith(TAP_ENDINGS)]
+    yield from (row for row in with_words(table.select(names)).to_pylist() if row["status"] == "ok")
 
 
-def _remade(layout: Layout, names: list[str], asked: float) -> Iterator[tuple[str, dict[str, object]]]:
-    """Yield name and labels of each run with a compact record."""
-    if not names:
-        raise UserError(f"{layout.root}: no sections/ to make labels from; generate the set again with this rubgen")
-    for path in (layout.root / name for name in names):
-        for table in row_groups(path, asked):
-            if not table.schema.equals(SCHEMA):
-                raise UserError(f"{path}: its columns are not those of this rubgen; generate the set again")
-            for row, run_id in enumerate(table["run_id"].to_pylist()):
-                yield run_id, _labels_of(table, row, path)
+def _remade(path: Path, asked: float) -> Iterator[tuple[str, dict[str, object]]]:
+    """Yield name and labels of each run with a compact record in the file at `path`."""
+    for table in row_groups(path, asked):
+        if not table.schema.equals(SCHEMA):
+            raise UserError(f"{path}: its columns are not those of this rubgen; generate the set again")
+        for row, run_id in enumerate(table["run_id"].to_pylist()):
+            yield run_id, _labels_of(table, row, path)
 
 
 def _labels_of(table: pa.Table, row: int, path: Path) -> dict[str, object]:

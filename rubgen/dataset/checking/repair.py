@@ -88,8 +88,8 @@ def _make_recording(data: DataSet, name: str, wrong: set[str]) -> bool:
         return False
     if remake is None:
         raise ValueError(f"{name} is data, no derived file")
-    path.parent.mkdir(exist_ok=True)
     if not path.parent.resolve().is_relative_to(data.layout.root.resolve()):
         raise UserError(f"{path.parent}: is a link out of the set; remove the link")
+    path.parent.mkdir(parents=True, exist_ok=True)
     remake(replay, path)
     return True

@@ -2,110 +2,134 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 
 import pyarrow as pa
 
 from rubgen.dataset.checking.channel_check import Row
 from rubgen.dataset.checking.consistency import label_problems, signal_problems
-from rubgen.dataset.layout import RUNS_PER_SHARD, Layout
+from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest
 from rubgen.dataset.reading.open import is_signal, row_signals
-from rubgen.dataset.rows import asked_bytes
+from rubgen.dataset.rows import RunTable, asked_bytes
+from rubgen.dataset.shards import Shard, shards_of
+from rubgen.dataset.tables import RUNS, SIGNALS, TABLES, SetTable, tables_of
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
-from rubgen.io.parquet.compact_records import SCHEMA
 from rubgen.io.parquet.read import ParquetSource
 from rubgen.io.parquet.words import with_words
-from rubgen.io.parquet.write import recipe_schema
 from rubgen.scenario import Recipe, Sensing
+from rubgen.scenario.run_id import run_id_of
 
 NO_PARQUET = "damaged or no Parquet file of rubgen"
 MOST_NAMED = 4
 """Number of runs or columns that a line lists one by one."""
-CLOSED: list[tuple[pa.Table | None, list[str]]] = [(None, [])]
-"""The result of reading a file that must not be opened: no table, so its content is unknown, and no further problem."""
 UNCOMPARABLE = (TypeError, ValueError, LookupError, AttributeError, ArithmeticError)
 """Errors from comparing values of a wrong type or number."""
 
 
-def table_problems(layout: Layout, manifest: Manifest, closed: set[str]) -> Iterator[str]:
-    """Read every Parquet file of a data set and yield their problems, one sentence each.
+def table_problems(
+    layout: Layout, manifest: Manifest, closed: set[str], chosen: Callable[[Shard], bool]
+) -> Iterator[str]:
+    """Read the Parquet files of a data set, shard by shard, and yield their problems, one sentence each.
 
-    The files are `runs.parquet`, `sections/` and, where the recipe has the format parquet, the data files. Labels are
-    compared with each other and with the channels.
+    The files are `runs.parquet` and those of the tables. Labels are compared with each other and with the channels.
+    The rows of one shard are in memory.
 
     - layout: the paths of the set.
     - manifest: its manifest.
     - closed: names of files that must not be opened; for them nothing is reported.
+    - chosen: tells the shards to look at.
     """
-    identity = manifest.identity
-    recorded = identity.recorded(str(layout.manifest))
-    asked = asked_bytes(recorded)
-    rows: dict[str, Row] = {}
+    recorded = manifest.identity.recorded(str(layout.manifest))
+    runs: RunTable | None = None
     if layout.runs.name not in closed:
-        types = recipe_schema(recorded, signals=False)
-        for table, problem in _groups(layout, layout.runs.name, types, "run-{:06d}".format, asked):
-            yield from problem
-            rows |= {row["run_id"]: row for row in (with_words(table).to_pylist() if table is not None else ())}
-        yield from _run_problems(layout.runs.name, rows, manifest)
-    good = {name: row for name, row in rows.items() if row["status"] == "ok"}
-    for name, row in good.items():
-        yield from _compared(name, lambda row=row: list(label_problems(row)))  # type: ignore[misc]
-    yield from _list_problems(manifest, recorded.output.formats, set(good))
-    yield from _section_problems(layout, manifest.listed("sections"), closed, list(good), asked)
-    if "parquet" in recorded.output.formats:
-        yield from _data_problems(layout, manifest.listed("data"), closed, recorded, good, asked)
+        yield from _run_problems(layout, manifest, recorded)
+        with suppress(UserError):  # which the lines above name
+            runs = RunTable(layout.runs)
+    listed = {entry.path for entry in manifest.files} | set(manifest.derived)
+    expected: set[str] = set()
+    for shard in shards_of(recorded):
+        names = {table.name: _file_name(table, shard) for table in tables_of(recorded.output.formats)}
+        expected |= set(names.values())
+        if chosen(shard):
+            yield from (f"{name}: missing in the manifest" for name in names.values() if name not in listed)
+            yield from _shard_problems(layout, recorded, shard, runs, closed | (set(names.values()) - listed), listed)
+    folders = tuple(f"{table.name}/" for table in TABLES)
+    for name in sorted(name for name in listed if name.startswith(folders) and name not in expected):
+        yield f"{name}: is no file of this recipe's set"
 
 
-def _run_problems(name: str, rows: dict[str, Row], manifest: Manifest) -> Iterator[str]:
-    """Yield differences between `runs.parquet` and the manifest."""
-    expected = (f"run-{index:06d}" for index in range(len(rows)))
-    if len(rows) != manifest.runs or any(run_id != next(expected) for run_id in rows):
-        yield f"{name}: {len(rows)} runs, the manifest has {manifest.runs}"
-    if Counter(row["status"] for row in rows.values()) != Counter(manifest.status):
+def _file_name(table: SetTable, shard: Shard) -> str:
+    return f"{table.name}/{shard.name}.parquet"
+
+
+def _run_problems(layout: Layout, manifest: Manifest, recipe: Recipe) -> Iterator[str]:
+    """Read `runs.parquet` and yield its damages, and differences to the manifest."""
+    name = layout.runs.name
+    status: Counter[str] = Counter()
+    runs, in_order = 0, True
+    for table, problems in _groups(layout, name, RUNS.schema(recipe), run_id_of, 0.0):
+        yield from problems
+        if table is not None:
+            in_order &= table["run_id"].to_pylist() == [run_id_of(runs + row) for row in range(table.num_rows)]
+            status.update(table["status"].to_pylist())
+            runs += table.num_rows
+    if runs != manifest.runs or not in_order:
+        yield f"{name}: {runs} runs, the manifest has {manifest.runs}"
+    if status != Counter(manifest.status):
         yield f"{name}: status counts differ from the manifest"
 
 
-def _list_problems(manifest: Manifest, formats: Sequence[str], good: set[str]) -> Iterator[str]:
+def _shard_problems(
+    layout: Layout, recipe: Recipe, shard: Shard, runs: RunTable | None, closed: set[str], listed: set[str]
+) -> Iterator[str]:
+    """Yield the problems of one shard: its runs, its files, and the list of files of its single runs."""
+    rows: dict[str, Row] | None = None
+    with suppress(UserError):  # already named
+        rows = {row["run_id"]: row for row in with_words(runs.rows(shard.indexes)).to_pylist()} if runs else None
+    good = {name: row for name, row in (rows or {}).items() if row["status"] == "ok"}
+    for name, row in good.items():
+        yield from _compared(name, lambda row=row: list(label_problems(row)))  # type: ignore[misc]
+    if rows is not None:
+        yield from _list_problems(listed, recipe.output.formats, shard, set(good))
+    for table in tables_of(recipe.output.formats):
+        if _file_name(table, shard) not in closed:
+            yield from _file_problems(layout, recipe, table, shard, None if rows is None else good)
+
+
+def _list_problems(listed: set[str], formats: Sequence[str], shard: Shard, good: set[str]) -> Iterator[str]:
     """Yield files of single runs that the manifest lists without a good run, or does not list for a good run."""
+    paths = Layout("")
     for kind in (each.name for each in run_formats()):
-        listed = set(manifest.listed(kind))
-        expected = {f"{kind}/{name}.{kind}" for name in good} if kind in formats else set()
-        for name in sorted(listed ^ expected):
-            yield f"{name}: {'run is not ok or unknown' if name in listed else 'missing in the manifest'}"
+        for run_id in map(run_id_of, shard.indexes):
+            name = paths.export(kind, run_id).as_posix()
+            if name in listed and not (run_id in good and kind in formats):
+                yield f"{name}: run is not ok or unknown"
+            elif name not in listed and run_id in good and kind in formats:
+                yield f"{name}: missing in the manifest"
 
 
-def _section_problems(
-    layout: Layout, names: list[str], closed: set[str], good: list[str], asked: float
+def _file_problems(
+    layout: Layout, recipe: Recipe, table: SetTable, shard: Shard, good: dict[str, Row] | None
 ) -> Iterator[str]:
-    seen: set[str] = set()
-    whole = bool(names)
-    for shard, name in enumerate(names):
-        for table, problem in (
-            _groups(layout, name, SCHEMA, _namer(good, shard), asked) if name not in closed else CLOSED
-        ):
-            yield from problem
-            whole &= table is not None
-            seen |= set(table["run_id"].to_pylist()) if table is not None else set()
-    yield from _difference(seen, set(good), "a section", "no section", whole=whole)
-
-
-def _data_problems(
-    layout: Layout, names: list[str], closed: set[str], recipe: Recipe, good: dict[str, Row], asked: float
-) -> Iterator[str]:
-    types, sensing = recipe_schema(recipe, signals=True), recipe.sensing
+    """Yield the problems of a shard's file of one table. `good` has its good runs, None where they are not known."""
+    name, whole, seen = _file_name(table, shard), True, set[str]()
+    types = table.schema(recipe)
     scalars = [field.name for field in types if not is_signal(field)]
-    seen: set[str] = set()
-    whole = bool(names)
-    for shard, name in enumerate(names):
-        groups = _groups(layout, name, types, _namer(list(good), shard), asked)
-        for table, problem in groups if name not in closed else CLOSED:
-            yield from problem
-            whole &= table is not None
-            for number, row in enumerate(with_words(table.select(scalars)).to_pylist() if table is not None else ()):
-                seen.add(row["run_id"])
-                yield from _row_problems(name, row, good.get(row["run_id"]), table, number, sensing)
-    yield from _difference(seen, set(good), "signals", "no signals", whole=whole)
+    namer = _namer(list(good) if good is not None else [run_id_of(index) for index in shard.indexes])
+    for rows, problems in _groups(layout, name, types, namer, asked_bytes(recipe)):
+        yield from problems
+        whole &= rows is not None
+        if rows is None:
+            continue
+        seen |= set(rows["run_id"].to_pylist())
+        for number, row in enumerate(with_words(rows.select(scalars)).to_pylist() if table is SIGNALS else ()):
+            yield from _row_problems(name, row, (good or {}).get(row["run_id"]), rows, number, recipe.sensing)
+    if whole and good is not None:
+        what = "signals" if table is SIGNALS else f"a row in {table.name}"
+        yield from (f"{run_id}: has {what}, but is not ok" for run_id in sorted(seen - set(good), key=str))
+        yield from (f"{run_id}: is ok, but has no {what.removeprefix('a ')}" for run_id in sorted(set(good) - seen))
 
 
 def _row_problems(
@@ -114,12 +138,6 @@ def _row_problems(
     if run is not None and {key: row[key] for key in run} != run:
         yield f"{row['run_id']}: {name} and runs.parquet differ"
     yield from _compared(row["run_id"], lambda: list(signal_problems(row, row_signals(table, number), sensing)))
-
-
-def _difference(seen: set[str], good: set[str], has: str, lacks: str, *, whole: bool) -> Iterator[str]:
-    """Yield runs that have something without being good, and good runs that lack it; only for files read to the end."""
-    for name in sorted(seen ^ good if whole else set(), key=str):
-        yield f"{name}: {f'has {has}, but is not ok' if name in seen else f'is ok, but has {lacks}'}"
 
 
 def _compared(run_id: str, problems: Callable[[], list[str]]) -> Iterator[str]:
@@ -153,14 +171,9 @@ def _groups(
         yield None, [f"{name}: damaged ({_reason(error, path)})"]
 
 
-def _namer(good: list[str], shard: int) -> Callable[[int], str]:
+def _namer(runs: list[str]) -> Callable[[int], str]:
     """Return a function from a row of a file to the name of its run: files have the good runs in their order."""
-
-    def name_of(row: int) -> str:
-        place = shard * RUNS_PER_SHARD + row
-        return good[place] if place < len(good) else f"row {row}"
-
-    return name_of
+    return lambda row: runs[row] if row < len(runs) else f"row {row}"
 
 
 def _runs_of(file: ParquetSource, group: int) -> list[str]:

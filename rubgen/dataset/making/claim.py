@@ -1,7 +1,6 @@
 """Claim an output directory for one process, and tell whether it is empty, unfinished, finished or foreign."""
 
 import errno
-import json
 import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -11,25 +10,26 @@ from filelock import BaseFileLock, FileLock, SoftFileLock, Timeout
 
 from rubgen.dataset.files import is_system_file, remove_parts, write_json
 from rubgen.dataset.layout import Layout
-from rubgen.dataset.manifest import Identity, read_manifest
+from rubgen.dataset.making.grow import prepare_growth
+from rubgen.dataset.manifest import Identity, read_identity, read_manifest
 from rubgen.dataset.tables import RUNS, TABLES
 from rubgen.errors import UserError, warn
 from rubgen.format_names import FORMAT_NAMES
 from rubgen.io.files import PART, sync_directory
 
-_STAGED = tuple(table.name for table in (RUNS, *TABLES))
+_STAGED = ("kept", "closed", *(table.name for table in (RUNS, *TABLES)))
 """Folders of `.staging`."""
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EINVAL)
 """Errors of file systems without locks, such as NFS without its lock daemon."""
 
 
-def acquired(path: Path) -> BaseFileLock | None:
-    """Take the lock at `path` without waiting. Returns it, or None where another process has it.
+def acquired(path: Path, wait_s: float = 0.0) -> BaseFileLock | None:
+    """Take the lock at `path`, waiting up to `wait_s` seconds. Returns it, or None where another process has it.
 
     Where the file system has no locks, a file that only one process can make is the lock, with a warning.
     """
     try:
-        return _acquired(FileLock(path, timeout=0))
+        return _acquired(FileLock(path, timeout=wait_s))
     except NotImplementedError as error:
         reason: object = error
     except OSError as error:
@@ -38,7 +38,7 @@ def acquired(path: Path) -> BaseFileLock | None:
         reason = error.strerror
     soft = soft_lock(path)
     warn(f"{path.parent}: no file locks there ({reason}); {soft.name} is made instead, delete it after a kill")
-    return _acquired(SoftFileLock(soft, timeout=0))
+    return _acquired(SoftFileLock(soft, timeout=wait_s))
 
 
 def soft_lock(path: Path) -> Path:
@@ -57,16 +57,25 @@ def _acquired(lock: BaseFileLock) -> BaseFileLock | None:
 def finished(layout: Layout, identity: Identity) -> bool:
     """Return whether the directory holds the finished data set with this identity.
 
-    Raises UserError where it holds the finished set of another recipe.
+    A set with fewer runs of the same recipe is not finished: it grows. Raises UserError where the directory holds the
+    finished set of another recipe, or one with more runs.
     """
-    if layout.manifest.exists() and layout.digest.exists():
-        check_same(layout, read_manifest(layout).identity, identity)
-        return True
-    return False
+    if not (layout.manifest.exists() and layout.digest.exists()):
+        return False
+    there = read_manifest(layout).identity
+    asked, has = int(identity.recipe["runs"]), int(there.recipe["runs"])
+    if asked != has and there.with_runs(asked).same_recipe(identity):
+        if asked < has:
+            raise UserError(
+                f"--out {layout.root}: holds {has} runs of this recipe, asked for {asked}; it can only grow"
+            )
+        return False
+    check_same(layout, there, identity)
+    return True
 
 
 @contextmanager
-def claimed(layout: Layout, identity: Identity) -> Iterator[None]:
+def claimed(layout: Layout, identity: Identity, *, wait_s: float = 0.0) -> Iterator[None]:
     """Lock the output directory, which is made if needed, so that only this process writes there in the block.
 
     What was checked before the block may be outdated. A directory that was made here is removed if it stays empty, its
@@ -77,9 +86,9 @@ def claimed(layout: Layout, identity: Identity) -> Iterator[None]:
     _check_place(layout)
     new = not root.exists()
     root.mkdir(parents=True, exist_ok=True)
-    lock = acquired(_lock(layout))
+    lock = acquired(_lock(layout), wait_s)
     if lock is None:
-        _check_begun(layout, identity)
+        check_begun(layout, identity)
         raise UserError(f"--out {root}: another rubgen is writing there; wait for it or choose another")
     try:
         yield
@@ -106,23 +115,26 @@ def begun(layout: Layout, identity: Identity) -> Iterator[None]:
     """
     if not layout.identity.exists():
         _begin(layout, identity)
-    _check_begun(layout, identity)
-    folders = [layout.sections, *layout.folders(identity.recipe["output"]["formats"])]
-    for folder in folders:
-        folder.mkdir(exist_ok=True)
-    for folder in (layout.root, *folders, *(layout.staging / name for name in _STAGED)):
-        remove_parts(folder)
+    check_begun(layout, identity)
+    remove_parts(layout.root)
     sync_directory(layout.root)
     try:
         yield
     except UserError:
-        if not any((layout.staging / "runs").iterdir()):
-            _give_up(layout, folders)
+        if not any(any((layout.staging / name).iterdir()) for name in ("kept", "closed")):
+            remove_staging(layout)
+            _remove_empty(layout.folders(identity.recipe["output"]["formats"]))
         raise
 
 
-def has_remains(layout: Layout) -> bool:
-    """Return whether a stop at the very end left `.staging` or a lock beside the finished set."""
+def has_remains(layout: Layout, identity: Identity) -> bool:
+    """Return whether a stop at the very end left `.staging` or a lock beside the finished set of this identity.
+
+    What was kept of a set that is to grow is no such remain.
+    """
+    with suppress(FileNotFoundError, UserError):
+        if read_identity(layout) != identity:
+            return False
     return any(layout.root.glob(f"{layout.staging.name}*"))
 
 
@@ -134,20 +146,25 @@ def remove_staging(layout: Layout) -> None:
 
 
 def _begin(layout: Layout, identity: Identity) -> None:
-    if not _holds_nothing(layout):
+    grows = layout.digest.exists()
+    if not (grows or _holds_nothing(layout)):
         raise _not_ours(layout)
     remove_staging(layout)
     for name in _STAGED:
         (_unborn(layout) / name).mkdir(parents=True)
+    if grows:
+        before = read_manifest(layout)
+        check_same(layout, before.identity.with_runs(int(identity.recipe["runs"])), identity, versions=True)
+        prepare_growth(Layout(layout.root, _unborn(layout).name), before, identity.recorded())
     write_json(_unborn(layout) / layout.identity.name, identity.model_dump(mode="json"))
     _unborn(layout).rename(layout.staging)
     sync_directory(layout.root)
 
 
-def _give_up(layout: Layout, folders: Sequence[Path]) -> None:
-    shutil.rmtree(layout.staging)
-    for folder in folders:
-        with suppress(OSError):  # it holds what is not ours
+def _remove_empty(folders: Sequence[Path]) -> None:
+    """Remove folders of single runs that hold nothing yet."""
+    for folder in (inner for outer in folders for inner in (*outer.glob("*"), outer)):
+        with suppress(OSError):  # it holds what is not ours, or is not there
             folder.rmdir()
 
 
@@ -192,7 +209,7 @@ def _holds_nothing(layout: Layout) -> bool:
 def _is_nothing(layout: Layout, path: Path) -> bool:
     if is_system_file(path.name) or path == _unborn(layout) or path.name.startswith(_lock(layout).name):
         return True
-    folders = {layout.staging.name, layout.sections.name, *_STAGED}
+    folders = {layout.staging.name, *_STAGED}
     folders |= {folder.name for folder in layout.folders(FORMAT_NAMES)}
     if path.name not in folders or path.is_symlink() or not path.is_dir():
         return False
@@ -200,19 +217,10 @@ def _is_nothing(layout: Layout, path: Path) -> bool:
     return all(is_system_file(file.name) or file.name == "lock" or PART in file.name for file in files)
 
 
-def _check_begun(layout: Layout, asked: Identity) -> None:
+def check_begun(layout: Layout, asked: Identity) -> None:
+    """Raise UserError where the unfinished set in the directory, if there is one, is of another recipe or versions."""
     with suppress(FileNotFoundError):  # not begun yet, or just finished
-        check_same(layout, _read_identity(layout), asked, versions=True)
-
-
-def _read_identity(layout: Layout) -> Identity:
-    try:
-        return Identity.model_validate(json.loads(layout.identity.read_text(encoding="utf-8")))
-    except ValueError as error:
-        reason = " ".join(str(error).split())[:100]
-        raise UserError(
-            f"{layout.identity}: damaged ({reason}), so nothing tells what the runs there are; give another directory"
-        ) from None
+        check_same(layout, read_identity(layout), asked, versions=True)
 
 
 def check_same(layout: Layout, there: Identity, asked: Identity, *, versions: bool = False) -> None:

@@ -1,29 +1,36 @@
 """Make a data set from a recipe. Every run is made once, even where the work is interrupted."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
+from uuid import uuid4
 
-from rubgen.dataset.card import write_card
-from rubgen.dataset.checking.verify import advice, findings
-from rubgen.dataset.croissant import write_croissant
+from rubgen.brief import counted
+from rubgen.dataset.checking.inventory import size_findings
+from rubgen.dataset.checking.verify import advice
 from rubgen.dataset.layout import Layout
-from rubgen.dataset.making.assemble import assemble
-from rubgen.dataset.making.claim import begun, claimed, finished, has_remains, remove_staging
+from rubgen.dataset.making.claim import begun, check_begun, claimed, finished, has_remains, remove_staging
+from rubgen.dataset.making.cluster import cluster
+from rubgen.dataset.making.finish import finish_set
 from rubgen.dataset.making.outcome import Outcome, outcome_of
-from rubgen.dataset.making.stage import is_staged, stage_run, warm_up, warming_up
-from rubgen.dataset.making.workers import unordered, usable_cores, worker_pool
-from rubgen.dataset.manifest import Identity, identity_of, read_manifest, write_manifest
-from rubgen.dataset.rows import asked_bytes
+from rubgen.dataset.making.plan import Part, Plan, do, part_of
+from rubgen.dataset.making.warm_up import warm_up, warming_up
+from rubgen.dataset.making.workers import Pool, unordered, usable_cores, worker_pool
+from rubgen.dataset.manifest import Identity, identity_of, read_manifest
 from rubgen.errors import UserError, warn, write_problems
 from rubgen.io.columns import signal_columns
 from rubgen.progress import Report, count, shown, step
 from rubgen.scenario import Recipe, load_recipe, parse_recipe
 from rubgen.scenario.load import check_recipe, checked_runs
+from rubgen.scenario.run_id import run_id_of
 
 KEPT = "finished runs are kept"
+BEGIN_S = 600.0
+"""How long a part waits for another that begins the set: a large one that grows is read first."""
+TRIES = 5
+"""How often workers may die one after another without one job done in between."""
 LOOKED_AT, MACHINES = 16, 4
 """Numbers of first runs and machines of which one must be able to rub. Where none can, runs rub rarely at best."""
 
@@ -43,7 +50,9 @@ class Generated:
     outcome: Outcome
     """Counts of rub and classes of motion, and reasons of failures."""
     verified: bool = False
-    """True where the set was finished before and this call verified it."""
+    """True where the set was finished before and this call compared the sizes of its files with the manifest."""
+    part: str = ""
+    """The part of the set that this call made, such as 17/200; the set is not complete. Empty for a whole set."""
 
 
 def generate(
@@ -52,37 +61,69 @@ def generate(
     *,
     runs: int | None = None,
     workers: int | None = None,
+    scheduler: str | None = None,
+    shard: str | None = None,
+    finish: bool = False,
     progress: Report | bool | None = None,
 ) -> Generated:
     """Make the data set of a recipe in a directory.
 
     - recipe: a recipe, its TOML values, its file, or None for the default recipe.
     - out: the directory.
-    - runs: overrides the recipe's number of runs. The number belongs to the recipe: another number is another data set
-      and needs another directory.
+    - runs: overrides the recipe's number of runs. A larger number than before lets a finished set grow.
     - workers: number of processes, by default one for each usable core; 1 works in this process.
+    - scheduler: address of a Dask scheduler, whose workers make the runs.
+    - shard: "17/200" makes only part 17 of 200 of the runs, beside other processes that make other parts.
+    - finish: make no run; complete the set from its parts.
     - progress: called with the numbers of finished and of all runs. True shows them on stderr, None only on a terminal
       or in a notebook.
 
     Each run is simulated alone and stored as soon as it is finished. The same call after an interruption makes the
-    missing runs, with the same bytes. Failed runs are listed with their reason. A finished set is verified and not
-    changed.
+    missing runs, with the same bytes. Failed runs are listed with their reason. Of a finished set only the digest of
+    the manifest and the sizes of files are checked; nothing is changed.
 
     Works from a script without a main guard, a notebook, a pipe or a thread: workers do not import the main module.
     Raises UserError, one line, for bad input, a directory with other content or not writable, and a full disk;
-    RubgenError where a worker process dies or the system fails elsewhere.
+    RubgenError where worker processes die again and again or the system fails elsewhere.
     """
     recipe = _recipe(recipe, runs)
-    workers = _workers(workers)
+    task = _Task(
+        recipe=recipe,
+        layout=Layout(out),
+        identity=identity_of(recipe),
+        workers=_workers(workers),
+        scheduler=scheduler,
+        part=None if shard is None else part_of(shard),
+        finish=finish,
+        progress=progress,
+    )
+    if finish and shard is not None:
+        raise UserError(f"--finish: stands beside --shard {shard}; make all parts first, then give --finish alone")
     signal_columns(recipe.sensing.set, clean=recipe.sensing.keep_clean)  # refuses names that columns have
-    layout, identity = Layout(out), identity_of(recipe)
+    layout, identity = task.layout, task.identity
     with write_problems(layout.root, advice="give a directory that you may write to", kept=KEPT):
         if not finished(layout, identity):
+            if task.part and (made := _make_part(task)):
+                return made
             with claimed(layout, identity):
                 if not finished(layout, identity):  # another rubgen may have done it meanwhile
-                    return _make(recipe, layout, identity, workers, progress)
-        with _shown(progress), step("verify the set"):
+                    return _make(task)
+        with _shown(progress), step("look at the set"):
             return _nothing_to_do(layout, identity)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Task:
+    """What one call of `generate` is to do."""
+
+    recipe: Recipe
+    layout: Layout
+    identity: Identity
+    workers: int
+    scheduler: str | None
+    part: Part | None
+    finish: bool
+    progress: Report | bool | None
 
 
 def _recipe(recipe: Recipe | Mapping[str, object] | Path | str | None, runs: int | None) -> Recipe:
@@ -101,28 +142,42 @@ def _workers(workers: int | None) -> int:
     return workers or usable_cores()
 
 
-def _make(
-    recipe: Recipe, layout: Layout, identity: Identity, workers: int, progress: Report | bool | None
-) -> Generated:
-    with begun(layout, identity):
-        with _shown(progress):
-            made = _make_missing(recipe, layout, workers, progress if callable(progress) else None)
-        status = dict(sorted(assemble(recipe, layout).items()))
-        write_card(layout, identity, status)
-        write_croissant(layout, identity)
-        write_manifest(layout, identity, status)
+def _make(task: _Task) -> Generated:
+    recipe, layout = task.recipe, task.layout
+    with begun(layout, task.identity):
+        with _shown(task.progress):
+            made = _make_missing(task)
+        status = finish_set(recipe, layout, task.identity)
     remove_staging(layout)
     return Generated(directory=layout.root, runs=recipe.runs, made=made, status=status, outcome=outcome_of(layout))
 
 
+def _make_part(task: _Task) -> Generated | None:
+    """Make one part of the set, beside other processes. Returns None where the set is finished meanwhile."""
+    layout, identity = task.layout, task.identity
+    if not layout.identity.exists():
+        with claimed(layout, identity, wait_s=BEGIN_S):
+            if finished(layout, identity):
+                return None
+            with begun(layout, identity):
+                pass
+    check_begun(layout, identity)
+    with _shown(task.progress):
+        made = _make_missing(task)
+    nothing = Outcome(rub=0, no_rub=0, motion={}, failures=())
+    return Generated(
+        directory=layout.root, runs=task.recipe.runs, made=made, status={}, outcome=nothing, part=str(task.part)
+    )
+
+
 def _nothing_to_do(layout: Layout, identity: Identity) -> Generated:
-    found = findings(layout.root)
+    manifest = read_manifest(layout)
+    found = list(size_findings(layout, manifest))
     if found:
         raise UserError(f"{found[0].text} ({len(found)} problems in all); {advice(layout.root, found)}")
-    if has_remains(layout):
+    if has_remains(layout, identity):
         with suppress(OSError, UserError), claimed(layout, identity):  # it may be in use, or read-only
             remove_staging(layout)
-    manifest = read_manifest(layout)
     return Generated(
         directory=layout.root,
         runs=manifest.runs,
@@ -133,39 +188,50 @@ def _nothing_to_do(layout: Layout, identity: Identity) -> Generated:
     )
 
 
-def _make_missing(recipe: Recipe, layout: Layout, workers: int, progress: Report | None) -> int:
-    formats = recipe.output.formats
-    asked = asked_bytes(recipe)
-    missing = [index for index in range(recipe.runs) if not is_staged(layout, index, formats, asked)]
-    jobs = ((recipe.scenario(index), layout.root.resolve(), formats) for index in missing)
-    done = recipe.runs - len(missing)
-    if progress:
-        progress(done, recipe.runs)
-    if not missing:
-        return 0
+def _make_missing(task: _Task) -> int:
+    """Make the runs that are missing of the set or of a part, and close its shards. Return the number of runs made."""
+    recipe, layout = task.recipe, task.layout
+    plan = Plan(recipe, layout, uuid4().hex[:12], task.part or Part())
+    report = task.progress if callable(task.progress) else None
+    if task.finish and plan.missing:
+        raise UserError(
+            f"--finish: {counted(plan.missing, 'run')} of {plan.total} are not made, the first is "
+            f"{run_id_of(plan.first_missing)}; make its part with --shard, or leave out --finish"
+        )
+    if report:
+        report(plan.done, plan.total)
+    local = min(task.workers, max(1, plan.missing))
+    chosen: AbstractContextManager[Pool | None] = worker_pool(local)
+    if task.scheduler:
+        chosen = cluster(task.scheduler, layout.root)
+    with chosen as pool:
+        if plan.missing:
+            _warm_up(recipe, plan, pool)
+        with step("simulate", "runs", long=True):
+            done = plan.done
+            count(done, plan.total)
+            for shard, made in unordered(pool, do, plan.jobs(pool.number if pool else 1), tries=TRIES):
+                if not made:
+                    continue
+                plan.ended(shard)
+                done += made
+                count(done, plan.total)
+                if report:
+                    report(done, plan.total)
+    return plan.missing
+
+
+def _warm_up(recipe: Recipe, plan: Plan, pool: Pool | None) -> None:
     looked_at = min(
         recipe.runs, LOOKED_AT, recipe.machines.runs_per_machine * MACHINES if recipe.machines else LOOKED_AT
     )
     first_runs = tuple(recipe.scenario(index) for index in range(looked_at))
     corners = () if recipe.machines else tuple(recipe.corners())  # each virtual machine is checked when it is drawn
-    first = recipe.scenario(missing[0]), corners, first_runs
-    with worker_pool(min(workers, len(missing))) as pool:
-        with warming_up(), recipe.machine_named():
-            remarks = list(unordered(pool, 1, warm_up, [first]))
-        for remark in chain.from_iterable(remarks):
-            warn(remark)
-        _see_end(unordered(pool, workers, stage_run, jobs), done, recipe.runs, progress)
-    return len(missing)
-
-
-def _see_end(ended: Iterable[str], done: int, runs: int, progress: Report | None) -> None:
-    """Report every run that ends. `done` runs were finished before."""
-    with step("simulate", "runs", long=True):
-        count(done, runs)
-        for now, _status in enumerate(ended, start=done + 1):
-            count(now, runs)
-            if progress:
-                progress(now, runs)
+    first = recipe.scenario(plan.first_missing), corners, first_runs
+    with warming_up(), recipe.machine_named():
+        remarks = list(unordered(pool, warm_up, [first]))
+    for remark in chain.from_iterable(remarks):
+        warn(remark)
 
 
 def _shown(progress: Report | bool | None) -> AbstractContextManager[None]:

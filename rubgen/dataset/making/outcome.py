@@ -1,15 +1,16 @@
 """Count how the runs of a data set ended: with or without rub, in which class of motion, with which failure."""
 
 from collections import Counter
-from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from rubgen.dataset.layout import Layout
+from rubgen.dataset.making.close import read_closed
+from rubgen.dataset.making.keep import kept_runs
 from rubgen.errors import UserError
 from rubgen.io.files import read_json
-from rubgen.io.parquet.read import read_table
+from rubgen.io.parquet.read import row_groups
 from rubgen.io.parquet.words import with_words
 
 COLUMNS = ["run_id", "status", "reason", "rub", "motion"]
@@ -44,27 +45,31 @@ class Outcome:
 
 
 def outcome_of(layout: Layout) -> Outcome:
-    """Count the runs of a data set whose `runs.parquet` is written: rub, classes of motion, failures."""
-    rows = with_words(read_table(layout.runs, COLUMNS)).to_pylist()
-    good = [row for row in rows if row["status"] == "ok"]
-    rubbing = sum(bool(row["rub"]) for row in good)
-    return Outcome(
-        rub=rubbing,
-        no_rub=len(good) - rubbing,
-        motion=dict(Counter(row["motion"] for row in good).most_common()),
-        failures=tuple(_failures(row for row in rows if row["status"] != "ok")),
-    )
+    """Count the runs of a data set whose `runs.parquet` is written: rub, classes of motion, failures.
+
+    A few thousand rows at a time are in memory.
+    """
+    rub: Counter[bool] = Counter()
+    motion: Counter[str] = Counter()
+    failed: dict[str, Failure] = {}
+    for group in row_groups(layout.runs, columns=COLUMNS):
+        for row in with_words(group).to_pylist():
+            if row["status"] == "ok":
+                rub[bool(row["rub"])] += 1
+                motion[row["motion"]] += 1
+            else:
+                failed[row["status"]] = _with(failed.get(row["status"]), row)
+    failures = sorted(failed.values(), key=lambda failure: (-failure.count, failure.status))
+    return Outcome(rub=rub[True], no_rub=rub[False], motion=dict(motion.most_common()), failures=tuple(failures))
 
 
-def _failures(rows: Iterable[dict[str, Any]]) -> list[Failure]:
-    failed: dict[str, list[dict[str, Any]]] = {}
-    for row in rows:
-        failed.setdefault(row["status"], []).append(row)
-    found = []
-    for status, mine in failed.items():
-        shortest = min(mine, key=lambda row: (len(row["reason"]), row["run_id"]))
-        found.append(Failure(status=status, count=len(mine), run_id=shortest["run_id"], reason=shortest["reason"]))
-    return sorted(found, key=lambda failure: (-failure.count, failure.status))
+def _with(before: Failure | None, row: dict[str, Any]) -> Failure:
+    """Count one more failed run. The shortest reason stands for all, of equal ones that of the first run."""
+    mine = Failure(status=row["status"], count=1, run_id=row["run_id"], reason=row["reason"])
+    if before is None:
+        return mine
+    shortest = min(before, mine, key=lambda failure: (len(failure.reason), failure.run_id))
+    return replace(shortest, count=before.count + 1)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,7 +83,10 @@ class Unfinished:
 
 def finished_runs(out: Path | str) -> int:
     """Count the finished runs of an unfinished data set in the directory `out`."""
-    return len(list((Layout(Path(out)).staging / "runs").glob("run-*[0-9].parquet")))
+    layout = Layout(Path(out))
+    closed = [path.stem for path in layout.closed("").parent.glob("*.json")]
+    begun = {path.name for path in layout.kept("").glob("*")} - set(closed)
+    return sum(read_closed(layout, name).runs for name in closed) + sum(len(kept_runs(layout, name)) for name in begun)
 
 
 def unfinished(directory: Path) -> Unfinished | None:

@@ -7,7 +7,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -16,7 +16,7 @@ from multiprocessing import connection
 from multiprocessing.context import SpawnContext, SpawnProcess
 from pathlib import Path
 from types import ModuleType
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from rubgen.cache_root import cache_folder
 from rubgen.errors import RubgenError, warn
@@ -67,60 +67,143 @@ def _text(path: Path) -> str:
         return ""
 
 
+class Workers:
+    """Some new processes, each with one BLAS thread. Where one dies, all are replaced."""
+
+    died: tuple[type[BaseException], ...] = (BrokenProcessPool,)
+    """Errors that say that a process died."""
+
+    def __init__(self, number: int) -> None:
+        """Start them. Raises OSError, ImportError or RuntimeError where the system cannot."""
+        self._number = number
+        self.start()
+
+    @property
+    def number(self) -> int:
+        """Number of processes."""
+        return self._number
+
+    def start(self) -> None:
+        """Start the processes, which have ended or were never there."""
+        self._context = _OwnMain()
+        with _interrupts_delayed():
+            self._pool = ProcessPoolExecutor(self._number, self._context, initializer=_start_worker)
+        with _interrupts_delayed():  # anew: Python's tracker of semaphores, just started, lets Ctrl-C through again
+            self._pool.submit(os.getpid)  # the first job starts every process
+
+    def submit(self, work: Callable[..., R], job: tuple[object, ...]) -> Future[R]:
+        """Ask one process to call `work(*job)`."""
+        return self._pool.submit(work, *job)
+
+    def end(self) -> None:
+        """End all processes at once."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        for process in self._context.workers:
+            if process.pid is not None:
+                process.terminate()
+                process.join()
+
+    def replaced(self, running: dict[Future[R], tuple[object, ...]]) -> tuple[str, list[Future[R]]]:
+        """Say how the process ended that broke the pool. Return the jobs to be done again: all that are `running`."""
+        self.end()
+        how = _how_it_ended(self._context)
+        self.start()
+        return how, list(running)
+
+
+class Pool(Protocol):
+    """Worker processes, here or on a cluster."""
+
+    died: tuple[type[BaseException], ...]
+
+    @property
+    def number(self) -> int:
+        """Number of workers now."""
+        ...
+
+    def submit(self, work: Callable[..., R], job: tuple[object, ...]) -> Future[R]:
+        """Ask one worker to call `work(*job)`."""
+        ...
+
+    def replaced(self, running: dict[Future[R], tuple[object, ...]]) -> tuple[str, list[Future[R]]]:
+        """Replace a worker that died. Return how it died and the running jobs that must be done again."""
+        ...
+
+
 @contextmanager
-def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor | None]:
-    """Yield a pool of `workers` new processes, each with one BLAS thread. They are ended at once with the block.
+def worker_pool(workers: int) -> Iterator[Workers | None]:
+    """Yield `workers` new processes, each with one BLAS thread. They are ended at once with the block.
 
     Yields None for one worker and, with a warning, where no process can be started: `unordered` then works in this
-    process. Raises RubgenError where a process dies or memory runs out.
+    process. Raises RubgenError where memory runs out.
     """
-    context = _OwnMain()
     cache_folder("kernels")  # found, and where it is a temporary one handed on, before there are workers
     with _environment(ONE_THREAD if workers > 1 else {}):
-        pool = _started(workers, context) if workers > 1 else None
+        pool = _started(workers) if workers > 1 else None
         try:
             yield pool
-        except BrokenProcessPool:
-            _end(pool, context)
-            raise RubgenError(
-                f"a worker process {_how_it_ended(context)}; what is finished is kept: the same command makes the "
-                "rest, and with --workers 1 it starts no worker process"
-            ) from None
         except MemoryError as error:
             raise RubgenError(
                 f"memory ran out ({error or 'no more is known'}); what is finished is kept: "
                 "give the same command again, with fewer --workers"
             ) from None
         finally:
-            _end(pool, context)
+            if pool is not None:
+                pool.end()
 
 
 def unordered(
-    pool: ProcessPoolExecutor | None, workers: int, work: Callable[..., R], jobs: Iterable[tuple[object, ...]]
+    pool: Pool | None, work: Callable[..., R], jobs: Iterable[tuple[object, ...]], *, tries: int = 1
 ) -> Iterator[R]:
     """Call `work(*job)` for every job and yield the results as they finish, in any order.
 
-    Only a few jobs are submitted at a time.
+    Only a few jobs are submitted at a time. Where a process dies, others do the jobs that are lost. Raises RubgenError
+    where processes die `tries` times without one result in between.
 
-    - pool: from `worker_pool`; None works in this process.
-    - workers: number of its processes.
+    - pool: from `worker_pool` or a cluster; None works in this process.
     - work: a function that can be pickled.
-    - jobs: the tuples of its arguments.
+    - jobs: the tuples of its arguments. After its end more may follow from results.
     """
     if pool is None:
         yield from (work(*job) for job in jobs)
         return
     remaining = iter(jobs)
-    running: set[Future[R]] = set()
+    running: dict[Future[R], tuple[object, ...]] = {}
+    deaths = 0
     while True:
-        room = workers * WAITING_PER_WORKER - len(running)
-        with _interrupts_delayed():
-            running |= {pool.submit(work, *job) for job in islice(remaining, room)}
-        if not running:
-            return
-        done, running = wait(running, return_when=FIRST_COMPLETED)
-        for future in done:
-            yield future.result()
+        try:
+            with _interrupts_delayed():
+                for job in islice(remaining, max(0, pool.number * WAITING_PER_WORKER - len(running))):
+                    running[_submitted(pool, work, job, running)] = job
+            if not running:
+                return
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                result = future.result()
+                del running[future]
+                deaths = 0
+                yield result
+        except pool.died:
+            deaths += 1
+            how, lost = pool.replaced(running)
+            if deaths >= tries:
+                raise RubgenError(
+                    f"a worker process {how}; what is finished is kept: the same command makes the "
+                    "rest, and with --workers 1 it starts no worker process"
+                ) from None
+            warn(f"a worker process {how}; it is replaced, and what it was doing is done again")
+            again = [running.pop(future) for future in lost]
+            running |= {pool.submit(work, job): job for job in again}
+
+
+def _submitted(
+    pool: Pool, work: Callable[..., R], job: tuple[object, ...], running: dict[Future[R], tuple[object, ...]]
+) -> Future[R]:
+    """Submit a job. Where the pool is broken, note the job before the error passes on."""
+    try:
+        return pool.submit(work, job)
+    except pool.died:
+        running[Future()] = job
+        raise
 
 
 class _Worker(SpawnProcess):
@@ -149,35 +232,24 @@ class _OwnMain(SpawnContext):
         return self.workers[-1]
 
 
-def _started(workers: int, context: _OwnMain) -> ProcessPoolExecutor | None:
-    pool, reason = None, "this process is a daemon, which may have no children"
+def _started(workers: int) -> Workers | None:
+    reason = "this process is a daemon, which may have no children"
     if not multiprocessing.current_process().daemon:
         try:
-            with _interrupts_delayed():
-                pool = ProcessPoolExecutor(workers, context, initializer=_start_worker)
-            with _interrupts_delayed():  # anew: Python's tracker of semaphores, just started, lets Ctrl-C through again
-                pool.submit(os.getpid)  # the first job starts every process
+            return Workers(workers)
         except (OSError, ImportError, RuntimeError) as error:  # no semaphores, too many processes, threads or files
             reason = error.strerror or str(error) if isinstance(error, OSError) else str(error)
-        else:
-            return pool
-    _end(pool, context)
     warn(f"worker processes cannot be started ({reason}); the work goes on in one process")
     return None
 
 
-def _end(pool: ProcessPoolExecutor | None, context: _OwnMain) -> None:
-    if pool is not None:
-        pool.shutdown(wait=False, cancel_futures=True)
-    for process in context.workers:
-        if process.pid is not None:
-            process.terminate()
-            process.join()
-
-
 def _how_it_ended(context: _OwnMain) -> str:
     """Say how the process ended that broke the pool, from the system. The pool ends the others by SIGTERM."""
-    codes = [code for process in context.workers if (code := _exit_code(process)) is not None]
+    return how_ended([code for process in context.workers if (code := _exit_code(process)) is not None])
+
+
+def how_ended(codes: Sequence[int]) -> str:
+    """Say how a process ended, from exit codes of which SIGTERM counts least."""
     if not codes:
         return "ended, and the system does not say how"
     first = next((code for code in codes if code != -signal.SIGTERM), -signal.SIGTERM)

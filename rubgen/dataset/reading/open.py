@@ -34,6 +34,7 @@ from rubgen.io.parquet.write import recipe_schema
 from rubgen.machine.problems import nearest
 from rubgen.measurement.channel import Float32Array
 from rubgen.scenario import Recipe, Sensing
+from rubgen.scenario.run_id import run_id_of
 from rubgen.sensors.kinds.once_per_rev import OncePerRev
 from rubgen.sensors.sensor_set import SensorSet
 
@@ -315,7 +316,7 @@ class DataSet:
                 )
             read, path = found[0]
             run = read(path, names)
-            if run_id != f"run-{run.index:06d}":
+            if run_id != run_id_of(run.index):
                 raise UserError(f"{path}: holds the run of index {run.index}; run rubgen verify")
             yield run_id, pa.table({name: [run.channels[name]] for name in names} | {PULSES: [run.once_per_rev]})
 
@@ -334,7 +335,7 @@ class DataSet:
 
     def _no_such_run(self, run_id: object) -> str:
         digits = re.sub(r"[^0-9]", "", str(run_id))[:9]
-        meant = f"run-{int(digits or -1):06d}"
+        meant = run_id_of(int(digits)) if digits else ""
         hint = f"did you mean {meant}? " if meant in self else ""
         return f"no run {run_id!r}; {hint}give one of {', '.join(islice(self, 3))}{', ...' if len(self) > 3 else ''}"
 

@@ -23,6 +23,7 @@ from rubgen.measurement.channel import NUMBERS, TEXTS, Channel, Recording
 from rubgen.measurement.motion import ContactIntervals
 from rubgen.scenario import Scenario
 from rubgen.scenario.load import check_recipe
+from rubgen.scenario.run_id import index_of
 from rubgen.viz.replay import Replay, sorted_touches
 
 ONLY_READ: dict[str, bool | int | float | str | list[str]] = {
@@ -134,7 +135,7 @@ def scenario_of(data: DataSet, run_id: str) -> Scenario:
     recipe, row = data.manifest.identity.recorded(), data.row(run_id)
     if row["status"] == "ok" and "machine_candidate" in row:
         recipe.remember(row["machine_number"], row["machine_candidate"])
-    return recipe.scenario(int(run_id.removeprefix("run-")))
+    return recipe.scenario(index_of(run_id))
 
 
 def _from_data_set(directory: Path, run_id: str | None, where: str | None) -> FoundReplay:

@@ -17,6 +17,7 @@ from rubgen.io.columns import every_scalar
 from rubgen.labels.compact_record import SCALARS, TOUCHES
 from rubgen.labels.labels import Motion
 from rubgen.scenario import Sensing
+from rubgen.scenario.run_id import run_id_of
 from rubgen.sensors.sensor_set import SensorSet
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def check_runs(table: pa.Table, manifest: Manifest, path: Path) -> None:
     `path` is the file that `table` was read from. Raises UserError, one line with file and run, where they do not fit.
     """
     names = table["run_id"].to_pylist()
-    if names != [f"run-{index:06d}" for index in range(manifest.runs)]:
+    if names != [run_id_of(index) for index in range(manifest.runs)]:
         raise UserError(f"{path}: its runs are not the {manifest.runs} of the manifest; generate the set again")
     if Counter(table["status"].to_pylist()) != Counter(manifest.status):
         raise UserError(f"{path}: its status counts are not those of the manifest; generate the set again")

@@ -19,6 +19,7 @@ from rubgen.io.mcap.read import run_of
 from rubgen.io.mcap.records import DamageError, damage_found
 from rubgen.measurement.channel import quantity_key
 from rubgen.scenario import Scenario
+from rubgen.scenario.run_id import run_id_of
 
 TOPICS = ("/contact", "/once_per_rev", "/labels/motion")
 CHANNEL_KEYS = ("unit", "quantity", "axis", "location", "range_min", "range_max", "resolution", "sensitivity")
@@ -56,7 +57,7 @@ def _raised(check: Callable[[], object]) -> list[str]:
 
 def _check_run(content: McapContent, run_id: str) -> None:
     index = run_of(content).scenario.get("index")
-    recorded = f"run-{index:06d}" if isinstance(index, int) else "no run that rubgen numbers"
+    recorded = run_id_of(index) if isinstance(index, int) else "no run that rubgen numbers"
     if run_id and run_id != recorded:
         raise DamageError(f"holds {recorded}")
 

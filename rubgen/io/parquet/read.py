@@ -121,14 +121,15 @@ def read_table(path: Path, columns: Sequence[str] | None = None, asked_bytes: fl
         return file.read(columns)
 
 
-def row_groups(path: Path, asked_bytes: float = 0.0) -> Iterator[pa.Table]:
+def row_groups(path: Path, asked_bytes: float = 0.0, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
     """Yield the row groups of the Parquet file at `path` one by one, with every page checked. Only one is in memory.
 
-    `asked_bytes` is as in `ParquetSource`. Raises UserError where the file is missing or damaged.
+    With `columns` only these are read. `asked_bytes` is as in `ParquetSource`.
+    Raises UserError where the file is missing or damaged.
     """
     with ParquetSource(path, asked_bytes) as file:
         for group in range(file.num_row_groups):
-            yield file.read_row_group(group)
+            yield file.read_row_group(group, columns)
 
 
 @contextmanager

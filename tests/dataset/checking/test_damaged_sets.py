@@ -13,7 +13,7 @@ from rubgen.io.parquet.write import write_table
 from rubgen.report.figures import Choice, make_figure
 from rubgen.report.page import render_report
 
-SECTIONS = "sections/train-00000-of-00001.parquet"
+SECTIONS = "sections/train-00000.parquet"
 
 
 def rewritten(path, column, value, row=1):

@@ -131,7 +131,7 @@ def test_turns_that_scatter_are_no_contradiction():
 
 @pytest.fixture(scope="module")
 def rub_row(small_set):
-    table = pq.read_table(small_set.directory / "data/train-00000-of-00001.parquet")
+    table = pq.read_table(small_set.directory / "data/train-00000.parquet")
     rows = [(row, row_signals(table, i)) for i, row in enumerate(with_words(table).to_pylist())]
     row, signals = next((row, signals) for row, signals in rows if row["rub"])
     return row | {"motion": "period-1", "motion_blisk": "period-1", "motion_casing": "period-1"}, signals

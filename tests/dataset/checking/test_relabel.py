@@ -17,7 +17,7 @@ from rubgen.io.parquet.write import write_table
 from rubgen.labels.to_json import FROM_TAPS
 from rubgen.sensors.load import default_sensor_set
 
-SECTIONS = "sections/train-00000-of-00001.parquet"
+SECTIONS = "sections/train-00000.parquet"
 
 
 def run_command(*arguments):
@@ -77,7 +77,7 @@ def test_lost_sections_are_named(copied_set):
 
 
 def test_sections_are_those_of_the_manifest(copied_set):
-    (copied_set / "sections/._train-00000-of-00001.parquet").write_bytes(b"of a file server")
+    (copied_set / "sections/._train-00000.parquet").write_bytes(b"of a file server")
     (copied_set / "sections/old.parquet").write_bytes(b"stray")
     assert relabel(copied_set).differences == ()
 
@@ -98,7 +98,7 @@ def test_verify_holds_sections_to_the_runs(copied_set):
     write_table([table.slice(1)], SCHEMA, copied_set / SECTIONS)
     assert any(problem.startswith(f"{SECTIONS}: has ") for problem in rubgen.verify(copied_set))
     reseal(copied_set)
-    assert rubgen.verify(copied_set) == ["run-000000: is ok, but has no section"]
+    assert rubgen.verify(copied_set) == ["run-000000: is ok, but has no row in sections"]
     with pytest.raises(UserError, match=r"sections/ and runs\.parquet differ at run-000000; check it: rubgen verify"):
         relabel(copied_set)
 

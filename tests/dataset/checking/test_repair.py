@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 
 import pytest
 
@@ -9,7 +10,7 @@ import rubgen
 from rubgen.cli import main
 from rubgen.dataset.checking.repair import repair
 
-DATA = "data/train-00000-of-00001.parquet"
+DATA = "data/train-00000.parquet"
 
 
 def run_command(*arguments):
@@ -47,33 +48,31 @@ def test_texts_come_back_to_the_same_bytes(name, loss, shown_set, copied_shown_s
 
 @pytest.mark.parametrize("with_mcap", [True, False])
 def test_a_recording_comes_back(with_mcap, shown_set, copied_shown_set, short_records):
-    path = copied_shown_set / "rrd/run-000001.rrd"
+    path = copied_shown_set / "rrd/0000/run-000001.rrd"
     path.write_bytes(path.read_bytes()[:-100])
     if not with_mcap:
-        (copied_shown_set / "mcap/run-000001.mcap").unlink()
+        (copied_shown_set / "mcap/0000/run-000001.mcap").unlink()
     done = repair(copied_shown_set)
-    assert done.made == ("rrd/run-000001.rrd", "derived.json")
+    assert done.made == ("rrd/0000/run-000001.rrd", "derived.json")
     left = [finding.text for finding in done.left]
-    assert left == ([] if with_mcap else ["mcap/run-000001.mcap: listed in the manifest, but not there"])
+    assert left == ([] if with_mcap else ["mcap/0000/run-000001.mcap: listed in the manifest, but not there"])
     before, after = contents(shown_set), contents(copied_shown_set)
     assert {name for name in after if after[name] != before[name]} <= set(done.made)
 
 
 def test_a_whole_folder_of_recordings_comes_back(copied_shown_set):
-    for path in (copied_shown_set / "rrd").iterdir():
-        path.unlink()
-    (copied_shown_set / "rrd").rmdir()
+    shutil.rmtree(copied_shown_set / "rrd")
     assert repair(copied_shown_set).left == ()
 
 
 def test_a_damaged_recording_of_other_versions_gets_no_new_digest(copied_shown_set, monkeypatch):
-    path = copied_shown_set / "rrd/run-000001.rrd"
+    path = copied_shown_set / "rrd/0000/run-000001.rrd"
     path.write_bytes(b"damaged")
-    (copied_shown_set / "mcap/run-000001.mcap").unlink()
+    (copied_shown_set / "mcap/0000/run-000001.mcap").unlink()
     monkeypatch.setattr("rubgen.dataset.manifest.version", lambda _name: "9.9")
     done = repair(copied_shown_set)
     assert done.made == ()
-    assert any(finding.text.startswith("rrd/run-000001.rrd: has 7 bytes") for finding in done.left)
+    assert any(finding.text.startswith("rrd/0000/run-000001.rrd: has 7 bytes") for finding in done.left)
 
 
 def test_data_and_strays_are_left_as_they_are(copied_shown_set, capsys):

@@ -20,7 +20,7 @@ from rubgen.dataset.checking.verify import findings
 from rubgen.errors import UserError
 from rubgen.io.parquet.write import write_table
 
-DATA = "data/train-00000-of-00001.parquet"
+DATA = "data/train-00000.parquet"
 RUNS = ["run-000000", "run-000001"]
 
 
@@ -94,20 +94,20 @@ def test_a_flipped_bit_in_any_place_of_the_digests_is_found(copied_shown_set):
 
 @pytest.mark.parametrize("kind", ["mcap", "rrd"])
 def test_swapped_files_are_found_even_where_digests_were_made_to_fit(kind, copied_shown_set):
-    first, second = (copied_shown_set / f"{kind}/{run}.{kind}" for run in RUNS)
+    first, second = (copied_shown_set / f"{kind}/0000/{run}.{kind}" for run in RUNS)
     first.rename(copied_shown_set / "aside")
     second.rename(first)
     (copied_shown_set / "aside").rename(second)
-    assert {f"{kind}/{run}.{kind}" for run in RUNS} <= {p.split(": ")[0] for p in rubgen.verify(copied_shown_set)}
+    assert {f"{kind}/0000/{run}.{kind}" for run in RUNS} <= {p.split(": ")[0] for p in rubgen.verify(copied_shown_set)}
     reseal(copied_shown_set)
     seal_derived(copied_shown_set)
     assert rubgen.verify(copied_shown_set) == [
-        f"{kind}/{RUNS[0]}.{kind}: holds {RUNS[1]}",
-        f"{kind}/{RUNS[1]}.{kind}: holds {RUNS[0]}",
+        f"{kind}/0000/{RUNS[0]}.{kind}: holds {RUNS[1]}",
+        f"{kind}/0000/{RUNS[1]}.{kind}: holds {RUNS[0]}",
     ]
 
 
-@pytest.mark.parametrize("name", ["rrd/run-000001.rrd", DATA, "mcap/run-000000.mcap"])
+@pytest.mark.parametrize("name", ["rrd/0000/run-000001.rrd", DATA, "mcap/0000/run-000000.mcap"])
 def test_a_cut_file_is_found_by_its_size(name, copied_shown_set):
     path = copied_shown_set / name
     size = path.stat().st_size
@@ -118,7 +118,7 @@ def test_a_cut_file_is_found_by_its_size(name, copied_shown_set):
 
 @pytest.mark.parametrize(
     ("name", "column"),
-    [(DATA, "proximity_x"), ("runs.parquet", "friction"), ("sections/train-00000-of-00001.parquet", "section")],
+    [(DATA, "proximity_x"), ("runs.parquet", "friction"), ("sections/train-00000.parquet", "section")],
 )
 def test_a_damaged_row_group_names_its_runs(name, column, copied_shown_set):
     path = copied_shown_set / name
@@ -144,7 +144,7 @@ def test_names_of_a_damaged_group_follow_from_its_place(copied_shown_set):
     assert any("row group 0 with run-000000, run-000001, column run_id" in p for p in rubgen.verify(copied_shown_set))
 
 
-@pytest.mark.parametrize("name", ["stray.txt", "data/train-00001-of-00002.parquet", "rrd/run-000001 (1).rrd", "new/x"])
+@pytest.mark.parametrize("name", ["stray.txt", "data/train-00001.parquet", "rrd/0000/run-000001 (1).rrd", "new/x"])
 def test_a_stray_file_is_found(name, copied_shown_set):
     (copied_shown_set / name).parent.mkdir(exist_ok=True)
     (copied_shown_set / name).write_text("x")
@@ -170,7 +170,7 @@ def rubgen_report(directory):
     write_report(directory, directory / "report.html")
 
 
-@pytest.mark.parametrize("name", [DATA, "README.md", "rrd/run-000000.rrd", "derived.json"])
+@pytest.mark.parametrize("name", [DATA, "README.md", "rrd/0000/run-000000.rrd", "derived.json"])
 def test_a_link_out_of_the_set_is_found(name, copied_shown_set, tmp_path):
     (copied_shown_set / name).rename(tmp_path / "outside")
     (copied_shown_set / name).symlink_to(tmp_path / "outside")
@@ -181,26 +181,28 @@ def test_a_folder_that_is_a_link_out_of_the_set_is_found(copied_shown_set, tmp_p
     (copied_shown_set / "mcap").rename(tmp_path / "outside")
     (copied_shown_set / "mcap").symlink_to(tmp_path / "outside")
     found = [p for p in rubgen.verify(copied_shown_set) if "is a link out of the set" in p]
-    assert [p.split(": ")[0] for p in found] == [f"mcap/{run}.mcap" for run in RUNS]
+    assert [p.split(": ")[0] for p in found] == [f"mcap/0000/{run}.mcap" for run in RUNS]
 
 
-@pytest.mark.parametrize("name", [DATA, "runs.parquet", "mcap/run-000000.mcap", "rrd/run-000000.rrd", "derived.json"])
+@pytest.mark.parametrize(
+    "name", [DATA, "runs.parquet", "mcap/0000/run-000000.mcap", "rrd/0000/run-000000.rrd", "derived.json"]
+)
 def test_a_pipe_does_not_hang(name, copied_shown_set):
     (copied_shown_set / name).unlink()
     os.mkfifo(copied_shown_set / name)
     assert f"{name}: is no regular file" in rubgen.verify(copied_shown_set)
 
 
-@pytest.mark.parametrize("name", ["data", "mcap/run-000000.mcap/inner"])
+@pytest.mark.parametrize("name", ["data", "mcap/0000/run-000000.mcap/inner"])
 def test_a_folder_in_the_place_of_a_file_is_found(name, copied_shown_set):
     if name == "data":
         shutil.rmtree(copied_shown_set / "data")
         (copied_shown_set / "data").write_text("x")
         assert any(p.startswith(f"{DATA}: ") for p in rubgen.verify(copied_shown_set))
         return
-    (copied_shown_set / "mcap/run-000000.mcap").unlink()
+    (copied_shown_set / "mcap/0000/run-000000.mcap").unlink()
     (copied_shown_set / name).mkdir(parents=True)
-    assert "mcap/run-000000.mcap: is no regular file" in rubgen.verify(copied_shown_set)
+    assert "mcap/0000/run-000000.mcap: is no regular file" in rubgen.verify(copied_shown_set)
 
 
 def test_a_file_that_cannot_be_read_is_a_finding(copied_shown_set, monkeypatch):
@@ -212,7 +214,7 @@ def test_a_file_that_cannot_be_read_is_a_finding(copied_shown_set, monkeypatch):
         return real(self, *arguments, **options)
 
     monkeypatch.setattr(Path, "open", refuse)
-    assert rubgen.verify(copied_shown_set) == ["mcap/run-000000.mcap: cannot be read (Permission denied)"]
+    assert rubgen.verify(copied_shown_set) == ["mcap/0000/run-000000.mcap: cannot be read (Permission denied)"]
 
 
 @pytest.mark.parametrize(

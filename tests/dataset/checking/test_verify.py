@@ -18,7 +18,7 @@ from rubgen.io.parquet.words import with_words
 from rubgen.io.parquet.write import write_table
 from rubgen.scenario import Sensing
 
-DATA = "data/train-00000-of-00001.parquet"
+DATA = "data/train-00000.parquet"
 
 SENSING = Sensing()
 
@@ -47,7 +47,7 @@ def test_a_whole_set_has_no_problem(small_set):
     assert rubgen.verify(small_set.directory) == []
 
 
-@pytest.mark.parametrize("name", [DATA, "runs.parquet", "README.md", "mcap/run-000000.mcap"])
+@pytest.mark.parametrize("name", [DATA, "runs.parquet", "README.md", "mcap/0000/run-000000.mcap"])
 def test_a_flipped_bit_is_found(name, copied_set):
     path = copied_set / name
     content = bytearray(path.read_bytes())
@@ -59,8 +59,8 @@ def test_a_flipped_bit_is_found(name, copied_set):
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("mcap/run-000000.mcap", "mcap/run-000000.mcap: "),
-        (DATA, "train-00000-of-00001.parquet: damaged"),
+        ("mcap/0000/run-000000.mcap", "mcap/0000/run-000000.mcap: "),
+        (DATA, "train-00000.parquet: damaged"),
     ],
 )
 def test_damage_is_found_even_where_the_manifest_was_made_to_fit(name, message, copied_set):
@@ -73,15 +73,15 @@ def test_damage_is_found_even_where_the_manifest_was_made_to_fit(name, message, 
     assert any(message in problem for problem in rubgen.verify(copied_set))
 
 
-@pytest.mark.parametrize("name", [DATA, "mcap/run-000000.mcap"])
+@pytest.mark.parametrize("name", [DATA, "mcap/0000/run-000000.mcap"])
 def test_a_missing_file_is_found(name, copied_set):
     (copied_set / name).unlink()
     assert f"{name}: listed in the manifest, but not there" in rubgen.verify(copied_set)
 
 
 def test_a_stranger_is_found(copied_set):
-    (copied_set / "mcap/run-000009.mcap").write_bytes(b"x")
-    assert rubgen.verify(copied_set) == ["mcap/run-000009.mcap: not listed in the manifest"]
+    (copied_set / "mcap/0000/run-000009.mcap").write_bytes(b"x")
+    assert rubgen.verify(copied_set) == ["mcap/0000/run-000009.mcap: not listed in the manifest"]
 
 
 def test_a_changed_manifest_is_refused(copied_set):
@@ -193,12 +193,12 @@ def test_recordings_are_listed_by_name_and_their_digests_are_in_a_file_of_their_
     output = {"formats": ["rrd"], "signal_seconds": 0.1}
     rubgen.generate({"name": "a", "runs": 1, "machine": "zeng2019", "output": output}, tmp_path / "set", workers=1)
     manifest = json.loads((tmp_path / "set/manifest.json").read_text())
-    assert manifest["derived"] == ["rrd/run-000000.rrd"]
+    assert manifest["derived"] == ["rrd/0000/run-000000.rrd"]
     digests = json.loads((tmp_path / "set/derived.json").read_text())["files"]
     assert [entry["path"] for entry in digests] == manifest["derived"]
     assert not any("rrd/" in problem for problem in rubgen.verify(tmp_path / "set"))
-    path = tmp_path / "set/rrd/run-000000.rrd"
+    path = tmp_path / "set/rrd/0000/run-000000.rrd"
     path.write_bytes(path.read_bytes()[:-2000])
-    assert any(problem.startswith("rrd/run-000000.rrd: has ") for problem in rubgen.verify(tmp_path / "set"))
+    assert any(problem.startswith("rrd/0000/run-000000.rrd: has ") for problem in rubgen.verify(tmp_path / "set"))
     path.unlink()
-    assert "rrd/run-000000.rrd: listed in the manifest, but not there" in rubgen.verify(tmp_path / "set")
+    assert "rrd/0000/run-000000.rrd: listed in the manifest, but not there" in rubgen.verify(tmp_path / "set")

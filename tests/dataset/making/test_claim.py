@@ -11,12 +11,13 @@ import pytest
 from filelock import FileLock
 
 import rubgen
-from rubgen.dataset.checking.inventory import unlisted_files
+from rubgen.dataset.checking.inventory import size_findings, unlisted_files
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.making import generate as generating
 from rubgen.dataset.making.claim import check_same
-from rubgen.dataset.manifest import Identity, read_manifest
-from rubgen.errors import RubgenWarning, UserError
+from rubgen.dataset.making.keep import Keeper
+from rubgen.dataset.manifest import Identity
+from rubgen.errors import RubgenError, RubgenWarning, UserError
 
 RECIPE = {"name": "fake", "runs": 2, "machine": "zeng2019", "output": {"signal_seconds": 0.1, "formats": ["mcap"]}}
 OPERATIONS = ("mkdir", "rename", "replace", "fsync", "unlink", "rmdir")
@@ -33,12 +34,11 @@ def fake_simulate(short_records, make_synthetic_run, monkeypatch):
     template = make_synthetic_run(seconds=0.1)
     monkeypatch.setattr("rubgen.pipeline.simulate", lambda scenario: replace(template, scenario=scenario))
     monkeypatch.setattr(generating, "warm_up", lambda *_: [])
-    # Made-up labels and signals contradict each other; files are compared here byte by byte instead.
-    monkeypatch.setattr(generating, "findings", _stray_files)
+    monkeypatch.setattr(generating, "size_findings", _with_strays)
 
 
-def _stray_files(directory):
-    return list(unlisted_files(Layout(directory), read_manifest(Layout(directory))))
+def _with_strays(layout, manifest):
+    return [*size_findings(layout, manifest), *unlisted_files(layout, manifest)]
 
 
 def make(out, **changes):
@@ -219,7 +219,7 @@ def test_a_file_system_without_locks_has_a_lock_file(tmp_path, monkeypatch, erro
 
 
 def test_a_damaged_identity_says_so_and_deletes_nothing(tmp_path, monkeypatch):
-    monkeypatch.setattr(generating, "stage_run", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    monkeypatch.setattr(Keeper, "begin", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
     with pytest.raises(KeyboardInterrupt):
         make(tmp_path / "set")
     Layout(tmp_path / "set").identity.write_text('{"recipe": {')
@@ -227,21 +227,37 @@ def test_a_damaged_identity_says_so_and_deletes_nothing(tmp_path, monkeypatch):
         make(tmp_path / "set")
 
 
-def test_a_staged_run_that_lost_a_file_or_is_damaged_is_made_again(tmp_path, monkeypatch):
+def test_what_was_kept_and_is_lost_or_damaged_since_is_made_again(tmp_path, monkeypatch):
     make(tmp_path / "whole")
 
     def stop(*_):
         raise KeyboardInterrupt
 
-    for spoil in ("mcap/run-000001.mcap", ".staging/sections/run-000001.parquet", ".staging/runs/run-000001.parquet"):
+    for where, spoil in (("close_shard", "mcap/0000/run-000001.mcap"), ("close_shard", ".staging/kept/*/*.kept")):
         with monkeypatch.context() as patch:
-            patch.setattr(generating, "assemble", stop)
+            patch.setattr(f"rubgen.dataset.making.plan.{where}", stop)
             with pytest.raises(KeyboardInterrupt):
                 make(tmp_path / "set")
-        (tmp_path / "set" / spoil).write_bytes(b"") if "runs/" in spoil else (tmp_path / "set" / spoil).unlink()
+        (path,) = list((tmp_path / "set").glob(spoil))[-1:]
+        path.write_bytes(path.read_bytes()[:-1]) if "kept" in spoil else path.unlink()
         assert make(tmp_path / "set").made == 1
         assert tree(tmp_path / "set") == tree(tmp_path / "whole")
         shutil.rmtree(tmp_path / "set")
+
+
+@pytest.mark.parametrize("spoil", ["runs", "sections", "closed"])
+def test_a_closed_shard_that_lost_a_file_is_made_again(tmp_path, monkeypatch, spoil):
+    make(tmp_path / "whole")
+    with monkeypatch.context() as patch:
+        patch.setattr(generating, "finish_set", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+        with pytest.raises(KeyboardInterrupt):
+            make(tmp_path / "set")
+    (path,) = (tmp_path / "set/.staging" / spoil).iterdir()
+    path.write_bytes(b"{}") if spoil == "closed" else path.unlink()
+    with pytest.raises(RubgenError, match="give the same command again, it makes this shard anew"):
+        make(tmp_path / "set")
+    assert make(tmp_path / "set").made == 2
+    assert tree(tmp_path / "set") == tree(tmp_path / "whole")
 
 
 def test_another_recipe_is_told_by_the_name_of_the_sensor_that_differs(tmp_path):

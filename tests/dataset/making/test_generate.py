@@ -10,8 +10,8 @@ import pytest
 import rubgen
 from rubgen.dataset.files import sha256_of
 from rubgen.dataset.making import generate as generating
+from rubgen.dataset.making.keep import Keeper
 from rubgen.dataset.making.outcome import finished_runs
-from rubgen.dataset.making.stage import stage_run
 from rubgen.errors import RubgenWarning, UserError
 from rubgen.solver.response import Status
 
@@ -31,6 +31,18 @@ def fake_simulate(short_records, make_synthetic_run, monkeypatch):
     return made
 
 
+def before_run(patch, stopped, error):
+    """Raise `error` in the worker before it makes run number `stopped`."""
+    true = Keeper.begin
+
+    def begin(keeper, index):
+        if index == stopped:
+            raise error
+        true(keeper, index)
+
+    patch.setattr(Keeper, "begin", begin)
+
+
 def tree(directory):
     """Path and content of every file but the derived ones and their digests."""
     files = [path for path in sorted(directory.rglob("*")) if path.is_file() and path.suffix != ".rrd"]
@@ -44,15 +56,15 @@ def recipe(**changes):
 
 def test_the_set_has_every_file_and_nothing_else(small_set):
     names = {path.relative_to(small_set.directory).as_posix() for path in small_set.directory.rglob("*.*")}
-    exports = {f"mcap/run-{i:06d}.mcap" for i in range(4)}
+    exports = {f"mcap/0000/run-{i:06d}.mcap" for i in range(4)}
     assert names == exports | {
         "README.md",
         "croissant.json",
-        "data/train-00000-of-00001.parquet",
+        "data/train-00000.parquet",
         "manifest.json",
         "manifest.json.sha256",
         "runs.parquet",
-        "sections/train-00000-of-00001.parquet",
+        "sections/train-00000.parquet",
     }
     assert small_set.made.made == small_set.made.runs == 4
     assert small_set.made.status == {"ok": 4}
@@ -94,18 +106,13 @@ def test_a_finished_set_is_left_alone(small_set, fake_simulate):
 def test_an_interrupted_set_is_completed_to_the_same_bytes(fake_simulate, tmp_path, monkeypatch):
     rubgen.generate(recipe(), tmp_path / "whole", workers=1)
 
-    def interrupted(scenario, root, formats):
-        if scenario.index == 2:
-            raise KeyboardInterrupt
-        return stage_run(scenario, root, formats)
-
     with monkeypatch.context() as patch:
-        patch.setattr(generating, "stage_run", interrupted)
+        before_run(patch, 2, KeyboardInterrupt())
         with pytest.raises(KeyboardInterrupt):
             rubgen.generate(recipe(), tmp_path / "parts", workers=1)
     assert finished_runs(tmp_path / "parts") == 2
     assert not (tmp_path / "parts/manifest.json").exists()
-    (tmp_path / "parts/mcap/run-000002.part.mcap").write_bytes(b"half-written")
+    (tmp_path / "parts/mcap/0000/run-000002.part.mcap").write_bytes(b"half-written")
     fake_simulate.clear()
     made = rubgen.generate(recipe(), tmp_path / "parts", workers=1)
     assert (made.made, made.runs, fake_simulate) == (1, 3, [2])
@@ -139,9 +146,12 @@ def test_failed_runs_are_listed_and_have_no_files(fake_simulate, tmp_path, make_
     assert made.status == {"diverged": 1, "ok": 2}
     runs = rubgen.open(tmp_path / "set").runs
     assert runs.loc["run-000001", ["status", "reason"]].tolist() == ["diverged", "in turn 7"]
-    data = pq.read_table(tmp_path / "set/data/train-00000-of-00001.parquet", columns=["run_id"])
+    data = pq.read_table(tmp_path / "set/data/train-00000.parquet", columns=["run_id"])
     assert data["run_id"].to_pylist() == ["run-000000", "run-000002"]
-    assert sorted(path.name for path in (tmp_path / "set/mcap").iterdir()) == ["run-000000.mcap", "run-000002.mcap"]
+    assert sorted(path.name for path in (tmp_path / "set/mcap/0000").iterdir()) == [
+        "run-000000.mcap",
+        "run-000002.mcap",
+    ]
 
 
 def test_a_set_without_one_valid_run_is_still_whole(fake_simulate, tmp_path, make_synthetic_run, monkeypatch):
@@ -156,12 +166,12 @@ def test_a_set_without_one_valid_run_is_still_whole(fake_simulate, tmp_path, mak
 
 
 def test_many_runs_go_into_several_files_and_groups(fake_simulate, tmp_path, monkeypatch):
-    for module in ("making.assemble", "layout", "checking.table_check"):
-        monkeypatch.setattr(f"rubgen.dataset.{module}.RUNS_PER_SHARD", 5)
-    monkeypatch.setattr("rubgen.dataset.making.assemble.RUNS_PER_ROW_GROUP", 2)
+    monkeypatch.setattr("rubgen.dataset.shards.RUNS_PER_SHARD", 5)
+    monkeypatch.setattr("rubgen.dataset.making.close.RUNS_PER_ROW_GROUP", 2)
+    monkeypatch.setattr("rubgen.dataset.making.finish.ROWS_PER_GROUP", 3)
     rubgen.generate(recipe(runs=7, output={"signal_seconds": 0.1, "formats": ["parquet"]}), tmp_path / "set", workers=1)
     shards = sorted((tmp_path / "set" / "data").glob("*.parquet"))
-    assert [path.name for path in shards] == ["train-00000-of-00002.parquet", "train-00001-of-00002.parquet"]
+    assert [path.name for path in shards] == ["train-00000.parquet", "train-00001.parquet"]
     groups = [pq.ParquetFile(path).metadata for path in shards]
     assert [[g.row_group(i).num_rows for i in range(g.num_row_groups)] for g in groups] == [[2, 2, 1], [2]]
     signals = rubgen.open(tmp_path / "set").signals("run-000006")
@@ -170,14 +180,14 @@ def test_many_runs_go_into_several_files_and_groups(fake_simulate, tmp_path, mon
 
 
 def test_another_recipe_or_number_of_runs_is_refused(small_set, short_records):
-    with pytest.raises(UserError, match=r"holds the output of another recipe \(runs = 4, asked for 5\); give another"):
-        rubgen.generate(small_set.recipe, small_set.directory, runs=5)
+    with pytest.raises(UserError, match="holds 4 runs of this recipe, asked for 3; it can only grow"):
+        rubgen.generate(small_set.recipe, small_set.directory, runs=3)
     with pytest.raises(UserError, match=r"another recipe \(seed = 3, asked for 4\)"):
         rubgen.generate({**small_set.recipe, "seed": 4}, small_set.directory)
 
 
 def test_an_unfinished_set_of_another_recipe_or_version_is_refused(fake_simulate, tmp_path, monkeypatch):
-    monkeypatch.setattr(generating, "stage_run", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    before_run(monkeypatch, 0, KeyboardInterrupt())
     with pytest.raises(KeyboardInterrupt):
         rubgen.generate(recipe(), tmp_path / "set", workers=1)
     with pytest.raises(UserError, match=r"another recipe \(name = 'fake', asked for 'other'\)"):
@@ -205,25 +215,22 @@ def test_a_directory_that_cannot_be_written_is_refused(fake_simulate):
 
 
 def test_two_at_once_are_refused(fake_simulate, tmp_path, monkeypatch):
-    def second(scenario, root, formats):
-        with pytest.raises(UserError, match="another rubgen is writing there"):
-            rubgen.generate(recipe(), root, workers=1)
-        return stage_run(scenario, root, formats)
+    true = Keeper.begin
 
-    monkeypatch.setattr(generating, "stage_run", second)
+    def second(keeper, index):
+        with pytest.raises(UserError, match="another rubgen is writing there"):
+            rubgen.generate(recipe(), tmp_path / "set", workers=1)
+        true(keeper, index)
+
+    monkeypatch.setattr(Keeper, "begin", second)
     assert rubgen.generate(recipe(), tmp_path / "set", workers=1).made == 3
 
 
 def test_a_full_disk_is_one_line_and_loses_nothing(fake_simulate, tmp_path, monkeypatch):
     rubgen.generate(recipe(), tmp_path / "whole", workers=1)
 
-    def full(scenario, root, formats):
-        if scenario.index == 1:
-            raise OSError(errno.ENOSPC, "No space left on device")
-        return stage_run(scenario, root, formats)
-
     with monkeypatch.context() as patch:
-        patch.setattr(generating, "stage_run", full)
+        before_run(patch, 1, OSError(errno.ENOSPC, "No space left on device"))
         with pytest.raises(UserError, match=r"set: the disk is full; make room and give the same command again"):
             rubgen.generate(recipe(), tmp_path / "set", workers=1)
     assert not list((tmp_path / "set").rglob("*.part*"))
@@ -232,8 +239,8 @@ def test_a_full_disk_is_one_line_and_loses_nothing(fake_simulate, tmp_path, monk
 
 
 def test_a_damaged_finished_set_is_not_called_finished(small_set, copied_set, short_records):
-    (copied_set / "mcap/run-000001.mcap").unlink()
-    with pytest.raises(UserError, match=r"mcap/run-000001.mcap: listed in the manifest, but not there"):
+    (copied_set / "mcap/0000/run-000001.mcap").unlink()
+    with pytest.raises(UserError, match=r"mcap/0000/run-000001.mcap: listed in the manifest, but not there"):
         rubgen.generate(small_set.recipe, copied_set)
 
 

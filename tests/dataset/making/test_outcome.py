@@ -11,9 +11,8 @@ from rubgen.dataset.making.outcome import Failure, outcome_of
 @pytest.fixture
 def counted(monkeypatch, tmp_path):
     def counted(*rows):
-        monkeypatch.setattr(
-            outcome, "read_table", lambda _path, columns: pa.table(list(zip(*rows, strict=True)), columns)
-        )
+        groups = [pa.table(list(zip(*each, strict=True)), outcome.COLUMNS) for each in (rows[:2], rows[2:]) if each]
+        monkeypatch.setattr(outcome, "row_groups", lambda _path, **_: groups)
         return outcome_of(Layout(tmp_path))
 
     return counted

@@ -15,14 +15,14 @@ from rubgen.errors import RubgenError, RubgenWarning
 
 def test_every_job_is_done_once():
     with worker_pool(2) as pool:
-        done = list(unordered(pool, 2, math.factorial, ((n,) for n in range(12))))
+        done = list(unordered(pool, math.factorial, ((n,) for n in range(12))))
     assert sorted(done) == sorted(math.factorial(n) for n in range(12))
 
 
 def test_workers_use_one_thread_and_the_environment_is_put_back(monkeypatch):
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
     with worker_pool(2) as pool:
-        assert list(unordered(pool, 1, os.getenv, [(name,) for name in ONE_THREAD])) == ["1"] * len(ONE_THREAD)
+        assert list(unordered(pool, os.getenv, [(name,) for name in ONE_THREAD])) == ["1"] * len(ONE_THREAD)
     assert os.environ["OPENBLAS_NUM_THREADS"] == "7"
 
 
@@ -30,7 +30,7 @@ def test_workers_use_one_thread_and_the_environment_is_put_back(monkeypatch):
 def test_a_worker_that_dies_is_reported_in_one_line(code):
     said = f"a worker process ended with exit code {code}; what is finished is kept: .+ --workers 1 it starts no worker"
     with pytest.raises(RubgenError, match=said), worker_pool(2) as pool:
-        list(unordered(pool, 1, os._exit, [(code,)]))
+        list(unordered(pool, os._exit, [(code,)]))
 
 
 def _kill_this_process():
@@ -40,7 +40,7 @@ def _kill_this_process():
 def test_a_worker_that_is_killed_is_told_by_its_signal():
     said = "a worker process was ended by SIGKILL; what is finished is kept"
     with pytest.raises(RubgenError, match=said), worker_pool(2) as pool:
-        list(unordered(pool, 1, _kill_this_process, [()]))
+        list(unordered(pool, _kill_this_process, [()]))
 
 
 class _LateProcess:
@@ -63,7 +63,7 @@ def test_workers_start_where_signals_cannot_be_masked(monkeypatch):
     there = {name: value for name, value in vars(signal).items() if name != "pthread_sigmask"}
     monkeypatch.setattr(workers, "signal", SimpleNamespace(**there))
     with worker_pool(2) as pool:
-        assert sorted(unordered(pool, 1, abs, [(-1,), (-2,)])) == [1, 2]
+        assert sorted(unordered(pool, abs, [(-1,), (-2,)])) == [1, 2]
 
 
 @pytest.mark.parametrize(
@@ -85,11 +85,11 @@ def test_where_no_process_can_be_started_one_goes_on(monkeypatch, problem):
         with pytest.warns(RubgenWarning, match=rf"cannot be started \({reason}\)"):
             pool = stack.enter_context(worker_pool(2))
         assert pool is None
-        assert list(unordered(pool, 2, os.getpid, [()])) == [os.getpid()]
+        assert list(unordered(pool, os.getpid, [()])) == [os.getpid()]
 
 
 def test_a_daemon_works_alone():
-    made = "with worker_pool(2) as pool: print(pool, list(unordered(pool, 2, abs, [(-1,)])), flush=True)"
+    made = "with worker_pool(2) as pool: print(pool, list(unordered(pool, abs, [(-1,)])), flush=True)"
     code = (
         "import multiprocessing\nfrom rubgen.dataset.making.workers import unordered, worker_pool\n"
         f"def work():\n    {made}\n"
@@ -105,7 +105,7 @@ def test_a_daemon_works_alone():
 def test_workers_leave_the_users_main_module_alone(tmp_path, how):
     code = (
         "import os\nfrom rubgen.dataset.making.workers import unordered, worker_pool\nprint('main', flush=True)\n"
-        "with worker_pool(2) as pool:\n    print(sum(unordered(pool, 2, abs, [(-1,), (-2,), (-3,)])))\n"
+        "with worker_pool(2) as pool:\n    print(sum(unordered(pool, abs, [(-1,), (-2,), (-3,)])))\n"
     )
     (tmp_path / "main.py").write_text(code)
     arguments = {"script": ["main.py"], "pipe": ["-"], "text": ["-c", code]}[how]
@@ -116,7 +116,7 @@ def test_workers_leave_the_users_main_module_alone(tmp_path, how):
 
 def test_what_a_worker_raises_reaches_the_caller():
     with pytest.raises(ValueError, match="negative"), worker_pool(2) as pool:
-        list(unordered(pool, 1, math.factorial, [(-1,)]))
+        list(unordered(pool, math.factorial, [(-1,)]))
 
 
 def _system(root, groups, files):

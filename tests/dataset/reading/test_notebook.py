@@ -20,7 +20,7 @@ from rubgen.io.parquet.write import schema
 from rubgen.sensors.load import default_sensor_set
 from tests.default_columns import CHANNELS, SCALARS
 
-DATA = "data/train-00000-of-00001.parquet"
+DATA = "data/train-00000.parquet"
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +94,7 @@ def test_a_set_is_counted_walked_and_asked(data):
 
 def test_a_run_of_a_set_holds_plain_values(data, small_set):
     run = data["run-000001"]
-    labels = read_mcap(small_set.directory / "mcap/run-000001.mcap").labels
+    labels = read_mcap(small_set.directory / "mcap/0000/run-000001.mcap").labels
     assert {name: run.labels[name] for name in labels} == labels
     assert run.parameters["disk_support_stiffness_n_per_m"] == 2e8
     assert set(run.parameters) & set(run.labels) == set()
@@ -152,7 +152,7 @@ def without_parquet(copied_set):
 
 def test_a_set_is_what_its_manifest_lists(without_parquet, copied_set):
     """Files that nobody listed lie in both folders: neither is read."""
-    (copied_set / "data/train-00001-of-00002.parquet").write_bytes(b"foreign")
+    (copied_set / "data/train-00001.parquet").write_bytes(b"foreign")
     (copied_set / "sections/._x.parquet").write_bytes(b"foreign")
     opened = rubgen.open(without_parquet)
     assert opened.signals("run-000001")["contact_force"].size == 15872
@@ -204,9 +204,9 @@ def test_a_damaged_page_is_one_line_that_names_file_and_run(copied_set):
 
 def test_a_missing_or_cut_file_is_one_line(copied_set):
     (copied_set / DATA).unlink()
-    with pytest.raises(UserError, match="train-00000-of-00001"):
+    with pytest.raises(UserError, match="train-00000"):
         rubgen.open(copied_set).signals("run-000000")
-    for name in ("sections/train-00000-of-00001.parquet", "runs.parquet"):
+    for name in ("sections/train-00000.parquet", "runs.parquet"):
         path = copied_set / name
         path.write_bytes(path.read_bytes()[:-50])
         with pytest.raises(UserError, match=f"{path.name}: damaged"):

@@ -20,7 +20,7 @@ from rubgen.io.parquet.compact_records import RECORD_COLUMNS
 from rubgen.scenario import load_recipe, parse_recipe
 from tests.default_columns import CHANNELS, SCALARS, SIGNALS
 
-DATA = "data/train-00000-of-00001.parquet"
+DATA = "data/train-00000.parquet"
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def assert_same(signals, memory):
 
 def test_memory_parquet_and_mcap_agree_to_the_bit(small_set, data, memory):
     assert_same(data.signals("run-000001"), memory)
-    assert_same(read_mcap(small_set.directory / "mcap/run-000001.mcap").signals, memory)
+    assert_same(read_mcap(small_set.directory / "mcap/0000/run-000001.mcap").signals, memory)
 
 
 def test_datasets_loads_the_directory(small_set, memory, tmp_path, monkeypatch):

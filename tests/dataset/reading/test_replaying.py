@@ -57,7 +57,7 @@ def test_without_mcap_the_run_is_simulated_again(copied_set, short_records):
 
 
 def test_a_recording_under_the_name_of_another_run_is_refused(copied_set):
-    shutil.copy(copied_set / "mcap/run-000000.mcap", copied_set / "mcap/run-000001.mcap")
+    shutil.copy(copied_set / "mcap/0000/run-000000.mcap", copied_set / "mcap/0000/run-000001.mcap")
     with pytest.raises(UserError, match=r"run-000001\.mcap: holds run-000000"):
         find_replay(copied_set, "run-000001")
     path = copied_set / "manifest.json"

@@ -1,0 +1,96 @@
+"""Let a finished set grow: its shards count as closed, and the last one of each split is opened again."""
+
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+import pyarrow as pa
+
+from rubgen.dataset.files import write_json
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.making.close import ClosedShard
+from rubgen.dataset.making.keep import Keeper
+from rubgen.dataset.manifest import FileEntry, Manifest, read_derived
+from rubgen.dataset.rows import RunTable, asked_bytes
+from rubgen.dataset.shards import Shard, shards_of
+from rubgen.dataset.tables import RUNS, tables_of
+from rubgen.errors import UserError
+from rubgen.formats import run_formats
+from rubgen.io.parquet.read import row_groups
+from rubgen.io.parquet.write import write_table
+from rubgen.scenario import Recipe
+from rubgen.scenario.run_id import index_of
+
+
+def prepare_growth(layout: Layout, before: Manifest, recipe: Recipe) -> None:
+    """Fill the staging folder of `layout` with what the finished set there has. Its files stay as they are.
+
+    - layout: paths of the set.
+    - before: its manifest.
+    - recipe: the recipe with more runs.
+
+    Raises UserError where a file of the set is missing or damaged.
+    """
+    old = before.identity.recorded(str(layout.manifest))
+    listed = {entry.path: entry for entry in before.files}
+    listed |= read_derived(layout) if before.derived else {}
+    runs = RunTable(layout.runs)
+    partial = {shard.name: len(shard.indexes) for shard in shards_of(recipe) if not shard.full}
+    for shard in shards_of(old):
+        rows = runs.rows(shard.indexes).cast(RUNS.schema(old))
+        try:
+            if shard.full or partial.get(shard.name) == len(shard.indexes):
+                _as_closed(layout, old, shard, rows, listed)
+            else:
+                _as_kept(layout, old, shard, rows)
+        except LookupError as error:
+            raise UserError(f"{layout.manifest}: lists no {error.args[0]}; check the set: rubgen verify") from None
+
+
+def _as_closed(layout: Layout, recipe: Recipe, shard: Shard, rows: pa.Table, listed: dict[str, FileEntry]) -> None:
+    """Write the rows and the record of a shard that stays as it is."""
+    formats = recipe.output.formats
+    write_table([rows], rows.schema, layout.staged(RUNS.name, shard.name))
+    good = [row["run_id"] for row in _facts(rows) if row["status"] == "ok"]
+    exports = {
+        remade: [listed[_inner(layout, layout.export(each.name, run_id))] for run_id in good for each in chosen]
+        for remade in (False, True)
+        for chosen in [[each for each in run_formats(formats) if bool(each.remake) == remade]]
+    }
+    record = ClosedShard(
+        runs=len(shard.indexes),
+        status=dict(sorted(Counter(row["status"] for row in _facts(rows)).items())),
+        tables=tuple(listed[_inner(layout, layout.shard(table.name, shard.name))] for table in tables_of(formats)),
+        exports=tuple(exports[False]),
+        derived=tuple(exports[True]),
+    )
+    write_json(layout.closed(shard.name), record.model_dump(mode="json"))
+
+
+def _as_kept(layout: Layout, recipe: Recipe, shard: Shard, rows: pa.Table) -> None:
+    """Keep the rows of a shard that gets more runs, as if its runs had just finished."""
+    keeper = Keeper(layout, shard.name, "before")
+    asked = asked_bytes(recipe)
+    tables = [_each_row(layout.shard(table.name, shard.name), asked) for table in tables_of(recipe.output.formats)]
+    for number, facts in enumerate(_facts(rows)):
+        good = facts["status"] == "ok"
+        others = [next(table) if good else None for table in tables]
+        lost = [row for row in others if row is not None and row["run_id"][0].as_py() != facts["run_id"]]
+        if lost:
+            raise UserError(f"{layout.root}: {facts['run_id']} lacks a row; check the set: rubgen verify")
+        keeper.keep(index_of(facts["run_id"]), [rows.slice(number, 1), *others])
+
+
+def _each_row(path: Path, asked: float) -> Iterator[pa.Table]:
+    for group in row_groups(path, asked):
+        yield from (group.slice(row, 1) for row in range(group.num_rows))
+    raise UserError(f"{path}: has too few rows; check the set: rubgen verify")
+
+
+def _facts(rows: pa.Table) -> list[dict[str, str]]:
+    facts: list[dict[str, str]] = rows.select(["run_id", "status"]).to_pylist()
+    return facts
+
+
+def _inner(layout: Layout, path: Path) -> str:
+    return path.relative_to(layout.root).as_posix()

@@ -1,0 +1,108 @@
+"""Make the runs of a shard, keep each as it finishes, and close the shard. A worker process does this."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.making.keep import Keeper, kept_runs, unended_runs
+from rubgen.dataset.manifest import read_identity
+from rubgen.dataset.tables import RUNS, tables_of
+from rubgen.errors import RubgenError, UserError
+from rubgen.formats import run_formats
+from rubgen.scenario import Recipe
+from rubgen.scenario.run_id import run_id_of
+
+if TYPE_CHECKING:  # Run carries the solver's imports; this module is imported by commands that simulate nothing
+    from rubgen.pipeline import Run
+
+ALONE = "from rubgen.dataset.making.make_runs import make_one; make_one({root!r}, {shard!r}, {session!r}, {index})"
+
+
+@lru_cache(maxsize=1)
+def recipe_of(root: Path, _begun: int) -> Recipe:
+    """Return the recipe of the unfinished set in `root`, read once by each worker; `_begun` tells sets apart."""
+    return read_identity(Layout(root)).recorded()
+
+
+def recipe_at(root: Path) -> Recipe:
+    """Return the recipe of the unfinished set in `root`, with its recorded machine and sensors."""
+    return recipe_of(root, Layout(root).identity.stat().st_mtime_ns)
+
+
+def make_runs(root: Path, shard: str, session: str, indexes: tuple[int, ...]) -> int:
+    """Make runs of an open shard and keep each as it finishes. Return their number. A worker process calls it.
+
+    Runs that are kept already are left alone. A run that was being made when a worker of this session died is made in
+    a process of its own; where that dies too, the run is recorded as failed.
+
+    - root: directory of the set.
+    - shard: name of the shard.
+    - session: of the call of `generate` that asks for it.
+    - indexes: numbers of the runs.
+    """
+    layout, recipe = Layout(root), recipe_at(root)
+    suspected = unended_runs(layout, shard, session)
+    kept = set(kept_runs(layout, shard)) if suspected else set()
+    keeper = Keeper(layout, shard, session)
+    for index in indexes:
+        if index in kept:
+            continue
+        if index in suspected:
+            _make_alone(layout, recipe, shard, session, index)
+        else:
+            _make(layout, recipe, keeper, index)
+    return len(indexes)
+
+
+def make_one(root: str, shard: str, session: str, index: int) -> None:
+    """Make one run in this process and keep it, as `make_runs` does."""
+    layout = Layout(root)
+    _make(layout, recipe_at(layout.root), Keeper(layout, shard, session), index)
+
+
+def _make(layout: Layout, recipe: Recipe, keeper: Keeper, index: int) -> None:
+    """Simulate one run, write its own files, and keep its rows. A run that its values forbid is kept as refused."""
+    from rubgen.pipeline import refused, simulate
+
+    keeper.begin(index)
+    scenario = recipe.scenario(index)
+    try:
+        run = simulate(scenario)
+    except UserError as error:
+        run = refused(scenario, str(error))
+    _keep(layout, recipe, keeper, run)
+
+
+def _keep(layout: Layout, recipe: Recipe, keeper: Keeper, run: Run) -> None:
+    formats, split = recipe.output.formats, recipe.split_of(run.scenario.index)
+    for each in run_formats(formats):
+        path = layout.export(each.name, run.scenario.run_id)
+        if run.labels is not None:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            each.write(run, path)
+        else:
+            path.unlink(missing_ok=True)  # of a try that was stopped
+    tables = tables_of(formats)
+    rows = [table.row(run, split) if run.labels is not None else None for table in tables]
+    keeper.keep(run.scenario.index, [RUNS.row(run, split), *rows])
+
+
+def _make_alone(layout: Layout, recipe: Recipe, shard: str, session: str, index: int) -> None:
+    """Make a run in a process of its own. Where that ends without the run, keep the run as failed."""
+    from rubgen.dataset.making.workers import how_ended
+    from rubgen.pipeline import refused
+    from rubgen.solver.response import Status
+
+    call = ALONE.format(root=str(layout.root), shard=shard, session=session, index=index)
+    done = subprocess.run([sys.executable, "-c", call], check=False, capture_output=True, text=True)  # noqa: S603
+    if done.returncode == 1:  # of an exception of Python, which is no fault of the run's
+        raise RubgenError(f"{run_id_of(index)}: {done.stderr.strip().rpartition(chr(10))[2] or 'cannot be made'}")
+    if index not in kept_runs(layout, shard):
+        reason = f"its worker process died, and so did a process for it alone, which {how_ended([done.returncode])}"
+        run = refused(recipe.scenario(index), reason, Status.DIED)
+        _keep(layout, recipe, Keeper(layout, shard, session), run)

@@ -1,0 +1,164 @@
+"""Which runs of a set are missing, and the jobs that make them. The coordinator holds numbers and names alone."""
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from math import ceil
+from pathlib import Path
+
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.making.close import close_shard
+from rubgen.dataset.making.keep import kept_runs
+from rubgen.dataset.making.make_runs import make_runs
+from rubgen.dataset.shards import Shard, shards_of
+from rubgen.errors import UserError
+from rubgen.formats import run_formats
+from rubgen.scenario import Recipe
+from rubgen.scenario.run_id import run_id_of
+
+MOST_RUNS_A_JOB = 8
+JOBS_PER_WORKER = 4
+"""Least number of jobs for each worker, so that a small set uses all of them to the end."""
+Job = tuple[Path, str, Shard, tuple[int, ...]]
+
+
+@dataclass(frozen=True)
+class Part:
+    """Part `number` of `count` equal parts of a set, from 1: what one job of an array makes."""
+
+    number: int = 1
+    count: int = 1
+
+    def __str__(self) -> str:
+        return f"{self.number}/{self.count}"
+
+
+def part_of(text: str) -> Part:
+    """Return the part that a text such as 17/200 means. Raises UserError for any other text."""
+    number, _, count = text.partition("/")
+    if not (number.isdecimal() and count.isdecimal() and 1 <= int(number) <= int(count)):
+        raise UserError(f"--shard {text}: give number/count, the number from 1 to the count, such as 17/200")
+    return Part(int(number), int(count))
+
+
+@dataclass
+class Plan:
+    """What is missing of a set, or of one part of it, and the jobs for it in order.
+
+    A closed shard costs no file access beyond the listing of the folder of closed shards.
+    """
+
+    recipe: Recipe
+    layout: Layout
+    session: str
+    """Name of this call of `generate`."""
+    part: Part = field(default_factory=Part)
+    done: int = 0
+    """Number of runs that were finished before."""
+    total: int = 0
+    """Number of runs, of the part."""
+    first_missing: int = -1
+    """Number of the first run to make; -1 where none is missing."""
+
+    def __post_init__(self) -> None:
+        """Count what is there."""
+        self._closed = {path.stem for path in self.layout.closed("").parent.glob("*.json")}
+        self._begun = {path.name for path in self.layout.kept("").glob("*")}
+        self._shards = sum(1 for _ in shards_of(self.recipe)) if self.part.count > 1 else 1
+        self._urgent: deque[Job] = deque()
+        self._left: dict[str, int] = {}
+        self._missing: dict[str, tuple[int, ...]] = {}
+        for shard, mine in self._mine():
+            self.total += len(mine)
+            missing = self._missing_of(shard, mine)
+            self.done += len(mine) - len(missing)
+            if missing and self.first_missing < 0:
+                self.first_missing = missing[0]
+        self._size = 1
+
+    @property
+    def missing(self) -> int:
+        """Number of runs to make."""
+        return self.total - self.done
+
+    def jobs(self, workers: int) -> Iterator[Job]:
+        """Yield the jobs for `do`. More follow from `ended`, so take the next job after each result."""
+        self._size = max(1, min(MOST_RUNS_A_JOB, ceil(self.missing / (JOBS_PER_WORKER * workers))))
+        return _Queue(self._urgent, self._jobs())
+
+    def ended(self, shard: Shard) -> None:
+        """Note that a job that made runs of this shard has ended. The last one is followed by a job that closes it."""
+        self._left[shard.name] -= 1
+        if not self._left[shard.name]:
+            del self._left[shard.name]
+            self._close(shard)
+
+    def _jobs(self) -> Iterator[Job]:
+        for shard, mine in self._mine():
+            missing = self._missing_of(shard, mine)
+            pieces = [missing[start : start + self._size] for start in range(0, len(missing), self._size)]
+            if pieces:
+                self._left[shard.name] = len(pieces)
+                yield from (self._job(shard, piece) for piece in pieces)
+            elif shard.name not in self._closed:
+                self._close(shard)
+                while self._urgent:
+                    yield self._urgent.popleft()
+
+    def _close(self, shard: Shard) -> None:
+        """Ask for the closing of a shard, if all its runs are of this part: another part may be at work on the rest."""
+        if len(self._own(shard)) == len(shard.indexes):
+            self._urgent.append(self._job(shard, ()))
+
+    def _job(self, shard: Shard, indexes: tuple[int, ...]) -> Job:
+        return self.layout.root.resolve(), self.session, shard, indexes
+
+    def _mine(self) -> Iterator[tuple[Shard, tuple[int, ...]]]:
+        """Yield the shards of this part, each with its runs: whole shards, or runs where there are fewer shards."""
+        for place, shard in enumerate(shards_of(self.recipe)):
+            if self._shards < self.part.count:
+                mine = self._own(shard)
+                if mine:
+                    yield shard, mine
+            elif place % self.part.count == self.part.number - 1:
+                yield shard, shard.indexes
+
+    def _own(self, shard: Shard) -> tuple[int, ...]:
+        if self._shards >= self.part.count:
+            return shard.indexes
+        count, runs = self.part.count, self.recipe.runs
+        return tuple(index for index in shard.indexes if index * count // runs == self.part.number - 1)
+
+    def _missing_of(self, shard: Shard, mine: tuple[int, ...]) -> tuple[int, ...]:
+        if shard.name in self._closed:
+            return ()
+        if shard.name not in self._begun:
+            return mine
+        if shard.name not in self._missing:
+            good = {
+                index for index, kept in kept_runs(self.layout, shard.name).items() if self._is_whole(index, kept.good)
+            }
+            self._missing[shard.name] = tuple(index for index in mine if index not in good)
+        return self._missing[shard.name]
+
+    def _is_whole(self, index: int, good: bool) -> bool:
+        """Return whether the files of a kept run are there."""
+        formats = run_formats(self.recipe.output.formats) if good else []
+        return all(self.layout.export(each.name, run_id_of(index)).exists() for each in formats)
+
+
+class _Queue(Iterator[Job]):
+    """Jobs in order, urgent ones first. After its end it may have more."""
+
+    def __init__(self, urgent: deque[Job], rest: Iterator[Job]) -> None:
+        self._urgent, self._rest = urgent, rest
+
+    def __next__(self) -> Job:
+        return self._urgent.popleft() if self._urgent else next(self._rest)
+
+
+def do(root: Path, session: str, shard: Shard, indexes: tuple[int, ...]) -> tuple[Shard, int]:
+    """Do one job: make these runs of a shard, or without runs close it. Return the shard and the number of runs."""
+    if not indexes:
+        close_shard(root, shard)
+    return shard, make_runs(root, shard.name, session, indexes) if indexes else 0
