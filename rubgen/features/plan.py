@@ -73,7 +73,7 @@ def make_plan(data: DataSet, window: str | None, channels: Sequence[str] | None,
     root, sensors, rate = data.layout.root, data.sensors, data.sample_rate_hz
     names = _channels(data, channels)
     has_pulses = any(isinstance(sensor, OncePerRev) for sensor in sensors.sensors)
-    pairs = _pairs(sensors, names)
+    pairs = shaft_pairs(sensors, names)
     possible = [name for name in SETS if (has_pulses or name not in NEED_PULSES) and (pairs or name != "orbit")]
     chosen = _sets(sets) if sets else possible
     needing = [name for name in chosen if name in NEED_PULSES]
@@ -106,7 +106,7 @@ def _sets(sets: Sequence[str]) -> list[str]:
     return list(sets)
 
 
-def _pairs(sensors: SensorSet, channels: Sequence[str]) -> tuple[tuple[str, str, float, float], ...]:
+def shaft_pairs(sensors: SensorSet, channels: Sequence[str]) -> tuple[tuple[str, str, float, float], ...]:
     """Return the first two shaft probes that are not parallel and have one unit; nothing without them."""
     probes = [each for each in sensors.sampled if isinstance(each, Proximity) and each.name in channels]
     for a, b in combinations(probes, 2):
