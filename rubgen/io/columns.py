@@ -186,11 +186,15 @@ def _surroundings() -> list[Column]:
 def _machines(keys: Iterable[MachineKey]) -> list[Column]:
     kinds = {True: "integer", False: "number"}
     columns = [
-        Column("machine_number", "integer", "", "number of the virtual machine"),
+        Column("machine_number", "integer", "", "number of the virtual machine", role=Role.ID),
         Column(
-            "machine_candidate", "integer", "", "its candidate that was used; all candidates before it were refused"
+            "machine_candidate",
+            "integer",
+            "",
+            "its candidate that was used; all candidates before it were refused",
+            role=Role.DIAGNOSTIC,
         ),
-        *(Column(each.key, kinds[each.whole], each.unit, each.meaning) for each in keys),
+        *(Column(each.key, kinds[each.whole], each.unit, each.meaning, role=Role.PARAMETER) for each in keys),
     ]
     return columns if keys else []
 
