@@ -35,13 +35,14 @@ def _whole(_type: Any, tokens: Sequence[Token]) -> int:
 
 Json = Annotated[bool, Parameter(name="--json", negative=(), help="Print JSON, for programs.")]
 MachineName = Annotated[str, _option("Name of a preset, or path of a machine TOML.")]
+RecipeFile = Annotated[Path | None, _option("Recipe TOML; without it the embedded zeng2019-mini of 32 runs.")]
 Force = Annotated[bool, Parameter(negative=(), help="Replace a file that is there.")]
 Directory = Annotated[Path, _option("Directory of a data set.")]
 
 
 @app.command
 def generate(
-    recipe: Annotated[Path | None, _option("Recipe TOML; without it the embedded zeng2019-mini of 32 runs.")] = None,
+    recipe: RecipeFile = None,
     /,
     *,
     out: Annotated[Path, _option("New or empty directory, or one of the same recipe, which is then completed.")],
@@ -52,6 +53,7 @@ def generate(
     scheduler: Annotated[str | None, _option("Address of a Dask scheduler, whose workers make the runs.")] = None,
     shard: Annotated[str | None, _option("Make only this part, such as 17/200; the last call has --finish.")] = None,
     finish: Annotated[bool, Parameter(negative=(), help="Complete the set from its parts; make no run.")] = False,
+    dry_run: Annotated[bool, Parameter(negative=(), help="Make nothing; print what rubgen plan prints.")] = False,
     json: Json = False,
 ) -> int:
     """Make the data set of a recipe, or complete it where it was interrupted.
@@ -59,6 +61,10 @@ def generate(
     One job of an array makes one part with --shard; after the last, --finish completes the set. All write to the same
     directory.
     """
+    if dry_run:
+        from rubgen.cli.planning import plan_command
+
+        return plan_command(recipe, runs, 0, None, force=False, as_json=json)
     from rubgen.cli.generating import Work, generate_command
 
     work = Work(workers=workers, scheduler=scheduler, shard=shard, finish=finish)
@@ -95,6 +101,31 @@ def init(
     from rubgen.cli.starting import init_command
 
     return init_command(kind, origin, file)
+
+
+@app.command
+def plan(
+    recipe: RecipeFile = None,
+    /,
+    *,
+    runs: Annotated[int | None, _whole_number("Number of runs, instead of the recipe's.")] = None,
+    tries: Annotated[
+        int,
+        Parameter(
+            name="--try", converter=_whole, help="Number of runs to simulate: their classes, and time and sizes here."
+        ),
+    ] = 0,
+    out: Annotated[Path | None, _option("Picture to write: .png, .svg or .pdf.")] = None,
+    force: Force = False,
+    json: Json = False,
+) -> int:
+    """Say what a recipe draws, which runs can rub, what is refused, minutes and MB, before its data set is made.
+
+    Exit 1 where a run or an extreme is refused.
+    """
+    from rubgen.cli.planning import plan_command
+
+    return plan_command(recipe, runs, tries, out, force=force, as_json=json)
 
 
 @app.command(name="list")

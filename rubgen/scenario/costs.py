@@ -1,6 +1,7 @@
 """Estimate the memory of a machine's reduction and of a run, from their numbers alone, before anything is built."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 from rubgen.machine import Machine
@@ -19,6 +20,18 @@ LEAST_TAPS = 11
 SURROUNDINGS_ARRAYS, FRAME_ARRAYS = 12, 9
 """Arrays with a value at every step that surroundings, and a frame beside its modes, need at a time."""
 GIGA = 1e9
+SECONDS_A_STEP = {True: 1.3e-6, False: 4e-6}
+"""CPU time of a step of a run that rubs, with its labels and exponent, by whether its speed is steady. Measured in
+datasets/speed-sweep.toml and datasets/run-up.toml on two virtual cores."""
+SECONDS_WITHOUT_RUB = 0.15
+"""CPU time of a steady run that never touches: it is made from one turn."""
+AUTOMATIC_SETTLE_TURNS = 250
+"""Usual turns before the record: 155 to 399 in the recipes of datasets/."""
+KEPT_SHARE = {"parquet": 0.55, "mcap": 0.8, "rrd": 0.7}
+"""Size of a run's file over `stored_bytes`. In 14 runs of five recipes Parquet had 0.42 to 0.64, MCAP 0.48 to 1.08,
+.rrd 0.32 to 0.89."""
+SECONDS_A_STORED_MEGABYTE = {"parquet": 0.02, "mcap": 0.06, "rrd": 0.13}
+"""CPU time to write a file, for each megabyte of `stored_bytes`."""
 
 
 def reduction_bytes(machine: Machine, reduction: Reduction) -> float:
@@ -109,6 +122,23 @@ def stored_bytes(scenario: Scenario) -> float:
     channels = (2 if sensing.keep_clean else 1) * len(sensing.set.sensors)
     states = 2 * coordinates(scenario) * scenario.operation.recorded_turns
     return 4 * (channels * scenario.signal_seconds * sensing.sample_rate_hz + states)
+
+
+def run_seconds(scenario: Scenario, *, rubs: bool, formats: Sequence[str] = ()) -> float:
+    """Estimate the CPU time of a run with its files in s, within a factor of two on a computer of today."""
+    operation, megabytes = scenario.operation, stored_bytes(scenario) / 1e6
+    writing = sum(SECONDS_A_STORED_MEGABYTE.get(name, 0.0) * megabytes for name in formats)
+    steady = operation.profile == "steady"
+    if steady and not rubs:
+        return SECONDS_WITHOUT_RUB + writing
+    settle = AUTOMATIC_SETTLE_TURNS if operation.settle_turns == "auto" else operation.settle_turns
+    steps = (settle + operation.recorded_turns) * steps_per_turn(scenario)
+    return SECONDS_A_STEP[steady] * steps + writing
+
+
+def file_bytes(scenario: Scenario, name: str) -> float:
+    """Estimate the size of a run's file in the format `name` in bytes, within a factor of two."""
+    return KEPT_SHARE.get(name, 1.0) * stored_bytes(scenario)
 
 
 def run_problem(scenario: Scenario) -> str | None:
