@@ -298,11 +298,17 @@ def export(
 
 
 @app.command
-def modes(machine: MachineName = "zeng2019", /, *, json: Json = False) -> int:
-    """Print degrees of freedom and natural frequencies of a machine, beside the published ones for zeng2019."""
+def modes(
+    machine: MachineName = "zeng2019",
+    /,
+    *,
+    speed_rpm: Annotated[float, _option("Speed, rev/min; at rest when not given.")] = 0.0,
+    json: Json = False,
+) -> int:
+    """Print the modes of a machine: frequency, family, nodal diameter, whirl, damping; zeng2019 beside the paper."""
     from rubgen.cli.modes import modes_command
 
-    return modes_command(machine, as_json=json)
+    return modes_command(machine, speed_rpm, as_json=json)
 
 
 @app.command

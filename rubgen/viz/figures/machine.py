@@ -1,19 +1,26 @@
 """Draw a machine: its natural frequencies over the speed with the exciting orders, and its first modes."""
 
+from collections.abc import Sequence
+
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from scipy.linalg import eigh
 
 from rubgen.arrays import FloatArray
 from rubgen.reduction import ReducedModel
+from rubgen.reduction.modes import Mode, blisk_modes
 from rubgen.units import rad_per_s
-from rubgen.viz.colors import BLUE, GREY, VERMILION
+from rubgen.viz.colors import BLUE, GREY, ORANGE, VERMILION
 from rubgen.viz.figures.style import INK, label_axes, new_figure
 
-HIGHEST_RPM, SPEEDS = 15_000.0, 121
-BLISK_MODES, CASING_MODES = 12, 11
+HIGHEST_RPM, SPEEDS = 15_000.0, 41
+CASING_MODES = 11
 HIGHEST_ORDER = 8
+SLOWEST_RPM = 60.0
+"""Stands for rest, where both waves of a pair have one frequency and cannot be told apart."""
 SHOWN = 6
 DRAWN = 0.18
 """Largest drawn displacement over the radius."""
@@ -21,35 +28,96 @@ DIRECTIONS = ("radial", "tangential", "axial")
 
 
 def campbell(model: ReducedModel) -> Figure:
-    """Draw Campbell diagrams of the blisk in its turning frame and of the casing in the inertial frame.
+    """Draw Campbell diagrams: the whirl of the disk and the waves of the blades, and the casing.
 
-    In the turning frame the unbalance is static: the critical speed is where a frequency reaches zero. Anything fixed
-    in the inertial frame rotates at -f_r there, so a casing of N lobes excites the blisk at orders kN. The blisk
-    excites the casing likewise. Lines are without damping and without contact.
+    Left, in the inertial frame: modes of one nodal diameter, which alone move the disk centre sideways. A critical
+    speed is where a forward one meets 1X. Middle, in the turning frame: modes of all nodal diameters n. Forces that
+    stand still excite n waves at order n; each crossing of the backward wave is marked. Right: modes of the casing in
+    the inertial frame, and where the blisk, which turns under N lobes, excites them at orders k N. All modes are
+    damped and without contact.
     """
-    speeds = np.linspace(1.0, HIGHEST_RPM, SPEEDS)
-    if model.critical_speed_rpm < HIGHEST_RPM:  # there a frequency is zero, in a corner that a grid would cut
-        speeds = np.union1d(speeds, model.critical_speed_rpm)
-    figure = new_figure(10.0, 5.0)
-    blisk, casing = figure.subplots(1, 2)
-    _blisk(blisk, model, speeds)
+    speeds = np.linspace(0.0, HIGHEST_RPM, SPEEDS)
+    modes = [blisk_modes(model, rad_per_s(max(speed, SLOWEST_RPM))) for speed in speeds]
+    figure = new_figure(14.0, 5.2)
+    whirl, waves, casing = figure.subplots(1, 3)
+    _whirl(whirl, model, speeds, modes)
+    _waves(waves, model, speeds, modes)
     _casing(casing, model, speeds)
+    figure.suptitle(f"{model.machine.name}: Campbell diagram without contact", fontsize=11, color=INK)
     return figure
 
 
-def _blisk(axes: Axes, model: ReducedModel, speeds: FloatArray) -> None:
-    hertz = np.array([model.blisk_frequencies_hz(rad_per_s(speed))[:BLISK_MODES] for speed in speeds])
-    top = 1.05 * float(hertz.max())
-    _orders(axes, speeds, top, range(1, HIGHEST_ORDER + 1))
-    axes.plot(speeds, hertz, color=BLUE, linewidth=1.1, zorder=3)
+def branches(modes: Sequence[Sequence[Mode]], waves: int) -> FloatArray:
+    """Return the modes of that many nodal diameters at each speed (speeds, branches, 3).
+
+    Values are the frequencies in the turning and in the inertial frame, Hz, with signs, and the damping ratio. Modes of
+    one nodal diameter veer and do not cross in the turning frame, so their order there makes the branches. Where a
+    mistuned blisk has more of them at one speed, the highest are left out.
+    """
+    rows = []
+    for each in modes:
+        found = sorted((x for x in each if x.nodal_diameters == waves), key=lambda x: x.turning_hz)
+        rows.append([(x.turning_hz, x.inertial_hz, x.damping_ratio) for x in found])
+    count = min(map(len, rows))
+    return np.array([row[:count] for row in rows]).reshape(len(rows), count, 3)
+
+
+def crossings(speeds: FloatArray, hertz: FloatArray, order: float) -> FloatArray:
+    """Return the speeds in rev/min at which the frequencies `hertz` (speeds,) meet the order `order`."""
+    above = hertz - order * speeds / 60
+    at = np.flatnonzero(above[:-1] * above[1:] < 0)
+    share = above[at] / (above[at] - above[at + 1])
+    met: FloatArray = speeds[at] + share * (speeds[at + 1] - speeds[at])
+    return met
+
+
+def _whirl(axes: Axes, model: ReducedModel, speeds: FloatArray, modes: Sequence[Sequence[Mode]]) -> None:
+    lines = branches(modes, 1)
     critical = model.critical_speed_rpm
-    if critical <= speeds[-1]:
-        axes.axvline(critical, color=VERMILION, linewidth=1, linestyle="--")
-        text = f"critical, {critical:,.0f} rev/min"
-        axes.annotate(text, (critical, top), xytext=(3, -3), textcoords="offset points", color=VERMILION,
-                      rotation=90, va="top", ha="left", fontsize=8, zorder=4,
-                      bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})  # fmt: skip
-    _finish(axes, speeds, top, "Blisk: frequency in the turning frame, Hz")
+    top = 2.2 * max(critical, HIGHEST_RPM / 2) / 60
+    _orders(axes, speeds, top, range(1, HIGHEST_ORDER + 1))
+    for _turning, seen, ratio in lines.transpose(1, 2, 0):
+        forward = seen > 0
+        for part, color, style in ((forward, BLUE, "-"), (~forward, ORANGE, "--")):
+            axes.plot(speeds, np.where(part, np.abs(seen), np.nan), style, color=color, linewidth=1.2, zorder=3)
+        for met in crossings(speeds, np.where(forward, seen, np.nan), 1.0):
+            damping = 100 * float(np.interp(met, speeds, ratio))
+            _mark(axes, met, met / 60, f"{met:,.0f} rev/min, {damping:.1f} %")
+    axes.axvline(critical, color=VERMILION, linewidth=0.8, linestyle=":", zorder=1)
+    handles = [Line2D([], [], color=BLUE, label="forward"), Line2D([], [], color=ORANGE, ls="--", label="backward")]
+    axes.legend(handles=handles, loc="upper left", fontsize=8, frameon=False)
+    axes.set_title(f"Whirl, inertial frame; undamped critical {critical:,.0f} rev/min", fontsize=9.5, pad=14)
+    _finish(axes, speeds, top, "Frequency of one nodal diameter, Hz")
+
+
+def _waves(axes: Axes, model: ReducedModel, speeds: FloatArray, modes: Sequence[Sequence[Mode]]) -> None:
+    every = range(model.machine.blades.count // 2 + 1)
+    lines = {waves: branches(modes, waves) for waves in every}
+    top = 1.6 * float(np.abs(lines[min(2, max(every))][-1, :, 0]).min())
+    _orders(axes, speeds, top, range(1, HIGHEST_ORDER + 1))
+    colors = colormaps["viridis"](np.linspace(0, 0.9, len(lines)))
+    for (waves, found), color in zip(lines.items(), colors, strict=True):
+        axes.plot(speeds, np.abs(found[..., 0]), color=color, linewidth=0.9, zorder=3)
+        for seen in found[..., 1].T if waves else ():
+            for met in crossings(speeds, seen, 0.0):  # there the wave stands still in the inertial frame
+                axes.plot(met, waves * met / 60, "o", color=VERMILION, markersize=3.5, zorder=4)
+    ends = [(0, colors[0]), (max(every), colors[-1])]
+    axes.legend(
+        handles=[Line2D([], [], color=color, label=f"ND {waves}") for waves, color in ends]
+        + [Line2D([], [], ls="none", marker="o", color=VERMILION, ms=4, label="backward, order = ND")],
+        loc="upper left", fontsize=8, frameon=False,
+    )  # fmt: skip
+    axes.set_title("Blades, turning frame, all nodal diameters", fontsize=9.5, pad=14)
+    _finish(axes, speeds, top, "Frequency, Hz")
+
+
+def _mark(axes: Axes, speed: float, hertz: float, text: str) -> None:
+    axes.plot(speed, hertz, "o", color=VERMILION, markersize=4, zorder=5)
+    axes.annotate(
+        text, (speed, hertz), xytext=(6, -4), textcoords="offset points", fontsize=8, color=VERMILION, va="top",
+        ha="left" if speed < 0.6 * HIGHEST_RPM else "center", zorder=6,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1, "alpha": 0.8},
+    )  # fmt: skip
 
 
 def _casing(axes: Axes, model: ReducedModel, speeds: FloatArray) -> None:
@@ -63,7 +131,8 @@ def _casing(axes: Axes, model: ReducedModel, speeds: FloatArray) -> None:
     met = np.array([(60 * f / order, f) for order in orders for f in hertz])
     met = met[met[:, 0] <= speeds[-1]]
     axes.plot(*met.T, "o", color=VERMILION, markersize=3.5, zorder=4)
-    _finish(axes, speeds, top, "Casing: frequency, Hz")
+    axes.set_title(f"Casing, inertial frame, orders of {lobes} lobes", fontsize=9.5, pad=14)
+    _finish(axes, speeds, top, "Frequency, Hz")
 
 
 def _orders(axes: Axes, speeds: FloatArray, top: float, orders: range | list[int]) -> None:
@@ -104,6 +173,7 @@ def mode_shapes(model: ReducedModel) -> Figure:
         hertz = float(np.sqrt(max(squares[mode], 0.0)) / (2 * np.pi))
         title = f"blisk {mode + 1}: {hertz:.1f} Hz\n{DIRECTIONS[direction]}, {_diameters(tips[:, direction])}"
         _ring(axes, ring, moved, title, VERMILION)
+    figure.suptitle(f"{model.machine.name}: first modes at rest", fontsize=11, color=INK)
     return figure
 
 

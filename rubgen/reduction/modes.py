@@ -1,0 +1,111 @@
+"""Natural modes of a machine at one speed: frequency, nodal diameters, whirl, damping, family."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import block_diag, eig
+
+from rubgen.arrays import ComplexArray, FloatArray
+from rubgen.linalg.threads import one_blas_thread
+from rubgen.reduction.reduced import ReducedModel
+
+REST = 1e-3
+"""Speed in rad/s that stands for rest, where no load of a growing blade is defined."""
+SUPPORTS = ("lateral", "lateral", "axial", "tilt", "tilt", "torsion")
+LEAST_SHARE = 0.4
+"""A mode that has this share of its elastic energy in the springs of the disk support is named after them."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mode:
+    """A natural mode of the blisk, as a wave around it. All values are those of the damped system without contact."""
+
+    turning_hz: float
+    """Frequency in the turning frame, Hz. Negative where the wave goes against the rotation."""
+    inertial_hz: float
+    """Frequency in the inertial frame, Hz: turning_hz + n f_r. Negative for backward whirl."""
+    nodal_diameters: int
+    """n, the number of waves around the blisk."""
+    damping_ratio: float
+    """-Re s / |s|, in the frame in which the damper stands: inertial for motion on the support, else turning."""
+    family: str
+    """`lateral`, `tilt`, `axial`, `torsion` for motion on the support, else `blade 1`, `blade 2`, ... by frequency."""
+    whirl: str
+    """`forward` or `backward` in the inertial frame; empty at rest and for a wave that cannot travel: n = 0 or half the
+    blades."""
+
+
+def blisk_modes(model: ReducedModel, speed: float) -> list[Mode]:
+    """Compute the modes of the damped blisk at `speed` in rad/s, by frequency in the turning frame.
+
+    The quadratic problem M s^2 + C s + K = 0 of the turning frame is solved. In a mode with n nodal diameters blade k
+    has the phase -n phi_k, so the wave turns with the frequency of the turning frame over n. In the inertial frame it
+    has the frequency omega + n Omega. A mistuned blisk mixes waves: n is that of the largest. A family counts the modes
+    of one n and direction. Springs and laws of the support that are uneven or not linear are left out.
+    """
+    spin, size = max(speed, REST), len(model.blisk.M)
+    system = model.at_speed(spin)
+    C, K = system.C[:size, :size], system.K[:size, :size]
+    with one_blas_thread():
+        companion = np.block([[np.zeros((size, size)), np.eye(size)], [-K, -C]])
+        roots, vectors = eig(companion, block_diag(np.eye(size), model.blisk.M))
+    blades = model.machine.blades.count
+    chosen, waves = _one_of_each_pair(roots, vectors[:size], blades)
+    kinds = _support_kinds(model, vectors[:size, chosen])
+    found = sorted(zip(roots[chosen], waves, kinds, strict=True), key=lambda each: abs(each[0]))
+    counts: dict[tuple[int, bool], int] = {}
+    modes = []
+    for root, wave, kind in found:
+        travels = 0 < 2 * wave < blades
+        key = wave, bool(root.imag > 0) and speed > 0
+        counts[key] = counts.get(key, 0) + (kind is None)
+        number = (counts[key] + 1) // 2 if travels and speed == 0 else counts[key]  # at rest both directions are one
+        seen = float(root.imag + wave * speed)
+        modes.append(
+            Mode(
+                turning_hz=float(root.imag) / (2 * np.pi),
+                inertial_hz=seen / (2 * np.pi),
+                nodal_diameters=wave,
+                damping_ratio=float(-root.real / np.hypot(root.real, seen if kind else root.imag)),
+                family=kind or f"blade {number}",
+                whirl=("forward" if seen > 0 else "backward") if travels and speed else "",
+            )
+        )
+    return modes
+
+
+def _one_of_each_pair(roots: ComplexArray, shapes: ComplexArray, blades: int) -> tuple[list[int], list[int]]:
+    """Return the numbers of the roots that have a wave of n >= 0, and each n.
+
+    Of two conjugate roots one has n and the other -n. Where n and -n are the same wave, the root of positive frequency
+    is taken.
+    """
+    tips = shapes[: 3 * blades].reshape(blades, 3, -1)
+    power = np.sum(np.abs(np.fft.ifft(tips, axis=0)) ** 2, axis=1)  # row n: coefficient of e^(-i n phi_k)
+    number = np.argmax(power, axis=0)
+    signed = np.where(2 * number > blades, number - blades, number)
+    alone = (signed == 0) | (2 * signed == blades)
+    taken = np.flatnonzero(np.where(alone, roots.imag > 0, signed > 0))
+    return taken.tolist(), signed[taken].tolist()
+
+
+def _support_kinds(model: ReducedModel, shapes: ComplexArray) -> list[str | None]:
+    """Return for each shape the spring of the support that has LEAST_SHARE of its elastic energy, or None."""
+    total = np.einsum("im,ij,jm->m", shapes.conj(), model.stiffness(0.0), shapes).real
+    each = model.springs[:, None] * np.abs(model.blisk.centre @ shapes) ** 2
+    shares: dict[str, FloatArray] = {}
+    for name, energy in zip(SUPPORTS, each, strict=True):
+        shares[name] = shares.get(name, np.zeros_like(total)) + energy / total
+    names = list(shares)
+    table = np.array(list(shares.values()))
+    largest = np.argmax(table, axis=0)
+    return [names[row] if table[row, mode] >= LEAST_SHARE else None for mode, row in enumerate(largest)]
+
+
+def casing_diameters(model: ReducedModel) -> list[int]:
+    """Return the number of waves around the casing of each of its modes, that of the largest radial component."""
+    shapes = model.casing.modes_xy
+    angle = 2 * np.pi * np.arange(len(shapes)) / len(shapes)
+    radial = np.cos(angle)[:, None] * shapes[:, 0] + np.sin(angle)[:, None] * shapes[:, 1]
+    waves: list[int] = np.argmax(np.abs(np.fft.rfft(radial, axis=0)), axis=0).tolist()
+    return waves
