@@ -22,7 +22,9 @@ from tests.default_columns import CHANNELS, SCALARS
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 DOCUMENTS = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in ROOT.glob("docs/**/*.md")}
-DOCUMENTS |= {"README.md": README, "CHANGELOG.md": (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")}
+DOCUMENTS |= {
+    name: (ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")
+}
 FOLDERS = ("rubgen", "tests", "docs", "schemas", "datasets", "benchmarks", "validation")
 
 
