@@ -14,6 +14,7 @@ READERS = [
     "rubgen.report.page",
     "rubgen.cli.featuring",
     "rubgen.cli.exporting",
+    "rubgen.cli.scoring",
     "rubgen.viz.rerun",
     "rubgen.dataset.making.generate",  # the parent of workers: they compile
 ]

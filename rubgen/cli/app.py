@@ -281,6 +281,22 @@ def features(
 
 
 @app.command
+def baseline(
+    directory: Directory,
+    /,
+    *,
+    task: Annotated[str | None, _option("rub, motion, severity, with commas; all possible when not given.")] = None,
+    out: Annotated[Path | None, _option("File for the scores: .json.")] = None,
+    force: Force = False,
+    json: Json = False,
+) -> int:
+    """Score simple models on a data set, by machine or run; exit 1 where one threshold or no model solves a task."""
+    from rubgen.cli.scoring import baseline_command
+
+    return baseline_command(directory, task, out, force=force, as_json=json)
+
+
+@app.command
 def export(
     directory: Directory,
     /,

@@ -3,25 +3,26 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from rubgen.baseline.scores import balanced_accuracy, best_threshold
 from validation.difficulty.features import NAMES, ORDERS, angle_from, common, orders
 from validation.difficulty.figure import background_groups
-from validation.difficulty.scores import balanced_accuracy, best_threshold, boosted, chance_level
+from validation.difficulty.scores import boosted, chance_level
 
 
 def test_the_best_threshold_of_values_that_are_known():
     rub = np.array([False, False, True, True])
-    assert best_threshold(np.array([1.0, 2.0, 3.0, 4.0]), rub) == 1.0
-    assert best_threshold(-np.array([1.0, 2.0, 3.0, 4.0]), rub) == 1.0
-    assert best_threshold(np.array([1.0, 3.0, 2.0, 4.0]), rub) == pytest.approx(0.75)
-    assert best_threshold(np.array([1.0, 1.0, 1.0, 1.0]), rub) == 0.5
-    assert best_threshold(np.array([1.0, 2.0, 2.0, 4.0]), rub) == pytest.approx(0.75)
+    assert best_threshold(np.array([1.0, 2.0, 3.0, 4.0]), rub).score == 1.0
+    assert best_threshold(-np.array([1.0, 2.0, 3.0, 4.0]), rub).score == 1.0
+    assert best_threshold(np.array([1.0, 3.0, 2.0, 4.0]), rub).score == pytest.approx(0.75)
+    assert best_threshold(np.array([1.0, 1.0, 1.0, 1.0]), rub).score == 0.5
+    assert best_threshold(np.array([1.0, 2.0, 2.0, 4.0]), rub).score == pytest.approx(0.75)
 
 
 def test_a_feature_without_information_stays_at_the_level_of_chance():
     rng = np.random.default_rng(1)
     rub = rng.random(400) < 0.4
     level = chance_level(rub, tries=200)
-    scores = [best_threshold(rng.standard_normal(400), rub) for _ in range(200)]
+    scores = [best_threshold(rng.standard_normal(400), rub).score for _ in range(200)]
     assert np.mean(np.array(scores) > level) == pytest.approx(0.05, abs=0.05)
 
 

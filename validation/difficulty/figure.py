@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.baseline.scores import best_threshold
 from rubgen.viz.colors import BLUE, GREY, VERMILION
 from validation.difficulty.runs import Cases
-from validation.difficulty.scores import Boosted, Flags, best_threshold
+from validation.difficulty.scores import Boosted, Flags
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,7 +42,7 @@ def background_figure(found: Cases, learned: Boosted, threshold: FloatArray) -> 
     groups = background_groups(found.background)
     level = [float(np.median(found.background[group])) for group in groups]
     scores = np.array([learned.accuracy(group) for group in groups])
-    single = [best_threshold(threshold[group], found.rub[group]) for group in groups]
+    single = [best_threshold(threshold[group], found.rub[group]).score for group in groups]
     axes.errorbar(level, scores[:, 0], yerr=scores[:, 1], fmt="o-", color=BLUE, label="gradient boosting")
     axes.plot(level, single, "s--", color=VERMILION, label="best single threshold, chosen in the group")
     axes.axhline(0.5, color=GREY, linewidth=1)

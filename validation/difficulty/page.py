@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.baseline.scores import best_threshold
 from validation.difficulty.features import NAMES, OF_SIGNAL, OF_SPECTRUM
 from validation.difficulty.runs import Cases
-from validation.difficulty.scores import FOLDS, SEEDS, Boosted, best_threshold, boosted, chance_level
+from validation.difficulty.scores import FOLDS, SEEDS, Boosted, boosted, chance_level
 from validation.markdown import table
 
 PLANT, SILENCE = "plant", "silence"
@@ -27,7 +28,7 @@ class Best:
 
 def best_of(features: FloatArray, found: Cases) -> Best:
     """The best threshold over the features (runs, features) of a channel."""
-    scores = [best_threshold(values, found.rub) for values in features.T]
+    scores = [best_threshold(values, found.rub).score for values in features.T]
     return Best(feature=int(np.argmax(scores)), score=float(np.max(scores)))
 
 

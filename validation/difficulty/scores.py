@@ -1,4 +1,4 @@
-"""Scores: the best threshold on one feature, and gradient boosting with folds by run."""
+"""Scores: what chance reaches with the best threshold, and gradient boosting with folds by run."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ import numpy.typing as npt
 from threadpoolctl import threadpool_limits
 
 from rubgen.arrays import FloatArray
+from rubgen.baseline.models import boosting
+from rubgen.baseline.scores import balanced_accuracy, best_threshold
 
 Flags = npt.NDArray[np.bool_]
 FOLDS = 5
@@ -16,21 +18,10 @@ SEEDS = 3
 """Each with other folds; their scores give mean and standard deviation."""
 
 
-def best_threshold(values: FloatArray, rub: Flags) -> float:
-    """The balanced accuracy of the best threshold on `values` (runs,) for the flags `rub` (runs,), either way round."""
-    order = np.argsort(values, kind="stable")
-    ranked, flags = values[order], rub[order]
-    above = 1 - np.cumsum(flags) / flags.sum()  # share of the rubs above a threshold behind each value
-    below = np.cumsum(~flags) / (~flags).sum()
-    allowed = np.append(ranked[1:] > ranked[:-1], False)  # no threshold fits between equal values
-    scores = ((above + below) / 2)[allowed]
-    return float(np.maximum(scores, 1 - scores).max(initial=0.5))
-
-
 def chance_level(rub: Flags, *, tries: int = 1000) -> float:
     """The score of `best_threshold` that a feature without information reaches in 95 % of cases."""
     noise = np.random.default_rng(0).standard_normal((tries, rub.size))
-    return float(np.quantile([best_threshold(values, rub) for values in noise], 0.95))
+    return float(np.quantile([best_threshold(values, rub).score for values in noise], 0.95))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,22 +44,14 @@ class Boosted:
         return float(self.predicted[:, chosen].mean()) if chosen.any() else float("nan")
 
 
-def balanced_accuracy(predicted: Flags, rub: Flags) -> float:
-    """The mean of the shares of rubs and of other runs that are called so; NaN where there are none of a class."""
-    if rub.all() or not rub.any():
-        return float("nan")
-    return float((predicted[rub].mean() + (~predicted[~rub]).mean()) / 2)
-
-
 def boosted(features: FloatArray, rub: Flags) -> Boosted:
     """Gradient boosting on features (runs, any), with folds by run that have equal shares of rubs."""
-    from sklearn.ensemble import HistGradientBoostingClassifier
     from sklearn.model_selection import StratifiedKFold, cross_val_predict
 
     predicted = []
     for seed in range(SEEDS):
         folds = StratifiedKFold(FOLDS, shuffle=True, random_state=seed)
-        model = HistGradientBoostingClassifier(class_weight="balanced", random_state=seed)
+        model = boosting(seed)
         with threadpool_limits(1):
             predicted.append(cross_val_predict(model, features, rub, cv=folds))
     return Boosted(predicted=np.array(predicted, dtype=bool), rub=rub)

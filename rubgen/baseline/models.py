@@ -1,0 +1,85 @@
+"""The models of the baselines. All take features (samples, features) with NaN and have `fit` and `predict`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from rubgen.arrays import FloatArray
+from rubgen.baseline.scores import best_threshold, rank_correlation
+
+Answer = npt.NDArray[Any]
+
+
+class Majority:
+    """Answers the most frequent class, or the median of numbers."""
+
+    def fit(self, _features: FloatArray, answers: Answer) -> Self:
+        """Learn from answers (samples,)."""
+        if answers.dtype.kind == "f":
+            self.answer: Any = float(np.median(answers))
+        else:
+            classes, counts = np.unique(answers, return_counts=True)
+            self.answer = classes[np.argmax(counts)]
+        return self
+
+    def predict(self, features: FloatArray) -> Answer:
+        """Answer for each sample."""
+        return np.full(len(features), self.answer)
+
+
+class OneFeature:
+    """The best single feature: a threshold for two classes, the ranks for numbers. NaN counts as the smallest value."""
+
+    def fit(self, features: FloatArray, answers: Answer) -> Self:
+        """Choose feature, threshold and sense on features (samples, features) and answers (samples,)."""
+        known = _finite(features)
+        if answers.dtype.kind == "f":
+            scores = [rank_correlation(values, answers) for values in known.T]
+            self.feature = int(np.argmax(np.abs(scores)))
+            self.sense, self.threshold = np.sign(scores[self.feature]), None
+            return self
+        self.classes = np.unique(answers)
+        found = [best_threshold(values, answers == self.classes[-1]) for values in known.T]
+        self.feature = int(np.argmax([each.score for each in found]))
+        self.threshold, self.sense = found[self.feature].value, found[self.feature].above
+        return self
+
+    def predict(self, features: FloatArray) -> Answer:
+        """Answer for each sample."""
+        values = _finite(features)[:, self.feature]
+        if self.threshold is None:
+            return np.asarray(self.sense * values)
+        return np.asarray(np.where((values > self.threshold) == self.sense, self.classes[-1], self.classes[0]))
+
+
+def boosting(seed: int, *, numbers: bool = False) -> Any:
+    """Make scikit-learn's histogram gradient boosting with its default settings; classes weigh the same."""
+    from sklearn.ensemble import HistGradientBoostingClassifier, HistGradientBoostingRegressor
+
+    if numbers:
+        return HistGradientBoostingRegressor(random_state=seed)
+    return HistGradientBoostingClassifier(class_weight="balanced", random_state=seed)
+
+
+def one_split(seed: int) -> Any:
+    """Make scikit-learn's decision tree with a single split: one threshold for several classes."""
+    from sklearn.tree import DecisionTreeClassifier
+
+    return DecisionTreeClassifier(max_depth=1, class_weight="balanced", random_state=seed)
+
+
+def models(*, numbers: bool, classes: int) -> dict[str, Callable[[int], Any]]:
+    """Return the models of a task by their name, each as a function of a seed."""
+    return {
+        "majority": lambda _seed: Majority(),
+        "one threshold": one_split if classes > 2 else lambda _seed: OneFeature(),
+        "boosting": lambda seed: boosting(seed, numbers=numbers),
+    }
+
+
+def _finite(features: FloatArray) -> FloatArray:
+    return np.nan_to_num(features, nan=-np.finfo(np.float64).max, posinf=None, neginf=None)

@@ -1,0 +1,61 @@
+"""Scores of predictions, and the best single threshold."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from rubgen.arrays import BoolArray, FloatArray
+
+
+class Threshold(NamedTuple):
+    """A threshold on one feature."""
+
+    score: float
+    """The balanced accuracy on the values that it was chosen on."""
+    value: float
+    above: bool
+    """Whether values above it are called true."""
+
+
+def best_threshold(values: FloatArray, flags: BoolArray) -> Threshold:
+    """Choose the threshold on `values` (any,) with the best balanced accuracy for `flags` (any,), either way round.
+
+    It lies midway between two neighbouring values. Both flags must occur.
+    """
+    order = np.argsort(values, kind="stable")
+    ranked, sorted_flags = values[order], flags[order]
+    above = 1 - np.cumsum(sorted_flags) / sorted_flags.sum()  # share of the true ones above a threshold
+    below = np.cumsum(~sorted_flags) / (~sorted_flags).sum()
+    allowed = np.append(ranked[1:] > ranked[:-1], False)  # no threshold fits between equal values
+    scores = np.where(allowed, (above + below) / 2, 0.5)
+    either = np.maximum(scores, 1 - scores)
+    at = int(np.argmax(either))
+    return Threshold(float(either[at]), float(np.mean(ranked[at : at + 2])), bool(scores[at] >= 0.5))
+
+
+def balanced_accuracy(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:
+    """Compute the mean over the classes in `truth` (any,) of the share that is called so; NaN with less than two."""
+    classes = np.unique(truth)
+    return (
+        float(np.mean([np.mean(predicted[truth == each] == each) for each in classes])) if classes.size > 1 else np.nan
+    )
+
+
+def macro_f1(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:
+    """Compute the mean over the classes in `truth` (any,) of 2 hits / (times called + times true)."""
+    classes = np.unique(truth)
+    hits = np.array([np.sum((predicted == each) & (truth == each)) for each in classes])
+    sizes = np.array([np.sum(predicted == each) + np.sum(truth == each) for each in classes])
+    return float(np.mean(2 * hits / sizes))
+
+
+def rank_correlation(predicted: FloatArray, truth: FloatArray) -> float:
+    """Compute Spearman's rank correlation; 0 where all values of one side are equal."""
+    from scipy.stats import spearmanr
+
+    if np.ptp(predicted) == 0 or np.ptp(truth) == 0:
+        return 0.0
+    return float(spearmanr(predicted, truth).statistic)

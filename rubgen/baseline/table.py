@@ -1,0 +1,43 @@
+"""The baselines as a table in Markdown, for the card of a data set, and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+from rubgen import __version__
+from rubgen.baseline.baseline import SOLVED, Baseline
+from rubgen.baseline.evaluate import FOLDS, SEEDS
+
+
+def table(found: Sequence[Baseline]) -> str:
+    """Write a table of all scores: a row a task and model, a column a way of scoring."""
+    ways = list(dict.fromkeys(way for each in found for scores in each.scores.values() for way in scores))
+    head = ["task", "metric", "windows", "groups", "model", *ways]
+    rows = [
+        [each.task, each.metric, str(each.windows), str(each.groups), model, *(_cell(scores.get(way)) for way in ways)]
+        for each in found
+        for model, scores in each.scores.items()
+    ]
+    lines = ["| " + " | ".join(row) + " |" for row in (head, ["---"] * len(head), *rows)]
+    marks = [f"- {each.task}: {each.mark}" for each in found if each.mark]
+    return "\n".join([*lines, *([""] if marks else []), *marks])
+
+
+def document(name: str, manifest_sha256: str, found: Sequence[Baseline], reasons: dict[str, str]) -> dict[str, Any]:
+    """Make the content of baselines.json. `reasons` are those of tasks that the set does not allow."""
+    return {
+        "data_set": name,
+        "manifest_sha256": manifest_sha256,
+        "rubgen": __version__,
+        "folds": FOLDS,
+        "seeds": SEEDS,
+        "one_threshold_solves_above": SOLVED,
+        "tasks": [asdict(each) for each in found],
+        "not_possible": reasons,
+    }
+
+
+def _cell(score: tuple[float, float] | None) -> str:
+    return "" if score is None else f"{score[0]:.2f} ± {score[1]:.2f}"
