@@ -71,6 +71,7 @@ pictures: $(VENV)/.installed-dev
 schemas: $(VENV)/.installed-dev
 	$(BIN)/python -m schemas.make schemas docs/labels.md
 	$(BIN)/python -m schemas.features_page docs/features.md
+	$(BIN)/python -m schemas.option_texts
 	$(BIN)/python -m schemas.reference docs/reference
 
 reference: schemas

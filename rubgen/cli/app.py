@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from cyclopts import App, Parameter, Token
 
 from rubgen import __version__
+from rubgen.cli.option_texts import TEXTS
 from rubgen.format_names import ENDINGS
 
 app = App(
@@ -140,47 +141,43 @@ def list_offered(*, json: Json = False) -> int:
 def simulate(
     *,
     machine: MachineName = "zeng2019",
-    speed_rpm: Annotated[float | None, _option("Spin speed, rev/min; 10,000 when not given.")] = None,
-    clearance_m: Annotated[float | None, _option("Smallest gap at rest, m.")] = None,
-    free_penetration_m: Annotated[float | None, _option("In place of it: depth of tips without contact, m.")] = None,
-    ovality_m: Annotated[float | None, _option("Largest minus smallest radius of the casing, m.")] = None,
-    disk_support_stiffness_n_per_m: Annotated[float | None, _option("Lateral, X and Y, N/m.")] = None,
+    speed_rpm: Annotated[float | None, _option(TEXTS["speed_rpm"])] = None,
+    clearance_m: Annotated[float | None, _option(TEXTS["clearance_m"])] = None,
+    free_penetration_m: Annotated[float | None, _option(TEXTS["free_penetration_m"])] = None,
+    ovality_m: Annotated[float | None, _option(TEXTS["ovality_m"])] = None,
+    disk_support_stiffness_n_per_m: Annotated[float | None, _option(TEXTS["disk_support_stiffness_n_per_m"])] = None,
     casing_support_stiffness_n_per_m: Annotated[
-        float | None, _option("Radial and tangential at each node, N/m.")
+        float | None, _option(TEXTS["casing_support_stiffness_n_per_m"])
     ] = None,
-    friction: Annotated[float | None, _option("Coulomb coefficient, 0 to 0.3.")] = None,
-    lobes: Annotated[float | None, _option("Number of lobes of the casing.")] = None,
-    unbalance_kg_m: Annotated[float | None, _option("Mass unbalance, kg m.")] = None,
-    casing_thickness_m: Annotated[float | None, _option("Thickness of the casing ring, m.")] = None,
-    lateral_damping: Annotated[float | None, _option("Damping ratio of the rigid blisk's lateral motion.")] = None,
-    support_anisotropy: Annotated[float | None, _option("(k_X - k_Y) / (k_X + k_Y) of the disk support.")] = None,
-    gravity_m_per_s2: Annotated[float | None, _option("Gravity along -Y on the blisk, m/s2.")] = None,
-    unbalance_angle_deg: Annotated[float | None, _option("Angle of the unbalance from blade 0, degrees.")] = None,
+    friction: Annotated[float | None, _option(TEXTS["friction"])] = None,
+    lobes: Annotated[float | None, _option(TEXTS["lobes"])] = None,
+    unbalance_kg_m: Annotated[float | None, _option(TEXTS["unbalance_kg_m"])] = None,
+    casing_thickness_m: Annotated[float | None, _option(TEXTS["casing_thickness_m"])] = None,
+    lateral_damping: Annotated[float | None, _option(TEXTS["lateral_damping"])] = None,
+    support_anisotropy: Annotated[float | None, _option(TEXTS["support_anisotropy"])] = None,
+    gravity_m_per_s2: Annotated[float | None, _option(TEXTS["gravity_m_per_s2"])] = None,
+    unbalance_angle_deg: Annotated[float | None, _option(TEXTS["unbalance_angle_deg"])] = None,
     background_m_per_s2: Annotated[
         float | None,
-        Parameter(
-            name=("--background-m-per-s2", "--background"), help="Rms of the casing's broadband background, m/s2."
-        ),
+        Parameter(name=("--background-m-per-s2", "--background"), help=TEXTS["background_m_per_s2"]),
     ] = None,
-    blade_passing_m_per_s2: Annotated[float | None, _option("Rms of the casing's blade passing, m/s2.")] = None,
-    runout_m: Annotated[float | None, _option("Amplitude of the shaft's runout, m.")] = None,
-    path_gain: Annotated[float | None, _option("Share of the frame's motion on the casing; 1 is all of it.")] = None,
+    blade_passing_m_per_s2: Annotated[float | None, _option(TEXTS["blade_passing_m_per_s2"])] = None,
+    runout_m: Annotated[float | None, _option(TEXTS["runout_m"])] = None,
+    path_gain: Annotated[float | None, _option(TEXTS["path_gain"])] = None,
     fault: Annotated[list[str] | None, Parameter(negative=(), help="A fault: misalignment, bow, ...")] = None,
-    profile: Annotated[str, _option("Speed: steady, run-up, coast-down or fluctuating.")] = "steady",
-    end_speed_rpm: Annotated[float | None, _option("Speed at the end of a run-up or coast-down, rev/min.")] = None,
-    duration_s: Annotated[float | None, _option("Duration of a record whose speed changes, s.")] = None,
-    fluctuation_rpm: Annotated[float | None, _option("Amplitude of a fluctuating speed, rev/min.")] = None,
-    fluctuation_period_s: Annotated[float | None, _option("Period of a fluctuating speed, s.")] = None,
-    settle_turns: Annotated[int | None, _whole_number("Turns before the record; automatic when not given.")] = None,
-    record_turns: Annotated[
-        int | None, _whole_number("Turns of a steady record, at least 500, which is the default.")
-    ] = None,
-    steps_per_turn: Annotated[int, _whole_number("Least number of integration steps in a turn.")] = 1024,
-    sample_rate_hz: Annotated[float, _option("Samples a second of the recorded channels.")] = 25600.0,
-    sensors: Annotated[str, _option("Sensor set: default, rig, field, or the path of a TOML.")] = "default",
-    signal_seconds: Annotated[float, _option("Length of the recorded signals: the end of the record.")] = 1.0,
-    seed: Annotated[int, _whole_number("Seed of the sensor noise and the surroundings.")] = 0,
-    lyapunov: Annotated[bool | None, _option("Whether to compute the exponent of a steady run; on by default.")] = None,
+    profile: Annotated[str, _option(TEXTS["profile"])] = "steady",
+    end_speed_rpm: Annotated[float | None, _option(TEXTS["end_speed_rpm"])] = None,
+    duration_s: Annotated[float | None, _option(TEXTS["duration_s"])] = None,
+    fluctuation_rpm: Annotated[float | None, _option(TEXTS["fluctuation_rpm"])] = None,
+    fluctuation_period_s: Annotated[float | None, _option(TEXTS["fluctuation_period_s"])] = None,
+    settle_turns: Annotated[int | None, _whole_number(TEXTS["settle_turns"])] = None,
+    record_turns: Annotated[int | None, _whole_number(TEXTS["record_turns"])] = None,
+    steps_per_turn: Annotated[int, _whole_number(TEXTS["steps_per_turn"])] = 1024,
+    sample_rate_hz: Annotated[float, _option(TEXTS["sample_rate_hz"])] = 25600.0,
+    sensors: Annotated[str, _option(TEXTS["sensors"])] = "default",
+    signal_seconds: Annotated[float, _option(TEXTS["signal_seconds"])] = 1.0,
+    seed: Annotated[int, _whole_number(TEXTS["seed"])] = 0,
+    lyapunov: Annotated[bool | None, _option(TEXTS["lyapunov"])] = None,
     out: Annotated[Path | None, _option(f"File to write: {ENDINGS}.")] = None,
     force: Force = False,
     replay: Annotated[bool, Parameter(negative=(), help="Then show the run in the viewer.")] = False,

@@ -89,39 +89,55 @@ def make_scenario(
 ) -> Scenario:
     """Describe one run of a machine for `simulate`; a key that is not given keeps the machine's value.
 
-    - `machine`: name of a preset ("zeng2019"), or path of a machine TOML
-    - `speed_rpm`: spin speed in rev/min, of a run-up or coast-down at its start, > 0; 10,000 when not given
-    - `clearance_m`: smallest gap between blade tips and casing at rest in m, > 0
-    - `free_penetration_m`: how deep tips would be without contact in m; the clearance follows from it, in its place
-    - `ovality_m`: largest minus smallest radius of the casing's inner surface in m, >= 0
-    - `disk_support_stiffness_n_per_m`: lateral stiffness of the disk support, mean of X and Y, in N/m, > 0
-    - `casing_support_stiffness_n_per_m`: radial and circumferential stiffness under each casing node in N/m, > 0
-    - `friction`: Coulomb coefficient of sliding friction, 0 to 0.3
-    - `lobes`: number of lobes of the casing's inner surface, whole, >= 2
-    - `unbalance_kg_m`: mass unbalance of the blisk in kg m, >= 0
-    - `casing_thickness_m`: radial thickness of the casing ring in m, > 0
-    - `lateral_damping`: damping ratio of the blisk moving laterally as a rigid body, 0 to below 1
-    - `support_anisotropy`: (k_X - k_Y) / (k_X + k_Y) of the disk support, above -1 and below 1
-    - `gravity_m_per_s2`: gravity along -Y on the blisk in m/s2, >= 0; 0 for a vertical axis
-    - `unbalance_angle_deg`: angle of the unbalance from blade 0 in degrees, -360 to 360
-    - `background_m_per_s2`: rms of the casing's broadband background at 10,000 rev/min in m/s2, >= 0
-    - `blade_passing_m_per_s2`: rms of the casing's answer to the blades' pressure at 10,000 rev/min in m/s2, >= 0
-    - `runout_m`: amplitude of order 1 of the shaft's runout in m, >= 0; orders 2 and 3 have 1/2 and 1/3 of it
-    - `path_gain`: share of the motion of the machine's frame that the casing's sensors feel, >= 0; 1 is all of it
+    - `machine`: A preset of rubgen by its name, or the path of a machine in TOML.
+    - `speed_rpm`: Spin speed, of a run-up or coast-down at its start; in rev/min, at least 0.001 and at most
+      1,000,000; 10,000 when not given.
+    - `clearance_m`: Smallest gap between blade tips and casing at rest; in m, at least 1e-07 and at most 100.
+    - `free_penetration_m`: How deep tips would be without contact; the clearance follows from it; in m, at least
+      -100 and at most 100.
+    - `ovality_m`: Largest minus smallest radius of the inner surface; in m, at least 0 and at most 100.
+    - `disk_support_stiffness_n_per_m`: Lateral stiffness of the shaft and bearings at the disk centre, mean of X
+      and Y; in N/m, at least 0.001 and at most 1e+16.
+    - `casing_support_stiffness_n_per_m`: Radial and circumferential stiffness under each casing node; in N/m, at
+      least 0.001 and at most 1e+16.
+    - `friction`: Coulomb coefficient of sliding friction; at least 0 and at most 0.3.
+    - `lobes`: Number of narrow places around the inner surface; at least 2 and at most 100.
+    - `unbalance_kg_m`: Mass times radius of the unbalance on the disk; in kg m, at least 0 and at most 10,000,000.
+    - `casing_thickness_m`: Radial thickness of the ring; in m, at least 1e-07 and at most 100.
+    - `lateral_damping`: Damping ratio of the blisk that moves laterally as a rigid body; at least 0 and below 1.
+    - `support_anisotropy`: (k_X - k_Y) / (k_X + k_Y) of the lateral springs; above -1 and below 1.
+    - `gravity_m_per_s2`: Gravity along -Y on the blisk; in m/s2, at least 0 and at most 10,000.
+    - `unbalance_angle_deg`: Angle of unbalance_kg_m from blade 0, in the sense of rotation; in deg, at least -360
+      and at most 360.
+    - `background_m_per_s2`: Rms of the casing's broadband background from 10 Hz to 20 kHz, at 10,000 rev/min; in
+      m/s2, at least 0 and at most 1,000,000,000; 0 when not given.
+    - `blade_passing_m_per_s2`: Rms of the casing's answer to the pressure of the blades, at 10,000 rev/min; in
+      m/s2, at least 0 and at most 1,000,000,000; 0 when not given.
+    - `runout_m`: Amplitude of order 1 of the shaft's runout under the proximity probes; in m, at least 0 and at
+      most 100; 0 when not given.
+    - `path_gain`: Share of the motion of the machine's frame that the casing's sensors feel; at least 0 and at most
+      1,000,000; 0 when not given.
     - `fault`: kind of a fault of the machine, or several kinds in a list (docs/faults.md)
-    - `profile`: of the speed: "steady", "run-up", "coast-down" or "fluctuating"
-    - `end_speed_rpm`: speed at the end of a run-up or coast-down in rev/min, > 0; these two profiles need it
-    - `duration_s`: duration of a record whose speed changes in s, > 0; every profile but "steady" needs it
-    - `fluctuation_rpm`: amplitude of a fluctuating speed in rev/min, below speed_rpm; this profile needs it
-    - `fluctuation_period_s`: period of a fluctuating speed in s, > 0; 1 when not given
-    - `settle_turns`: turns before the record, >= 1; from the slowest decay of the machine when not given
-    - `record_turns`: turns from which the labels of a steady run come, >= 500; 500 when not given
-    - `steps_per_turn`: least number of integration steps in a turn, at most 16384
-    - `sample_rate_hz`: samples a second of the recorded channels, > 0
-    - `sensors`: sensor set, "default", "rig", "field" or the path of a TOML
-    - `signal_seconds`: length of the recorded signals in s, the end of the record, at most all of it
-    - `seed`: seed of the sensor noise and the surroundings, >= 0
-    - `lyapunov`: whether to compute the Lyapunov exponent of a steady run, half as long again; yes when not given
+    - `profile`: How the speed changes: not at all, linearly up, linearly down, or as a sine; "steady", "run-up",
+      "coast-down", "fluctuating".
+    - `end_speed_rpm`: Speed at the end of a run-up or coast-down, which need it; in rev/min, at least 0.001 and at
+      most 1,000,000.
+    - `duration_s`: Duration of a record whose speed changes; every profile but "steady" needs it; in s, above 0 and
+      at most 100,000.
+    - `fluctuation_rpm`: Amplitude of a fluctuating speed, which needs it; in rev/min, at least 0 and at most
+      1,000,000; 0 when not given.
+    - `fluctuation_period_s`: Period of a fluctuating speed; in s, above 0 and at most 100,000; 1 when not given.
+    - `settle_turns`: Turns before the record, in which transients decay; at least 1 and at most 1,000,000 or
+      "auto"; "auto" when not given.
+    - `record_turns`: Turns of the record of a steady run, from which its labels come; at least 1 and at most
+      1,000,000; 500 when not given.
+    - `steps_per_turn`: Least number of integration steps in a turn; at least 32 and at most 16,384.
+    - `sample_rate_hz`: Samples a second of every recorded channel; in Hz, above 0 and at most 1,000,000,000.
+    - `sensors`: A sensor set of rubgen by its name, or the path of a sensor set in TOML.
+    - `signal_seconds`: Length of the recorded signals: the end of the record; in s, above 0 and at most 100,000.
+    - `seed`: Seed of all random numbers; at least 0 and at most 9,223,372,036,854,775,807.
+    - `lyapunov`: Whether the largest Lyapunov exponent of each steady run is computed; true, false; true when not
+      given.
     - `fault_keys`: values of these faults, each by its key: parallel_m = 5e-5
 
     Warns (RubgenWarning) of values that are allowed but hardly intended. Raises UserError for an unknown machine or

@@ -75,8 +75,8 @@ class Recipe(BaseModel):
     machine: Annotated[
         MachineFile | Annotated[tuple[MachineFile, ...], Field(min_length=1)],
         about(
-            "A preset of rubgen by its name, or the path of a machine in TOML; or a list of such, which "
-            "`[machines]` takes in turn."
+            "A preset of rubgen by its name, or the path of a machine in TOML. `[machines]` takes several in a "
+            "list in turn."
         ),
     ]
     license: Annotated[str, Field(min_length=1), about("License of the data, as an SPDX name.")] = "CC-BY-4.0"

@@ -1,12 +1,17 @@
 import json
 import tomllib
+from inspect import signature
 from pathlib import Path
 
 import jsonschema
 import pyarrow.parquet as pq
 import pytest
 
+from rubgen.cli.app import app
+from rubgen.cli.option_texts import TEXTS
+from rubgen.scenario import make_scenario
 from schemas.make import schemas, write_schemas
+from schemas.option_texts import MAKE_FILE, TEXTS_FILE, texts_module, with_keys
 from schemas.reference import pages
 
 ROOT = Path(__file__).parents[2]
@@ -21,6 +26,24 @@ def test_checked_in_schemas_are_those_of_the_code(name, tmp_path):
 @pytest.mark.parametrize("name", sorted(pages()))
 def test_checked_in_reference_pages_are_those_of_the_code(name):
     assert (ROOT / "docs/reference" / name).read_text(encoding="utf-8") == pages()[name], "run `make reference`"
+
+
+def test_texts_in_the_code_are_those_of_the_descriptions():
+    assert TEXTS_FILE.read_text(encoding="utf-8") == texts_module(), "run `make reference`"
+    source = MAKE_FILE.read_text(encoding="utf-8")
+    assert source == with_keys(source), "run `make reference`"
+
+
+def test_every_key_of_make_scenario_has_its_help_text():
+    keys = set(signature(make_scenario).parameters) - {"fault", "fault_keys"}
+    assert keys == set(TEXTS)
+    helps = {
+        each.name.removeprefix("--"): each.parameter.help for each in app["simulate"].assemble_argument_collection()
+    }
+    for key in keys - {"machine"}:
+        assert helps[key.replace("_", "-")] == TEXTS[key]
+    assert TEXTS["speed_rpm"].endswith("10,000 when not given.")
+    assert "in N/m" in TEXTS["disk_support_stiffness_n_per_m"]
 
 
 def property_names(node):
