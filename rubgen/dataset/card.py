@@ -8,6 +8,7 @@ from rubgen.brief import counted
 from rubgen.dataset.files import write_text
 from rubgen.dataset.layout import SPLIT, Layout
 from rubgen.dataset.manifest import Identity
+from rubgen.dataset.split_counts import SplitCount, split_counts, split_table
 from rubgen.format_names import FORMAT_NAMES
 from rubgen.formats import format_of
 from rubgen.io.columns import Column, scalar_columns, signal_columns
@@ -21,13 +22,20 @@ def write_card(layout: Layout, identity: Identity, status: dict[str, int]) -> No
     - identity: recipe, machine, sensors and versions.
     - status: number of runs by status.
     """
-    write_text(layout.card, card(identity, status))
+    write_text(layout.card, card(identity, status, counts_of(layout, identity)))
 
 
-def card(identity: Identity, status: dict[str, int]) -> str:
+def counts_of(layout: Layout, identity: Identity) -> dict[str, SplitCount]:
+    """Count what each split holds, from `runs.parquet`; nothing for a recipe without virtual machines."""
+    return split_counts(layout) if "machines" in identity.recipe else {}
+
+
+def card(identity: Identity, status: dict[str, int], splits: dict[str, SplitCount]) -> str:
     """Compose the text of README.md. Its YAML head names the files of each configuration and the licence, for hubs.
 
-    `status` is the number of runs by status.
+    - identity: recipe, machine, sensors and versions.
+    - status: number of runs by status.
+    - splits: what each split holds; empty for a recipe without virtual machines.
     """
     recipe = identity.recipe
     formats = recipe["output"]["formats"]
@@ -43,10 +51,10 @@ def card(identity: Identity, status: dict[str, int]) -> str:
     columns += signals if "parquet" in formats else ()
     channel = next((column.name for column in signals if column.kind == "signal"), "rotation_angle_rad")
     loading = "\n\n".join(format_of(name).loading for name in FORMAT_NAMES if name in formats)
-    loading = loading.replace("CHANNEL", channel)
+    loading = loading.replace("CHANNEL", channel).replace("SPLIT", next(iter(splits), SPLIT))
     ended = ", ".join(f"{count} {name}" for name, count in status.items())
     record, limits, runs = _record(recipe), _limits(recipe), counted(recipe["runs"], "run")
-    return f"""{_head(recipe)}
+    return f"""{_head(recipe, list(splits) or [SPLIT])}
 # {recipe["name"]}
 
 {runs} of a bladed disk that may rub its flexible oval casing: machine `{recipe["machine"]}`, seed
@@ -54,14 +62,13 @@ def card(identity: Identity, status: dict[str, int]) -> str:
 integrated through unilateral contact with friction; virtual sensors with noise, range and ADC; labels from the true
 motion, never from the noisy channels. Runs by status: {ended}.
 
-Splits go by machine: runs of one machine never stand in two splits. This set has one machine, hence one split,
-`{SPLIT}`; split across data sets of several machines. {record}
+{_splits(splits)} {record}
 
 ## Loading
 
 {loading}
 
-`sections/{SPLIT}-*.parquet` holds what labels come from, one row a run: the state once a turn, every touch of the
+`sections/*.parquet` holds what labels come from, one row a run: the state once a turn, every touch of the
 record, the growths behind the Lyapunov exponent. `rubgen label DIR` makes all labels but those of orders from it again.
 
 `manifest.json` holds the recipe, the machine, the versions and the sha256 of every file; `rubgen verify DIR` checks
@@ -94,6 +101,16 @@ published machine are not known and were chosen. Simulated data: learn from it, 
 """
 
 
+def _splits(splits: dict[str, SplitCount]) -> str:
+    """Say which splits there are, and what each holds."""
+    rule = "Splits go by machine: runs of one machine never stand in two splits."
+    if not splits:
+        return (
+            f"{rule} This set has one machine, hence one split,\n`{SPLIT}`; split across data sets of several machines."
+        )
+    return f"{rule}\n\n{split_table(splits)}\n\n"
+
+
 def _record(recipe: dict[str, Any]) -> str:
     """Say from which part of a run labels and signals are computed."""
     steady = recipe["operation"]["profile"] == "steady"
@@ -112,13 +129,17 @@ def _limits(recipe: dict[str, Any]) -> str:
     return f"Linear ring, {speed}, no heat, {wear}, one contact point a blade."
 
 
-def _head(recipe: dict[str, object]) -> str:
-    """Return the YAML head that `datasets.load_dataset` and hubs understand. JSON strings are YAML strings."""
+def _head(recipe: dict[str, object], splits: list[str]) -> str:
+    """Return the YAML head that `datasets.load_dataset` and hubs understand. JSON strings are YAML strings.
+
+    `runs.parquet` holds the runs of all splits: with several, its configuration has the one split `runs`.
+    """
     output = recipe["output"]
-    configs = [("runs", "runs.parquet")]
+    together = splits[0] if len(splits) == 1 else "runs"
+    configs = [("runs", {together: "runs.parquet"})]
     if isinstance(output, dict) and "parquet" in output["formats"]:
-        configs.insert(0, ("signals", f"data/{SPLIT}-*.parquet"))
-    configs.append(("sections", f"sections/{SPLIT}-*.parquet"))
+        configs.insert(0, ("signals", {split: f"data/{split}-*.parquet" for split in splits}))
+    configs.append(("sections", {split: f"sections/{split}-*.parquet" for split in splits}))
     lines = [
         "---",
         f"license: {json.dumps(str(recipe['license']).lower())}",
@@ -128,7 +149,9 @@ def _head(recipe: dict[str, object]) -> str:
     ]
     for position, (name, files) in enumerate(configs):
         lines += [f"- config_name: {name}", *(["  default: true"] if position == 0 else [])]
-        lines += ["  data_files:", f"  - split: {SPLIT}", f"    path: {json.dumps(files)}"]
+        lines.append("  data_files:")
+        for split, path in files.items():
+            lines += [f"  - split: {split}", f"    path: {json.dumps(path)}"]
     return "\n".join([*lines, "---"])
 
 

@@ -4,7 +4,7 @@ import re
 from typing import Any
 
 from rubgen.dataset.files import sha256_of, write_json
-from rubgen.dataset.layout import SPLIT, Layout
+from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Identity
 from rubgen.io.columns import Column, scalar_columns, signal_columns
 
@@ -67,11 +67,11 @@ def croissant(layout: Layout, identity: Identity) -> dict[str, Any]:
     )
     records = [_record_set("runs", scalars, {"fileObject": {"@id": "runs.parquet"}})]
     if "parquet" in recipe["output"]["formats"]:
-        includes = f"data/{SPLIT}-*.parquet"
+        includes = "data/*.parquet"
         distribution.append({"@type": "cr:FileSet", "@id": "data", "includes": includes, "encodingFormat": PARQUET})
         signals = signal_columns(identity.sensor_set, clean=recipe["sensors"]["keep_clean"])
         records.append(_record_set("signals", scalars + signals, {"fileSet": {"@id": "data"}}))
-    sections = f"sections/{SPLIT}-*.parquet"
+    sections = "sections/*.parquet"
     distribution.append({"@type": "cr:FileSet", "@id": "sections", "includes": sections, "encodingFormat": PARQUET})
     return {
         "@context": CONTEXT,

@@ -27,7 +27,7 @@ data = rubgen.open("DIR")                    # data.runs: a DataFrame; data.sign
 
 import datasets, duckdb, pandas, polars
 pandas.read_parquet("DIR/runs.parquet")      # parameters and labels of every run, failed ones too
-datasets.load_dataset("DIR", split="train")  # with signals; offline
+datasets.load_dataset("DIR", split="SPLIT")  # with signals; offline
 polars.scan_parquet("DIR/data/*.parquet").select("run_id", "motion", "CHANNEL").collect()
 duckdb.sql("select motion, count(*) from 'DIR/data/*.parquet' group by motion")
 ```""",

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from rubgen.dataset.card import card
+from rubgen.dataset.card import card, counts_of
 from rubgen.dataset.checking.inventory import Finding
 from rubgen.dataset.checking.verify import findings
 from rubgen.dataset.croissant import croissant
@@ -48,8 +48,8 @@ def _texts(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[str]
     """Write README.md and croissant.json, each only where its bytes agree with the manifest. Yields their names."""
     listed = {entry.path: entry.sha256 for entry in manifest.files}
     texts = {}
-    if layout.card.name in wrong:
-        texts[layout.card] = card(manifest.identity, manifest.status)
+    if layout.card.name in wrong and layout.runs.name not in wrong:
+        texts[layout.card] = card(manifest.identity, manifest.status, counts_of(layout, manifest.identity))
     if layout.croissant.name in wrong and layout.runs.name not in wrong:
         texts[layout.croissant] = json_text(croissant(layout, manifest.identity))
     for path, text in texts.items():

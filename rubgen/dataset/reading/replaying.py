@@ -133,7 +133,7 @@ def _meant(where: str, columns: Iterable[str]) -> str:
 def scenario_of(data: DataSet, run_id: str) -> Scenario:
     """Return the scenario of a run, drawn again from the recipe and machine in the manifest."""
     recipe, row = data.manifest.identity.recorded(), data.row(run_id)
-    if row["status"] == "ok" and "machine_candidate" in row:
+    if recipe.machines and row["machine_candidate"] < recipe.machines.tries:
         recipe.remember(row["machine_number"], row["machine_candidate"])
     return recipe.scenario(index_of(run_id))
 

@@ -85,7 +85,7 @@ def test_the_card_describes_every_column_and_its_head_is_yaml(small_set):
 def test_the_card_fits_its_recipe(name):
     """It reads a channel that these sensors have, and tells of a constant speed only where it is."""
     recipe = load_recipe(Path(__file__).parents[3] / f"datasets/{name}.toml")
-    text = card(identity_of(recipe), {"ok": recipe.runs})
+    text = card(identity_of(recipe), {"ok": recipe.runs}, {})
     (channel,) = re.findall(r'select\("run_id", "motion", "(\w+)"\)', text)
     assert channel in [sensor.name for sensor in recipe.sensing.set.sensors]
     assert ("constant speed" in text) is (name != "run-up")
