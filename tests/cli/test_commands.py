@@ -166,8 +166,8 @@ def test_a_failed_run_ends_with_1(run, short, monkeypatch, rub_run, tmp_path):
 
 
 BAD = {
-    "unknown command": (["simulat"], "simulat: unknown command; did you mean simulate? commands: completion, "),
-    "unlike any command": (["zzz"], "zzz: unknown command; commands: completion, "),
+    "unknown command": (["simulat"], "simulat: unknown command; did you mean simulate? commands: baseline, completion, "),
+    "unlike any command": (["zzz"], "zzz: unknown command; commands: baseline, completion, "),
     "last command": (["infoo"], "simulate, verify\n"),
     "unknown option": (
         ["simulate", "--sped-rpm", "3"],
