@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from rubgen.export.run import ExportedRun
+from rubgen.export.run import ExportedRun, without_nulls
 
 
 def write_hdf5(runs: Iterator[ExportedRun], path: Path) -> None:
@@ -35,4 +35,6 @@ def write_hdf5(runs: Iterator[ExportedRun], path: Path) -> None:
 
 
 def _attribute(value: Any, h5py: Any) -> Any:
-    return h5py.Empty("f8") if isinstance(value, list) and not value else value
+    if not isinstance(value, list):
+        return value
+    return without_nulls(value) if value else h5py.Empty("f8")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rubgen.export.run import ExportedRun
+from rubgen.export.run import ExportedRun, without_nulls
 
 LONGEST_NAME = 63
 
@@ -35,4 +35,7 @@ def write_mat(runs: Iterator[ExportedRun], path: Path) -> None:
 def _value(value: Any) -> Any:
     if value is None:
         return np.zeros(0)
-    return np.array(value, dtype=object) if isinstance(value, list) and value and isinstance(value[0], str) else value
+    if not isinstance(value, list):
+        return value
+    known = without_nulls(value)
+    return np.array(known, dtype=object if known and isinstance(known[0], str) else np.float64)

@@ -69,3 +69,9 @@ def exported_runs(data: DataSet, run_ids: Sequence[str], channels: Sequence[str]
         row = data.row(run_id)
         found = tuple(ExportedChannel(name, data.units[name], signals[name], sensors.get(name)) for name in channels)
         yield ExportedRun(run_id, str(row["split"]), row, data.sample_rate_hz, found, pulses, radius)
+
+
+def without_nulls(values: list[Any]) -> list[Any]:
+    """Replace None in a list by NaN, or by an empty text in a list of texts, for formats without null."""
+    blank: Any = "" if any(isinstance(each, str) for each in values) else float("nan")
+    return [blank if each is None else each for each in values]

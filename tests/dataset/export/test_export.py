@@ -14,6 +14,7 @@ import datasets
 import rubgen
 from rubgen.cli import main
 from rubgen.export.formats import FORMATS
+from rubgen.export.run import without_nulls
 from rubgen.export.write import export
 
 CHANNELS = ["proximity_x", "casing_acc_90", "once_per_rev"]
@@ -168,3 +169,9 @@ def _refused(capsys, directory, out, *options):
     said = capsys.readouterr().err
     assert (ended.value.code, said.count("\n")) == (2, 1)
     return said
+
+
+def test_a_list_with_undefined_values_has_nan_or_an_empty_text():
+    assert np.array_equal(without_nulls([1.0, None, 3]), [1, np.nan, 3], equal_nan=True)
+    assert without_nulls(["a", None]) == ["a", ""]
+    assert without_nulls([None])[0] != without_nulls([None])[0]
