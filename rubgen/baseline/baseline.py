@@ -77,7 +77,7 @@ def baselines(
     if not possible:
         raise UserError(f"{directory}: no task is possible: {'; '.join(f'{k}: {v}' for k, v in reasons.items())}")
     run_ids, features = _features(directory, data, workers)
-    with threadpool_limits(workers):
+    with threadpool_limits(1):  # threads of OpenMP that wait for each other cost more than they bring
         return [_of_task(data, name, runs, run_ids, features) for name, runs in possible.items()], reasons
 
 

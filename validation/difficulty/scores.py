@@ -9,7 +9,6 @@ import numpy.typing as npt
 from threadpoolctl import threadpool_limits
 
 from rubgen.arrays import FloatArray
-from rubgen.baseline.models import boosting
 from rubgen.baseline.scores import balanced_accuracy, best_threshold
 
 Flags = npt.NDArray[np.bool_]
@@ -46,12 +45,13 @@ class Boosted:
 
 def boosted(features: FloatArray, rub: Flags) -> Boosted:
     """Gradient boosting on features (runs, any), with folds by run that have equal shares of rubs."""
+    from sklearn.ensemble import HistGradientBoostingClassifier
     from sklearn.model_selection import StratifiedKFold, cross_val_predict
 
     predicted = []
     for seed in range(SEEDS):
         folds = StratifiedKFold(FOLDS, shuffle=True, random_state=seed)
-        model = boosting(seed)
+        model = HistGradientBoostingClassifier(class_weight="balanced", random_state=seed)
         with threadpool_limits(1):
             predicted.append(cross_val_predict(model, features, rub, cv=folds))
     return Boosted(predicted=np.array(predicted, dtype=bool), rub=rub)
