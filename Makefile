@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check docs tutorial bench verification sensitivity confusion contact difficulty faults fuzz zeng2019 zeng2019-fit pictures schemas reference clean
+.PHONY: setup demo test check docs tutorial bench verification sensitivity confusion balance contact difficulty faults fuzz zeng2019 zeng2019-fit pictures schemas reference clean
 
 setup: $(VENV)/.installed-dev
 
@@ -38,6 +38,9 @@ verification: $(VENV)/.installed-dev
 
 sensitivity: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.sensitivity
+
+balance: $(VENV)/.installed-dev
+	$(BIN)/python -m validation.balance
 
 confusion: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.confusion

@@ -91,6 +91,8 @@ def simulate(scenario: Scenario) -> Run:
         raise UserError(f"{scenario!r:.200}: is no scenario; give rubgen.make_scenario(...) or recipe.scenario(0)")
     if scenario.virtual and scenario.virtual.problem:
         raise UserError(scenario.virtual.problem)
+    if scenario.balance and scenario.balance.problem:
+        raise UserError(scenario.balance.problem)
     operation, sensing, seconds = scenario.operation, scenario.sensing, scenario.signal_seconds
     with one_blas_thread():
         scenario = with_clearance(scenario)

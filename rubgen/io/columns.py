@@ -52,7 +52,7 @@ DIAGNOSTICS = frozenset(
 UNMEASURABLE = (ContactForce, ContactTorque)
 """Taps that no probe measures: a channel of them is truth, not input."""
 
-DRAWING = ("twins",)
+DRAWING = ("twins", "balance")
 """Tables of a recipe on which runs are drawn. They have columns of their own."""
 
 
@@ -215,6 +215,20 @@ def _twins() -> list[Column]:
     return [Column("twin_of", "text", "", about, nullable=True, role=Role.ID)]
 
 
+def _balance() -> list[Column]:
+    return [
+        Column("balance_cell", "text", "", "class of [balance] that the run was drawn for", role=Role.DIAGNOSTIC),
+        Column("balance_tries", "integer", "", "number of candidates that were screened for it", role=Role.DIAGNOSTIC),
+        Column(
+            "balance_seen",
+            "integers",
+            "",
+            "these candidates by class: the classes in order, rub without a class, not possible",
+            role=Role.DIAGNOSTIC,
+        ),
+    ]
+
+
 def _ordered_taps(sensors: SensorSet) -> tuple[Tap, ...]:
     """Return the true signals with amplitudes at orders: all but passages under a probe, and the parts in FIELDS."""
     return (*(tap for tap in sensors.taps if not isinstance(tap, TipTiming)), *FIELDS)
@@ -233,7 +247,7 @@ def scalar_columns(
     They are identity, parameters, operation, labels, the orders of each tap of a sensor, and energies. With
     `surroundings`, as for a recipe that has this table, the levels of the disturbances follow. The labels of `faults`
     follow, for the kinds of fault that the runs may have, and the values `machines` of virtual machines. `drawing` are
-    names of tables of the recipe: "twins" adds the partner of a twin.
+    names of tables of the recipe: "twins" adds the partner of a twin, "balance" the class that a run was drawn for.
     """
     orders = [column for tap in _ordered_taps(sensors) for column in tap_columns(tap.name, tap.UNIT)]
     around = _surroundings() if surroundings else []
@@ -248,6 +262,7 @@ def scalar_columns(
         *_faults(faults),
         *_machines(machines),
         *(_twins() if "twins" in drawing else []),
+        *(_balance() if "balance" in drawing else []),
     )
 
 

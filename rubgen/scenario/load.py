@@ -21,6 +21,7 @@ from rubgen.scenario.machines.check import check_machines, check_splits, machine
 from rubgen.scenario.plausible import warn_of
 from rubgen.scenario.profiles import check_used
 from rubgen.scenario.recipe import Recipe
+from rubgen.scenario.tables.balance import check_balance
 from rubgen.scenario.tables.machines import replaced_runs
 from rubgen.scenario.tables.twins import check_twins
 from rubgen.scenario.vary import FREE_PENETRATION, TWO_CLEARANCES
@@ -129,6 +130,8 @@ def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | 
     check_machines(recipe, source)
     check_splits(recipe, source)
     for where, part in recipe.named_parts(source):
+        if part.balance:
+            check_balance(part.balance, part.operation.profile, {key.key for key, _ in part.distributions()}, where)
         if part.twins:
             check_twins(part.twins, part.surroundings, tuple(part.own_corners(where)), where)
             if part.machines and part.machines.runs_per_machine == 1:

@@ -1,6 +1,6 @@
 """A recipe: the TOML file that defines a whole data set, run by run."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from functools import cached_property
@@ -29,8 +29,9 @@ from rubgen.scenario.faults import extremes as fault_extremes
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.machines.draw import Population
 from rubgen.scenario.machines.keys import MachineKey, own_keys
-from rubgen.scenario.scenario import Labelling, Operation, Reduction, Scenario, Sensing
+from rubgen.scenario.scenario import Chosen, Labelling, Operation, Reduction, Scenario, Sensing
 from rubgen.scenario.surroundings import SurroundingsTable, drawn, extremes
+from rubgen.scenario.tables.balance import Balance, band_name
 from rubgen.scenario.tables.machines import MachineTable, with_runs
 from rubgen.scenario.tables.run import Output, Profile, Sensors, Simulation
 from rubgen.scenario.tables.splits import ONE_SPLIT, Splits, SplitTable, changes_of, split_of_machine
@@ -40,12 +41,14 @@ from rubgen.scenario.vary import (
     DEFAULT_SPEED_RPM,
     DRAWN,
     Parameter,
-    sobol_point,
+    candidate_point,
     vary,
 )
 from rubgen.sensors.load import load_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
 
+CHOICE = "rubgen.balancing.choose:choose"
+"""The choice of a candidate of a balance. It needs solver and labels, above this room."""
 CANDIDATE_CHECK = "rubgen.solver.candidate:candidate_problem"
 """The check of a virtual machine. It needs the solver, above this room, so it is named here and imported when used."""
 _STRICT = ConfigDict(extra="forbid", frozen=True)
@@ -113,6 +116,13 @@ class Recipe(BaseModel):
     output: Annotated[Output, about("Which files are written, and how much of each run they hold.")] = Output()
     reduction: Annotated[Reduction, about("How many modes stand for the parts of the machine.")] = Reduction()
     contact: Annotated[ContactLaw, about("What happens where a blade touches the casing.")] = ContactLaw()
+    balance: Annotated[
+        Balance | None,
+        about(
+            "Shares of classes of runs. Each run is drawn until it is in its class, by short runs. Without it classes "
+            "come as they are drawn."
+        ),
+    ] = None
     twins: Annotated[
         Twins | None,
         about("The one key in which a twin differs from its run. Without it no run has a twin."),
@@ -122,6 +132,7 @@ class Recipe(BaseModel):
     _machines: tuple[Machine, ...] = PrivateAttr(default=())
     _sensor_sets: dict[str, SensorSet] = PrivateAttr(default_factory=dict)
     _known: dict[int, int] = PrivateAttr(default_factory=dict)
+    _candidates: dict[int, Chosen] = PrivateAttr(default_factory=dict)
     _whole: "Recipe | None" = PrivateAttr(default=None)
 
     @model_validator(mode="before")
@@ -203,6 +214,7 @@ class Recipe(BaseModel):
         part = Recipe(**{key: getattr(self, key) for key in self.model_fields_set - {"splits"}} | changes)
         part._folder, part._machines, part._sensor_sets = self._folder, self._machines, self._sensor_sets
         part._checked, part._known, part._whole = self._checked, self._known, self
+        part._candidates = self._candidates
         return part
 
     @cached_property
@@ -215,6 +227,10 @@ class Recipe(BaseModel):
         """Take candidate `candidate` for machine `number` as sane, as it was recorded, without checking it again."""
         self._known[number] = candidate
 
+    def remember_choice(self, index: int, chosen: Chosen) -> None:
+        """Take the recorded candidate of run number `index` of a balance, without screening again."""
+        self._candidates[index] = chosen
+
     def machine_named(self) -> AbstractContextManager[None]:
         """Name the machine's file in errors that the block raises about the machine; of several files none."""
         return file_named(self.machine, self._folder) if isinstance(self.machine, str) else nullcontext()
@@ -226,28 +242,55 @@ class Recipe(BaseModel):
             if distribution is not None:
                 yield entry, distribution
 
-    def scenario(self, index: int) -> Scenario:
-        """Draw run number `index` from 0, complete. It depends on no other run and not on the number of runs."""
+    def scenario(self, index: int, *, screened: bool = True) -> Scenario:
+        """Draw run number `index` from 0, complete. It depends on no other run and not on the number of runs.
+
+        With `[balance]` its candidates are screened, which takes seconds (`rubgen.balancing`). With `screened` False
+        its first candidate stands for the run, for checks.
+        """
         if isinstance(index, bool) or not isinstance(index, int | np.integer) or not 0 <= index < MOST_RUNS:
             raise UserError(f"index = {index!r:.100}: give the number of a run, from 0 to below {MOST_RUNS:,}")
         part = self.parts[self.split_of(index)]
         if part is not self:
-            return part.scenario(index)
-        return paired(self.twins, self.twin_of(index), index, self._drawn) if self.twins else self._drawn(index)
+            return part.scenario(index, screened=screened)
+        draw = self._chosen if self.balance and screened else self.candidate
+        return paired(self.twins, self.twin_of(index), index, draw) if self.twins else draw(index)
+
+    def candidate(self, index: int, attempt: int = 0) -> Scenario:
+        """Draw candidate `attempt` of run number `index`. Without `[balance]` candidate 0 is the run, if no twin."""
+        part = self.parts[self.split_of(index)]
+        if part is not self:
+            return part.candidate(index, attempt)
+        point = candidate_point(self.seed, index, attempt)
+        chosen = None
+        if self.balance:
+            cell, band = self.balance.place(self.seed, index)
+            point["speed_rpm"] = (band + point["speed_rpm"]) / self.balance.speed_bands
+            chosen = Chosen(cell=cell.name + band_name(band, self.balance.speed_bands), tries=attempt + 1)
+        return replace(self._drawn(index, point, index + attempt * MOST_RUNS), balance=chosen)
+
+    def _chosen(self, index: int) -> Scenario:
+        """Return the candidate in the cell of the run: the recorded one, or the first that screening finds."""
+        known = self._candidates.get(index)
+        if known:
+            return replace(self.candidate(index, known.tries - 1), balance=known)
+        chosen: Scenario = resolve_name(CHOICE)(self, self.balance, index)
+        return chosen
 
     def twin_of(self, index: int) -> int | None:
         """Return the number of the run whose twin run number `index` is; None for any other run."""
         count = self.machines.runs_per_machine if self.machines else MOST_RUNS
         return partner_of(index, self.twins.share, index // count * count, count) if self.twins else None  # type: ignore[attr-defined]
 
-    def _drawn(self, index: int) -> Scenario:
-        point = sobol_point(self.seed, index)
+    def _drawn(self, index: int, point: Mapping[str, float], number: int) -> Scenario:
+        """Draw run number `index` at that point of `[vary]`; its faults have the random numbers of `number`."""
         values = {entry.key: distribution.quantile(point[entry.key]) for entry, distribution in self.distributions()}
         around = drawn(self.surroundings, self.seed, index) if self.surroundings else None
         scenario = vary(replace(self._base_of(index), index=index, surroundings=around), values)
         if not self.fault_kinds:
             return scenario
-        return replace(with_faults(scenario, self.faults or ()), fault_kinds=self.fault_kinds)
+        scenario = with_faults(replace(scenario, index=number), self.faults or ())
+        return replace(scenario, index=index, fault_kinds=self.fault_kinds)
 
     def _base_of(self, index: int) -> Scenario:
         """Return the scenario before `[vary]` of a run, with its machine."""

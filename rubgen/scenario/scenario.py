@@ -182,13 +182,28 @@ class Pairing:
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
+class Chosen:
+    """Which candidate of a recipe with `[balance]` a run is: number `tries` of its candidates, from 1.
+
+    `cell` is the class that was wanted. `seen` counts the candidates by their class: the cells of the balance in their
+    order, then candidates that rub in a class that was not asked, then candidates that are not possible. `problem` is
+    the reason where no candidate was in the cell, and the run is then refused.
+    """
+
+    cell: str
+    tries: Seed
+    seen: tuple[Seed, ...] = ()
+    problem: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
 class Scenario:
     """One run, complete. The same scenario always makes the same bytes.
 
     `fault_kinds` are the kinds of fault that runs of its recipe may have; those of this run are in its machine.
     With `free_penetration_m` the clearance follows from the rub-free motion (`solver.linear.reach.with_clearance`);
     until then the machine has another clearance. `virtual` is given where the recipe has virtual machines, `pairing`
-    where it has twins.
+    where it has twins, `balance` where it has one.
     """
 
     machine: Machine
@@ -201,6 +216,7 @@ class Scenario:
     fault_kinds: tuple[str, ...] = ()
     free_penetration_m: Penetration | None = None
     pairing: Pairing | None = None
+    balance: Chosen | None = None
     signal_seconds: Duration = 1.0
     seed: Seed = 0
     index: Seed = 0
@@ -251,7 +267,7 @@ def scenario_dict(scenario: Scenario) -> dict[str, object]:
         del values["surroundings"]
     if not scenario.fault_kinds:
         del values["fault_kinds"]
-    for key in ("free_penetration_m", "virtual", "pairing"):
+    for key in ("free_penetration_m", "virtual", "pairing", "balance"):
         if getattr(scenario, key) is None:
             del values[key]
     return values

@@ -4,6 +4,7 @@ A new key is one entry at the end of `PARAMETERS`. Each entry has one dimension 
 not change.
 """
 
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from operator import attrgetter
@@ -225,6 +226,17 @@ def _changed(record: Any, place: list[str], value: float) -> Any:
     """Return the record with another value at that place."""
     name, *rest = place
     return replace(record, **{name: _changed(getattr(record, name), rest, value) if rest else value})
+
+
+def candidate_point(seed: int, index: int, attempt: int) -> dict[str, float]:
+    """Return one u in [0, 1) for each key of `[vary]`, of a candidate of run `index` of a recipe with `[balance]`.
+
+    Candidate 0 is the point of the run without a balance (`sobol_point`); the others are independent.
+    """
+    if attempt == 0:
+        return sobol_point(seed, index)
+    point = np.random.default_rng([seed, index, attempt, zlib.crc32(b"balance")]).random(len(DRAWN))
+    return {entry.key: float(u) for entry, u in zip(DRAWN, point, strict=True)}
 
 
 def sobol_point(seed: int, index: int) -> dict[str, float]:

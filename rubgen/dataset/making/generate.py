@@ -225,9 +225,9 @@ def _warm_up(recipe: Recipe, plan: Plan, pool: Pool | None) -> None:
     looked_at = min(
         recipe.runs, LOOKED_AT, recipe.machines.runs_per_machine * MACHINES if recipe.machines else LOOKED_AT
     )
-    first_runs = tuple(recipe.scenario(index) for index in range(looked_at))
+    first_runs = tuple(recipe.scenario(index, screened=False) for index in range(looked_at))
     corners = () if recipe.machines else tuple(recipe.corners())  # each virtual machine is checked when it is drawn
-    first = recipe.scenario(plan.first_missing), corners, first_runs
+    first = recipe.scenario(plan.first_missing, screened=False), corners, first_runs
     with warming_up(), recipe.machine_named():
         remarks = list(unordered(pool, warm_up, [first]))
     for remark in chain.from_iterable(remarks):

@@ -104,5 +104,5 @@ def _make_alone(layout: Layout, recipe: Recipe, shard: str, session: str, index:
         raise RubgenError(f"{run_id_of(index)}: {done.stderr.strip().rpartition(chr(10))[2] or 'cannot be made'}")
     if index not in kept_runs(layout, shard):
         reason = f"its worker process died, and so did a process for it alone, which {how_ended([done.returncode])}"
-        run = refused(recipe.scenario(index), reason, Status.DIED)
+        run = refused(recipe.scenario(index, screened=False), reason, Status.DIED)
         _keep(layout, recipe, Keeper(layout, shard, session), run)

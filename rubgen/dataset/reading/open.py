@@ -18,6 +18,7 @@ from rubgen.arrays import FloatArray
 from rubgen.brief import counted
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, read_manifest
+from rubgen.dataset.reading.balance import balance_table, balance_weights
 from rubgen.dataset.reading.cutting import cut_of
 from rubgen.dataset.reading.folds import Fold, base_runs, folds
 from rubgen.dataset.reading.samples import Arrays, Windows, arrays, windows
@@ -96,6 +97,19 @@ class DataSet:
     def recipe(self) -> Recipe:
         """The recipe of the set."""
         return self._recipe
+
+    @cached_property
+    def balance(self) -> pd.DataFrame:
+        """The classes of `[balance]` with wanted and natural shares, candidates and weights: `balance_table`.
+
+        Raises UserError for a set without a balance.
+        """
+        return balance_table(self.runs, self._recipe)
+
+    @property
+    def weights(self) -> pd.Series[float]:
+        """The importance weight of each run of a balanced set, by name; NaN where it failed: `balance_weights`."""
+        return balance_weights(self.runs, self.balance)
 
     @property
     def sensors(self) -> SensorSet:

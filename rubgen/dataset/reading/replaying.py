@@ -24,6 +24,7 @@ from rubgen.measurement.motion import ContactIntervals
 from rubgen.scenario import Scenario
 from rubgen.scenario.load import check_recipe
 from rubgen.scenario.run_id import index_of
+from rubgen.scenario.scenario import Chosen
 from rubgen.viz.replay import Replay, sorted_touches
 
 ONLY_READ: dict[str, bool | int | float | str | list[str]] = {
@@ -135,7 +136,11 @@ def scenario_of(data: DataSet, run_id: str) -> Scenario:
     recipe, row = data.manifest.identity.recorded(), data.row(run_id)
     if recipe.machines and row["machine_candidate"] < recipe.machines.tries:
         recipe.remember(row["machine_number"], row["machine_candidate"])
-    return recipe.scenario(index_of(run_id))
+    index = index_of(run_id)
+    if "balance_cell" in row and row["status"] == "ok":
+        chosen = Chosen(cell=row["balance_cell"], tries=row["balance_tries"], seen=tuple(row["balance_seen"]))
+        recipe.remember_choice(index if recipe.twin_of(index) is None else index - 1, chosen)
+    return recipe.scenario(index)
 
 
 def _from_data_set(directory: Path, run_id: str | None, where: str | None) -> FoundReplay:

@@ -118,6 +118,9 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
     if run.scenario.pairing:
         drawn.append("twins")
         row["twin_of"] = run.scenario.partner
+    if run.scenario.balance:
+        drawn.append("balance")
+        row |= {f"balance_{name}": getattr(run.scenario.balance, name) for name in ("cell", "tries", "seen")}
     types = schema(
         signals=signals,
         clean=sensing.keep_clean,

@@ -1,0 +1,46 @@
+"""Choose the candidate of a run that is in the run's cell of `[balance]`."""
+
+from dataclasses import replace
+
+from rubgen.balancing.screen import Verdict, screen
+from rubgen.scenario import Recipe, Scenario
+from rubgen.scenario.tables.balance import Balance, Cell
+
+UNCLASSED, IMPOSSIBLE = "rub, class not asked", "not possible"
+"""The two last counts of `Chosen.seen`, behind those of the cells."""
+
+
+def choose(recipe: Recipe, balance: Balance, index: int) -> Scenario:
+    """Return run number `index`: the first of its candidates 0, 1, 2, ... that screening finds in its cell.
+
+    Cell and candidates follow from the seed and the number alone, so runs stay independent of each other. Where none
+    of `balance.tries` candidates is in the cell, the last is returned with the problem, and `simulate` refuses it.
+    """
+    cell, cells = balance.place(recipe.seed, index)[0], balance.cells
+    seen = [0] * (len(cells) + 2)
+    for attempt in range(balance.tries):
+        candidate = recipe.candidate(index, attempt)
+        if candidate.virtual and candidate.virtual.problem:
+            return candidate
+        number = _place(balance, cell, screen(candidate, motion=balance.needs_run and cell.rub))
+        seen[number] += 1
+        if number < len(cells) and cells[number] == cell:
+            return _with(candidate, seen)
+    names = (*(each.name for each in cells), UNCLASSED, IMPOSSIBLE)
+    found = ", ".join(f"{count} {each}" for each, count in zip(names, seen, strict=True) if count)
+    problem = f"balance: none of {balance.tries} candidates is in the class {cell.name!r}; found: {found}"
+    return _with(candidate, seen, problem)
+
+
+def _with(candidate: Scenario, seen: list[int], problem: str = "") -> Scenario:
+    return replace(candidate, balance=replace(candidate.balance, seen=tuple(seen), problem=problem))  # type: ignore[type-var]
+
+
+def _place(balance: Balance, wanted: Cell, verdict: Verdict | None) -> int:
+    """Return the place of a candidate in `Chosen.seen`."""
+    unclassed = len(balance.cells)
+    if verdict is None:
+        return unclassed + 1
+    if balance.needs_run and verdict.rub and not wanted.rub:
+        return unclassed
+    return balance.cell_of(rub=verdict.rub, motion=verdict.motion, severity=verdict.severity)

@@ -1,0 +1,78 @@
+"""Find the class of a candidate before its run: by statics where they decide, else by a short run."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rubgen.errors import UserError
+from rubgen.labels.label import label
+from rubgen.linalg.threads import one_blas_thread
+from rubgen.reduction import reduce
+from rubgen.scenario import Scenario
+from rubgen.solver.integrate import integrate
+from rubgen.solver.linear.reach import deepest, with_clearance
+from rubgen.solver.response import Status
+from rubgen.solver.wants import Wants
+
+SCREEN_TURNS = 64
+"""Turns of the record of a short run. Of 43 rubbing runs 39 have the class of 500 turns (docs/balance.md)."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The class of a candidate. `motion` is empty where only statics were asked."""
+
+    rub: bool
+    motion: str = ""
+    severity: float = 0.0
+
+
+def reaches(scenario: Scenario) -> bool | None:
+    """Return whether the run rubs, from its rub-free motion alone; None where that motion does not decide.
+
+    A run starts in that motion, so it rubs where and only where its tips would pass through the casing. At a changing
+    speed nine steady speeds stand for the run. Faults that grow and supports with laws leave it open. Raises UserError
+    for a run that is not possible.
+    """
+    with one_blas_thread():
+        depth = deepest(scenario)[0]
+        model = reduce(scenario.machine, scenario.reduction)
+        grows = bool(model.at_speed(scenario.operation.speed_rad_per_s).ramps)
+    if depth >= 0 and math.isfinite(depth):
+        return True
+    return None if grows or math.isinf(depth) else False
+
+
+def short_run(scenario: Scenario) -> Verdict | None:
+    """Return the class of the run from its first 64 turns after settling; None for a run that fails.
+
+    The short run is the beginning of the run itself: the same steps, without the companion trajectory. A run with
+    faults that grow is made to its end. Raises UserError for a run that is not possible.
+    """
+    with one_blas_thread():
+        scenario = with_clearance(scenario)
+        model = reduce(scenario.machine, scenario.reduction)
+        operation, sensing = scenario.operation, scenario.sensing
+        if operation.profile == "steady" and not model.at_speed(operation.speed_rad_per_s).ramps:
+            operation = replace(operation, record_turns=min(SCREEN_TURNS, operation.record_turns))
+        wants = Wants(sample_rate_hz=sensing.fastest_hz, repeats_free_turn=True)
+        response = integrate(model, operation, scenario.contact, wants)
+        if response.status is not Status.OK:
+            return None
+        labels = label(response)
+    return Verdict(rub=labels.rub, motion=labels.motion.value, severity=labels.amounts.severity or 0.0)
+
+
+def screen(scenario: Scenario, *, motion: bool) -> Verdict | None:
+    """Return the class of a candidate; None for a candidate that is not possible or fails.
+
+    With `motion` a rubbing candidate also has its class of motion and its severity, which take a short run.
+    """
+    try:
+        rub = reaches(scenario)
+        if rub is False or (rub and not motion):
+            return Verdict(rub=rub)
+        return short_run(scenario)
+    except (UserError, np.linalg.LinAlgError):
+        return None

@@ -1,0 +1,84 @@
+"""The natural share of each class of a balanced set, and the importance weight of each run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rubgen.errors import UserError
+from rubgen.scenario.run_id import index_of
+from rubgen.scenario.tables.balance import band_name
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rubgen.scenario import Recipe
+    from rubgen.scenario.tables.balance import Balance
+
+
+def balance_table(runs: pd.DataFrame, recipe: Recipe) -> pd.DataFrame:
+    """Return one row for each class of a balanced set, in each split and each band of the speed.
+
+    - runs: the rows of `runs.parquet`, by name.
+    - recipe: the recipe of the set.
+
+    Columns: `split`, `cell`, `wanted` (share that the recipe asks for), `natural` (share of a set without balance,
+    estimated), `runs` (good runs that were drawn for the class), `tries` (their candidates), `weight` of such a run.
+    Twins do not count. With s_c candidates seen in class c in the split and the band, the natural share is
+
+        p(no rub) = s_0 / s,   p(c) = (1 - p(no rub)) s_c / (sum of s over rubbing classes)
+
+    The second factor counts only candidates whose class was asked. Every candidate is an independent draw and a run
+    stops at the first in its class, so these ratios tend to the shares (Wald's equation). Candidates that are not
+    possible do not count. The weight is p(c) over the share of class c among the good runs of the split. Raises
+    UserError for a set without `[balance]`.
+    """
+    import pandas as pd
+
+    balance = recipe.balance
+    if balance is None:
+        raise UserError(f"{recipe.name}: the set has no [balance], so every run has the same weight")
+    base = runs[runs["twin_of"].isna()] if "twin_of" in runs else runs
+    bands = np.array([balance.place(recipe.seed, index_of(str(name)))[1] for name in base.index])
+    rows = []
+    for split, group in base.groupby("split", sort=False, observed=True):
+        in_split = np.asarray(base["split"] == split)
+        for band in range(balance.speed_bands):
+            mine = base[in_split & (bands == band)]
+            good = group[group["status"] == "ok"]
+            rows += _rows(str(split), balance, band, mine, len(good)) if len(mine) else []
+    columns = ["split", "cell", "wanted", "natural", "runs", "tries", "weight"]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def _rows(split: str, balance: Balance, band: int, mine: pd.DataFrame, good: int) -> list[list[object]]:
+    cells = len(balance.cells)
+    counts = [np.asarray(each) for each in mine["balance_seen"] if len(each)]  # empty where a run never was drawn
+    seen = np.sum(counts, axis=0) if counts else np.zeros(cells + 2)
+    rubbing, classed = seen[1 : cells + 1].sum(), seen[1:cells].sum()
+    free = seen[0] / max(seen[0] + rubbing, 1)
+    natural = np.array([free, *((1 - free) * seen[1:cells] / max(classed, 1))]) / balance.speed_bands
+    rows: list[list[object]] = []
+    for cell, share in zip(balance.cells, natural, strict=True):
+        name = cell.name + band_name(band, balance.speed_bands)
+        drawn = mine[mine["balance_cell"] == name]
+        count = int((drawn["status"] == "ok").sum())
+        weight = float(share) * good / count if count else np.nan
+        wanted = cell.share / balance.speed_bands
+        rows.append([split, name, wanted, float(share), count, int(drawn["balance_tries"].sum()), weight])
+    return rows
+
+
+def balance_weights(runs: pd.DataFrame, table: pd.DataFrame) -> pd.Series[float]:
+    """Return the importance weight of each run by its name, NaN where it failed; a twin has that of its run.
+
+    A mean over the good runs of a split with these weights is that of a set drawn without balance, but for classes
+    that the balance leaves out.
+    """
+    import pandas as pd
+
+    by_cell = {(row.split, row.cell): row.weight for row in table.itertuples()}
+    keys = zip(runs["split"].astype(str), runs["balance_cell"].astype(str), runs["status"] == "ok", strict=True)
+    values = [by_cell[split, cell] if good else np.nan for split, cell, good in keys]
+    return pd.Series(values, index=runs.index, name="weight", dtype=np.float64)

@@ -1,0 +1,94 @@
+"""The choice of candidates: statics against the run itself, shares and weights against probabilities that are known."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rubgen.balancing.choose import choose
+from rubgen.balancing.screen import Verdict, reaches, short_run
+from rubgen.dataset.reading.balance import balance_table, balance_weights
+from rubgen.errors import UserError
+from rubgen.pipeline import simulate
+from rubgen.scenario import parse_recipe
+
+RECIPE = {
+    "name": "balanced",
+    "seed": 4,
+    "runs": 6,
+    "machine": "zeng2019",
+    "vary": {"speed_rpm": {"uniform": [9000, 10000]}, "clearance_m": {"uniform": [2e-4, 4e-4]}, "friction": 0.0},
+    "simulation": {"settle_turns": 60, "record_turns": 500},
+    "output": {"formats": ["parquet"], "signal_seconds": 0.05},
+    "labels": {"lyapunov": False},
+}
+
+
+def test_statics_tell_rub_as_the_run_does():
+    vary = {**RECIPE["vary"], "clearance_m": {"uniform": [2e-4, 2e-3]}}
+    recipe = parse_recipe({**RECIPE, "vary": vary, "balance": {"rub": 0.5}})
+    runs = [recipe.scenario(index) for index in range(4)]
+    assert len({run.balance.cell for run in runs}) == 2
+    for run in runs:
+        assert reaches(run) is run.balance.cell.startswith("rub")
+        assert simulate(run).labels.rub is reaches(run)
+
+
+def test_the_short_run_is_the_beginning_of_the_run():
+    run = parse_recipe({**RECIPE, "vary": {**RECIPE["vary"], "clearance_m": 2e-4}}).scenario(0)
+    verdict, labels = short_run(run), simulate(run).labels
+    assert (verdict.rub, verdict.motion) == (labels.rub, labels.motion.value)
+    assert verdict.severity == pytest.approx(labels.amounts.severity, rel=0.1)
+
+
+def test_a_class_that_is_not_found_refuses_the_run_with_what_was_found():
+    recipe = parse_recipe({**RECIPE, "vary": {"clearance_m": 2e-3}, "balance": {"rub": 1.0, "tries": 3}})
+    with pytest.raises(UserError, match="none of 3 candidates is in the class 'rub'; found: 3 no rub") as error:
+        simulate(recipe.scenario(1))
+    assert "\n" not in str(error.value)
+
+
+def _verdict(scenario, *, motion):
+    """A quarter of the candidates rubs, and three tenths of these are chaotic."""
+    rub = scenario.machine.casing.clearance_m < 2.5e-4
+    words = "chaotic" if scenario.machine.casing.clearance_m < 2.15e-4 else "period-1"
+    return Verdict(rub=rub, motion=words if rub and motion else "")
+
+
+@pytest.mark.parametrize("bands", [1, 2])
+def test_natural_shares_and_weights_are_those_of_the_drawing(monkeypatch, bands):
+    monkeypatch.setattr("rubgen.balancing.choose.screen", _verdict)
+    monkeypatch.setattr("rubgen.scenario.vary.sobol_point", _point)
+    table = {"rub": 0.5, "motion": {"period-1": 0.4, "chaotic": 0.6}, "speed_bands": bands, "tries": 500}
+    recipe = parse_recipe({**RECIPE, "balance": table})
+    chosen = [choose(recipe, recipe.balance, index) for index in range(300)]
+    runs = pd.DataFrame(
+        {
+            "split": "train",
+            "status": ["ok"] * 299 + ["refused"],
+            "balance_cell": [each.balance.cell for each in chosen],
+            "balance_tries": [each.balance.tries for each in chosen],
+            "balance_seen": [np.array(each.balance.seen) for each in chosen],
+        },
+        index=[each.run_id for each in chosen],
+    )
+    found = balance_table(runs, recipe).groupby(lambda row: row // len(recipe.balance.cells))["natural"]
+    natural = sum(group.to_numpy() for _, group in found)
+    np.testing.assert_allclose(natural, [0.75, 0.25 * 0.7, 0.25 * 0.3, 0], atol=0.03)
+    weights = balance_weights(runs, balance_table(runs, recipe))
+    rub = runs["balance_cell"].str.startswith("rub").to_numpy()
+    good = (runs["status"] == "ok").to_numpy()
+    assert np.average(rub[good], weights=weights[good]) == pytest.approx(0.25, abs=0.03)
+    assert weights[good].mean() == pytest.approx(1)
+    assert weights[~good].isna().all()
+
+
+def _point(seed, index):
+    """An independent point for candidate 0: the sequence itself takes its time."""
+    generator = np.random.default_rng([seed, index])
+    keys = ("speed_rpm", "clearance_m", "friction")
+    return dict(zip(keys, generator.random(3).tolist(), strict=True))
+
+
+def test_a_set_without_balance_has_no_weights():
+    with pytest.raises(UserError, match=r"no \[balance\]"):
+        balance_table(pd.DataFrame(), parse_recipe(RECIPE))
