@@ -1,16 +1,17 @@
 """Check a candidate of a virtual machine before it is used: it can be reduced, is stable, and is inside its bounds."""
 
+import math
+
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.contact.geometry import blade_tips, casing_surface
 from rubgen.errors import UserError
 from rubgen.linalg.threads import one_blas_thread
 from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import Scenario
 from rubgen.scenario.tables.machines import MachineTable
 from rubgen.solver.linear.admissible import check_system
-from rubgen.solver.linear.rub_free import free_penetration, rub_free_motion
+from rubgen.solver.linear.reach import penetration_at
 from rubgen.solver.refusal import stability
 
 STABILITY_SPEEDS, ONSET_SPEEDS = 3, 9
@@ -63,10 +64,8 @@ def _onset(
 ) -> str | None:
     if bounds.onset_clearance_m is None:
         return None
-    deepest = max(_penetration(model, scenario, speed) for speed in dict.fromkeys(speeds.tolist()))
+    deepest = max(penetration_at(model, scenario, speed) for speed in dict.fromkeys(speeds.tolist()))
+    if not math.isfinite(deepest):
+        return "onset_clearance_m = unknown: laws of the support leave the motion without rub unknown; remove it"
     return _outside("onset_clearance_m", scenario.machine.casing.clearance_m + deepest, bounds.onset_clearance_m)
 
-
-def _penetration(model: ReducedModel, scenario: Scenario, speed: float) -> float:
-    system = model.at_speed(speed)
-    return free_penetration(rub_free_motion(system), casing_surface(system, scenario.contact), blade_tips(system))

@@ -84,11 +84,15 @@ def deepest(scenario: Scenario) -> tuple[float, float]:
     scenario = with_clearance(scenario)
     model, rotation = reduce(scenario.machine, scenario.reduction), scenario.operation.rotation
     speeds = [rotation.start] if rotation.is_steady else np.linspace(rotation.slowest, rotation.fastest, SPEEDS)
-    return max((_penetration(model, scenario, float(speed)), rev_per_min(float(speed))) for speed in speeds)
+    return max((penetration_at(model, scenario, float(speed)), rev_per_min(float(speed))) for speed in speeds)
 
 
-def _penetration(model: ReducedModel, scenario: Scenario, speed: float) -> float:
-    """Return the free penetration, m; infinite where laws of the support leave the motion without rub unknown."""
+def penetration_at(model: ReducedModel, scenario: Scenario, speed: float) -> float:
+    """Return the free penetration at a speed in rad/s, in m.
+
+    It is infinite where laws of the support leave the motion without rub unknown. Raises UserError for a speed that
+    makes no run.
+    """
     system = model.at_speed(speed)
     check_system(system)
     if system.starting is not system:
@@ -106,7 +110,7 @@ def _question(scenarios: Sequence[Scenario]) -> str:
         return ""
     try:
         model = reduce(fastest.machine, fastest.reduction)
-        reaches = _penetration(model, fastest, rad_per_s(rpm)) >= 0
+        reaches = penetration_at(model, fastest, rad_per_s(rpm)) >= 0
     except (UserError, np.linalg.LinAlgError):
         return ""
     given = f"{fastest.operation.speed_rpm:.6g} rad/s are {rpm:.6g} rev/min"
