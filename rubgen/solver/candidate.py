@@ -68,4 +68,3 @@ def _onset(
     if not math.isfinite(deepest):
         return "onset_clearance_m = unknown: laws of the support leave the motion without rub unknown; remove it"
     return _outside("onset_clearance_m", scenario.machine.casing.clearance_m + deepest, bounds.onset_clearance_m)
-

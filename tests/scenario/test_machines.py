@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from pydantic import TypeAdapter
-from rubgen.dataset.making.stage import warm_up
 
 import rubgen
+from rubgen.dataset.making.warm_up import warm_up
 from rubgen.dataset.manifest import Identity, identity_of
 from rubgen.errors import UserError
 from rubgen.machine import Machine, load_machine
