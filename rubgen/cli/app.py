@@ -298,7 +298,9 @@ def export(
     directory: Directory,
     /,
     *,
-    format_: Annotated[str, Parameter(name="--format", help="uff58, mat, hdf5, csv, wav, ts or webdataset.")],
+    format_: Annotated[
+        str, Parameter(name="--format", help="uff58, mat, hdf5, csv, wav, ts, webdataset, or parquet without answers.")
+    ],
     out: Annotated[Path, _option("New or empty folder, or one of the same export, which is then completed.")],
     split: Annotated[str | None, _option("Only this split; all when not given.")] = None,
     channels: Annotated[str | None, _option("Names with commas; all recorded channels when not given.")] = None,

@@ -9,6 +9,7 @@ from rubgen.cli.interrupts import terminable
 from rubgen.cli.names import names_in
 from rubgen.cli.printing import print_json, say
 from rubgen.errors import write_problems
+from rubgen.export.formats import FORMATS
 from rubgen.export.write import export
 from rubgen.progress import step
 
@@ -26,5 +27,6 @@ def export_command(
         print_json({"out": str(out), **vars(made)})
     else:
         say(f"{out}: {counted(made.runs, 'run')} in {counted(made.files, 'file')} of {name}, {', '.join(made.splits)}")
-        say("  channels.csv has the sensors, runs.csv parameters and labels")
+        labels = ", runs.csv parameters and labels" if FORMATS[name].answers else "; no file has a label or parameter"
+        say(f"  channels.csv has the sensors{labels}")
     return 0

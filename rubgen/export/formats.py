@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rubgen.export.hdf5 import write_hdf5
 from rubgen.export.mat import write_mat
+from rubgen.export.parquet import write_parquet
 from rubgen.export.run import ExportedRun
 from rubgen.export.text import write_csv, write_ts
 from rubgen.export.uff import write_uff
@@ -27,6 +28,8 @@ class ExportFormat:
     """Package of the extra rubgen[export] that writes it."""
     most_bytes: int | None = None
     """What a file of the format can hold."""
+    answers: bool = True
+    """Whether labels, parameters and channels that no probe can measure may be in the export."""
     whole_rate: bool = False
     """Whether the sample rate must be a whole number."""
 
@@ -38,5 +41,6 @@ FORMATS = {
     "csv": ExportFormat(".csv", write_csv),
     "wav": ExportFormat(".wav", write_wav, most_bytes=2**32 - 2**10, whole_rate=True),
     "ts": ExportFormat(".ts", write_ts, runs_per_file=None),
+    "parquet": ExportFormat(".parquet", write_parquet, runs_per_file=128, answers=False),
     "webdataset": ExportFormat(".tar", write_webdataset, runs_per_file=64),
 }

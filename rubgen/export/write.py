@@ -44,13 +44,14 @@ def export(
     - split: only this split; all when None.
     - channels: names of the channels; all recorded ones when None, without clean ones.
 
-    The folder has the files of runs, `channels.csv` and `runs.csv` (parameters and labels). A file is complete or not
+    The folder has the files of runs, `channels.csv` and `runs.csv` (parameters and labels), which the format parquet
+    leaves out: it has no answers. A file is complete or not
     there, and the same call completes an export that was stopped. Raises UserError for an unknown format, split or
     channel, for a package that is missing, for what the format cannot hold, and where `out` has other content.
     """
     data = DataSet(directory)
     kind = _format(name)
-    chosen = _channels(data, channels)
+    chosen = _channels(data, channels, answers=kind.answers)
     runs = _runs(data, split)
     _check_holds(data, kind, name, len(chosen))
     origin = {
@@ -70,7 +71,8 @@ def export(
     everyone = [run for members in runs.values() for run in members]
     first = next(exported_runs(data, everyone[:1], chosen))
     write_durably(out / CHANNELS, lambda part: _channel_table(first).to_csv(part, index=False))
-    write_durably(out / RUNS, lambda part: data.runs.loc[everyone].to_csv(part))
+    if kind.answers:
+        write_durably(out / RUNS, lambda part: data.runs.loc[everyone].to_csv(part))
     if (out / BEGUN).exists():
         (out / BEGUN).replace(out / DONE)
     return Exported(len(everyone), len(files), tuple(runs), chosen)
@@ -85,8 +87,10 @@ def _format(name: str) -> ExportFormat:
     return kind
 
 
-def _channels(data: DataSet, channels: Sequence[str] | None) -> tuple[str, ...]:
+def _channels(data: DataSet, channels: Sequence[str] | None, *, answers: bool) -> tuple[str, ...]:
     recorded = [name for name in data.channels if not name.endswith("_clean")]
+    if not answers:
+        recorded = list(data.inputs)
     for name in channels or ():
         if name not in recorded:
             raise UserError(f"{data.layout.root}: no recorded channel {name!r:.60}; {nearest(name, recorded)}")

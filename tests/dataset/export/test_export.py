@@ -6,6 +6,7 @@ import shutil
 import h5py
 import numpy as np
 import pandas as pd
+import pyarrow.parquet as pq
 import pytest
 import pyuff
 from scipy.io import loadmat, wavfile
@@ -175,3 +176,13 @@ def test_a_list_with_undefined_values_has_nan_or_an_empty_text():
     assert np.array_equal(without_nulls([1.0, None, 3]), [1, np.nan, 3], equal_nan=True)
     assert without_nulls(["a", None]) == ["a", ""]
     assert without_nulls([None])[0] != without_nulls([None])[0]
+
+
+def test_parquet_has_no_answer(data, exported):
+    folder = exported("parquet", channels=None)
+    table = pq.read_table(folder / "train-00000.parquet")
+    assert set(table.column_names) == {"run_id", "machine_id", "split", "once_per_rev_s", *data.inputs}
+    assert "contact_force" not in table.column_names
+    assert np.array_equal(table["casing_acc_90"][1].as_py(), data.signals(RUN)["casing_acc_90"])
+    assert table.schema.field("casing_acc_90").metadata[b"unit"] == b"m/s2"
+    assert not (folder / "runs.csv").exists()
