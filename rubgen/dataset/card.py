@@ -1,6 +1,7 @@
 """Write the card of a data set, README.md: content, loading, and the meaning of every column, as hubs show it."""
 
 import json
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -8,34 +9,32 @@ from rubgen.brief import counted
 from rubgen.dataset.files import write_text
 from rubgen.dataset.layout import SPLIT, Layout
 from rubgen.dataset.manifest import Identity
-from rubgen.dataset.split_counts import SplitCount, split_counts, split_table
+from rubgen.dataset.tables import files_of, tables_of
+from rubgen.dataset.tally import Tally, tally_of
 from rubgen.format_names import FORMAT_NAMES
 from rubgen.formats import format_of
-from rubgen.io.columns import Column, scalar_columns, signal_columns
+from rubgen.io.columns import Column, Role, scalar_columns, signal_columns
 from rubgen.io.parquet.compact_records import RECORD_COLUMNS
+from rubgen.io.parquet.set_tables import WINDOW_COLUMNS
+from rubgen.labels import Motion
+from rubgen.labels.classes import class_numbers
+from rubgen.labels.registry import LABELS
 
 
 def write_card(layout: Layout, identity: Identity, status: dict[str, int]) -> None:
-    """Write README.md of a data set. Its bytes depend only on these inputs.
+    """Write README.md of a data set. Its bytes depend only on these inputs and `runs.parquet`, which must be there.
 
     - layout: paths of the set.
     - identity: recipe, machine, sensors and versions.
     - status: number of runs by status.
     """
-    write_text(layout.card, card(identity, status, counts_of(layout, identity)))
+    write_text(layout.card, card(identity, status, tally_of(layout.runs)))
 
 
-def counts_of(layout: Layout, identity: Identity) -> dict[str, SplitCount]:
-    """Count what each split holds, from `runs.parquet`; nothing for a recipe without virtual machines."""
-    return split_counts(layout) if "machines" in identity.recipe else {}
-
-
-def card(identity: Identity, status: dict[str, int], splits: dict[str, SplitCount]) -> str:
+def card(identity: Identity, status: dict[str, int], tally: Tally) -> str:
     """Compose the text of README.md. Its YAML head names the files of each configuration and the licence, for hubs.
 
-    - identity: recipe, machine, sensors and versions.
-    - status: number of runs by status.
-    - splits: what each split holds; empty for a recipe without virtual machines.
+    `status` is the number of runs by status, `tally` what the splits hold.
     """
     recipe = identity.recipe
     formats = recipe["output"]["formats"]
@@ -48,36 +47,55 @@ def card(identity: Identity, status: dict[str, int], splits: dict[str, SplitCoun
         machines=identity.machine_keys,
         drawing=recipe,
     )
-    columns += signals if "parquet" in formats else ()
-    channel = next((column.name for column in signals if column.kind == "signal"), "rotation_angle_rad")
+    inputs = [column for column in signals if column.role is Role.INPUT]
+    channel = next((x.name for x in inputs if x.kind == "signal"), "contact_force")
     loading = "\n\n".join(format_of(name).loading for name in FORMAT_NAMES if name in formats)
-    loading = loading.replace("CHANNEL", channel).replace("SPLIT", next(iter(splits), SPLIT))
+    loading = loading.replace("CHANNEL", channel).replace("SPLIT", next(iter(tally.splits), SPLIT))
     ended = ", ".join(f"{count} {name}" for name, count in status.items())
     record, limits, runs = _record(recipe), _limits(recipe), counted(recipe["runs"], "run")
-    return f"""{_head(recipe, list(splits) or [SPLIT])}
+    return f"""{_head(recipe, tally)}
 # {recipe["name"]}
 
 {runs} of a bladed disk that may rub its flexible oval casing: machine `{recipe["machine"]}`, seed
 {recipe["seed"]}. Simulated with rubgen {identity.packages["rubgen"]}: a finite-element blisk and casing, reduced,
 integrated through unilateral contact with friction; virtual sensors with noise, range and ADC; labels from the true
-motion, never from the noisy channels. Runs by status: {ended}.
+motion, never from the noisy channels. Runs by status: {ended}. {record}
 
-{_splits(splits)} {record}
+{_tables(formats)}
+
+## Splits and classes
+
+{_class_table(tally)}
+
+{_leakage(tally)}
+
+## Biases
+
+{_biases(tally)}
 
 ## Loading
 
 {loading}
 
-`sections/*.parquet` holds what labels come from, one row a run: the state once a turn, every touch of the
+`sections/` holds what labels come from, one row a run: the state once a turn, every touch of the
 record, the growths behind the Lyapunov exponent. `rubgen label DIR` makes all labels but those of orders from it again.
 
 `manifest.json` holds the recipe, the machine, the versions and the sha256 of every file; `rubgen verify DIR` checks
 all of them, and labels against signals. `rubgen repair DIR` makes again what is not data: this page, `croissant.json`,
 .rrd files.
 
-## Columns
+## Columns of runs
+
+A column of the type class is an integer; its numbers are the same in every set:
+{_numbers()}.
 
 {column_table(columns)}
+{_signal_tables(signals) if "parquet" in formats else ""}
+## Columns of windows
+
+One row for each window of 16 turns that the signals hold whole.
+
+{column_table(WINDOW_COLUMNS)}
 
 ## Columns of sections
 
@@ -101,14 +119,92 @@ published machine are not known and were chosen. Simulated data: learn from it, 
 """
 
 
-def _splits(splits: dict[str, SplitCount]) -> str:
-    """Say which splits there are, and what each holds."""
-    rule = "Splits go by machine: runs of one machine never stand in two splits."
-    if not splits:
-        return (
-            f"{rule} This set has one machine, hence one split,\n`{SPLIT}`; split across data sets of several machines."
-        )
-    return f"{rule}\n\n{split_table(splits)}\n\n"
+def _tables(formats: Sequence[str]) -> str:
+    """Say which table has what."""
+    lines = [
+        "| configuration | one row | content |",
+        "|---|---|---|",
+        "| `runs` | a run, failed ones too | names, parameters, labels |",
+        "| `windows` | a window of 16 turns | its place in the signals, rub, duty, impulse, motion |",
+        "| `sections` | a good run | what labels are made from |",
+    ]
+    if "parquet" in formats:
+        lines[2:2] = [
+            "| `signals` | a good run | names, recorded channels and events (`input`), answers (`target`) |",
+            "| `truth` | a good run | touches, orders by window, what no sensor could record |",
+        ]
+    return "\n".join([*lines, "", "`sensors.parquet` has place, range, resolution and noise of each channel."])
+
+
+def _class_table(tally: Tally) -> str:
+    """Count the classes of each split, as a table in Markdown."""
+    motions = [motion.value for motion in Motion if any(each.motion[motion.value] for each in tally.splits.values())]
+    lines = [
+        f"| split | machines | runs | ok | with rub | {' | '.join(motions)} |",
+        "|---|" + "---|" * (4 + len(motions)),
+    ]
+    for name, each in tally.splits.items():
+        counts = [each.machines, each.runs, each.status["ok"], each.rub]
+        lines.append(f"| `{name}` | {' | '.join(map(str, [*counts, *(each.motion[word] for word in motions)]))} |")
+    return "\n".join(lines)
+
+
+def _leakage(tally: Tally) -> str:
+    """Warn of splits that leak."""
+    machines = sum(each.machines for each in tally.splits.values())
+    own = (
+        "This set has one machine: a score on other runs of it says nothing about other machines."
+        if machines == 1
+        else "A machine is in one split alone; `machine_id` names it."
+    )
+    return f"""{own} Never cut runs into windows and divide
+those at random: windows of one run are nearly equal, and the score is too good. `data.folds` and the groups of
+`data.windows` keep together what belongs together. Only the role `input` may be learned from: `parameter`, `truth` and
+`diagnostic` give answers away, some by being null alone."""
+
+
+def _biases(tally: Tally) -> str:
+    """Say which runs are missing and where, and what else is not as in the field."""
+    failed = sum(each.runs - each.status["ok"] for each in tally.splits.values())
+    texts = [
+        "The field has no such sure labels, sensors that are known less well, and other conditions: scores are lower."
+    ]
+    if failed:
+        codes = Counter[str]()
+        for each in tally.splits.values():
+            codes.update({code: count for code, count in each.status.items() if code != "ok"})
+        ended = ", ".join(f"{count} {code}" for code, count in codes.most_common())
+        texts.insert(0, f"{counted(failed, 'run')} failed ({ended}) and cannot be learned from.")
+        if tally.shifts:
+            texts.insert(1, "So these conditions are rarer in the set than in the recipe (means):\n")
+            rows = [f"| `{x.key}` | {x.unit} | {x.good:.4g} | {x.failed:.4g} |" for x in tally.shifts]
+            texts.insert(
+                2, "\n".join(["| parameter | unit | good runs | failed runs |", "|---|---|---|---|", *rows, ""])
+            )
+    return "\n".join(texts)
+
+
+def _numbers() -> str:
+    found = {label.name: class_numbers(label.words) for label in LABELS if label.words and label.kind == "text"}
+    kinds = {name: ", ".join(f"{word} {number}" for word, number in words.items()) for name, words in found.items()}
+    return ";\n".join(f"`{name}` {kinds[name]}" for name in ("motion", "rub_extent", "whirl"))
+
+
+def _signal_tables(signals: Sequence[Column]) -> str:
+    seen = [column for column in signals if column.role in (Role.INPUT, Role.TIME)]
+    return f"""
+## Columns of signals
+
+Beside the columns of `runs` whose role is `id`, `time` or `target`:
+
+{column_table(seen)}
+
+## Columns of truth
+
+Beside the names of the run:
+
+{column_table([column for column in signals if column not in seen])}
+"""
 
 
 def _record(recipe: dict[str, Any]) -> str:
@@ -129,17 +225,9 @@ def _limits(recipe: dict[str, Any]) -> str:
     return f"Linear ring, {speed}, no heat, {wear}, one contact point a blade."
 
 
-def _head(recipe: dict[str, object], splits: list[str]) -> str:
-    """Return the YAML head that `datasets.load_dataset` and hubs understand. JSON strings are YAML strings.
-
-    `runs.parquet` holds the runs of all splits: with several, its configuration has the one split `runs`.
-    """
-    output = recipe["output"]
-    together = splits[0] if len(splits) == 1 else "runs"
-    configs = [("runs", {together: "runs.parquet"})]
-    if isinstance(output, dict) and "parquet" in output["formats"]:
-        configs.insert(0, ("signals", {split: f"data/{split}-*.parquet" for split in splits}))
-    configs.append(("sections", {split: f"sections/{split}-*.parquet" for split in splits}))
+def _head(recipe: dict[str, Any], tally: Tally) -> str:
+    """Return the YAML head that `datasets.load_dataset` and hubs understand. JSON strings are YAML strings."""
+    names = [table.name for table in tables_of(recipe["output"]["formats"])]
     lines = [
         "---",
         f"license: {json.dumps(str(recipe['license']).lower())}",
@@ -147,12 +235,18 @@ def _head(recipe: dict[str, object], splits: list[str]) -> str:
         "tags: [rotordynamics, blade-rub, condition-monitoring, time-series, simulated]",
         "configs:",
     ]
-    for position, (name, files) in enumerate(configs):
-        lines += [f"- config_name: {name}", *(["  default: true"] if position == 0 else [])]
-        lines.append("  data_files:")
-        for split, path in files.items():
+    for position, name in enumerate([*names, "runs", "sensors"]):
+        lines += [f"- config_name: {name}", *(["  default: true"] if position == 0 else []), "  data_files:"]
+        one = name in ("runs", "sensors")  # a file for all splits
+        for split in [_together(tally)] if one else tally.splits:
+            path = f"{name}.parquet" if one else files_of(name, split)
             lines += [f"  - split: {split}", f"    path: {json.dumps(path)}"]
     return "\n".join([*lines, "---"])
+
+
+def _together(tally: Tally) -> str:
+    """Name the split of a file that holds the runs of all splits: the only one, or `runs`."""
+    return next(iter(tally.splits), SPLIT) if len(tally.splits) < 2 else "runs"
 
 
 def column_table(columns: Sequence[Column]) -> str:

@@ -39,11 +39,13 @@ class Layout:
         """Sizes and sha256 of the derived files, of this writing."""
         self.runs = root / "runs.parquet"
         """All runs, failed ones too, without signals."""
+        self.sensors = root / "sensors.parquet"
+        """The sensors, their values as numbers."""
         self.card = root / "README.md"
         """The data-set card."""
         self.croissant = root / "croissant.json"
         """The description for machine-learning tools."""
-        self.data = root / "data"
+        self.signals = root / "signals"
         """Folder of the Parquet files with signals."""
         self.sections = root / "sections"
         """Folder of the compact records, from which labels can be made again."""
@@ -76,5 +78,5 @@ class Layout:
         return self.root / kind / f"{index_of(run_id) // RUNS_PER_FOLDER:04d}" / f"{run_id}.{kind}"
 
     def folders(self, names: Iterable[str]) -> list[Path]:
-        """Return the folders of the formats `names`: `data` for Parquet, else the folder with the format's name."""
-        return [self.root / name if format_of(name).one_file_a_run else self.data for name in names]
+        """Return the folders of the formats `names`: `signals` for Parquet, else the folder with the format's name."""
+        return [self.root / name if format_of(name).one_file_a_run else self.signals for name in names]

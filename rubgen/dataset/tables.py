@@ -9,6 +9,14 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 
 from rubgen.io.parquet.compact_records import SCHEMA, record_table
+from rubgen.io.parquet.set_tables import (
+    signals_row,
+    signals_schema,
+    truth_row,
+    truth_schema,
+    window_rows,
+    windows_schema,
+)
 from rubgen.io.parquet.write import recipe_schema, run_table
 from rubgen.scenario import Recipe
 
@@ -18,14 +26,14 @@ if TYPE_CHECKING:  # Run carries the solver's imports; who reads a set needs non
 
 @dataclass(frozen=True, kw_only=True)
 class SetTable:
-    """One table of a data set, with one row a run."""
+    """One table of a data set, with one row a run, or some."""
 
     name: str
     """Folder of its files."""
     schema: Callable[[Recipe], pa.Schema]
     """Columns in the set of a recipe."""
     row: Callable[[Run, str], pa.Table]
-    """The row of a run in the split of that name."""
+    """The row of a run in the split of that name; in `windows` the rows."""
     wanted: Callable[[Sequence[str]], bool] = lambda _formats: True
     """Whether a set with these formats has this table."""
 
@@ -37,21 +45,34 @@ RUNS = SetTable(
 )
 """Every run, failed ones too: the one file `runs.parquet`."""
 SIGNALS = SetTable(
-    name="data",
-    schema=lambda recipe: recipe_schema(recipe, signals=True),
-    row=lambda run, split: run_table(run, split=split),
+    name="signals",
+    schema=signals_schema,
+    row=signals_row,
     wanted=lambda formats: "parquet" in formats,
 )
-"""The recorded channels of each run, beside its columns of `runs`."""
-TABLES = (
-    SIGNALS,
-    SetTable(
-        name="sections",
-        schema=lambda _recipe: SCHEMA,
-        row=lambda run, _split: record_table(run.scenario.run_id, run.response),
-    ),
+"""What a model may see of each run, and the answers."""
+TRUTH = SetTable(
+    name="truth",
+    schema=truth_schema,
+    row=truth_row,
+    wanted=lambda formats: "parquet" in formats,
 )
+"""What only the simulation knows of each run beyond `runs`: touches, orders by window, channels of no sensor."""
+WINDOWS = SetTable(name="windows", schema=windows_schema, row=window_rows)
+"""Labels of each window of 16 turns that the signals hold: some rows a run."""
+SECTIONS = SetTable(
+    name="sections",
+    schema=lambda _recipe: SCHEMA,
+    row=lambda run, _split: record_table(run.scenario.run_id, run.response),
+)
+"""The compact record of each run, from which its labels can be made again."""
+TABLES = (SIGNALS, TRUTH, WINDOWS, SECTIONS)
 """Tables with a row for each good run, each a folder of files of many runs."""
+
+
+def files_of(table: str, split: str) -> str:
+    """Return the pattern of the paths in a set of all files of a table with runs of a split."""
+    return f"{table}/{split}-*.parquet"
 
 
 def tables_of(formats: Sequence[str]) -> list[SetTable]:

@@ -28,28 +28,28 @@ data = rubgen.open("DIR")                    # data.runs: a DataFrame; data.sign
 import datasets, duckdb, pandas, polars
 pandas.read_parquet("DIR/runs.parquet")      # parameters and labels of every run, failed ones too
 datasets.load_dataset("DIR", split="SPLIT")  # with signals; offline
-polars.scan_parquet("DIR/data/*.parquet").select("run_id", "motion", "CHANNEL").collect()
-duckdb.sql("select motion, count(*) from 'DIR/data/*.parquet' group by motion")
+polars.scan_parquet("DIR/signals/*.parquet").select("run_id", "motion", "CHANNEL").collect()
+duckdb.sql("select motion, count(*) from 'DIR/signals/*.parquet' group by motion")
 ```""",
     ways={
         "pandas": """import glob
 import pandas as pd
 
-files = sorted(glob.glob("DIR/data/train-*.parquet"))
+files = sorted(glob.glob("DIR/signals/train-*.parquet"))
 runs = pd.concat(map(pd.read_parquet, files))
 signal = runs["CHANNEL"].iloc[0]""",
         "polars": """import polars as pl
 
-runs = pl.scan_parquet("DIR/data/train-*.parquet")
+runs = pl.scan_parquet("DIR/signals/train-*.parquet")
 signal = runs.select("CHANNEL").head(1).collect()["CHANNEL"][0]""",
         "datasets": """from datasets import load_dataset
 
-runs = load_dataset("parquet", data_files="DIR/data/train-*.parquet", split="train")
+runs = load_dataset("parquet", data_files="DIR/signals/train-*.parquet", split="train")
 signal = runs[0]["CHANNEL"]""",
         "torch": """import torch
 from datasets import load_dataset
 
-runs = load_dataset("parquet", data_files="DIR/data/train-*.parquet", split="train")
+runs = load_dataset("parquet", data_files="DIR/signals/train-*.parquet", split="train")
 runs = runs.select_columns(["CHANNEL", "motion"]).with_format("torch")
 loader = torch.utils.data.DataLoader(runs, batch_size=16)""",
     },

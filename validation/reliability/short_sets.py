@@ -96,7 +96,7 @@ def _count(directory: Path, recipe: dict[str, object], counts: Counts) -> None:
         sys.stderr.write(f"{problem}\n")
     sensors = recipe["sensors"]
     sensing = Sensing(set=load_sensor_set(sensors["set"] if isinstance(sensors, dict) else "default"))
-    for path in sorted((directory / "data").glob("train-*.parquet")):
+    for path in sorted((directory / "signals").glob("train-*.parquet")):
         for table in row_groups(path):
             for number, row in enumerate(with_words(table).to_pylist()):
                 counts.runs += 1

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from rubgen.dataset.card import card, counts_of
+from rubgen.dataset.card import card
 from rubgen.dataset.checking.inventory import Finding
 from rubgen.dataset.checking.verify import findings
 from rubgen.dataset.croissant import croissant
@@ -14,6 +14,7 @@ from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, identity_of, read_manifest, write_derived
 from rubgen.dataset.reading.open import DataSet
 from rubgen.dataset.reading.replaying import replay_of_mcap, scenario_of
+from rubgen.dataset.tally import tally_of
 from rubgen.errors import UserError, write_problems
 from rubgen.formats import format_of
 
@@ -48,9 +49,10 @@ def _texts(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[str]
     """Write README.md and croissant.json, each only where its bytes agree with the manifest. Yields their names."""
     listed = {entry.path: entry.sha256 for entry in manifest.files}
     texts = {}
-    if layout.card.name in wrong and layout.runs.name not in wrong:
-        texts[layout.card] = card(manifest.identity, manifest.status, counts_of(layout, manifest.identity))
-    if layout.croissant.name in wrong and layout.runs.name not in wrong:
+    whole = layout.runs.name not in wrong
+    if layout.card.name in wrong and whole:
+        texts[layout.card] = card(manifest.identity, manifest.status, tally_of(layout.runs))
+    if layout.croissant.name in wrong and whole:
         texts[layout.croissant] = json_text(croissant(layout, manifest.identity))
     for path, text in texts.items():
         if hashlib.sha256(text.encode()).hexdigest() == listed[path.name]:

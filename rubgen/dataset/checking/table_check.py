@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
+from pathlib import Path
 
 import pyarrow as pa
 
@@ -13,7 +14,7 @@ from rubgen.dataset.manifest import Manifest
 from rubgen.dataset.reading.open import is_signal, row_signals
 from rubgen.dataset.rows import RunTable, asked_bytes
 from rubgen.dataset.shards import Shard, shards_of
-from rubgen.dataset.tables import RUNS, SIGNALS, TABLES, SetTable, tables_of
+from rubgen.dataset.tables import RUNS, SIGNALS, TABLES, TRUTH, SetTable, tables_of
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
 from rubgen.io.parquet.read import ParquetSource
@@ -95,7 +96,7 @@ def _shard_problems(
         yield from _list_problems(listed, recipe.output.formats, shard, set(good))
     for table in tables_of(recipe.output.formats):
         if _file_name(table, shard) not in closed:
-            yield from _file_problems(layout, recipe, table, shard, None if rows is None else good)
+            yield from _file_problems(layout, recipe, table, shard, None if rows is None else good, closed)
 
 
 def _list_problems(listed: set[str], formats: Sequence[str], shard: Shard, good: set[str]) -> Iterator[str]:
@@ -111,33 +112,60 @@ def _list_problems(listed: set[str], formats: Sequence[str], shard: Shard, good:
 
 
 def _file_problems(
-    layout: Layout, recipe: Recipe, table: SetTable, shard: Shard, good: dict[str, Row] | None
+    layout: Layout, recipe: Recipe, table: SetTable, shard: Shard, good: dict[str, Row] | None, closed: set[str]
 ) -> Iterator[str]:
-    """Yield the problems of a shard's file of one table. `good` has its good runs, None where they are not known."""
+    """Yield the problems of a shard's file of one table. `good` has its good runs, None where they are not known.
+
+    Files named in `closed` must not be opened.
+    """
     name, whole, seen = _file_name(table, shard), True, set[str]()
     types = table.schema(recipe)
-    scalars = [field.name for field in types if not is_signal(field)]
+    checked = good if table is SIGNALS and _file_name(TRUTH, shard) not in closed else None
     namer = _namer(list(good) if good is not None else [run_id_of(index) for index in shard.indexes])
-    for rows, problems in _groups(layout, name, types, namer, asked_bytes(recipe)):
+    for group, (rows, problems) in enumerate(_groups(layout, name, types, namer, asked_bytes(recipe))):
         yield from problems
         whole &= rows is not None
         if rows is None:
             continue
         seen |= set(rows["run_id"].to_pylist())
-        for number, row in enumerate(with_words(rows.select(scalars)).to_pylist() if table is SIGNALS else ()):
-            yield from _row_problems(name, row, (good or {}).get(row["run_id"]), rows, number, recipe.sensing)
+        if checked:
+            truth = _group_of(layout.root / _file_name(TRUTH, shard), group, asked_bytes(recipe))
+            yield from _rows_problems(name, rows, truth, checked, recipe.sensing)
     if whole and good is not None:
         what = "signals" if table is SIGNALS else f"a row in {table.name}"
         yield from (f"{run_id}: has {what}, but is not ok" for run_id in sorted(seen - set(good), key=str))
         yield from (f"{run_id}: is ok, but has no {what.removeprefix('a ')}" for run_id in sorted(set(good) - seen))
 
 
-def _row_problems(
-    name: str, row: Row, run: Row | None, table: pa.Table, number: int, sensing: Sensing
+def _group_of(path: Path, group: int, asked: float) -> pa.Table | None:
+    """Return a row group of a file; None where it cannot be read, which is named where that file is checked."""
+    with suppress(UserError), ParquetSource(path, asked) as file:
+        return file.read_row_group(group) if group < file.num_row_groups else None
+    return None
+
+
+def _rows_problems(
+    name: str, seen: pa.Table, truth: pa.Table | None, good: dict[str, Row], sensing: Sensing
 ) -> Iterator[str]:
-    if run is not None and {key: row[key] for key in run} != run:
-        yield f"{row['run_id']}: {name} and runs.parquet differ"
-    yield from _compared(row["run_id"], lambda: list(signal_problems(row, row_signals(table, number), sensing)))
+    """Yield the problems of a row group of `signals`, with the same runs of `truth` where they can be read."""
+    if truth is not None and truth["run_id"] != seen["run_id"]:
+        truth = None
+    for number, row in enumerate(_values(seen)):
+        run = good.get(row["run_id"])
+        if run is None:
+            continue
+        if any(row[key] != run[key] for key in row if key in run):
+            yield f"{row['run_id']}: {name} and runs.parquet differ"
+        if truth is not None:
+            signals = row_signals(seen, number) | row_signals(truth, number)
+            whole = run | row | _values(truth.slice(number, 1))[0]
+            yield from _compared(row["run_id"], lambda w=whole, s=signals: list(signal_problems(w, s, sensing)))  # type: ignore[misc]
+
+
+def _values(table: pa.Table) -> list[Row]:
+    """Return the rows of a table without its channels."""
+    rows: list[Row] = with_words(table.select([x.name for x in table.schema if not is_signal(x)])).to_pylist()
+    return rows
 
 
 def _compared(run_id: str, problems: Callable[[], list[str]]) -> Iterator[str]:

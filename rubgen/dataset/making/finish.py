@@ -19,6 +19,7 @@ from rubgen.dataset.tables import RUNS, tables_of
 from rubgen.errors import RubgenError, UserError
 from rubgen.io.files import sync_directory
 from rubgen.io.parquet.read import read_table
+from rubgen.io.parquet.sensors import SENSORS_SCHEMA, sensors_table
 from rubgen.io.parquet.write import write_table
 from rubgen.scenario import Recipe
 from rubgen.scenario.run_id import index_of
@@ -45,6 +46,7 @@ def finish_set(recipe: Recipe, layout: Layout, identity: Identity) -> dict[str, 
     whole.replace(layout.runs)
     status = sum((Counter(each.status) for each in closed), Counter[str]())
     ordered = dict(sorted(status.items()))
+    write_table([sensors_table(recipe.sensing)], SENSORS_SCHEMA, layout.sensors)
     write_card(layout, identity, ordered)
     write_croissant(layout, identity)
     sync_directory(layout.root)
@@ -54,7 +56,7 @@ def finish_set(recipe: Recipe, layout: Layout, identity: Identity) -> dict[str, 
 
 def _files(layout: Layout, recipe: Recipe, closed: list[ClosedShard]) -> list[FileEntry]:
     """Return the entries of the manifest: card, description, runs, the files of each table, those of single runs."""
-    first = [entry_of(path, layout.root) for path in (layout.card, layout.croissant, layout.runs)]
+    first = [entry_of(path, layout.root) for path in (layout.card, layout.croissant, layout.sensors, layout.runs)]
     tables = [each.tables[place] for place in range(len(tables_of(recipe.output.formats))) for each in closed]
     return [*first, *tables, *sorted((entry for each in closed for entry in each.exports), key=_path)]
 

@@ -59,7 +59,7 @@ class Keeper:
 
 
 def _message(row: pa.Table) -> bytes:
-    (batch,) = row.combine_chunks().to_batches()
+    (batch,) = row.combine_chunks().to_batches() or [pa.RecordBatch.from_pylist([], row.schema)]
     return bytes(batch.serialize())
 
 

@@ -25,10 +25,10 @@ from rubgen.dataset.reading.samples import Arrays, Windows, arrays, windows
 from rubgen.dataset.reading.stored_run import StoredRun, stored_run
 from rubgen.dataset.reading.tables import COLUMNS, check_runs, runs_frame, touches_frame
 from rubgen.dataset.rows import RunRows, asked_bytes
+from rubgen.dataset.tables import SECTIONS, SIGNALS, TRUTH, SetTable
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
 from rubgen.io.columns import Column, Role, scalar_columns, signal_columns
-from rubgen.io.parquet.compact_records import SCHEMA
 from rubgen.io.parquet.read import damage_named, read_table
 from rubgen.io.parquet.words import with_words
 from rubgen.io.parquet.write import recipe_schema
@@ -302,22 +302,25 @@ class DataSet:
         return {run_id: number for number, run_id in enumerate(self._table["run_id"].to_pylist())}
 
     @cached_property
-    def _data(self) -> RunRows:
-        types = recipe_schema(self._recipe, signals=True)
-        return RunRows(
-            [self.layout.root / name for name in self.manifest.listed("data")], types, asked_bytes(self._recipe)
-        )
+    def _signals(self) -> RunRows:
+        return self._rows(SIGNALS)
+
+    @cached_property
+    def _truth(self) -> RunRows:
+        return self._rows(TRUTH)
 
     @cached_property
     def _sections(self) -> RunRows:
-        return RunRows(
-            [self.layout.root / name for name in self.manifest.listed("sections")], SCHEMA, asked_bytes(self._recipe)
-        )
+        return self._rows(SECTIONS)
+
+    def _rows(self, table: SetTable) -> RunRows:
+        files = [self.layout.root / name for name in self.manifest.listed(table.name)]
+        return RunRows(files, table.schema(self._recipe), asked_bytes(self._recipe))
 
     def _tables(self, run_ids: Sequence[str], names: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
         """Channels and pulses of each run, from Parquet where the set has it, else from files of single runs."""
-        if self._data.files:
-            yield from self._data.each(run_ids, [*names, PULSES])
+        if self._signals.files:
+            yield from self._joined(run_ids, [*names, PULSES])
             return
         readers = [(each.signals, each.name) for each in run_formats() if each.signals]
         listed = {name for _, folder in readers for name in self.manifest.listed(folder)}
@@ -333,6 +336,19 @@ class DataSet:
             if run_id != run_id_of(run.index):
                 raise UserError(f"{path}: holds the run of index {run.index}; run rubgen verify")
             yield run_id, pa.table({name: [run.channels[name]] for name in names} | {PULSES: [run.once_per_rev]})
+
+    def _joined(self, run_ids: Sequence[str], names: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
+        """Columns of `signals` and `truth` side by side; a table without any of them is not opened."""
+        seen = [name for name in names if name in self._signals.types.names]
+        hidden = [name for name in names if name not in seen]
+        if not hidden or not seen:
+            yield from self._truth.each(run_ids, hidden) if hidden else self._signals.each(run_ids, seen)
+            return
+        for (run_id, left), (_, right) in zip(
+            self._signals.each(run_ids, seen), self._truth.each(run_ids, hidden), strict=True
+        ):
+            columns = _columns(left) | _columns(right)
+            yield run_id, pa.table({name: columns[name] for name in names})
 
     def known_channels(self, channels: Sequence[str] | None) -> tuple[str, ...]:
         """Return the names of these channels, each once; None is all. Raises UserError for an unknown one."""
@@ -368,9 +384,14 @@ class DataSet:
         return f"<p>{escape(repr(self))}</p>{table}"
 
 
+def _columns(table: pa.Table) -> dict[str, pa.ChunkedArray]:
+    return dict(zip(table.column_names, table.columns, strict=True))
+
+
 def is_signal(field: Any) -> bool:
     """Return whether the column of this Arrow field holds a recorded channel: lists of float32."""
-    return bool(pa.types.is_list(field.type) and field.type.value_type == pa.float32())
+    a_list = pa.types.is_list(field.type) or pa.types.is_fixed_size_list(field.type)
+    return bool(a_list and field.type.value_type == pa.float32())
 
 
 def row_signals(table: pa.Table, row: int) -> dict[str, Float32Array]:

@@ -176,12 +176,8 @@ def _field(column: Column) -> pa.Field:
 
 def _settings(types: pa.Schema) -> dict[str, Any]:
     # The leaf of a list must be named: the plain column's name is silently ignored.
-    leaves = {
-        field.name: f"{field.name}.list.element" if pa.types.is_list(field.type) else field.name for field in types
-    }
-    floats = [
-        leaves[f.name] for f in types if pa.types.is_floating(f.type.value_type if pa.types.is_list(f.type) else f.type)
-    ]
+    leaves = {field.name: f"{field.name}.list.element" if _is_list(field.type) else field.name for field in types}
+    floats = [leaves[f.name] for f in types if pa.types.is_floating(f.type.value_type if _is_list(f.type) else f.type)]
     return {
         "compression": "zstd",
         "compression_level": COMPRESSION_LEVEL,
@@ -189,6 +185,10 @@ def _settings(types: pa.Schema) -> dict[str, Any]:
         "use_byte_stream_split": floats,
         "write_page_checksum": True,
     }
+
+
+def _is_list(kind: pa.DataType) -> bool:
+    return bool(pa.types.is_list(kind) or pa.types.is_fixed_size_list(kind))
 
 
 def _identity(run: Run, split: str) -> dict[str, object]:

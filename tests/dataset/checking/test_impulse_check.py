@@ -1,7 +1,6 @@
 """The impulse of a force channel over whole turns: what its noise, steps and samples resolve, and not less."""
 
 import numpy as np
-import pyarrow.parquet as pq
 import pytest
 from scipy.stats import norm
 
@@ -15,8 +14,8 @@ from rubgen.dataset.checking.channel_check import (
 )
 from rubgen.dataset.checking.consistency import label_problems, signal_problems
 from rubgen.dataset.reading.open import row_signals
-from rubgen.io.parquet.words import with_words
 from rubgen.scenario import Sensing
+from tests.whole_table import whole_table
 
 RATE = 25600.0
 NOISE, STEP = 5.0, 2e5 / 2**16
@@ -131,8 +130,8 @@ def test_turns_that_scatter_are_no_contradiction():
 
 @pytest.fixture(scope="module")
 def rub_row(small_set):
-    table = pq.read_table(small_set.directory / "data/train-00000.parquet")
-    rows = [(row, row_signals(table, i)) for i, row in enumerate(with_words(table).to_pylist())]
+    table = whole_table(small_set.directory)
+    rows = [(row, row_signals(table, i)) for i, row in enumerate(table.to_pylist())]
     row, signals = next((row, signals) for row, signals in rows if row["rub"])
     return row | {"motion": "period-1", "motion_blisk": "period-1", "motion_casing": "period-1"}, signals
 

@@ -30,7 +30,7 @@ def tight_bounds(monkeypatch):
 @pytest.mark.usefixtures("tight_bounds")
 def test_a_set_may_hold_what_its_recipe_asks_for(small_set):
     data = rubgen.open(small_set.directory)
-    path = data.layout.root / data.manifest.listed("data")[0]
+    path = data.layout.root / data.manifest.listed("signals")[0]
     with pytest.raises(UserError, match="would unpack to"):
         read_table(path)
     assert verify(small_set.directory) == []
@@ -47,7 +47,7 @@ def test_a_set_beyond_the_general_bounds_is_made(tmp_path, small_set):
 @pytest.mark.usefixtures("tight_bounds")
 def test_more_than_the_recipe_asks_for_is_refused(small_set, tmp_path):
     data = rubgen.open(small_set.directory)
-    path = data.layout.root / data.manifest.listed("data")[0]
+    path = data.layout.root / data.manifest.listed("signals")[0]
     many = pa.concat_tables([read_table(path, asked_bytes=1e9)] * 12)
     write_table([many], many.schema, tmp_path / "many.parquet")
     asked = asked_bytes(data.manifest.identity.recorded())

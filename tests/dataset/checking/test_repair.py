@@ -10,7 +10,7 @@ import rubgen
 from rubgen.cli import main
 from rubgen.dataset.checking.repair import repair
 
-DATA = "data/train-00000.parquet"
+DATA = "signals/train-00000.parquet"
 
 
 def run_command(*arguments):

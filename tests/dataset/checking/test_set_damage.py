@@ -20,7 +20,7 @@ from rubgen.dataset.checking.verify import findings
 from rubgen.errors import UserError
 from rubgen.io.parquet.write import write_table
 
-DATA = "data/train-00000.parquet"
+DATA = "signals/train-00000.parquet"
 RUNS = ["run-000000", "run-000001"]
 
 
@@ -144,7 +144,7 @@ def test_names_of_a_damaged_group_follow_from_its_place(copied_shown_set):
     assert any("row group 0 with run-000000, run-000001, column run_id" in p for p in rubgen.verify(copied_shown_set))
 
 
-@pytest.mark.parametrize("name", ["stray.txt", "data/train-00001.parquet", "rrd/0000/run-000001 (1).rrd", "new/x"])
+@pytest.mark.parametrize("name", ["stray.txt", "signals/train-00001.parquet", "rrd/0000/run-000001 (1).rrd", "new/x"])
 def test_a_stray_file_is_found(name, copied_shown_set):
     (copied_shown_set / name).parent.mkdir(exist_ok=True)
     (copied_shown_set / name).write_text("x")
@@ -193,11 +193,11 @@ def test_a_pipe_does_not_hang(name, copied_shown_set):
     assert f"{name}: is no regular file" in rubgen.verify(copied_shown_set)
 
 
-@pytest.mark.parametrize("name", ["data", "mcap/0000/run-000000.mcap/inner"])
+@pytest.mark.parametrize("name", ["signals", "mcap/0000/run-000000.mcap/inner"])
 def test_a_folder_in_the_place_of_a_file_is_found(name, copied_shown_set):
-    if name == "data":
-        shutil.rmtree(copied_shown_set / "data")
-        (copied_shown_set / "data").write_text("x")
+    if name == "signals":
+        shutil.rmtree(copied_shown_set / "signals")
+        (copied_shown_set / "signals").write_text("x")
         assert any(p.startswith(f"{DATA}: ") for p in rubgen.verify(copied_shown_set))
         return
     (copied_shown_set / "mcap/0000/run-000000.mcap").unlink()

@@ -14,11 +14,11 @@ from rubgen.dataset.checking.consistency import label_problems, signal_problems
 from rubgen.dataset.files import sha256_of
 from rubgen.dataset.reading.open import row_signals
 from rubgen.errors import UserError
-from rubgen.io.parquet.words import with_words
 from rubgen.io.parquet.write import write_table
 from rubgen.scenario import Sensing
+from tests.whole_table import whole_table
 
-DATA = "data/train-00000.parquet"
+DATA = "signals/train-00000.parquet"
 
 SENSING = Sensing()
 
@@ -26,8 +26,8 @@ SENSING = Sensing()
 @pytest.fixture(scope="module")
 def rows(small_set):
     """Rows with labels and signals of a run without and one with rub."""
-    table = pq.read_table(small_set.directory / DATA)
-    rows = {row["rub"]: (row, row_signals(table, i)) for i, row in enumerate(with_words(table).to_pylist())}
+    table = whole_table(small_set.directory)
+    rows = {row["rub"]: (row, row_signals(table, i)) for i, row in enumerate(table.to_pylist())}
     assert set(rows) == {True, False}
     return rows
 

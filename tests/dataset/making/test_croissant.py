@@ -38,7 +38,7 @@ def test_valid_and_loaded_to_the_bit(mlcroissant, small_set):
 
 def test_columns_that_are_lists_are_repeated(small_set):
     described = json.loads((small_set.directory / "croissant.json").read_text())
-    files = {"runs": "runs.parquet", "signals": "data/*.parquet"}
+    files = {"runs": "runs.parquet", "signals": "signals/*.parquet"}
     for records in described["recordSet"]:
         types = pq.read_schema(next(small_set.directory.glob(files[records["name"]])))
         lists = {each.name for each in types if pa.types.is_list(each.type)}

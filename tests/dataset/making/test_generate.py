@@ -60,7 +60,7 @@ def test_the_set_has_every_file_and_nothing_else(small_set):
     assert names == exports | {
         "README.md",
         "croissant.json",
-        "data/train-00000.parquet",
+        "signals/train-00000.parquet",
         "manifest.json",
         "manifest.json.sha256",
         "runs.parquet",
@@ -146,7 +146,7 @@ def test_failed_runs_are_listed_and_have_no_files(fake_simulate, tmp_path, make_
     assert made.status == {"diverged": 1, "ok": 2}
     runs = rubgen.open(tmp_path / "set").runs
     assert runs.loc["run-000001", ["status", "reason"]].tolist() == ["diverged", "in turn 7"]
-    data = pq.read_table(tmp_path / "set/data/train-00000.parquet", columns=["run_id"])
+    data = pq.read_table(tmp_path / "set/signals/train-00000.parquet", columns=["run_id"])
     assert data["run_id"].to_pylist() == ["run-000000", "run-000002"]
     assert sorted(path.name for path in (tmp_path / "set/mcap/0000").iterdir()) == [
         "run-000000.mcap",
@@ -170,7 +170,7 @@ def test_many_runs_go_into_several_files_and_groups(fake_simulate, tmp_path, mon
     monkeypatch.setattr("rubgen.dataset.making.close.RUNS_PER_ROW_GROUP", 2)
     monkeypatch.setattr("rubgen.dataset.making.finish.ROWS_PER_GROUP", 3)
     rubgen.generate(recipe(runs=7, output={"signal_seconds": 0.1, "formats": ["parquet"]}), tmp_path / "set", workers=1)
-    shards = sorted((tmp_path / "set" / "data").glob("*.parquet"))
+    shards = sorted((tmp_path / "set" / "signals").glob("*.parquet"))
     assert [path.name for path in shards] == ["train-00000.parquet", "train-00001.parquet"]
     groups = [pq.ParquetFile(path).metadata for path in shards]
     assert [[g.row_group(i).num_rows for i in range(g.num_row_groups)] for g in groups] == [[2, 2, 1], [2]]

@@ -55,12 +55,12 @@ def tree(directory):
 def test_every_run_is_in_one_shard_of_its_split_and_rows_are_in_order(tmp_path):
     make(tmp_path / "set")
     names = [f"{run}.parquet" for run in ("test-00000", "test-00001", "train-00000", "train-00001", "train-00002")]
-    assert sorted(path.name for path in (tmp_path / "set/data").iterdir()) == [*names, "train-00003.parquet"]
+    assert sorted(path.name for path in (tmp_path / "set/signals").iterdir()) == [*names, "train-00003.parquet"]
     runs = pq.read_table(tmp_path / "set/runs.parquet", columns=["run_id", "split", "status"]).to_pylist()
     assert [row["run_id"] for row in runs] == [run_id_of(index) for index in range(23)]
     assert [row["split"] for row in runs] == ["test" if index % 3 == 2 else "train" for index in range(23)]
     assert [row["run_id"] for row in runs if row["status"] != "ok"] == ["run-000007"]
-    for path in (tmp_path / "set/data").iterdir():
+    for path in (tmp_path / "set/signals").iterdir():
         rows = pq.read_table(path, columns=["run_id", "split"])
         assert set(rows["split"].to_pylist()) == {path.name.split("-")[0]}
         assert rows["run_id"].to_pylist() == sorted(rows["run_id"].to_pylist())

@@ -19,8 +19,9 @@ from rubgen.io.parquet.words import with_words
 from rubgen.io.parquet.write import schema
 from rubgen.sensors.load import default_sensor_set
 from tests.default_columns import CHANNELS, SCALARS
+from tests.whole_table import whole_table
 
-DATA = "data/train-00000.parquet"
+DATA = "signals/train-00000.parquet"
 
 
 @pytest.fixture(scope="module")
@@ -152,7 +153,7 @@ def without_parquet(copied_set):
 
 def test_a_set_is_what_its_manifest_lists(without_parquet, copied_set):
     """Files that nobody listed lie in both folders: neither is read."""
-    (copied_set / "data/train-00001.parquet").write_bytes(b"foreign")
+    (copied_set / "signals/train-00001.parquet").write_bytes(b"foreign")
     (copied_set / "sections/._x.parquet").write_bytes(b"foreign")
     opened = rubgen.open(without_parquet)
     assert opened.signals("run-000001")["contact_force"].size == 15872
@@ -165,7 +166,7 @@ def test_touches_are_those_beside_the_signals(data, small_set):
     touches = data.touches(rubbing)
     assert touches["start_s"].is_monotonic_increasing
     assert touches.attrs["units"]["impulse_n_s"] == "N s"
-    rows = read_table(small_set.directory / DATA).to_pylist()
+    rows = whole_table(small_set.directory).to_pylist()
     (row,) = [row for row in rows if row["run_id"] == rubbing]
     within = touches[(touches["end_s"] > 0) & (touches["start_s"] < 0.62)]
     assert len(within) > 10

@@ -20,7 +20,7 @@ from rubgen.io.parquet.compact_records import RECORD_COLUMNS
 from rubgen.scenario import load_recipe, parse_recipe
 from tests.default_columns import CHANNELS, SCALARS, SIGNALS
 
-DATA = "data/train-00000.parquet"
+DATA = "signals/train-00000.parquet"
 
 
 @pytest.fixture(scope="module")

@@ -58,7 +58,7 @@ def test_the_set_verifies_and_no_machine_is_in_two_splits(made):
 def test_each_split_has_its_files_and_its_row_in_the_card(made):
     runs = rubgen.open(made).runs
     for split in ("train", "unseen"):
-        (path,) = (made / "data").glob(f"{split}-*.parquet")
+        (path,) = (made / "signals").glob(f"{split}-*.parquet")
         mine = runs[runs["split"] == split]
         assert (
             pd.read_parquet(path, columns=["run_id"])["run_id"].tolist() == mine.index[mine["status"] == "ok"].tolist()
@@ -69,7 +69,8 @@ def test_each_split_has_its_files_and_its_row_in_the_card(made):
         assert [int(number) for number in row.groups()] == counts
     head = yaml.safe_load((made / "README.md").read_text().split("---\n", 2)[1])
     files = {each["config_name"]: [part["split"] for part in each["data_files"]] for each in head["configs"]}
-    assert files == {"signals": ["train", "unseen"], "runs": ["runs"], "sections": ["train", "unseen"]}
+    each = dict.fromkeys(("signals", "truth", "windows", "sections"), ["train", "unseen"])
+    assert files == each | {"runs": ["runs"], "sensors": ["runs"]}
 
 
 def test_hugging_face_loads_the_splits(made, tmp_path):

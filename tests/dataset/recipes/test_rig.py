@@ -5,9 +5,8 @@ from pathlib import Path
 import numpy as np
 
 import rubgen
-from rubgen.io.parquet.read import read_table
-from rubgen.io.parquet.words import with_words
 from rubgen.scenario import load_recipe
+from tests.whole_table import whole_table
 
 RECIPE = Path(__file__).parents[3] / "datasets/rig.toml"
 
@@ -16,7 +15,7 @@ def test_runs_of_the_rig_recipe(tmp_path):
     """The first of the two is a heavy rub that diverges; the second is recorded."""
     rubgen.generate(RECIPE, tmp_path / "rig", runs=2, workers=1)
     assert rubgen.verify(tmp_path / "rig") == []
-    rows = with_words(read_table(next((tmp_path / "rig/data").glob("*.parquet")))).to_pylist()
+    rows = whole_table(tmp_path / "rig").to_pylist()
     assert rows  # or nothing was verified
     sensors = load_recipe(RECIPE).sensing.set.sensors
     for row in rows:

@@ -8,8 +8,7 @@ import pytest
 
 import rubgen
 from rubgen.dataset.checking.relabel import relabel
-from rubgen.io.parquet.read import read_table
-from rubgen.io.parquet.words import with_words
+from tests.whole_table import whole_table
 
 DATASETS = Path(__file__).parents[3] / "datasets"
 
@@ -23,7 +22,7 @@ def test_a_steady_recipe_makes_a_set_that_verifies(name, short_records, tmp_path
     rubgen.generate(recipe, tmp_path / "set", workers=1)
     assert rubgen.verify(tmp_path / "set") == []
     assert relabel(tmp_path / "set").differences == ()
-    rows = with_words(read_table(next((tmp_path / "set/data").glob("*.parquet")))).to_pylist()
+    rows = whole_table(tmp_path / "set").to_pylist()
     assert any(row["rub"] for row in rows)
     for row in rows:
         assert len(row["window_starts_s"]) == 7
