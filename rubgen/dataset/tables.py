@@ -34,6 +34,8 @@ class SetTable:
     """Columns in the set of a recipe."""
     row: Callable[[Run, str], pa.Table]
     """The row of a run in the split of that name; in `windows` the rows."""
+    several: bool = False
+    """Whether a run has any number of rows, also none."""
     wanted: Callable[[Sequence[str]], bool] = lambda _formats: True
     """Whether a set with these formats has this table."""
 
@@ -58,7 +60,7 @@ TRUTH = SetTable(
     wanted=lambda formats: "parquet" in formats,
 )
 """What only the simulation knows of each run beyond `runs`: touches, orders by window, channels of no sensor."""
-WINDOWS = SetTable(name="windows", schema=windows_schema, row=window_rows)
+WINDOWS = SetTable(name="windows", schema=windows_schema, row=window_rows, several=True)
 """Labels of each window of 16 turns that the signals hold: some rows a run."""
 SECTIONS = SetTable(
     name="sections",

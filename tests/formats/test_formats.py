@@ -41,9 +41,9 @@ def test_signals_of_a_file_are_those_of_its_run(rub_run, tmp_path, each):
     np.testing.assert_allclose(found.once_per_rev, recording.once_per_rev, rtol=0, atol=1e-9)
 
 
-def test_the_folder_of_a_format_is_its_name_but_data_for_parquet(tmp_path):
+def test_the_folder_of_a_format_is_its_name_but_signals_for_parquet(tmp_path):
     assert [folder.name for folder in Layout(tmp_path).folders(FORMAT_NAMES)] == [
-        "data",
+        "signals",
         *(each.name for each in run_formats()),
     ]
 

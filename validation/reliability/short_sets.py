@@ -16,9 +16,6 @@ from pathlib import Path
 import rubgen
 from rubgen.dataset.checking.channel_check import Row, resolved_impulse, samples_per_turn, whole_turn_weights
 from rubgen.dataset.checking.consistency import label_problems, signal_problems
-from rubgen.dataset.reading.open import row_signals
-from rubgen.io.parquet.read import row_groups
-from rubgen.io.parquet.words import with_words
 from rubgen.labels.labels import Motion
 from rubgen.measurement.channel import Float32Array
 from rubgen.scenario import Sensing
@@ -96,12 +93,11 @@ def _count(directory: Path, recipe: dict[str, object], counts: Counts) -> None:
         sys.stderr.write(f"{problem}\n")
     sensors = recipe["sensors"]
     sensing = Sensing(set=load_sensor_set(sensors["set"] if isinstance(sensors, dict) else "default"))
-    for path in sorted((directory / "signals").glob("train-*.parquet")):
-        for table in row_groups(path):
-            for number, row in enumerate(with_words(table).to_pylist()):
-                counts.runs += 1
-                counts.rubbing += row["rub"]
-                _count_wrong(row, row_signals(table, number), sensing, counts)
+    data = rubgen.open(directory)
+    for run_id in data.ok.index:
+        counts.runs += 1
+        counts.rubbing += data.row(run_id)["rub"]
+        _count_wrong(data.whole_row(run_id), data.signals(run_id), sensing, counts)
 
 
 def _count_wrong(row: Row, signals: dict[str, Float32Array], sensing: Sensing, counts: Counts) -> None:

@@ -14,17 +14,26 @@ from rubgen.dataset.manifest import Manifest
 from rubgen.dataset.reading.open import is_signal, row_signals
 from rubgen.dataset.rows import RunTable, asked_bytes
 from rubgen.dataset.shards import Shard, shards_of
-from rubgen.dataset.tables import RUNS, SIGNALS, TABLES, TRUTH, SetTable, tables_of
+from rubgen.dataset.tables import RUNS, SIGNALS, TABLES, TRUTH, WINDOWS, SetTable, tables_of
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
 from rubgen.io.parquet.read import ParquetSource
 from rubgen.io.parquet.words import with_words
+from rubgen.labels import MOTION_CLASSES
 from rubgen.scenario import Recipe, Sensing
 from rubgen.scenario.run_id import run_id_of
 
 NO_PARQUET = "damaged or no Parquet file of rubgen"
 MOST_NAMED = 4
 """Number of runs or columns that a line lists one by one."""
+OF_WINDOW = {
+    "rub": "window_rub",
+    "contact_duty": "window_contact_duty",
+    "contact_impulse_per_turn_n_s": "window_impulse_per_turn_n_s",
+    "motion": "window_motion_classes",
+    "motion_confidence": "window_motion_confidence",
+}
+"""Columns of `windows`, with the list of `runs` that each is an entry of."""
 UNCOMPARABLE = (TypeError, ValueError, LookupError, AttributeError, ArithmeticError)
 """Errors from comparing values of a wrong type or number."""
 
@@ -131,10 +140,17 @@ def _file_problems(
         if checked:
             truth = _group_of(layout.root / _file_name(TRUTH, shard), group, asked_bytes(recipe))
             yield from _rows_problems(name, rows, truth, checked, recipe.sensing)
+        if table is WINDOWS and good:
+            yield from (
+                f"{row['run_id']}: {name} and runs.parquet differ in window {row['window']}"
+                for row in with_words(rows).to_pylist()
+                if row["run_id"] in good and _differs(row, good[row["run_id"]])
+            )
     if whole and good is not None:
         what = "signals" if table is SIGNALS else f"a row in {table.name}"
         yield from (f"{run_id}: has {what}, but is not ok" for run_id in sorted(seen - set(good), key=str))
-        yield from (f"{run_id}: is ok, but has no {what.removeprefix('a ')}" for run_id in sorted(set(good) - seen))
+        lacking = sorted(set(good) - seen) if not table.several else []
+        yield from (f"{run_id}: is ok, but has no {what.removeprefix('a ')}" for run_id in lacking)
 
 
 def _group_of(path: Path, group: int, asked: float) -> pa.Table | None:
@@ -160,6 +176,15 @@ def _rows_problems(
             signals = row_signals(seen, number) | row_signals(truth, number)
             whole = run | row | _values(truth.slice(number, 1))[0]
             yield from _compared(row["run_id"], lambda w=whole, s=signals: list(signal_problems(w, s, sensing)))  # type: ignore[misc]
+
+
+def _differs(window: Row, run: Row) -> bool:
+    """Return whether a row of `windows` differs from the labels by window of its run."""
+    if not 0 <= window["window"] < len(run["window_starts_s"]):
+        return True
+    expected = {name: run[labels][window["window"]] for name, labels in OF_WINDOW.items()}
+    found = window | {"rub": int(window["rub"]), "motion": MOTION_CLASSES.get(window["motion"])}
+    return any(found[name] != value for name, value in expected.items())
 
 
 def _values(table: pa.Table) -> list[Row]:

@@ -1,7 +1,7 @@
 """Let a finished set grow: its shards count as closed, and the last one of each split is opened again."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pyarrow as pa
@@ -13,7 +13,7 @@ from rubgen.dataset.making.keep import Keeper
 from rubgen.dataset.manifest import FileEntry, Manifest, read_derived
 from rubgen.dataset.rows import RunTable, asked_bytes
 from rubgen.dataset.shards import Shard, shards_of
-from rubgen.dataset.tables import RUNS, tables_of
+from rubgen.dataset.tables import RUNS, SetTable, tables_of
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
 from rubgen.io.parquet.read import row_groups
@@ -71,20 +71,29 @@ def _as_kept(layout: Layout, recipe: Recipe, shard: Shard, rows: pa.Table) -> No
     """Keep the rows of a shard that gets more runs, as if its runs had just finished."""
     keeper = Keeper(layout, shard.name, "before")
     asked = asked_bytes(recipe)
-    tables = [_each_row(layout.shard(table.name, shard.name), asked) for table in tables_of(recipe.output.formats)]
+    ok = [facts["run_id"] for facts in _facts(rows) if facts["status"] == "ok"]
+    tables = [
+        _each_run(layout.shard(table.name, shard.name), table, table.schema(recipe), asked, ok)
+        for table in tables_of(recipe.output.formats)
+    ]
     for number, facts in enumerate(_facts(rows)):
-        good = facts["status"] == "ok"
-        others = [next(table) if good else None for table in tables]
-        lost = [row for row in others if row is not None and row["run_id"][0].as_py() != facts["run_id"]]
-        if lost:
-            raise UserError(f"{layout.root}: {facts['run_id']} lacks a row; check the set: rubgen verify")
+        others = [next(table) if facts["status"] == "ok" else None for table in tables]
         keeper.keep(index_of(facts["run_id"]), [rows.slice(number, 1), *others])
 
 
-def _each_row(path: Path, asked: float) -> Iterator[pa.Table]:
-    for group in row_groups(path, asked):
-        yield from (group.slice(row, 1) for row in range(group.num_rows))
-    raise UserError(f"{path}: has too few rows; check the set: rubgen verify")
+def _each_run(path: Path, table: SetTable, types: pa.Schema, asked: float, runs: Sequence[str]) -> Iterator[pa.Table]:
+    """Yield the rows of each of these runs in a file, in order. Rows of one run are in one row group."""
+    groups = row_groups(path, asked)
+    left = types.empty_table()
+    for run_id in runs:
+        if not left.num_rows:
+            left = next(groups, left)
+        names = left["run_id"].to_pylist()
+        count = next((place for place, name in enumerate(names) if name != run_id), len(names))
+        if count != 1 and not table.several:
+            raise UserError(f"{path}: {run_id} lacks a row; check the set: rubgen verify")
+        yield left.slice(0, count)
+        left = left.slice(count)
 
 
 def _facts(rows: pa.Table) -> list[dict[str, str]]:

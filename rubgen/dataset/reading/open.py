@@ -150,6 +150,20 @@ class DataSet:
         row: dict[str, Any] = self._table.slice(self._numbers[run_id], 1).to_pylist()[0]
         return row
 
+    def whole_row(self, run_id: str) -> dict[str, Any]:
+        """Return all that the set says of a good run but its channels, by column: `row`, events, and `truth`.
+
+        Of `truth` these are the touches in the signals, amplitudes by window, and the like. Raises UserError where
+        there is no such run or it failed, and where the set has no Parquet files with signals.
+        """
+        self.check_has_signals(run_id)
+        row = self.row(run_id)
+        for rows in (self._signals, self._truth):
+            names = [field.name for field in rows.types if field.name not in row and not is_signal(field)]
+            ((_, table),) = rows.each([run_id], names)
+            row |= table.to_pylist()[0]
+        return row
+
     def signals(self, run_id: str, channels: Sequence[str] | None = None) -> dict[str, Float32Array]:
         """Read the recorded channels of a run, each (n_samples,) in its unit of `units`.
 

@@ -154,7 +154,13 @@ def test_a_stray_file_is_found(name, copied_shown_set):
 
 
 def test_what_systems_leave_and_reports_are_no_strays(copied_shown_set):
-    for name in (".DS_Store", "data/Thumbs.db", "mcap/desktop.ini", "mcap/._run-000000.mcap", "rrd/._run-000000.rrd"):
+    for name in (
+        ".DS_Store",
+        "signals/Thumbs.db",
+        "mcap/desktop.ini",
+        "mcap/._run-000000.mcap",
+        "rrd/._run-000000.rrd",
+    ):
         (copied_shown_set / name).write_text("x")
     (copied_shown_set / "lost+found").mkdir()
     rubgen_report(copied_shown_set)

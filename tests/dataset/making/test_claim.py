@@ -119,7 +119,7 @@ def test_what_a_stop_or_the_system_leaves_is_no_content(tmp_path, debris):
     assert make(tmp_path / "set").made == 2
 
 
-@pytest.mark.parametrize("name", [".staging/letter.txt", "data/letter.txt", ".staging/runs/run-000000.parquet", "a/"])
+@pytest.mark.parametrize("name", [".staging/letter.txt", "truth/letter.txt", ".staging/runs/run-000000.parquet", "a/"])
 def test_what_may_be_somebodys_is_refused_and_left(tmp_path, name):
     path = tmp_path / "set" / name
     path.parent.mkdir(parents=True)

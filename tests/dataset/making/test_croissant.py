@@ -9,6 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import rubgen
+from rubgen.labels import MOTION_CLASSES
 from rubgen.solver.response import Status
 
 pytestmark = [  # of mlcroissant's own calls, not of ours
@@ -30,19 +31,33 @@ def test_valid_and_loaded_to_the_bit(mlcroissant, small_set):
     assert [row["signals/run_id"].decode() for row in rows] == list(data)
     for row in rows:
         signals = data.signals(row["signals/run_id"].decode())
-        loaded = np.array(row["signals/contact_force"], dtype=np.float32)
-        np.testing.assert_array_equal(loaded, signals["contact_force"])
+        loaded = np.array(row["signals/proximity_y"], dtype=np.float32)
+        np.testing.assert_array_equal(loaded, signals["proximity_y"])
     speeds = [row["runs/speed_rpm"] for row in described.records("runs")]
     assert speeds == data.runs["speed_rpm"].tolist()
 
 
-def test_columns_that_are_lists_are_repeated(small_set):
+def test_columns_that_are_lists_have_their_shape(small_set):
     described = json.loads((small_set.directory / "croissant.json").read_text())
-    files = {"runs": "runs.parquet", "signals": "signals/*.parquet"}
-    for records in described["recordSet"]:
-        types = pq.read_schema(next(small_set.directory.glob(files[records["name"]])))
-        lists = {each.name for each in types if pa.types.is_list(each.type)}
-        assert {field["name"] for field in records["field"] if field.get("repeated")} == lists != set()
+    files = {name: f"{name}/*.parquet" for name in ("signals", "truth", "windows")}
+    files |= {name: f"{name}.parquet" for name in ("runs", "sensors")}
+    found = {records["name"]: records["field"] for records in described["recordSet"]}
+    assert set(found) == {*files, "splits", "motion_classes"}
+    for name, pattern in files.items():
+        types = pq.read_schema(next(small_set.directory.glob(pattern)))
+        shapes = {each.name: -1 for each in types if pa.types.is_list(each.type)}
+        shapes |= {each.name: each.type.list_size for each in types if pa.types.is_fixed_size_list(each.type)}
+        assert {each["name"]: int(each["arrayShape"]) for each in found[name] if each.get("isArray")} == shapes
+    assert next(each for each in found["signals"] if each["name"] == "proximity_x")["arrayShape"] == "15872"
+
+
+def test_labels_splits_and_classes_are_named(mlcroissant, small_set):
+    described = mlcroissant.Dataset(jsonld=str(small_set.directory / "croissant.json"))
+    classes = {row["motion_classes/name"]: row["motion_classes/number"] for row in described.records("motion_classes")}
+    assert {word.decode() if isinstance(word, bytes) else word: n for word, n in classes.items()} == MOTION_CLASSES
+    assert [str(row["splits/name"]).strip("b'") for row in described.records("splits")] == ["train"]
+    assert described.metadata.data_biases
+    assert not described.metadata.issues.warnings
 
 
 def test_failed_runs_have_empty_labels(mlcroissant, make_synthetic_run, short_records, tmp_path, monkeypatch):
@@ -60,4 +75,4 @@ def test_failed_runs_have_empty_labels(mlcroissant, make_synthetic_run, short_re
     assert [row["runs/status"] for row in rows] == [b"diverged", b"diverged"]
     assert rows[0]["runs/contact_force_orders"] is None
     names = json.loads((tmp_path / "set/croissant.json").read_text())["recordSet"]
-    assert [record_set["name"] for record_set in names] == ["runs"]
+    assert "signals" not in [record_set["name"] for record_set in names]

@@ -47,5 +47,6 @@ def test_columns_name_the_faults_of_each_run(made):
 def test_nothing_is_wrong_with_it_and_its_files_say_what_columns_mean(made):
     assert verify(made.layout.root) == []
     assert "`misalignment_m`" in made.layout.card.read_text()
-    fields = {each["@id"]: each for each in json.loads(made.layout.croissant.read_text())["recordSet"][0]["field"]}
-    assert fields["runs/faults"]["repeated"] is True
+    records = json.loads(made.layout.croissant.read_text())["recordSet"]
+    fields = {each["@id"]: each for record_set in records for each in record_set["field"]}
+    assert fields["runs/faults"]["isArray"] is True

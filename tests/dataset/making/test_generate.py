@@ -65,6 +65,9 @@ def test_the_set_has_every_file_and_nothing_else(small_set):
         "manifest.json.sha256",
         "runs.parquet",
         "sections/train-00000.parquet",
+        "sensors.parquet",
+        "truth/train-00000.parquet",
+        "windows/train-00000.parquet",
     }
     assert small_set.made.made == small_set.made.runs == 4
     assert small_set.made.status == {"ok": 4}

@@ -56,5 +56,5 @@ def test_nothing_is_wrong_with_it_and_its_files_say_what_was_added(sets):
     assert "`background_m_per_s2`" in card
     assert "also feel surroundings" in card
     assert "surroundings" not in sets[0].layout.card.read_text()
-    fields = json.loads(plant.layout.croissant.read_text())["recordSet"][0]["field"]
-    assert "runs/runout_m" in [field["@id"] for field in fields]
+    records = json.loads(plant.layout.croissant.read_text())["recordSet"]
+    assert "runs/runout_m" in [field["@id"] for record_set in records for field in record_set["field"]]

@@ -145,7 +145,7 @@ def without_parquet(copied_set):
     """The same set as one of MCAP files alone: its manifest lists no data."""
     path = copied_set / "manifest.json"
     manifest = json.loads(path.read_text())
-    manifest["files"] = [entry for entry in manifest["files"] if not entry["path"].startswith("data/")]
+    manifest["files"] = [entry for entry in manifest["files"] if not entry["path"].startswith(("signals/", "truth/"))]
     path.write_text(json.dumps(manifest))
     (copied_set / "manifest.json.sha256").write_text(f"{sha256(path.read_bytes()).hexdigest()}  manifest.json\n")
     return copied_set

@@ -14,9 +14,11 @@ import datasets
 import rubgen
 from rubgen.dataset.card import card
 from rubgen.dataset.manifest import identity_of, read_manifest
+from rubgen.dataset.tally import Tally
 from rubgen.errors import UserError
 from rubgen.io.mcap import read_mcap
 from rubgen.io.parquet.compact_records import RECORD_COLUMNS
+from rubgen.io.parquet.set_tables import SEEN
 from rubgen.scenario import load_recipe, parse_recipe
 from tests.default_columns import CHANNELS, SCALARS, SIGNALS
 
@@ -50,7 +52,10 @@ def test_memory_parquet_and_mcap_agree_to_the_bit(small_set, data, memory):
 def test_datasets_loads_the_directory(small_set, memory, tmp_path, monkeypatch):
     monkeypatch.setattr(datasets.config, "HF_HUB_OFFLINE", True)
     loaded = datasets.load_dataset(str(small_set.directory), split="train", cache_dir=str(tmp_path))
-    assert loaded.column_names == [column.name for column in SCALARS + SIGNALS]
+    seen = {column.name for column in SCALARS + SIGNALS if column.role in SEEN}
+    assert set(loaded.column_names) == seen
+    assert loaded.features["proximity_x"].length == memory["proximity_x"].size
+    assert loaded.features["motion"].names[:2] == ["period-1", "period-k"]
     row = loaded.with_format("numpy")[1]
     np.testing.assert_array_equal(row["proximity_x"], memory["proximity_x"])
     runs = datasets.load_dataset(str(small_set.directory), "runs", split="train", cache_dir=str(tmp_path))
@@ -60,12 +65,12 @@ def test_datasets_loads_the_directory(small_set, memory, tmp_path, monkeypatch):
 
 def test_polars_duckdb_and_pandas_read_the_data(small_set, memory):
     path = small_set.directory / DATA
-    polars = pl.scan_parquet(path).filter(pl.col("run_id") == "run-000001").select("contact_force").collect()
-    np.testing.assert_array_equal(polars["contact_force"][0].to_numpy(), memory["contact_force"])
-    ((values,),) = duckdb.read_parquet(str(path)).filter("run_id = 'run-000001'").select("contact_force").fetchall()
-    np.testing.assert_array_equal(np.array(values, np.float32), memory["contact_force"])
+    polars = pl.scan_parquet(path).filter(pl.col("run_id") == "run-000001").select("proximity_x").collect()
+    np.testing.assert_array_equal(polars["proximity_x"][0].to_numpy(), memory["proximity_x"])
+    ((values,),) = duckdb.read_parquet(str(path)).filter("run_id = 'run-000001'").select("proximity_x").fetchall()
+    np.testing.assert_array_equal(np.array(values, np.float32), memory["proximity_x"])
     frame = pd.read_parquet(path).set_index("run_id")
-    np.testing.assert_array_equal(frame.loc["run-000001", "contact_force"], memory["contact_force"])
+    np.testing.assert_array_equal(frame.loc["run-000001", "proximity_x"], memory["proximity_x"])
 
 
 def test_the_card_describes_every_column_and_its_head_is_yaml(small_set):
@@ -73,7 +78,14 @@ def test_the_card_describes_every_column_and_its_head_is_yaml(small_set):
     _, head, body = text.split("---\n", 2)
     values = yaml.safe_load(head)
     assert values["license"] == "cc-by-4.0"
-    assert [config["config_name"] for config in values["configs"]] == ["signals", "runs", "sections"]
+    assert [config["config_name"] for config in values["configs"]] == [
+        "signals",
+        "truth",
+        "windows",
+        "sections",
+        "runs",
+        "sensors",
+    ]
     for column in SCALARS + SIGNALS:
         assert f"| `{column.name}` | {column.role.value} | {column.kind} | {column.unit} |" in body
     for name, (kind, meaning) in RECORD_COLUMNS.items():
@@ -85,7 +97,7 @@ def test_the_card_describes_every_column_and_its_head_is_yaml(small_set):
 def test_the_card_fits_its_recipe(name):
     """It reads a channel that these sensors have, and tells of a constant speed only where it is."""
     recipe = load_recipe(Path(__file__).parents[3] / f"datasets/{name}.toml")
-    text = card(identity_of(recipe), {"ok": recipe.runs}, {})
+    text = card(identity_of(recipe), {"ok": recipe.runs}, Tally(splits={}, shifts=()))
     (channel,) = re.findall(r'select\("run_id", "motion", "(\w+)"\)', text)
     assert channel in [sensor.name for sensor in recipe.sensing.set.sensors]
     assert ("constant speed" in text) is (name != "run-up")

@@ -69,7 +69,7 @@ def test_each_split_has_its_files_and_its_row_in_the_card(made):
         assert [int(number) for number in row.groups()] == counts
     head = yaml.safe_load((made / "README.md").read_text().split("---\n", 2)[1])
     files = {each["config_name"]: [part["split"] for part in each["data_files"]] for each in head["configs"]}
-    each = dict.fromkeys(("signals", "truth", "windows", "sections"), ["train", "unseen"])
+    each = {key: ["train", "unseen"] for key in ("signals", "truth", "windows", "sections")}
     assert files == each | {"runs": ["runs"], "sensors": ["runs"]}
 
 
