@@ -13,6 +13,8 @@ from rubgen.brief import counted, html_table, number, table
 from rubgen.errors import UserError
 from rubgen.jit import kernels_are_compiled
 from rubgen.labels import Labels, label
+from rubgen.labels.headline import headline
+from rubgen.labels.to_json import labels_to_json
 from rubgen.linalg.threads import one_blas_thread
 from rubgen.measurement import Recording, margin_seconds, measure
 from rubgen.progress import COMPILING, step
@@ -50,6 +52,7 @@ class Run:
         if recording is None or labels is None:
             return title, {"status": f"{response.status.code}: {response.reason}"}
         return title, {
+            "headline": headline(labels_to_json(labels), scenario.operation.profile),
             "rub": number(labels.rub),
             "motion": f"{labels.motion.value}, period {number(labels.period)}",
             "contact": f"{number(labels.contact_duty)} of the time, "

@@ -46,8 +46,10 @@ def test_no_part_of_a_run_floods_a_notebook(name, request):
 
 
 def test_a_run_says_what_one_looks_at_first(rub_run, failed_run):
-    assert repr(rub_run).splitlines()[:3] == [
+    extent = rub_run.labels.amounts.extent.value
+    assert repr(rub_run).splitlines()[:4] == [
         "run-000000: zeng2019, steady at 10,000 rev/min",
+        f"  headline   {extent} rub, period-k",
         "  rub        True",
         "  motion     period-k, period 3",
     ]

@@ -15,6 +15,7 @@ from rubgen.format_names import FORMAT_NAMES
 from rubgen.formats import format_of
 from rubgen.labels import Labels
 from rubgen.labels.faults import fault_labels
+from rubgen.labels.headline import headline
 from rubgen.labels.labels import Motion
 from rubgen.labels.registry import LABELS
 from rubgen.labels.to_json import labels_to_json
@@ -123,6 +124,7 @@ def run_summary(run: Run) -> Iterator[tuple[str, str]]:
         value = f"{fault.severity:.4g}" if about.unit == "1" else f"{fault.severity:.4g} {about.unit}"
         yield "fault", f"{kind_of(fault)}: {about.meaning} {value}"
     if run.labels is not None:
+        yield "headline", headline(labels_to_json(run.labels), run.scenario.operation.profile)
         yield from _contact(run.labels)
         yield from _motion(run.labels)
         yield from _speeds(run.labels)

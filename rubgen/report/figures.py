@@ -3,10 +3,12 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import fill
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from rubgen.brief import counted
 from rubgen.dataset.reading.open import DataSet
 from rubgen.dataset.reading.replaying import find_replay
 from rubgen.errors import UserError
@@ -19,6 +21,7 @@ from rubgen.scenario.vary import KEYS
 from rubgen.viz import figures
 from rubgen.viz.derived import order_map
 from rubgen.viz.figures.data_set import axis_text, scale_of, varied_keys
+from rubgen.viz.figures.style import head
 from rubgen.viz.replay import Replay
 
 DEFAULT_MACHINE = "zeng2019"
@@ -129,7 +132,8 @@ def _bifurcation(data: DataSet, choice: Choice) -> Figure:
         motions.append(row["motion"])
     what = "Disk centre $x$" if name.removesuffix("_clean") == CHANNEL else name
     y = f"{what} once a turn about its mean, {unit}"
-    return figures.bifurcation(np.array(values), sections, motions, x=axis_text(key), y=y)
+    figure = figures.bifurcation(np.array(values), sections, motions, x=axis_text(key), y=y)
+    return _headed(figure, data, key, "" if name.endswith("_clean") else "; scatter has the noise of the sensor")
 
 
 def _cascade(data: DataSet, choice: Choice) -> Figure:
@@ -146,7 +150,8 @@ def _cascade(data: DataSet, choice: Choice) -> Figure:
     if len({spectrum.size for spectrum in spectra}) != 1:
         raise ValueError("signals of 17 turns or more are needed; raise signal_seconds")
     unit = data.units.get(name, "").replace("m/s2", "m/s²")
-    return figures.spectrum_cascade(np.array(values), orders, np.array(spectra), y=axis_text(key), unit=unit)
+    figure = figures.spectrum_cascade(np.array(values), orders, np.array(spectra), y=axis_text(key), unit=unit)
+    return _headed(figure, data, key, f"; {name}")
 
 
 def _exponent(data: DataSet, choice: Choice) -> Figure:
@@ -155,13 +160,23 @@ def _exponent(data: DataSet, choice: Choice) -> Figure:
     known = good[good["lyapunov_per_turn"].notna()]
     if known.empty:
         raise ValueError("no run has an exponent; generate with lyapunov = true under [labels]")
-    return figures.exponent_sweep(
+    figure = figures.exponent_sweep(
         known[key].to_numpy(dtype=float) * scale_of(key),
         known["lyapunov_per_turn"].to_numpy(dtype=float),
         known["lyapunov_error"].fillna(0.0).to_numpy(dtype=float),
         known["motion"].astype(str).tolist(),
         x=axis_text(key),
     )
+    return _headed(figure, data, key)
+
+
+def _headed(figure: Figure, data: DataSet, key: str, more: str = "") -> Figure:
+    """Write the set, its machine and its number of runs above a figure, and mark a set that is no sweep of `key`."""
+    machine = ", ".join(each["name"] for each in data.manifest.identity.machines)
+    others = [each for each in varied_keys(data.runs) if each != key]
+    warning = f"No sweep: {', '.join(others)} {'vary' if len(others) > 1 else 'varies'} too" if others else ""
+    head(figure, f"{data.manifest.name}: {counted(len(data.ok), 'run')} of {machine}{more}", fill(warning, 110))
+    return figure
 
 
 def _parameter(data: DataSet, choice: Choice) -> str:
@@ -193,6 +208,8 @@ FIGURES: dict[str, Make] = {
     "orbit": _of_run(lambda replay, _choice: figures.orbit_section(replay)),
     "contact": _of_run(lambda replay, _choice: figures.contact_distribution(replay)),
     "waveform": _of_run(_waveform, "channel"),
+    "waterfall": _of_run(lambda replay, _choice: figures.waterfall(replay)),
+    "bode": _of_run(lambda replay, _choice: figures.bode(replay)),
     "bifurcation": _of_set(_bifurcation, "parameter", "channel"),
     "cascade": _of_set(_cascade, "parameter", "channel"),
     "exponent": _of_set(_exponent, "parameter"),

@@ -162,7 +162,7 @@ def _example(row: dict[str, Any], replay: Replay) -> dict[str, str]:
     return {
         "run_id": row["run_id"],
         "motion": row["motion"],
-        "text": f"{float(row['speed_rpm']):,.0f} rev/min, {contact}",
+        "text": f"{float(row['speed_rpm']):,.0f} rev/min, {contact}; {replay.headline}",
         "picture": as_data_url(figure),
     }
 

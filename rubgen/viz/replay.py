@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.labels.headline import headline
 from rubgen.labels.to_json import MOTION_LABELS, labels_to_json, motion_classes
 from rubgen.measurement.channel import Recording
 from rubgen.measurement.motion import ContactIntervals, MotionFrames, contact_intervals, motion_frames
@@ -43,6 +44,11 @@ class Replay:
         if rotation.swing:
             speed += f" ± {rev_per_min(abs(rotation.swing)):,.0f}"
         return f"{self.scenario.run_id}: {self.scenario.machine.name} at {speed} rev/min"
+
+    @property
+    def headline(self) -> str:
+        """Whether and from which speed it rubs, and how it moves: `rubgen.labels.headline`."""
+        return headline(self.labels, self.scenario.operation.profile)
 
     @property
     def hardest_touch(self) -> float:

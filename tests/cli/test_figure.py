@@ -1,5 +1,6 @@
 """`rubgen figure`: every name draws, and mistakes are named."""
 
+from types import SimpleNamespace
 from typing import ClassVar
 
 import numpy as np
@@ -29,6 +30,7 @@ class MadeSet:
             "lyapunov_error": [0.01, 0.02, None],
         }
     ).set_index("run_id")
+    manifest: ClassVar = SimpleNamespace(name="made", identity=SimpleNamespace(machines=[{"name": "zeng2019"}]))
     units: ClassVar[dict[str, str]] = {"proximity_x": "m", "proximity_x_clean": "m", "casing_acc_0": "m/s2"}
 
     def __init__(self, _directory=None):
@@ -164,6 +166,7 @@ def test_a_parameter_that_does_not_vary_is_refused(made_set, tmp_path):
 def test_every_figure_has_a_test():
     assert set(FIGURES) == {
         "campbell", "modes", "orbit", "contact", "waveform", "bifurcation", "cascade", "exponent", "overview",
+        "waterfall", "bode",
     }  # fmt: skip
 
 

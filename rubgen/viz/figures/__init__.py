@@ -3,11 +3,13 @@
 from rubgen.viz.figures.data_set import dataset_overview
 from rubgen.viz.figures.machine import campbell, mode_shapes
 from rubgen.viz.figures.run import contact_distribution, orbit_section, overview, waveform_orders
+from rubgen.viz.figures.run_up import bode, waterfall
 from rubgen.viz.figures.style import save_figure, save_png
 from rubgen.viz.figures.sweeps import bifurcation, exponent_sweep, spectrum_cascade
 
 __all__ = [
     "bifurcation",
+    "bode",
     "campbell",
     "contact_distribution",
     "dataset_overview",
@@ -18,5 +20,6 @@ __all__ = [
     "save_figure",
     "save_png",
     "spectrum_cascade",
+    "waterfall",
     "waveform_orders",
 ]

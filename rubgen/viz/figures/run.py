@@ -12,11 +12,13 @@ from matplotlib.ticker import MaxNLocator
 
 from rubgen.arrays import FloatArray
 from rubgen.labels.harmonics import order_spectrum, spectrum_turns
+from rubgen.labels.headline import headline
+from rubgen.labels.to_json import labels_to_json
 from rubgen.machine.problems import nearest
 from rubgen.measurement.channel import Channel
 from rubgen.viz.colors import BLUE, GREY, PAPER_GREY, VERMILION
 from rubgen.viz.derived import HIGHEST_ORDER, order_map, poincare_section, sector_of, shaft_orbit
-from rubgen.viz.figures.style import INK, label_axes, new_figure, note
+from rubgen.viz.figures.style import INK, head, label_axes, new_figure, note
 from rubgen.viz.replay import Replay
 
 if TYPE_CHECKING:
@@ -47,6 +49,9 @@ def overview(run: Run) -> Figure:
     ring = cast("PolarAxes", figure.add_subplot(grid[1, 0], projection="polar"))
     contact_map(ring, events.angle, events.impulse, turns)
     _force_spectrum(figure.add_subplot(grid[1, 1]), run)
+    said = headline(labels_to_json(run.labels), run.scenario.operation.profile) if run.labels else ""
+    scenario = run.scenario
+    head(figure, f"{scenario.run_id}: {scenario.machine.name}, {scenario.operation.title}; {said}")
     return figure
 
 
@@ -139,6 +144,7 @@ def orbit_section(replay: Replay) -> Figure:
         axes.set_aspect("equal", adjustable="datalim")
         axes.margins(0.1)
         label_axes(axes, "Disk centre $x$, µm", f"Disk centre $y$, µm ({text})")
+    head(figure, f"{replay.title}; {replay.headline}")
     return figure
 
 
@@ -156,6 +162,7 @@ def contact_distribution(replay: Replay) -> Figure:
     label_axes(bars, "Blade", "Impulse a turn, mN s")
     if not by_blade.any():
         note(bars, "no contact")
+    head(figure, f"{replay.title}; {replay.headline}")
     return figure
 
 
@@ -183,6 +190,7 @@ def waveform_orders(replay: Replay, name: str = "casing_acc_0") -> Figure:
     else:
         note(orders, "no whole turn")
     orders.spines["left"].set_color(GREY)
+    head(figure, f"{replay.title}; {replay.headline}")
     return figure
 
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rubgen.labels.labels import Motion
-from rubgen.viz.colors import GREY, MOTION_COLORS
+from rubgen.viz.colors import GREY, MOTION_COLORS, VERMILION
 
 INK = "#222222"
 MOTION_MARKERS = {
@@ -46,6 +46,13 @@ def label_axes(axes: Axes, x: str, y: str) -> None:
     axes.tick_params(labelsize=9, colors=INK)
     axes.spines[["top", "right"]].set_visible(False)
     axes.spines[["left", "bottom"]].set_color(GREY)
+
+
+def head(figure: Figure, text: str, warning: str = "") -> None:
+    """Write above a figure what it shows, and below it in another colour what a reader must know."""
+    figure.suptitle(text, fontsize=11, color=INK)
+    if warning:
+        figure.axes[0].set_title(warning, fontsize=9, color=VERMILION, loc="left")
 
 
 def note(axes: Axes, text: str) -> None:

@@ -1,0 +1,109 @@
+"""Draw a run whose speed changes: spectra of the whirl over the speed, and the answer to the unbalance."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rubgen.arrays import ComplexArray, FloatArray
+from rubgen.viz.colors import BLUE, VERMILION
+from rubgen.viz.derived import shaft_orbit
+from rubgen.viz.figures.style import head, label_axes, new_figure
+from rubgen.viz.replay import Replay
+
+DECIBELS = 80.0
+BLOCK_TURNS = 16
+SAMPLES_PER_TURN = 64
+HIGHEST_ORDER = 6
+
+
+def waterfall(replay: Replay) -> Figure:
+    """Draw full spectra of the orbit over the speed: forward orders to the right, backward ones to the left.
+
+    Each line is of 16 turns at equal angles. A circle that turns with the rotation is order 1, against it order -1. The
+    first touch is marked. Raises ValueError where no pair of proximity probes was recorded, or the speed is steady.
+    """
+    speeds, turns = whirl_by_turn(replay)
+    count = len(turns) // BLOCK_TURNS
+    blocks = turns[: count * BLOCK_TURNS].reshape(count, -1)
+    spectra = np.abs(np.fft.fft(blocks * np.hanning(blocks.shape[1]), axis=1)) / blocks.shape[1] * 2
+    orders = np.fft.fftfreq(blocks.shape[1], 1 / SAMPLES_PER_TURN)
+    shown = np.argsort(orders)
+    shown = shown[np.abs(orders[shown]) <= HIGHEST_ORDER]
+    largest = float(spectra.max()) or 1.0
+    decibel = 20 * np.log10(np.maximum(spectra[:, shown] / largest, 10 ** (-DECIBELS / 20)))
+    figure = new_figure(9.0, 5.4)
+    axes = figure.subplots()
+    middle = speeds[: count * BLOCK_TURNS].reshape(count, -1).mean(axis=1)
+    mesh = axes.pcolormesh(orders[shown], middle, decibel, cmap="viridis", vmin=-DECIBELS, vmax=0, rasterized=True)
+    figure.colorbar(mesh, ax=axes, pad=0.01).set_label(f"dB re {largest:.3g} µm", fontsize=10)
+    label_axes(axes, "Order $f / f_r$ (backward on the left, forward on the right)", "Speed, rev/min")
+    axes.set_xticks(range(-HIGHEST_ORDER, HIGHEST_ORDER + 1))
+    onset = _onset(replay)
+    if onset is not None:
+        axes.axhline(onset, color=VERMILION, linewidth=1.2)
+        axes.text(-HIGHEST_ORDER, onset, " first touch", color="white", fontsize=9, va="bottom")
+    head(figure, f"{replay.title}; {replay.headline}")
+    return figure
+
+
+def bode(replay: Replay) -> Figure:
+    """Draw amplitude and phase of the forward 1X whirl over the speed, turn by turn, with the first touch marked.
+
+    The phase is that of the whirl behind the mark of the once-per-turn pulse, in degrees. Raises ValueError where no
+    pair of proximity probes was recorded, or the speed is steady.
+    """
+    speeds, turns = whirl_by_turn(replay)
+    whirl = forward_1x(turns)
+    figure = new_figure(9.0, 5.6)
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    upper.plot(speeds, np.abs(whirl), color=BLUE, linewidth=0.9)
+    lower.plot(speeds, np.degrees(np.unwrap(np.angle(whirl))), color=BLUE, linewidth=0.9)
+    label_axes(upper, "", "Forward 1X, µm")
+    label_axes(lower, "Speed, rev/min", "Phase, degrees")
+    for axes in (upper, lower):
+        _mark_onset(axes, replay)
+    head(figure, f"{replay.title}; {replay.headline}")
+    return figure
+
+
+def whirl_by_turn(replay: Replay) -> tuple[FloatArray, ComplexArray]:
+    """Return for each whole turn its speed in rev/min (turns,) and the orbit x + i y in µm at equal angles (turns, 64).
+
+    Raises ValueError where no pair of proximity probes was recorded, or the speed is steady.
+    """
+    if replay.scenario.operation.profile == "steady":
+        raise ValueError("the speed of this run is steady; choose a run-up or a coast-down")
+    orbit = shaft_orbit(replay)
+    if orbit is None:
+        raise ValueError("no pair of proximity probes was recorded; choose sensors with two")
+    pulses = replay.pulse_times
+    if pulses.size <= BLOCK_TURNS:
+        raise ValueError(f"signals of more than {BLOCK_TURNS} turns are needed; raise signal_seconds")
+    share = np.arange(SAMPLES_PER_TURN) / SAMPLES_PER_TURN
+    at = pulses[:-1, None] + share * np.diff(pulses)[:, None]
+    time = np.arange(replay.recording.samples) / replay.recording.sample_rate_hz
+    x, y = (np.interp(at, time, values) for values in orbit)
+    speeds: FloatArray = 60 / np.diff(pulses)
+    return speeds, x + 1j * y
+
+
+def forward_1x(turns: ComplexArray) -> ComplexArray:
+    """Return the complex amplitude of e^(i theta) in each turn (turns,) of an orbit (turns, samples)."""
+    angle = 2 * np.pi * np.arange(turns.shape[1]) / turns.shape[1]
+    amplitude: ComplexArray = turns @ np.exp(-1j * angle) / turns.shape[1]
+    return amplitude
+
+
+def _onset(replay: Replay) -> float | None:
+    found = replay.labels["onset_speed_rpm"]
+    return float(str(found)) if found is not None else None
+
+
+def _mark_onset(axes: Axes, replay: Replay) -> None:
+    onset = _onset(replay)
+    if onset is not None:
+        axes.axvline(onset, color=VERMILION, linewidth=1)
+        axes.annotate(
+            f"first touch, {onset:,.0f} rev/min", (onset, 0.03), xycoords=("data", "axes fraction"), xytext=(4, 0),
+            textcoords="offset points", fontsize=8, color=VERMILION,
+        )  # fmt: skip
