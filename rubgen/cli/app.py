@@ -363,13 +363,30 @@ def verify(
 
 @app.command
 def repair(directory: Directory, /, *, json: Json = False) -> int:
-    """Make README.md, croissant.json and .rrd files again where they are lost or damaged; exit 1 if more is wrong.
+    """Make lost or damaged files again; exit 1 if something is still wrong.
 
-    Data files are only read, and nothing is deleted.
+    Damaged shards are simulated again from the manifest, which needs the versions that made the set. A file gets the
+    bytes that the manifest lists or stays as it is; nothing is deleted.
     """
     from rubgen.cli.inspecting import repair_command
 
     return repair_command(directory, as_json=json)
+
+
+@app.command
+def regenerate(
+    directory: Directory,
+    run: Annotated[str, _option("Name of a run of the data set.")],
+    /,
+    *,
+    out: Annotated[Path | None, _option(f"Also write the run to this file: {ENDINGS}.")] = None,
+    force: Force = False,
+    json: Json = False,
+) -> int:
+    """Make one run again from the manifest and compare it with the stored one; exit 1 where it differs."""
+    from rubgen.cli.regenerating import regenerate_command
+
+    return regenerate_command(directory, run, out, force=force, as_json=json)
 
 
 @app.command

@@ -78,6 +78,9 @@ def repair_command(directory: Path, *, as_json: bool) -> int:
     if not as_json:
         for path in done.made:
             say(f"{path}: made again")
+        if done.left and done.versions:
+            name, (then, now) = next(iter(done.versions.items()))
+            say(f"made with {name} {then}, now it is {now}: only the version that made the set makes its bytes again")
     return _tell(directory, list(done.left), {"made": list(done.made)}, as_json=as_json)
 
 

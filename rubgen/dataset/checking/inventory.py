@@ -16,6 +16,8 @@ REPORT = "report.html"
 REPORT_MARK = b'<meta name="generator" content="rubgen report">'
 """In the head of every page of `rubgen report`."""
 HEAD_BYTES = 2000
+REPAIRING = ".repair"
+"""Folder where `repair` makes shards again. After a stop it goes on there."""
 
 
 class Kind(Enum):
@@ -125,8 +127,8 @@ def unlisted_files(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
     """Yield a finding for every file or folder in the set's directory that neither the manifest nor rubgen put there.
 
     Files of the operating system are ignored. So is what `generate` left where it was stopped at its very end,
-    `.staging` and its lock: the next `generate` removes them. So is a page of `rubgen report`, known by its name and
-    its mark.
+    `.staging` and its lock, and what `repair` left in `.repair`: the next call goes on there. So is a page of
+    `rubgen report`, known by its name and its mark.
     """
     known = {entry.path for entry in manifest.files} | set(manifest.derived)
     known |= {layout.manifest.name, layout.digest.name}
@@ -153,7 +155,7 @@ def _own(names: Iterable[str]) -> list[str]:
 
 
 def _is_left(layout: Layout, path: Path) -> bool:
-    return path.parent == Path() and path.name.startswith(layout.staging.name)
+    return path.parent == Path() and path.name.startswith((layout.staging.name, REPAIRING))
 
 
 def _unlisted(path: str) -> Finding:

@@ -11,7 +11,8 @@ from rubgen.dataset.checking.verify import findings
 from rubgen.dataset.croissant import croissant
 from rubgen.dataset.files import json_text, write_text
 from rubgen.dataset.layout import Layout
-from rubgen.dataset.manifest import Manifest, identity_of, read_manifest, write_derived
+from rubgen.dataset.making.remake import other_versions, remake
+from rubgen.dataset.manifest import Manifest, read_manifest, write_derived
 from rubgen.dataset.reading.open import DataSet
 from rubgen.dataset.reading.replaying import replay_of_mcap, scenario_of
 from rubgen.dataset.tally import tally_of
@@ -21,28 +22,33 @@ from rubgen.formats import format_of
 
 @dataclass(frozen=True, kw_only=True)
 class Repaired:
-    """The result of `repair`: paths of the files that were made again, and the findings that remain."""
+    """The result of `repair`: paths of the files that were made again, the findings that remain, and why."""
 
     made: tuple[str, ...]
     left: tuple[Finding, ...]
+    versions: dict[str, tuple[str, str]]
+    """Packages with another version than made the set, then and now. Data are made again only without any."""
 
 
 def repair(directory: Path) -> Repaired:
-    """Make README.md, croissant.json, .rrd files and their digests again where they are damaged or missing.
+    """Make files of a set again where they are damaged or missing, so that each has the bytes that the manifest lists.
 
-    README.md and croissant.json are written only with the bytes that the manifest lists. An .rrd file is made from its
-    MCAP file where that is good. Else the run is simulated again, which needs the versions that made the set. No other
-    file is changed and none is deleted. Raises UserError where `directory` holds no finished data set, its manifest is
-    damaged, or it cannot be written.
+    The runs of a shard with a damaged Parquet or MCAP file are simulated again from the manifest, which needs the
+    versions that made the set. README.md and croissant.json are written again. An .rrd file is made from its MCAP file
+    where that is good, else its run is simulated again. No other file is changed and none is deleted. Of all files only
+    `runs.parquet` cannot be made again alone. Raises UserError where `directory` holds no finished data set, its
+    manifest is damaged, or it cannot be written.
     """
     layout = Layout(directory)
     manifest = read_manifest(layout)
     before = findings(directory)
     wrong = {finding.path for finding in before if finding.path}
+    versions = other_versions(manifest) if before else {}
     with write_problems(directory, advice="make it writable"):
-        made = list(_texts(layout, manifest, wrong))
-        made += _recordings(layout, manifest, wrong)
-    return Repaired(made=tuple(made), left=tuple(findings(directory) if made else before))
+        made = [] if versions else remake(layout, manifest, wrong)
+        made += _texts(layout, manifest, wrong)
+        made += _recordings(layout, manifest, wrong - set(made))
+    return Repaired(made=tuple(made), left=tuple(findings(directory) if made else before), versions=versions)
 
 
 def _texts(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[str]:
@@ -82,7 +88,7 @@ def _make_recording(data: DataSet, name: str, wrong: set[str]) -> bool:
     source = mcap.relative_to(data.layout.root).as_posix()
     if source in data.manifest.listed("mcap") and source not in wrong:
         replay = replay_of_mcap(mcap).replay
-    elif identity_of(data.manifest.identity.recorded()).packages == data.manifest.identity.packages:
+    elif not other_versions(data.manifest):
         from rubgen.pipeline import simulate
 
         replay = replay_of(simulate(scenario_of(data, path.stem)))

@@ -92,9 +92,9 @@ def advice(directory: Path, found: list[Finding]) -> str:
     kinds = {finding.kind for finding in found}
     sentences = {
         Kind.DATA: (
-            f"data are damaged: make this set again in a new directory (rubgen generate RECIPE --out NEW; its recipe "
-            f"stands in {directory / 'manifest.json'} at identity.recipe); with the same versions each file there has "
-            "the bytes that the manifest here lists"
+            f"data are damaged: with the versions that made the set, damaged shards are made again by: rubgen repair "
+            f"{directory}; else make the set again in a new directory (rubgen generate RECIPE --out NEW; its recipe "
+            f"stands in {directory / 'manifest.json'} at identity.recipe)"
         ),
         Kind.DERIVED: f"what is made from the data files is made again by: rubgen repair {directory}",
         Kind.UNLISTED: "files that are not listed are no part of the set: move them elsewhere",

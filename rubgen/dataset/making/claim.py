@@ -17,7 +17,7 @@ from rubgen.errors import UserError, warn
 from rubgen.format_names import FORMAT_NAMES
 from rubgen.io.files import PART, sync_directory
 
-_STAGED = ("kept", "closed", *(table.name for table in (RUNS, *TABLES)))
+STAGED = ("kept", "closed", *(table.name for table in (RUNS, *TABLES)))
 """Folders of `.staging`."""
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EINVAL)
 """Errors of file systems without locks, such as NFS without its lock daemon."""
@@ -150,7 +150,7 @@ def _begin(layout: Layout, identity: Identity) -> None:
     if not (grows or _holds_nothing(layout)):
         raise _not_ours(layout)
     remove_staging(layout)
-    for name in _STAGED:
+    for name in STAGED:
         (_unborn(layout) / name).mkdir(parents=True)
     if grows:
         before = read_manifest(layout)
@@ -209,7 +209,7 @@ def _holds_nothing(layout: Layout) -> bool:
 def _is_nothing(layout: Layout, path: Path) -> bool:
     if is_system_file(path.name) or path == _unborn(layout) or path.name.startswith(_lock(layout).name):
         return True
-    folders = {layout.staging.name, *_STAGED}
+    folders = {layout.staging.name, *STAGED}
     folders |= {folder.name for folder in layout.folders(FORMAT_NAMES)}
     if path.name not in folders or path.is_symlink() or not path.is_dir():
         return False

@@ -229,7 +229,7 @@ def _warm_up(recipe: Recipe, plan: Plan, pool: Pool | None) -> None:
     corners = () if recipe.machines else tuple(recipe.corners())  # each virtual machine is checked when it is drawn
     first = recipe.scenario(plan.first_missing, screened=False), corners, first_runs
     with warming_up(), recipe.machine_named():
-        remarks = list(unordered(pool, warm_up, [first]))
+        remarks = list(unordered(pool, warm_up, [first], tries=2))
     for remark in chain.from_iterable(remarks):
         warn(remark)
 

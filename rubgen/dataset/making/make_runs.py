@@ -67,15 +67,19 @@ def make_one(root: str, shard: str, session: str, index: int) -> None:
 
 def _make(layout: Layout, recipe: Recipe, keeper: Keeper, index: int) -> None:
     """Simulate one run, write its own files, and keep its rows. A run that its values forbid is kept as refused."""
+    keeper.begin(index)
+    _keep(layout, recipe, keeper, simulated(recipe, index))
+
+
+def simulated(recipe: Recipe, index: int) -> Run:
+    """Simulate run number `index` of a recipe. A run that its values forbid has the status refused."""
     from rubgen.pipeline import refused, simulate
 
-    keeper.begin(index)
     scenario = recipe.scenario(index)
     try:
-        run = simulate(scenario)
+        return simulate(scenario)
     except UserError as error:
-        run = refused(scenario, str(error))
-    _keep(layout, recipe, keeper, run)
+        return refused(scenario, str(error))
 
 
 def _keep(layout: Layout, recipe: Recipe, keeper: Keeper, run: Run) -> None:

@@ -53,6 +53,8 @@ class Plan:
     session: str
     """Name of this call of `generate`."""
     part: Part = field(default_factory=Part)
+    only: frozenset[str] | None = None
+    """Names of the shards to make; None makes all."""
     done: int = 0
     """Number of runs that were finished before."""
     total: int = 0
@@ -116,6 +118,8 @@ class Plan:
     def _mine(self) -> Iterator[tuple[Shard, tuple[int, ...]]]:
         """Yield the shards of this part, each with its runs: whole shards, or runs where there are fewer shards."""
         for place, shard in enumerate(shards_of(self.recipe)):
+            if self.only is not None and shard.name not in self.only:
+                continue
             if self._shards < self.part.count:
                 mine = self._own(shard)
                 if mine:
