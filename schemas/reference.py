@@ -155,7 +155,7 @@ def sections(table: Node, root: Node) -> Iterator[str]:
     for kind, places in found.items():
         titles = ", ".join(f"`{title}`" for title, _ in places)
         meaning = places[0][1] if len(places) == 1 else ""
-        keys = key_table(_defs(root)[kind], root) if kind else ""
+        keys = key_table(_defs(root)[kind], root) if kind in _defs(root) else ""
         yield "\n\n".join(part for part in (f"## {titles}", meaning, keys) if part)
 
 
@@ -164,9 +164,10 @@ def _find(table: Node, root: Node, path: tuple[str, ...], found: dict[str, list[
     for name, node in _keys(table).items():
         kinds = [each for each in _references(node) if each not in DRAWN]
         begin, end = ("[[", "]]") if _is_list(node) else ("[", "]")
+        name += ".NAME" if _is_named(node) else ""
         title, meaning = f"{begin}{'.'.join((*path, name))}{end}", node.get("description", "")
         if len(kinds) > 1:  # kinds of fault or of sensor
-            found[""] = [(title, f"{meaning} [Faults and surroundings](faults.md) has the keys of each kind.")]
+            found[title] = [(title, f"{meaning} [Faults and surroundings](faults.md) has the keys of each kind.")]
         elif kinds:
             first = kinds[0] not in found
             found.setdefault(kinds[0], []).append((title, meaning))
@@ -210,12 +211,18 @@ def _references(node: object) -> Iterator[str]:
             yield str(node["$ref"]).rsplit("/", 1)[-1]
         for key in ("anyOf", "oneOf", "allOf", "items"):
             yield from _references(node.get(key))
+        yield from _references(list(node.get("patternProperties", {}).values()))
     elif isinstance(node, list):
         yield from chain.from_iterable(map(_references, node))
 
 
 def _is_list(node: Node) -> bool:
     return any(each.get("type") == "array" for each in (node, *node.get("anyOf", ())))
+
+
+def _is_named(node: Node) -> bool:
+    """Whether a key has tables whose names the user chooses."""
+    return any("patternProperties" in each for each in (node, *node.get("anyOf", ())))
 
 
 def _defs(schema: Node) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import pytest
 from rubgen.cli import main
 from rubgen.machine import load_machine
 from rubgen.planning.begin import begin, commented
+from rubgen.planning.commented import toml_value
 from rubgen.planning.offered import FOLDERS, offered
 from rubgen.scenario import load_recipe
 from rubgen.sensors.load import load_sensor_set
@@ -60,6 +61,12 @@ def test_the_file_names_its_schema_which_lies_beside_it(kind, name, tmp_path):
     path, schema = begin(kind, name, tmp_path / "mine.toml")
     assert path.read_text(encoding="utf-8").startswith(f"#:schema {schema.name}\n")
     jsonschema.validate(tomllib.loads(path.read_text(encoding="utf-8")), json.loads(schema.read_text(encoding="utf-8")))
+
+
+@pytest.mark.parametrize("value", [0.1 + 0.2, 206000000000.0, 1e-7, 123456789.123, 2**53 + 1, True, 'a"b\\c', [1, 2.5]])
+def test_a_value_is_written_with_all_its_bits(value):
+    read = tomllib.loads(f"key = {toml_value(value)}")["key"]
+    assert (read, type(read)) == (value, type(value))
 
 
 def test_every_key_that_is_given_has_a_comment():
