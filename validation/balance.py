@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 import sys
 import time
+import tomllib
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -20,10 +21,10 @@ import rubgen
 from rubgen.balancing.screen import screen
 from rubgen.dataset.reading.open import DataSet
 from rubgen.pipeline import simulate
-from rubgen.scenario import Recipe, load_recipe
+from rubgen.scenario import Recipe, parse_recipe
 from validation.command import run_command
 
-RUNS = 96
+RUNS = 48
 """Runs of each of the two sets."""
 TIMED = 12
 """Candidates that are timed."""
@@ -35,10 +36,11 @@ def main(folder: Path) -> int:
     root = folder / "out/balance"
 
     def work() -> None:
-        recipe = load_recipe(folder / "datasets/balanced.toml", runs=RUNS)
-        plain = recipe.model_copy(update={"balance": None, "seed": recipe.seed + 1})
+        data = tomllib.loads((folder / "datasets/balanced.toml").read_text(encoding="utf-8")) | {"runs": RUNS}
+        recipe = parse_recipe(data)
         balanced = _made(recipe, root / "balanced")
-        drawn = _made(Recipe.model_validate(plain.model_dump(exclude_none=True)), root / "drawn")
+        plain = {key: value for key, value in data.items() if key != "balance"}
+        drawn = _made(parse_recipe({**plain, "seed": recipe.seed + 1}), root / "drawn")
         tables = {
             "classes": classes(balanced),
             "agreement": agreement(balanced),

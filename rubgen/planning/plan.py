@@ -97,7 +97,7 @@ def plan(recipe: Recipe, *, tries: int = 0) -> Plan:
 def _looked_at(recipe: Recipe) -> Iterator[Scenario]:
     most = WITH_MACHINES if recipe.machines else LOOKED_AT
     places = sorted({round(place) for place in np.linspace(0, recipe.runs - 1, min(most, recipe.runs))})
-    return (recipe.scenario(index) for index in places)
+    return (recipe.scenario(index, screened=False) for index in places)
 
 
 def _reaches(scenarios: Iterable[Scenario]) -> Iterator[Reach]:

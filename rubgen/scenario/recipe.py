@@ -275,6 +275,9 @@ class Recipe(BaseModel):
         if known:
             return replace(self.candidate(index, known.tries - 1), balance=known)
         chosen: Scenario = resolve_name(CHOICE)(self, self.balance, index)
+        if self.twins and chosen.balance:  # for the twin, which comes next
+            self._candidates.clear()
+            self._candidates[index] = chosen.balance
         return chosen
 
     def twin_of(self, index: int) -> int | None:

@@ -47,6 +47,24 @@ def test_a_class_that_is_not_found_refuses_the_run_with_what_was_found():
     assert "\n" not in str(error.value)
 
 
+def test_a_twin_is_that_of_the_chosen_candidate_and_is_not_screened_again(monkeypatch):
+    seen = []
+
+    def screen(candidate, *, motion):
+        seen.append(candidate)
+        return _verdict(candidate, motion=motion)
+
+    monkeypatch.setattr("rubgen.balancing.choose.screen", screen)
+    recipe = parse_recipe({**RECIPE, "balance": {"rub": 0.5}, "twins": {"friction": 0.1}})
+    run, screened = recipe.scenario(0), len(seen)
+    twin = recipe.scenario(1)
+    assert (twin.machine, twin.operation, twin.balance, twin.partner) == (
+        run.machine, run.operation, run.balance, run.run_id,
+    )  # fmt: skip
+    assert len(seen) == screened
+    assert parse_recipe({**RECIPE, "balance": {"rub": 0.5}, "twins": {"friction": 0.1}}).scenario(1) == twin
+
+
 def _verdict(scenario, *, motion):
     """A quarter of the candidates rubs, and three tenths of these are chaotic."""
     rub = scenario.machine.casing.clearance_m < 2.5e-4
