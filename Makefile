@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check docs tutorial bench verification sensitivity confusion balance contact difficulty faults fuzz zeng2019 zeng2019-fit pictures schemas reference clean
+.PHONY: setup demo test check docs tutorial bench verification sensitivity confusion balance contact difficulty faults fuzz bench-set zeng2019 zeng2019-fit pictures schemas reference clean
 
 setup: $(VENV)/.installed-dev
 
@@ -32,6 +32,9 @@ tutorial: $(VENV)/.installed-dev
 bench: $(VENV)/.installed-dev
 	$(BIN)/python -m benchmarks
 	$(BIN)/python -m benchmarks.page
+
+bench-set: $(VENV)/.installed
+	$(BIN)/rubgen generate datasets/blade-rub-bench-v1.toml --out out/blade-rub-bench-v1
 
 verification: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.verification
