@@ -141,6 +141,15 @@ def test_encodings_are_those_that_were_measured(file):
     assert not any("DICTIONARY" in e for name in columns if "orders" in name for e in columns[name].encodings)
 
 
+def test_other_readers_need_no_new_encoding_for_runs_and_find_pages_by_an_index(rub_run, tmp_path):
+    table = run_table(rub_run, signals=False)
+    write_table([table], table.schema, tmp_path / "runs.parquet")
+    group = pq.ParquetFile(tmp_path / "runs.parquet").metadata.row_group(0)
+    columns = [group.column(place) for place in range(group.num_columns)]
+    assert not any("BYTE_STREAM_SPLIT" in column.encodings for column in columns)
+    assert all(column.has_offset_index for column in columns)
+
+
 def test_a_flipped_bit_is_found(file, tmp_path):
     start = pq.ParquetFile(file).metadata.row_group(0).column(len(SCALARS) + 3).data_page_offset
     content = bytearray(file.read_bytes())
