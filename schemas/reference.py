@@ -161,7 +161,7 @@ def sections(table: Node, root: Node) -> Iterator[str]:
 
 def _find(table: Node, root: Node, path: tuple[str, ...], found: dict[str, list[tuple[str, str]]]) -> None:
     """Collect the tables below a table by their kind: title and meaning of each."""
-    for name, node in _keys(table).items():
+    for name, node in sorted(_keys(table).items(), key=lambda item: _is_named(item[1])):
         kinds = [each for each in _references(node) if each not in DRAWN]
         begin, end = ("[[", "]]") if _is_list(node) else ("[", "]")
         name += ".NAME" if _is_named(node) else ""

@@ -59,6 +59,8 @@ def plan_lines(made: Plan) -> Iterator[str]:
     yield f"{made.name}: {made.runs:,} {'run' if made.runs == 1 else 'runs'} of {machines}"
     if len(made.splits) > 1:
         yield f"splits    {', '.join(f'{name} {runs:,}' for name, runs in made.splits.items())}"
+    if made.balanced:
+        yield "balance   looked at are first candidates, of which the quotas choose; screening more takes further time"
     yield from _table(made)
     yield from _rub(made)
     yield from _costs(made)

@@ -43,6 +43,8 @@ class Plan:
     runs: int
     machine: str
     machines: int
+    balanced: bool
+    """Whether candidates are looked at of which `[balance]` will choose."""
     splits: dict[str, int]
     """Number of runs of each split."""
     drawn: tuple[Drawn, ...]
@@ -68,7 +70,8 @@ class Plan:
 def plan(recipe: Recipe, *, tries: int = 0) -> Plan:
     """Look at a recipe before its data set is made, without any time stepping unless `tries` runs are asked for.
 
-    The recipe is checked already (`load_recipe`). Looked at are up to 64 runs, 16 where machines are drawn.
+    The recipe is checked already (`load_recipe`). Looked at are up to 64 runs, 16 where machines are drawn. With
+    `[balance]` the first candidate of each run is looked at, which its quota may refuse.
     """
     scenarios = list(_looked_at(recipe))
     with recipe.machine_named(), step("look at the runs", "runs", long=True):
@@ -83,6 +86,7 @@ def plan(recipe: Recipe, *, tries: int = 0) -> Plan:
         runs=recipe.runs,
         machine=", ".join(recipe.files),
         machines=recipe.machine_count,
+        balanced=recipe.balance is not None,
         splits=_splits(recipe),
         drawn=tuple(drawn_keys(recipe, scenarios)),
         reach=reach,

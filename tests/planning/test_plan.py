@@ -2,15 +2,17 @@ import json
 import math
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
 from rubgen.cli import main
+from rubgen.cli.planning import plan_lines
 from rubgen.pipeline import simulate
 from rubgen.planning import plan as planning
 from rubgen.planning.picture import plan_figure
 from rubgen.planning.plan import plan
-from rubgen.scenario import load_recipe, parse_recipe
+from rubgen.scenario import Recipe, load_recipe, parse_recipe
 
 RECIPE = {
     "name": "few",
@@ -98,6 +100,15 @@ def test_values_of_every_table_that_draws_are_in_the_plan():
     ]
     assert list(width.runs) == having
     assert "surroundings.path_gain" in drawn
+
+
+def test_a_balanced_set_is_planned_by_its_first_candidates_without_screening(monkeypatch):
+    monkeypatch.setattr(Recipe, "_chosen", lambda *_: pytest.fail("a candidate was screened"))
+    recipe = load_recipe(Path(__file__).parents[2] / "datasets" / "balanced.toml", runs=2)
+    made = plan(recipe)
+    assert made.balanced
+    assert len(made.reach) == 2
+    assert "quotas" in "\n".join(plan_lines(made))
 
 
 def test_the_picture_has_a_panel_for_each_key_that_varies_and_one_for_the_penetration():
