@@ -127,7 +127,8 @@ def shares(balanced: DataSet, drawn: DataSet) -> str:
 def _stratified_error(here: np.ndarray, weights: np.ndarray, cells: pd.Series[str], table: pd.DataFrame) -> float:
     """Standard error of a weighted share: of the labels within each class, and of the natural share of the class.
 
-    The natural share p of a class has the error p / sqrt(n) of its n accepted candidates at most.
+    Of n runs a share p has the error sqrt((p (1 - p) + 1 / (4 n)) / n), so that a share of 0 has one too. The natural
+    share of a class with n accepted candidates has the relative error 1 / sqrt(n) at most.
     """
     total, variance = weights.sum(), 0.0
     for row in _records(table):
@@ -136,7 +137,7 @@ def _stratified_error(here: np.ndarray, weights: np.ndarray, cells: pd.Series[st
         if not count:
             continue
         part, mean = weights[inside].sum() / total, float(here[inside].mean())
-        variance += part**2 * (mean * (1 - mean) / count + mean**2 * (1 - part) / count)
+        variance += part**2 * ((mean * (1 - mean) + 0.25 / count) / count + mean**2 * (1 - part) / count)
     return float(np.sqrt(variance))
 
 
