@@ -72,7 +72,7 @@ class Population:
             if reason is None:
                 return machine, VirtualMachine(number=number, candidate=tried)
             refused[reason.partition(" = ")[0][:60]] += 1
-        causes = ", ".join(f"{cause} {times} times" for cause, times in refused.most_common(3))
+        causes = ", ".join(f"{cause} {counted(times, 'time')}" for cause, times in refused.most_common(3))
         text = (
             f"machine {number}: none of {counted(self.table.tries, 'candidate')} is sane ({causes}); the last: "
             f"{reason}; change the ranges of machines.vary or the bounds of [machines], or raise machines.tries"
