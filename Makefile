@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check docs tutorial bench verification sensitivity confusion balance contact difficulty faults fuzz bench-set zeng2019 zeng2019-fit pictures schemas reference clean
+.PHONY: setup demo test check docs tutorial bench verification sensitivity confusion balance contact difficulty faults fuzz bench-set adapters zeng2019 zeng2019-fit pictures schemas reference clean
 
 setup: $(VENV)/.installed-dev
 
@@ -32,6 +32,10 @@ tutorial: $(VENV)/.installed-dev
 bench: $(VENV)/.installed-dev
 	$(BIN)/python -m benchmarks
 	$(BIN)/python -m benchmarks.page
+
+adapters: $(VENV)/.installed-dev
+	$(BIN)/rubgen generate --out out/demo
+	$(BIN)/python -m validation.adapters out/demo docs/adapters.md
 
 bench-set: $(VENV)/.installed
 	$(BIN)/rubgen generate datasets/blade-rub-bench-v1.toml --out out/blade-rub-bench-v1
