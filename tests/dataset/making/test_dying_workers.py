@@ -57,7 +57,7 @@ if __name__ == "__main__":
                 os.kill(pids[0], signal.SIGKILL)
                 print(len(pids), flush=True)
 """
-PATIENCE_S = 120
+PATIENCE_S = 400
 
 
 @pytest.fixture
@@ -134,7 +134,7 @@ def command_of(pid):
         return b""
 
 
-def test_a_cluster_of_which_three_workers_are_killed(here, tmp_path):
+def test_a_cluster_of_which_two_workers_are_killed(here, tmp_path):
     pytest.importorskip("distributed")
     (tmp_path / "cluster.py").write_text(CLUSTER)
     cluster = here("cluster.py")
@@ -143,7 +143,7 @@ def test_a_cluster_of_which_three_workers_are_killed(here, tmp_path):
     done = threading.Event()
 
     def kill():
-        while len(kills) < 3 and not done.wait(1.5):
+        while len(kills) < 2 and not done.wait(1.5):
             if not list((tmp_path / "set/.staging/kept").glob("*/*.kept")):
                 continue  # nothing is made yet
             cluster.stdin.write("kill\n")
