@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check docs tutorial bench verification sensitivity confusion balance contact difficulty faults fuzz bench-set adapters zeng2019 zeng2019-fit pictures schemas reference clean
+.PHONY: setup demo test check docs tutorial scale bench verification sensitivity confusion balance contact difficulty faults fuzz bench-set adapters zeng2019 zeng2019-fit pictures schemas reference clean
 
 setup: $(VENV)/.installed-dev
 
@@ -28,6 +28,9 @@ docs: $(VENV)/.installed-dev
 # The tutorial, run from its page, as docs/tutorial.ipynb.
 tutorial: $(VENV)/.installed-dev
 	$(BIN)/python docs/notebook.py
+
+scale: $(VENV)/.installed-dev
+	$(BIN)/python -m benchmarks.bench_scale
 
 bench: $(VENV)/.installed-dev
 	$(BIN)/python -m benchmarks
