@@ -139,7 +139,7 @@ def test_names_of_a_damaged_group_follow_from_its_place(copied_shown_set):
     path = copied_shown_set / DATA
     chunk = pq.ParquetFile(path).metadata.row_group(0).column(0)
     content = bytearray(path.read_bytes())
-    content[chunk.data_page_offset + chunk.total_compressed_size // 2] ^= 255
+    content[(chunk.dictionary_page_offset or chunk.data_page_offset) + chunk.total_compressed_size - 1] ^= 255
     path.write_bytes(content)
     assert any("row group 0 with run-000000, run-000001, column run_id" in p for p in rubgen.verify(copied_shown_set))
 
@@ -255,7 +255,7 @@ def test_the_same_command_points_to_repair_and_not_to_deletion(copied_shown_set,
         rubgen.generate(recipe, copied_shown_set, workers=1)
     assert "delete" not in str(told.value)
     (copied_shown_set / DATA).write_bytes(b"x")
-    with pytest.raises(UserError, match=r"make this set again in a new directory") as told:
+    with pytest.raises(UserError, match=r"make the set again in a new directory") as told:
         rubgen.generate(recipe, copied_shown_set, workers=1)
     assert "delete" not in str(told.value)
     assert (copied_shown_set / DATA).read_bytes() == b"x"
