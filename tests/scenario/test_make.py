@@ -57,13 +57,13 @@ def test_every_key_is_named_with_its_unit():
         "m": "in m,",
         "N/m": "N/m",
         "kg m": "kg m",
-        "deg": "degrees",
+        "deg": "in deg,",
         "m/s2": "m/s2",
         "s": "in s",
     }
     for entry in PARAMETERS:
-        line = next(line for line in text.splitlines() if line.startswith(f"- `{entry.key}`: "))
-        assert units.get(entry.unit, "") in line
+        item = text.split(f"\n- `{entry.key}`: ")[1].split("\n- `")[0]
+        assert units.get(entry.unit, "") in " ".join(item.split())
     assert rubgen.make_scenario is make_scenario
 
 

@@ -16,6 +16,7 @@ import duckdb  # noqa: F401 - else one case pays for its import
 import numpy as np
 
 import rubgen
+from rubgen.dataset.layout import Layout
 from rubgen.errors import UserError
 from rubgen.machine import load_machine
 from rubgen.scenario import load_recipe
@@ -132,7 +133,7 @@ class Inputs:
         from rubgen.io.mcap import check_mcap
 
         path = self.folder / "run.mcap"
-        path.write_bytes(hostile_mcap(self.directory / "mcap" / "run-000000.mcap", generator))
+        path.write_bytes(hostile_mcap(Layout(self.directory).export("mcap", "run-000000"), generator))
         check_mcap(path)
         replay = find_replay(path).replay
         if generator.integers(REPLAY_EVERY) == 0:
