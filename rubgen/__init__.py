@@ -1,7 +1,8 @@
 """Labelled blade-rub data from a finite-element blisk in a flexible oval casing.
 
-`make_scenario` and `simulate` make one run in memory, `generate` makes a whole data set, `open` reads one. Importing
-rubgen imports no other module, so that a command handles Ctrl-C from its first moment. Functions import what they need.
+`make_scenario` and `simulate` make one run in memory, `stream` the runs of a recipe, `generate` a whole data set.
+`open` reads a set. Importing rubgen imports no other module, so that a command handles Ctrl-C from its first moment.
+Functions import what they need.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from rubgen.errors import RubgenError, UserError
     from rubgen.pipeline import Run
     from rubgen.scenario import Scenario, load_recipe, make_scenario
+    from rubgen.streaming import stream
 
 __all__ = [
     "RubgenError",
@@ -27,6 +29,7 @@ __all__ = [
     "open",
     "resense",
     "simulate",
+    "stream",
     "verify",
 ]
 __version__ = "0.1.0"
@@ -39,6 +42,7 @@ _HOMES = {
     "load_recipe": "rubgen.scenario",
     "make_scenario": "rubgen.scenario",
     "resense": "rubgen.dataset.making.resense",
+    "stream": "rubgen.streaming",
 }
 """The modules of names that are imported on first use."""
 
