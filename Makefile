@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check docs tutorial scale bench verification sensitivity confusion balance contact difficulty faults fuzz bench-set adapters zeng2019 zeng2019-fit pictures schemas reference clean
+.PHONY: setup demo test check docs tutorial scale bench verification sensitivity confusion balance contact difficulty faults fuzz bench-set sample adapters zeng2019 zeng2019-fit pictures schemas reference clean
 
 setup: $(VENV)/.installed-dev
 
@@ -39,6 +39,10 @@ bench: $(VENV)/.installed-dev
 adapters: $(VENV)/.installed-dev
 	$(BIN)/rubgen generate --out out/demo
 	$(BIN)/python -m validation.adapters out/demo docs/adapters.md
+
+sample: $(VENV)/.installed
+	rm -rf datasets/sample
+	$(BIN)/rubgen generate datasets/sample.toml --out datasets/sample
 
 bench-set: $(VENV)/.installed
 	$(BIN)/rubgen generate datasets/blade-rub-bench-v1.toml --out out/blade-rub-bench-v1

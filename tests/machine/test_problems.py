@@ -139,7 +139,7 @@ UNKNOWN = {
         {"contact": {"liner": {"thickness": 1, "wear_m2_per_n": 1, "width_m": 1}}},
         "contact.liner.thickness: unknown key; did you mean thickness_m? allowed: bins, thickness_m, wear",
     ),
-    "a key that is two lines": ({"a\nb": 1}, "'a\\nb': unknown key; allowed: contact, "),
+    "a key that is two lines": ({"a\nb": 1}, "'a\\nb': unknown key; allowed: balance, contact, "),
 }
 
 
