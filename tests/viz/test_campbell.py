@@ -18,12 +18,15 @@ def model():
 
 def test_frequencies_at_rest_are_those_of_the_symmetric_problem(model):
     modes = blisk_modes(model, 0.0)
-    free = np.array([mode.family.startswith("blade") for mode in modes])
+    diameters = np.array([mode.nodal_diameters for mode in modes])
     undamped = np.array([abs(mode.turning_hz) / np.sqrt(1 - mode.damping_ratio**2) for mode in modes])
     assert undamped.size == len(model.blisk.M)
-    np.testing.assert_allclose(
-        undamped[free], model.blisk_frequencies_hz()[free], rtol=1e-2
-    )  # the support damps some of them
+    expected = model.blisk_frequencies_hz()
+    inner = diameters >= 2  # these move no support, so their damping is proportional and |lambda| is the frequency
+    np.testing.assert_allclose(undamped[inner], expected[inner], rtol=1e-6)
+    np.testing.assert_allclose(undamped[diameters == 0], expected[diameters == 0], rtol=1e-4)
+    # the lateral dampers couple the modes of one diameter: ratios of 10 % move frequencies by the order of the square
+    np.testing.assert_allclose(undamped[diameters == 1], expected[diameters == 1], rtol=1e-2)
 
 
 def test_lateral_whirl_has_one_nodal_diameter_and_the_damping_of_the_support(model):
