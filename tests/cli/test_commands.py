@@ -59,6 +59,7 @@ def test_public_names():
         "open",
         "resense",
         "simulate",
+        "stream",
         "verify",
     ]
     assert all(getattr(rubgen, name) is not None for name in rubgen.__all__)
