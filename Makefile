@@ -42,10 +42,10 @@ adapters: $(VENV)/.installed-dev
 
 sample: $(VENV)/.installed
 	rm -rf datasets/sample
-	$(BIN)/rubgen generate datasets/sample.toml --out datasets/sample
+	$(BIN)/rubgen generate rubgen/scenario/recipes/sample.toml --out datasets/sample
 
 bench-set: $(VENV)/.installed
-	$(BIN)/rubgen generate datasets/blade-rub-bench-v1.toml --out out/blade-rub-bench-v1
+	$(BIN)/rubgen generate rubgen/scenario/recipes/blade-rub-bench-v1.toml --out out/blade-rub-bench-v1
 
 verification: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.verification

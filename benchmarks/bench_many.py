@@ -1,6 +1,6 @@
 """Many different runs: time of a step of one of them with all that `integrate` does, on one core and on two processes.
 
-The runs are the first of `datasets/laboratory.toml`: without rub, light, irregular, hard rub together. Each is
+The runs are the first of the recipe `laboratory`: without rub, light, irregular, hard rub together. Each is
 integrated as for a data set, from the start to the end of its record. The measure is the step of the plain numpy
 reference in the light rub of `bench_solver`, the cheapest one with contact; beside it stands the same in the runs' own
 states. The reference is timed over whole turns, each from the same state at a section, so that it rubs as the run does.
@@ -16,7 +16,6 @@ from __future__ import annotations
 import hashlib
 import time
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -32,6 +31,7 @@ from rubgen.measurement import margin_seconds
 from rubgen.reduction import reduce
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Scenario, load_recipe
+from rubgen.scenario.load import RECIPES
 from rubgen.solver import Response, Status
 from rubgen.solver.integrate import integrate
 from rubgen.solver.scheme.free_step_kernels import Scheme
@@ -39,7 +39,7 @@ from rubgen.solver.scheme.stepper import Stepper
 from rubgen.solver.wants import Wants
 from validation.reference_step import ReferenceStepper
 
-RECIPE = Path(__file__).parents[1] / "datasets" / "laboratory.toml"
+RECIPE = RECIPES / "laboratory.toml"
 RUNS, PROCESSES = 16, 2
 ROUNDS = 3
 LIGHT = 0.05

@@ -19,6 +19,7 @@ from PIL import Image
 
 import rubgen
 from rubgen.report.figures import Choice, make_figure
+from rubgen.scenario.load import RECIPES
 from rubgen.scenario.surroundings import Surroundings, Tone
 from rubgen.viz.figures import overview, save_png
 from rubgen.viz.replay import Replay, replay_of
@@ -36,7 +37,7 @@ def main() -> None:
     save_png(overview(run), DOCS / "overview.png")
     save_viewer(replay_of(run), DOCS / "replay.png")
     save_png(surroundings_figure(), DOCS / "surroundings.png")
-    rubgen.generate(DOCS.parent / "datasets" / "speed-sweep.toml", OUT / "speed-sweep")
+    rubgen.generate(RECIPES / "speed-sweep.toml", OUT / "speed-sweep")
     save_png(make_figure("bifurcation", OUT / "speed-sweep", Choice()), DOCS / "bifurcation.png")
 
 

@@ -14,7 +14,9 @@ from rubgen.cli.app import app
 from rubgen.io.columns import label_columns
 from rubgen.labels.registry import LABELS, TAP_ENDINGS
 from rubgen.labels.to_json import labels_to_json
+from rubgen.planning.offered import offered
 from rubgen.scenario import load_recipe, parse_recipe
+from rubgen.scenario.load import RECIPES
 from rubgen.solver import Status
 from schemas.make import with_tables
 from tests.default_columns import CHANNELS, SCALARS
@@ -121,11 +123,17 @@ def test_the_recipe_of_the_readme_is_a_recipe():
     assert recipe.scenario(3).contact.friction == 0.01
 
 
-@pytest.mark.parametrize("path", sorted(ROOT.glob("datasets/*.toml")), ids=lambda path: path.stem)
-def test_recipes_that_come_with_the_sources_can_be_run(path):
+@pytest.mark.parametrize("path", sorted(RECIPES.glob("*.toml")), ids=lambda path: path.stem)
+def test_recipes_that_come_with_rubgen_can_be_run(path):
     recipe = load_recipe(path)
     assert recipe.name == path.stem
     assert recipe.scenario(recipe.runs - 1).index == recipe.runs - 1
+
+
+def test_recipes_that_documents_name_come_with_rubgen():
+    named = {name for text in DOCUMENTS.values() for name in re.findall(r"[Rr]ecipe `([\w-]+)`", text)}
+    assert len(named) >= 8
+    assert named <= set(offered("recipe"))
 
 
 def test_the_rooms_of_the_package_are_those_that_the_architecture_names():

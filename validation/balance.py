@@ -22,6 +22,7 @@ from rubgen.balancing.screen import screen
 from rubgen.dataset.reading.open import DataSet
 from rubgen.pipeline import simulate
 from rubgen.scenario import Recipe, parse_recipe
+from rubgen.scenario.load import RECIPES
 from validation.command import run_command
 
 RUNS = 48
@@ -36,7 +37,7 @@ def main(folder: Path) -> int:
     root = folder / "out/balance"
 
     def work() -> None:
-        data = tomllib.loads((folder / "datasets/balanced.toml").read_text(encoding="utf-8")) | {"runs": RUNS}
+        data = tomllib.loads((RECIPES / "balanced.toml").read_text(encoding="utf-8")) | {"runs": RUNS}
         recipe = parse_recipe(data)
         balanced = _made(recipe, root / "balanced")
         plain = {key: value for key, value in data.items() if key != "balance"}

@@ -8,10 +8,10 @@ from rubgen.errors import UserError
 from rubgen.machine.faults.registry import FAULTS
 from rubgen.machine.load import PRESETS
 from rubgen.machine.problems import nearest
-from rubgen.scenario.load import DEFAULT_RECIPE
+from rubgen.scenario.load import DEFAULT_RECIPE, RECIPES
 from rubgen.sensors.load import SETS
 
-FOLDERS = {"recipe": DEFAULT_RECIPE.parent, "machine": PRESETS, "sensors": SETS}
+FOLDERS = {"recipe": RECIPES, "machine": PRESETS, "sensors": SETS}
 """Where the files of each kind are."""
 DEFAULTS = {"recipe": DEFAULT_RECIPE.stem, "machine": "zeng2019", "sensors": "default"}
 """The file of each kind that is taken where none is named."""

@@ -22,11 +22,11 @@ SURROUNDINGS_ARRAYS, FRAME_ARRAYS = 12, 9
 GIGA = 1e9
 SECONDS_A_STEP = {True: 1.3e-6, False: 4e-6}
 """CPU time of a step of a run that rubs, with its labels and exponent, by whether its speed is steady. Measured in
-datasets/speed-sweep.toml and datasets/run-up.toml on two virtual cores."""
+the recipes speed-sweep and run-up on two virtual cores."""
 SECONDS_WITHOUT_RUB = 0.15
 """CPU time of a steady run that never touches: it is made from one turn."""
 AUTOMATIC_SETTLE_TURNS = 250
-"""Usual turns before the record: 155 to 399 in the recipes of datasets/."""
+"""Usual turns before the record: 155 to 399 in the recipes of rubgen."""
 KEPT_SHARE = {"parquet": 0.55, "mcap": 0.8, "rrd": 0.7}
 """Size of a run's file over `stored_bytes`. In 14 runs of five recipes Parquet had 0.42 to 0.64, MCAP 0.48 to 1.08,
 .rrd 0.32 to 0.89."""

@@ -27,7 +27,9 @@ from rubgen.scenario.tables.twins import check_twins
 from rubgen.scenario.vary import FREE_PENETRATION, TWO_CLEARANCES
 from rubgen.sensors.sensor_set import SensorSet
 
-DEFAULT_RECIPE = Path(__file__).parent / "zeng2019-mini.toml"
+RECIPES = Path(__file__).parent / "recipes"
+"""The recipes that come with rubgen."""
+DEFAULT_RECIPE = RECIPES / "zeng2019-mini.toml"
 NOT_FOR_DATA = (
     'for comparison with the paper, never for data: it belongs to [contact] surface = "chords", '
     'where every node of the mesh hits the tips; name "zeng2019" instead'

@@ -5,9 +5,9 @@ from pathlib import Path
 import rubgen
 from rubgen.dataset.making.regenerate import regenerate
 from rubgen.dataset.manifest import identity_of
+from rubgen.scenario.load import RECIPES
 
-FOLDER = Path(__file__).parents[2] / "datasets"
-SAMPLE = FOLDER / "sample"
+SAMPLE = Path(__file__).parents[2] / "datasets/sample"
 
 
 def test_the_sample_is_below_one_megabyte():
@@ -16,7 +16,7 @@ def test_the_sample_is_below_one_megabyte():
 
 def test_the_sample_is_that_of_its_recipe_and_sound():
     identity = rubgen.open(SAMPLE).manifest.identity
-    assert identity.same_recipe(identity_of(rubgen.load_recipe(FOLDER / "sample.toml")))
+    assert identity.same_recipe(identity_of(rubgen.load_recipe(RECIPES / "sample.toml")))
     assert rubgen.verify(SAMPLE) == []
 
 

@@ -2,7 +2,6 @@ import json
 import math
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import pytest
 
@@ -13,6 +12,7 @@ from rubgen.planning import plan as planning
 from rubgen.planning.picture import plan_figure
 from rubgen.planning.plan import plan
 from rubgen.scenario import Recipe, load_recipe, parse_recipe
+from rubgen.scenario.load import RECIPES
 
 RECIPE = {
     "name": "few",
@@ -104,7 +104,7 @@ def test_values_of_every_table_that_draws_are_in_the_plan():
 
 def test_a_balanced_set_is_planned_by_its_first_candidates_without_screening(monkeypatch):
     monkeypatch.setattr(Recipe, "_chosen", lambda *_: pytest.fail("a candidate was screened"))
-    recipe = load_recipe(Path(__file__).parents[2] / "datasets" / "balanced.toml", runs=2)
+    recipe = load_recipe(RECIPES / "balanced.toml", runs=2)
     made = plan(recipe)
     assert made.balanced
     assert len(made.reach) == 2

@@ -308,7 +308,7 @@ def test_a_bad_table_is_refused_in_one_line(tables, message):
 
 
 def test_machines_of_the_recipe_in_the_repository_differ_in_their_columns(all_sane):
-    recipe = load_recipe(rubgen.scenario.load.DEFAULT_RECIPE.parents[2] / "datasets/machines.toml")
+    recipe = load_recipe(rubgen.scenario.load.RECIPES / "machines.toml")
     columns = [entry.key for entry in recipe.machine_keys]
     assert "blade_count" in columns
     assert not [key for key in columns if key.startswith("frame_")]  # no sensor feels it

@@ -9,6 +9,7 @@ import pytest
 import rubgen
 from rubgen.errors import RubgenWarning, UserError
 from rubgen.scenario import load_recipe, make_scenario, parse_recipe
+from rubgen.scenario.load import RECIPES
 from rubgen.scenario.scenario import scenario_dict
 from rubgen.scenario.vary import KEYS, PARAMETERS
 
@@ -124,7 +125,7 @@ def test_a_mistake_is_one_line_that_says_how_to_mend_it(keys, message):
 
 
 def test_the_run_up_of_a_recipe_and_of_keys_are_one():
-    recipe = load_recipe(Path(__file__).parents[2] / "datasets/run-up.toml")
+    recipe = load_recipe(RECIPES / "run-up.toml")
     first = recipe.scenario(0)
     operation = first.operation
     keys = {name: getattr(operation, name) for name in ("speed_rpm", "profile", "end_speed_rpm", "duration_s")}

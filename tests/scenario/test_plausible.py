@@ -3,7 +3,6 @@
 import re
 import warnings
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -12,11 +11,11 @@ from rubgen.machine import preset_names
 from rubgen.machine.load import PRESETS
 from rubgen.scenario import load_recipe, make_scenario, parse_recipe
 from rubgen.scenario.feasible import check_feasible
+from rubgen.scenario.load import RECIPES
 from rubgen.scenario.plausible import implausible
 from rubgen.sensors.load import load_sensor_set, sensor_set_names
 
 MINIMAL = {"name": "a", "runs": 1, "machine": "zeng2019"}
-DATASETS = Path(__file__).parents[2] / "datasets"
 TEXT = (PRESETS / "zeng2019.toml").read_text()
 VARIED = {  # key: what warns, what the warning says, a neighbour that does not
     "clearance_m": (0.22, "55 % of the radius of the blade tips; were mm meant, 0.00022 m?", 2e-3),
@@ -181,7 +180,7 @@ def test_what_cannot_be_meant_is_an_error(key):
 
 
 @pytest.mark.parametrize(
-    "path", [None, *sorted(DATASETS.glob("*.toml"))], ids=lambda path: path.stem if path else "mini"
+    "path", [None, *sorted(RECIPES.glob("*.toml"))], ids=lambda path: path.stem if path else "mini"
 )
 def test_recipes_that_are_shipped_warn_nothing(path):
     with warnings.catch_warnings():

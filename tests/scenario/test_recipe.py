@@ -13,7 +13,7 @@ from scipy.stats import qmc
 import rubgen
 from rubgen.errors import RubgenWarning, UserError
 from rubgen.scenario import Recipe, load_recipe, make_scenario, parse_recipe
-from rubgen.scenario.load import check_recipe
+from rubgen.scenario.load import RECIPES, check_recipe
 from rubgen.scenario.vary import DIMENSIONS, KEYS, PARAMETERS, sobol_point, varied_values
 
 MINIMAL = {"name": "small", "runs": 4, "machine": "zeng2019"}
@@ -42,10 +42,9 @@ def test_default_recipe_is_the_published_one():
     assert recipe.output.formats == ("parquet",)
 
 
-def test_recipes_in_the_repository_are_valid():
-    folder = Path(__file__).parents[2] / "datasets"
-    names = [load_recipe(path).name for path in sorted(folder.glob("*.toml"))]
-    assert names == [path.stem for path in sorted(folder.glob("*.toml"))]
+def test_recipes_of_the_package_are_valid():
+    names = [load_recipe(path).name for path in sorted(RECIPES.glob("*.toml"))]
+    assert names == [path.stem for path in sorted(RECIPES.glob("*.toml"))]
     assert names
 
 

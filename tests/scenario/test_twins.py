@@ -1,12 +1,12 @@
 """`[twins]`: a run and its partner differ in one thing, and the numbers of the partners follow from a formula."""
 
 from dataclasses import fields, is_dataclass
-from pathlib import Path
 
 import pytest
 
 from rubgen.errors import UserError
 from rubgen.scenario import load_recipe, parse_recipe
+from rubgen.scenario.load import RECIPES
 from rubgen.scenario.tables.twins import partner_of
 from rubgen.scenario.vary import varied_values
 
@@ -120,7 +120,7 @@ def test_a_level_without_the_table_of_surroundings_is_refused():
 
 
 def test_the_example_has_pairs_of_which_the_twin_stays_clear():
-    recipe = load_recipe(Path(__file__).parents[2] / "datasets" / "twins.toml")
+    recipe = load_recipe(RECIPES / "twins.toml")
     assert [recipe.scenario(index).machine.casing.clearance_m == 1e-3 for index in range(4)] == [False, True] * 2
 
 

@@ -15,6 +15,7 @@ from rubgen.dataset.making.workers import usable_cores
 from rubgen.errors import UserError
 from rubgen.progress import count
 from rubgen.scenario import load_recipe
+from rubgen.scenario.load import RECIPES
 from rubgen.viz.figures import save_png
 from validation.command import run_command
 from validation.difficulty.figure import background_figure
@@ -23,7 +24,7 @@ from validation.difficulty.runs import cases, run_pieces
 from validation.difficulty.scores import FOLDS, boosted
 from validation.store import Store
 
-RECIPE, RUNS = Path("datasets/field.toml"), 400
+RECIPE, RUNS = RECIPES / "field.toml", 400
 
 
 def main(arguments: Sequence[str], folder: Path) -> int:

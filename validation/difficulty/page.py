@@ -56,7 +56,7 @@ def _introduction(found: Cases, recipe: str) -> str:
     return f"""
 # How hard a rub is to find
 
-`make difficulty` makes this page from {found.rub.size} runs of `datasets/{recipe}.toml`; {found.rub.sum()} of them rub.
+`make difficulty` makes this page from {found.rub.size} runs of the recipe `{recipe}`; {found.rub.sum()} of them rub.
 Each run is simulated once and measured twice: in the plant, with its surroundings, and in silence, without them. The
 faults of the machine are in both. The score is the balanced accuracy, the mean of the shares of rubs and of other runs
 that are called so: 0.5 is a guess, 1 is always right. Each channel has {len(NAMES)} features: {len(OF_SIGNAL)} of the

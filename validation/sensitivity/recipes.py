@@ -6,13 +6,13 @@ import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 from benchmarks.bench_recipe import RECIPE
 from rubgen.labels.compact_record import CompactRecord, response_of
 from rubgen.labels.motion.classify import Motions, motion
 from rubgen.machine.toml_file import read_toml
 from rubgen.scenario import Recipe, Scenario
+from rubgen.scenario.load import RECIPES as FOLDER
 from rubgen.scenario.load import parse_recipe
 from rubgen.solver.exponent import lyapunov
 from validation.confusion.runs import rubs, run_piece
@@ -21,7 +21,6 @@ from validation.sensitivity.cases import with_operation
 from validation.sensitivity.halving import STEPS
 from validation.sensitivity.results import Shorten
 
-DATASETS = Path(__file__).parents[2] / "datasets"
 RECIPES = ("laboratory", "thousand", "rig", "speed-sweep", "three-lobes")
 """Those with a steady speed. At a changing speed the motion of a run with contact is always undecided."""
 SEEDS = {"fit": 101, "check": 202}
@@ -114,5 +113,5 @@ def motions(kept: CompactRecord) -> Motions:
 
 @cache
 def _recipe(name: str, seed: int) -> Recipe:
-    data = tomllib.loads(RECIPE.format(runs=1000)) if name == "thousand" else read_toml(DATASETS / f"{name}.toml")
-    return parse_recipe({**data, "seed": seed}, folder=DATASETS)
+    data = tomllib.loads(RECIPE.format(runs=1000)) if name == "thousand" else read_toml(FOLDER / f"{name}.toml")
+    return parse_recipe({**data, "seed": seed}, folder=FOLDER)

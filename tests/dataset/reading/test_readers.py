@@ -1,7 +1,6 @@
 """Others read what rubgen writes, to the bit: memory, Parquet and MCAP carry the same floats."""
 
 import re
-from pathlib import Path
 
 import duckdb
 import numpy as np
@@ -20,6 +19,7 @@ from rubgen.io.mcap import read_mcap
 from rubgen.io.parquet.compact_records import RECORD_COLUMNS
 from rubgen.io.parquet.set_tables import SEEN
 from rubgen.scenario import load_recipe, parse_recipe
+from rubgen.scenario.load import RECIPES
 from tests.default_columns import CHANNELS, SCALARS, SIGNALS
 
 DATA = "signals/train-00000.parquet"
@@ -96,7 +96,7 @@ def test_the_card_describes_every_column_and_its_head_is_yaml(small_set):
 @pytest.mark.parametrize("name", ["rig", "run-up", "three-lobes"])
 def test_the_card_fits_its_recipe(name):
     """It reads a channel that these sensors have, and tells of a constant speed only where it is."""
-    recipe = load_recipe(Path(__file__).parents[3] / f"datasets/{name}.toml")
+    recipe = load_recipe(RECIPES / f"{name}.toml")
     text = card(identity_of(recipe), {"ok": recipe.runs}, Tally(splits={}, shifts=()))
     (channel,) = re.findall(r'select\("run_id", "motion", "(\w+)"\)', text)
     assert channel in [sensor.name for sensor in recipe.sensing.set.sensors]

@@ -1,14 +1,13 @@
 """The recipe of a test rig's sensors, at small size: made, and nothing wrong with it."""
 
-from pathlib import Path
-
 import numpy as np
 
 import rubgen
 from rubgen.scenario import load_recipe
+from rubgen.scenario.load import RECIPES
 from tests.whole_table import whole_table
 
-RECIPE = Path(__file__).parents[3] / "datasets/rig.toml"
+RECIPE = RECIPES / "rig.toml"
 
 
 def test_runs_of_the_rig_recipe(tmp_path):

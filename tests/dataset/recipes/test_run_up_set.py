@@ -1,13 +1,13 @@
 """The recipe of run-ups at small size: generated, verified, and its labels over time read back."""
 
 import tomllib
-from pathlib import Path
 
 import rubgen
 from rubgen.dataset.checking.relabel import relabel
 from rubgen.io.parquet.read import read_table
+from rubgen.scenario.load import RECIPES
 
-RECIPE = Path(__file__).parents[3] / "datasets" / "run-up.toml"
+RECIPE = RECIPES / "run-up.toml"
 
 
 def test_the_run_up_recipe_makes_a_set_that_verifies(tmp_path):

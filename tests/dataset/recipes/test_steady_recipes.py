@@ -1,21 +1,19 @@
 """The recipes of steady runs at small size: made, nothing wrong with them, and their labels made again."""
 
 import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import rubgen
 from rubgen.dataset.checking.relabel import relabel
+from rubgen.scenario.load import RECIPES
 from tests.whole_table import whole_table
-
-DATASETS = Path(__file__).parents[3] / "datasets"
 
 
 @pytest.mark.parametrize("name", ["speed-sweep", "three-lobes"])
 def test_a_steady_recipe_makes_a_set_that_verifies(name, short_records, tmp_path):
-    recipe = tomllib.loads((DATASETS / f"{name}.toml").read_text(encoding="utf-8"))
+    recipe = tomllib.loads((RECIPES / f"{name}.toml").read_text(encoding="utf-8"))
     recipe |= {"runs": 2, "simulation": {"settle_turns": 90, "record_turns": 110}}
     recipe["vary"] |= {"speed_rpm": 10000.0}
     recipe["output"] = {"formats": ["parquet"], "signal_seconds": 0.5}

@@ -2,7 +2,6 @@
 
 import warnings
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -11,10 +10,10 @@ from rubgen.dataset.reading.open import DataSet
 from rubgen.errors import RubgenWarning
 from rubgen.pipeline import simulate
 from rubgen.scenario import Labelling, load_recipe, make_scenario, parse_recipe
+from rubgen.scenario.load import RECIPES
 from rubgen.solver.linear.reach import deepest, no_rub_warning
 from rubgen.solver.refusal import no_run_warning
 
-DATASETS = Path(__file__).parents[3] / "datasets"
 SLOW = {
     "name": "slow",
     "runs": 2,
@@ -51,7 +50,7 @@ def test_speeds_in_rad_per_s_are_asked_about_where_they_would_rub():
 
 
 def test_a_run_up_is_looked_at_over_its_speeds():
-    recipe = load_recipe(DATASETS / "run-up.toml")
+    recipe = load_recipe(RECIPES / "run-up.toml")
     depth, speed = deepest(recipe.scenario(0))
     assert depth > 0
     assert speed > 8000
@@ -59,7 +58,7 @@ def test_a_run_up_is_looked_at_over_its_speeds():
 
 @pytest.mark.parametrize("name", [None, "rig", "speed-sweep", "three-lobes", "run-up"])
 def test_what_is_shipped_can_rub(name):
-    recipe = load_recipe(DATASETS / f"{name}.toml" if name else None)
+    recipe = load_recipe(RECIPES / f"{name}.toml" if name else None)
     assert no_rub_warning([recipe.scenario(index) for index in range(3)]) is None
 
 

@@ -68,7 +68,7 @@ class Inputs:
 
     @cached_property
     def _recipes(self) -> list[Any]:
-        paths = [PACKAGE / "scenario" / "zeng2019-mini.toml", *sorted((PACKAGE.parent / "datasets").rglob("*.toml"))]
+        paths = sorted((PACKAGE / "scenario" / "recipes").glob("*.toml"))
         return [tomllib.loads(path.read_text(encoding="utf-8")) for path in paths]
 
     @cached_property
