@@ -51,6 +51,19 @@ class Tail:
         angle = np.unwrap(self.angle)
         return np.asarray(angle - angle[-1] + self.angle[-1] - 2 * np.pi)
 
+    def wave(self, order: float) -> ComplexArray:
+        """Return exp(i order theta) (steps,), theta without jumps. A whole order is a product of lower whole orders."""
+        if not float(order).is_integer():
+            return np.asarray(np.exp(1j * order * self.turned))
+        if order not in self._waves:
+            half = order // 2
+            self._waves[order] = self.wave(half) * self.wave(order - half)
+        return self._waves[order]
+
+    @cached_property
+    def _waves(self) -> dict[float, ComplexArray]:
+        return {0: np.ones(self.angle.size, dtype=np.complex128), 1: np.asarray(np.exp(1j * self.angle))}
+
     def resolved(self, order: float) -> npt.NDArray[np.bool_]:
         """Return whether an order of the rotation has two steps a period (steps,). With fewer it is left out."""
         return np.asarray(order * self.speed * self.dt < np.pi)
@@ -119,11 +132,11 @@ class Disturbances:
     def _wave(self, tone: Tone) -> tuple[FloatArray, FloatArray]:
         if tone.order is None:
             frequency = 2 * np.pi * (tone.frequency_hz or 0.0)
-            phase, heard = frequency * self.tail.time, np.asarray(frequency * self.tail.dt < np.pi)
+            wave, heard = np.exp(1j * frequency * self.tail.time), np.asarray(frequency * self.tail.dt < np.pi)
         else:
-            phase, heard = tone.order * self.tail.turned, self.tail.resolved(tone.order)
+            wave, heard = self.tail.wave(tone.order), self.tail.resolved(tone.order)
         level = np.sqrt(2) * tone.level_m_per_s2 * heard
-        return np.asarray(level * np.cos(phase)), np.asarray(level * np.sin(phase))
+        return level * wave.real, level * wave.imag
 
     @cached_property
     def _lines(self) -> tuple[int, slice, ComplexArray]:
@@ -154,19 +167,20 @@ class Disturbances:
     def _blade_passing(self, around: float) -> FloatArray:
         order = np.arange(1, BLADE_PASSING_HARMONICS + 1)
         shares = np.sqrt(2) / order / np.sqrt(np.sum(1 / order**2))
-        turned = self.tail.blades * (self.tail.angle - around)
         waves = (
-            share * np.cos(k * turned + psi) * self.tail.resolved(float(k * self.tail.blades))
-            for k, share, psi in zip(order, shares, self._passing, strict=True)
+            share * (np.exp(1j * (psi - n * around)) * self.tail.wave(n)).real * self.tail.resolved(n)
+            for n, share, psi in zip(map(float, order * self.tail.blades), shares, self._passing, strict=True)
         )
         return np.asarray(self.surroundings.blade_passing_m_per_s2 * sum(waves))
 
     def _under_a_probe(self, tap: CentreDisplacement) -> FloatArray:
         """Return runout at phi - theta, amplitudes falling as 1/order, and the slow drift along one direction."""
         around = np.deg2rad(tap.angle_deg)
-        seen = around - self.tail.angle
         orders = np.arange(1, RUNOUT_ORDERS + 1)
-        profile = sum(np.cos(m * seen - phase) / m for m, phase in zip(orders, self._runout, strict=True))
+        profile = sum(
+            (np.exp(1j * (phase - m * around)) * self.tail.wave(m)).real / m
+            for m, phase in zip(map(float, orders), self._runout, strict=True)
+        )
         share = 1 + self.tail.time / self.tail.seconds
         drift = self.surroundings.shaft_drift_m * np.cos(around - self._drift) * share
         return np.asarray(self.surroundings.runout_m * profile + drift)
