@@ -221,7 +221,10 @@ def replay(
 def figure(
     name: Annotated[
         str,
-        _option("campbell, modes; orbit, contact, waveform; bifurcation, cascade, exponent, overview."),
+        _option(
+            "Of a machine campbell, critical, unbalance, modes; of a run orbit, contact, waveform, waterfall, bode; "
+            "of a data set bifurcation, cascade, exponent, overview."
+        ),
     ],
     source: Annotated[Path | None, _option("A machine, a data set's directory, or for one run an MCAP file.")] = None,
     run: Annotated[str | None, _option("Name of a run of the data set.")] = None,
@@ -231,13 +234,25 @@ def figure(
     where: Annotated[str | None, _option("The first run that meets this condition.")] = None,
     over: Annotated[str | None, _option("Parameter of a sweep; the first that varies when not given.")] = None,
     channel: Annotated[str | None, _option("Recorded channel to draw.")] = None,
+    speeds_rpm: Annotated[
+        str | None,
+        _option("Range LOW:HIGH of the speed in rev/min; of campbell, critical, unbalance, waterfall and bode."),
+    ] = None,
+    frequencies_hz: Annotated[str | None, _option("Range LOW:HIGH of the frequency in Hz; of campbell.")] = None,
+    modes: Annotated[
+        str | None,
+        _option("Modes to draw, with commas, as rubgen modes lists them: 7, casing 3, blade 1, ND 2, blade 1 ND 2."),
+    ] = None,
     force: Force = False,
 ) -> int:
     """Draw a figure of a machine, a run or a data set."""
     from rubgen.cli.drawing import figure_command
     from rubgen.report.figures import Choice
 
-    choice = Choice(run_id=run, where=where, parameter=over, channel=channel)
+    choice = Choice(
+        run_id=run, where=where, parameter=over, channel=channel, speeds_rpm=speeds_rpm,
+        frequencies_hz=frequencies_hz, modes=modes,
+    )  # fmt: skip
     return figure_command(name, source, out, choice, force=force)
 
 

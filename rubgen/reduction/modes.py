@@ -1,13 +1,14 @@
 """Natural modes of a machine at one speed: frequency, nodal diameters, whirl, damping, family."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import block_diag, eig
+from scipy.linalg import block_diag, eig, eigh
 
 from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.linalg.threads import one_blas_thread
 from rubgen.reduction.reduced import ReducedModel
+from rubgen.units import rev_per_min
 
 REST = 1e-3
 """Speed in rad/s that stands for rest, where no load of a growing blade is defined."""
@@ -100,6 +101,29 @@ def _support_kinds(model: ReducedModel, shapes: ComplexArray) -> list[str | None
     table = np.array(list(shares.values()))
     largest = np.argmax(table, axis=0)
     return [names[row] if table[row, mode] >= LEAST_SHARE else None for mode, row in enumerate(largest)]
+
+
+def synchronous_speeds(model: ReducedModel, stiffness: FloatArray) -> FloatArray:
+    """Compute the speeds (stiffnesses, any) in rev/min at which forward whirl of the inertial frame meets 1X.
+
+    Each row is for one lateral stiffness of the disk support in N/m, ascending, filled with NaN. There the undamped
+    K_e + K_s + Omega^2 (K_sigma - S) of the turning frame is singular. Of these speeds the ones whose mode has one
+    nodal diameter are returned, because an unbalance excites no other. Uneven springs count with their mean, and laws
+    of the support are left out.
+    """
+    blades, rows = model.machine.blades.count, []
+    for each in stiffness:
+        springs = np.concatenate([[each, each], model.springs[2:]])
+        with one_blas_thread():
+            inverse_squares, shapes = eigh(-model.blisk.A, replace(model, springs=springs).stiffness(0.0))
+        tips = shapes[: 3 * blades].reshape(blades, 3, -1)
+        waves = np.argmax(np.sum(np.abs(np.fft.rfft(tips, axis=0)) ** 2, axis=1), axis=0)
+        met = (inverse_squares > 0) & (waves == 1)
+        rows.append(np.sort(rev_per_min(1.0) / np.sqrt(inverse_squares[met])))
+    table = np.full((len(rows), max(map(len, rows))), np.nan)
+    for row, values in zip(table, rows, strict=True):
+        row[: len(values)] = values
+    return table
 
 
 def casing_diameters(model: ReducedModel) -> list[int]:

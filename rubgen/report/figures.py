@@ -1,5 +1,6 @@
 """Draw the figures of `rubgen figure`, by name: of a machine, of a run, or of a whole data set."""
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +16,7 @@ from rubgen.errors import UserError
 from rubgen.machine import load_machine
 from rubgen.machine.load import file_named
 from rubgen.machine.problems import nearest
+from rubgen.measurement.front_end import noise_level
 from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import Reduction
 from rubgen.scenario.vary import KEYS
@@ -26,24 +28,37 @@ from rubgen.viz.replay import Replay
 
 DEFAULT_MACHINE = "zeng2019"
 CHANNEL = "proximity_x"
+MOST_RPM, MOST_HZ = 1e6, 1e6
 SHOWN_UNIT = {"m": (1e6, "µm"), "m/s2": (1.0, "m/s²")}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Choice:
-    """The user's choice of what a figure shows: a run of a data set, the parameter of a sweep, a channel.
+    """The user's choice of what a figure shows: run, parameter of a sweep, channel, ranges, modes.
 
-    None means a default.
+    Ranges are LOW:HIGH, of the speed in rev/min and of the frequency in Hz. None means a default.
     """
 
     run_id: str | None = None
     where: str | None = None
     parameter: str | None = None
     channel: str | None = None
+    speeds_rpm: str | None = None
+    frequencies_hz: str | None = None
+    modes: str | None = None
 
 
-OPTIONS = {"run_id": "run", "where": "--where", "parameter": "--over", "channel": "--channel"}
+OPTIONS = {
+    "run_id": "run",
+    "where": "--where",
+    "parameter": "--over",
+    "channel": "--channel",
+    "speeds_rpm": "--speeds-rpm",
+    "frequencies_hz": "--frequencies-hz",
+    "modes": "--modes",
+}
 """Names of the fields of a choice on the command line, for messages."""
+Range = tuple[float, float]
 Make = Callable[[Path | None, Choice], Figure]
 
 
@@ -64,12 +79,13 @@ def make_figure(name: str, source: Path | None, choice: Choice) -> Figure:
         raise UserError(f"figure {name}: {error}") from None
 
 
-def _of_machine(draw: Callable[[ReducedModel], Figure]) -> Make:
+def _of_machine(draw: Callable[[ReducedModel, Choice], Figure], *options: str) -> Make:
     def make(source: Path | None, choice: Choice) -> Figure:
-        _refuse_others(choice, ())
+        _refuse_others(choice, options)
         name = str(source or DEFAULT_MACHINE)
         with file_named(name):
-            return draw(reduce(load_machine(name), Reduction()))
+            model = reduce(load_machine(name), Reduction())
+        return draw(model, choice)
 
     return make
 
@@ -102,6 +118,30 @@ def _refuse_others(choice: Choice, used: tuple[str, ...]) -> None:
             raise UserError(f"{name} {value}: this figure has no such option; leave it out")
 
 
+def _range(choice: Choice, field: str, highest: float) -> Range | None:
+    """Read the range LOW:HIGH of a field of the choice; None where it has none."""
+    text = getattr(choice, field)
+    if text is None:
+        return None
+    try:
+        low, high = map(float, text.split(":"))
+    except ValueError:
+        low = high = math.nan
+    if not 0 <= low < high <= highest:
+        raise UserError(
+            f"{OPTIONS[field]} {text}: give LOW:HIGH with 0 <= LOW < HIGH <= {highest:g}, such as 6000:12000"
+        )
+    return low, high
+
+
+def _speeds(choice: Choice) -> Range | None:
+    return _range(choice, "speeds_rpm", MOST_RPM)
+
+
+def _frequencies(choice: Choice) -> Range | None:
+    return _range(choice, "frequencies_hz", MOST_HZ)
+
+
 def _needed(source: Path | None) -> Path:
     if source is None:
         raise UserError("this figure needs a source; give the directory of a data set, or for one run an MCAP file")
@@ -132,8 +172,16 @@ def _bifurcation(data: DataSet, choice: Choice) -> Figure:
         motions.append(row["motion"])
     what = "Disk centre $x$" if name.removesuffix("_clean") == CHANNEL else name
     y = f"{what} once a turn about its mean, {unit}"
-    figure = figures.bifurcation(np.array(values), sections, motions, x=axis_text(key), y=y)
-    return _headed(figure, data, key, "" if name.endswith("_clean") else "; scatter has the noise of the sensor")
+    noise = scale * _noise(data, name, samples.size)
+    figure = figures.bifurcation(np.array(values), sections, motions, x=axis_text(key), y=y, noise=noise)
+    return _headed(figure, data, key)
+
+
+def _noise(data: DataSet, channel: str, samples: int) -> float:
+    """Return the rms of a channel's noise in its unit, over that many samples; 0 for a channel without noise."""
+    sensing = data.manifest.identity.recorded().sensing
+    levels = {each.name: noise_level(each, samples, sensing.sample_rate_hz) for each in sensing.set.sampled}
+    return sensing.noise * levels.get(channel, 0.0)
 
 
 def _cascade(data: DataSet, choice: Choice) -> Figure:
@@ -170,12 +218,24 @@ def _exponent(data: DataSet, choice: Choice) -> Figure:
     return _headed(figure, data, key)
 
 
+def _overview(data: DataSet, _choice: Choice) -> Figure:
+    figure = figures.dataset_overview(data.runs)
+    head(figure, _title(data))
+    return figure
+
+
+def _title(data: DataSet) -> str:
+    """Write the set, its number of good runs, and its machine or their number."""
+    names = list(dict.fromkeys(each["name"] for each in data.manifest.identity.machines))
+    machines = names[0] if len(names) == 1 else f"{len(names)} machines"
+    return f"{data.manifest.name}: {counted(len(data.ok), 'run')} of {machines}"
+
+
 def _headed(figure: Figure, data: DataSet, key: str, more: str = "") -> Figure:
     """Write the set, its machine and its number of runs above a figure, and mark a set that is no sweep of `key`."""
-    machine = ", ".join(each["name"] for each in data.manifest.identity.machines)
     others = [each for each in varied_keys(data.runs) if each != key]
     warning = f"No sweep: {', '.join(others)} {'vary' if len(others) > 1 else 'varies'} too" if others else ""
-    head(figure, f"{data.manifest.name}: {counted(len(data.ok), 'run')} of {machine}{more}", fill(warning, 110))
+    head(figure, f"{_title(data)}{more}", fill(warning, 110))
     return figure
 
 
@@ -203,16 +263,21 @@ def _without_noise(data: DataSet, channel: str) -> str:
 
 
 FIGURES: dict[str, Make] = {
-    "campbell": _of_machine(figures.campbell),
-    "modes": _of_machine(figures.mode_shapes),
+    "campbell": _of_machine(
+        lambda model, choice: figures.campbell(model, _speeds(choice), _frequencies(choice)),
+        "speeds_rpm", "frequencies_hz",
+    ),
+    "critical": _of_machine(lambda model, choice: figures.critical_map(model, _speeds(choice)), "speeds_rpm"),
+    "unbalance": _of_machine(lambda model, choice: figures.unbalance_response(model, _speeds(choice)), "speeds_rpm"),
+    "modes": _of_machine(lambda model, choice: figures.mode_shapes(model, choice.modes), "modes"),
     "orbit": _of_run(lambda replay, _choice: figures.orbit_section(replay)),
     "contact": _of_run(lambda replay, _choice: figures.contact_distribution(replay)),
     "waveform": _of_run(_waveform, "channel"),
-    "waterfall": _of_run(lambda replay, _choice: figures.waterfall(replay)),
-    "bode": _of_run(lambda replay, _choice: figures.bode(replay)),
+    "waterfall": _of_run(lambda replay, choice: figures.waterfall(replay, _speeds(choice)), "speeds_rpm"),
+    "bode": _of_run(lambda replay, choice: figures.bode(replay, _speeds(choice)), "speeds_rpm"),
     "bifurcation": _of_set(_bifurcation, "parameter", "channel"),
     "cascade": _of_set(_cascade, "parameter", "channel"),
     "exponent": _of_set(_exponent, "parameter"),
-    "overview": _of_set(lambda data, _choice: figures.dataset_overview(data.runs)),
-}
+    "overview": _of_set(_overview),
+}  # fmt: skip
 """Every figure of the command line: a new one is one entry."""

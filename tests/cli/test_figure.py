@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 from PIL import Image
 
+from rubgen import make_scenario
 from rubgen.errors import UserError
 from rubgen.io.mcap import write_mcap
 from rubgen.report.figures import FIGURES, Choice, make_figure
@@ -30,7 +31,12 @@ class MadeSet:
             "lyapunov_error": [0.01, 0.02, None],
         }
     ).set_index("run_id")
-    manifest: ClassVar = SimpleNamespace(name="made", identity=SimpleNamespace(machines=[{"name": "zeng2019"}]))
+    manifest: ClassVar = SimpleNamespace(
+        name="made",
+        identity=SimpleNamespace(
+            machines=[{"name": "zeng2019"}], recorded=lambda: SimpleNamespace(sensing=make_scenario().sensing)
+        ),
+    )
     units: ClassVar[dict[str, str]] = {"proximity_x": "m", "proximity_x_clean": "m", "casing_acc_0": "m/s2"}
 
     def __init__(self, _directory=None):
@@ -75,7 +81,7 @@ def no_text_overlaps_or_leaves(figure):
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
 
 
-@pytest.mark.parametrize("name", ["campbell", "modes"])
+@pytest.mark.parametrize("name", ["campbell", "critical", "unbalance", "modes"])
 def test_figures_of_a_machine(name):
     no_text_overlaps_or_leaves(make_figure(name, None, Choice()))
 
@@ -109,6 +115,30 @@ def test_the_bifurcation_takes_the_clean_channel_and_names_its_unit(made_set, mo
     assert asked == ["proximity_x_clean", "proximity_45"]
 
 
+def test_noise_is_shown_as_a_band_and_only_where_there_is_some(made_set, tmp_path):
+    (probe,) = (each for each in make_scenario().sensing.set.sampled if each.name == "proximity_x")
+    assert probe.noise_rms > 0
+    noisy = make_figure("bifurcation", tmp_path, Choice(channel="proximity_x"))
+    (band,) = noisy.axes[0].patches
+    assert band.get_y() == pytest.approx(-3e6 * probe.noise_rms)
+    assert band.get_height() == pytest.approx(6e6 * probe.noise_rms)
+    assert "noise of the sensor, ±3 rms" in [text.get_text() for text in noisy.legends[0].get_texts()]
+    assert not make_figure("bifurcation", tmp_path, Choice()).axes[0].patches
+
+
+@pytest.mark.parametrize("name", ["bifurcation", "cascade", "exponent", "overview"])
+def test_the_title_names_set_runs_and_machine(name, made_set, tmp_path):
+    assert make_figure(name, tmp_path, Choice()).get_suptitle().startswith("made: 3 runs of zeng2019")
+
+
+@pytest.mark.parametrize("name", ["bifurcation", "cascade", "exponent"])
+def test_a_set_in_which_more_varies_is_marked(name, made_set, monkeypatch, tmp_path):
+    drawn = MadeSet.runs.assign(friction=[0.0, 0.1, 0.2], clearance_m=[1e-4, 2e-4, 3e-4])
+    monkeypatch.setattr(MadeSet, "runs", drawn)
+    warning = make_figure(name, tmp_path, Choice()).axes[0].get_title(loc="left")
+    assert warning == "No sweep: clearance_m, friction vary too"
+
+
 @pytest.mark.parametrize(("name", "expected"), [("bifurcation", "acc_17 once a turn"), ("cascade", "g")])
 def test_a_set_without_the_usual_channel_shows_its_first(name, expected, made_set, monkeypatch, tmp_path):
     asked = []
@@ -140,12 +170,16 @@ def test_the_command_writes_vectors_and_pixels(run, mcap_file, tmp_path, ending)
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("orbits", "{mcap}", "--out", "{tmp}/a.png"), "did you mean orbit? allowed: campbell, modes"),
+        (("orbits", "{mcap}", "--out", "{tmp}/a.png"), "did you mean orbit? allowed: campbell, critical"),
         (("orbit", "--out", "{tmp}/a.png"), "this figure needs a source"),
         (("orbit", "{mcap}", "--out", "{tmp}/a.jpg"), "end the name in .png, .svg or .pdf"),
         (("orbit", "{mcap}", "--out", "{tmp}/there.png"), "exists already"),
         (("waveform", "{mcap}", "--channel", "speech", "--out", "{tmp}/a.png"), "no channel 'speech'; allowed: "),
         (("waveform", "{mcap}", "--channel", "casing_ac", "--out", "{tmp}/a.png"), "did you mean casing_acc_0?"),
+        (("campbell", "--speeds-rpm", "9:2", "--out", "{tmp}/a.png"), "--speeds-rpm 9:2: give LOW:HIGH with 0 <= LOW"),
+        (("unbalance", "--speeds-rpm", "fast", "--out", "{tmp}/a.png"), "--speeds-rpm fast: give LOW:HIGH"),
+        (("campbell", "--frequencies-hz", "-5:9", "--out", "{tmp}/a.png"), "--frequencies-hz -5:9: give LOW:HIGH"),
+        (("modes", "--modes", "blade 9", "--out", "{tmp}/a.png"), "--modes 'blade 9': no such mode"),
         (("campbell", "nowhere", "--out", "{tmp}/a.png"), "nowhere"),
         (("overview", "{tmp}", "--out", "{tmp}/a.png"), "no finished data set of rubgen"),
     ],
@@ -165,8 +199,8 @@ def test_a_parameter_that_does_not_vary_is_refused(made_set, tmp_path):
 
 def test_every_figure_has_a_test():
     assert set(FIGURES) == {
-        "campbell", "modes", "orbit", "contact", "waveform", "bifurcation", "cascade", "exponent", "overview",
-        "waterfall", "bode",
+        "campbell", "critical", "unbalance", "modes", "orbit", "contact", "waveform", "bifurcation", "cascade",
+        "exponent", "overview", "waterfall", "bode",
     }  # fmt: skip
 
 
@@ -201,6 +235,9 @@ def test_a_parameter_to_draw_over_is_named(made_set, tmp_path, name, message):
         ("cascade", Choice(where="rub"), "--where rub"),
         ("orbit", Choice(parameter="speed_rpm"), "--over speed_rpm"),
         ("campbell", Choice(channel="proximity_x"), "--channel proximity_x"),
+        ("critical", Choice(frequencies_hz="0:100"), "--frequencies-hz 0:100"),
+        ("orbit", Choice(speeds_rpm="0:100"), "--speeds-rpm 0:100"),
+        ("unbalance", Choice(modes="7"), "--modes 7"),
     ],
 )
 def test_an_option_that_a_figure_would_ignore_is_refused(name, choice, option, tmp_path):

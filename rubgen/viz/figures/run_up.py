@@ -16,11 +16,12 @@ SAMPLES_PER_TURN = 64
 HIGHEST_ORDER = 6
 
 
-def waterfall(replay: Replay) -> Figure:
+def waterfall(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> Figure:
     """Draw full spectra of the orbit over the speed: forward orders to the right, backward ones to the left.
 
     Each line is of 16 turns at equal angles. A circle that turns with the rotation is order 1, against it order -1. The
-    first touch is marked. Raises ValueError where no pair of proximity probes was recorded, or the speed is steady.
+    first touch is marked. `speeds_rpm` is the range that is shown, in rev/min. Raises ValueError where no pair of
+    proximity probes was recorded, or the speed is steady.
     """
     speeds, turns = whirl_by_turn(replay)
     count = len(turns) // BLOCK_TURNS
@@ -38,19 +39,20 @@ def waterfall(replay: Replay) -> Figure:
     figure.colorbar(mesh, ax=axes, pad=0.01).set_label(f"dB re {largest:.3g} µm", fontsize=10)
     label_axes(axes, "Order $f / f_r$ (backward on the left, forward on the right)", "Speed, rev/min")
     axes.set_xticks(range(-HIGHEST_ORDER, HIGHEST_ORDER + 1))
+    axes.set_ylim(speeds_rpm)
     onset = _onset(replay)
-    if onset is not None:
+    if onset is not None and _is_shown(onset, speeds_rpm):
         axes.axhline(onset, color=VERMILION, linewidth=1.2)
         axes.text(-HIGHEST_ORDER, onset, " first touch", color="white", fontsize=9, va="bottom")
     head(figure, f"{replay.title}; {replay.headline}")
     return figure
 
 
-def bode(replay: Replay) -> Figure:
+def bode(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> Figure:
     """Draw amplitude and phase of the forward 1X whirl over the speed, turn by turn, with the first touch marked.
 
-    The phase is that of the whirl behind the mark of the once-per-turn pulse, in degrees. Raises ValueError where no
-    pair of proximity probes was recorded, or the speed is steady.
+    The phase is that of the whirl behind the mark of the once-per-turn pulse, in degrees. `speeds_rpm` is the range
+    that is shown, in rev/min. Raises ValueError where no pair of proximity probes was recorded, or the speed is steady.
     """
     speeds, turns = whirl_by_turn(replay)
     whirl = forward_1x(turns)
@@ -61,7 +63,10 @@ def bode(replay: Replay) -> Figure:
     label_axes(upper, "", "Forward 1X, µm")
     label_axes(lower, "Speed, rev/min", "Phase, degrees")
     for axes in (upper, lower):
-        _mark_onset(axes, replay)
+        axes.set_xlim(speeds_rpm)
+        onset = _onset(replay)
+        if onset is not None and _is_shown(onset, speeds_rpm):
+            _mark_onset(axes, onset)
     head(figure, f"{replay.title}; {replay.headline}")
     return figure
 
@@ -99,11 +104,13 @@ def _onset(replay: Replay) -> float | None:
     return float(str(found)) if found is not None else None
 
 
-def _mark_onset(axes: Axes, replay: Replay) -> None:
-    onset = _onset(replay)
-    if onset is not None:
-        axes.axvline(onset, color=VERMILION, linewidth=1)
-        axes.annotate(
-            f"first touch, {onset:,.0f} rev/min", (onset, 0.03), xycoords=("data", "axes fraction"), xytext=(4, 0),
-            textcoords="offset points", fontsize=8, color=VERMILION,
-        )  # fmt: skip
+def _is_shown(speed: float, speeds_rpm: tuple[float, float] | None) -> bool:
+    return speeds_rpm is None or speeds_rpm[0] <= speed <= speeds_rpm[1]
+
+
+def _mark_onset(axes: Axes, onset: float) -> None:
+    axes.axvline(onset, color=VERMILION, linewidth=1)
+    axes.annotate(
+        f"first touch, {onset:,.0f} rev/min", (onset, 0.03), xycoords=("data", "axes fraction"), xytext=(4, 0),
+        textcoords="offset points", fontsize=8, color=VERMILION,
+    )  # fmt: skip

@@ -3,7 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from rubgen.arrays import FloatArray
 from rubgen.labels.labels import Motion
@@ -11,10 +13,12 @@ from rubgen.viz.colors import GREY, MOTION_COLORS
 from rubgen.viz.figures.style import MOTION_MARKERS, label_axes, motion_legend, new_figure
 
 DECIBELS = 80.0
+NOISE_RMS = 3.0
+"""Of Gaussian noise 99.7 % lies within so many times its rms."""
 
 
 def bifurcation(
-    values: FloatArray, sections: Sequence[FloatArray], motions: Sequence[str], *, x: str, y: str
+    values: FloatArray, sections: Sequence[FloatArray], motions: Sequence[str], *, x: str, y: str, noise: float = 0.0
 ) -> Figure:
     """Draw a bifurcation diagram: the Poincare section of each run over the value of the swept parameter.
 
@@ -24,15 +28,21 @@ def bifurcation(
     - sections: for each run, one coordinate of its motion once a turn (any,).
     - motions: class of each run, which decides its colour.
     - x, y: labels of the axes, with units.
+    - noise: rms of the sensor's noise in the unit of the sections. Where it is above 0, a grey band shows NOISE_RMS
+      times as much about zero. Points of period-1 motion scatter within it by noise alone.
     """
     figure = new_figure(9.0, 4.8)
     axes = figure.subplots()
+    if noise > 0:
+        axes.axhspan(-NOISE_RMS * noise, NOISE_RMS * noise, color=GREY, alpha=0.3, linewidth=0, zorder=0)
     for value, section, motion in zip(values, sections, motions, strict=True):
         color = MOTION_COLORS[Motion(motion)]
         axes.plot(np.full(section.size, value), section, ".", color=color, markersize=3, markeredgewidth=0)
     label_axes(axes, x, y)
     axes.margins(x=0.01)
-    dots = motion_legend(motions, "o")
+    dots: list[Artist] = [*motion_legend(motions, "o")]
+    if noise > 0:
+        dots.append(Patch(color=GREY, alpha=0.3, linewidth=0, label=f"noise of the sensor, ±{NOISE_RMS:g} rms"))
     figure.legend(handles=dots, loc="outside lower center", ncols=len(dots), frameon=False, fontsize=9)
     return figure
 

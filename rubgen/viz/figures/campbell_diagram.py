@@ -1,4 +1,4 @@
-"""Draw a machine: its natural frequencies over the speed with the exciting orders, and its first modes."""
+"""Draw the natural frequencies of a machine over the speed, with the exciting orders."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,6 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from scipy.linalg import eigh
 
 from rubgen.arrays import FloatArray
 from rubgen.reduction import ReducedModel
@@ -21,28 +20,34 @@ CASING_MODES = 11
 HIGHEST_ORDER = 8
 SLOWEST_RPM = 60.0
 """Stands for rest, where both waves of a pair have one frequency and cannot be told apart."""
-SHOWN = 6
-DRAWN = 0.18
-"""Largest drawn displacement over the radius."""
-DIRECTIONS = ("radial", "tangential", "axial")
+Band = tuple[float, float]
+"""Lowest and highest frequency of a panel, Hz."""
+ABOVE_CRITICAL = 1.2
+"""The diagram reaches at least this many times the critical speed."""
 
 
-def campbell(model: ReducedModel) -> Figure:
+def campbell(
+    model: ReducedModel,
+    speeds_rpm: tuple[float, float] | None = None,
+    frequencies_hz: Band | None = None,
+) -> Figure:
     """Draw Campbell diagrams: the whirl of the disk and the waves of the blades, and the casing.
 
     Left, in the inertial frame: modes of one nodal diameter, which alone move the disk centre sideways. A critical
     speed is where a forward one meets 1X. Middle, in the turning frame: modes of all nodal diameters n. Forces that
     stand still excite n waves at order n; each crossing of the backward wave is marked. Right: modes of the casing in
     the inertial frame, and where the blisk, which turns under N lobes, excites them at orders k N. All modes are
-    damped and without contact.
+    damped and without contact. The ranges of speed (rev/min) and frequency (Hz) are chosen for each panel where they
+    are not given.
     """
-    speeds = np.linspace(0.0, HIGHEST_RPM, SPEEDS)
+    low, high = speeds_rpm or (0.0, max(HIGHEST_RPM, ABOVE_CRITICAL * model.critical_speed_rpm))
+    speeds = np.linspace(low, high, SPEEDS)
     modes = [blisk_modes(model, rad_per_s(max(speed, SLOWEST_RPM))) for speed in speeds]
     figure = new_figure(14.0, 5.2)
     whirl, waves, casing = figure.subplots(1, 3)
-    _whirl(whirl, model, speeds, modes)
-    _waves(waves, model, speeds, modes)
-    _casing(casing, model, speeds)
+    _whirl(whirl, model, speeds, modes, frequencies_hz)
+    _waves(waves, model, speeds, modes, frequencies_hz)
+    _casing(casing, model, speeds, frequencies_hz)
     figure.suptitle(f"{model.machine.name}: Campbell diagram without contact", fontsize=11, color=INK)
     return figure
 
@@ -71,11 +76,13 @@ def crossings(speeds: FloatArray, hertz: FloatArray, order: float) -> FloatArray
     return met
 
 
-def _whirl(axes: Axes, model: ReducedModel, speeds: FloatArray, modes: Sequence[Sequence[Mode]]) -> None:
+def _whirl(
+    axes: Axes, model: ReducedModel, speeds: FloatArray, modes: Sequence[Sequence[Mode]], band: Band | None
+) -> None:
     lines = branches(modes, 1)
     critical = model.critical_speed_rpm
-    top = 2.2 * max(critical, HIGHEST_RPM / 2) / 60
-    _orders(axes, speeds, top, range(1, HIGHEST_ORDER + 1))
+    band = band or (0.0, 2.2 * max(critical, HIGHEST_RPM / 2) / 60)
+    _orders(axes, speeds, band, range(1, HIGHEST_ORDER + 1))
     for _turning, seen, ratio in lines.transpose(1, 2, 0):
         forward = seen > 0
         for part, color, style in ((forward, BLUE, "-"), (~forward, ORANGE, "--")):
@@ -87,14 +94,16 @@ def _whirl(axes: Axes, model: ReducedModel, speeds: FloatArray, modes: Sequence[
     handles = [Line2D([], [], color=BLUE, label="forward"), Line2D([], [], color=ORANGE, ls="--", label="backward")]
     axes.legend(handles=handles, loc="upper left", fontsize=8, frameon=False)
     axes.set_title(f"Whirl, inertial frame; undamped critical {critical:,.0f} rev/min", fontsize=9.5, pad=14)
-    _finish(axes, speeds, top, "Frequency of one nodal diameter, Hz")
+    _finish(axes, speeds, band, "Frequency of one nodal diameter, Hz")
 
 
-def _waves(axes: Axes, model: ReducedModel, speeds: FloatArray, modes: Sequence[Sequence[Mode]]) -> None:
+def _waves(
+    axes: Axes, model: ReducedModel, speeds: FloatArray, modes: Sequence[Sequence[Mode]], band: Band | None
+) -> None:
     every = range(model.machine.blades.count // 2 + 1)
     lines = {waves: branches(modes, waves) for waves in every}
-    top = 1.6 * float(np.abs(lines[min(2, max(every))][-1, :, 0]).min())
-    _orders(axes, speeds, top, range(1, HIGHEST_ORDER + 1))
+    band = band or (0.0, 1.6 * float(np.abs(lines[min(2, max(every))][-1, :, 0]).min()))
+    _orders(axes, speeds, band, range(1, HIGHEST_ORDER + 1))
     colors = colormaps["viridis"](np.linspace(0, 0.9, len(lines)))
     for (waves, found), color in zip(lines.items(), colors, strict=True):
         axes.plot(speeds, np.abs(found[..., 0]), color=color, linewidth=0.9, zorder=3)
@@ -108,38 +117,40 @@ def _waves(axes: Axes, model: ReducedModel, speeds: FloatArray, modes: Sequence[
         loc="upper left", fontsize=8, frameon=False,
     )  # fmt: skip
     axes.set_title("Blades, turning frame, all nodal diameters", fontsize=9.5, pad=14)
-    _finish(axes, speeds, top, "Frequency, Hz")
+    _finish(axes, speeds, band, "Frequency, Hz")
 
 
 def _mark(axes: Axes, speed: float, hertz: float, text: str) -> None:
     axes.plot(speed, hertz, "o", color=VERMILION, markersize=4, zorder=5)
     axes.annotate(
         text, (speed, hertz), xytext=(6, -4), textcoords="offset points", fontsize=8, color=VERMILION, va="top",
-        ha="left" if speed < 0.6 * HIGHEST_RPM else "center", zorder=6,
+        ha="left" if speed < 0.6 * axes.get_xlim()[1] else "center", zorder=6, annotation_clip=True,
         bbox={"facecolor": "white", "edgecolor": "none", "pad": 1, "alpha": 0.8},
     )  # fmt: skip
 
 
-def _casing(axes: Axes, model: ReducedModel, speeds: FloatArray) -> None:
+def _casing(axes: Axes, model: ReducedModel, speeds: FloatArray, band: Band | None) -> None:
     """Draw constant frequencies, with points where an order of the lobes crosses one of the casing's modes."""
     hertz = model.casing_frequencies_hz[:CASING_MODES]
     lobes = model.machine.casing.lobes
-    top = 1.08 * float(hertz.max())
+    band = band or (0.0, 1.08 * float(hertz.max()))
     orders = [lobes * k for k in range(1, max(HIGHEST_ORDER // lobes, 1) + 1)]
-    _orders(axes, speeds, top, orders)
+    _orders(axes, speeds, band, orders)
     axes.hlines(hertz, speeds[0], speeds[-1], color=BLUE, linewidth=1.1, zorder=3)
     met = np.array([(60 * f / order, f) for order in orders for f in hertz])
-    met = met[met[:, 0] <= speeds[-1]]
+    met = met[(met[:, 0] >= speeds[0]) & (met[:, 0] <= speeds[-1])]
     axes.plot(*met.T, "o", color=VERMILION, markersize=3.5, zorder=4)
     axes.set_title(f"Casing, inertial frame, orders of {lobes} lobes", fontsize=9.5, pad=14)
-    _finish(axes, speeds, top, "Frequency, Hz")
+    _finish(axes, speeds, band, "Frequency, Hz")
 
 
-def _orders(axes: Axes, speeds: FloatArray, top: float, orders: range | list[int]) -> None:
+def _orders(axes: Axes, speeds: FloatArray, band: Band, orders: range | list[int]) -> None:
     """Draw lines k f_r, numbered where they leave the panel."""
     for order in orders:
-        end = min(speeds[-1], 60 * top / order)
-        axes.plot([0, end], [0, order * end / 60], color=GREY, linewidth=0.6, zorder=1)
+        begin, end = max(speeds[0], 60 * band[0] / order), min(speeds[-1], 60 * band[1] / order)
+        if begin >= end:
+            continue
+        axes.plot([begin, end], [order * begin / 60, order * end / 60], color=GREY, linewidth=0.6, zorder=1)
         inside = end < speeds[-1]
         axes.annotate(
             f"{order}", (end, order * end / 60), xytext=(0, 2) if inside else (3, 0), textcoords="offset points",
@@ -147,51 +158,6 @@ def _orders(axes: Axes, speeds: FloatArray, top: float, orders: range | list[int
         )  # fmt: skip
 
 
-def _finish(axes: Axes, speeds: FloatArray, top: float, text: str) -> None:
-    axes.set(xlim=(0, speeds[-1]), ylim=(0, top))
+def _finish(axes: Axes, speeds: FloatArray, band: Band, text: str) -> None:
+    axes.set(xlim=(speeds[0], speeds[-1]), ylim=band)
     label_axes(axes, "Speed, rev/min (grey: orders of rotation)", text)
-
-
-def mode_shapes(model: ReducedModel) -> Figure:
-    """Draw the first modes at rest, casing above and tips below, displaced outward by their largest component.
-
-    The drawn component is named, with its nodal diameters (ND). The tips come from the reduced model, without damping.
-    """
-    figure = new_figure(10.0, 4.4)
-    rows = figure.subplots(2, SHOWN)
-    for mode, axes in enumerate(rows[0]):
-        shape = model.casing.modes_xy[..., mode]
-        hertz = model.casing_frequencies_hz[mode]
-        _ring(axes, _unit_ring(len(shape)), shape / np.abs(shape).max(), f"casing {mode + 1}: {hertz:.1f} Hz", BLUE)
-    squares, vectors = eigh(model.stiffness(0.0), model.blisk.M)
-    blades = model.machine.blades.count
-    for mode, axes in enumerate(rows[1]):
-        tips = vectors[: 3 * blades, mode].reshape(blades, 3)
-        direction = int(np.argmax(np.abs(tips).max(axis=0)))
-        ring = _unit_ring(blades)
-        moved = ring * (tips[:, direction] / np.abs(tips).max())[:, None]
-        hertz = float(np.sqrt(max(squares[mode], 0.0)) / (2 * np.pi))
-        title = f"blisk {mode + 1}: {hertz:.1f} Hz\n{DIRECTIONS[direction]}, {_diameters(tips[:, direction])}"
-        _ring(axes, ring, moved, title, VERMILION)
-    figure.suptitle(f"{model.machine.name}: first modes at rest", fontsize=11, color=INK)
-    return figure
-
-
-def _unit_ring(count: int) -> FloatArray:
-    angle = 2 * np.pi * np.arange(count) / count
-    return np.column_stack([np.cos(angle), np.sin(angle)])
-
-
-def _diameters(values: FloatArray) -> str:
-    """Return the nodal diameters of values at equal angles."""
-    return f"ND {int(np.argmax(np.abs(np.fft.rfft(values))))}"
-
-
-def _ring(axes: Axes, ring: FloatArray, moved: FloatArray, title: str, color: str) -> None:
-    closed = np.vstack([ring, ring[:1]])
-    drawn = ring + DRAWN * moved
-    axes.plot(*closed.T, color=GREY, linewidth=0.8)
-    axes.plot(*np.vstack([drawn, drawn[:1]]).T, ".-", color=color, linewidth=1.4, markersize=2.5)
-    axes.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.3), aspect="equal")
-    axes.set_title(title, fontsize=8.5)
-    axes.axis("off")
