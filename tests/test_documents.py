@@ -130,6 +130,11 @@ def test_recipes_that_come_with_rubgen_can_be_run(path):
     assert recipe.scenario(recipe.runs - 1).index == recipe.runs - 1
 
 
+def test_the_folder_of_data_sets_links_to_every_recipe():
+    links = {path.name: path.resolve() for path in ROOT.glob("datasets/*.toml")}
+    assert links == {path.name: path.resolve() for path in RECIPES.glob("*.toml")}
+
+
 def test_recipes_that_documents_name_come_with_rubgen():
     named = {name for text in DOCUMENTS.values() for name in re.findall(r"[Rr]ecipe `([\w-]+)`", text)}
     assert len(named) >= 8

@@ -36,7 +36,9 @@ def _whole(_type: Any, tokens: Sequence[Token]) -> int:
 
 Json = Annotated[bool, Parameter(name="--json", negative=(), help="Print JSON, for programs.")]
 MachineName = Annotated[str, _option("Name of a preset, or path of a machine TOML.")]
-RecipeFile = Annotated[Path | None, _option("Recipe TOML; without it the embedded zeng2019-mini of 32 runs.")]
+RecipeFile = Annotated[
+    Path | None, _option("Recipe TOML, or a name of rubgen list; without it zeng2019-mini of 32 runs.")
+]
 Force = Annotated[bool, Parameter(negative=(), help="Replace a file that is there.")]
 Directory = Annotated[Path, _option("Directory of a data set.")]
 

@@ -1,5 +1,6 @@
 """Load and check recipes: of a TOML file, of TOML values, and of the manifest of a data set."""
 
+import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from itertools import chain
@@ -12,9 +13,9 @@ from pydantic import TypeAdapter, ValidationError
 from rubgen.errors import UserError, warn
 from rubgen.machine import Machine
 from rubgen.machine.load import FOR_COMPARISON
-from rubgen.machine.problems import first_problem, validated
+from rubgen.machine.problems import first_problem, nearest, validated
 from rubgen.machine.quantities import MOST_RUNS
-from rubgen.machine.toml_file import check_kind, read_toml, toml_path
+from rubgen.machine.toml_file import check_kind, names_toml, read_toml, toml_path
 from rubgen.scenario.distributions import Choice, Constant
 from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.machines.check import check_machines, check_splits, machine_extremes
@@ -37,14 +38,28 @@ NOT_FOR_DATA = (
 
 
 def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> Recipe:
-    """Load the recipe in that TOML file, or the default recipe of rubgen; `runs` overrides its number of runs.
+    """Load the recipe in that TOML file, the recipe of rubgen with that name, or the default recipe.
+
+    - path: of the file; or a name that `rubgen list` prints, without .toml; None is the default recipe.
+    - runs: overrides the number of runs.
 
     Raises UserError with file, key, value, what is allowed and the remedy, before anything is computed.
     """
-    file = DEFAULT_RECIPE if path is None else toml_path(path)
+    file = DEFAULT_RECIPE if path is None else _recipe_path(str(path))
     data = read_toml(file)
     check_kind(file, data, "recipe")
     return parse_recipe(data, source=str(file), folder=file.parent, runs=runs)
+
+
+def _recipe_path(name_or_path: str) -> Path:
+    path = toml_path(name_or_path)
+    if names_toml(name_or_path) or os.path.lexists(path):
+        return path
+    names = sorted(each.stem for each in RECIPES.glob("*.toml"))
+    if name_or_path not in names:
+        hint = nearest(name_or_path, names)
+        raise UserError(f"{name_or_path!r:.200}: no such recipe; {hint}, or the path of a recipe .toml")
+    return RECIPES / f"{name_or_path}.toml"
 
 
 def parse_recipe(

@@ -48,6 +48,15 @@ def test_recipes_of_the_package_are_valid():
     assert names
 
 
+def test_a_recipe_of_the_package_is_loaded_by_its_name(tmp_path, monkeypatch):
+    assert load_recipe("laboratory", runs=3).name == "laboratory"
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "laboratory").write_text('name = "own"\nruns = 1\nmachine = "zeng2019"\n')
+    assert load_recipe("laboratory").name == "own"  # a file of the user comes first
+    with pytest.raises(UserError, match=r"'laboratry': no such recipe; did you mean laboratory\? .*recipe .toml"):
+        load_recipe("laboratry")
+
+
 @pytest.mark.parametrize(
     ("tables", "message"),
     [
