@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check docs tutorial scale bench verification sensitivity confusion balance contact difficulty faults fuzz bench-set sample adapters zeng2019 zeng2019-fit pictures schemas reference clean
+.PHONY: setup demo test check docs tutorial scale bench verification sensitivity confusion run-up-motion balance contact difficulty faults fuzz bench-set sample adapters zeng2019 zeng2019-fit pictures schemas reference clean
 
 setup: $(VENV)/.installed-dev
 
@@ -58,6 +58,9 @@ balance: $(VENV)/.installed-dev
 
 confusion: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.confusion
+
+run-up-motion: $(VENV)/.installed-dev
+	$(BIN)/python -m validation.run_up_motion
 
 contact: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.contact_options

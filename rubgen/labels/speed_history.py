@@ -8,17 +8,11 @@ import numpy as np
 from rubgen.arrays import BoolArray, FloatArray, IntArray
 from rubgen.labels.harmonics import FRACTIONS, HIGHEST_ORDER, SIDEBANDS, TapOrders
 from rubgen.labels.labels import Motion
-from rubgen.labels.motion.classify import LEAST_TURNS, Motions, motion
-from rubgen.labels.motion.decision import AT_REST, FORCED, MotionClass
-from rubgen.labels.motion.section import casing_rests
+from rubgen.labels.motion.classify import Motions
+from rubgen.labels.motion.decision import AT_REST, FORCED
+from rubgen.labels.motion.drifting import UNDECIDED, drifting_motion
 from rubgen.labels.windows import Windows, turn_times, window_edges
 from rubgen.solver.response import WINDOW_TURNS, ChangingSpeed, ContactEvents, Response
-
-MOTION_TURNS = 64
-"""A window has a motion class where the speed hardly changes over this many turns around it."""
-HARDLY = 0.002
-"""Largest change of speed, as a share: the orbit then drifts by less than the radius of a cluster."""
-UNDECIDED = MotionClass(motion=Motion.UNDECIDED, period=None, confidence=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,7 +119,7 @@ def _speed_at(changing: ChangingSpeed, time: float) -> float:
 
 def _changes(response: Response, changing: ChangingSpeed, edges: IntArray) -> tuple[Change, ...]:
     """Return the first turn, and every turn where rub or motion differs from before."""
-    times, rubs = turn_times(response, changing), _rubbing(response)
+    times, rubs = turn_times(response, changing), rubbing(response)
     edges = np.union1d(edges, np.flatnonzero(np.diff(rubs)) + 1)
     states = [_state(response, a, b, rub=bool(rubs[a])) for a, b in pairwise(edges.tolist())]
     begins = [0, *(i for i in range(1, len(states)) if states[i] != states[i - 1])]
@@ -160,7 +154,7 @@ def _start_of(response: Response, times: FloatArray, turn: int, rub: bool, rubbe
     return start
 
 
-def _rubbing(response: Response) -> BoolArray:
+def rubbing(response: Response) -> BoolArray:
     """Return whether there is rub in each turn (turns,). Touches fewer than WINDOW_TURNS turns apart are one rub."""
     touched = np.flatnonzero(response.contact_steps_per_turn)
     rubs = np.zeros(response.record_turns, dtype=bool)
@@ -173,38 +167,5 @@ def _rubbing(response: Response) -> BoolArray:
 
 def _state(response: Response, first: int, last: int, *, rub: bool) -> tuple[bool, Motion, Motion, Motion]:
     """Return rub, and motion of blisk, casing and both, of the turns first .. last - 1."""
-    if not rub and response.knows_free_motion:
-        window = _cut(response, first, last)
-        casing = AT_REST if casing_rests(window) else UNDECIDED
-        return rub, FORCED.motion, casing.motion, FORCED.motion if casing is AT_REST else UNDECIDED.motion
-    middle = (first + last) // 2
-    start = max(0, min(middle - MOTION_TURNS // 2, response.record_turns - MOTION_TURNS))
-    wide = _cut(response, start, min(start + MOTION_TURNS, response.record_turns))
-    if wide.record_turns < LEAST_TURNS or _drift(response, start, start + wide.record_turns) > HARDLY:
-        return rub, UNDECIDED.motion, UNDECIDED.motion, UNDECIDED.motion
-    found = motion(wide)
+    found = drifting_motion(response, first, last, rub=rub)
     return rub, found.blisk.motion, found.casing.motion, found.system.motion
-
-
-def _drift(response: Response, first: int, last: int) -> float:
-    """Return the range of the speed over these turns, as a share of it."""
-    changing = response.changing_speed
-    if changing is None:
-        return 0.0
-    speeds = changing.rotation.speed(changing.turn_steps[first : last + 1] * response.dt)
-    return float(np.ptp(speeds) / speeds.mean())
-
-
-def _cut(response: Response, first: int, last: int) -> Response:
-    """Return a response of the turns first .. last - 1, with what their motion class needs."""
-    turns = slice(first, last)
-    return replace(
-        response,
-        record_turns=last - first,
-        section_q=response.section_q[turns],
-        section_v=response.section_v[turns],
-        impulse_per_turn=response.impulse_per_turn[turns],
-        contact_steps_per_turn=response.contact_steps_per_turn[turns],
-        companion_growth=np.zeros(0),
-        symmetry_states=np.zeros((0, 2, response.section_q.shape[1])),
-    )

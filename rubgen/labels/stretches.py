@@ -6,7 +6,8 @@ import numpy as np
 
 from rubgen.labels.labels import Motion
 from rubgen.labels.motion.classify import Motions
-from rubgen.labels.speed_history import SpeedHistory
+from rubgen.labels.motion.drifting import drifting_motion
+from rubgen.labels.speed_history import SpeedHistory, rubbing
 from rubgen.labels.windows import turn_times, window_edges
 from rubgen.solver.response import Response
 
@@ -23,7 +24,8 @@ def window_motions(
       or period-k; how sure that is was not measured. A window within an irregular stretch of a chaotic motion is
       chaotic. A window across the end of a stretch is undecided.
     - While the speed changes, a window has the class of the changes of motion (`SpeedHistory`), where there is one
-      throughout; how sure that is was not measured.
+      throughout. While a fault grows and blades rub, it has the class of `drifting_motion`. How sure these are was not
+      measured.
 
     - response: of the whole record.
     - whole: its motion.
@@ -34,19 +36,23 @@ def window_motions(
     if history is not None:
         return _of_changes(response, history)
     system = whole.system
+    if response.grows and system.motion is Motion.UNDECIDED:
+        rubs = rubbing(response)
+        found = (drifting_motion(response, a, b, rub=bool(rubs[a:b].any())).system.motion for a, b in windows)
+        return tuple((motion, None) for motion in found)
     sure = None if system.motion is Motion.UNDECIDED else system.confidence
     if not whole.stretches:
         return ((system.motion, sure),) * len(windows)
-    found: list[tuple[Motion, float | None]] = []
+    named: list[tuple[Motion, float | None]] = []
     for first, last in windows:
         period = next((each.period for each in whole.stretches if each.start <= first and last <= each.end), None)
         if period is None:
-            found.append(NOT_KNOWN)
+            named.append(NOT_KNOWN)
         elif period == 0:
-            found.append((system.motion, sure))
+            named.append((system.motion, sure))
         else:
-            found.append((Motion.PERIOD_1 if period == 1 else Motion.PERIOD_K, None))
-    return tuple(found)
+            named.append((Motion.PERIOD_1 if period == 1 else Motion.PERIOD_K, None))
+    return tuple(named)
 
 
 def _of_changes(response: Response, history: SpeedHistory) -> tuple[tuple[Motion, float | None], ...]:

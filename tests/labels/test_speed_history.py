@@ -52,7 +52,7 @@ def test_rub_begins_with_its_first_touch_and_ends_after_its_last(ramp):
     assert off.time == pytest.approx(ROTATION.time_of(2 * np.pi * 49 + 1) + 3 * ramp.dt, abs=2 * ramp.dt)
     assert found.onset_speed == pytest.approx(float(ROTATION.speed(on.time)), rel=1e-9)
     assert found.end_of_rub_speed == pytest.approx(float(ROTATION.speed(off.time)), rel=1e-6)
-    assert on.motion is Motion.UNDECIDED
+    assert on.motion is Motion.PERIOD_1  # its section repeats
     assert found.changes[0].motion is Motion.PERIOD_1
 
 
@@ -116,15 +116,36 @@ def test_labels_over_time_are_made_again_from_what_is_kept(ramp):
     assert {name: plain[name] for name in again} == again
 
 
-def test_a_slow_fluctuation_in_contact_is_told_its_motion_where_the_speed_hardly_changes(respond):
-    """A rub that repeats each turn, the speed swinging by 0.05 %: period-1; by 5 %: undecided."""
-    for swing, expected in ((0.2, Motion.PERIOD_1), (20.0, Motion.UNDECIDED)):
-        rotation = Rotation(start=400.0, end=400.0, swing=swing, period=0.5)
-        response = respond(turns=128, steps=STEPS)
+def test_a_rub_that_repeats_has_its_class_however_fast_the_speed_changes(respond):
+    """An orbit that follows the speed, whatever its swing: period-1; with a jump in it: undecided about the jump."""
+    rotation = Rotation(start=400.0, end=400.0, swing=20.0, period=0.5)
+    for jump, expected in ((0.0, {Motion.PERIOD_1}), (1e-4, {Motion.PERIOD_1, Motion.UNDECIDED})):
+        blisk = np.zeros((128, 114))
+        blisk[:, 108] = 2e-5 * np.cos(np.arange(128) / 12) + jump * (np.arange(128) >= 60)
+        response = respond(turns=128, steps=STEPS, blisk=blisk)
         changing = ChangingSpeed(
             rotation=rotation,
             turn_steps=np.array([round(rotation.time_of(2 * np.pi * k) / response.dt) for k in range(129)]),
             orders=np.zeros((128, 1, 20), complex),
         )
-        found = speed_history(replace(response, changing_speed=changing))
-        assert {change.motion for change in found.changes} == {expected}
+        found = label(replace(response, changing_speed=changing))
+        assert {change.motion for change in found.history.changes} == expected
+        assert {motion for motion, _ in found.windows.motion} == expected
+        assert found.motion is Motion.UNDECIDED  # of the whole record
+
+
+def test_windows_have_classes_while_a_fault_grows(respond):
+    """At a steady speed: before the rub the forced motion, then a rub that repeats, then one that does not."""
+    turns, rng = 160, np.random.default_rng(2)
+    blisk = np.zeros((turns, 114))
+    blisk[:, 108] = 1e-6 * np.arange(turns)
+    blisk[80:, 108] += 1e-4 * rng.normal(size=80)
+    contact = np.full(turns, 20, dtype=np.int64)
+    contact[:16] = 0
+    found = label(replace(respond(turns=turns, blisk=blisk), contact_steps_per_turn=contact, grows=True))
+    motions = [motion for motion, _ in found.windows.motion]
+    assert motions[:4] == [Motion.PERIOD_1] * 4
+    assert motions[-3:] == [Motion.CHAOTIC] * 3
+    assert all(sure is None for _, sure in found.windows.motion)
+    assert found.motion is Motion.UNDECIDED
+    assert found.history is None

@@ -8,8 +8,8 @@ import pytest
 from rubgen.labels.labels import Motion
 from rubgen.labels.motion.classify import Motions
 from rubgen.labels.motion.decision import AT_REST, FORCED, MotionClass
+from rubgen.labels.motion.drifting import UNDECIDED
 from rubgen.labels.motion.intermittency import segments
-from rubgen.labels.speed_history import UNDECIDED
 from rubgen.labels.stretches import window_motions
 
 
@@ -19,7 +19,7 @@ def whole(motion, period=None, confidence=0.9, stretches=()):
 
 
 def record(turns):
-    return SimpleNamespace(record_turns=turns, changing_speed=None)
+    return SimpleNamespace(record_turns=turns, changing_speed=None, grows=False)
 
 
 @pytest.mark.parametrize("motion", [Motion.PERIOD_1, Motion.PERIOD_K, Motion.QUASI_PERIODIC])
