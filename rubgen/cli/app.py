@@ -205,6 +205,7 @@ def replay(
     save: Annotated[Path | None, _option("Write an .rrd file instead of opening the viewer.")] = None,
     gif: Annotated[Path | None, _option("Write an animation of the turns about the hardest touch.")] = None,
     png: Annotated[Path | None, _option("Write a picture of one moment.")] = None,
+    foxglove: Annotated[Path | None, _option("Write a layout for Foxglove, .json, with a name at each line.")] = None,
     time: Annotated[float | None, _option("Moment of the picture, s; the hardest touch when not given.")] = None,
     web: Annotated[bool, Parameter(negative=(), help="Open it in the browser, on this machine alone.")] = False,
     full: Annotated[
@@ -215,8 +216,28 @@ def replay(
     """Show a run in Rerun: the machine in 3D, orbit, signals, orders, contact and labels on one time line."""
     from rubgen.cli.replaying import Showing, replay_command
 
-    showing = Showing(save=save, gif=gif, png=png, time=time, web=web, full=full, force=force)
+    showing = Showing(save=save, gif=gif, png=png, foxglove=foxglove, time=time, web=web, full=full, force=force)
     return replay_command(source, run, where, showing)
+
+
+@app.command
+def browse(
+    directory: Directory,
+    /,
+    *,
+    where: Annotated[
+        str | None, _option("Only the good runs that meet this condition on the columns of runs.parquet.")
+    ] = None,
+    predictions: Annotated[
+        Path | None, _option("Answers of a model: .csv or .parquet with the column run_id, shown beside the truth.")
+    ] = None,
+    web: Annotated[bool, Parameter(negative=(), help="Open it in the browser, on this machine alone.")] = False,
+    serve: Annotated[bool, Parameter(negative=(), help="Open no viewer; print the address and serve it.")] = False,
+) -> int:
+    """Show a whole data set in Rerun: a table of its runs with parameters and labels, each run a click away."""
+    from rubgen.cli.browsing import browse_command
+
+    return browse_command(directory, where, predictions, web=web, serve=serve)
 
 
 @app.command

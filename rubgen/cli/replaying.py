@@ -1,5 +1,6 @@
 """The command `rubgen replay`: a run in the viewer, in the browser, or as a file or picture."""
 
+import json
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,10 +23,16 @@ class Showing:
     save: Path | None = None
     gif: Path | None = None
     png: Path | None = None
+    foxglove: Path | None = None
     time: float | None = None
     web: bool = False
     full: bool = False
     force: bool = False
+
+    @property
+    def files(self) -> bool:
+        """Whether any file is named."""
+        return any((self.save, self.gif, self.png, self.foxglove))
 
     def check(self) -> None:
         """Check the options before any work.
@@ -36,17 +43,17 @@ class Showing:
             ("--save", self.save, ".rrd"),
             ("--gif", self.gif, ".gif"),
             ("--png", self.png, ".png"),
+            ("--foxglove", self.foxglove, ".json"),
         ):
             if path is not None:
                 check_new_file(option, path, (ending,), force=self.force)
         if self.time is not None and self.png is None:
             raise UserError(f"--time {self.time:g}: goes with --png FILE; name the file")
-        files = bool(self.save or self.gif or self.png)
-        if self.web and files:
-            raise UserError("--web: opens the browser where no file is named; leave it out, or --save, --gif and --png")
-        if self.full and files and self.save is None:
+        if self.web and self.files:
+            raise UserError("--web: opens the browser where no file is named; leave it out, or the files")
+        if self.full and self.files and self.save is None:
             raise UserError("--full: goes with the viewer or --save FILE; leave it out, or name that file")
-        if not (files or self.web) and not has_screen():
+        if not (self.files or self.web) and not has_screen():
             raise UserError(
                 "there is no screen for the viewer (DISPLAY is not set); give --save FILE.rrd, --web, --png or --gif"
             )
@@ -66,13 +73,18 @@ def replay_command(source: Path, run_id: str | None, where: str | None, showing:
 
 def show(replay: Replay, showing: Showing) -> None:
     """Write the requested files, or open the viewer and wait until it is closed."""
+    from rubgen.io.mcap.layout import foxglove_layout
     from rubgen.viz.rerun import write_replay
 
     if showing.save:
         write_file("--save", showing.save, lambda part: write_replay(replay, part, full=showing.full))
         say(f"{showing.save}: open it with: rerun {showing.save}")
+    if showing.foxglove:
+        text = json.dumps(foxglove_layout(replay.recording), indent=2)
+        write_file("--foxglove", showing.foxglove, lambda part: part.write_text(f"{text}\n", encoding="utf-8"))
+        say(f"{showing.foxglove}: in Foxglove, import this layout and open an MCAP file of the same sensors")
     _write_pictures(replay, showing)
-    if not (showing.save or showing.gif or showing.png):
+    if not showing.files:
         if showing.web:
             say("close it with Ctrl-C")
         open_viewer(replay, web=showing.web, full=showing.full)

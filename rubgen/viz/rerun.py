@@ -30,18 +30,19 @@ def write_rrd(run: Run, path: Path) -> None:
     write_replay(replay_of(run), path)
 
 
-def write_replay(replay: Replay, path: Path, *, full: bool = False) -> None:
+def write_replay(replay: Replay, path: Path, *, full: bool = False, named: str = "") -> None:
     """Write `replay` to a Rerun recording at `path`, complete or not at all, with a default arrangement of views.
 
     It has the machine in 3D with its contact points; every channel as minimum and maximum (`/preview/<quantity>`) and
     at full rate over 20 turns around the hardest touch (`/detail/<quantity>`; the middle without contact); touches,
     orbit, order spectra, motion classes, labels and scenario as text and as properties. It takes about a megabyte for
-    any length; `full` writes every sample and every touch. Times are ns from the first sample. Two writings differ in
-    their bytes, not in their content. Raises OSError when the file cannot be written.
+    any length; `full` writes every sample and every touch. The id of the recording is `named`, else `recording_id`.
+    Times are ns from the first sample. Two writings differ in their bytes, not in their content. Raises OSError when
+    the file cannot be written.
     """
     from rerun_bindings import flush_and_cleanup_orphaned_recordings
 
-    content = _recorded(replay, full=full)
+    content = _recorded(replay, full=full, named=named)
     # A stream that nobody refers to keeps its threads and its data, some 5 MB a run, until it is asked to go.
     flush_and_cleanup_orphaned_recordings()
     part = path.with_name(f"{path.name}.part")
@@ -52,7 +53,7 @@ def write_replay(replay: Replay, path: Path, *, full: bool = False) -> None:
         part.unlink(missing_ok=True)
 
 
-def _recorded(replay: Replay, *, full: bool) -> bytes:
+def _recorded(replay: Replay, *, full: bool, named: str) -> bytes:
     """Return the content of the .rrd file."""
     import rerun as rr  # here, for importing it takes 0.6 s
 
@@ -64,10 +65,11 @@ def _recorded(replay: Replay, *, full: bool) -> bytes:
     from rubgen.viz.entities.signals import send_signals
     from rubgen.viz.views import arrangement
 
-    stream = rr.RecordingStream(APPLICATION, recording_id=recording_id(replay.scenario), send_properties=False)
+    name = named or recording_id(replay.scenario)
+    stream = rr.RecordingStream(APPLICATION, recording_id=name, send_properties=False)
     # Rerun's own file writer is a thread that only logs a full disk, and that its stream may then wait for without end.
     memory = stream.memory_recording()
-    _send_blueprint(stream, arrangement(replay))
+    _send_blueprint(stream, arrangement(replay, full=full))
     stream.send_recording_name(replay.scenario.run_id)
     send_signals(stream, replay, full=full)
     send_touches(stream, replay, full=full)
@@ -132,6 +134,17 @@ def content_problems(path: Path, run_id: str | None = None) -> list[str]:
     if run_id is not None and runs != {run_id}:
         return [f"holds {', '.join(sorted(runs)) or 'no run'}"]
     return [f"no {name}" for name in ENTITIES if not any(entity.startswith(name) for entity in entities)]
+
+
+def id_in(path: Path) -> str | None:
+    """Return the id of the recording in a file; None where there is no readable file of one recording."""
+    from rerun.chunk import RrdReader
+
+    try:
+        found = [entry.recording_id for entry in RrdReader(path).recordings()] if path.is_file() else []
+    except RuntimeError:
+        return None
+    return found[0] if len(found) == 1 else None
 
 
 def recording_id(scenario: Scenario) -> str:

@@ -1,4 +1,4 @@
-"""Open Rerun's viewer for one replay, until it is closed."""
+"""Open Rerun's viewer for one replay, until it is closed, or start it on a catalog."""
 
 import os
 import socket
@@ -51,11 +51,8 @@ def _first_moment(replay: Replay) -> float:
 
 def _open(path: Path, moment: float, *, web: bool) -> None:
     """Open Rerun's viewer at a moment (s), or its web viewer for this machine only, until it is closed."""
-    with socket.socket() as free:
-        free.bind((HOST, 0))
-        port = free.getsockname()[1]
-    command = [sys.executable, "-m", "rerun", str(path), "--hide-welcome-screen", "--bind", HOST, "--port", str(port)]
-    with _started([*command, "--web-viewer"] if web else command) as viewer:
+    command, port = _command(str(path), web=web)
+    with _started(command) as viewer:
         try:
             if not web:
                 _go_to(moment, port, viewer)
@@ -66,6 +63,20 @@ def _open(path: Path, moment: float, *, web: bool) -> None:
             return
     if code != 0:
         raise UserError(f"the viewer ended with {code}; {ELSEWHERE}")
+
+
+def start_viewer(source: str, *, web: bool) -> subprocess.Popen[bytes]:
+    """Start Rerun's viewer, or its web viewer for this machine only, on an address. Raises UserError as `_started`."""
+    return _started(_command(source, web=web)[0])
+
+
+def _command(source: str, *, web: bool) -> tuple[list[str], int]:
+    """Return the command of a viewer that opens a file or an address, and the port at which it listens."""
+    with socket.socket() as free:
+        free.bind((HOST, 0))
+        port = free.getsockname()[1]
+    command = [sys.executable, "-m", "rerun", source, "--hide-welcome-screen", "--bind", HOST, "--port", str(port)]
+    return ([*command, "--web-viewer"] if web else command), port
 
 
 def _started(command: list[str]) -> subprocess.Popen[bytes]:

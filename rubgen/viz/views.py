@@ -8,7 +8,7 @@ from rubgen.measurement.channel import Channel
 from rubgen.viz.entities.machine_shape import drawing_factor
 from rubgen.viz.entities.orbit import Bounds, orbit_bounds, section_bounds
 from rubgen.viz.entities.orders import spectrum_channels
-from rubgen.viz.entities.signals import TIMELINE, UNSHOWN
+from rubgen.viz.entities.signals import TIMELINE, UNSHOWN, detail_window
 from rubgen.viz.replay import Replay
 
 NEAR_TURNS, ORBIT_TURNS = 4.0, 10.0
@@ -20,11 +20,14 @@ PLAYBACK = 0.02
 """Speed of playback: a turn of 6 ms takes 0.3 s."""
 
 
-def arrangement(replay: Replay) -> rrb.Blueprint:
-    """Arrange the views: machine and motion on the left, signals in the middle, orbit, orders and labels right."""
+def arrangement(replay: Replay, *, full: bool = False) -> rrb.Blueprint:
+    """Arrange the views: machine and motion on the left, signals in the middle, orbit, orders and labels right.
+
+    `full` says that every sample is there.
+    """
     parts = [
         rrb.Vertical(*_machine(replay), _motion(), row_shares=[4, 1]) if _has_frames(replay) else _motion(),
-        rrb.Vertical(*_signals(replay), row_shares=[3, 3, 3]),
+        rrb.Vertical(*_signals(replay, full=full), row_shares=[3, 3, 3]),
         rrb.Vertical(_orbits(replay), _orders(replay), _texts(), row_shares=[3, 3, 3]),
     ]
     return rrb.Blueprint(
@@ -78,12 +81,19 @@ def _motion() -> rrb.StateTimelineView:
     return rrb.StateTimelineView(origin="/labels/motion", name="motion")
 
 
-def _signals(replay: Replay) -> list[rrb.Tabs]:
-    """Return views of the whole run, and of a few turns around the cursor with every sample near the hardest touch."""
+def _signals(replay: Replay, *, full: bool) -> list[rrb.Tabs]:
+    """Return views of the whole run, and of a few turns around the cursor with every sample near the hardest touch.
+
+    Where not every sample is there, the name of a near view says between which times they are.
+    """
     start, end = _near(replay, NEAR_TURNS, NEAR_TURNS)
     near = rrb.TimeAxis(view_range=rrb.TimeRange(start=start, end=end))
     groups = {name: group for name, group in replay.recording.by_quantity().items() if name != UNSHOWN}
     titles = {quantity: f"{quantity.replace('_', ' ')}, {group[0].unit}" for quantity, group in groups.items()}
+    window, rate = detail_window(replay), replay.recording.sample_rate_hz
+    samples = f"; samples {window.start / rate:.3f} to {window.stop / rate:.3f} s, else preview"
+    whole_run = full or window.stop - window.start == replay.recording.samples
+    near_titles = {quantity: f"near: {title}{'' if whole_run else samples}" for quantity, title in titles.items()}
     whole = [
         rrb.TimeSeriesView(origin=f"/preview/{quantity}", name=title, plot_legend=_legend(groups[quantity], 2))
         for quantity, title in titles.items()
@@ -92,17 +102,16 @@ def _signals(replay: Replay) -> list[rrb.Tabs]:
         rrb.TimeSeriesView(
             origin=f"/detail/{quantity}",
             contents=[f"/preview/{quantity}", f"/detail/{quantity}"],
-            name=f"near: {title}",
+            name=near_titles[quantity],
             axis_x=near,
             plot_legend=_legend(groups[quantity], 3),
             overrides={f"/preview/{quantity}": rr.SeriesLines(colors=np.full(2 * len(groups[quantity]), SHADE))},
         )
-        for quantity, title in titles.items()
+        for quantity in titles
     ]
     return [
         rrb.Tabs(*whole, name="whole run", active_tab=titles.get("contact_force", 0)),
-        rrb.Tabs(*close, name="about the cursor", active_tab=f"near: {titles.get('acceleration', '')}"
-                 if "acceleration" in titles else 0),
+        rrb.Tabs(*close, name="about the cursor", active_tab=near_titles.get("acceleration", 0)),
         _contacts(replay),
     ]  # fmt: skip
 

@@ -13,7 +13,8 @@ from rubgen.measurement.motion import contact_intervals
 from rubgen.viz.entities.machine_shape import blade_leanings, blade_placements, drawing_factor
 from rubgen.viz.entities.signals import PREVIEW_VALUES, detail_window, preview_rate, shown_channels
 from rubgen.viz.replay import replay_of
-from rubgen.viz.rerun import check_rrd, recording_id, write_replay, write_rrd
+from rubgen.viz.rerun import check_rrd, id_in, recording_id, write_replay, write_rrd
+from rubgen.viz.views import arrangement
 
 
 @pytest.fixture(scope="module")
@@ -109,9 +110,30 @@ def test_verify_passes_with_a_default_arrangement(rrd_file):
     assert len(RrdReader(rrd_file).blueprints()) == 1
 
 
+def names_in(part):
+    """Names of a part of an arrangement and of all within it; the contents of a view are texts."""
+    inner = [each for each in part.contents if not isinstance(each, str)]
+    return [*([part.name] if part.name else []), *(name for each in inner for name in names_in(each))]
+
+
+def test_a_near_view_says_where_every_sample_is(rub_run):
+    replay = replay_of(rub_run)
+    window, rate = detail_window(replay), replay.recording.sample_rate_hz
+    assert 0 < window.start < window.stop <= replay.recording.samples
+    said = f"samples {window.start / rate:.3f} to {window.stop / rate:.3f} s, else preview"
+    near = [name for name in names_in(arrangement(replay).root_container) if name.startswith("near: ")]
+    assert len(near) >= 3
+    assert all(name.endswith(said) for name in near)
+    full = [name for name in names_in(arrangement(replay, full=True).root_container) if name.startswith("near: ")]
+    assert len(full) == len(near)
+    assert not any("preview" in name for name in full)
+
+
 def test_recording_id_follows_from_the_scenario(rub_run, rrd_file):
     (entry,) = RrdReader(rrd_file).recordings()
     assert entry.recording_id == recording_id(rub_run.scenario)
+    assert id_in(rrd_file) == recording_id(rub_run.scenario)
+    assert id_in(rrd_file.parent / "none.rrd") is None
     other = dataclasses.replace(rub_run.scenario, seed=99)
     assert recording_id(other) != recording_id(rub_run.scenario)
     assert recording_id(other).startswith("run-000000-")

@@ -1,0 +1,78 @@
+"""The command `rubgen browse`: a whole data set in Rerun's viewer, as a table of runs to open."""
+
+import subprocess
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from rubgen.cli.printing import say
+from rubgen.dataset.reading.browsing import Rows, rows_of
+from rubgen.dataset.reading.open import DataSet
+from rubgen.dataset.reading.replaying import find_replay, find_runs
+from rubgen.errors import UserError
+from rubgen.progress import count, step
+from rubgen.viz.catalog import Catalog
+from rubgen.viz.rerun import id_in, write_replay
+from rubgen.viz.viewer import has_screen, start_viewer
+
+
+def browse_command(directory: Path, where: str | None, predictions: Path | None, *, web: bool, serve: bool) -> int:
+    """Serve the runs of a set from a catalog and open the viewer on its table, until it is closed or Ctrl-C.
+
+    - where: only the good runs that meet this condition.
+    - predictions: answers of a model, as CSV or Parquet.
+    - web: in the browser.
+    - serve: without a viewer.
+
+    Recordings that the set does not have are made while the viewer is open, in the order of the table, in a temporary
+    folder. Returns the exit code 0.
+    """
+    if web and serve:
+        raise UserError("--web and --serve: one opens a viewer and the other none; give one of them")
+    if not (web or serve) and not has_screen():
+        raise UserError("there is no screen for the viewer (DISPLAY is not set); give --web or --serve")
+    data = DataSet(directory)
+    run_ids = find_runs(data, where) if where else [str(run_id) for run_id in data.runs.index]
+    if not run_ids:
+        raise UserError(f"--where {where!r}: no good run meets it; see `rubgen info {directory}`")
+    with step("read the table"):
+        rows = rows_of(data, run_ids, predictions)
+    with Catalog(data.manifest.name) as catalog:
+        missing = _fill(catalog, data, run_ids, rows)
+        say(f"{len(run_ids)} runs at {catalog.url}")
+        viewer = None if serve else start_viewer(catalog.url, web=web)
+        try:
+            _make(catalog, directory, missing, viewer)
+            while viewer is None or viewer.poll() is None:
+                time.sleep(0.2)
+        except KeyboardInterrupt:
+            pass
+        finally:
+            if viewer is not None and viewer.poll() is None:
+                viewer.terminate()
+                viewer.wait()
+    return 0
+
+
+def _fill(catalog: Catalog, data: DataSet, run_ids: Sequence[str], rows: Rows) -> list[str]:
+    """Add rows and recordings to the catalog. Return the good runs that have no recording yet."""
+    paths = {run_id: data.layout.export("rrd", run_id) for run_id in run_ids}
+    with step("fill the catalog"):
+        ids = {run_id: id_in(path) for run_id, path in paths.items()}
+        for group, values in rows.groups.items():
+            catalog.add_columns(group, {ids[run_id] or run_id: each for run_id, each in values.items()})
+        catalog.add_recordings([paths[run_id] for run_id, found in ids.items() if found])
+        catalog.arrange(rows.columns)
+    return [run_id for run_id in data.ok.index if run_id in ids and not ids[run_id]]
+
+
+def _make(catalog: Catalog, directory: Path, run_ids: Sequence[str], viewer: subprocess.Popen[bytes] | None) -> None:
+    """Make these recordings and add each to the catalog, until the viewer is closed."""
+    with step("make recordings", "runs"):
+        for number, run_id in enumerate(run_ids):
+            if viewer is not None and viewer.poll() is not None:
+                return
+            path = catalog.folder / f"{run_id}.rrd"
+            write_replay(find_replay(directory, run_id).replay, path, named=run_id)
+            catalog.add_recordings([path])
+            count(number + 1, len(run_ids))

@@ -1,0 +1,127 @@
+"""The rows of a data set for Rerun's catalog: what was drawn, the labels, and the answers of a model beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from rubgen.dataset.reading.open import DataSet
+from rubgen.errors import UserError
+from rubgen.io.columns import Column, Role
+from rubgen.io.parquet.words import NUMBERS
+from rubgen.labels.headline import headline
+
+COLUMN_TYPES: dict[str, Any] = {"flag": bool, "integer": int, "number": float, "text": str, "class": str}
+"""Kinds of column that have one value a run, and their types."""
+ALWAYS = ("run_id", "split", "status")
+READERS: dict[str, Callable[[Path], pd.DataFrame]] = {".csv": pd.read_csv, ".parquet": pd.read_parquet}
+
+
+Values = dict[str, Any]
+"""Values of one run by name."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rows:
+    """What the table of a set shows, by the name of the run."""
+
+    columns: tuple[tuple[str, str], ...]
+    """Group and name of each column, in the order in which they are shown."""
+    groups: dict[str, dict[str, Values]]
+    """By group and run, the values by name."""
+
+
+def rows_of(data: DataSet, run_ids: Sequence[str], predictions: Path | None = None) -> Rows:
+    """Return the rows of these runs: name, split and status, what differs between runs of the set, and the answers.
+
+    A column of `predictions` (`read_predictions`) stands after the answer of the same name, with a flag `<name>_right`
+    that says whether both are equal, except where the answer is a number; other columns stand at the end.
+    """
+    kinds = {column.name: column for column in data.run_columns if column.kind in COLUMN_TYPES}
+    shown = _shown(data.runs, list(kinds.values()))
+    runs: dict[str, Values] = {}
+    for run_id, row in zip(run_ids, data.runs.loc[list(run_ids)].to_dict("records"), strict=True):
+        values = {name: run_id if name == "run_id" else row[name] for name in shown}
+        runs[run_id] = {name: COLUMN_TYPES[kinds[name].kind](x) for name, x in values.items() if not pd.isna(x)}
+        if row["status"] == "ok":
+            runs[run_id]["headline"] = headline(data.row(run_id), data.recipe.operation.profile)
+    answers: dict[str, Values] = {}
+    guessed: list[str] = []
+    if predictions is not None:
+        table = read_predictions(predictions, data)
+        for name in map(str, table.columns):
+            guessed.append(name)
+            values_of, compared = _as_answers(table[name].dropna(), kinds.get(name))
+            for run_id in (run_id for run_id in runs if run_id in values_of):
+                answer = answers.setdefault(run_id, {})
+                answer[name] = values_of[run_id]
+                if compared and name in runs[run_id]:
+                    answer[f"{name}_right"] = answer[name] == runs[run_id][name]
+    found = {name for answer in answers.values() for name in answer}
+    order = ["run_id", "headline", *(name for name in shown if name != "run_id")]
+    columns = [("run", name) for name in order]
+    for name in guessed:
+        place = columns.index(("run", name)) + 1 if name in order else len(columns)
+        columns[place:place] = [("prediction", each) for each in (name, f"{name}_right") if each in found]
+    return Rows(columns=tuple(columns), groups={"run": runs, "prediction": answers})
+
+
+def read_predictions(path: Path, data: DataSet) -> pd.DataFrame:
+    """Read the answers of a model, CSV or Parquet with a column `run_id` and one row a run, the index.
+
+    Raises UserError where it is no such file, has no `run_id` or no other column, names a run twice or none of the set,
+    or has lists.
+    """
+    reader, named = READERS.get(path.suffix), f"--predictions {path}"
+    if reader is None:
+        raise UserError(f"{named}: unknown kind of file; end the name in {' or '.join(READERS)}")
+    if not path.is_file():
+        raise UserError(f"{named}: there is no such file")
+    try:
+        found: pd.DataFrame = reader(path)
+    except (ValueError, OSError) as error:
+        raise UserError(f"{named}: cannot be read as {path.suffix[1:]} ({str(error).splitlines()[0]})") from None
+    if "run_id" not in found.columns:
+        raise UserError(f"{named}: has no column run_id; name the runs there, one row each")
+    if len(found.columns) < 2:
+        raise UserError(f"{named}: has no column beside run_id; add the answers, such as motion")
+    twice = found["run_id"][found["run_id"].duplicated()]
+    if not twice.empty:
+        raise UserError(f"{named}: {twice.iloc[0]} stands there twice; give one row a run")
+    if not found["run_id"].isin(data.runs.index).any():
+        raise UserError(
+            f"{named}: none of its runs is in {data.layout.root}; they are called {data.runs.index[0]}, ..."
+        )
+    lists = [name for name in found.columns if not found[name].map(pd.api.types.is_scalar).all()]
+    if lists:
+        raise UserError(f"{named}: {lists[0]} has lists; give one value a run")
+    return found.set_index("run_id")
+
+
+def _shown(runs: pd.DataFrame, columns: Sequence[Column]) -> list[str]:
+    """Return the names of the columns to show: parameters only where they differ between runs."""
+    names = [column.name for column in columns if column.name in ALWAYS]
+    for column in columns:
+        differs = column.role is Role.PARAMETER and column.name in runs and runs[column.name].nunique() > 1
+        if differs or (column.role is Role.TARGET and column.name in runs):
+            names.append(column.name)
+    return names
+
+
+def _as_answers(given: pd.Series[Any], column: Column | None) -> tuple[dict[str, Any], bool]:
+    """Return a model's answers by run as the column of that name has them, and whether they can be right or wrong."""
+    plain = {str(run_id): getattr(value, "item", lambda value=value: value)() for run_id, value in given.items()}
+    kind = column.kind if column else ""
+    numeric = all(isinstance(value, bool | int | float) for value in plain.values())
+    if column and kind == "class" and numeric:
+        words = {number: word for word, number in NUMBERS[column.name].items()}
+        return {run_id: words.get(value, f"class {value:g}") for run_id, value in plain.items()}, True
+    if kind == "flag" and numeric and all(value in (0, 1) for value in plain.values()):
+        return {run_id: bool(value) for run_id, value in plain.items()}, True
+    if kind == "integer" and numeric and all(float(value).is_integer() for value in plain.values()):
+        return {run_id: int(value) for run_id, value in plain.items()}, True
+    return plain, kind in ("class", "text") and not numeric

@@ -1,0 +1,90 @@
+"""Serve the recordings of many runs from Rerun's own catalog, with a table of what is known of each run.
+
+A recording is a segment of a dataset in this catalog. What is known of a run lies beside its recording, in layers of a
+few properties. Each property is a column of the table. Files stay where they are.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from rubgen.errors import UserError
+from rubgen.viz.rerun import APPLICATION
+from rubgen.viz.viewer import HOST
+
+if TYPE_CHECKING:
+    from rerun.catalog import DatasetEntry
+
+Values = Mapping[str, Any]
+"""Flags, numbers and texts of one run by name. A missing name is an empty cell."""
+RECORDING = "base"
+"""Layer of the recordings themselves."""
+SHOWN = "property:{}:{}"
+"""How Rerun calls the column of a property, by its group and name."""
+
+
+class Catalog:
+    """A catalog on this computer alone, as a context. At its end the server ends and `folder` goes with its files."""
+
+    def __init__(self, name: str) -> None:
+        """Begin a catalog with one dataset called `name`. Raises UserError where Rerun's catalog cannot be used."""
+        if find_spec("datafusion") is None:
+            raise UserError("Rerun's catalog needs the package datafusion; pip install 'rubgen[browse]'")
+        from rerun.server import Server
+
+        self._folder = tempfile.TemporaryDirectory(prefix="rubgen-")
+        self.folder = Path(self._folder.name)
+        self._server = Server(host=HOST)
+        self._client = self._server.client()
+        self.dataset: DatasetEntry = self._client.create_dataset(name)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._server.shutdown()
+        self._folder.cleanup()
+
+    @property
+    def url(self) -> str:
+        """Address of the table, for viewers on this computer."""
+        return f"{self._server.url()}/entry/{self.dataset.id}"
+
+    def add_recordings(self, paths: Sequence[Path]) -> None:
+        """Add the recordings in these files."""
+        if paths:
+            self.dataset.register([path.absolute().as_uri() for path in paths], layer_name=RECORDING).wait()
+
+    def add_columns(self, group: str, rows: Mapping[str, Values]) -> None:
+        """Add a layer of columns `property:<group>:<name>`: for each run, by the id of its recording, its values."""
+        import rerun as rr
+
+        places = []
+        for number, (segment, values) in enumerate(rows.items()):
+            stream = rr.RecordingStream(APPLICATION, recording_id=segment, send_properties=False)
+            memory = stream.memory_recording()
+            stream.send_property(group, rr.AnyValues(**values))
+            path = self.folder / f"{group}-{number}.rrd"
+            path.write_bytes(memory.drain_as_bytes())
+            stream.disconnect()
+            places.append(path.as_uri())
+        if places:
+            self.dataset.register(places, layer_name=group).wait()
+
+    def arrange(self, columns: Sequence[tuple[str, str]]) -> None:
+        """Show these columns of the table first, each a group and a name, in this order, under their names."""
+        from rerun.blueprint.table import Column, TableBlueprint, TableLayout
+
+        shown = [Column(SHOWN.format(group, name), name=name if group == "run" else f"{group} {name}")
+                 for group, name in columns]  # fmt: skip
+        layout = TableLayout(columns=[Column("rerun_segment_id", name="recording"), *shown])
+        path = self.folder / "table.rbl"
+        TableBlueprint(table_layout=layout).save(APPLICATION, path)
+        self.dataset.register_blueprint(path.as_uri(), segment_table=True)

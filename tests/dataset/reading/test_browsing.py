@@ -1,0 +1,111 @@
+"""A data set in Rerun's catalog: served without a viewer, and read with the client of Rerun's SDK."""
+
+import re
+import sys
+
+import pandas as pd
+import pytest
+from rerun.catalog import CatalogClient
+
+import rubgen
+from rubgen.cli import main
+
+ADDRESS = re.compile(r"(\d+) runs at (rerun\+http://127\.0\.0\.1:\d+)/entry/(\w+)")
+
+
+def code_of(*words):
+    with pytest.raises(SystemExit) as ended:
+        sys.exit(main(["browse", *map(str, words)]))
+    return ended.value.code
+
+
+@pytest.fixture
+def table_of(monkeypatch, capsys):
+    """What the catalog has once everything is served, as a table by run_id. The command ends with code 0."""
+
+    def browse(*words):
+        tables = []
+
+        def served(_seconds):
+            runs, server, entry = ADDRESS.search(capsys.readouterr().out).groups()
+            client = CatalogClient(server)
+            table = client.get_dataset(id=entry).segment_table().to_pandas()
+            assert len(table) == int(runs)
+            tables.append(table)
+            raise KeyboardInterrupt
+
+        monkeypatch.setattr("rubgen.cli.browsing.time.sleep", served)
+        assert code_of(*words, "--serve") == 0
+        (table,) = tables
+        return table.map(lambda cell: cell[0] if hasattr(cell, "__len__") and not isinstance(cell, str) else cell)
+
+    return browse
+
+
+def test_each_run_is_a_row_with_its_parameters_labels_and_recording(copied_shown_set, table_of):
+    """The set has two runs; the recording of one is missing and made from its MCAP file, outside the set."""
+    (missing, *_) = sorted(copied_shown_set.glob("rrd/*/*.rrd"))
+    missing.unlink()
+    before = sorted(copied_shown_set.rglob("*"))
+    runs = rubgen.open(copied_shown_set).runs
+    table = table_of(copied_shown_set).set_index("property:run:run_id").sort_index()
+    assert list(table.index) == list(runs.index)
+    for name in ("speed_rpm", "friction", "motion", "contact_duty", "rub"):
+        assert list(table[f"property:run:{name}"]) == list(runs[name]), name
+    assert "property:run:disk_support_stiffness_n_per_m" not in table  # one value in all runs
+    assert all("rub" in text for text in table["property:run:headline"])
+    assert list(table["property:labels:motion"]) == list(runs["motion"])  # from the recordings themselves
+    assert table["time:end"].notna().all()
+    assert sorted(copied_shown_set.rglob("*")) == before
+
+
+def test_answers_of_a_model_stand_beside_the_truth(shown_set, table_of, tmp_path):
+    runs = rubgen.open(shown_set).runs
+    answers = pd.DataFrame({"run_id": [*runs.index, "run-000077"], "motion": [0, 3, 0], "score": [0.25, 0.75, 0.5]})
+    answers["rub"] = [bool(runs["rub"].iloc[0]), not runs["rub"].iloc[1], True]
+    answers.to_parquet(tmp_path / "answers.parquet")
+    table = table_of(shown_set, "--predictions", tmp_path / "answers.parquet").set_index("property:run:run_id")
+    table = table.loc[list(runs.index)]
+    assert list(table["property:prediction:motion"]) == ["period-1", "chaotic"]
+    right = [word == truth for word, truth in zip(["period-1", "chaotic"], runs["motion"], strict=True)]
+    assert list(table["property:prediction:motion_right"]) == right
+    assert list(table["property:prediction:rub_right"]) == [True, False]
+    assert list(table["property:prediction:score"]) == [0.25, 0.75]
+    assert "property:prediction:score_right" not in table
+
+
+def test_a_condition_chooses_the_runs(shown_set, table_of):
+    table = table_of(shown_set, "--where", "run_id = 'run-000001'")
+    assert list(table["property:run:run_id"]) == ["run-000001"]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("run,motion\nrun-000000,0\n", "has no column run_id; name the runs there"),
+        ("run_id\nrun-000000\n", "has no column beside run_id"),
+        ("run_id,rub\nrun-000000,1\nrun-000000,0\n", "run-000000 stands there twice"),
+        ("run_id,rub\na,1\n", "none of its runs is in"),
+        ("", "cannot be read as csv"),
+        (None, "there is no such file"),
+    ],
+)
+def test_a_mistake_in_the_answers_is_one_line(shown_set, tmp_path, capsys, text, said):
+    path = tmp_path / "answers.csv"
+    if text is not None:
+        path.write_text(text)
+    assert code_of(shown_set, "--serve", "--predictions", path) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert len(error.splitlines()) == 1
+
+
+def test_a_catalog_needs_a_package_and_the_viewer_a_screen(shown_set, monkeypatch, capsys):
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr("rubgen.viz.viewer.sys.platform", "linux")
+    assert code_of(shown_set) == 2
+    assert "give --web or --serve" in capsys.readouterr().err
+    monkeypatch.setattr("rubgen.viz.catalog.find_spec", lambda _name: None)
+    assert code_of(shown_set, "--serve") == 2
+    assert "pip install 'rubgen[browse]'" in capsys.readouterr().err
