@@ -24,6 +24,8 @@ Values = Mapping[str, Any]
 """Flags, numbers and texts of one run by name. A missing name is an empty cell."""
 RECORDING = "base"
 """Layer of the recordings themselves."""
+LINK, SEGMENT = "recording link", "rerun_segment_id"
+"""Columns of every such table: what opens a recording, and its id."""
 SHOWN = "property:{}:{}"
 """How Rerun calls the column of a property, by its group and name."""
 
@@ -84,7 +86,7 @@ class Catalog:
 
         shown = [Column(SHOWN.format(group, name), name=name if group == "run" else f"{group} {name}")
                  for group, name in columns]  # fmt: skip
-        layout = TableLayout(columns=[Column("rerun_segment_id", name="recording"), *shown])
+        layout = TableLayout(columns=[Column(LINK, name="open"), *shown, Column(SEGMENT, visible=False)])
         path = self.folder / "table.rbl"
-        TableBlueprint(table_layout=layout).save(APPLICATION, path)
+        TableBlueprint(table_layout=layout, sort_by=SEGMENT).save(APPLICATION, path)
         self.dataset.register_blueprint(path.as_uri(), segment_table=True)
