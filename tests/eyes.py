@@ -47,6 +47,12 @@ def page_picture(page: Path, folder: Path, *options: str) -> Path:
     return picture
 
 
+def page_content(page: Path, folder: Path) -> str:
+    """The page after its scripts have run, HTML, without a network."""
+    rules = "--host-resolver-rules=MAP * ~NOTFOUND"
+    return _chromium(folder, "--dump-dom", "--virtual-time-budget=30000", rules, page.resolve().as_uri()).stdout
+
+
 def printed_page(page: Path, folder: Path) -> bytes:
     """The page as it would be printed, PDF."""
     _chromium(folder, f"--print-to-pdf={folder / 'page.pdf'}", page.resolve().as_uri())
@@ -55,7 +61,8 @@ def printed_page(page: Path, folder: Path) -> bytes:
 
 def _chromium(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     command = [
-        str(CHROMIUM), "--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run",
+        str(CHROMIUM), "--headless=new", "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader",
+        "--hide-scrollbars", "--no-first-run",
         "--enable-logging=stderr", "--disable-dev-shm-usage", f"--user-data-dir={folder / 'profile'}", *arguments,
     ]  # fmt: skip
     return subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)

@@ -159,7 +159,7 @@ def test_labels_and_statuses_are_described(rub_run):
     orders = TAP_ENDINGS
     labels = [name for name in labels_to_json(rub_run.labels) if not name.endswith(orders)]
     assert [name for name in labels if f"`{name}`" not in DOCUMENTS["docs/labels.md"]] == []
-    assert [status.code for status in Status if f"`{status.code}`" not in DOCUMENTS["docs/model.md"]] == []
+    assert [status.code for status in Status if f"`{status.code}`" not in DOCUMENTS["docs/status.md"]] == []
 
 
 def test_one_version_everywhere():

@@ -18,6 +18,7 @@ from rubgen.formats import format_of
 from rubgen.io.files import write_durably
 from rubgen.labels.labels import Motion
 from rubgen.progress import count
+from rubgen.report.interactive import interactive_figures, packed_library
 from rubgen.scenario.vary import PARAMETERS
 from rubgen.viz.colors import MOTION_COLORS
 from rubgen.viz.figures.data_set import dataset_overview, varied_keys
@@ -78,6 +79,8 @@ def render_report(directory: Path) -> str:
         failed=data.runs[data.runs["status"] != "ok"].head(MOST_FAILED).reset_index().to_dict("records"),
         failed_more=max(0, len(data.runs) - len(good) - MOST_FAILED),
         examples=[_example(data.row(run_id), replay) for run_id, replay in replays.items()],
+        interactive=interactive_figures(list(replays.values())),
+        library=packed_library(),
         channels=list(first.recording.channels.values()),
         loading=[{"name": name, "code": code} for name, code in loading(data, first).items()],
         problems=verify(directory),

@@ -2,12 +2,13 @@
 
 import base64
 import io
+import json
 import re
 
 import numpy as np
 import pandas as pd
 import pytest
-from eyes import CHROMIUM, narrow_page, need, page_picture, printed_page
+from eyes import CHROMIUM, narrow_page, need, page_content, page_picture, printed_page
 from PIL import Image
 
 import rubgen
@@ -40,10 +41,50 @@ def test_the_page_counts_the_runs_by_class(page, small_set):
 def test_the_page_stands_alone_and_is_small(page):
     text = page.read_text(encoding="utf-8")
     assert not re.search(r"(?:src|href)=\"(?!data:)", text)
-    assert "<script" not in text
     assert "url(" not in text
     assert ".bar, .dot { print-color-adjust: exact;" in text  # else printers leave the colours of the classes out
     assert page.stat().st_size < 5e6
+
+
+def figures_of(page):
+    """The figures that plotly.js draws."""
+    text = page.read_text(encoding="utf-8")
+    return [json.loads(each) for each in re.findall(r'<script type="application/json">(.*?)</script>', text, re.DOTALL)]
+
+
+def test_the_page_has_figures_to_zoom_and_turn(page, small_set):
+    from rubgen.dataset.reading.replaying import find_replay
+    from rubgen.reduction import reduce
+    from rubgen.viz.derived import poincare_section
+
+    campbell, orbits = figures_of(page)[:2]
+    lines = campbell["data"]
+    forward = [line for line in lines if "ND 1 forward" in line.get("hovertemplate", "")]
+    first = next(line for line in lines if line["name"] == "1X")
+    speeds = np.array(forward[0]["x"])
+    above = [np.array([np.nan if y is None else y for y in line["y"]]) - speeds / 60 for line in forward]
+    met = [speeds[i] for each in above for i in np.flatnonzero(each[:-1] * each[1:] < 0)]
+    title = orbits["layout"]["title"]["text"]
+    shown = find_replay(small_set.directory, title.split(":")[0]).replay
+    critical = reduce(shown.scenario.machine, shown.scenario.reduction).critical_speed_rpm
+    assert [0 < critical - speed < speeds[1] for speed in met] == [True]
+    assert first["y"][1] == pytest.approx(first["x"][1] / 60)
+    assert "rev/min" in title
+    once = poincare_section(shown)
+    np.testing.assert_allclose(orbits["data"][1]["x"], once[0, -len(orbits["data"][1]["x"]) :], rtol=1e-4)
+    assert [trace["visible"] for trace in orbits["data"]].count(True) == 2
+    assert len(orbits["layout"]["updatemenus"][0]["buttons"]) == len(orbits["data"]) / 2
+
+
+def test_a_browser_draws_the_figures_without_a_network(page, tmp_path):
+    need(CHROMIUM, "chromium")
+    places = page.read_text(encoding="utf-8").count('<div class="turn">')
+    drawing = "for (const place of document.querySelectorAll('.turn')) { seen.unobserve(place); draw(place); }"
+    copy = tmp_path / "drawn.html"
+    copy.write_text(page.read_text(encoding="utf-8") + f"<script>{drawing}</script>", encoding="utf-8")
+    drawn = page_content(copy, tmp_path)
+    assert len(re.findall(r'<div class="turn js-plotly-plot">', drawn)) == places
+    assert drawn.count('class="updatemenu-header"') == places - 1
 
 
 def test_the_ways_to_load_work(small_set):

@@ -8,7 +8,7 @@ from threadpoolctl import threadpool_limits
 
 from validation.verification import GROUPS, check
 from validation.verification import __main__ as command
-from validation.verification.report import Group, page, shown
+from validation.verification.report import Group, page, pages, shown
 from validation.verification.row import relative, within
 
 # The others take seconds each; `make verification` runs them all.
@@ -78,7 +78,7 @@ def test_a_wrong_element_is_flagged(monkeypatch):
 def test_the_command_writes_table_and_page_and_fails_on_a_wrong_row(tmp_path, monkeypatch, capsys, found, code):
     (tmp_path / "docs").mkdir()
     group = Group("Title", "Why.", [within("a | b", "source", 1.0, found, 0.1)])
-    monkeypatch.setattr(command, "GROUPS", ("one",))
+    monkeypatch.setattr(command, "GROUPS", {"one": "chaos.one"})
     monkeypatch.setattr(command, "check", lambda _: group)
     assert command.main([], tmp_path) == code
     (row,) = json.loads((tmp_path / "out" / "verification.json").read_text())
@@ -90,7 +90,9 @@ def test_the_command_writes_table_and_page_and_fails_on_a_wrong_row(tmp_path, mo
         "tolerance": 0.1,
         "ok": code == 0,
     }
-    assert ("a \\| b" in (tmp_path / "docs" / "verification.md").read_text()) is True
+    assert "a \\| b" in (tmp_path / "docs" / "verification" / "chaos.md").read_text()
+    first = (tmp_path / "docs" / "verification.md").read_text()
+    assert f"(verification/chaos.md) | 1 | {1 - code} | {code} |" in first
     printed = capsys.readouterr().out
     assert f"1 values, {code} not ok" in printed
     assert ("NOT OK" in printed) is (code == 1)
@@ -107,7 +109,10 @@ def test_the_page_shows_found_values_to_a_hundredth_of_their_tolerance():
     assert shown(-3e-17, 1e-8) == "0"
     assert shown(204.0, 0) == "204"
     group = Group("Beams", "Because.", [within("f", "s", 2.0, 3.0, 0.1)])
-    text = page([group])
+    text = page("Part", [group])
     assert "## Beams\n\nBecause.\n" in text
     assert "| f | s | 2 | 3 | 0.1 | **no** |" in text
-    assert "1 values, 0 ok, 1 not ok" in text
+    made = pages({"beams": group}, {"beams": "elements.beams"})
+    assert list(made) == ["verification.md", "verification/elements.md"]
+    assert made["verification/elements.md"].endswith(text.partition("\n")[2])
+    assert made["verification.md"].endswith("| 1 | 0 | 1 |\n| all | 1 | 0 | 1 |\n")

@@ -33,8 +33,10 @@ def test_every_section_is_computed_judged_and_drawn(tmp_path, monkeypatch):
     assert {one["figure"] for one in own} == {section.name for section in SECTIONS}
     assert all(one["found"] for one in statements)
     assert len({one["statement"] for one in own}) >= FEWEST
-    text, pictures = made.page.read_text(encoding="utf-8"), sorted(tmp_path.glob("zeng2019-*.png"))
-    assert all(f"({picture.name})" in text and picture.stat().st_size < 300_000 for picture in pictures)
+    assert made.page == tmp_path / "zeng2019.md"
+    text = "".join(path.read_text(encoding="utf-8") for path in sorted(tmp_path.glob("zeng2019*.md")))
+    pictures = sorted(tmp_path.glob("zeng2019-*.png"))
+    assert all(text.count(f"({picture.name})") == 1 and picture.stat().st_size < 300_000 for picture in pictures)
     assert len(pictures) >= 19
     assert "nan" not in text.replace("resonan", "")
     assert "| main cause | meaning | statements |" in text

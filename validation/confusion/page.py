@@ -36,6 +36,8 @@ centre, tips, casing), by how much, and whether the motion still settles, repeat
 or is one spectral line.
 
 ![Exponent over stray](confusion.png)
+
+*Above: exponent over stray, coloured by the 0-1 test. Below: agreement of each series over the speed.*
 """
 
 

@@ -23,7 +23,7 @@ def _introduction() -> str:
 # Options of contact, heavy rub, and shortening of blades
 
 `{COMMAND}` makes this page from runs of the preset `zeng2019`. [Sensitivity](sensitivity.md) defines the cases.
-[The model](model.md#options-of-contact) defines the options. Each option is off by default.
+[Options of contact](contact.md) defines the options. Each option is off by default.
 Classes of motion are those of data sets: with a Lyapunov exponent whose companion trajectory stops once the exponent is
 settled.
 """

@@ -1,4 +1,4 @@
-"""`python -m validation.verification [GROUP ...]`: the table, `out/verification.json`, `docs/verification.md`.
+"""`python -m validation.verification [GROUP ...]`: the table, `out/verification.json`, the pages in `docs/`.
 
 With groups named, the table alone. Ends with 1 when a row is not ok.
 """
@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_limits
 from rubgen.cache_root import CACHE_VARIABLE
 from validation.rows import write_rows
 from validation.verification import GROUPS, check
-from validation.verification.report import Group, line, page, summary
+from validation.verification.report import Group, line, pages, summary
 
 
 def main(names: list[str], folder: Path) -> int:
@@ -33,7 +33,9 @@ def main(names: list[str], folder: Path) -> int:
     rows = [row for group in groups.values() for row in group.rows]
     if not names:
         write_rows(folder / "out" / "verification.json", [row.as_dict() for row in rows])
-        (folder / "docs" / "verification.md").write_text(page(list(groups.values())), encoding="utf-8")
+        (folder / "docs" / "verification").mkdir(exist_ok=True)
+        for name, text in pages(groups, GROUPS).items():
+            (folder / "docs" / name).write_text(text, encoding="utf-8")
     return 0 if all(row.ok for row in rows) else 1
 
 

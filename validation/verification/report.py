@@ -11,17 +11,27 @@ from validation.verification.row import Row
 
 HEAD = """# Verification
 
-This table compares values that rubgen computes with its elements, reduction, contact and integrator with
-independent values. These come from a closed form, from the literature, or from another method written for the
-purpose (shooting, Runge-Kutta, Rayleigh-Ritz, Bessel determinants, dense full models). A row is ok if |found -
-expected| is at most the tolerance, in the unit of the row. For a range, the expected value is its middle. For a
-bound, the row counts the cases in which it is broken. Tolerances follow from the last digit of a table and from
-observed convergence, as each section says. No tolerance was widened to pass. Found values are rounded to a
-hundredth of the tolerance.
+These pages compare values that rubgen computes with independent values. Those come from a closed form, from the
+literature, or from another method that was written for the purpose: shooting, Runge-Kutta, Rayleigh-Ritz, Bessel
+determinants, dense full models.
 
-`make verification` makes this page and `out/verification.json`. It fails if a row is not ok.
+A row is ok if |found - expected| is at most the tolerance, in the unit of the row. For a range, the expected value is
+its middle. For a bound, the row counts the cases in which it is broken. Tolerances follow from the last digit of a
+table and from observed convergence, as each section says. No tolerance was widened to pass. Found values are rounded
+to a hundredth of the tolerance.
+
+`make verification` makes these pages and `out/verification.json`. It fails if a row is not ok.
 
 """
+PARTS = {
+    "elements": "Elements: beams, plates, disks, rings",
+    "rotors": "Rotors, supports, faults of the motion",
+    "sensors": "Bearing defects and the frame",
+    "contact": "Contact and integration in time",
+    "chaos": "Chaos and Lyapunov exponents",
+    "preset": "The preset",
+}
+"""The parts of the verification by the room of their modules, each a page."""
 
 
 @dataclass(frozen=True)
@@ -49,12 +59,36 @@ def line(row: Row) -> str:
     return f"{row.quantity:<82} {row.expected:>14.9g} {found:>16} +- {row.tolerance:<9.2g} {state}"
 
 
-def page(groups: Sequence[Group]) -> str:
-    """The page: a section with its table for each group."""
-    rows = [row for group in groups for row in group.rows]
+def pages(groups: Mapping[str, Group], rooms: Mapping[str, str]) -> dict[str, str]:
+    """The pages by their path in `docs/`: the first with the numbers of each part, then one for each part.
+
+    `rooms` has the module of each group, such as `rotors.reduction`.
+    """
+    parts: dict[str, list[Group]] = {}
+    for name, group in groups.items():
+        parts.setdefault(rooms[name].partition(".")[0], []).append(group)
+    rows = [row for group in groups.values() for row in group.rows]
+    counts = [(f"[{PARTS[part]}](verification/{part}.md)", *_counts(found)) for part, found in parts.items()]
+    first = HEAD + table(("part", "values", "ok", "not ok"), [*counts, ("all", *_count(rows))]) + "\n"
+    return {"verification.md": first} | {
+        f"verification/{part}.md": page(f"Verification: {PARTS[part][0].lower()}{PARTS[part][1:]}", found)
+        for part, found in parts.items()
+    }
+
+
+def page(title: str, groups: Sequence[Group]) -> str:
+    """A page of a part: a section with its table for each group."""
+    head = f"# {title}\n\n[Verification](../verification.md) says how to read these tables.\n\n"
+    return head + "\n".join(_section(group) for group in groups)
+
+
+def _counts(groups: Sequence[Group]) -> tuple[str, str, str]:
+    return _count([row for group in groups for row in group.rows])
+
+
+def _count(rows: Sequence[Row]) -> tuple[str, str, str]:
     failed = sum(not row.ok for row in rows)
-    summary = f"{len(rows)} values, {len(rows) - failed} ok, {failed} not ok.\n\n"
-    return HEAD + summary + "\n".join(_section(group) for group in groups)
+    return str(len(rows)), str(len(rows) - failed), str(failed)
 
 
 def _section(group: Group) -> str:

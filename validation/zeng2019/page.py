@@ -26,6 +26,16 @@ from validation.zeng2019.section import Section
 from validation.zeng2019.size import AS_COMPUTED, MACHINE, QUICK, Size
 from validation.zeng2019.statement import DIFFERS, Statement
 
+PAGE = "zeng2019"
+PARTS = {
+    "modes": "modes and frequencies (figures 6 to 9)",
+    "speed": "the sweep of the speed (figures 10 to 16)",
+    "supports": "stiffness of the supports (figures 17 to 21)",
+    "conclusions": "friction, conclusions and causes",
+}
+"""The parts of the page by the ending of their file names."""
+DIFFERING = "differences"
+POINTER = f"[The first page]({PAGE}.md) names the machines, the rules of the verdicts and the counts."
 STYLE = (
     "body{font:15px/1.5 sans-serif;max-width:72em;margin:2em auto;padding:0 1em;color:#222}"
     "table{border-collapse:collapse;width:100%;font-size:13px}td,th{border-top:1px solid #ddd;padding:.3em .5em;"
@@ -66,18 +76,49 @@ class Judged:
         return next((each for each in found if each.statement == one.statement), None)
 
 
-def markdown(judged: Sequence[Judged], size: Size) -> str:
-    """The page as Markdown; pictures are named as they stand beside it."""
-    parts = [f"# {TITLE}", *_introduction(size), table(COUNT_HEADER, _by_kind(judged))]
-    parts.append(table((HEADER_BY_FIGURE, *COUNT_HEADER[1:]), _by_figure(judged)))
+def pages(judged: Sequence[Judged], size: Size) -> dict[str, str]:
+    """The pages as Markdown by file name, beside their pictures: one for a single section, else one for each part."""
+    if len(judged) == 1:
+        return {f"{PAGE}.md": _joined([*_head(judged, size), *_sections(judged, size), *_ending(judged)])}
+    parts = {part: [each for each in judged if part_of(each.section.name) == part] for part in PARTS}
+    links = "\n".join(f"- [{title}]({PAGE}-{part}.md)" for part, title in [*PARTS.items(), (DIFFERING, DIFFERENCES)])
+    made = {f"{PAGE}.md": _joined([*_head(judged, size), f"## The parts\n\n{links}"])}
+    for part, found in parts.items():
+        made[f"{PAGE}-{part}.md"] = _joined([f"# {TITLE}: {PARTS[part]}", POINTER, *_sections(found, size)])
+    made[f"{PAGE}-{DIFFERING}.md"] = _joined([f"# {TITLE}: what differs, and why", POINTER, *_ending(judged)])
+    return made
+
+
+def part_of(name: str) -> str:
+    """The part of the pages that has the section of that name."""
+    number = int(name) if name.isdecimal() else 99
+    return "modes" if number <= 9 else "speed" if number <= 16 else "supports" if number <= 21 else "conclusions"
+
+
+def _joined(parts: Sequence[str]) -> str:
+    return "\n\n".join(parts) + "\n"
+
+
+def _head(judged: Sequence[Judged], size: Size) -> list[str]:
+    counts = [table(COUNT_HEADER, _by_kind(judged)), table((HEADER_BY_FIGURE, *COUNT_HEADER[1:]), _by_figure(judged))]
+    return [f"# {TITLE}", *_introduction(size), *counts]
+
+
+def _sections(judged: Sequence[Judged], size: Size) -> list[str]:
+    parts = []
     for each in judged:
         parts += [f"## {each.section.title}", each.section.text, f"    {each.section.command}{size.option}"]
         parts += [f"![{picture.caption}]({picture.name})\n\n*{picture.caption}.*" for picture in each.drawn]
         header, rows = _statements(each)
         parts.append(table(header, rows))
+    return parts
+
+
+def _ending(judged: Sequence[Judged]) -> list[str]:
+    parts = []
     for title, text, tables in _closing(judged):
         parts += [f"## {title}", text, *(table(header, rows) for header, rows in tables if rows)]
-    return "\n\n".join(parts) + "\n"
+    return parts
 
 
 def html(judged: Sequence[Judged], size: Size) -> str:

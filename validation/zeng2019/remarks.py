@@ -7,9 +7,9 @@ from validation.zeng2019.statement import HALF, MOST, ROUNDING, TOLERANCE
 
 TITLE = "The paper, reproduced"
 INTRODUCTION = f"""J. Zeng, C. Zhao, H. Ma, K. Yu, B. Wen, *Rubbing dynamic characteristics of the blisk-casing \
-system with elastic supports*, Aerosp. Sci. Technol. (2019), doi 10.1016/j.ast.2019.105481. This page computes the \
-figures of the paper again and judges its statements, in our words. `make zeng2019` makes this page, its pictures and \
-`statements.json`. The command under each heading makes only that section. Contact has no friction unless the text \
+system with elastic supports*, Aerosp. Sci. Technol. (2019), doi 10.1016/j.ast.2019.105481. These pages compute the \
+figures of the paper again and judge its statements, in our words. `make zeng2019` makes these pages, their pictures \
+and `statements.json`. The command under each heading makes only that section. Contact has no friction unless the text \
 says so.
 
 Two machines stand side by side (`docs/preset-zeng2019.md`). `{MACHINE}` is the machine of rubgen: contact on the \
@@ -27,14 +27,14 @@ same by the worst of the disk centre and the 36 tips. Rows marked `(experiment)`
 Neither are statements of the paper, and the tables do not count them."""
 DIFFERENCES = "Statements that differ, and why"
 DIFFERENCES_TEXT = f"""Each statement of the paper that differs with `{MACHINE}`, with one main cause and the \
-experiment that shows it. The first of these rules that applies decides: a cause that a section of this page shows for \
-all machines; `{AS_COMPUTED}` agrees (contact geometry if `{TWIN}` does not); another bound agrees; another reading \
+experiment that shows it. The first of these rules that applies decides: a cause that a section shows for all \
+machines; `{AS_COMPUTED}` agrees (contact geometry if `{TWIN}` does not); another bound agrees; another reading \
 agrees; the twin agrees; some candidate of the search agrees. No verdict changes by this."""
 
 
 CHANGES = "The tally before and after"
 CHANGES_TEXT = f"""Version 0.1.0 judged the statements on the blisk by the worst of disk centre and tips, and counted \
-our own experiments. This page judges the disk centre and counts the statements of the paper only. These are the \
+our own experiments. These pages judge the disk centre and count the statements of the paper only. These are the \
 numbers with `{MACHINE}` before and after, and each statement whose kind of verdict changed. The rules of the verdicts \
 are the same."""
 

@@ -16,12 +16,12 @@ from validation.zeng2019.drawing.style import png
 from validation.zeng2019.fitting.evidence import read_evidence
 from validation.zeng2019.fitting.page import ROOMS
 from validation.zeng2019.fitting.page import page as page_of_the_fit
-from validation.zeng2019.page import Drawn, Judged, html, markdown
+from validation.zeng2019.page import PAGE, Drawn, Judged, html, pages
 from validation.zeng2019.section import Section
 from validation.zeng2019.sections import SECTIONS
 from validation.zeng2019.size import FULL, MACHINES, QUICK, Size, sizes
 
-PAGE, FIT_PAGE = "zeng2019", "zeng2019-fit.md"
+FIT_PAGE = "zeng2019-fit.md"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +50,7 @@ def reproduce(
 
     `every` takes every so many-th speed: 1 steps by 30 rev/min, 4 by 120. `figure` asks for one section; its page goes
     to `out/figure-N`. Sections that are `compared` are judged with all of MACHINES. Pieces of computation are kept in
-    `out/pieces`: the same call after an interruption makes the rest. Writes `zeng2019.md` with its pictures,
+    `out/pieces`: the same call after an interruption makes the rest. Writes `zeng2019*.md` with their pictures,
     `zeng2019.html` (one file) and `statements.json`; for all figures also the page of the search, from its kept
     results. Raises UserError for an unknown figure, and for an `out` that is not ours or cannot be written.
     """
@@ -100,7 +100,8 @@ def write(judged: Sequence[Judged], size: Size, folder: Path) -> Path:
         _write_png(folder / picture.name, picture.png)
     write_rows(folder / "statements.json", statement_rows(judged, size))
     write_text(folder / f"{PAGE}.html", html(judged, size))
-    write_text(folder / f"{PAGE}.md", markdown(judged, size))
+    for name, text in pages(judged, size).items():
+        write_text(folder / name, text)
     return folder / f"{PAGE}.md"
 
 

@@ -18,14 +18,14 @@ moment."""
 ADVICE = {
     "blade": (
         "of 24 such runs of the preset 21 stayed in range with friction 0.02, 12 with a quarter of the casing's "
-        "support stiffness, 10 with four times the damping of the blades (docs/model.md)"
+        "support stiffness, 10 with four times the damping of the blades (docs/status.md)"
     ),
     "casing": (
         "of 24 such runs of the preset 21 stayed in range with four times the casing's support stiffness, 11 with half "
-        "the unbalance, 10 with four times the damping of the casing (docs/model.md)"
+        "the unbalance, 10 with four times the damping of the casing (docs/status.md)"
     ),
 }
-"""What to change, by the branch that left its range. The numbers were counted, see docs/model.md."""
+"""What to change, by the branch that left its range. The numbers were counted, see docs/status.md."""
 
 
 class Growth:

@@ -84,7 +84,7 @@ def test_a_tip_beyond_its_limit_or_no_number_is_the_blade_s_and_else_it_is_the_c
 
 
 def test_the_advice_counts_what_the_page_of_the_model_counts():
-    page = (Path(__file__).parents[3] / "docs/model.md").read_text()
+    page = (Path(__file__).parents[3] / "docs/status.md").read_text()
     rows = dict(re.findall(r"^\| (friction 0.02|[^|]+?) \| (.+) \|$", page, re.MULTILINE))
     expected = {
         "blade": ["friction 0.02", "casing support stiffness / 4", "damping of the blades x 4"],
