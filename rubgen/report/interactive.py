@@ -87,7 +87,7 @@ def _campbell(machine: Machine, reduction: Reduction) -> Values:
 
 def _orbits(replays: list[Replay]) -> Values:
     """Draw the last turns of the recorded orbit in space: x, y and the turn, with the section."""
-    data, shown = [], []
+    data, shown = list[Values](), list[Replay]()
     for replay in replays:
         orbit, once = shaft_orbit(replay), poincare_section(replay)
         pulses = replay.pulse_times
@@ -116,7 +116,7 @@ def _orbits(replays: list[Replay]) -> Values:
 
 def _waterfalls(replays: list[Replay]) -> Values:
     """Draw order spectra of the first channel over the time or the speed as a surface, in dB of its largest value."""
-    data, shown = [], []
+    data, shown = list[Values](), list[Replay]()
     for replay in replays:
         name = next(iter(replay.recording.channels))
         channel, pulses = replay.recording.channels[name], replay.pulse_times
@@ -141,7 +141,7 @@ def _waterfalls(replays: list[Replay]) -> Values:
 
 def _chooser(data: list[Values], shown: list[Replay], each: int, axes: dict[str, str]) -> Values:
     """Return data and layout of a scene with a menu of the runs, of `each` traces, the first one visible."""
-    buttons = []
+    buttons: list[Values] = []
     for number, replay in enumerate(shown):
         seen = [trace // each == number for trace in range(len(data))]
         title = escape(f"{replay.title}; {replay.headline}")
