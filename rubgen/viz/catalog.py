@@ -8,10 +8,13 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
+
+import pyarrow as pa
 
 from rubgen.errors import UserError
 from rubgen.viz.rerun import APPLICATION
@@ -28,6 +31,16 @@ LINK, SEGMENT = "recording link", "rerun_segment_id"
 """Columns of every such table: what opens a recording, and its id."""
 SHOWN = "property:{}:{}"
 """How Rerun calls the column of a property, by its group and name."""
+
+
+@dataclass(frozen=True)
+class _Cell:
+    """A value as Rerun takes it, with its own type: `rr.AnyValues` gives all columns of one name the same type."""
+
+    value: object
+
+    def as_arrow_array(self) -> pa.Array:
+        return pa.array([self.value])
 
 
 class Catalog:
@@ -72,7 +85,10 @@ class Catalog:
         for number, (segment, values) in enumerate(rows.items()):
             stream = rr.RecordingStream(APPLICATION, recording_id=segment, send_properties=False)
             memory = stream.memory_recording()
-            stream.send_property(group, rr.AnyValues(**values))
+            cells = [
+                rr.DescribedComponentBatch(_Cell(value), rr.ComponentDescriptor(name)) for name, value in values.items()
+            ]
+            stream.send_property(group, cells)
             path = self.folder / f"{group}-{number}.rrd"
             path.write_bytes(memory.drain_as_bytes())
             stream.disconnect()

@@ -168,7 +168,7 @@ def test_a_failed_run_ends_with_1(run, short, monkeypatch, rub_run, tmp_path):
 
 BAD = {
     "unknown command": (["simulat"], "simulat: unknown command; did you mean simulate? commands: baseline, "),
-    "unlike any command": (["zzz"], "zzz: unknown command; commands: baseline, completion, "),
+    "unlike any command": (["zzz"], "zzz: unknown command; commands: baseline, browse, "),
     "last command": (["infoo"], "simulate, verify\n"),
     "unknown option": (
         ["simulate", "--sped-rpm", "3"],

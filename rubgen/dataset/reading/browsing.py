@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -99,6 +100,10 @@ def read_predictions(path: Path, data: DataSet) -> pd.DataFrame:
     lists = [name for name in found.columns if not found[name].map(pd.api.types.is_scalar).all()]
     if lists:
         raise UserError(f"{named}: {lists[0]} has lists; give one value a run")
+    found.columns = pd.Index([re.sub(r"\W", "_", str(name)) for name in found.columns])  # as Rerun names columns
+    alike = found.columns[found.columns.duplicated()]
+    if not alike.empty:
+        raise UserError(f"{named}: two columns are called {alike[0]} where other characters become _; rename one")
     return found.set_index("run_id")
 
 

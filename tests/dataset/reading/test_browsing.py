@@ -74,9 +74,15 @@ def test_answers_of_a_model_stand_beside_the_truth(shown_set, table_of, tmp_path
     assert "property:prediction:score_right" not in table
 
 
-def test_a_condition_chooses_the_runs(shown_set, table_of):
-    table = table_of(shown_set, "--where", "run_id = 'run-000001'")
+def test_a_condition_chooses_the_runs_and_a_probability_stays_a_number(shown_set, table_of, tmp_path):
+    path = tmp_path / "answers.csv"
+    path.write_text("run_id,rub,motion,my note\nrun-000001,0.5,chaotic,a b\nrun-000000,0.25,chaotic,\n")
+    table = table_of(shown_set, "--where", "run_id = 'run-000001'", "--predictions", path)
     assert list(table["property:run:run_id"]) == ["run-000001"]
+    assert list(table["property:prediction:rub"]) == [0.5]
+    assert "property:prediction:rub_right" not in table
+    assert list(table["property:prediction:motion"]) == ["chaotic"]
+    assert list(table["property:prediction:my_note"]) == ["a b"]
 
 
 @pytest.mark.parametrize(
@@ -86,6 +92,7 @@ def test_a_condition_chooses_the_runs(shown_set, table_of):
         ("run_id\nrun-000000\n", "has no column beside run_id"),
         ("run_id,rub\nrun-000000,1\nrun-000000,0\n", "run-000000 stands there twice"),
         ("run_id,rub\na,1\n", "none of its runs is in"),
+        ("run_id,a b,a_b\nrun-000000,1,2\n", "two columns are called a_b"),
         ("", "cannot be read as csv"),
         (None, "there is no such file"),
     ],
