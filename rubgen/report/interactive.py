@@ -115,16 +115,18 @@ def _orbits(replays: list[Replay]) -> Values:
 
 
 def _waterfalls(replays: list[Replay]) -> Values:
-    """Draw order spectra of the first channel over the time or the speed as a surface, in dB of its largest value."""
-    data, shown = list[Values](), list[Replay]()
+    """Draw order spectra of an accelerometer, else of the first channel, over the time as a surface, in dB."""
+    data, shown, name = list[Values](), list[Replay](), ""
     for replay in replays:
-        name = next(iter(replay.recording.channels))
-        channel, pulses = replay.recording.channels[name], replay.pulse_times
+        channels = list(replay.recording.channels.values())
+        channel = next((each for each in channels if each.quantity == "acceleration"), channels[0])
+        pulses = replay.pulse_times
         found = order_map(channel.values, replay.recording.sample_rate_hz, pulses, most_blocks=BLOCKS)
         if len(found.time) < 2 or not found.amplitude.any():
             continue
         level = 20 * np.log10(np.maximum(found.amplitude / found.amplitude.max(), 10 ** (-DECIBELS / 20)))
         shown.append(replay)
+        name = channel.name
         data.append(
             {
                 "type": "surface", "x": _short(found.order), "y": _short(found.time),
@@ -135,7 +137,7 @@ def _waterfalls(replays: list[Replay]) -> Values:
     axes = {"x": "Order f / f_r", "y": "Time, s", "z": "dB of the largest"}
     return {
         "name": "Waterfalls of the examples",
-        "text": "Order spectra of the first channel over the time, each of 16 turns.",
+        "text": f"Order spectra of {name} over the time, each of 16 turns.",
     } | _chooser(data, shown, 1, axes)
 
 
@@ -144,15 +146,19 @@ def _chooser(data: list[Values], shown: list[Replay], each: int, axes: dict[str,
     buttons: list[Values] = []
     for number, replay in enumerate(shown):
         seen = [trace // each == number for trace in range(len(data))]
-        title = escape(f"{replay.title}; {replay.headline}")
+        title = f"{escape(replay.title)}<br>{escape(replay.headline)}"
         change = [{"visible": seen}, {"title.text": title}]
         buttons.append({"label": escape(replay.scenario.run_id), "method": "update", "args": change})
     for trace, values in enumerate(data):
         values |= {"visible": trace < each, "showlegend": False}
     scene = {f"{name}axis": {"title": {"text": text}} for name, text in axes.items()}
-    layout = _layout(scene=scene | {"aspectmode": "cube", "camera": {"eye": {"x": 1.6, "y": 1.6, "z": 1.0}}})
+    layout = _layout(
+        margin={"l": 0, "r": 0, "t": 40, "b": 50},
+        scene=scene | {"aspectmode": "cube", "camera": {"eye": {"x": 1.9, "y": 1.9, "z": 1.1}}},
+    )
     if buttons:
-        layout |= {"title": {"text": buttons[0]["args"][1]["title.text"], "font": {"size": 13}}}
+        below = {"x": 0.5, "y": 0.07, "yanchor": "bottom", "yref": "container", "font": {"size": 13}}
+        layout |= {"title": below | {"text": buttons[0]["args"][1]["title.text"]}}
         layout |= {"updatemenus": [{"buttons": buttons, "x": 0, "xanchor": "left", "y": 1, "yanchor": "top"}]}
     return {"data": data, "layout": layout}
 
