@@ -79,7 +79,7 @@ def resense(
     directory: Directory,
     /,
     *,
-    sensors: Annotated[str, _option("Sensor set: default, rig, field, or the path of a TOML.")],
+    sensors: Annotated[str, _option("Sensor set: default, rig, field, field-cheap, or the path of a TOML.")],
     out: Annotated[Path, _option("New or empty directory, or the one of the same command, which is then completed.")],
     workers: Annotated[int | None, _whole_number("Number of processes; the number of cores when not given.")] = None,
     json: Json = False,

@@ -15,7 +15,6 @@ PROFILES_OF: dict[str, tuple[ProfileName, ...]] = {
     "duration_s": ("run-up", "coast-down", "fluctuating"),
     "fluctuation_rpm": ("fluctuating",),
     "fluctuation_period_s": ("fluctuating",),
-    "free_penetration_m": ("steady",),
     "record_turns": ("steady",),
     "lyapunov": ("steady",),
 }

@@ -283,7 +283,9 @@ class Recipe(BaseModel):
     def twin_of(self, index: int) -> int | None:
         """Return the number of the run whose twin run number `index` is; None for any other run."""
         count = self.machines.runs_per_machine if self.machines else MOST_RUNS
-        return partner_of(index, self.twins.share, index // count * count, count) if self.twins else None  # type: ignore[attr-defined]
+        if not self.twins:
+            return None
+        return partner_of(index, self.twins.share, self.seed, index // count * count, count)  # type: ignore[attr-defined]
 
     def _drawn(self, index: int, point: Mapping[str, float], number: int) -> Scenario:
         """Draw run number `index` at that point of `[vary]`; its faults have the random numbers of `number`."""

@@ -14,7 +14,7 @@ from rubgen.labels import MOTION_CLASSES, Motion
 from rubgen.machine.faults.registry import FAULTS
 from rubgen.sensors.load import load_sensor_set
 
-SETS = ("default", "rig", "field")
+SETS = ("default", "rig", "field", "field-cheap")
 
 
 @pytest.mark.parametrize("name", SETS)

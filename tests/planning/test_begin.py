@@ -90,7 +90,7 @@ def run(capsys, *words):
         (["recipe", "mine.txt"], "end the name in .toml"),
         (["recipe", "no/mine.toml"], "there is no directory no"),
         (["machine", "mine.toml", "--from", "zeng2091"], "did you mean zeng2019"),
-        (["sensors", "mine.toml", "--from", "zeng2019"], "allowed: default, field, rig"),
+        (["sensors", "mine.toml", "--from", "zeng2019"], "allowed: default, field-cheap, field, rig"),
         (["machines", "mine.toml"], "must be one of recipe, machine, sensors"),
         ([], "KIND"),
     ],

@@ -2,6 +2,7 @@
 
 from dataclasses import fields, is_dataclass
 
+import numpy as np
 import pytest
 
 from rubgen.errors import UserError
@@ -33,6 +34,12 @@ def differences(one, other, place=""):
         yield place
 
 
+def pair(recipe, slot):
+    """Return run and twin of a slot that is a pair."""
+    twin = next(index for index in (2 * slot, 2 * slot + 1) if recipe.twin_of(index) is not None)
+    return recipe.scenario(twin ^ 1), recipe.scenario(twin)
+
+
 @pytest.mark.parametrize(
     ("change", "place"),
     [
@@ -47,17 +54,19 @@ def differences(one, other, place=""):
 )
 def test_a_pair_differs_in_one_place(change, place):
     recipe = parse_recipe({**RECIPE, "twins": change})
-    for index in (0, 2, 4):
-        assert list(differences(recipe.scenario(index), recipe.scenario(index + 1))) == [place]
-        assert recipe.scenario(index + 1).partner == recipe.scenario(index).run_id
+    for slot in range(3):
+        run, twin = pair(recipe, slot)
+        assert list(differences(run, twin)) == [place]
+        assert twin.partner == run.run_id
     plain = parse_recipe(RECIPE)
     allowed = {"fault_kinds"}  # those of every run of the recipe: the twins may have one more
-    assert set(differences(plain.scenario(2), recipe.scenario(2))) <= allowed
+    run = pair(recipe, 1)[0]
+    assert set(differences(plain.scenario(run.index), run)) <= allowed
 
 
 def test_a_twin_in_place_of_a_drawn_penetration_changes_the_clearance_alone():
     vary = {"free_penetration_m": {"uniform": [-1e-4, 5e-5]}}
-    given = parse_recipe({**RECIPE, "vary": vary, "twins": {"clearance_m": 4e-4}}).scenario(1)
+    given = pair(parse_recipe({**RECIPE, "vary": vary, "twins": {"clearance_m": 4e-4}}), 0)[1]
     assert (given.free_penetration_m, given.machine.casing.clearance_m) == (None, 4e-4)
 
 
@@ -66,7 +75,7 @@ def test_a_fault_keeps_the_clearance_that_followed_from_a_penetration():
 
     vary = {"free_penetration_m": {"uniform": [-1e-4, 5e-5]}}
     recipe = parse_recipe({**RECIPE, "vary": vary, "twins": {"fault": {"kind": "lost-tip", "lost_kg": 1e-3}}})
-    run, twin = (with_clearance(recipe.scenario(index)) for index in (0, 1))
+    run, twin = map(with_clearance, pair(recipe, 0))
     assert varied_values(run) == varied_values(twin)
     assert list(differences(run, twin)) == ["machine.faults"]
 
@@ -75,12 +84,21 @@ def test_a_fault_keeps_the_clearance_that_followed_from_a_penetration():
 @pytest.mark.parametrize("count", [2, 3, 4, 7, 1000])
 def test_the_share_of_runs_with_a_twin_is_met_within_every_machine_block(share, count):
     runs = count * (20_000 // count)
-    partners = [partner_of(index, share, index // count * count, count) for index in range(runs)]
+    partners = [partner_of(index, share, 3, index // count * count, count) for index in range(runs)]
     twins = sum(each is not None for each in partners)
     possible = (count // 2) / (count - count // 2)
-    assert twins / (runs - twins) == pytest.approx(min(share, possible), abs=2e-3)
-    assert all(each in (None, index - 1) for index, each in enumerate(partners))
+    assert twins / (runs - twins) == pytest.approx(min(share, possible), abs=0.02)  # four standard errors
+    assert all(each is None or each == index ^ 1 or count % 2 for index, each in enumerate(partners))
+    assert all(each is None or abs(each - index) == 1 for index, each in enumerate(partners))
+    assert all(each is None or partners[each] is None for each in partners)
     assert all(each is None or each // count == index // count for index, each in enumerate(partners))
+
+
+def test_no_place_in_the_set_tells_of_a_twin():
+    twins = np.array([partner_of(index, 0.5, 3, index // 8 * 8, 8) is not None for index in range(16_000)])
+    for period in (2, 3, 5, 8, 12, 24):  # four standard errors
+        shares = [twins[first::period].mean() for first in range(period)]
+        assert np.ptp(shares) < 8 * np.sqrt(0.22 * period / twins.size)
 
 
 def test_partners_do_not_depend_on_the_number_of_runs():
@@ -121,7 +139,9 @@ def test_a_level_without_the_table_of_surroundings_is_refused():
 
 def test_the_example_has_pairs_of_which_the_twin_stays_clear():
     recipe = load_recipe(RECIPES / "twins.toml")
-    assert [recipe.scenario(index).machine.casing.clearance_m == 1e-3 for index in range(4)] == [False, True] * 2
+    clear = [recipe.scenario(index).machine.casing.clearance_m == 1e-3 for index in range(16)]
+    assert all(sum(pair) == 1 for pair in zip(clear[::2], clear[1::2], strict=True))
+    assert len(set(clear[::2])) == 2  # either may be the twin
 
 
 def test_twins_stay_with_their_machine_and_its_split():
@@ -130,7 +150,8 @@ def test_twins_stay_with_their_machine_and_its_split():
     data |= {"machines": machines, "splits": {"train": 0.5, "test": 0.5}, "twins": {"friction": 0.1}}
     recipe = parse_recipe(data)
     twins = [index for index in range(18) if recipe.twin_of(index) is not None]
-    assert twins == [index for index in range(18) if index % 3 == 1]
-    assert all(recipe.split_of(index) == recipe.split_of(index - 1) for index in twins)
+    assert [index // 3 for index in twins] == list(range(6))
+    assert all(index % 3 < 2 for index in twins)
+    assert all(recipe.split_of(index) == recipe.split_of(recipe.twin_of(index)) for index in twins)
     with pytest.raises(UserError, match="runs_per_machine = 1: a twin is another run"):
         parse_recipe({**data, "machines": {**machines, "runs_per_machine": 1}})

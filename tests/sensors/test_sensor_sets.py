@@ -53,7 +53,7 @@ def test_every_file_of_a_kind_is_registered_under_its_name():
 
 
 def test_packaged_sets():
-    assert sensor_set_names() == ["default", "field", "rig"]
+    assert sensor_set_names() == ["default", "field", "field-cheap", "rig"]
     for name in sensor_set_names():
         assert load_sensor_set(name).name == name
 
@@ -123,7 +123,8 @@ def test_a_wrong_set_is_refused_in_one_line(tmp_path, old, new, message):
 
 def test_unknown_and_missing_sets(tmp_path):
     with pytest.raises(
-        UserError, match=r"sensors\.set = 'ring': no such set; did you mean rig\? allowed: default, field, rig, or "
+        UserError,
+        match=r"sensors\.set = 'ring': no such set; did you mean rig\? allowed: default, field, field-cheap, rig, or ",
     ):
         load_sensor_set("ring")
     recipe = written(tmp_path, GOOD)

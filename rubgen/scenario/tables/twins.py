@@ -1,12 +1,13 @@
 """`[twins]`: runs that differ from their partner in one thing alone."""
 
-import math
+import zlib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pkgutil import resolve_name
 from typing import Annotated, Any, Self, get_type_hints
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, create_model, model_validator
 
 from rubgen.errors import UserError
@@ -24,7 +25,6 @@ KEEPS_MOTION = ("friction", *CLEARANCES, *AROUND)
 """Keys that leave the rub-free motion as it is, and so the clearance that follows from a free penetration."""
 WITH_CLEARANCE = "rubgen.solver.linear.reach:with_clearance"
 """It needs the solver, above this room, so it is named here and imported when used."""
-_WEYL = math.sqrt(2)
 _HINTS = get_type_hints(Surroundings, include_extras=True)
 _SHARE = "Share of the runs that have a twin. Fewer twins leave more runs that stand alone."
 _FAULT = "A fault of the twin: its kind and its values. It replaces a fault of the same kind that the run has."
@@ -76,20 +76,21 @@ Twins = create_model(
 )
 
 
-def partner_of(index: int, share: float, first: int, count: int) -> int | None:
+def partner_of(index: int, share: float, seed: int, first: int, count: int) -> int | None:
     """Return the run whose twin run number `index` is; None where it is no twin.
 
-    A machine's runs, `count` from number `first`, are slots of two neighbours. Slot k of all machines together is a
-    pair where frac(k sqrt(2)) < p: a Weyl sequence, so pairs are evenly spread (Kuipers and Niederreiter, Uniform
-    Distribution of Sequences, 1974). With p = 2 share / (1 + share) that share of the runs that are no twins has one.
-    An odd last run of a machine has no twin: p makes up for it, up to one pair in each slot.
+    A machine's runs, `count` from number `first`, are slots of two neighbours. A slot is a pair with probability p, and
+    the first or the second of it is the twin. Seed and slot draw both, so that no place in the set tells of a twin.
+    With p = 2 share / (1 + share) that share of the runs that are no twins has one. An odd last run of a machine has no
+    twin: p makes up for it, up to one pair in each slot.
     """
     slots, number = count // 2, index - first
-    if number % 2 == 0 or not slots:
+    if number >= 2 * slots:
         return None
     wanted = 2 * share / (1 + share) * (count / (2 * slots))
-    slot = first // count * slots + number // 2
-    return index - 1 if math.modf(slot * _WEYL)[0] < wanted else None
+    generator = np.random.default_rng([seed, first // count * slots + number // 2, zlib.crc32(b"twins")])
+    is_pair, place = generator.random() < wanted, int(generator.integers(2))
+    return index + 1 - 2 * place if is_pair and number % 2 == place else None
 
 
 def twin(partner: Scenario, twins: BaseModel, source: str = "") -> Scenario:

@@ -55,20 +55,25 @@ def with_clearance(scenario: Scenario) -> Scenario:
     """Return the scenario with the clearance that gives its `free_penetration_m`; the same scenario where it has none.
 
     A larger clearance moves the undeformed surface outward and leaves the rub-free motion as it is. One correction is
-    therefore exact but for rounding, at the speed of the run and at the beginning of its record. Raises UserError where
-    there is no such clearance.
+    therefore exact but for rounding, at the speed of the run and at the beginning of its record. A changing speed has
+    the penetration of the steady speed that reaches farthest, of the nine of `deepest`. Raises UserError where there is
+    no such clearance.
     """
     wanted, casing = scenario.free_penetration_m, scenario.machine.casing
     if wanted is None:
         return scenario
     model = reduce(scenario.machine, scenario.reduction)
-    system = model.at_speed(scenario.operation.speed_rad_per_s)
-    depth = free_penetration(rub_free_motion(system), casing_surface(system, scenario.contact), blade_tips(system))
+    depths = []
+    for speed in _speeds(scenario):
+        system = model.at_speed(speed)
+        surface, tips = casing_surface(system, scenario.contact), blade_tips(system)
+        depths.append((free_penetration(rub_free_motion(system), surface, tips), speed))
+    depth, at = max(depths)
     clearance = casing.clearance_m + depth - wanted
     if clearance < LEAST_CLEARANCE_M:
         most = casing.clearance_m + depth - LEAST_CLEARANCE_M
         raise UserError(
-            f"free_penetration_m = {wanted:.6g}: at {scenario.operation.speed_rpm:g} rev/min it needs a clearance of "
+            f"free_penetration_m = {wanted:.6g}: at {rev_per_min(at):g} rev/min it needs a clearance of "
             f"{clearance:.3g} m at rest; lower it to at most {most:.4g}"
         )
     machine = replace(scenario.machine, casing=replace(casing, clearance_m=clearance))
@@ -82,9 +87,8 @@ def deepest(scenario: Scenario) -> tuple[float, float]:
     a run through a critical speed is smaller. Raises UserError where a speed makes no run.
     """
     scenario = with_clearance(scenario)
-    model, rotation = reduce(scenario.machine, scenario.reduction), scenario.operation.rotation
-    speeds = [rotation.start] if rotation.is_steady else np.linspace(rotation.slowest, rotation.fastest, SPEEDS)
-    return max((penetration_at(model, scenario, float(speed)), rev_per_min(float(speed))) for speed in speeds)
+    model = reduce(scenario.machine, scenario.reduction)
+    return max((penetration_at(model, scenario, speed), rev_per_min(speed)) for speed in _speeds(scenario))
 
 
 def penetration_at(model: ReducedModel, scenario: Scenario, speed: float) -> float:
@@ -99,6 +103,14 @@ def penetration_at(model: ReducedModel, scenario: Scenario, speed: float) -> flo
         return math.inf
     surface, tips = casing_surface(system, scenario.contact), blade_tips(system)
     return free_penetration(rub_free_motion(system), surface, tips)
+
+
+def _speeds(scenario: Scenario) -> list[float]:
+    """Return the speed of a run in rad/s, or nine from its slowest to its fastest."""
+    rotation = scenario.operation.rotation
+    if rotation.is_steady:
+        return [rotation.start]
+    return [float(speed) for speed in np.linspace(rotation.slowest, rotation.fastest, SPEEDS)]
 
 
 def _question(scenarios: Sequence[Scenario]) -> str:
