@@ -1,8 +1,8 @@
 """Labelled blade-rub data from a finite-element blisk in a flexible oval casing.
 
-`make_scenario` and `simulate` make one run in memory, `stream` the runs of a recipe, `generate` a whole data set.
-`open` reads a set. Importing rubgen imports no other module, so that a command handles Ctrl-C from its first moment.
-Functions import what they need.
+`make_scenario` and `simulate` make one run in memory, `stream` the runs of a recipe, `generate` a whole data set,
+`merge` one set of several. `open` reads a set. Importing rubgen imports no other module, so that a command handles
+Ctrl-C from its first moment. Functions import what they need.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from rubgen.dataset.making.generate import generate
     from rubgen.dataset.making.resense import resense
+    from rubgen.dataset.merging.merge import merge
     from rubgen.dataset.reading.open import DataSet
     from rubgen.errors import RubgenError, UserError
     from rubgen.pipeline import Run
@@ -26,6 +27,7 @@ __all__ = [
     "generate",
     "load_recipe",
     "make_scenario",
+    "merge",
     "open",
     "resense",
     "simulate",
@@ -41,6 +43,7 @@ _HOMES = {
     "generate": "rubgen.dataset.making.generate",
     "load_recipe": "rubgen.scenario",
     "make_scenario": "rubgen.scenario",
+    "merge": "rubgen.dataset.merging.merge",
     "resense": "rubgen.dataset.making.resense",
     "stream": "rubgen.streaming",
 }

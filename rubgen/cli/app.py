@@ -91,6 +91,18 @@ def resense(
 
 
 @app.command
+def merge(
+    *directories: Directory,
+    out: Annotated[Path, _option("New or empty directory, or the one of the same command, which is then completed.")],
+    json: Json = False,
+) -> int:
+    """Make one data set of several with other seeds; runs get new names, splits stay, nothing is simulated."""
+    from rubgen.cli.generating import merge_command
+
+    return merge_command(directories, out, as_json=json)
+
+
+@app.command
 def init(
     kind: Annotated[Literal["recipe", "machine", "sensors"], _option("What to begin.")],
     file: Annotated[Path | None, _option("File to write; the kind with the ending .toml when not given.")] = None,
@@ -391,12 +403,13 @@ def verify(
     sample: Annotated[
         int | None, _whole_number("Read only that many shards, drawn anew; of the rest, presence and size.")
     ] = None,
+    repair: Annotated[bool, Parameter(negative=(), help="Then do what rubgen repair does.")] = False,
     json: Json = False,
 ) -> int:
     """Check hashes, checksums, schemas, and labels against signals; exit 1 where something is wrong."""
     from rubgen.cli.inspecting import verify_command
 
-    return verify_command(directory, sample, as_json=json)
+    return verify_command(directory, sample, repair=repair, as_json=json)
 
 
 @app.command

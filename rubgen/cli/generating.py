@@ -1,9 +1,9 @@
-"""The commands `rubgen generate` and `rubgen resense`: progress for people, a summary for programs."""
+"""The commands `rubgen generate`, `rubgen resense` and `rubgen merge`: progress for people, a summary for programs."""
 
 import dataclasses
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -15,6 +15,7 @@ from rubgen.cli.printing import print_json, say
 from rubgen.dataset.making.generate import Generated, generate
 from rubgen.dataset.making.outcome import finished_runs
 from rubgen.dataset.making.resense import resense
+from rubgen.dataset.merging.merge import merge
 from rubgen.formats import run_formats
 
 
@@ -44,6 +45,14 @@ def resense_command(directory: Path, sensors: str, out: Path, workers: int | Non
     """
     made = partial(resense, directory, sensors, out, workers=workers, progress=not as_json)
     return _made_in(out, made, as_json=as_json)
+
+
+def merge_command(directories: Sequence[Path], out: Path, *, as_json: bool) -> int:
+    """Merge data sets and print a summary. The parameters are those of `rubgen.merge`.
+
+    Returns the exit code 0. After Ctrl-C it prints how to continue and returns 130.
+    """
+    return _made_in(out, partial(merge, directories, out, progress=not as_json), as_json=as_json)
 
 
 def _made_in(out: Path, make: Callable[[], Generated], *, as_json: bool) -> int:

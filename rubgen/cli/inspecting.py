@@ -13,6 +13,7 @@ from rubgen.dataset.checking.inventory import Finding
 from rubgen.dataset.checking.relabel import relabel
 from rubgen.dataset.checking.verify import advice, findings
 from rubgen.dataset.making.outcome import Unfinished, unfinished
+from rubgen.errors import UserError
 from rubgen.labels import Motion
 from rubgen.progress import step
 
@@ -56,32 +57,41 @@ def _tell_unfinished(directory: Path, begun: Unfinished, *, as_json: bool) -> in
     return 0
 
 
-def verify_command(directory: Path, sample: int | None, *, as_json: bool) -> int:
+def verify_command(directory: Path, sample: int | None, *, repair: bool = False, as_json: bool) -> int:
     """Check the data set in `directory` and print its problems with their remedy.
 
-    With `sample` the content of that many shards is read. Returns the exit code 1 if there is a problem, else 0.
+    With `sample` the content of that many shards is read. With `repair` files are then made again as `repair_command`
+    does. Returns the exit code 1 if there is a problem in the end, else 0.
     """
+    if repair:
+        if sample is not None:
+            raise UserError(f"--sample {sample}: --repair reads all shards; leave out one of the two")
+        return repair_command(directory, as_json=as_json, told=True)
     with step("verify"):
         found = findings(directory, sample=sample)
     return _tell(directory, found, {}, as_json=as_json)
 
 
-def repair_command(directory: Path, *, as_json: bool) -> int:
-    """Make damaged or missing derived files again and print them, then the problems that remain.
+def repair_command(directory: Path, *, as_json: bool, told: bool = False) -> int:
+    """Make damaged or missing files again and print them, then the problems that remain.
 
-    Returns the exit code 1 if a problem remains, else 0.
+    With `told` what was wrong is printed first. Returns the exit code 1 if a problem remains, else 0.
     """
     from rubgen.dataset.checking.repair import repair
 
     with step("repair"):
         done = repair(directory)
+    found = [each.text for each in done.found]
     if not as_json:
+        for text in found if told and done.made else ():
+            say(text)
         for path in done.made:
             say(f"{path}: made again")
         if done.left and done.versions:
             name, (then, now) = next(iter(done.versions.items()))
             say(f"made with {name} {then}, now it is {now}: only the version that made the set makes its bytes again")
-    return _tell(directory, list(done.left), {"made": list(done.made)}, as_json=as_json)
+    more: dict[str, object] = {"made": list(done.made), **({"found": found} if told else {})}
+    return _tell(directory, list(done.left), more, as_json=as_json)
 
 
 def _tell(directory: Path, found: list[Finding], more: dict[str, object], *, as_json: bool) -> int:

@@ -45,19 +45,22 @@ def card(identity: Identity, status: dict[str, int], tally: Tally) -> str:
         surroundings="surroundings" in recipe,
         faults=identity.fault_kinds,
         machines=identity.machine_keys,
-        drawing=recipe,
+        drawing=[*recipe, *(["merged"] if identity.sources else [])],
     )
     inputs = [column for column in signals if column.role is Role.INPUT]
     channel = next((x.name for x in inputs if x.kind == "signal"), "contact_force")
     loading = "\n\n".join(format_of(name).loading for name in FORMAT_NAMES if name in formats)
     loading = loading.replace("CHANNEL", channel).replace("SPLIT", next(iter(tally.splits), SPLIT))
     ended = ", ".join(f"{count} {name}" for name, count in status.items())
-    record, limits, runs = _record(recipe), _limits(recipe), counted(recipe["runs"], "run")
+    recipes = [each.identity.recipe for each in identity.sources] or [recipe]
+    record, limits = (" ".join(dict.fromkeys(map(text, recipes))) for text in (_record, _limits))
+    origin = _merged_from(identity) or f"machine `{recipe['machine']}`, seed\n{recipe['seed']}"
+    runs = counted(recipe["runs"], "run")
     return f"""{_head(recipe, tally)}
 # {recipe["name"]}
 
-{runs} of a bladed disk that may rub its flexible oval casing: machine `{recipe["machine"]}`, seed
-{recipe["seed"]}. Simulated with rubgen {identity.packages["rubgen"]}: a finite-element blisk and casing, reduced,
+{runs} of a bladed disk that may rub its flexible oval casing: {origin}.
+Simulated with rubgen {identity.packages["rubgen"]}: a finite-element blisk and casing, reduced,
 integrated through unilateral contact with friction; virtual sensors with noise, range and ADC; labels from the true
 motion, never from the noisy channels. Runs by status: {ended}. {record}
 
@@ -106,10 +109,10 @@ Each a list, row after row where it holds rows. A state has 3 n_blades + 4 + 2 n
 | `run_id` | string | name of the run |
 {_section_table()}
 
-## Recipe
+{"## Recipes" if identity.sources else "## Recipe"}
 
 ```json
-{json.dumps(recipe, indent=2)}
+{json.dumps(recipes if identity.sources else recipe, indent=2)}
 ```
 
 ## Limits
@@ -117,6 +120,19 @@ Each a list, row after row where it holds rows. A state has 3 n_blades + 4 + 2 n
 {limits} Clearance, unbalance and damping of the
 published machine are not known and were chosen. Simulated data: learn from it, do not certify with it.
 """
+
+
+def _merged_from(identity: Identity) -> str:
+    """Say of a merged set which sets it was made from; nothing of any other."""
+    if not identity.sources:
+        return ""
+    rows = []
+    for each in identity.sources:
+        recipe = each.identity.recipe
+        rows.append(f"| `{each.digits}` | {recipe['name']} | {recipe['seed']} | {recipe['runs']} |")
+    table = "\n".join(["| source | name | seed | runs |", "|---|---|---|---|", *rows])
+    about = "`merged_from` has the source of a run and its name there.\nBelow are the recipes of the sources, in order"
+    return f"merged from {counted(len(rows), 'set')}, in this order:\n\n{table}\n\n{about}"
 
 
 def _tables(formats: Sequence[str]) -> str:

@@ -29,11 +29,13 @@ from rubgen.scenario import Recipe
 from rubgen.scenario.faults import named_kinds
 from rubgen.scenario.load import recorded_recipe
 from rubgen.scenario.machines.keys import MachineKey, own_keys
+from rubgen.scenario.merged import merged_recipe
 from rubgen.sensors.sensor_set import SensorSet
 
 PACKAGES = ("rubgen", "numpy", "scipy", "numba", "llvmlite", "pyarrow", "mcap", "protobuf", "zstandard", "rerun-sdk")
 FORMAT: Literal["rubgen data set 1"] = "rubgen data set 1"
 MAKE_AGAIN = "make the set again in a new directory: rubgen generate RECIPE --out NEW"
+DIGITS = 12
 _STRICT = ConfigDict(extra="forbid", frozen=True)
 InnerPath = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*(/[A-Za-z0-9][A-Za-z0-9._-]*)*$")]
 """The path of a file within the set. No other path is allowed."""
@@ -63,12 +65,20 @@ class Identity(BaseModel):
         dict[str, dict[str, Any]],
         about("Sensor sets of splits that have their own, by the name in the recipe. Left out where there are none."),
     ] = {}
+    sources: Annotated[
+        tuple["Source", ...],
+        about(
+            "The sets of which a merged set was made, in the order of their runs. The recipe beside them is that of "
+            "the first, with name and number of runs of the whole. Left out where the set was not merged."
+        ),
+    ] = ()
 
     @model_serializer(mode="wrap")
-    def _without_absent_sensors(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Leave the sensor sets of splits out where there are none: manifests of other recipes stay as they were."""
+    def _without_absent(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out the keys that few sets have where they are empty: manifests of other recipes stay as they were."""
         values: dict[str, Any] = handler(self)
-        return values if self.split_sensors else {key: each for key, each in values.items() if key != "split_sensors"}
+        absent = [key for key in ("split_sensors", "sources") if not getattr(self, key)]
+        return {key: each for key, each in values.items() if key not in absent}
 
     def same_recipe(self, other: "Identity") -> bool:
         """Return whether both describe the same data set, ignoring versions."""
@@ -76,7 +86,7 @@ class Identity(BaseModel):
 
     @property
     def _described(self) -> tuple[object, ...]:
-        return self.recipe, self.machine, self.sensors, self.split_sensors
+        return self.recipe, self.machine, self.sensors, self.split_sensors, self.sources
 
     def with_runs(self, runs: int) -> "Identity":
         """Return the identity of the same recipe with another number of runs."""
@@ -89,14 +99,25 @@ class Identity(BaseModel):
         """
         if "rubgen" not in self.packages:
             raise UserError(f"{source}: identity.packages names no rubgen; {MAKE_AGAIN}")
-        return _identity(self.recorded(f"{source}: identity"), self.packages)
+        whole = _identity(self.recorded(f"{source}: identity"), self.packages)
+        sources = tuple(
+            each.model_copy(update={"identity": each.identity.checked(f"{source}: identity.sources.{number}")})
+            for number, each in enumerate(self.sources)
+        )
+        return whole.model_copy(update={"sources": sources})
 
     def recorded(self, source: str = "manifest") -> Recipe:
         """Make the recipe with its recorded machine and sensors, instead of those that its names now mean.
 
         Raises UserError, beginning with `source`, where a key or value is not valid.
         """
-        return recorded_recipe(self.recipe, self.machine, self.sensors, source, self.split_sensors)
+        whole = recorded_recipe(self.recipe, self.machine, self.sensors, source, self.split_sensors)
+        if not self.sources:
+            return whole
+        recipes = [each.identity.recorded(f"{source}.sources.{n}") for n, each in enumerate(self.sources)]
+        if sum(each.runs for each in recipes) != whole.runs:
+            raise UserError(f"{source}: recipe.runs = {whole.runs}: not the runs of all sources; {MAKE_AGAIN}")
+        return merged_recipe(whole, recipes, [each.digits for each in self.sources])
 
     @property
     def sensor_set(self) -> SensorSet:
@@ -117,6 +138,19 @@ class Identity(BaseModel):
     def machine_keys(self) -> tuple[MachineKey, ...]:
         """The keys of virtual machines that have columns of their own."""
         return own_keys(frame=bool(self.machines[0].get("frame"))) if "machines" in self.recipe else ()
+
+
+class Source(BaseModel):
+    """One of the sets of which a merged set was made."""
+
+    model_config = _STRICT
+    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$"), about("SHA-256 of its manifest.json.")]
+    identity: Annotated[Identity, about("What decided its bytes: with it any of its runs is made again.")]
+
+    @property
+    def digits(self) -> str:
+        """The first digits of its sha256, by which the column `merged_from` names it."""
+        return self.sha256[:DIGITS]
 
 
 class Manifest(BaseModel):

@@ -1,5 +1,6 @@
 """The shards of a data set: groups of runs of one split. A shard is the unit of work, and one file of each table."""
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -12,7 +13,10 @@ of a large set; twice as many double the work that one close of a shard repeats.
 
 @dataclass(frozen=True)
 class Shard:
-    """Up to RUNS_PER_SHARD runs of one split, failed runs too. Only the last shard of a split has fewer."""
+    """Up to RUNS_PER_SHARD runs of one split, failed runs too.
+
+    Only the last shard of a split has fewer, in a merged set the last shard of each source.
+    """
 
     split: str
     number: int
@@ -34,8 +38,24 @@ class Shard:
 def shards_of(recipe: Recipe) -> Iterator[Shard]:
     """Yield the shards of the recipe's set: full ones in the order of their last runs, then the last of each split.
 
-    Only the runs of open shards are in memory, whatever the number of runs.
+    Only the runs of open shards are in memory, whatever the number of runs. A merged set has the shards of its sources.
     """
+    yield from (shard for _, _, shard in source_shards(recipe))
+
+
+def source_shards(recipe: Recipe) -> Iterator[tuple[int, Shard, Shard]]:
+    """Yield the number of a source, a shard of it, and the same shard in the set, of every source."""
+    before = Counter[str]()
+    for number, (first, source) in enumerate(recipe.sources):
+        mine = Counter[str]()
+        for shard in _shards(source):
+            mine[shard.split] += 1
+            place, indexes = before[shard.split] + shard.number, tuple(index + first for index in shard.indexes)
+            yield number, shard, Shard(shard.split, place, indexes)
+        before += mine
+
+
+def _shards(recipe: Recipe) -> Iterator[Shard]:
     waiting: dict[str, list[int]] = {}
     numbers: dict[str, int] = {}
     machine, split = -1, ""

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class RunSignals:
-    """The signals in a file of one run: index of the run, samples by column name, arrival times of pulses in s."""
+    """The signals in a file of one run: number of the run, samples by column name, arrival times of pulses in s."""
 
-    index: int
+    number: int
     channels: dict[str, npt.NDArray[np.float32]]
     once_per_rev: FloatArray
 

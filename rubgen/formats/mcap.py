@@ -20,10 +20,12 @@ def _write(run: Run, path: Path) -> None:
 
 def _signals(path: Path, names: Sequence[str]) -> RunSignals:
     from rubgen.io.mcap import read_mcap
+    from rubgen.io.mcap.content import run_number
 
     run = read_mcap(path, channels=names)
     clean = {f"{name}_clean": values for name, values in run.clean.items()}
-    return RunSignals(index=run.scenario.get("index", 0), channels=run.signals | clean, once_per_rev=run.once_per_rev)
+    number = run_number(run.scenario) or 0
+    return RunSignals(number=number, channels=run.signals | clean, once_per_rev=run.once_per_rev)
 
 
 def _problems(path: Path, run_id: str, _proven: bool) -> list[str]:

@@ -52,8 +52,8 @@ DIAGNOSTICS = frozenset(
 UNMEASURABLE = (ContactForce, ContactTorque)
 """Taps that no probe measures: a channel of them is truth, not input."""
 
-DRAWING = ("twins", "balance")
-"""Tables of a recipe on which runs are drawn. They have columns of their own."""
+DRAWING = ("twins", "balance", "merged")
+"""Tables of a recipe on which runs are drawn, and "merged" for a merged set. They have columns of their own."""
 
 
 @dataclass(frozen=True)
@@ -215,6 +215,11 @@ def _twins() -> list[Column]:
     return [Column("twin_of", "text", "", about, nullable=True, role=Role.ID)]
 
 
+def _merged() -> list[Column]:
+    about = "source of the run in the manifest (first digits of its sha256), and the name of the run there"
+    return [Column("merged_from", "text", "", about, role=Role.ID)]
+
+
 def _balance() -> list[Column]:
     return [
         Column("balance_cell", "text", "", "class of [balance] that the run was drawn for", role=Role.DIAGNOSTIC),
@@ -247,7 +252,8 @@ def scalar_columns(
     They are identity, parameters, operation, labels, the orders of each tap of a sensor, and energies. With
     `surroundings`, as for a recipe that has this table, the levels of the disturbances follow. The labels of `faults`
     follow, for the kinds of fault that the runs may have, and the values `machines` of virtual machines. `drawing` are
-    names of tables of the recipe: "twins" adds the partner of a twin, "balance" the class that a run was drawn for.
+    names of tables of the recipe: "twins" adds the partner of a twin, "balance" the class that a run was drawn for,
+    "merged" where a run of a merged set comes from.
     """
     orders = [column for tap in _ordered_taps(sensors) for column in tap_columns(tap.name, tap.UNIT)]
     around = _surroundings() if surroundings else []
@@ -263,6 +269,7 @@ def scalar_columns(
         *_machines(machines),
         *(_twins() if "twins" in drawing else []),
         *(_balance() if "balance" in drawing else []),
+        *(_merged() if "merged" in drawing else []),
     )
 
 

@@ -242,6 +242,11 @@ class Recipe(BaseModel):
             if distribution is not None:
                 yield entry, distribution
 
+    @property
+    def sources(self) -> "tuple[tuple[int, Recipe], ...]":
+        """The recipes of its runs, each after the number of its first run: this one, and of a merged set several."""
+        return ((0, self),)
+
     def scenario(self, index: int, *, screened: bool = True) -> Scenario:
         """Draw run number `index` from 0, complete. It depends on no other run and not on the number of runs.
 

@@ -197,13 +197,21 @@ class Chosen:
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
+class Merged:
+    """Where a run of a merged set comes from: the digits of its source, whose first run has the number `first` here."""
+
+    source: str
+    first: Seed
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
 class Scenario:
     """One run, complete. The same scenario always makes the same bytes.
 
     `fault_kinds` are the kinds of fault that runs of its recipe may have; those of this run are in its machine.
     With `free_penetration_m` the clearance follows from the rub-free motion (`solver.linear.reach.with_clearance`);
     until then the machine has another clearance. `virtual` is given where the recipe has virtual machines, `pairing`
-    where it has twins, `balance` where it has one.
+    where it has twins, `balance` where it has one, `merged` in a merged set.
     """
 
     machine: Machine
@@ -222,6 +230,7 @@ class Scenario:
     index: Seed = 0
     machine_id: str = ""
     virtual: VirtualMachine | None = None
+    merged: Merged | None = None
 
     def __repr__(self) -> str:
         friction, sensing = self.contact.friction, self.sensing
@@ -251,16 +260,22 @@ class Scenario:
         return self.index if self.twin_of is None else self.twin_of
 
     @property
+    def number(self) -> int:
+        """Number of the run in its set: `index`, but in a merged set after the runs of the sources before its own."""
+        return self.index + (self.merged.first if self.merged else 0)
+
+    @property
     def run_id(self) -> str:
         """Name of the run in files and tables."""
-        return run_id_of(self.index)
+        return run_id_of(self.number)
 
 
 def scenario_dict(scenario: Scenario) -> dict[str, object]:
     """Return the scenario as nested plain values for JSON, keys as in the dataclasses, complete with its machine.
 
     `TypeAdapter(Scenario).validate_python(scenario_dict(s)) == s`: every float keeps all its bits in JSON. A run
-    without surroundings has no such key, and neither has one of a recipe without faults or twins.
+    without surroundings has no such key, and neither has one of a recipe without faults or twins. A run of the first
+    source of a merged set has the values that it has in its source: its name is the same, and so are its files.
     """
     values = cast("dict[str, object]", TypeAdapter(Scenario).dump_python(scenario, mode="json"))
     if scenario.surroundings is None:
@@ -270,4 +285,6 @@ def scenario_dict(scenario: Scenario) -> dict[str, object]:
     for key in ("free_penetration_m", "virtual", "pairing", "balance"):
         if getattr(scenario, key) is None:
             del values[key]
+    if not (scenario.merged and scenario.merged.first):
+        del values["merged"]
     return values

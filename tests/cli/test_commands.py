@@ -56,6 +56,7 @@ def test_public_names():
         "generate",
         "load_recipe",
         "make_scenario",
+        "merge",
         "open",
         "resense",
         "simulate",

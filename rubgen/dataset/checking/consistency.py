@@ -3,6 +3,7 @@
 import dataclasses
 import math
 from collections.abc import Iterator
+from functools import lru_cache
 
 import numpy as np
 
@@ -102,11 +103,16 @@ def signal_problems(row: Row, signals: dict[str, Float32Array], sensing: Sensing
 
 def is_faultless(sensor: SampledSensor, sensing: Sensing) -> bool:
     """Return whether a sensor records the truth in SI units, except for noise, range and ADC."""
+    disturbed = isinstance(sensor, Proximity) and bool(sensing.set.shaft_runout)
+    return not disturbed and _has_no_error(sensor)
+
+
+@lru_cache(maxsize=256)  # every run of a set has the same sensors
+def _has_no_error(sensor: SampledSensor) -> bool:
     usual = dataclasses.asdict(dataclasses.replace(sensor, range=None, noise_rms=0.0, adc_bits=None))
     plain = {field.name: field.default for field in dataclasses.fields(SampledSensor) if field.name in usual}
     differs = [key for key, value in plain.items() if key not in ("name", "unit") and usual[key] != value]
-    disturbed = isinstance(sensor, Proximity) and bool(sensing.set.shaft_runout)
-    return not differs and not disturbed and sensor.UNITS[sensor.unit] == 1.0
+    return not differs and sensor.UNITS[sensor.unit] == 1.0
 
 
 def _shows_the_motion(sensor: SampledSensor, sensing: Sensing, row: Row) -> bool:

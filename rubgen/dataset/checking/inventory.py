@@ -66,7 +66,8 @@ def size_findings(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
 
 
 def _kind(layout: Layout, path: str) -> Kind:
-    return Kind.DERIVED if path in (layout.card.name, layout.croissant.name) else Kind.DATA
+    made = (layout.card.name, layout.croissant.name, layout.sensors.name)
+    return Kind.DERIVED if path in made else Kind.DATA
 
 
 def derived_digests(layout: Layout, manifest: Manifest) -> tuple[dict[str, FileEntry], list[Finding]]:

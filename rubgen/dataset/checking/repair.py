@@ -4,13 +4,15 @@ import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from rubgen.dataset.card import card
 from rubgen.dataset.checking.inventory import Finding
 from rubgen.dataset.checking.verify import findings
 from rubgen.dataset.croissant import croissant
-from rubgen.dataset.files import json_text, write_text
+from rubgen.dataset.files import json_text, sha256_of, write_text
 from rubgen.dataset.layout import Layout
+from rubgen.dataset.making.finish import write_sensors
 from rubgen.dataset.making.remake import other_versions, remake
 from rubgen.dataset.manifest import Manifest, read_manifest, write_derived
 from rubgen.dataset.reading.open import DataSet
@@ -18,12 +20,14 @@ from rubgen.dataset.reading.replaying import replay_of_mcap, scenario_of
 from rubgen.dataset.tally import tally_of
 from rubgen.errors import UserError, write_problems
 from rubgen.formats import format_of
+from rubgen.io.files import write_durably
 
 
 @dataclass(frozen=True, kw_only=True)
 class Repaired:
-    """The result of `repair`: paths of the files that were made again, the findings that remain, and why."""
+    """The result of `repair`: what was wrong, paths of the files that were made again, and the findings that remain."""
 
+    found: tuple[Finding, ...]
     made: tuple[str, ...]
     left: tuple[Finding, ...]
     versions: dict[str, tuple[str, str]]
@@ -34,10 +38,10 @@ def repair(directory: Path) -> Repaired:
     """Make files of a set again where they are damaged or missing, so that each has the bytes that the manifest lists.
 
     The runs of a shard with a damaged Parquet or MCAP file are simulated again from the manifest, which needs the
-    versions that made the set. README.md and croissant.json are written again. An .rrd file is made from its MCAP file
-    where that is good, else its run is simulated again. No other file is changed and none is deleted. Of all files only
-    `runs.parquet` cannot be made again alone. Raises UserError where `directory` holds no finished data set, its
-    manifest is damaged, or it cannot be written.
+    versions that made the set; of a damaged `runs.parquet` those whose rows cannot be read. sensors.parquet, README.md
+    and croissant.json are written again. An .rrd file is made from its MCAP file where that is good, else its run is
+    simulated again. No other file is changed and none is deleted. Raises UserError where `directory` holds no finished
+    data set, its manifest is damaged, or it cannot be written.
     """
     layout = Layout(directory)
     manifest = read_manifest(layout)
@@ -46,16 +50,32 @@ def repair(directory: Path) -> Repaired:
     versions = other_versions(manifest) if before else {}
     with write_problems(directory, advice="make it writable"):
         made = [] if versions else remake(layout, manifest, wrong)
-        made += _texts(layout, manifest, wrong)
+        made += _sensors(layout, manifest, wrong)
+        made += _texts(layout, manifest, wrong - set(made))
         made += _recordings(layout, manifest, wrong - set(made))
-    return Repaired(made=tuple(made), left=tuple(findings(directory) if made else before), versions=versions)
+    left = tuple(findings(directory) if made else before)
+    return Repaired(found=tuple(before), made=tuple(made), left=left, versions=versions)
+
+
+def _sensors(layout: Layout, manifest: Manifest, wrong: set[str]) -> list[str]:
+    """Write sensors.parquet again if its bytes are those of the manifest. Return its name."""
+    (entry,) = [each for each in manifest.files if each.path == layout.sensors.name]
+    if entry.path not in wrong:
+        return []
+    with TemporaryDirectory() as folder:
+        new = Path(folder) / entry.path
+        write_sensors(manifest.identity.recorded(str(layout.manifest)), new)
+        if sha256_of(new) != entry.sha256:
+            return []
+        write_durably(layout.sensors, lambda part: part.write_bytes(new.read_bytes()))
+    return [entry.path]
 
 
 def _texts(layout: Layout, manifest: Manifest, wrong: set[str]) -> Iterator[str]:
     """Write README.md and croissant.json, each only where its bytes agree with the manifest. Yields their names."""
     listed = {entry.path: entry.sha256 for entry in manifest.files}
     texts = {}
-    whole = layout.runs.name not in wrong
+    whole = wrong.isdisjoint((layout.runs.name, layout.sensors.name))
     if layout.card.name in wrong and whole:
         texts[layout.card] = card(manifest.identity, manifest.status, tally_of(layout.runs))
     if layout.croissant.name in wrong and whole:

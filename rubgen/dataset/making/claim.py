@@ -252,7 +252,7 @@ def _first_difference(there: Identity, asked: Identity) -> tuple[str, object, ob
         for key in [*new, *old]:
             if old.get(key) != new.get(key):
                 return key if part == "recipe" else f"{part}.{key}", old.get(key), new.get(key)
-    return "recipe", None, None
+    return "identity.sources", [each.digits for each in there.sources], [each.digits for each in asked.sources]
 
 
 def _flat(values: dict[str, object], prefix: str = "") -> dict[str, object]:

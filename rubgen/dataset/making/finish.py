@@ -34,11 +34,9 @@ def finish_set(recipe: Recipe, layout: Layout, identity: Identity) -> dict[str, 
     Returns the number of runs by status. Where a file of a closed shard is lost, the shard is opened and RubgenError is
     raised: the same command makes its runs anew.
     """
-    spans = sorted((shard.indexes[0], shard.indexes[-1], shard.name) for shard in shards_of(recipe))
-    types = RUNS.schema(recipe)
     whole = layout.staging / layout.runs.name
-    write_table(_in_order(layout, spans, recipe.runs, types), types, whole)
-    names = sorted(name for _, _, name in spans)
+    write_runs(layout, recipe, whole)
+    names = sorted(shard.name for shard in shards_of(recipe))
     closed = [read_closed(layout, name) for name in names]
     for path in (layout.digest, layout.manifest):
         path.unlink(missing_ok=True)
@@ -46,12 +44,27 @@ def finish_set(recipe: Recipe, layout: Layout, identity: Identity) -> dict[str, 
     whole.replace(layout.runs)
     status = sum((Counter(each.status) for each in closed), Counter[str]())
     ordered = dict(sorted(status.items()))
-    write_table([sensors_table(recipe.sensing)], SENSORS_SCHEMA, layout.sensors)
+    write_sensors(recipe, layout.sensors)
     write_card(layout, identity, ordered)
     write_croissant(layout, identity)
     sync_directory(layout.root)
     write_manifest(layout, identity, ordered, _files(layout, recipe, closed), _derived(closed))
     return ordered
+
+
+def write_runs(layout: Layout, recipe: Recipe, path: Path) -> None:
+    """Write `runs.parquet` to `path`, from the rows of all shards in the staging folder.
+
+    Raises RubgenError where the rows of a shard are lost.
+    """
+    spans = sorted((shard.indexes[0], shard.indexes[-1], shard.name) for shard in shards_of(recipe))
+    types = RUNS.schema(recipe)
+    write_table(_in_order(layout, spans, recipe.runs, types), types, path)
+
+
+def write_sensors(recipe: Recipe, path: Path) -> None:
+    """Write `sensors.parquet` of the recipe's set to `path`."""
+    write_table([sensors_table(recipe.sensing)], SENSORS_SCHEMA, path)
 
 
 def _files(layout: Layout, recipe: Recipe, closed: list[ClosedShard]) -> list[FileEntry]:

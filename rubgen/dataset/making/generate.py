@@ -109,7 +109,7 @@ def generate(
                 if not finished(layout, identity):  # another rubgen may have done it meanwhile
                     return _make(task)
         with _shown(progress), step("look at the set"):
-            return _nothing_to_do(layout, identity)
+            return nothing_to_do(layout, identity)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -170,7 +170,8 @@ def _make_part(task: _Task) -> Generated | None:
     )
 
 
-def _nothing_to_do(layout: Layout, identity: Identity) -> Generated:
+def nothing_to_do(layout: Layout, identity: Identity) -> Generated:
+    """Compare the sizes of the files of a finished set with its manifest. Raises UserError where one differs."""
     manifest = read_manifest(layout)
     found = list(size_findings(layout, manifest))
     if found:

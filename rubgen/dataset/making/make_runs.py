@@ -83,7 +83,7 @@ def simulated(recipe: Recipe, index: int) -> Run:
 
 
 def _keep(layout: Layout, recipe: Recipe, keeper: Keeper, run: Run) -> None:
-    formats, split = recipe.output.formats, recipe.split_of(run.scenario.index)
+    formats, split = recipe.output.formats, recipe.split_of(run.scenario.number)
     for each in run_formats(formats):
         path = layout.export(each.name, run.scenario.run_id)
         if run.labels is not None:
@@ -93,7 +93,7 @@ def _keep(layout: Layout, recipe: Recipe, keeper: Keeper, run: Run) -> None:
             path.unlink(missing_ok=True)  # of a try that was stopped
     tables = tables_of(formats)
     rows = [table.row(run, split) if run.labels is not None else None for table in tables]
-    keeper.keep(run.scenario.index, [RUNS.row(run, split), *rows])
+    keeper.keep(run.scenario.number, [RUNS.row(run, split), *rows])
 
 
 def _make_alone(layout: Layout, recipe: Recipe, shard: str, session: str, index: int) -> None:

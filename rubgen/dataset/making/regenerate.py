@@ -68,7 +68,8 @@ def regenerate(directory: Path | str, run_id: str) -> Regenerated:
     stored = _stored(layout, recipe, index)
     made = {RUNS.name: RUNS.row(run, recipe.split_of(index))}
     if run.labels is not None:
-        made |= {each.name: each.row(run, recipe.split_of(index)) for each in tables_of(recipe.output.formats)}
+        rows = {each.name: each.row(run, recipe.split_of(index)) for each in tables_of(recipe.output.formats)}
+        made |= {name: table for name, table in rows.items() if table.num_rows}
     different = {name: found for name in made.keys() | stored.keys() if (found := _different(made, stored, name))}
     moved = _moved(with_words(made[RUNS.name]), with_words(stored[RUNS.name]))
     return Regenerated(run=run, versions=other_versions(manifest), different=different, moved=moved)
@@ -88,9 +89,9 @@ def _stored(layout: Layout, recipe: Recipe, index: int) -> dict[str, pa.Table]:
 
 
 def _different(made: dict[str, pa.Table], stored: dict[str, pa.Table], name: str) -> list[str]:
-    if name not in made or name not in stored:
-        return ["whether there is a row"]
-    one, other = made[name], stored[name]
+    one, other = made.get(name), stored.get(name)
+    if one is None or other is None or one.num_rows != other.num_rows:
+        return ["number of rows"]
     columns = [*one.column_names, *(column for column in other.column_names if column not in one.column_names)]
     return [column for column in columns if not _same(one, other, column)]
 
@@ -104,9 +105,13 @@ def _same(one: pa.Table, other: pa.Table, column: str) -> bool:
 
 def bytes_of(column: pa.ChunkedArray) -> object:
     """Return the values of a column so that equal ones have equal bits, NaN too."""
-    value: Any = column[0].as_py()
-    values = value if isinstance(value, list) else [value]
-    return [each.hex() if isinstance(each, float) else each for each in values], isinstance(value, list)
+    return [_bits(value) for value in column.to_pylist()]
+
+
+def _bits(value: Any) -> object:
+    if isinstance(value, list):
+        return [_bits(each) for each in value]
+    return value.hex() if isinstance(value, float) else value
 
 
 def _moved(made: pa.Table, stored: pa.Table) -> list[str]:

@@ -32,10 +32,12 @@ def balance_table(runs: pd.DataFrame, recipe: Recipe) -> pd.DataFrame:
     The second factor counts only candidates whose class was asked. Every candidate is an independent draw and a run
     stops at the first in its class, so these ratios tend to the shares (Wald's equation). Candidates that are not
     possible do not count. The weight is p(c) over the share of class c among the good runs of the split. Raises
-    UserError for a set without `[balance]`.
+    UserError for a set without `[balance]` and for a merged one.
     """
     import pandas as pd
 
+    if len(recipe.sources) > 1:
+        raise UserError(f"{recipe.name}: a merged set has no balance of its own; open its sources")
     balance = recipe.balance
     if balance is None:
         raise UserError(f"{recipe.name}: the set has no [balance], so every run has the same weight")

@@ -102,7 +102,7 @@ class DataSet:
     def balance(self) -> pd.DataFrame:
         """The classes of `[balance]` with wanted and natural shares, candidates and weights: `balance_table`.
 
-        Raises UserError for a set without a balance.
+        Raises UserError for a set without a balance, and for a merged set, whose sources have one each.
         """
         return balance_table(self.runs, self._recipe)
 
@@ -347,8 +347,8 @@ class DataSet:
                 )
             read, path = found[0]
             run = read(path, names)
-            if run_id != run_id_of(run.index):
-                raise UserError(f"{path}: holds the run of index {run.index}; run rubgen verify")
+            if run_id != run_id_of(run.number):
+                raise UserError(f"{path}: holds {run_id_of(run.number)}; run rubgen verify")
             yield run_id, pa.table({name: [run.channels[name]] for name in names} | {PULSES: [run.once_per_rev]})
 
     def _joined(self, run_ids: Sequence[str], names: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:

@@ -133,14 +133,15 @@ def _meant(where: str, columns: Iterable[str]) -> str:
 
 def scenario_of(data: DataSet, run_id: str) -> Scenario:
     """Return the scenario of a run, drawn again from the recipe and machine in the manifest."""
-    recipe, row = data.manifest.identity.recorded(), data.row(run_id)
+    whole, row, number = data.recipe, data.row(run_id), index_of(run_id)
+    first, recipe = max((each for each in whole.sources if each[0] <= number), key=lambda each: each[0])
     if recipe.machines and row["machine_candidate"] < recipe.machines.tries:
         recipe.remember(row["machine_number"], row["machine_candidate"])
-    index = index_of(run_id)
+    index = number - first
     if "balance_cell" in row and row["status"] == "ok":
         chosen = Chosen(cell=row["balance_cell"], tries=row["balance_tries"], seen=tuple(row["balance_seen"]))
         recipe.remember_choice(index if recipe.twin_of(index) is None else index - 1, chosen)
-    return recipe.scenario(index)
+    return whole.scenario(number)
 
 
 def _from_data_set(directory: Path, run_id: str | None, where: str | None) -> FoundReplay:
@@ -155,7 +156,8 @@ def _from_data_set(directory: Path, run_id: str | None, where: str | None) -> Fo
     from rubgen.pipeline import simulate
     from rubgen.viz.replay import replay_of
 
-    check_recipe(data.manifest.identity.recorded(), str(data.layout.manifest))
+    for _, recipe in data.recipe.sources:
+        check_recipe(recipe, str(data.layout.manifest))
     run = simulate(scenario_of(data, chosen))
     return FoundReplay(replay=replay_of(run), remarks=(*remarks, f"{chosen} has no MCAP file and was simulated again"))
 

@@ -13,6 +13,7 @@ from rubgen.io.mcap.content import (
     decoded,
     message_name,
     read_content,
+    run_number,
 )
 from rubgen.io.mcap.messages import read_sample_block
 from rubgen.io.mcap.read import run_of
@@ -56,8 +57,8 @@ def _raised(check: Callable[[], object]) -> list[str]:
 
 
 def _check_run(content: McapContent, run_id: str) -> None:
-    index = run_of(content).scenario.get("index")
-    recorded = run_id_of(index) if isinstance(index, int) else "no run that rubgen numbers"
+    number = run_number(run_of(content).scenario)
+    recorded = "no run that rubgen numbers" if number is None else run_id_of(number)
     if run_id and run_id != recorded:
         raise DamageError(f"holds {recorded}")
 

@@ -245,6 +245,12 @@ def checked_scenario(content: McapContent) -> tuple[dict[str, Any], Scenario]:
     return plain, scenario
 
 
+def run_number(scenario: dict[str, Any]) -> int | None:
+    """Return the number of the run in its set from a checked scenario; None where it has none."""
+    index = scenario.get("index")
+    return index + (scenario.get("merged") or {}).get("first", 0) if isinstance(index, int) else None
+
+
 def checked_labels(content: McapContent) -> dict[str, Any]:
     """Return the labels by name, each a value or a list of values.
 

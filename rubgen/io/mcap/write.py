@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable, Iterator
 from operator import itemgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from mcap.writer import Writer
 
@@ -61,15 +61,22 @@ def nanoseconds(seconds: float) -> int:
 
 def _write_file(path: Path, run: Run, recording: Recording, labels: Labels) -> None:
     with path.open("wb") as stream:
-        writer = Writer(stream, chunk_size=CHUNK_BYTES, enable_data_crcs=True)
-        writer.start(profile="", library=LIBRARY)
-        _write_records(writer, "scenario", scenario_dict(run.scenario))
-        _write_records(writer, "labels", labels_to_json(labels))
+        writer = new_writer(stream)
+        write_records(writer, "scenario", scenario_dict(run.scenario))
+        write_records(writer, "labels", labels_to_json(labels))
         _write_messages(writer, run, recording, labels)
         writer.finish()  # type: ignore[no-untyped-call]  # the mcap package annotates no return type
 
 
-def _write_records(writer: Writer, name: str, values: dict[str, object]) -> None:
+def new_writer(stream: IO[bytes]) -> Writer:
+    """Begin an MCAP file of rubgen."""
+    writer = Writer(stream, chunk_size=CHUNK_BYTES, enable_data_crcs=True)
+    writer.start(profile="", library=LIBRARY)
+    return writer
+
+
+def write_records(writer: Writer, name: str, values: dict[str, object]) -> None:
+    """Write a document of a run as a metadata record and as an attachment."""
     writer.add_metadata(f"rubgen.{name}", {key: json.dumps(value) for key, value in values.items()})
     content = json.dumps(values, indent=2).encode()
     writer.add_attachment(0, 0, f"{name}.json", "application/json", content)

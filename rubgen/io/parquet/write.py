@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Iterable
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +31,7 @@ from rubgen.measurement.channel import Recording
 from rubgen.measurement.motion import contact_intervals
 from rubgen.scenario import Recipe
 from rubgen.scenario.machines.keys import MachineKey, machine_values, own_keys
+from rubgen.scenario.run_id import run_id_of
 from rubgen.scenario.surroundings import surroundings_values
 from rubgen.scenario.vary import varied_values
 from rubgen.sensors.load import default_sensor_set
@@ -72,9 +74,21 @@ def schema(
     - machines: keys of virtual machines whose values are included.
     - drawing: tables of the recipe whose columns are included, of DRAWING.
     """
-    used = sensors or default_sensor_set()
-    columns = scalar_columns(used, surroundings=surroundings, faults=faults, machines=machines, drawing=drawing)
-    columns += signal_columns(used, clean=clean) if signals else ()
+    return _schema(signals, clean, sensors or default_sensor_set(), surroundings, faults, machines, tuple(drawing))
+
+
+@lru_cache(maxsize=32)  # it takes as long as a row, and rows of a set share it
+def _schema(
+    signals: bool,
+    clean: bool,
+    sensors: SensorSet,
+    surroundings: bool,
+    faults: tuple[str, ...],
+    machines: tuple[MachineKey, ...],
+    drawing: tuple[str, ...],
+) -> pa.Schema:
+    columns = scalar_columns(sensors, surroundings=surroundings, faults=faults, machines=machines, drawing=drawing)
+    columns += signal_columns(sensors, clean=clean) if signals else ()
     return table_schema(columns)
 
 
@@ -91,8 +105,14 @@ def recipe_schema(recipe: Recipe, *, signals: bool) -> pa.Schema:
         surroundings=around is not None,
         faults=recipe.fault_kinds,
         machines=recipe.machine_keys,
-        drawing=[name for name in DRAWING if getattr(recipe, name) is not None],
+        drawing=drawing_of(recipe, signals=signals),
     )
+
+
+def drawing_of(recipe: Recipe, *, signals: bool = False) -> list[str]:
+    """Return those of DRAWING whose columns the files of a recipe's set have. Only `runs.parquet` names sources."""
+    merged = len(recipe.sources) > 1 and not signals
+    return [name for name in DRAWING if (merged if name == "merged" else getattr(recipe, name) is not None)]
 
 
 def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Table:
@@ -123,6 +143,9 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
     if run.scenario.balance:
         drawn.append("balance")
         row |= {f"balance_{name}": getattr(run.scenario.balance, name) for name in ("cell", "tries", "seen")}
+    if run.scenario.merged and not signals:
+        drawn.append("merged")
+        row["merged_from"] = merged_from(run.scenario.merged.source, run.scenario.index)
     types = schema(
         signals=signals,
         clean=sensing.keep_clean,
@@ -136,6 +159,11 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
     if unknown:
         raise ValueError(f"no column for {', '.join(unknown)}")
     return pa.table({field.name: pa.array([row.get(field.name)], field.type) for field in types}, schema=types)
+
+
+def merged_from(source: str, index: int) -> str:
+    """Return what `merged_from` says of run number `index` of the source with these digits."""
+    return f"{source}/{run_id_of(index)}"
 
 
 def write_table(tables: Iterable[pa.Table], types: pa.Schema, path: Path) -> int:
