@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 IMPORTS = """
-import importlib, pkgutil, sys
+import importlib, importlib.util, pkgutil, sys
 import rubgen
 opened = []
 folder = rubgen.__path__[0]
@@ -13,6 +13,8 @@ def note(event, arguments):
         opened.append(str(arguments[0]))
 sys.addaudithook(note)
 names = [module.name for module in pkgutil.walk_packages(rubgen.__path__, "rubgen.")]
+if importlib.util.find_spec("torch") is None:
+    names.remove("rubgen.torch")
 for name in names:
     importlib.import_module(name)
 print(len(names), *opened)

@@ -10,8 +10,8 @@ from rubgen.scenario.run_id import index_of
 SPLIT = "train"
 """The split of a recipe without splits."""
 RUNS_PER_ROW_GROUP = 4
-"""Measured on 16 runs of the recipe `laboratory`: 3.0 % larger than with 8, and one channel of a group is read in
-0.80 ms instead of 1.53 ms."""
+"""Measured on 16 runs of the recipe `laboratory`: 2.1 % larger than with 8, and one channel of a group is read in
+0.4 to 0.7 of the time."""
 RUNS_PER_FOLDER = 1000
 """Number of files of single runs in a folder: more are slow to list on the file systems of clusters."""
 

@@ -2,7 +2,7 @@
 
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from itertools import accumulate, groupby
 from pathlib import Path
 from typing import NamedTuple
@@ -17,6 +17,8 @@ from rubgen.scenario.costs import stored_bytes
 
 GROUPS_IN_MEMORY = 8
 """Of `runs.parquet`: shards of several splits lie beside each other in the order of runs."""
+FILES_OPEN = 16
+"""Files of a table that stay open: to open one takes longer than to read a channel."""
 
 
 def asked_bytes(recipe: Recipe) -> float:
@@ -37,28 +39,29 @@ class Place(NamedTuple):
 
 
 class RunRows:
-    """Access to single runs in Parquet files with one row a run. Files are opened on demand."""
+    """Access to single runs in Parquet files with one row a run. The last FILES_OPEN files that were read stay open."""
 
     def __init__(self, files: Sequence[Path], types: pa.Schema, asked_bytes: float) -> None:
         """Take the files, their schema `types`, and the unpacked size of a row group (function `asked_bytes`)."""
-        self.files, self.types, self._asked_bytes = files, types, asked_bytes
+        self.files, self.types = files, types
+        self._open = lru_cache(FILES_OPEN)(partial(ParquetSource, asked_bytes=asked_bytes))
 
     @cached_property
     def places(self) -> dict[str, Place]:
         """The place of every run by its name. Raises UserError where a file is missing or damaged."""
         places: dict[str, Place] = {}
         for path in self.files:
-            with ParquetSource(path, self._asked_bytes) as file:
-                for group in range(file.num_row_groups):
-                    names = file.read_row_group(group, columns=["run_id"])["run_id"].to_pylist()
-                    places |= {name: Place(path, group, row) for row, name in enumerate(names)}
+            file = self._open(path)
+            for group in range(file.num_row_groups):
+                names = file.read_row_group(group, columns=["run_id"])["run_id"].to_pylist()
+                places |= {name: Place(path, group, row) for row, name in enumerate(names)}
         return places
 
     def each(self, run_ids: Iterable[str], columns: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
         """Yield name and row of each run in `run_ids`, in that order, with only these columns.
 
-        A file is opened once, and a row group read once, for successive runs in it. Raises UserError that names file
-        and run where a page is damaged, or a run lacks a value.
+        A row group is read once for successive runs in it. Raises UserError that names file and run where a page is
+        damaged, or a run lacks a value.
         """
         run_ids = list(run_ids)
         lost = [run_id for run_id in run_ids if run_id not in self.places]
@@ -67,17 +70,17 @@ class RunRows:
             raise UserError(f"{lost[0]}: has no row in {folder}; generate the set again")
         types = pa.schema([self.types.field(name) for name in columns])
         for path, names in groupby(run_ids, key=lambda run_id: self.places[run_id].file):
-            with ParquetSource(path, self._asked_bytes) as file:
-                for group, members in groupby(names, key=lambda run_id: self.places[run_id].group):
-                    runs = list(members)
-                    try:
-                        table = file.read_row_group(group, columns=columns)
-                        with damage_named(path):
-                            table = table.cast(types)
-                    except UserError as error:
-                        raise UserError(f"{', '.join(runs)}: {error}") from None
-                    for run_id in runs:
-                        yield run_id, _whole(table.slice(self.places[run_id].row, 1), run_id, path)
+            file = self._open(path)
+            for group, members in groupby(names, key=lambda run_id: self.places[run_id].group):
+                runs = list(members)
+                try:
+                    table = file.read_row_group(group, columns=columns)
+                    with damage_named(path):
+                        table = table.cast(types)
+                except UserError as error:
+                    raise UserError(f"{', '.join(runs)}: {error}") from None
+                for run_id in runs:
+                    yield run_id, _whole(table.slice(self.places[run_id].row, 1), run_id, path)
 
 
 def _whole(row: pa.Table, run_id: str, path: Path) -> pa.Table:

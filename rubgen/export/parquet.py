@@ -8,6 +8,7 @@ from pathlib import Path
 import pyarrow as pa
 
 from rubgen.export.run import ExportedRun
+from rubgen.io.columns import Role
 from rubgen.io.parquet.write import write_table
 
 IDS = ("run_id", "machine_id", "split")
@@ -19,7 +20,11 @@ def write_parquet(runs: Iterator[ExportedRun], path: Path) -> None:
     fields = [pa.field(name, pa.string()) for name in IDS]
     fields.append(pa.field("once_per_rev_s", pa.list_(pa.float64()), metadata={"unit": "s"}))
     for channel in first.channels:
-        about = {"unit": channel.unit, **{name: str(fact) for name, fact in channel.facts.items()}}
+        about = {
+            "unit": channel.unit,
+            "role": Role.INPUT.value,
+            **{name: str(fact) for name, fact in channel.facts.items()},
+        }
         fields.append(pa.field(channel.name, pa.list_(pa.float32()), metadata=about))
     types = pa.schema(fields, metadata={"sample_rate_hz": repr(first.sample_rate_hz)})
 

@@ -88,7 +88,7 @@ def _quantities(data: DataSet, names: Sequence[str], signals: FloatArray, pulses
     rate = data.sample_rate_hz
     has_pulses = any(isinstance(each, OncePerRev) for each in data.sensors.sensors)
     turned = by_turn(signals, rate, pulses if has_pulses else pulses[:0])
-    one, two = circles(turned, 1), circles(turned, 2)
+    one, two = circles(turned, (1, 2))
     nothing = np.full(len(names), np.nan)
     rest = np.maximum(turned.var(axis=(1, 2)) - 2 * np.abs(one) ** 2, 0) if turned.shape[1] else nothing
     s_max, gap, velocity = nothing.copy(), nothing.copy(), nothing.copy()

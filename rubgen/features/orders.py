@@ -15,14 +15,14 @@ def order_features(turned: FloatArray) -> FloatArray:
     What needs more turns than there are is NaN.
     """
     count, turns, _ = turned.shape
-    whole = np.array([circles(turned, order) for order in ORDERS])
-    parts = np.array([circles(turned, p, q) for p, q in FRACTIONS.values()])
+    whole = circles(turned, ORDERS)
+    parts = np.concatenate([circles(turned, [p], q) for p, q in FRACTIONS.values()])
     phase = np.where(np.abs(whole[0]) > 0, np.mod(-np.rad2deg(np.angle(whole[0])), 360), np.nan)
     if not turns:
         return np.column_stack([np.zeros(count), *(2 * np.abs([*whole, *parts])), phase, *np.full((3, count), np.nan)])
     mean_turn = turned.mean(axis=1)
     synchronous = mean_turn.var(axis=1)
-    variance = turned.var(axis=(1, 2))
+    variance = np.array([signal.var() for signal in turned.reshape(count, -1)])  # row by row: in the cache
     not_1x = np.sqrt(np.maximum(variance - 2 * np.abs(whole[0]) ** 2, 0))
     rest = np.sqrt(np.maximum(variance - synchronous, 0)) if turns > 1 else np.full(count, np.nan)
     amplitudes = 2 * np.abs([*whole, *parts])
@@ -44,7 +44,7 @@ def orbit_features(turned: FloatArray, angles_deg: tuple[float, float]) -> Float
     sides = []
     for name in SIDES:
         p, q = FRACTIONS.get(name, (int(name.split("_")[0]), 1))
-        sides += [circles(place, p, q)[0], circles(place, -p, q)[0]]
+        sides += [*circles(place, (p, -p), q)[:, 0]]
     one = 2 * SIDES.index("1")
     forward, backward = sides[one : one + 2]
     inclination = np.mod(np.rad2deg(np.angle(forward) + np.angle(backward)) / 2, 180)

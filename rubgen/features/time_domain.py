@@ -15,12 +15,17 @@ def time_features(signals: FloatArray) -> FloatArray:
 
     A ratio of a constant signal is NaN.
     """
-    mean = signals.mean(axis=1, keepdims=True)
-    x = signals - mean
+    return np.array([_of_one(signal) for signal in signals])  # one after the other: it stays in the processor's cache
+
+
+def _of_one(signal: FloatArray) -> list[float]:
+    mean = float(signal.mean())
+    x = signal - mean
     square, size = x * x, np.abs(x)
-    rms = np.sqrt(square.mean(axis=1))
-    scale = np.where(rms > ROUNDING * np.abs(mean[:, 0]), rms, np.nan)
-    peak, typical = size.max(axis=1), np.where(np.isnan(scale), np.nan, size.mean(axis=1))
-    skewness, kurtosis = (square * x).mean(axis=1) / scale**3, (square * square).mean(axis=1) / scale**4
-    ratios = [skewness, kurtosis, peak / scale, scale / typical, peak / typical]
-    return np.column_stack([mean[:, 0], rms, peak, np.ptp(signals, axis=1), *ratios])
+    rms = float(np.sqrt(square.mean()))
+    scale = rms if rms > ROUNDING * abs(mean) else np.nan
+    peak, typical = float(size.max()), float(size.mean()) if scale > 0 else np.nan
+    skewness, kurtosis = float(square @ x) / x.size / scale**3, float(square @ square) / x.size / scale**4
+    return [
+        mean, rms, peak, float(np.ptp(signal)), skewness, kurtosis, peak / scale, scale / typical, peak / typical
+    ]  # fmt: skip

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import accumulate
+from math import prod
+from operator import mul
+
 import numpy as np
 from scipy.sparse import csr_array
 
@@ -11,6 +16,9 @@ LEAST_POINTS = 64
 """The fewest points in a turn."""
 NEAR = np.arange(-2.0, 4.0)
 """Samples about a place that a value there is interpolated from."""
+
+BLOCK = 2048
+"""Places whose weights are computed together: their arrays stay in the processor's cache."""
 
 
 def by_turn(signals: FloatArray, rate_hz: float, pulses: FloatArray) -> FloatArray:
@@ -28,7 +36,11 @@ def by_turn(signals: FloatArray, rate_hz: float, pulses: FloatArray) -> FloatArr
     turns = max(inside.size - 1, 0)
     points = max(LEAST_POINTS, int(np.ceil(np.diff(inside).max() * rate_hz)) if turns else 0)
     at = np.interp(np.arange(turns * points) / points, np.arange(max(turns, 1) + 1), inside if turns else (0, 0))
-    return np.asarray((_weights(at * rate_hz, samples) @ signals.T).T.reshape(count, turns, points))
+    matrix = _weights(at * rate_hz, samples)
+    turned = np.empty((count, turns * points))
+    for row, signal in enumerate(signals):  # one after the other: a signal stays in the processor's cache
+        turned[row] = matrix @ signal
+    return turned.reshape(count, turns, points)
 
 
 def within(pulses: FloatArray, samples: int, rate_hz: float) -> FloatArray:
@@ -36,30 +48,34 @@ def within(pulses: FloatArray, samples: int, rate_hz: float) -> FloatArray:
     return pulses[(pulses >= 0) & (pulses <= (samples - 1) / rate_hz)]
 
 
-def circles(turned: FloatArray | ComplexArray, order: int, turns: int = 1) -> ComplexArray:
-    """Compute the complex amplitude at `order` / `turns` of the speed of each signal, as (signals,).
+def circles(turned: FloatArray | ComplexArray, orders: Sequence[int], turns: int = 1) -> ComplexArray:
+    """Compute the complex amplitudes at `orders` / `turns` of the speed of each signal, as (orders, signals).
 
     - turned: from `by_turn`, real or complex, (signals, turns, points).
-    - turns: of one period; only whole periods are used. Without one the amplitude is NaN.
+    - turns: of one period; only whole periods are used. Without one the amplitudes are NaN.
 
     A real signal A cos(k theta - phi) has (A / 2) exp(-i phi) at order k. Negative orders turn backward.
     """
     count, whole, points = len(turned), turned.shape[1] // turns * turns, turned.shape[2]
     if not whole:
-        return np.full(count, np.nan + 0j)
+        return np.full((len(orders), count), np.nan + 0j)
     mean = turned[:, :whole].reshape(count, -1, turns * points).mean(axis=1)
-    wave = np.exp(-2j * np.pi * order * np.arange(turns * points) / (turns * points))
-    return np.asarray(mean @ wave / (turns * points))
+    angle = -2j * np.pi * np.arange(turns * points) / (turns * points)
+    return np.asarray([mean @ np.exp(order * angle) / (turns * points) for order in orders])
 
 
 def _weights(places: FloatArray, samples: int) -> csr_array:
     """Return the matrix (places, samples) that interpolates samples at places (any,) counted in samples."""
     first = np.clip(np.floor(places) + NEAR[0], 0, max(samples - NEAR.size, 0))
-    offset = places - first
-    powers = [
-        np.prod([(offset - other) / (own - other) for other in range(NEAR.size) if other != own], axis=0)
-        for own in range(NEAR.size)
-    ]
-    columns = first[:, None].astype(np.int64) + np.arange(NEAR.size)
-    starts = np.arange(0, columns.size + 1, NEAR.size)
-    return csr_array((np.column_stack(powers).ravel(), columns.ravel(), starts), shape=(places.size, samples))
+    offset, weights = places - first, np.empty((places.size, NEAR.size))
+    for begin in range(0, places.size, BLOCK):
+        block = slice(begin, begin + BLOCK)
+        away = [offset[block] - other for other in range(NEAR.size)]
+        before, after = [*accumulate(away[:-1], mul, initial=1.0)], [*accumulate(away[:0:-1], mul, initial=1.0)][::-1]
+        for own in range(NEAR.size):
+            weights[block, own] = (
+                before[own] * after[own] / prod(own - other for other in range(NEAR.size) if other != own)
+            )
+    columns = first[:, None].astype(np.int32) + np.arange(NEAR.size, dtype=np.int32)
+    starts = np.arange(0, columns.size + 1, NEAR.size, dtype=np.int32)
+    return csr_array((weights.ravel(), columns.ravel(), starts), shape=(places.size, samples))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
 
@@ -42,23 +42,21 @@ class Cut:
         first = np.arange(0, max(len(places) - self.length, 0), self.hop)
         return np.column_stack([places[first], places[first + self.length]])
 
-    def taken(self, signals: Float32Array, pulses: FloatArray, edges: FloatArray) -> Iterator[Float32Array]:
-        """Yield each window (channels, samples) of the signals (channels, count) of a run.
+    def cutter(self, signals: Float32Array, pulses: FloatArray) -> Callable[[float], Float32Array]:
+        """Return what cuts the window (channels, samples) that starts at a time in s out of the signals of a run.
 
-        Windows of turns have SAMPLES_PER_TURN values a turn at equal angles, as in computed order tracking: a monotone
-        cubic goes through the times of the pulses, and a cubic spline through the samples.
+        Signals are (channels, count); a start is one of `pieces`. Windows of turns have SAMPLES_PER_TURN values a turn
+        at equal angles, as in computed order tracking: a monotone cubic goes through the times of the pulses, and a
+        cubic spline through the samples.
         """
         if not self.turns:
-            for first in np.rint(edges[:, 0] * self.rate).astype(int):
-                yield signals[:, first : first + self.length]
-            return
+            return lambda start: signals[:, round(start * self.rate) : round(start * self.rate) + self.length]
         from scipy.interpolate import PchipInterpolator, make_interp_spline
 
         spline = make_interp_spline(np.arange(signals.shape[1]) / self.rate, signals, k=3, axis=1)
         time_of = PchipInterpolator(np.arange(pulses.size), pulses)
         part = np.arange(self.samples) / SAMPLES_PER_TURN
-        for first in np.searchsorted(pulses, edges[:, 0]):
-            yield np.asarray(spline(time_of(first + part)), dtype=np.float32)
+        return lambda start: np.asarray(spline(time_of(np.searchsorted(pulses, start) + part)), dtype=np.float32)
 
     def advice(self, count: int) -> str:
         """Say which lengths are possible for signals of `count` samples."""

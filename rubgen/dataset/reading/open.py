@@ -19,9 +19,9 @@ from rubgen.brief import counted
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest, read_manifest
 from rubgen.dataset.reading.balance import balance_table, balance_weights
-from rubgen.dataset.reading.cutting import cut_of
+from rubgen.dataset.reading.cutting import Cut, cut_of
 from rubgen.dataset.reading.folds import Fold, base_runs, folds
-from rubgen.dataset.reading.samples import Arrays, Windows, arrays, windows
+from rubgen.dataset.reading.samples import Arrays, Windows, arrays, window_index, windows
 from rubgen.dataset.reading.stored_run import StoredRun, stored_run
 from rubgen.dataset.reading.tables import COLUMNS, check_runs, runs_frame, touches_frame
 from rubgen.dataset.rows import RunRows, asked_bytes
@@ -58,6 +58,10 @@ class DataSet:
         """Read the manifest. Raises UserError where `directory` holds no finished data set."""
         self.layout = Layout(directory)
         self.manifest: Manifest = read_manifest(self.layout)
+
+    def __reduce__(self) -> tuple[type[DataSet], tuple[Path]]:
+        """Pickle the directory alone: another process opens the set again."""
+        return DataSet, (self.layout.root,)
 
     def __len__(self) -> int:
         return self.manifest.runs
@@ -145,9 +149,7 @@ class DataSet:
 
     def row(self, run_id: str) -> dict[str, Any]:
         """Return a run's parameters and labels by column, as plain values. Raises UserError for an unknown run."""
-        if run_id not in self:
-            raise UserError(f"{self.layout.root}: {self._no_such_run(run_id)}")
-        row: dict[str, Any] = self._table.slice(self._numbers[run_id], 1).to_pylist()[0]
+        row: dict[str, Any] = self._table.slice(self._number(run_id), 1).to_pylist()[0]
         return row
 
     def whole_row(self, run_id: str) -> dict[str, Any]:
@@ -243,9 +245,13 @@ class DataSet:
         Raises UserError also where no length or both are given, windows are longer than the signals, or turns are
         asked for of a set without a once_per_rev sensor.
         """
+        cut = self.cut(seconds, turns, hop)
+        return windows(window_index(self, channels, cut, target, split, runs), out)
+
+    def cut(self, seconds: float | None, turns: int | None, hop: float | None) -> Cut:
+        """Return how to cut this set into windows. Raises UserError as `windows` does."""
         tacho = any(isinstance(sensor, OncePerRev) for sensor in self._sensing.set.sensors)
-        cut = cut_of(seconds, turns, hop, self.sample_rate_hz, tacho=tacho)
-        return windows(self, channels, cut, target, split, runs, out)
+        return cut_of(seconds, turns, hop, self.sample_rate_hz, tacho=tacho)
 
     def folds(self, k: int, by: str = "machine_id", split: str | None = None) -> list[Fold]:
         """Divide the good runs into k folds: `for train, test in data.folds(5): data.arrays(runs=train)`.
@@ -288,9 +294,9 @@ class DataSet:
 
     def check_has_signals(self, run_id: str) -> None:
         """Check that the run exists and did not fail. Raises UserError where it has no signals."""
-        row = self.row(run_id)
-        if row["status"] != "ok":
-            failed = f"{run_id} failed ({row['status']}: {row['reason']}) and has no signals"
+        status, reason = (self._table[name][self._number(run_id)].as_py() for name in ("status", "reason"))
+        if status != "ok":
+            failed = f"{run_id} failed ({status}: {reason}) and has no signals"
             raise UserError(f"{self.layout.root}: {failed}; choose a run with status ok")
 
     @cached_property
@@ -376,6 +382,12 @@ class DataSet:
             if name not in self.channels:
                 raise UserError(f"{self.layout.root}: no channel {name!r}; {nearest(str(name), list(self.channels))}")
         return tuple(dict.fromkeys(names))
+
+    def _number(self, run_id: str) -> int:
+        """Return the row of a run in the table of runs. Raises UserError where there is none."""
+        if run_id not in self:
+            raise UserError(f"{self.layout.root}: {self._no_such_run(run_id)}")
+        return self._numbers[run_id]
 
     def _no_such_run(self, run_id: object) -> str:
         digits = re.sub(r"[^0-9]", "", str(run_id))[:9]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -64,39 +65,64 @@ def arrays(
     return Arrays(samples, y, data.groups_of(chosen))
 
 
-def windows(
-    data: DataSet,
-    channels: Sequence[str] | None,
-    cut: Cut,
-    target: str,
-    split: str | None,
-    runs: Sequence[str] | None,
-    out: Path | str | None,
-) -> Windows:
-    """Read windows of runs. See `DataSet.windows`."""
+@dataclass(frozen=True)
+class WindowIndex:
+    """Where the windows of a data set are, and their answers. It holds no samples."""
+
+    data: DataSet
+    runs: tuple[str, ...]
+    channels: tuple[str, ...]
+    cut: Cut
+    starts: tuple[FloatArray, ...]
+    """Starts in s from the first sample of the windows of each run."""
+    y: npt.NDArray[Any]
+    """Answer of each window."""
+
+    @property
+    def lengths(self) -> list[int]:
+        """Number of windows of each run."""
+        return [each.size for each in self.starts]
+
+    def cutters(self, numbers: Iterable[int]) -> Iterator[tuple[int, Callable[[float], Float32Array]]]:
+        """Yield for each run, by its place in `runs`, that place and what cuts its windows: `Cut.cutter`.
+
+        One run is in memory at a time.
+        """
+        numbers, count = list(numbers), _samples(self.data)
+        chosen = [self.runs[number] for number in numbers]
+        for number, (run_id, signals, pulses) in zip(numbers, self.data.recorded(chosen, self.channels), strict=True):
+            yield number, self.cut.cutter(_stacked(run_id, signals, self.channels, count), pulses)
+
+
+def window_index(
+    data: DataSet, channels: Sequence[str] | None, cut: Cut, target: str, split: str | None, runs: Sequence[str] | None
+) -> WindowIndex:
+    """Find the windows of runs and their answers. See `DataSet.windows`."""
     chosen, names = chosen_runs(data, split, runs), chosen_channels(data, channels)
     answers = Answers(data, target)
     count = _samples(data)
     pieces = [cut.pieces(pulses, count) for pulses in _pulses(data, chosen, cut)]
     if not any(map(len, pieces)):
         raise UserError(f"{data.layout.root}: {cut.text}: longer than every signal; {cut.advice(count)}")
-    starts = [edges[:, 0] for edges in pieces]
-    lengths = [len(edges) for edges in pieces]
-    samples = _space(out, (sum(lengths), len(names), cut.samples))
-    row = 0
-    for edges, (run_id, signals, pulses) in zip(pieces, data.recorded(chosen, names), strict=True):
-        whole = _stacked(run_id, signals, names, count)
-        for piece in cut.taken(whole, pulses, edges):
-            samples[row] = piece
-            row += 1
     y = answers.of_windows(chosen, pieces)
     answers.warn_of_missing(y, split)
+    return WindowIndex(data, tuple(chosen), names, cut, tuple(edges[:, 0] for edges in pieces), y)
+
+
+def windows(index: WindowIndex, out: Path | str | None) -> Windows:
+    """Read all windows of an index. See `DataSet.windows`."""
+    samples = _space(out, (len(index.y), len(index.channels), index.cut.samples))
+    row = 0
+    for number, cutter in index.cutters(range(len(index.runs))):
+        for start in index.starts[number]:
+            samples[row] = cutter(start)
+            row += 1
     return Windows(
         samples,
-        y,
-        np.repeat(data.groups_of(chosen), lengths),
-        np.concatenate(starts),
-        np.repeat(np.array(chosen, dtype=np.str_), lengths),
+        index.y,
+        np.repeat(index.data.groups_of(index.runs), index.lengths),
+        np.concatenate(index.starts),
+        np.repeat(np.array(index.runs, dtype=np.str_), index.lengths),
     )
 
 

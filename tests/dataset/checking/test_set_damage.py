@@ -126,7 +126,7 @@ def test_a_damaged_row_group_names_its_runs(name, column, copied_shown_set):
     names = [facts.column(number).path_in_schema.split(".")[0] for number in range(facts.num_columns)]
     chunk = facts.column(names.index(column))
     content = bytearray(path.read_bytes())
-    content[chunk.data_page_offset + chunk.total_compressed_size - 3] ^= 16
+    content[(chunk.dictionary_page_offset or chunk.data_page_offset) + chunk.total_compressed_size - 3] ^= 16
     path.write_bytes(content)
     problems = rubgen.verify(copied_shown_set)
     assert problems[0] == f"{name}: its sha256 is not the one in the manifest"
