@@ -8,7 +8,6 @@ from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.reduction import ReducedModel
 from rubgen.reduction.modes import synchronous_speeds
-from rubgen.solver.linear.rub_free import rub_free_motion
 from rubgen.units import rad_per_s
 from rubgen.viz.colors import BLUE, GREY, ORANGE, VERMILION
 from rubgen.viz.figures.style import head, label_axes, new_figure
@@ -63,6 +62,8 @@ def whirl_of_unbalance(model: ReducedModel, speeds_rpm: FloatArray) -> ComplexAr
     without contact (`rub_free_motion`). In the turning frame the forward part is the mean of the motion and the
     backward part turns with -2 theta.
     """
+    from rubgen.solver.linear.rub_free import rub_free_motion  # it imports kernels, which readers must not
+
     rows = []
     for speed in rad_per_s(1.0) * speeds_rpm:
         system = model.at_speed(float(speed))
