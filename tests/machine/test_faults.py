@@ -87,7 +87,9 @@ def test_a_run_keeps_the_motion_of_a_misaligned_shaft_and_books_its_work(preset)
         assert np.hypot(abs(x[order]), abs(y[order])) > 0.1 * share * reaction / 1e8
     assert abs(x[2] / y[2]) == pytest.approx(1 / np.tan(np.deg2rad(30)), rel=0.02)  # along the misalignment
     healthy = simulate(replace(scenario, machine=replace(scenario.machine, faults=())))
-    assert np.abs(np.fft.rfft(healthy.response.taps["blisk_x"][-turn:])[2:4]).max() < 1e-9 * turn * abs(x[2])
+    orders = np.abs(np.fft.rfft(healthy.response.taps["blisk_x"][-turn:])) / turn * 2
+    assert orders[2:4].max() < 1e-9 * orders[1]  # rounding makes the reduced blisk uneven by up to 1e-10
+    assert orders[2] < 1e-6 * abs(x[2])
 
 
 def test_a_bow_is_followed_at_slow_roll_without_force_on_the_support():

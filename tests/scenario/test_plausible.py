@@ -209,3 +209,16 @@ def test_a_fault_that_begins_after_the_record_is_warned_of():
     make_scenario(**keys, start_s=2.9)
     with pytest.warns(RubgenWarning, match="^start_s of closing-clearance = 3: it never begins, the record lasts 3 s"):
         make_scenario(**keys, start_s=3)
+
+
+def test_a_friction_that_vary_replaces_is_warned_of():
+    law, drawn = {"contact": {"friction": 0.01}}, {"vary": {"friction": 0.02}}
+    said = "r.toml: contact.friction = 0.01: vary.friction replaces it in every run; leave one of the two out"
+    assert warned(law | drawn) == [said]
+    assert warned(law) == warned(drawn) == []
+
+
+def test_a_bow_of_millimetres_is_warned_of():
+    assert made(fault="bow", bow_m=5e-4)[1] == []
+    said = "faults.0.bow_m = 0.01: shafts are bent by 1e-6 to 5e-4 m; were mm meant, 1e-05 m?"
+    assert made(fault="bow", bow_m=0.01)[1] == [said]

@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic.dataclasses import dataclass
 
 from rubgen.machine.faults.fault import Fault, HarmonicLoad, Ramp, Severity
-from rubgen.machine.quantities import STRICT, Angle, about, real
+from rubgen.machine.quantities import STRICT, Angle, Usual, about, real
 
 if TYPE_CHECKING:
     from rubgen.machine.machine import Machine
 
 Moment = Annotated[float, real(ge=0, le=1e5)]
-BowSize = Annotated[float, real(ge=0, le=0.1)]
+BowSize = Annotated[
+    float,
+    real(ge=0, le=0.1, usual=Usual(0, 1e-3, "shafts are bent by 1e-6 to 5e-4 m", (("mm", 1e-3), ("um", 1e-6)), "m")),
+]
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
