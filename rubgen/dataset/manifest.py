@@ -8,8 +8,6 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import (
-    BaseModel,
-    ConfigDict,
     Field,
     NonNegativeInt,
     SerializerFunctionWrapHandler,
@@ -24,7 +22,7 @@ from rubgen.errors import UserError
 from rubgen.io.files import check_regular, read_json
 from rubgen.machine import Machine
 from rubgen.machine.problems import first_problem
-from rubgen.machine.quantities import about
+from rubgen.machine.quantities import StrictModel, about
 from rubgen.scenario import Recipe
 from rubgen.scenario.faults import named_kinds
 from rubgen.scenario.load import recorded_recipe
@@ -36,24 +34,21 @@ PACKAGES = ("rubgen", "numpy", "scipy", "numba", "llvmlite", "pyarrow", "mcap", 
 FORMAT: Literal["rubgen data set 1"] = "rubgen data set 1"
 MAKE_AGAIN = "make the set again in a new directory: rubgen generate RECIPE --out NEW"
 DIGITS = 12
-_STRICT = ConfigDict(extra="forbid", frozen=True)
 InnerPath = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*(/[A-Za-z0-9][A-Za-z0-9._-]*)*$")]
 """The path of a file within the set. No other path is allowed."""
 
 
-class FileEntry(BaseModel):
+class FileEntry(StrictModel):
     """A file of the set, its size and digest."""
 
-    model_config = _STRICT
     path: Annotated[InnerPath, about("Path of the file within the set.")]
     bytes: Annotated[NonNegativeInt, about("Size of the file.")]
     sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$"), about("SHA-256 of its content, in hexadecimal digits.")]
 
 
-class Identity(BaseModel):
+class Identity(StrictModel):
     """Everything that decides the bytes of a data set on one computer: recipe, machine, sensors, package versions."""
 
-    model_config = _STRICT
     recipe: Annotated[dict[str, Any], about("The recipe with every value that was given or is a default.")]
     machine: Annotated[
         dict[str, Any] | list[dict[str, Any]],
@@ -64,7 +59,7 @@ class Identity(BaseModel):
     split_sensors: Annotated[
         dict[str, dict[str, Any]],
         about("Sensor sets of splits that have their own, by the name in the recipe. Left out where there are none."),
-    ] = {}
+    ] = Field({})
     sources: Annotated[
         tuple["Source", ...],
         about(
@@ -140,10 +135,9 @@ class Identity(BaseModel):
         return own_keys(frame=bool(self.machines[0].get("frame"))) if "machines" in self.recipe else ()
 
 
-class Source(BaseModel):
+class Source(StrictModel):
     """One of the sets of which a merged set was made."""
 
-    model_config = _STRICT
     sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$"), about("SHA-256 of its manifest.json.")]
     identity: Annotated[Identity, about("What decided its bytes: with it any of its runs is made again.")]
 
@@ -153,13 +147,12 @@ class Source(BaseModel):
         return self.sha256[:DIGITS]
 
 
-class Manifest(BaseModel):
+class Manifest(StrictModel):
     """The content of manifest.json. `derived` lists files whose bytes may differ and that can be made again.
 
     Their digests are in derived.json, so that making a set twice makes the same manifest.
     """
 
-    model_config = _STRICT
     format: Annotated[
         Literal["rubgen data set 1"], about("Format of the set. It changes where a new version cannot read old sets.")
     ] = FORMAT

@@ -10,7 +10,7 @@ from functools import cache
 from typing import Annotated, Any, get_args, get_type_hints
 
 import numpy as np
-from pydantic import BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
@@ -87,6 +87,12 @@ def _whole(*, usual: Usual | None = None, **bounds: Any) -> Any:
 def real(**bounds: Any) -> Any:
     """Return bounds of a finite number (`ge`, `gt`, `le`, `lt`), for which no text may stand, and its usual range."""
     return _whole(allow_inf_nan=False, **bounds)
+
+
+class StrictModel(BaseModel):
+    """A model that refuses unknown keys and whose values do not change."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 def about(text: str) -> Any:

@@ -9,17 +9,16 @@ from collections.abc import Mapping
 from numbers import Real
 from typing import Annotated, Self, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, RootModel, Tag, model_validator
+from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, RootModel, Tag, model_validator
 from pydantic_core import PydanticCustomError
 from scipy.special import ndtr, ndtri
 
 from rubgen.machine.problems import nearest
-from rubgen.machine.quantities import Finite, Positive, about
+from rubgen.machine.quantities import Finite, Positive, StrictModel, about
 
 T = TypeVar("T")
 LEAST_PROBABILITY = 1e-4
 """Least share of a normal density between its ends. With less, all values lie at one end, or are uniform."""
-_FROZEN = ConfigDict(extra="forbid", frozen=True)
 
 
 class Constant(RootModel[Finite]):
@@ -36,10 +35,9 @@ class Constant(RootModel[Finite]):
         return (self.root,)
 
 
-class Uniform(BaseModel):
+class Uniform(StrictModel):
     """`{ uniform = [a, b] }`: equal density between a and b."""
 
-    model_config = _FROZEN
     uniform: Annotated[tuple[Finite, Finite], about("Lower and upper end; every value between is equally likely.")]
 
     @model_validator(mode="after")
@@ -56,10 +54,9 @@ class Uniform(BaseModel):
         return self.uniform
 
 
-class LogUniform(BaseModel):
+class LogUniform(StrictModel):
     """`{ log_uniform = [a, b] }`: equal density of the logarithm between a and b, both above 0."""
 
-    model_config = _FROZEN
     log_uniform: Annotated[
         tuple[Finite, Finite],
         about(
@@ -83,10 +80,9 @@ class LogUniform(BaseModel):
         return self.log_uniform
 
 
-class NormalShape(BaseModel):
+class NormalShape(StrictModel):
     """Mean and standard deviation of the normal density before it is cut off at min and max."""
 
-    model_config = _FROZEN
     mean: Annotated[Finite, about("Mean of the normal density before it is cut off.")]
     std: Annotated[Positive, about("Standard deviation of the normal density before it is cut off, above 0.")]
     min: Annotated[Finite, about("Least value that is drawn.")]
@@ -97,10 +93,9 @@ class NormalShape(BaseModel):
         return _check_order(self, self.min, self.max)
 
 
-class Normal(BaseModel):
+class Normal(StrictModel):
     """`{ normal = { mean, std, min, max } }`: the normal density between min and max."""
 
-    model_config = _FROZEN
     normal: Annotated[
         NormalShape,
         about("Mean, standard deviation, least and largest value of a normal density that is cut off at both ends."),
@@ -135,10 +130,9 @@ class Normal(BaseModel):
         return low, high
 
 
-class Choice(BaseModel):
+class Choice(StrictModel):
     """`{ choice = [a, b, ...] }`: each listed value with the same probability."""
 
-    model_config = _FROZEN
     choice: Annotated[tuple[Finite, ...], Field(min_length=1), about("Values of which each is equally likely.")]
 
     def quantile(self, u: float) -> float:

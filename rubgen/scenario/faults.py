@@ -9,28 +9,26 @@ from dataclasses import MISSING, fields, replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, create_model
+from pydantic import AfterValidator, BaseModel, Field, TypeAdapter, create_model
 
 from rubgen.errors import UserError
 from rubgen.machine.descriptions import draws
 from rubgen.machine.faults.fault import Fault
 from rubgen.machine.faults.registry import FAULTS, AnyFault
 from rubgen.machine.problems import nearest, validated
-from rubgen.machine.quantities import about
+from rubgen.machine.quantities import StrictModel, about
 from rubgen.machine.sentences import toml_text
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.scenario import Scenario
 
-_STRICT = ConfigDict(extra="forbid", frozen=True)
 _FAULT: TypeAdapter[Fault] = TypeAdapter(AnyFault)
 Value = Callable[[str, Any], object]
 """The value of a key, from its name and its distribution."""
 
 
-class WordChoice(BaseModel):
+class WordChoice(StrictModel):
     """`{ choice = ["a", "b"] }`: each listed word with the same probability."""
 
-    model_config = _STRICT
     choice: Annotated[tuple[str, ...], Field(min_length=1), about("Words of which each is equally likely.")]
 
     def quantile(self, u: float) -> str:
@@ -83,7 +81,7 @@ def _table(kind: str, fault: type[Fault]) -> type[BaseModel]:
         else:
             extra = draws(quantities[field.name], field.default)
             values[field.name] = (Annotated[allowed | None, Field(description=text, json_schema_extra=extra)], None)
-    return create_model(f"{fault.__name__}Table", __config__=_STRICT, __doc__=f"`[[faults]]` of {kind}.", **values)
+    return create_model(f"{fault.__name__}Table", __base__=StrictModel, __doc__=f"`[[faults]]` of {kind}.", **values)
 
 
 if TYPE_CHECKING:

@@ -158,13 +158,18 @@ def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | 
             for scenario in part.own_corners(where):
                 check_feasible(scenario, f"{where}: ")
     if not recipe._checked:
-        warn_of(chain(recipe.corners(), machine_extremes(recipe)), f"{source}: ")
-        if recipe.contact.friction and recipe.vary.friction is not None:  # type: ignore[attr-defined]
-            value = f"contact.friction = {recipe.contact.friction:g}"
-            warn(f"{source}: {value}: vary.friction replaces it in every run; leave one of the two out")
-        if FOR_COMPARISON in (base.machine.name for base in recipe.bases):
-            warn(f"{source}: machine = {recipe.machine!r}: {NOT_FOR_DATA}")
+        _warn(recipe, source)
     recipe._checked = True
+
+
+def _warn(recipe: Recipe, source: str) -> None:
+    """Warn of what is hardly intended."""
+    warn_of(chain(recipe.corners(), machine_extremes(recipe)), f"{source}: ")
+    if recipe.contact.friction and "friction" in {key.key for key, _ in recipe.distributions()}:
+        value = f"contact.friction = {recipe.contact.friction:g}"
+        warn(f"{source}: {value}: vary.friction replaces it in every run; leave one of the two out")
+    if FOR_COMPARISON in (base.machine.name for base in recipe.bases):
+        warn(f"{source}: machine = {recipe.machine!r}: {NOT_FOR_DATA}")
 
 
 def _check_used(recipe: Recipe, source: str, data: dict[str, Any] | None) -> None:

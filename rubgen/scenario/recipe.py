@@ -9,18 +9,13 @@ from pkgutil import resolve_name
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
+from pydantic import ConfigDict, Field, PrivateAttr, model_validator
 
 from rubgen.brief import counted
 from rubgen.errors import UserError
 from rubgen.machine import Machine, load_machine
 from rubgen.machine.load import file_named, machine_id
-from rubgen.machine.quantities import (
-    MOST_RUNS,
-    RunCount,
-    Seed,
-    about,
-)
+from rubgen.machine.quantities import MOST_RUNS, RunCount, Seed, StrictModel, about
 from rubgen.machine.sentences import FILE_NAME
 from rubgen.scenario.contact_laws.contact_law import ContactLaw
 from rubgen.scenario.distributions import Distribution
@@ -37,13 +32,7 @@ from rubgen.scenario.tables.run import Output, Profile, Sensors, Simulation
 from rubgen.scenario.tables.splits import ONE_SPLIT, Splits, SplitTable, changes_of, split_of_machine
 from rubgen.scenario.tables.twins import Twins, fault_of, paired, partner_of, with_twin
 from rubgen.scenario.tables.vary import Vary
-from rubgen.scenario.vary import (
-    DEFAULT_SPEED_RPM,
-    DRAWN,
-    Parameter,
-    candidate_point,
-    vary,
-)
+from rubgen.scenario.vary import DEFAULT_SPEED_RPM, DRAWN, Parameter, candidate_point, vary
 from rubgen.sensors.load import load_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
 
@@ -51,7 +40,6 @@ CHOICE = "rubgen.balancing.choose:choose"
 """The choice of a candidate of a balance. It needs solver and labels, above this room."""
 CANDIDATE_CHECK = "rubgen.solver.candidate:candidate_problem"
 """The check of a virtual machine. It needs the solver, above this room, so it is named here and imported when used."""
-_STRICT = ConfigDict(extra="forbid", frozen=True)
 
 
 def _runs_or_count(schema: dict[str, Any]) -> None:
@@ -63,10 +51,10 @@ def _runs_or_count(schema: dict[str, Any]) -> None:
 MachineFile = Annotated[str, Field(min_length=1)]
 
 
-class Recipe(BaseModel):
+class Recipe(StrictModel):
     """The definition of a data set: a machine, what varies, the length of each run, the files."""
 
-    model_config = ConfigDict(**_STRICT, json_schema_extra=_runs_or_count)
+    model_config = ConfigDict(json_schema_extra=_runs_or_count)
     name: Annotated[str, Field(pattern=FILE_NAME), about("Name of the data set, in its files and its card.")]
     seed: Annotated[
         Seed,

@@ -11,7 +11,7 @@ from dataclasses import dataclass as plain_dataclass
 from typing import Annotated, Any, Self, get_type_hints
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, create_model, model_validator
+from pydantic import BaseModel, Field, TypeAdapter, create_model, model_validator
 from pydantic.dataclasses import dataclass
 
 from rubgen.machine.descriptions import draws
@@ -26,6 +26,7 @@ from rubgen.machine.quantities import (
     SpectralSlope,
     SpeedExponent,
     Spread,
+    StrictModel,
     about,
 )
 from rubgen.scenario.distributions import Distribution
@@ -156,7 +157,6 @@ def surroundings_values(around: Surroundings) -> dict[str, float | list[float]]:
     return values
 
 
-_TABLE = ConfigDict(extra="forbid", frozen=True)
 _VALUES: TypeAdapter[Any] = TypeAdapter(Surroundings)
 
 
@@ -166,10 +166,9 @@ def _drawn(record: Any, key: str) -> Any:
     return Field(description=field.description, json_schema_extra=draws(hint, field.default))
 
 
-class ToneTable(BaseModel):
+class ToneTable(StrictModel):
     """`[[surroundings.tones]]`: a tone at an order of the rotation or at a fixed frequency."""
 
-    model_config = _TABLE
     order: Annotated[Distribution | None, _drawn(Tone, "order")] = None
     frequency_hz: Annotated[Distribution | None, _drawn(Tone, "frequency_hz")] = None
     level_m_per_s2: Annotated[Distribution, _drawn(Tone, "level_m_per_s2")]
@@ -186,7 +185,7 @@ _TONES: Any = Annotated[
 ]
 SurroundingsTable = create_model(
     "SurroundingsTable",
-    __config__=_TABLE,
+    __base__=StrictModel,
     __doc__="`[surroundings]`: a number fixes a level, a table draws it.",
     tones=(_TONES, ()),
     **_FIELDS,

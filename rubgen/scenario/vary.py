@@ -88,11 +88,7 @@ class Parameter:
 
 PARAMETERS = (
     Parameter(
-        "speed_rpm",
-        "rev/min",
-        "spin speed, of a run-up or coast-down at its start",
-        Speed,
-        ("operation.speed_rpm",),
+        "speed_rpm", "rev/min", "spin speed, of a run-up or coast-down at its start", Speed, ("operation.speed_rpm",)
     ),
     Parameter(
         "clearance_m",
@@ -157,11 +153,7 @@ PARAMETERS = (
         ("operation.end_speed_rpm",),
     ),
     Parameter(
-        "duration_s",
-        "s",
-        "duration of the record, and of a run-up or coast-down",
-        Duration,
-        ("operation.duration_s",),
+        "duration_s", "s", "duration of the record, and of a run-up or coast-down", Duration, ("operation.duration_s",)
     ),
     Parameter(
         "fluctuation_rpm",

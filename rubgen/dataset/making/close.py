@@ -6,7 +6,7 @@ from itertools import islice
 from pathlib import Path
 
 import pyarrow as pa
-from pydantic import BaseModel, ConfigDict, NonNegativeInt
+from pydantic import NonNegativeInt
 
 from rubgen.dataset.files import sha256_of, write_json
 from rubgen.dataset.layout import RUNS_PER_ROW_GROUP, Layout
@@ -19,14 +19,14 @@ from rubgen.errors import RubgenError
 from rubgen.formats import run_formats
 from rubgen.io.files import read_json
 from rubgen.io.parquet.write import write_table
+from rubgen.machine.quantities import StrictModel
 from rubgen.scenario import Recipe
 from rubgen.scenario.run_id import run_id_of
 
 
-class ClosedShard(BaseModel):
+class ClosedShard(StrictModel):
     """The record of a closed shard: what the manifest needs of it."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
     runs: NonNegativeInt
     status: dict[str, NonNegativeInt]
     tables: tuple[FileEntry, ...]

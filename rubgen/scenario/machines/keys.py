@@ -16,20 +16,17 @@ from rubgen.machine import Machine
 from rubgen.machine.problems import first_problem
 from rubgen.machine.quantities import (
     Angle,
-    Anisotropy,
     BladeCount,
     CasingShare,
     DampingRatio,
     DeviationSpread,
     FrameFrequency,
-    Height,
     Length,
     Lobes,
     ModalMass,
     Stiffness,
-    UnbalanceSize,
 )
-from rubgen.scenario.vary import KEYS
+from rubgen.scenario.vary import KEYS, PARAMETERS
 
 Values = dict[str, Any]
 """A machine as nested values, keys as in its TOML."""
@@ -73,6 +70,13 @@ def _plain(key: str, unit: str, meaning: str, quantity: Any, *places: str) -> Ma
             _part(values, parts)[name] = value
 
     return MachineKey(key, unit, meaning, quantity, write, attrgetter(places[0]))
+
+
+def _as_in_vary(key: str) -> MachineKey:
+    """Make the key that stands in `[vary]` too: drawn once a machine here, in each run there."""
+    entry = next(entry for entry in PARAMETERS if entry.key == key)
+    places = (place.removeprefix("machine.") for place in entry.places)
+    return _plain(key, entry.unit, entry.meaning, entry.quantity, *places)
 
 
 def _scaled(key: str, unit: str, meaning: str, quantity: Any, first: str, other: str) -> MachineKey:
@@ -177,33 +181,14 @@ MACHINE_KEYS = (
     _plain("disk_rim_radius_m", "m", "radius of the disk's rim", Length, "disk.rim_radius_m"),
     _plain("disk_bore_thickness_m", "m", "thickness of the disk at the bore", Length, "disk.bore_thickness_m"),
     _plain("disk_rim_thickness_m", "m", "thickness of the disk at the rim", Length, "disk.rim_thickness_m"),
-    _plain("clearance_m", "m", "smallest gap between tips and casing at rest", Length, "casing.clearance_m"),
-    _plain("ovality_m", "m", "largest minus smallest radius of the casing's inside", Height, "casing.ovality_m"),
-    _plain("lobes", "1", "number of lobes of the casing's inside", Lobes, "casing.lobes"),
-    _plain("casing_thickness_m", "m", "radial thickness of the casing ring", Length, "casing.thickness_m"),
+    _as_in_vary("clearance_m"),
+    _as_in_vary("ovality_m"),
+    _as_in_vary("lobes"),
+    _as_in_vary("casing_thickness_m"),
     _plain("casing_width_m", "m", "axial width of the casing ring", Length, "casing.width_m"),
-    _plain(
-        "casing_support_stiffness_n_per_m",
-        "N/m",
-        "radial and circumferential stiffness under each casing node",
-        Stiffness,
-        "casing.radial_support_stiffness_n_per_m",
-        "casing.circumferential_support_stiffness_n_per_m",
-    ),
-    _plain(
-        "disk_support_stiffness_n_per_m",
-        "N/m",
-        "lateral stiffness of the disk support, mean of X and Y",
-        Stiffness,
-        "disk_support.lateral_stiffness_n_per_m",
-    ),
-    _plain(
-        "support_anisotropy",
-        "1",
-        "lateral stiffness of the disk support, (k_X - k_Y) / (k_X + k_Y)",
-        Anisotropy,
-        "disk_support.lateral_stiffness_anisotropy",
-    ),
+    _as_in_vary("casing_support_stiffness_n_per_m"),
+    _as_in_vary("disk_support_stiffness_n_per_m"),
+    _as_in_vary("support_anisotropy"),
     _plain(
         "tilt_stiffness_nm_per_rad",
         "N m/rad",
@@ -211,7 +196,7 @@ MACHINE_KEYS = (
         Stiffness,
         "disk_support.tilt_stiffness_nm_per_rad",
     ),
-    _plain("lateral_damping", "1", "damping ratio of the blisk moving laterally", DampingRatio, "damping.lateral"),
+    _as_in_vary("lateral_damping"),
     _plain("tilt_damping", "1", "damping ratio of the blisk tilting", DampingRatio, "damping.tilt"),
     _plain("blade_damping", "1", "damping ratio of a blade's first mode", DampingRatio, "damping.blade"),
     _plain("casing_damping", "1", "damping ratio of every casing mode", DampingRatio, "damping.casing"),
@@ -223,8 +208,8 @@ MACHINE_KEYS = (
         _write_mistuning,
         lambda machine: float(np.std(machine.blades.stiffness_deviations)),
     ),
-    _plain("unbalance_kg_m", "kg m", "mass unbalance of the blisk", UnbalanceSize, "unbalance_kg_m"),
-    _plain("unbalance_angle_deg", "deg", "angle of the unbalance from blade 0", Angle, "unbalance_angle_deg"),
+    _as_in_vary("unbalance_kg_m"),
+    _as_in_vary("unbalance_angle_deg"),
     _of_frame(
         "frame_frequency_hz",
         "Hz",

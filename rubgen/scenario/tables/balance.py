@@ -7,10 +7,10 @@ from math import inf
 from typing import Annotated, Literal, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from rubgen.errors import UserError
-from rubgen.machine.quantities import Share, about
+from rubgen.machine.quantities import Share, StrictModel, about
 
 MotionName = Literal["period-1", "period-k", "quasi-periodic", "chaotic"]
 """The classes of motion that a share may be asked of."""
@@ -32,10 +32,9 @@ class Cell:
     severities: tuple[float, float] = (0.0, inf)
 
 
-class Balance(BaseModel):
+class Balance(StrictModel):
     """`[balance]`: which share of the runs rubs, and in which way."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
     rub: Annotated[
         float,
         Field(ge=0, le=1),

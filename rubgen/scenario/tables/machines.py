@@ -3,15 +3,14 @@
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field, create_model, model_validator
+from pydantic import BaseModel, Field, create_model, model_validator
 
 from rubgen.machine import Machine
 from rubgen.machine.descriptions import draws
-from rubgen.machine.quantities import MOST_RUNS, Length, RunCount, Speed, TryCount
+from rubgen.machine.quantities import MOST_RUNS, Length, RunCount, Speed, StrictModel, TryCount
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.machines.keys import MACHINE_KEYS, MachineKey, with_values
 
-_STRICT = ConfigDict(extra="forbid", frozen=True)
 CLEARANCES = ("clearance_m", "casing_radius_m")
 _FIELDS: dict[str, Any] = {
     entry.key: (
@@ -22,16 +21,15 @@ _FIELDS: dict[str, Any] = {
 }
 MachineVary = create_model(
     "MachineVary",
-    __config__=_STRICT,
+    __base__=StrictModel,
     __doc__="`[machines.vary]`: a number fixes a value of every machine, a table draws it once a machine.",
     **_FIELDS,
 )
 
 
-class MachineTable(BaseModel):
+class MachineTable(StrictModel):
     """`[machines]`: virtual machines, each with its own values and some runs that follow each other."""
 
-    model_config = _STRICT
     count: Annotated[
         RunCount | None,
         Field(description="Number of machines, in place of `runs`: the runs are count x runs_per_machine."),

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from rubgen.format_names import FORMAT_NAMES, FormatName
 from rubgen.machine.quantities import (
@@ -13,6 +13,7 @@ from rubgen.machine.quantities import (
     Speed,
     SpeedSwing,
     StepCount,
+    StrictModel,
     Switch,
     TurnCount,
     about,
@@ -20,13 +21,10 @@ from rubgen.machine.quantities import (
 from rubgen.scenario.scenario import ProfileName
 from rubgen.sensors.load import DEFAULT_SET
 
-_STRICT = ConfigDict(extra="forbid", frozen=True)
 
-
-class Simulation(BaseModel):
+class Simulation(StrictModel):
     """`[simulation]`: turns and steps of every run, as in `Operation`."""
 
-    model_config = _STRICT
     settle_turns: Annotated[
         TurnCount | Literal["auto"],
         about(
@@ -53,10 +51,9 @@ class Simulation(BaseModel):
     ] = 40
 
 
-class Profile(BaseModel):
+class Profile(StrictModel):
     """`[operation]`: the profile of the speed, as in `Operation`; it starts at `speed_rpm` of `[vary]`."""
 
-    model_config = _STRICT
     profile: Annotated[
         ProfileName, about("How the speed changes: not at all, linearly up, linearly down, or as a sine.")
     ] = "steady"
@@ -79,10 +76,9 @@ class Profile(BaseModel):
     ] = ()
 
 
-class Output(BaseModel):
+class Output(StrictModel):
     """`[output]`: the files to write, and the length of the signals: the end of the record."""
 
-    model_config = _STRICT
     formats: Annotated[
         tuple[FormatName, ...],
         Field(min_length=1, max_length=len(FORMAT_NAMES)),
@@ -104,10 +100,9 @@ class Output(BaseModel):
     ] = 1.0
 
 
-class Sensors(BaseModel):
+class Sensors(StrictModel):
     """`[sensors]`: a set of rubgen or the path of a TOML file, and the other keys of `Sensing`."""
 
-    model_config = _STRICT
     set: Annotated[
         str, Field(min_length=1), about("A sensor set of rubgen by its name, or the path of a sensor set in TOML.")
     ] = DEFAULT_SET

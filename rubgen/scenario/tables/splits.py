@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import AfterValidator, Discriminator, Field, Tag
 
-from rubgen.machine.quantities import MOST_RUNS, Share
+from rubgen.machine.quantities import MOST_RUNS, Share, StrictModel
 from rubgen.machine.sentences import SPLIT_NAME
 from rubgen.scenario.surroundings import SurroundingsTable
 from rubgen.scenario.tables.machines import MachineTable, MachineVary, merged
@@ -21,10 +21,9 @@ ONE_SPLIT = ("train",)
 GOLDEN = (5**0.5 - 1) / 2
 
 
-class SplitTable(BaseModel):
+class SplitTable(StrictModel):
     """`[splits.NAME]`: a split with its share, and with ranges of its own."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
     share: Annotated[Share, Field(description="Share of the machines. All shares add up to 1.")]
     machines: Annotated[
         MachineVary | None,

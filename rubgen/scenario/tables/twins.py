@@ -8,12 +8,12 @@ from pkgutil import resolve_name
 from typing import Annotated, Any, Self, get_type_hints
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, create_model, model_validator
+from pydantic import BaseModel, Field, create_model, model_validator
 
 from rubgen.errors import UserError
 from rubgen.machine.faults.fault import Fault
 from rubgen.machine.faults.registry import AnyFault
-from rubgen.machine.quantities import about
+from rubgen.machine.quantities import StrictModel, about
 from rubgen.scenario.faults import kind_of
 from rubgen.scenario.scenario import Pairing, Scenario
 from rubgen.scenario.surroundings import SURROUNDINGS, Surroundings, extremes
@@ -30,9 +30,7 @@ _SHARE = "Share of the runs that have a twin. Fewer twins leave more runs that s
 _FAULT = "A fault of the twin: its kind and its values. It replaces a fault of the same kind that the run has."
 
 
-class _OneChange(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
+class _OneChange(StrictModel):
     @property
     def changed(self) -> str:
         """The key that differs."""

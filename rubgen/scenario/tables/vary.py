@@ -2,9 +2,10 @@
 
 from typing import Annotated, Any
 
-from pydantic import ConfigDict, Field, create_model
+from pydantic import Field, create_model
 
 from rubgen.machine.descriptions import draws
+from rubgen.machine.quantities import StrictModel
 from rubgen.scenario.distributions import Distribution
 from rubgen.scenario.vary import DRAWN
 
@@ -17,7 +18,7 @@ _FIELDS: dict[str, Any] = {
 }
 Vary = create_model(
     "Vary",
-    __config__=ConfigDict(extra="forbid", frozen=True),
+    __base__=StrictModel,
     __doc__="`[vary]`: a number fixes a value, a table draws it.",
     **_FIELDS,
 )
