@@ -1,15 +1,18 @@
 """The choice of candidates: statics against the run itself, shares and weights against probabilities that are known."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from rubgen.balancing.choose import choose
-from rubgen.balancing.screen import Verdict, reaches, short_run
+from rubgen.balancing.screen import SCREEN_TURNS, Verdict, reaches, short_run
 from rubgen.dataset.reading.balance import balance_table, balance_weights
 from rubgen.errors import UserError
 from rubgen.pipeline import simulate
 from rubgen.scenario import parse_recipe
+from rubgen.solver.response import Status
 
 RECIPE = {
     "name": "balanced",
@@ -38,6 +41,25 @@ def test_the_short_run_is_the_beginning_of_the_run():
     verdict, labels = short_run(run), simulate(run).labels
     assert (verdict.rub, verdict.motion) == (labels.rub, labels.motion.value)
     assert verdict.severity == pytest.approx(labels.amounts.severity, rel=0.1)
+
+
+def test_a_clearance_that_closes_within_the_record_is_left_to_the_run():
+    fault = {"kind": "closing-clearance", "closing_m": 1e-4, "start_s": 0.5, "growth_s": 0.5}
+    clear = {**RECIPE, "vary": {**RECIPE["vary"], "clearance_m": 2e-3}}
+    assert reaches(parse_recipe(clear).scenario(0)) is False
+    assert reaches(parse_recipe({**clear, "faults": [fault]}).scenario(0)) is None
+
+
+def test_the_short_run_is_short(monkeypatch):
+    asked = []
+
+    def integrate(_model, operation, *_):
+        asked.append(operation)
+        return SimpleNamespace(status=Status.UNSTABLE)
+
+    monkeypatch.setattr("rubgen.balancing.screen.integrate", integrate)
+    assert short_run(parse_recipe(RECIPE).scenario(0)) is None
+    assert [operation.record_turns for operation in asked] == [SCREEN_TURNS]
 
 
 def test_a_class_that_is_not_found_refuses_the_run_with_what_was_found():
