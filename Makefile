@@ -11,8 +11,9 @@ demo: $(VENV)/.installed
 	$(BIN)/rubgen generate --out out/demo
 	$(BIN)/rubgen info out/demo
 
+# One thread of BLAS and OpenMP in each process: pytest starts one for each core, and threads that wait cost its time.
 test: $(VENV)/.installed-dev
-	$(BIN)/pytest -n auto --dist loadscope
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n auto --dist loadscope
 
 check: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
