@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check docs tutorial scale bench verification sensitivity confusion run-up-motion balance contact difficulty faults fuzz bench-set sample adapters zeng2019 zeng2019-fit pictures schemas reference clean
+.PHONY: setup demo test check docs tutorial scale cluster bench verification sensitivity confusion run-up-motion balance contact difficulty faults fuzz bench-set sample adapters zeng2019 zeng2019-fit pictures schemas reference clean
 
 setup: $(VENV)/.installed-dev
 
@@ -30,8 +30,13 @@ docs: $(VENV)/.installed-dev
 tutorial: $(VENV)/.installed-dev
 	$(BIN)/python docs/notebook.py
 
+SIZES ?= 100 1000 10000
+MACHINES ?= 200
 scale: $(VENV)/.installed-dev
-	$(BIN)/python -m benchmarks.bench_scale
+	$(BIN)/python -m benchmarks.bench_scale $(SIZES)
+
+cluster: $(VENV)/.installed-dev
+	$(BIN)/python -m validation.cluster --machines $(MACHINES)
 
 bench: $(VENV)/.installed-dev
 	$(BIN)/python -m benchmarks

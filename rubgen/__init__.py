@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from rubgen.dataset.making.resense import resense
     from rubgen.dataset.merging.merge import merge
     from rubgen.dataset.reading.open import DataSet
+    from rubgen.dataset.remote.push import push
     from rubgen.errors import RubgenError, UserError
     from rubgen.pipeline import Run
     from rubgen.scenario import Scenario, load_recipe, make_scenario
@@ -29,6 +30,7 @@ __all__ = [
     "make_scenario",
     "merge",
     "open",
+    "push",
     "resense",
     "simulate",
     "stream",
@@ -44,6 +46,7 @@ _HOMES = {
     "load_recipe": "rubgen.scenario",
     "make_scenario": "rubgen.scenario",
     "merge": "rubgen.dataset.merging.merge",
+    "push": "rubgen.dataset.remote.push",
     "resense": "rubgen.dataset.making.resense",
     "stream": "rubgen.streaming",
 }

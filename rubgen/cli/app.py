@@ -9,6 +9,7 @@ from cyclopts import App, Parameter, Token
 
 from rubgen import __version__
 from rubgen.cli.option_texts import TEXTS
+from rubgen.errors import UserError
 from rubgen.format_names import ENDINGS
 
 app = App(
@@ -34,13 +35,31 @@ def _whole(_type: Any, tokens: Sequence[Token]) -> int:
     return int(tokens[0].value)
 
 
+def _place(text: str) -> Parameter:
+    return Parameter(help=text, converter=_as_written)
+
+
+def _local(_type: Any, tokens: Sequence[Token]) -> Path:
+    text = tokens[0].value
+    if "://" in text:
+        raise UserError(f"{text}: this command needs a directory; bring the files there first")
+    return Path(text)
+
+
+def _as_written(_type: Any, tokens: Sequence[Token]) -> Path | str:
+    """Return a URL as it was written: a Path would make one slash of two."""
+    text = tokens[0].value
+    return text if "://" in text else Path(text)
+
+
 Json = Annotated[bool, Parameter(name="--json", negative=(), help="Print JSON, for programs.")]
 MachineName = Annotated[str, _option("Name of a preset, or path of a machine TOML.")]
 RecipeFile = Annotated[
     Path | None, _option("Recipe TOML, or a name of rubgen list; without it zeng2019-mini of 32 runs.")
 ]
 Force = Annotated[bool, Parameter(negative=(), help="Replace a file that is there.")]
-Directory = Annotated[Path, _option("Directory of a data set.")]
+Directory = Annotated[Path, Parameter(help="Directory of a data set.", converter=_local)]
+Place = Annotated[Path, _place("Directory of a data set, or its URL such as s3://bucket/set.")]
 
 
 @app.command
@@ -48,15 +67,21 @@ def generate(
     recipe: RecipeFile = None,
     /,
     *,
-    out: Annotated[Path, _option("New or empty directory, or one of the same recipe, which is then completed.")],
+    out: Annotated[
+        Path, _place("New or empty directory, or one of the same recipe, which is then completed; or a URL for one.")
+    ],
     runs: Annotated[
         int | None, _whole_number("Number of runs, instead of the recipe's; a larger one lets a finished set grow.")
     ] = None,
     workers: Annotated[int | None, _whole_number("Number of processes; the number of cores when not given.")] = None,
-    scheduler: Annotated[str | None, _option("Address of a Dask scheduler, whose workers make the runs.")] = None,
+    scheduler: Annotated[
+        str | None, _option("Address of a Dask scheduler, whose workers make the runs; or slurm.")
+    ] = None,
     shard: Annotated[str | None, _option("Make only this part, such as 17/200; the last call has --finish.")] = None,
     finish: Annotated[bool, Parameter(negative=(), help="Complete the set from its parts; make no run.")] = False,
-    dry_run: Annotated[bool, Parameter(negative=(), help="Make nothing; print what rubgen plan prints.")] = False,
+    dry_run: Annotated[
+        bool, Parameter(negative=(), help="Make nothing; print what rubgen plan prints, and for slurm a job.")
+    ] = False,
     json: Json = False,
 ) -> int:
     """Make the data set of a recipe, or complete it where it was interrupted.
@@ -67,11 +92,25 @@ def generate(
     if dry_run:
         from rubgen.cli.planning import plan_command
 
-        return plan_command(recipe, runs, 0, None, force=False, as_json=json)
+        return plan_command(recipe, runs, 0, None, force=False, as_json=json, slurm=scheduler == "slurm")
     from rubgen.cli.generating import Work, generate_command
 
     work = Work(workers=workers, scheduler=scheduler, shard=shard, finish=finish)
     return generate_command(recipe, out, runs, work, as_json=json)
+
+
+@app.command
+def push(
+    directory: Directory,
+    url: Annotated[str, _option("Where the set goes, such as s3://bucket/set.")],
+    /,
+    *,
+    json: Json = False,
+) -> int:
+    """Copy a finished data set to an object store, the manifest last; the same command completes it after a stop."""
+    from rubgen.cli.generating import push_command
+
+    return push_command(directory, url, as_json=json)
 
 
 @app.command
@@ -307,7 +346,7 @@ def report(
 
 @app.command
 def features(
-    directory: Directory,
+    directory: Place,
     /,
     *,
     out: Annotated[Path, _option("File to write: .parquet.")],
@@ -329,7 +368,7 @@ def features(
 
 @app.command
 def baseline(
-    directory: Directory,
+    directory: Place,
     /,
     *,
     task: Annotated[str | None, _option("rub, motion, severity, with commas; all possible when not given.")] = None,
@@ -345,7 +384,7 @@ def baseline(
 
 @app.command
 def export(
-    directory: Directory,
+    directory: Place,
     /,
     *,
     format_: Annotated[
@@ -377,7 +416,7 @@ def modes(
 
 
 @app.command
-def info(directory: Directory, /, *, json: Json = False) -> int:
+def info(directory: Place, /, *, json: Json = False) -> int:
     """Count the runs of a data set by status, rub and motion."""
     from rubgen.cli.inspecting import info_command
 
@@ -385,7 +424,7 @@ def info(directory: Directory, /, *, json: Json = False) -> int:
 
 
 @app.command
-def label(directory: Directory, /, *, json: Json = False) -> int:
+def label(directory: Place, /, *, json: Json = False) -> int:
     """Make the labels again from what is kept of each run, and compare; exit 1 where one differs.
 
     The data set is not changed. Labels of orders are left out: they need the signals at every step of the integration.
@@ -397,7 +436,7 @@ def label(directory: Directory, /, *, json: Json = False) -> int:
 
 @app.command
 def verify(
-    directory: Directory,
+    directory: Place,
     /,
     *,
     sample: Annotated[
@@ -426,7 +465,7 @@ def repair(directory: Directory, /, *, json: Json = False) -> int:
 
 @app.command
 def regenerate(
-    directory: Directory,
+    directory: Place,
     run: Annotated[str, _option("Name of a run of the data set.")],
     /,
     *,

@@ -1,4 +1,4 @@
-"""The commands `rubgen generate`, `rubgen resense` and `rubgen merge`: progress for people, a summary for programs."""
+"""The commands `rubgen generate`, `resense`, `merge` and `push`: progress for people, a summary for programs."""
 
 import dataclasses
 import os
@@ -16,7 +16,11 @@ from rubgen.dataset.making.generate import Generated, generate
 from rubgen.dataset.making.outcome import finished_runs
 from rubgen.dataset.making.resense import resense
 from rubgen.dataset.merging.merge import merge
+from rubgen.dataset.remote.making import RemoteMaking
+from rubgen.dataset.remote.push import push
 from rubgen.formats import run_formats
+from rubgen.io.places import is_url
+from rubgen.progress import shown
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +39,8 @@ def generate_command(recipe: Path | None, out: Path, runs: int | None, work: Wor
     Returns the exit code 0. After Ctrl-C it prints how to continue and returns 130.
     """
     made = partial(generate, recipe, out, runs=runs, progress=not as_json, **dataclasses.asdict(work))
-    return _made_in(out, made, as_json=as_json)
+    kept_in = RemoteMaking(str(out), work.shard or "").layout.root if is_url(out) else out
+    return _made_in(out, made, kept_in, as_json=as_json)
 
 
 def resense_command(directory: Path, sensors: str, out: Path, workers: int | None, *, as_json: bool) -> int:
@@ -44,7 +49,7 @@ def resense_command(directory: Path, sensors: str, out: Path, workers: int | Non
     Returns the exit code 0. After Ctrl-C it prints how to continue and returns 130.
     """
     made = partial(resense, directory, sensors, out, workers=workers, progress=not as_json)
-    return _made_in(out, made, as_json=as_json)
+    return _made_in(out, made, out, as_json=as_json)
 
 
 def merge_command(directories: Sequence[Path], out: Path, *, as_json: bool) -> int:
@@ -52,16 +57,34 @@ def merge_command(directories: Sequence[Path], out: Path, *, as_json: bool) -> i
 
     Returns the exit code 0. After Ctrl-C it prints how to continue and returns 130.
     """
-    return _made_in(out, partial(merge, directories, out, progress=not as_json), as_json=as_json)
+    return _made_in(out, partial(merge, directories, out, progress=not as_json), out, as_json=as_json)
 
 
-def _made_in(out: Path, make: Callable[[], Generated], *, as_json: bool) -> int:
+def push_command(directory: Path, url: str, *, as_json: bool) -> int:
+    """Copy a finished data set to a URL and print the number of files copied. Returns the exit code 0.
+
+    After Ctrl-C it prints how to continue and returns 130.
+    """
+    try:
+        with terminable(), shown(not as_json and None):
+            files = push(directory, url)
+    except KeyboardInterrupt:
+        sys.stderr.write("rubgen: interrupted; files so far are there: the same command copies the rest\n")
+        return 130
+    if as_json:
+        print_json({"directory": str(directory), "url": url, "files": files})
+    else:
+        say(f"{url}: complete, {counted(files, 'file')} copied; read it: rubgen.open({url!r})")
+    return 0
+
+
+def _made_in(out: Path, make: Callable[[], Generated], kept_in: Path, *, as_json: bool) -> int:
     try:
         with terminable():
             made = make()
     except KeyboardInterrupt:
         sys.stderr.write(
-            f"rubgen: interrupted; kept in {out}: {counted(finished_runs(out), 'finished run')}; "
+            f"rubgen: interrupted; kept in {out}: {counted(finished_runs(kept_in), 'finished run')}; "
             "the same command makes the rest\n"
         )
         return 130

@@ -8,6 +8,7 @@ from statistics import median
 
 from rubgen.brief import counted
 from rubgen.cli.printing import check_new_file, print_json, say, write_file
+from rubgen.dataset.making.cluster import job_script
 from rubgen.dataset.making.workers import usable_cores
 from rubgen.errors import UserError
 from rubgen.planning.plan import Plan, plan
@@ -21,13 +22,21 @@ MOST_SHOWN = 3
 
 
 def plan_command(
-    recipe: Path | None, runs: int | None, tries: int, out: Path | None, *, force: bool, as_json: bool
+    recipe: Path | None,
+    runs: int | None,
+    tries: int,
+    out: Path | None,
+    *,
+    force: bool,
+    as_json: bool,
+    slurm: bool = False,
 ) -> int:
     """Print what a recipe will do and cost, and draw it where asked for.
 
     - recipe, runs: as in `rubgen generate`.
     - tries: number of runs to simulate.
     - out: picture to write.
+    - slurm: also print the script of a job of SLURM.
 
     Returns the exit code 1 where runs or extremes are refused, else 0.
     """
@@ -35,11 +44,12 @@ def plan_command(
         raise UserError(f"--try {tries}: must be at least 0; give a number of runs")
     if out:
         check_new_file("--out", out, ENDINGS, force=force)
+    script = job_script() if slurm else ""
     made = plan(load_recipe(recipe, runs=runs), tries=tries)
     if as_json:
-        print_json(_for_programs(made))
+        print_json(_for_programs(made) | ({"job_script": script} if script else {}))
     else:
-        for line in plan_lines(made):
+        for line in (*plan_lines(made), *script.splitlines()):
             say(line)
     if out:
         from rubgen.planning.picture import plan_figure

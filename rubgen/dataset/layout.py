@@ -5,6 +5,7 @@ from pathlib import Path
 
 from rubgen.errors import UserError
 from rubgen.formats import format_of
+from rubgen.io.places import place_of
 from rubgen.scenario.run_id import index_of
 
 SPLIT = "train"
@@ -20,12 +21,12 @@ class Layout:
     """Paths of the files of a data set in the directory `root`."""
 
     def __init__(self, root: Path | str, staging: str = ".staging") -> None:
-        """Derive all paths from `root`; `staging` names the folder of an unfinished set.
+        """Derive all paths from `root`, a directory or a URL; `staging` names the folder of an unfinished set.
 
-        Raises UserError for what is no path.
+        Raises UserError for what is no path, and for a URL that cannot be used.
         """
         try:
-            root = Path(root)
+            root = place_of(root)
         except TypeError:
             raise UserError(
                 f"{root!r:.200}: is no path; give the directory of a data set as a text or a Path"

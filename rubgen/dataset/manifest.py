@@ -20,6 +20,7 @@ from rubgen.dataset.files import json_text, sha256_of, write_text
 from rubgen.dataset.layout import Layout
 from rubgen.errors import UserError
 from rubgen.io.files import check_regular, read_json
+from rubgen.io.places import is_there
 from rubgen.machine import Machine
 from rubgen.machine.problems import first_problem
 from rubgen.machine.quantities import StrictModel, about
@@ -242,7 +243,7 @@ def read_manifest(layout: Layout) -> Manifest:
 
     Raises UserError where there is none, or it is damaged or not of rubgen.
     """
-    if not layout.manifest.exists():
+    if not is_there(layout.manifest):
         raise UserError(f"{layout.root}: no finished data set of rubgen: {_why_none(layout)}")
     try:
         for path in (layout.manifest, layout.digest):

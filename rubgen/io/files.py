@@ -66,7 +66,7 @@ def check_regular(path: Path) -> int:
     try:
         found = path.stat()
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
-        reason = error.strerror if isinstance(error, OSError) else error
+        reason = error.strerror or "there is none" if isinstance(error, OSError) else error
         raise UserError(f"{path!s:.300}: cannot be read ({reason}); give an existing file") from None
     if not stat.S_ISREG(found.st_mode):
         kind = "a folder" if stat.S_ISDIR(found.st_mode) else "a pipe, a socket or a device"

@@ -12,7 +12,7 @@ from rubgen.planning.drawn import Drawn, drawn_keys
 from rubgen.planning.tried import Tried, try_runs
 from rubgen.progress import count, step
 from rubgen.scenario import Recipe, Scenario
-from rubgen.scenario.costs import file_bytes, run_seconds
+from rubgen.scenario.costs import SECONDS_A_CANDIDATE, file_bytes, run_seconds
 from rubgen.solver.linear.reach import deepest
 
 LOOKED_AT, WITH_MACHINES = 64, 16
@@ -92,7 +92,8 @@ def plan(recipe: Recipe, *, tries: int = 0) -> Plan:
         reach=reach,
         corners=len(corners),
         refused_corners=tuple(refused),
-        cpu_seconds=recipe.runs * (tried.seconds_a_run if tried else _mean_seconds(recipe, costs)),
+        cpu_seconds=recipe.runs * (tried.seconds_a_run if tried else _mean_seconds(recipe, costs))
+        + _machine_seconds(recipe, scenarios),
         megabytes=_megabytes(recipe, costs, tried),
         tried=tried,
     )
@@ -126,6 +127,12 @@ def _mean_seconds(recipe: Recipe, costs: list[tuple[Scenario, Reach]]) -> float:
     formats = recipe.output.formats
     seconds = [run_seconds(each, rubs=run.can_rub, formats=formats) for each, run in costs]
     return sum(seconds) / len(seconds) if seconds else 0.0
+
+
+def _machine_seconds(recipe: Recipe, scenarios: list[Scenario]) -> float:
+    """Estimate the CPU time to draw all virtual machines: each candidate is reduced and checked once."""
+    candidates = [each.virtual.candidate + 1 for each in scenarios if each.virtual]
+    return recipe.machine_count * SECONDS_A_CANDIDATE * sum(candidates) / len(candidates) if candidates else 0.0
 
 
 def _megabytes(recipe: Recipe, costs: list[tuple[Scenario, Reach]], tried: Tried | None) -> dict[str, float]:

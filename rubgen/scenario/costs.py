@@ -25,6 +25,9 @@ SECONDS_A_STEP = {True: 1.3e-6, False: 4e-6}
 the recipes speed-sweep and run-up on two virtual cores."""
 SECONDS_WITHOUT_RUB = 0.15
 """CPU time of a steady run that never touches: it is made from one turn."""
+SECONDS_A_CANDIDATE = 1.2
+"""CPU time to reduce a candidate of a virtual machine and to check it. Measured in datasets/machines.toml: 1.7 s on two
+virtual cores with other work, where the reduction alone took 1.1 to 1.5 s instead of 0.6 to 0.9 s without it."""
 AUTOMATIC_SETTLE_TURNS = 250
 """Usual turns before the record: 155 to 399 in the recipes of rubgen."""
 KEPT_SHARE = {"parquet": 0.55, "mcap": 0.8, "rrd": 0.7}

@@ -58,6 +58,7 @@ def test_public_names():
         "make_scenario",
         "merge",
         "open",
+        "push",
         "resense",
         "simulate",
         "stream",

@@ -2,6 +2,7 @@ import json
 import math
 from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import pytest
 
@@ -12,6 +13,7 @@ from rubgen.planning import plan as planning
 from rubgen.planning.picture import plan_figure
 from rubgen.planning.plan import plan
 from rubgen.scenario import Recipe, load_recipe, parse_recipe
+from rubgen.scenario.costs import SECONDS_A_CANDIDATE
 from rubgen.scenario.load import RECIPES
 
 RECIPE = {
@@ -109,6 +111,14 @@ def test_a_balanced_set_is_planned_by_its_first_candidates_without_screening(mon
     assert made.balanced
     assert len(made.reach) == 2
     assert "quotas" in "\n".join(plan_lines(made))
+
+
+def test_each_candidate_of_a_machine_costs_its_reduction(monkeypatch):
+    machines = {"count": 50, "runs_per_machine": 4, "vary": {"blade_length_m": {"uniform": [0.14, 0.16]}}}
+    recipe = parse_recipe({**{key: each for key, each in RECIPE.items() if key != "runs"}, "machines": machines})
+    drawn = [SimpleNamespace(virtual=SimpleNamespace(candidate=number)) for number in (0, 0, 3)]
+    assert planning._machine_seconds(recipe, drawn) == pytest.approx(50 * 2 * SECONDS_A_CANDIDATE)
+    assert planning._machine_seconds(changed(), [SimpleNamespace(virtual=None)]) == 0
 
 
 def test_the_picture_has_a_panel_for_each_key_that_varies_and_one_for_the_penetration():

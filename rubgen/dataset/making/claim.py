@@ -16,6 +16,7 @@ from rubgen.dataset.tables import RUNS, TABLES
 from rubgen.errors import UserError, warn
 from rubgen.format_names import FORMAT_NAMES
 from rubgen.io.files import PART, sync_directory
+from rubgen.io.places import is_there
 
 STAGED = ("kept", "closed", *(table.name for table in (RUNS, *TABLES)))
 """Folders of `.staging`."""
@@ -60,7 +61,7 @@ def finished(layout: Layout, identity: Identity) -> bool:
     A set with fewer runs of the same recipe is not finished: it grows. Raises UserError where the directory holds the
     finished set of another recipe, or one with more runs.
     """
-    if not (layout.manifest.exists() and layout.digest.exists()):
+    if not (is_there(layout.manifest) and is_there(layout.digest)):
         return False
     there = read_manifest(layout).identity
     asked, has = int(identity.recipe["runs"]), int(there.recipe["runs"])

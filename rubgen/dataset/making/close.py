@@ -43,6 +43,8 @@ def close_shard(root: Path, shard: Shard) -> None:
     Raises RubgenError where a run was kept and its rows are damaged since.
     """
     layout = Layout(root)
+    if layout.closed(shard.name).exists():  # by a worker that died before it could say so
+        return
     recipe = recipe_at(root)
     kept = kept_runs(layout, shard.name)
     lost = [index for index in shard.indexes if index not in kept]

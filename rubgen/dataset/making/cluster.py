@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Future
 from contextlib import contextmanager
 from pathlib import Path
+from shutil import which
 from typing import Any, TypeVar
 
 from rubgen.errors import RubgenError, UserError
+from rubgen.progress import step
 
 R = TypeVar("R")
 PATIENCE_S = 10
 """Time in which a scheduler must answer."""
+SLURM = "slurm"
+"""In the place of an address: each worker is a job of SLURM."""
+MEMORY = "2GB"
+"""Of a job of SLURM, where the settings of dask-jobqueue name none."""
+WAIT_S = 0.2
 
 
 class ClusterWorkers:
@@ -40,6 +48,43 @@ class ClusterWorkers:
         """Say how a worker died, and return the jobs that must be done again: those of which the scheduler gave up."""
         lost = [future for future in running if future.done() and isinstance(future.exception(), self.died)]
         return "of the cluster died several times", lost
+
+
+def job_script() -> str:
+    """Return the script of a job of SLURM that is one worker, as `--scheduler slurm` gives it to sbatch.
+
+    Queue, memory, time and more come from the settings of dask-jobqueue (jobqueue.slurm in ~/.config/dask). Without
+    them a job has 2 GB and 30 minutes. Raises UserError where dask-jobqueue is not installed.
+    """
+    with _slurm() as jobs:
+        return str(jobs.job_script())
+
+
+def _slurm() -> Any:
+    try:
+        import dask
+        from dask_jobqueue.slurm import SLURMCluster
+    except ImportError:
+        raise UserError(f"--scheduler {SLURM}: needs Dask; install it: pip install 'rubgen[dask]'") from None
+    memory = dask.config.get("jobqueue.slurm.memory", None) or MEMORY
+    return SLURMCluster(cores=1, processes=1, memory=memory, scheduler_options={"dashboard_address": None})
+
+
+@contextmanager
+def slurm(jobs: int, root: Path) -> Iterator[ClusterWorkers]:
+    """Start that many jobs of SLURM, each a worker, for the block, which begins with the first that runs.
+
+    Raises UserError where dask-jobqueue is not installed or this computer gives no jobs to SLURM, and as `cluster`.
+    """
+    if which("sbatch") is None:
+        raise UserError(f"--scheduler {SLURM}: there is no sbatch here; give the command where SLURM takes jobs")
+    with _slurm() as started:
+        started.scale(jobs=jobs)
+        with step("wait for the first job of SLURM", long=True):
+            while not started.scheduler_info["workers"]:
+                time.sleep(WAIT_S)
+        with cluster(started.scheduler_address, root) as workers:
+            yield workers
 
 
 @contextmanager

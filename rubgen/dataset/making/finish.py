@@ -27,8 +27,10 @@ from rubgen.scenario.run_id import index_of
 ROWS_PER_GROUP = 4096
 
 
-def finish_set(recipe: Recipe, layout: Layout, identity: Identity) -> dict[str, int]:
+def finish_set(recipe: Recipe, layout: Layout, identity: Identity, *, moved: bool = False) -> dict[str, int]:
     """Write `runs.parquet`, move the files of all shards to their places, write card, manifest and digests.
+
+    With `moved` the files of shards are at their places already, in an object store.
 
     Rows pass through memory ROWS_PER_GROUP at a time. A set that grows is as it was until its new files are complete.
     Returns the number of runs by status. Where a file of a closed shard is lost, the shard is opened and RubgenError is
@@ -40,7 +42,8 @@ def finish_set(recipe: Recipe, layout: Layout, identity: Identity) -> dict[str, 
     closed = [read_closed(layout, name) for name in names]
     for path in (layout.digest, layout.manifest):
         path.unlink(missing_ok=True)
-    _move(layout, recipe, names)
+    if not moved:
+        _move(layout, recipe, names)
     whole.replace(layout.runs)
     status = sum((Counter(each.status) for each in closed), Counter[str]())
     ordered = dict(sorted(status.items()))

@@ -1,8 +1,9 @@
 """Make a data set from a recipe. Every run is made once, even where the work is interrupted."""
 
+import shutil
 from collections.abc import Mapping
 from contextlib import AbstractContextManager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
 from uuid import uuid4
@@ -12,15 +13,18 @@ from rubgen.dataset.checking.inventory import size_findings
 from rubgen.dataset.checking.verify import advice
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.making.claim import begun, check_begun, claimed, finished, has_remains, remove_staging
-from rubgen.dataset.making.cluster import cluster
+from rubgen.dataset.making.cluster import SLURM, cluster, slurm
 from rubgen.dataset.making.finish import finish_set
 from rubgen.dataset.making.outcome import Outcome, outcome_of
 from rubgen.dataset.making.plan import Part, Plan, do, part_of
 from rubgen.dataset.making.warm_up import warm_up, warming_up
 from rubgen.dataset.making.workers import Pool, unordered, usable_cores, worker_pool
-from rubgen.dataset.manifest import Identity, identity_of, read_manifest
+from rubgen.dataset.manifest import Identity, Manifest, identity_of, read_manifest
+from rubgen.dataset.remote.making import RemoteMaking
+from rubgen.dataset.shards import shards_of
 from rubgen.errors import UserError, warn, write_problems
 from rubgen.io.columns import signal_columns
+from rubgen.io.places import is_url
 from rubgen.progress import Report, count, shown, step
 from rubgen.scenario import Recipe, load_recipe, parse_recipe
 from rubgen.scenario.load import check_recipe, checked_runs
@@ -69,10 +73,11 @@ def generate(
     """Make the data set of a recipe in a directory.
 
     - recipe: a recipe, its TOML values, its file, or None for the default recipe.
-    - out: the directory.
+    - out: the directory, or a URL such as s3://bucket/set: the set is made in the cache folder, closed shards go up as
+      they come, the manifest last.
     - runs: overrides the recipe's number of runs. A larger number than before lets a finished set grow.
     - workers: number of processes, by default one for each usable core; 1 works in this process.
-    - scheduler: address of a Dask scheduler, whose workers make the runs.
+    - scheduler: address of a Dask scheduler, whose workers make the runs; or "slurm" for jobs of SLURM, one a worker.
     - shard: "17/200" makes only part 17 of 200 of the runs, beside other processes that make other parts.
     - finish: make no run; complete the set from its parts.
     - progress: called with the numbers of finished and of all runs. True shows them on stderr, None only on a terminal
@@ -87,9 +92,11 @@ def generate(
     RubgenError where worker processes die again and again or the system fails elsewhere.
     """
     recipe = _recipe(recipe, runs)
+    remote = RemoteMaking(str(out), shard or "") if is_url(out) else None
     task = _Task(
         recipe=recipe,
-        layout=Layout(out),
+        layout=remote.layout if remote else Layout(out),
+        remote=remote,
         identity=identity_of(recipe),
         workers=_workers(workers),
         scheduler=scheduler,
@@ -102,6 +109,8 @@ def generate(
     signal_columns(recipe.sensing.set, clean=recipe.sensing.keep_clean)  # refuses names that columns have
     layout, identity = task.layout, task.identity
     with write_problems(layout.root, advice="give a directory that you may write to", kept=KEPT):
+        if remote:
+            return _make_at_url(task, remote)
         if not finished(layout, identity):
             if task.part and (made := _make_part(task)):
                 return made
@@ -118,6 +127,7 @@ class _Task:
 
     recipe: Recipe
     layout: Layout
+    remote: RemoteMaking | None
     identity: Identity
     workers: int
     scheduler: str | None
@@ -147,9 +157,31 @@ def _make(task: _Task) -> Generated:
     with begun(layout, task.identity):
         with _shown(task.progress):
             made = _make_missing(task)
-        status = finish_set(recipe, layout, task.identity)
+        status = finish_set(recipe, layout, task.identity, moved=task.remote is not None)
+        outcome = outcome_of(layout)
+        if task.remote:
+            task.remote.finish()
     remove_staging(layout)
-    return Generated(directory=layout.root, runs=recipe.runs, made=made, status=status, outcome=outcome_of(layout))
+    return Generated(directory=layout.root, runs=recipe.runs, made=made, status=status, outcome=outcome)
+
+
+def _make_at_url(task: _Task, remote: RemoteMaking) -> Generated:
+    """Make a set, or one part of it, whose place is a URL."""
+    store = remote.store.layout
+    if finished(store, task.identity):
+        shutil.rmtree(task.layout.root, ignore_errors=True)  # of a stop at the very end
+        return _whole(store, read_manifest(store))
+    if task.part and (shards := sum(1 for _ in shards_of(task.recipe))) < task.part.count:
+        raise UserError(
+            f"--shard {task.part}: the set has {counted(shards, 'shard')}, and parts at a URL cannot share one; give "
+            f"at most {shards} parts, or a directory that all parts see"
+        )
+    with remote.folder():
+        made = _make_part(task) if task.part else None
+        if made is None:
+            with claimed(task.layout, task.identity):
+                made = _make(task)
+    return replace(made, directory=store.root)
 
 
 def _make_part(task: _Task) -> Generated | None:
@@ -179,6 +211,10 @@ def nothing_to_do(layout: Layout, identity: Identity) -> Generated:
     if has_remains(layout, identity):
         with suppress(OSError, UserError), claimed(layout, identity):  # it may be in use, or read-only
             remove_staging(layout)
+    return _whole(layout, manifest)
+
+
+def _whole(layout: Layout, manifest: Manifest) -> Generated:
     return Generated(
         directory=layout.root,
         runs=manifest.runs,
@@ -192,6 +228,9 @@ def nothing_to_do(layout: Layout, identity: Identity) -> Generated:
 def _make_missing(task: _Task) -> int:
     """Make the runs that are missing of the set or of a part, and close its shards. Return the number of runs made."""
     recipe, layout = task.recipe, task.layout
+    formats = tuple(recipe.output.formats)
+    if task.remote:
+        task.remote.begin(task.identity, formats)
     plan = Plan(recipe, layout, uuid4().hex[:12], task.part or Part())
     report = task.progress if callable(task.progress) else None
     if task.finish and plan.missing:
@@ -204,7 +243,8 @@ def _make_missing(task: _Task) -> int:
     local = min(task.workers, max(1, plan.missing))
     chosen: AbstractContextManager[Pool | None] = worker_pool(local)
     if task.scheduler:
-        chosen = cluster(task.scheduler, layout.root)
+        jobs = slurm(task.workers, layout.root) if task.scheduler == SLURM else None
+        chosen = jobs or cluster(task.scheduler, layout.root)
     with chosen as pool:
         if plan.missing:
             _warm_up(recipe, plan, pool)
@@ -213,6 +253,8 @@ def _make_missing(task: _Task) -> int:
             count(done, plan.total)
             for shard, made in unordered(pool, do, plan.jobs(pool.number if pool else 1), tries=TRIES):
                 if not made:
+                    if task.remote:
+                        task.remote.put_shard(shard.name, formats)
                     continue
                 plan.ended(shard)
                 done += made

@@ -12,6 +12,7 @@ from rubgen.errors import UserError
 from rubgen.io.files import read_json
 from rubgen.io.parquet.read import row_groups
 from rubgen.io.parquet.words import with_words
+from rubgen.io.places import is_there
 
 COLUMNS = ["run_id", "status", "reason", "rub", "motion"]
 
@@ -83,7 +84,7 @@ class Unfinished:
 
 def finished_runs(out: Path | str) -> int:
     """Count the finished runs of an unfinished data set in the directory `out`."""
-    layout = Layout(Path(out))
+    layout = Layout(out)
     closed = [path.stem for path in layout.closed("").parent.glob("*.json")]
     begun = {path.name for path in layout.kept("").glob("*")} - set(closed)
     return sum(read_closed(layout, name).runs for name in closed) + sum(len(kept_runs(layout, name)) for name in begun)
@@ -95,7 +96,7 @@ def unfinished(directory: Path) -> Unfinished | None:
     Raises UserError where its identity cannot be read.
     """
     layout = Layout(directory)
-    if (layout.manifest.exists() and layout.digest.exists()) or not layout.identity.exists():
+    if (is_there(layout.manifest) and is_there(layout.digest)) or not is_there(layout.identity):
         return None
     try:
         recipe = read_json(layout.identity.read_bytes())["recipe"]

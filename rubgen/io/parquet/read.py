@@ -2,17 +2,19 @@
 
 import os
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 import pyarrow as pa
 import pyarrow.compute as pc
+import pyarrow.fs as pafs
 import pyarrow.parquet as pq
 
 from rubgen.errors import UserError
 from rubgen.io.files import check_regular
+from rubgen.io.places import is_url, url_problems
 
 MOST_BYTES = 256 * 1024**2
 """Unpacked size that is allowed for any row group: eight runs of ten seconds and 30 channels need as much."""
@@ -38,7 +40,7 @@ class ParquetSource:
         self.path, self._asked_bytes = path, asked_bytes
         self._size = check_regular(path)
         with damage_named(path):
-            self._stream = pa.OSFile(os.fsencode(path))  # the bytes of a name that is no UTF-8 too
+            self._stream = _opened(path)
             with pq.ParquetFile(self._stream) as footer:
                 facts = footer.metadata
                 self.schema_arrow: pa.Schema = footer.schema_arrow.remove_metadata()
@@ -132,14 +134,24 @@ def row_groups(path: Path, asked_bytes: float = 0.0, columns: Sequence[str] | No
             yield file.read_row_group(group, columns)
 
 
+def _opened(path: Path) -> pa.NativeFile:
+    """Open a file, or an object at a URL, of which pyarrow then asks for the pieces that it needs."""
+    if not is_url(path):
+        return pa.OSFile(os.fsencode(path))  # the bytes of a name that is no UTF-8 too
+    there: Any = path
+    with url_problems(path):
+        return pafs.PyFileSystem(pafs.FSSpecHandler(there.fs)).open_input_file(there.path)
+
+
 @contextmanager
 def damage_named(path: Path) -> Iterator[None]:
     """Turn any error of pyarrow in the block into a UserError of one line that names the file `path`."""
-    try:
-        yield
-    except (pa.ArrowException, OSError, ValueError, LookupError, MemoryError, OverflowError) as error:
-        reason = " ".join(str(error).split())[:200]
-        raise UserError(f"{path}: damaged or no Parquet file of rubgen ({reason}); generate it again") from None
+    with url_problems(path) if is_url(path) else nullcontext():
+        try:
+            yield
+        except (pa.ArrowException, OSError, ValueError, LookupError, MemoryError, OverflowError) as error:
+            reason = " ".join(str(error).split())[:200]
+            raise UserError(f"{path}: damaged or no Parquet file of rubgen ({reason}); generate it again") from None
 
 
 def _text_columns(path: Path, types: pa.Schema) -> dict[str, str]:

@@ -184,3 +184,16 @@ def test_a_scheduler_that_does_not_answer_is_one_line(here, tmp_path):
     assert "--scheduler tcp://127.0.0.1:9: does not answer" in errors
     assert "Traceback" not in errors
     assert not (tmp_path / "set").exists()
+
+
+def test_slurm_is_asked_for_only_where_it_is(here, tmp_path):
+    pytest.importorskip("dask_jobqueue")
+    code = (
+        "from rubgen.dataset.making.cluster import job_script, slurm\nprint(job_script())\nwith slurm(2, None): pass\n"
+    )
+    output, errors = here("-c", code, PATH="/nowhere").communicate(timeout=PATIENCE_S)
+    assert "#SBATCH --cpus-per-task=1" in output
+    assert "distributed.cli.dask_worker" in output
+    assert errors.splitlines()[-1].endswith(
+        "UserError: --scheduler slurm: there is no sbatch here; give the command where SLURM takes jobs"
+    )

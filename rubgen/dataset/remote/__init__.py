@@ -1,0 +1,1 @@
+"""A data set at a URL: put there file by file, the manifest last."""

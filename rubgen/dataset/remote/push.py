@@ -1,0 +1,49 @@
+"""Copy a finished data set to a URL."""
+
+from pathlib import Path
+
+from rubgen.dataset.files import sha256_of
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.manifest import FileEntry, read_manifest
+from rubgen.dataset.remote.store import Store
+from rubgen.errors import UserError
+from rubgen.io.places import is_there, url_problems
+from rubgen.progress import count, step
+
+
+def push(directory: Path | str, url: str) -> int:
+    """Copy the finished data set in `directory` to a URL such as s3://bucket/set. Return the number of files copied.
+
+    Files go up one by one, the manifest and its digest last: a set that is not complete cannot be opened. The same
+    call after a stop copies what is missing. A set there with fewer runs of the same recipe grows. Raises UserError
+    where the directory holds no finished set or a damaged file, the URL cannot be written, or something else is there.
+    """
+    source, store = Layout(directory), Store(url)
+    manifest = read_manifest(source)
+    with url_problems(store.layout.root):
+        whole = is_there(store.layout.digest) and store.layout.digest.read_bytes() == source.digest.read_bytes()
+    there = store.sizes() if whole else store.begin(manifest.identity)
+    entries = {entry.path: entry for entry in manifest.files}
+    if not whole:
+        store.open_again(entries)
+        there = store.sizes()
+    missing = [name for name, entry in entries.items() if there.get(name) != entry.bytes]
+    missing += [name for name in manifest.derived if not whole or name not in there]
+    with step("push", "files", long=True):
+        for number, name in enumerate(missing):
+            count(number, len(missing))
+            _check_whole(source.root / name, entries.get(name))
+            store.put(source.root / name, name)
+    if missing or not whole or store.staged(there):
+        store.complete(source, manifest, there)
+    return len(missing)
+
+
+def _check_whole(file: Path, entry: FileEntry | None) -> None:
+    """Check a file before it goes up, so that a damaged set does not spread."""
+    try:
+        good = entry is None or sha256_of(file) == entry.sha256
+    except OSError as error:
+        raise UserError(f"{file}: cannot be read ({error.strerror}); check the set: rubgen verify") from None
+    if not good:
+        raise UserError(f"{file}: its sha256 is not the one in the manifest; mend it: rubgen repair {file.parents[1]}")

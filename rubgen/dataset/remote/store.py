@@ -1,0 +1,127 @@
+"""A data set at a URL: finished files go up whole, the manifest last, so that half a set is never taken for one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from rubgen.dataset.files import write_json
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.making.claim import check_same
+from rubgen.dataset.manifest import FileEntry, Identity, Manifest, read_identity, read_manifest
+from rubgen.errors import UserError
+from rubgen.io.places import answered, is_there, is_url, url_problems
+
+
+class Store:
+    """The place of one set at a URL. While the set is not complete, `.staging/identity.json` says of which it is."""
+
+    def __init__(self, url: str) -> None:
+        """Take the URL. Raises UserError where it cannot be used."""
+        self.layout = Layout(url)
+        root: Any = self.layout.root
+        if not is_url(root):
+            raise UserError(f"{url}: is no URL of an object store; give one such as s3://bucket/set")
+        self._files, self._root = root.fs, root.path.rstrip("/")
+        self._marked = False
+
+    def sizes(self) -> dict[str, int]:
+        """Return the size of each file there by its path in the set."""
+        self._files.invalidate_cache()
+        found = answered(self.layout.root, lambda: self._files.find(self._root, detail=True))
+        start = len(self._root) + 1
+        return {name[start:]: int(facts["size"] or 0) for name, facts in found.items()}
+
+    def begin(self, identity: Identity, *, grows: bool = True) -> dict[str, int]:
+        """Claim the place for the set of this identity, before anything is made. Return `sizes`.
+
+        A set of other content that stands there unfinished is refused, and so is a place with other files. Raises
+        UserError for these, and where the place cannot be written.
+        """
+        layout, there = self.layout, self.sizes()
+        marker = self._name(layout.identity)
+        if marker in there:
+            check_same(layout, read_identity(layout), identity, versions=True)
+        elif layout.digest.name in there:
+            self._check_grows(identity)
+            if not grows:
+                raise UserError(
+                    f"{layout.root}: holds a finished set with fewer runs, which grows only in a directory; make it "
+                    f"there, then: rubgen push DIRECTORY {layout.root}"
+                )
+        elif there:
+            raise UserError(f"{layout.root}: not empty and no data set of rubgen; give a new place")
+        if marker not in there:
+            with TemporaryDirectory() as folder:
+                file = Path(folder) / layout.identity.name
+                write_json(file, identity.model_dump(mode="json"))
+                answered(layout.root, lambda: self.put(file, marker))
+            self._marked = True
+        return there
+
+    def abandon(self) -> None:
+        """Leave a place as it was where `begin` has marked it and nothing came."""
+        marker = self._name(self.layout.identity)
+        if self._marked:
+            with suppress(UserError):
+                self.remove([marker] if list(self.sizes()) == [marker] else [])
+
+    def _check_grows(self, identity: Identity) -> None:
+        before = read_manifest(self.layout).identity
+        runs = int(identity.recipe["runs"])
+        if int(before.recipe["runs"]) > runs and before.with_runs(runs).same_recipe(identity):
+            raise UserError(
+                f"{self.layout.root}: holds {before.recipe['runs']} runs of this recipe, here are {runs}; it only grows"
+            )
+        check_same(self.layout, before.with_runs(runs), identity, versions=True)
+
+    def put(self, file: Path, name: str) -> None:
+        """Copy a file to the path `name` in the set. An object is there completely or not at all."""
+        with url_problems(self.layout.root):
+            self._files.put_file(str(file), f"{self._root}/{name}")
+
+    def get(self, name: str, file: Path) -> None:
+        """Copy the object at the path `name` to a file, which appears completely or not at all."""
+        part = file.with_name(f"{file.name}.part")
+        with url_problems(self.layout.root):
+            self._files.get_file(f"{self._root}/{name}", str(part))
+        part.replace(file)
+
+    def remove(self, names: Iterable[str]) -> None:
+        """Delete objects. One that is not there is none to delete."""
+        for name in names:
+            with url_problems(self.layout.root), suppress(FileNotFoundError):
+                self._files.rm_file(f"{self._root}/{name}")
+
+    def complete(self, source: Layout, manifest: Manifest, there: dict[str, int]) -> None:
+        """Put the manifest of a set whose other files are `there`, and its digest last. Then clean up."""
+        if manifest.derived:
+            self.put(source.derived, source.derived.name)
+        self.put(source.manifest, source.manifest.name)
+        self.put(source.digest, source.digest.name)
+        self.remove([*self.staged(there), self._name(self.layout.identity)])
+
+    def staged(self, there: Iterable[str]) -> list[str]:
+        """Return the paths of what is there only while the set is not complete."""
+        return sorted(name for name in there if name.startswith(f"{self.layout.staging.name}/"))
+
+    def open_again(self, entries: dict[str, FileEntry]) -> None:
+        """Take the digest of a finished set away, and what a set of these entries has with other content.
+
+        The manifest goes last: until then the same call, repeated, knows the content.
+        """
+        manifest, digest = (self.layout.root / name for name in (self.layout.manifest.name, self.layout.digest.name))
+        if not is_there(manifest):
+            return
+        self.remove([digest.name])
+        with url_problems(self.layout.root):
+            before = Manifest.model_validate_json(manifest.read_bytes())
+        mine = {path: entry.sha256 for path, entry in entries.items()}
+        self.remove(each.path for each in before.files if mine.get(each.path) != each.sha256)
+        self.remove([manifest.name])
+
+    def _name(self, path: Path) -> str:
+        return str(path)[len(str(self.layout.root)) + 1 :]
