@@ -52,7 +52,7 @@ def card(identity: Identity, status: dict[str, int], tally: Tally) -> str:
     loading = "\n\n".join(format_of(name).loading for name in FORMAT_NAMES if name in formats)
     loading = loading.replace("CHANNEL", channel).replace("SPLIT", next(iter(tally.splits), SPLIT))
     ended = ", ".join(f"{count} {name}" for name, count in status.items())
-    recipes = [each.identity.recipe for each in identity.sources] or [recipe]
+    recipes = identity.recipes
     record, limits = (" ".join(dict.fromkeys(map(text, recipes))) for text in (_record, _limits))
     origin = _merged_from(identity) or f"machine `{recipe['machine']}`, seed\n{recipe['seed']}"
     runs = counted(recipe["runs"], "run")

@@ -127,8 +127,15 @@ class Identity(StrictModel):
 
     @property
     def machines(self) -> list[dict[str, Any]]:
-        """The machines of the recipe's files, in their order."""
+        """The machines of the recipe's files, in their order; of a merged set those of each source."""
+        if self.sources:
+            return [machine for each in self.sources for machine in each.identity.machines]
         return self.machine if isinstance(self.machine, list) else [self.machine]
+
+    @property
+    def recipes(self) -> list[dict[str, Any]]:
+        """The recipe; of a merged set those of its sources."""
+        return [each.identity.recipe for each in self.sources] or [self.recipe]
 
     @property
     def machine_keys(self) -> tuple[MachineKey, ...]:
@@ -159,7 +166,7 @@ class Manifest(StrictModel):
     ] = FORMAT
     name: Annotated[str, about("Name of the data set.")]
     license: Annotated[str, about("License of the data, as an SPDX name.")]
-    seed: Annotated[int, about("Seed of all random numbers.")]
+    seed: Annotated[int, about("Seed of all random numbers; of a merged set that of its first source.")]
     runs: Annotated[int, about("Number of runs, failed ones included.")]
     status: Annotated[dict[str, NonNegativeInt], about("Number of runs by their status.")]
     identity: Annotated[Identity, about("Everything that decides the bytes of the set on one computer.")]

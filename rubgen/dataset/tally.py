@@ -4,7 +4,6 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
 
@@ -23,7 +22,7 @@ class SplitTally:
 
     runs: int = 0
     machines: int = 0
-    """Machines, each in this split alone; the runs of one follow each other."""
+    """Machines, each in this split alone."""
     status: Counter[str] = field(default_factory=Counter)
     rub: int = 0
     """Good runs with rub."""
@@ -50,12 +49,12 @@ class Tally:
 
 
 def tally_of(runs: Path) -> Tally:
-    """Count the runs of a set in its file `runs.parquet`. A row group at a time is in memory.
+    """Count the runs of a set in its file `runs.parquet`. A row group at a time and all machines' names are in memory.
 
     Raises UserError where the file is missing or damaged.
     """
     splits: dict[str, SplitTally] = {}
-    machines: dict[str, Any] = {}
+    machines: set[tuple[str, str]] = set()
     sums = {good: Counter[str]() for good in (True, False)}
     counts = {True: 0, False: 0}
     keys = [each.key for each in PARAMETERS]
@@ -63,8 +62,9 @@ def tally_of(runs: Path) -> Tally:
         for row in with_words(table).to_pylist():
             mine, good = splits.setdefault(row["split"], SplitTally()), row["status"] == "ok"
             mine.runs += 1
-            mine.machines += machines.get(row["split"]) != row["machine_id"]
-            machines[row["split"]] = row["machine_id"]
+            machine = row["split"], row["machine_id"]
+            mine.machines += machine not in machines
+            machines.add(machine)
             mine.status[row["status"]] += 1
             mine.rub += bool(good and row["rub"])
             mine.motion.update([row["motion"]] if good else [])

@@ -64,18 +64,18 @@ def render_report(directory: Path) -> str:
     identity = data.manifest.identity
     return environment.get_template("report.html.j2").render(
         name=data.manifest.name,
-        machine=", ".join(machine["name"] for machine in identity.machines),
+        machine=", ".join(dict.fromkeys(machine["name"] for machine in identity.machines)),
         runs=len(data.runs),
         good=len(good),
         rubbing=int(good["rub"].sum()),
         seconds=f"{first.seconds:g}",
         rate=f"{first.recording.sample_rate_hz:,.0f}",
-        seed=data.manifest.seed,
+        seed=", ".join(str(recipe["seed"]) for recipe in identity.recipes),
         version=identity.packages["rubgen"],
         license=data.manifest.license,
         classes=_classes(good),
         overview=as_data_url(dataset_overview(data.runs)),
-        parameters=_parameters(good, identity.recipe),
+        parameters=_parameters(good, identity.recipes),
         failed=data.runs[data.runs["status"] != "ok"].head(MOST_FAILED).reset_index().to_dict("records"),
         failed_more=max(0, len(data.runs) - len(good) - MOST_FAILED),
         examples=[_example(data.row(run_id), replay) for run_id, replay in replays.items()],
@@ -134,7 +134,7 @@ def _classes(good: pd.DataFrame) -> list[dict[str, Any]]:
     return rows
 
 
-def _parameters(good: pd.DataFrame, recipe: dict[str, Any]) -> list[dict[str, str]]:
+def _parameters(good: pd.DataFrame, recipes: list[dict[str, Any]]) -> list[dict[str, str]]:
     meaning = {entry.key: ", ".join(filter(None, (entry.meaning, entry.unit.strip("1")))) for entry in PARAMETERS}
     return [
         {
@@ -142,7 +142,7 @@ def _parameters(good: pd.DataFrame, recipe: dict[str, Any]) -> list[dict[str, st
             "meaning": meaning[key],
             "least": f"{good[key].min():.5g}",
             "largest": f"{good[key].max():.5g}",
-            "drawn": _drawn(recipe.get("vary", {}).get(key)),
+            "drawn": " or ".join(dict.fromkeys(_drawn(recipe.get("vary", {}).get(key)) for recipe in recipes)),
         }
         for key in varied_keys(good)
     ]

@@ -141,6 +141,8 @@ def _recipe(recipe: Recipe | Mapping[str, object] | Path | str | None, runs: int
         return parse_recipe(dict(recipe), runs=runs)
     if not isinstance(recipe, Recipe):
         return load_recipe(recipe, runs=runs)
+    if len(recipe.sources) > 1:
+        raise UserError(f"{recipe.name}: is the recipe of a merged set; generate its sources and merge them")
     chosen = recipe if runs is None else recipe.model_copy(update={"runs": checked_runs(runs)})
     check_recipe(chosen)
     return chosen

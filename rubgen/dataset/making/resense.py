@@ -42,6 +42,8 @@ def resense(
     have.
     """
     identity = read_manifest(Layout(directory)).identity
+    if identity.sources:
+        raise UserError(f"{directory}: is a merged set; give the command for each of its sources and merge them again")
     before = identity.recorded()
     new = load_sensor_set(str(sensors))
     if new == before.sensing.set:

@@ -17,6 +17,8 @@ from rubgen.io.parquet.read import row_groups
 from rubgen.machine.quantities import MOST_RUNS
 from rubgen.scenario import Recipe
 
+ADVICE = "rubgen repair"
+
 
 @dataclass(frozen=True, kw_only=True)
 class SourceSet:
@@ -38,7 +40,8 @@ class SourceSet:
 def read_sources(directories: Sequence[Path | str]) -> list[SourceSet]:
     """Read the manifests of the sets in these directories, in this order.
 
-    Raises UserError where one holds no finished set, and where a file of it is missing or has another size.
+    Raises UserError where one holds no finished set, a file of it is missing or has another size, and where the content
+    of its `runs.parquet` is not the listed one.
     """
     sets: list[SourceSet] = []
     for directory in directories:
@@ -46,7 +49,12 @@ def read_sources(directories: Sequence[Path | str]) -> list[SourceSet]:
         manifest = read_manifest(layout)
         found = list(size_findings(layout, manifest))
         if found:
-            raise UserError(f"{layout.root}: {found[0].text} ({len(found)} problems); rubgen repair {layout.root}")
+            raise UserError(f"{layout.root}: {found[0].text} ({len(found)} problems); {ADVICE} {layout.root}")
+        (runs,) = [entry for entry in manifest.files if entry.path == layout.runs.name]
+        if sha256_of(layout.runs) != runs.sha256:
+            raise UserError(
+                f"{layout.runs}: damaged, its sha256 is not the one in the manifest; {ADVICE} {layout.root}"
+            )
         recipe = manifest.identity.recorded(str(layout.manifest))
         first = sum(each.manifest.runs for each in sets)
         sets.append(SourceSet(layout=layout, manifest=manifest, recipe=recipe, first=first))

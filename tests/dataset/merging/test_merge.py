@@ -173,6 +173,18 @@ def test_a_stop_at_any_moment_is_completed_to_the_same_bytes(stop, sets, merged,
     assert rubgen.merge([sets / name for name in RUNS], out).verified
 
 
+def test_a_merged_set_neither_grows_nor_gets_other_sensors(merged, sets, tmp_path):
+    with pytest.raises(UserError, match="is a merged set; give the command for each of its sources"):
+        rubgen.resense(merged, "rig", tmp_path / "out")
+    with pytest.raises(UserError, match="is the recipe of a merged set; generate its sources"):
+        rubgen.generate(rubgen.open(merged).recipe, tmp_path / "out")
+    with pytest.raises(UserError, match="holds the output of another recipe"):
+        rubgen.generate({**VALUES, "seed": 1, "runs": 20}, merged)
+    with pytest.raises(UserError, match="which is to be merged; give another"):
+        rubgen.merge([sets / "a", sets / "b"], sets / "a/more")
+    assert not (tmp_path / "out").exists()
+
+
 def change_manifest(directory, change):
     """Change the values of a manifest and its digest."""
     import hashlib
@@ -208,6 +220,7 @@ OTHER = {
         (["a", "plain"], r"has the column twin_of in runs, .*plain has no such column"),
         (["a", "version"], "the version of numpy: '9.9' in .*version, '"),
         (["a", "lost"], r"train-00000.parquet: listed in the manifest, but not there \(1 problems\); rubgen repair"),
+        (["a", "edited"], r"edited/runs.parquet: damaged, its sha256 is not the one in the manifest; rubgen repair"),
         (["a", "damaged"], r"train-00000.parquet: damaged, its sha256 is not the one in the manifest; rubgen repair"),
     ],
 )
@@ -226,7 +239,7 @@ def test_what_cannot_be_one_is_one_line_and_nothing_is_written(names, why, sets,
         paths.setdefault(name, tmp_path / name)
         if name in others:
             rubgen.generate(others[name], tmp_path / name, workers=1)
-        elif name in ("lost", "damaged", *OTHER):
+        elif name in ("lost", "damaged", "edited", *OTHER):
             shutil.copytree(sets / "b", tmp_path / name)
     for name in OTHER.keys() & set(names):
         change_manifest(tmp_path / name, OTHER[name])
@@ -235,6 +248,9 @@ def test_what_cannot_be_one_is_one_line_and_nothing_is_written(names, why, sets,
         shard.unlink()
     if "damaged" in names:
         shard.write_bytes(shard.read_bytes()[:-1] + b"?")
+    if "edited" in names:
+        content = (tmp_path / "edited/runs.parquet").read_bytes()
+        (tmp_path / "edited/runs.parquet").write_bytes(content[:100] + b"?" + content[101:])
     capsys.readouterr()
     with pytest.raises(SystemExit) as ended:
         main(["merge", *(str(paths[name]) for name in names), "--out", str(tmp_path / "out")])
