@@ -2,68 +2,99 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, fields
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from rubgen.arrays import FloatArray, IntArray
+from rubgen.baseline.models import Model
 
 FOLDS, SEEDS = 5, 3
 """Folds of a cross-validation, and how often it is done with other folds."""
-Make = Callable[[int], Any]
-Metric = Callable[[npt.NDArray[Any], npt.NDArray[Any]], float]
 
 
 @dataclass(frozen=True)
 class Samples:
-    """Windows with their features."""
+    """Windows with what models learn from, answers, and what they belong to. All arrays have a row a window."""
 
-    features: FloatArray
-    """(windows, features), NaN where undefined."""
+    inputs: Mapping[str, FloatArray]
     answers: npt.NDArray[Any]
-    """(windows,)"""
     groups: npt.NDArray[Any]
-    """(windows,): what must stay on one side."""
+    """What must stay on one side."""
+    runs: npt.NDArray[Any]
+    edges: FloatArray
+    """Start and end in s from the first sample of the run's signals (windows, 2)."""
+    onset: FloatArray
+    """When the run's rub begins, in s from its first sample; NaN where it does not begin within the signals."""
 
     def __getitem__(self, chosen: npt.NDArray[Any]) -> Samples:
-        return Samples(self.features[chosen], self.answers[chosen], self.groups[chosen])
+        parts = {each.name: getattr(self, each.name) for each in fields(self) if each.name != "inputs"}
+        inputs = {name: values[chosen] for name, values in self.inputs.items()}
+        return Samples(inputs=inputs, **{name: values[chosen] for name, values in parts.items()})
 
 
-def cross_validated(samples: Samples, make: Make, metric: Metric, *, by_group: bool) -> tuple[float, float]:
-    """Score a model on windows that it did not learn from: mean and standard deviation over SEEDS choices of folds.
+class Outcome(NamedTuple):
+    """What a model says of windows."""
+
+    answers: npt.NDArray[Any]
+    ranks: FloatArray
+    """Numbers that grow with the chance of the last class, of two classes; else 0."""
+
+
+Metrics = Mapping[str, Callable[[Outcome, Samples], float]]
+Scores = dict[str, tuple[float, float]]
+"""Mean and standard deviation over the seeds, by metric. A metric that is undefined there is left out."""
+
+
+def cross_validated(samples: Samples, model: Model, metrics: Metrics, *, by_group: bool) -> Scores:
+    """Score a model on windows that it did not learn from, SEEDS times with other folds.
 
     The predictions of all folds are scored together. With `by_group` a group is never on both sides; without, windows
     are dealt at random, which leaks.
     """
-    scores = []
-    for seed in range(SEEDS):
-        predicted = np.empty_like(samples.answers)
-        for test in folds(samples.groups if by_group else np.arange(len(samples.groups)), samples.answers, seed):
-            learned = make(seed).fit(samples.features[~test], samples.answers[~test])
-            predicted[test] = learned.predict(samples.features[test])
-        scores.append(metric(predicted, samples.answers))
-    return float(np.mean(scores)), float(np.std(scores))
+
+    def outcome(seed: int) -> Outcome:
+        found = Outcome(np.empty_like(samples.answers), np.zeros(len(samples.groups)))
+        owners = samples.groups if by_group else np.arange(len(samples.groups))
+        for test in folds(owners, samples.answers, seed):
+            part = _said(samples[~test], samples[test], model, seed)
+            found.answers[test], found.ranks[test] = part
+        return found
+
+    return _scores(outcome, samples, metrics)
 
 
-def transferred(train: Samples, test: Samples, make: Make, metric: Metric) -> tuple[float, float]:
-    """Learn from `train` and score on `test`: mean and standard deviation over SEEDS seeds of the model."""
-    scores = []
-    for seed in range(SEEDS):
-        learned = make(seed).fit(train.features, train.answers)
-        scores.append(metric(learned.predict(test.features), test.answers))
-    return float(np.mean(scores)), float(np.std(scores))
+def transferred(train: Samples, test: Samples, model: Model, metrics: Metrics) -> Scores:
+    """Learn from `train` and score on `test`, with SEEDS seeds of the model."""
+    return _scores(lambda seed: _said(train, test, model, seed), test, metrics)
 
 
 def folds(groups: npt.NDArray[Any], answers: npt.NDArray[Any], seed: int) -> Iterator[npt.NDArray[np.bool_]]:
     """Yield which samples (samples,) each fold tests: groups are shuffled, sorted by answer and dealt to FOLDS folds.
 
-    So each class is spread over the folds. The answer of a group is that of its first sample.
+    So each class is spread over the folds. The answer of a group is that of its first sample; labels are not sorted by.
     """
     names, first, numbers = np.unique(groups, return_index=True, return_inverse=True)
     shuffled = np.random.default_rng(seed).permutation(names.size)
-    order: IntArray = shuffled[np.argsort(answers[first][shuffled], kind="stable")]
+    order: IntArray = shuffled
+    if answers.ndim == 1:
+        order = shuffled[np.argsort(answers[first][shuffled], kind="stable")]
     for fold in range(FOLDS):
         yield np.isin(numbers, order[fold::FOLDS])
+
+
+def _said(train: Samples, test: Samples, model: Model, seed: int) -> Outcome:
+    name = model.inputs(seed)
+    learned = model.make(seed).fit(train.inputs[name], train.answers)
+    return Outcome(learned.predict(test.inputs[name]), learned.rank(test.inputs[name]))
+
+
+def _scores(outcome: Callable[[int], Outcome], samples: Samples, metrics: Metrics) -> Scores:
+    found = [outcome(seed) for seed in range(SEEDS)]
+    scores = {name: [metric(each, samples) for each in found] for name, metric in metrics.items()}
+    return {
+        name: (float(np.mean(each)), float(np.std(each))) for name, each in scores.items() if np.isfinite(each).all()
+    }

@@ -1,8 +1,13 @@
-"""The models of the baselines. All take features (samples, features) with NaN and have `fit` and `predict`."""
+"""The models of the baselines. All have `fit(numbers, answers)`, `predict(numbers)` and `rank(numbers)`.
+
+Numbers are (samples, any), answers (samples,), or labels of 0 and 1 (samples, labels). `rank` grows with the chance of
+the last of two classes, and is 0 for all other answers.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
@@ -12,13 +17,15 @@ from rubgen.arrays import FloatArray
 from rubgen.baseline.scores import best_threshold, rank_correlation
 
 Answer = npt.NDArray[Any]
+BOOSTING = {"max_iter": 50, "max_leaf_nodes": 8}
+"""A third of the time of the defaults: a task of labels learns some hundred of these."""
 
 
 class Majority:
     """Answers the most frequent class, or the median of numbers."""
 
     def fit(self, _features: FloatArray, answers: Answer) -> Self:
-        """Learn from answers (samples,)."""
+        """Learn from answers."""
         if answers.dtype.kind == "f":
             self.answer: Any = float(np.median(answers))
         else:
@@ -30,47 +37,53 @@ class Majority:
         """Answer for each sample."""
         return np.full(len(features), self.answer)
 
+    def rank(self, features: FloatArray) -> FloatArray:
+        """Rank all samples alike."""
+        return np.zeros(len(features))
+
 
 class OneFeature:
     """The best single feature: a threshold for two classes, the ranks for numbers. NaN counts as the smallest value."""
 
     def fit(self, features: FloatArray, answers: Answer) -> Self:
-        """Choose feature, threshold and sense on features (samples, features) and answers (samples,)."""
-        known = _finite(features)
+        """Choose feature, threshold and sense."""
+        finite = _finite(features)
         if answers.dtype.kind == "f":
-            scores = [rank_correlation(values, answers) for values in known.T]
+            scores = [rank_correlation(values, answers) for values in finite.T]
             self.feature = int(np.argmax(np.abs(scores)))
             self.sense, self.threshold = np.sign(scores[self.feature]), None
             return self
         self.classes = np.unique(answers)
-        found = [best_threshold(values, answers == self.classes[-1]) for values in known.T]
+        found = [best_threshold(values, answers == self.classes[-1]) for values in finite.T]
         self.feature = int(np.argmax([each.score for each in found]))
-        self.threshold, self.sense = found[self.feature].value, found[self.feature].above
+        self.threshold, self.sense = found[self.feature].value, 1.0 if found[self.feature].above else -1.0
         return self
 
     def predict(self, features: FloatArray) -> Answer:
         """Answer for each sample."""
-        values = _finite(features)[:, self.feature]
         if self.threshold is None:
-            return np.asarray(self.sense * values)
-        return np.asarray(np.where((values > self.threshold) == self.sense, self.classes[-1], self.classes[0]))
+            return self.rank(features)
+        above = _finite(features)[:, self.feature] > self.threshold
+        return np.asarray(np.where(above == (self.sense > 0), self.classes[-1], self.classes[0]))
+
+    def rank(self, features: FloatArray) -> FloatArray:
+        """Rank by the feature."""
+        return np.asarray(self.sense * _finite(features)[:, self.feature])
 
 
-class BoostedClasses:
-    """scikit-learn's histogram gradient boosting with its default settings; each class counts the same.
+class Classifier:
+    """A classifier of scikit-learn whose classes count the same.
 
     The class with the largest ratio of its probability to its share among the learned ones is the answer. Weights of
     classes would do the same, but with them scikit-learn 1.9 takes 12 s to bin 320 samples of 348 features.
     """
 
-    def __init__(self, seed: int) -> None:
-        self.seed = seed
+    def __init__(self, model: Any) -> None:
+        self.model = model
 
     def fit(self, features: FloatArray, answers: Answer) -> Self:
-        """Learn from features (samples, features) and answers (samples,)."""
-        from sklearn.ensemble import HistGradientBoostingClassifier
-
-        self.model = HistGradientBoostingClassifier(random_state=self.seed).fit(features, answers)
+        """Learn."""
+        self.model.fit(features, answers)
         self.shares = np.array([np.mean(answers == each) for each in self.model.classes_])
         return self
 
@@ -78,28 +91,107 @@ class BoostedClasses:
         """Answer for each sample."""
         return np.asarray(self.model.classes_[np.argmax(self.model.predict_proba(features) / self.shares, axis=1)])
 
+    def rank(self, features: FloatArray) -> FloatArray:
+        """Rank by the probability of the last class."""
+        return np.asarray(self.model.predict_proba(features)[:, -1])
 
-def boosting(seed: int, *, numbers: bool) -> Any:
-    """Make gradient boosting for numbers or for classes."""
+
+class Plain:
+    """A model of scikit-learn as it is."""
+
+    def __init__(self, model: Any) -> None:
+        self.model = model
+
+    def fit(self, numbers: FloatArray, answers: Answer) -> Self:
+        """Learn."""
+        self.model.fit(numbers, answers)
+        return self
+
+    def predict(self, numbers: FloatArray) -> Answer:
+        """Answer for each sample."""
+        return np.asarray(self.model.predict(numbers))
+
+    def rank(self, numbers: FloatArray) -> FloatArray:
+        """Rank by the distance from the plane between two classes, where the model has one."""
+        decide = getattr(self.model, "decision_function", None)
+        found = np.asarray(decide(numbers)) if decide else np.zeros(len(numbers))
+        return found if found.ndim == 1 else np.zeros(len(numbers))
+
+
+class EachLabel:
+    """A model of two classes for each label. A label that was always the same when learning stays so."""
+
+    def __init__(self, make: Callable[[], Any]) -> None:
+        self.make = make
+
+    def fit(self, features: FloatArray, answers: Answer) -> Self:
+        """Learn from labels (samples, labels)."""
+        self.models = [(self.make() if np.ptp(labels) else Majority()).fit(features, labels) for labels in answers.T]
+        return self
+
+    def predict(self, features: FloatArray) -> Answer:
+        """Answer for each sample (samples, labels)."""
+        return np.column_stack([each.predict(features) for each in self.models])
+
+    def rank(self, features: FloatArray) -> FloatArray:
+        """Rank all samples alike."""
+        return np.zeros(len(features))
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model by the seed: how it is made, and the name of what it learns from."""
+
+    make: Callable[[int], Any]
+    inputs: Callable[[int], str] = lambda _seed: "features"
+
+
+def models(answers: Answer) -> dict[str, Model]:
+    """Return the models for answers of this kind, by name."""
+    if answers.ndim == 2:
+        return {name: _each_label(model) for name, model in models(np.array([0, 1])).items()}
+    numbers = answers.dtype.kind == "f"
+    threshold = _one_split if not numbers and np.unique(answers).size > 2 else lambda _seed: OneFeature()
+    return {
+        "majority": Model(lambda _seed: Majority()),
+        "one threshold": Model(threshold),
+        "boosting": Model(_boosted_numbers if numbers else _boosted_classes),
+        "rocket": Model(lambda _seed: _ridge(numbers=numbers), lambda seed: f"rocket {seed}"),
+    }
+
+
+def _each_label(model: Model) -> Model:
+    return Model(lambda seed: EachLabel(lambda: model.make(seed)), model.inputs)
+
+
+def _boosted_classes(seed: int) -> Classifier:
+    from sklearn.ensemble import HistGradientBoostingClassifier
+
+    return Classifier(HistGradientBoostingClassifier(**BOOSTING, random_state=seed))
+
+
+def _boosted_numbers(seed: int) -> Plain:
     from sklearn.ensemble import HistGradientBoostingRegressor
 
-    return HistGradientBoostingRegressor(random_state=seed) if numbers else BoostedClasses(seed)
+    return Plain(HistGradientBoostingRegressor(**BOOSTING, random_state=seed))
 
 
-def one_split(seed: int) -> Any:
-    """Make scikit-learn's decision tree with a single split: one threshold for several classes."""
+def _one_split(seed: int) -> Plain:
+    """Make a decision tree with a single split: one threshold for several classes."""
     from sklearn.tree import DecisionTreeClassifier
 
-    return DecisionTreeClassifier(max_depth=1, class_weight="balanced", random_state=seed)
+    return Plain(DecisionTreeClassifier(max_depth=1, class_weight="balanced", random_state=seed))
 
 
-def models(*, numbers: bool, classes: int) -> dict[str, Callable[[int], Any]]:
-    """Return the models of a task by their name, each as a function of a seed."""
-    return {
-        "majority": lambda _seed: Majority(),
-        "one threshold": one_split if classes > 2 and not numbers else lambda _seed: OneFeature(),
-        "boosting": lambda seed: boosting(seed, numbers=numbers),
-    }
+def _ridge(*, numbers: bool) -> Plain:
+    """Make a ridge regression on standardized numbers, whose penalty is chosen by leaving samples out."""
+    from sklearn.linear_model import RidgeClassifierCV, RidgeCV
+    from sklearn.pipeline import make_pipeline
+    from sklearn.preprocessing import StandardScaler
+
+    penalties = np.logspace(-3, 5, 9)
+    ridge = RidgeCV(penalties) if numbers else RidgeClassifierCV(penalties, class_weight="balanced")
+    return Plain(make_pipeline(StandardScaler(), ridge))
 
 
 def _finite(features: FloatArray) -> FloatArray:

@@ -9,6 +9,9 @@ import numpy.typing as npt
 
 from rubgen.arrays import BoolArray, FloatArray
 
+FALSE_ALARMS = 0.01
+"""The share of false alarms at which a detection rate is stated."""
+
 
 class Threshold(NamedTuple):
     """A threshold on one feature."""
@@ -42,6 +45,27 @@ def balanced_accuracy(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> f
     return (
         float(np.mean([np.mean(predicted[truth == each] == each) for each in classes])) if classes.size > 1 else np.nan
     )
+
+
+def detection_rate(ranks: FloatArray, truth: npt.NDArray[Any]) -> float:
+    """Compute the share of the true ones (any,) that rank above all but FALSE_ALARMS of the false ones.
+
+    `ranks` (any,) grow with the chance of a true one. It is one point of the ROC curve of these ranks, so its threshold
+    is chosen on what is scored. NaN where one class is missing.
+    """
+    false, true = np.sort(ranks[truth == 0])[::-1], ranks[truth == 1]
+    if not false.size or not true.size:
+        return np.nan
+    return float(np.mean(true > false[int(FALSE_ALARMS * false.size)]))
+
+
+def label_f1(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:
+    """Compute the mean of 2 hits / (times called + times true) over the labels that occur in `truth` (any, labels)."""
+    here = truth.any(axis=0)
+    if not here.any():
+        return np.nan
+    hits = np.sum((predicted == 1) & (truth == 1), axis=0)
+    return float(np.mean((2 * hits / np.maximum(predicted.sum(axis=0) + truth.sum(axis=0), 1))[here]))
 
 
 def macro_f1(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:

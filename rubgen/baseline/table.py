@@ -7,22 +7,25 @@ from dataclasses import asdict
 from typing import Any
 
 from rubgen import __version__
-from rubgen.baseline.baseline import SOLVED, Baseline
+from rubgen.baseline.baseline import NOTHING, SOLVED, Baseline
 from rubgen.baseline.evaluate import FOLDS, SEEDS
+from rubgen.baseline.tasks import TASKS
 
 
 def table(found: Sequence[Baseline]) -> str:
-    """Write a table of all scores: a row a task and model, a column a way of scoring."""
+    """Write a table of all scores: a row a task, metric and model, a column a way of scoring."""
     ways = list(dict.fromkeys(way for each in found for scores in each.scores.values() for way in scores))
-    head = ["task", "metric", "windows", "groups", "model", *ways]
+    head = ["task", "metric", "model", *ways]
     rows = [
-        [each.task, each.metric, str(each.windows), str(each.groups), model, *(_cell(scores.get(way)) for way in ways)]
+        [each.task, metric, model, *(_cell(scores.get(way, {}).get(metric)) for way in ways)]
         for each in found
+        for metric in TASKS[each.task].metrics
         for model, scores in each.scores.items()
     ]
     lines = ["| " + " | ".join(row) + " |" for row in (head, ["---"] * len(head), *rows)]
+    sizes = [f"- {each.task}: learned from {each.windows} windows of {each.groups} groups" for each in found]
     marks = [f"- {each.task}: {each.mark}" for each in found if each.mark]
-    return "\n".join([*lines, *([""] if marks else []), *marks])
+    return "\n".join([*lines, "", *sizes, *marks])
 
 
 def document(name: str, manifest_sha256: str, found: Sequence[Baseline], reasons: dict[str, str]) -> dict[str, Any]:
@@ -34,6 +37,7 @@ def document(name: str, manifest_sha256: str, found: Sequence[Baseline], reasons
         "folds": FOLDS,
         "seeds": SEEDS,
         "one_threshold_solves_above": SOLVED,
+        "nothing_learned_below": NOTHING,
         "tasks": [asdict(each) for each in found],
         "not_possible": reasons,
     }

@@ -371,7 +371,10 @@ def baseline(
     directory: Place,
     /,
     *,
-    task: Annotated[str | None, _option("rub, motion, severity, with commas; all possible when not given.")] = None,
+    task: Annotated[
+        str | None,
+        _option("rub, severity, motion, zones, where, faults, onset, with commas; all possible when not given."),
+    ] = None,
     out: Annotated[Path | None, _option("File for the scores: .json.")] = None,
     force: Force = False,
     json: Json = False,

@@ -31,13 +31,16 @@ def test_an_unknown_task_and_a_missing_package_are_named(small_set, capsys, monk
 
 
 def test_scores_are_written_and_a_marked_task_ends_with_one(small_set, capsys, monkeypatch, tmp_path):
+    monkeypatch.setattr(evaluate, "SEEDS", 1)
+    monkeypatch.setattr(baseline, "SEEDS", 1)
     for module in (baseline, evaluate):
         monkeypatch.setattr(module, "FOLDS", 2)
     out = tmp_path / "baselines.json"
     code, output, _ = run(capsys, small_set.directory, "--task", "rub", "--out", out)
     (task,) = json.loads(out.read_text())["tasks"]
     assert (task["task"], task["groups"], task["windows"]) == ("rub", 4, 16)
-    assert set(task["scores"]["boosting"]) == {"by group", "leaky"}
-    assert task["scores"]["majority"]["by group"][0] == 0.5
+    assert set(task["scores"]["boosting"]) == set(task["scores"]["rocket"]) == {"by group", "leaky"}
+    assert task["scores"]["majority"]["by group"]["balanced accuracy"][0] == 0.5
     assert code == (1 if task["mark"] else 0)
-    assert "| rub | balanced accuracy | 16 | 4 | majority | 0.50 ± 0.00 |" in output
+    assert "| rub | balanced accuracy | majority | 0.50 ± 0.00 |" in output
+    assert "- rub: learned from 16 windows of 4 groups" in output

@@ -1,0 +1,94 @@
+"""The leak test on small files of `signals/`: it is silent where nothing leaks, and finds each leak that is planted."""
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from rubgen.io.parquet.set_tables import signals_schema
+from rubgen.scenario import parse_recipe
+from validation.leaks import facts_of, verdict
+
+RUNS = 96
+RECIPE = {"name": "leaks", "runs": RUNS, "machine": "zeng2019", "output": {"signal_seconds": 0.007}}
+
+
+def rows(rng):
+    """Return runs of eight machines whose answers are coins, as dictionaries, and their schema."""
+    schema = signals_schema(parse_recipe(RECIPE))
+    found = []
+    for number in range(RUNS):
+        row = dict.fromkeys(schema.names)
+        for field in schema:
+            if pa.types.is_fixed_size_list(field.type):
+                row[field.name] = rng.standard_normal(field.type.list_size).astype(np.float32).tolist()
+        turn = 60 / rng.uniform(9000, 11000)
+        row |= {"run_id": f"run-{number:06d}", "machine_id": f"machine{number % 24}", "split": "train", "seed": 0}
+        row |= {"sample_rate_hz": 25600.0, "rub": bool(rng.integers(2)), "once_per_rev_s": [0.0, turn, 2 * turn]}
+        found.append(row)
+    return found, schema
+
+
+def nothing(found, rng):
+    return found
+
+
+def order(found, rng):
+    return sorted(found, key=lambda row: row["rub"])
+
+
+def names(found, rng):
+    numbers = rng.permutation(RUNS // 2)
+    for row, number in zip(found, np.tile(numbers, 2), strict=True):
+        row["run_id"] = f"run-{2 * number + row['rub']:06d}"
+        row["seed"] = row["rub"] + 7
+    return found
+
+
+def zeros(found, rng):
+    for row in found:
+        if row["rub"]:
+            row["casing_acc_0"][3] = 0.0
+    return found
+
+
+def lengths(found, rng):
+    for row in found:
+        if row["rub"]:
+            row["once_per_rev_s"] = row["once_per_rev_s"][:2]
+    return found
+
+
+def nulls(found, rng):
+    for row in found:
+        row["sample_rate_hz"] = None if row["rub"] else 25600.0
+    return found
+
+
+def second_of_two(found, rng):
+    for number, row in enumerate(found):
+        row["rub"] = bool(rng.random() < (0.75 if number % 2 == 0 else 0.25))
+    return found
+
+
+@pytest.mark.parametrize("plant", [nothing, order, names, zeros, lengths, nulls, second_of_two])
+def test_a_planted_leak_is_found_and_nothing_is_silent(plant, tmp_path):
+    rng = np.random.default_rng(5)
+    found, schema = rows(rng)
+    path = tmp_path / "train-00000.parquet"
+    pq.write_table(pa.Table.from_pylist(plant(found, rng), schema), path, row_group_size=4)
+    told = verdict(facts_of([path]))
+    assert told.found == (plant is not nothing), told
+    assert abs(told.chance - 0.5) < 0.1
+
+
+def test_what_the_speed_tells_is_no_leak(tmp_path):
+    rng = np.random.default_rng(6)
+    found, schema = rows(rng)
+    for row in found:
+        row["rub"] = bool(row["once_per_rev_s"][1] < 60 / 10_000)
+    path = tmp_path / "train-00000.parquet"
+    pq.write_table(pa.Table.from_pylist(found, schema), path)
+    told = verdict(facts_of([path]))
+    assert told.score > 0.8
+    assert told.chance > 0.7
