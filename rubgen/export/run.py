@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from rubgen.arrays import FloatArray
 from rubgen.dataset.reading.open import DataSet
+from rubgen.dataset.reading.replaying import scenario_of
 from rubgen.measurement.channel import Float32Array
+from rubgen.reduction import ReducedModel, reduce
 from rubgen.sensors.sensor import SampledSensor
 
 
@@ -52,8 +55,8 @@ class ExportedRun:
     channels: tuple[ExportedChannel, ...]
     pulses: FloatArray
     """Times of the pulses in s from the first sample on."""
-    tip_radius: float
-    """Of the blades, m: the place of the sensors on the casing."""
+    model: Callable[[], ReducedModel]
+    """Reduces the machine of the run."""
 
     @property
     def samples(self) -> int:
@@ -64,11 +67,17 @@ class ExportedRun:
 def exported_runs(data: DataSet, run_ids: Sequence[str], channels: Sequence[str]) -> Iterator[ExportedRun]:
     """Read these good runs one after the other."""
     sensors = {sensor.name: sensor for sensor in data.sensors.sampled}
-    radius = data.recipe.base.machine.tip_radius_m
     for run_id, signals, pulses in data.recorded(run_ids, channels):
         row = data.row(run_id)
         found = tuple(ExportedChannel(name, data.units[name], signals[name], sensors.get(name)) for name in channels)
-        yield ExportedRun(run_id, str(row["split"]), row, data.sample_rate_hz, found, pulses, radius)
+        yield ExportedRun(
+            run_id, str(row["split"]), row, data.sample_rate_hz, found, pulses, partial(_model, data, run_id)
+        )
+
+
+def _model(data: DataSet, run_id: str) -> ReducedModel:
+    scenario = scenario_of(data, run_id)
+    return reduce(scenario.machine, scenario.reduction)
 
 
 def without_nulls(values: list[Any]) -> list[Any]:

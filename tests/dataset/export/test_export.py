@@ -10,13 +10,17 @@ import pyarrow.parquet as pq
 import pytest
 import pyuff
 from scipy.io import loadmat, wavfile
+from scipy.linalg import eigh
 
 import datasets
 import rubgen
 from rubgen.cli import main
+from rubgen.dataset.reading.replaying import scenario_of
 from rubgen.export.formats import FORMATS
 from rubgen.export.run import without_nulls
 from rubgen.export.write import export
+from rubgen.linalg.threads import one_blas_thread
+from rubgen.reduction import reduce
 
 CHANNELS = ["proximity_x", "casing_acc_90", "once_per_rev"]
 RUN = "run-000001"
@@ -38,19 +42,44 @@ def exported(small_set, tmp_path):
 
 def test_uff_has_signals_units_and_geometry(data, exported):
     file = pyuff.UFF(str(exported("uff58") / "train" / f"{RUN}.uff"))
-    assert list(file.get_set_types()) == [151, 164, 15, 82, 58, 58, 58]
+    types = list(file.get_set_types())
+    assert types[:8] == [151, 164, 15, 82, 82, 58, 58, 58]
+    assert set(types[8:]) == {55}
     assert file.read_sets(1)["units_code"] == 1
     nodes, signals = file.read_sets(2), data.signals(RUN)
     for number, name in enumerate(CHANNELS):
-        found = file.read_sets(4 + number)
+        found = file.read_sets(5 + number)
         assert np.array_equal(found["data"].astype(np.float32), signals[name])
         assert (found["id1"].strip(), found["id2"].strip()) == (name, RUN)
         assert found["ordinate_axis_units_lab"].strip() == data.units[name]
         assert found["abscissa_inc"] == 1 / 25600
-    acceleration = file.read_sets(5)
+    acceleration = file.read_sets(6)
     assert (acceleration["ordinate_spec_data_type"], acceleration["rsp_dir"]) == (12, 2)
     place = nodes["x"][acceleration["rsp_node"] - 1], nodes["y"][acceleration["rsp_node"] - 1]
     assert place == pytest.approx((0, data.recipe.base.machine.tip_radius_m), abs=1e-6)
+
+
+def test_uff_has_the_modes_of_the_machine_of_the_run(data, exported):
+    file = pyuff.UFF(str(exported("uff58", ["proximity_x"]) / "train" / f"{RUN}.uff"))
+    scenario = scenario_of(data, RUN)
+    model = reduce(scenario.machine, scenario.reduction)
+    with one_blas_thread():  # modes of nearly equal frequencies mix in another way with other sums
+        squares, vectors = eigh(model.stiffness(0.0), model.blisk.M)
+    geometry = file.read_sets(2)
+    places = dict(zip(geometry["node_nums"], zip(geometry["x"], geometry["y"], strict=True), strict=True))
+    modes = [file.read_sets(number) for number, kind in enumerate(file.get_set_types()) if kind == 55]
+    casing, blisk = ([each for each in modes if each["id1"].startswith(what)] for what in ("casing", "blisk"))
+    assert [each["freq"] for each in casing] == pytest.approx(model.casing_frequencies_hz[: len(casing)], rel=1e-5)
+    assert [each["freq"] for each in blisk] == pytest.approx(np.sqrt(squares[: len(blisk)]) / 2 / np.pi, rel=1e-5)
+    assert max(each["freq"] for each in modes) <= 25600 / 2.56
+    assert all(set(each["node_nums"]) <= set(places) for each in modes)
+    tip = 9  # of 36 blades, at 90 degrees: outward is +y
+    node = list(blisk[4]["node_nums"]).index(2001 + tip)
+    assert places[2001 + tip] == pytest.approx((0, model.machine.tip_radius_m), abs=1e-6)
+    for number in (2, 4, 40):
+        radial, tangential, axial = vectors[3 * tip : 3 * tip + 3, number]
+        found = [blisk[number][name][node] for name in ("r1", "r2", "r3")]
+        assert found == pytest.approx((-tangential, radial, axial), rel=1e-4, abs=1e-5)
 
 
 def test_mat_has_signals_units_and_labels(data, exported):
