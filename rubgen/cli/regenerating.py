@@ -13,7 +13,8 @@ MOST_NAMED = 6
 def regenerate_command(directory: Path, run_id: str, out: Path | None, *, force: bool, as_json: bool) -> int:
     """Make a run again and print where it differs from the stored one. With `out` also write it to that file.
 
-    Returns the exit code 1 where a label differs by more than other versions explain, or a bit with the same versions.
+    Returns the exit code 1 where a label differs by more than other versions or another processor explain, or where a
+    bit differs with the same versions.
     """
     if out is not None:
         check_new_file("--out", out, tuple(f".{name}" for name in FORMAT_NAMES), force=force)
@@ -46,9 +47,9 @@ def _tell(run_id: str, done: Regenerated) -> None:
     for table, columns in sorted(done.different.items()):
         say(f"{run_id}: {table}: other bits in {_few(columns)}")
     if done.moved:
-        say(f"{run_id}: labels differ by more than other versions explain: {_few(done.moved)}")
+        say(f"{run_id}: labels differ by more than other versions or another processor explain: {_few(done.moved)}")
     elif done.different:
-        say(f"{run_id}: same class of motion, labels within the tolerance for other versions")
+        say(f"{run_id}: same class of motion, labels within the tolerance for other versions and processors")
 
 
 def _few(names: list[str]) -> str:
