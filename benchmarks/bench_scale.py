@@ -256,27 +256,32 @@ def _slope(costs: dict[int, dict[str, float]], name: str) -> float:
 
 
 def _shares(costs: dict[int, dict[str, float]], one: dict[str, float]) -> str:
-    short = _slope(costs, "workers")
-    parent, finish = (_slope(costs, name) for name in ("parent", "finish"))
+    most = max(costs)
+    short, finish = _slope(costs, "workers"), _slope(costs, "finish")
+    start = costs[most]["workers"] - short * most
+    whole = costs[most]["parent"] / (costs[most]["parent"] + costs[most]["workers"])
+    memory = {runs: each["parent_mb"] for runs, each in costs.items()}
     return (
-        f"A further run costs {1e3 * short:.0f} ms of the workers and {1e3 * parent:.2f} ms of the parent, of which "
-        f"{1e3 * finish:.2f} ms are for assembling and the manifest. "
-        f"The parent does {parent / (short + parent):.2%} of the work of these short runs, and "
-        f"{parent / (one['seconds'] + parent):.2%} where a run rubs for {one['seconds']:.1f} CPU seconds. "
-        f"Its peak memory changes by {1e6 * _slope(costs, 'parent_mb') / 1e3:+.1f} kB with a further run."
+        f"A further run costs {1e3 * short:.0f} ms of the workers; their start took {start:.0f} s. Assembling and the "
+        f"manifest cost {1e3 * finish:.2f} ms a run, {finish / (short + finish):.2%} of the work of these short runs "
+        f"and {finish / (one['seconds'] + finish):.2%} where a run rubs for {one['seconds']:.1f} CPU seconds. All that "
+        f"the parent did, imports included, was {whole:.1%} of the work of {most:,} runs. Its peak memory went from "
+        f"{memory[min(memory)]:.0f} to {memory[most]:.0f} MB: rows of `runs.parquet` pass through it 4,096 at a time, "
+        "so it grows up to that number of runs."
     )
 
 
 def _projected_table(costs: dict[int, dict[str, float]], one: dict[str, float]) -> str:
     many = max(costs)
     header = ["runs", "short: core-hours", "TB", "files", "usual: core-hours", "TB", "finish, h", "verify, h"]
-    per_shard = costs[many]["files"] / ceil(many / RUNS_PER_SHARD)
+    few, shards = min(costs), {runs: ceil(runs / RUNS_PER_SHARD) for runs in (*costs, *PROJECTED)}
+    per_shard = (costs[many]["files"] - costs[few]["files"]) / (shards[many] - shards[few])
     rows = [
         [
             f"{runs:,}",
             f"{(_slope(costs, 'workers') + _slope(costs, 'parent')) * runs / HOUR:,.0f}",
             f"{_slope(costs, 'bytes') * runs / MB / MB:.3f}",
-            f"{per_shard * ceil(runs / RUNS_PER_SHARD):,.0f}",
+            f"{costs[many]['files'] + per_shard * (shards[runs] - shards[many]):,.0f}",
             f"{one['seconds'] * runs / HOUR:,.0f}",
             f"{one['bytes'] * runs / MB / MB:.2f}",
             f"{_slope(costs, 'finish') * runs / HOUR:.2f}",
@@ -285,10 +290,10 @@ def _projected_table(costs: dict[int, dict[str, float]], one: dict[str, float]) 
         for runs in PROJECTED
     ]
     text = (
-        f"A usual run rubs, has signals of one second, takes {one['seconds']:.1f} CPU seconds with its file, and has "
-        f"{one['bytes'] / MB:.2f} MB. Shipped as a manifest alone, a million such runs are some kilobytes in place of "
-        f"{one['bytes']:.2g} MB; each run then costs its {one['seconds']:.1f} CPU seconds when it is asked for, and "
-        "all of them the core-hours of the table once more for each user who asks for all."
+        f"A usual run rubs, has signals of one second, takes {one['seconds']:.1f} CPU seconds with its file, and "
+        f"has {one['bytes'] / MB:.2f} MB. Shipped as a manifest alone, a million such runs are kilobytes in place of "
+        f"{one['bytes'] / MB:.2f} TB; each run then costs its {one['seconds']:.1f} CPU seconds when it is asked for, "
+        "and all of them the core-hours of the table once more for each user who asks for all."
     )
     return f"{table(header, rows, numbers_from=0)}\n\n{text}"
 
@@ -298,8 +303,8 @@ def _pairs_text(pairs: list[dict[str, float]]) -> str:
         return median(each[name] for each in pairs)
 
     return (
-        f"Median of {len(pairs)} interleaved pairs: two workers make {middle('runs'):.2f} times as many runs a second "
-        f"as one; two processes with a loop of pure arithmetic do {middle('kernel'):.2f} times as much as one. The "
+        f"Interleaved pairs: {len(pairs)}; a whole page has seven. Two workers make {middle('runs'):.2f} times as many runs a second "
+        f"as one (median). Two processes with a loop of pure arithmetic do {middle('kernel'):.2f} times as much as one. The "
         f"load of the computer with two cores was {min(each['load'] for each in pairs):.0f} to "
         f"{max(each['load'] for each in pairs):.0f}, so both ratios tell of other work too. With start and end, "
         f"{RUNS_A_PAIR} runs took {middle('cpu_1'):.1f} CPU seconds with one worker and {middle('cpu_2'):.1f} with two."
