@@ -71,7 +71,7 @@ def facts_of(files: Sequence[Path]) -> pd.DataFrame:
     table = pd.DataFrame(rows)
     for name in table.select_dtypes(exclude="number").columns:
         if not name.startswith("_"):
-            table[name] = np.unique(table[name].astype(str), return_inverse=True)[1]
+            table[name] = np.unique(table[name].fillna("").astype(str), return_inverse=True)[1]
     return table
 
 
@@ -85,7 +85,7 @@ def verdict(facts: pd.DataFrame, seed: int = 0) -> Verdict:
     bands = facts.groupby("_split")["_speed"].transform(
         lambda each: pd.qcut(each, SPEED_BANDS, labels=False, duplicates="drop")
     )
-    strata = facts["_split"].astype(str) + bands.astype(str)
+    strata = facts["_split"].astype(str) + bands.fillna(-1).astype(str)
     rng = np.random.default_rng(seed)
     score = _score(values, answers, groups)
     dealt = [_score(values, _dealt(answers, strata.to_numpy(), rng), groups) for _ in range(DEALT)]

@@ -54,6 +54,9 @@ UNMEASURABLE = (ContactForce, ContactTorque)
 
 DRAWING = ("twins", "balance", "merged")
 """Tables of a recipe on which runs are drawn, and "merged" for a merged set. They have columns of their own."""
+IN_RUNS_ALONE = ("twins", "merged")
+"""Those whose columns only `runs.parquet` has. Beside the signals, the name of a partner would tell of a twin, which
+never rubs where the clearance is what changes."""
 
 
 @dataclass(frozen=True)

@@ -140,7 +140,8 @@ def scenario_of(data: DataSet, run_id: str) -> Scenario:
     index = number - first
     if "balance_cell" in row and row["status"] == "ok":
         chosen = Chosen(cell=row["balance_cell"], tries=row["balance_tries"], seen=tuple(row["balance_seen"]))
-        recipe.remember_choice(index if recipe.twin_of(index) is None else index - 1, chosen)
+        partner = recipe.twin_of(index)
+        recipe.remember_choice(index if partner is None else partner, chosen)
     return whole.scenario(number)
 
 

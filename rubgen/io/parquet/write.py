@@ -19,7 +19,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from rubgen.arrays import FloatArray
-from rubgen.io.columns import DRAWING, Column, Role, scalar_columns, signal_columns
+from rubgen.io.columns import DRAWING, IN_RUNS_ALONE, Column, Role, scalar_columns, signal_columns
 from rubgen.io.files import write_durably
 from rubgen.io.parquet.features import features_json
 from rubgen.io.parquet.words import with_numbers
@@ -110,9 +110,9 @@ def recipe_schema(recipe: Recipe, *, signals: bool) -> pa.Schema:
 
 
 def drawing_of(recipe: Recipe, *, signals: bool = False) -> list[str]:
-    """Return those of DRAWING whose columns the files of a recipe's set have. Only `runs.parquet` names sources."""
-    merged = len(recipe.sources) > 1 and not signals
-    return [name for name in DRAWING if (merged if name == "merged" else getattr(recipe, name) is not None)]
+    """Return those of DRAWING whose columns the files of a recipe's set have, with `signals` its data files."""
+    has = {"twins": recipe.twins is not None, "balance": recipe.balance is not None, "merged": len(recipe.sources) > 1}
+    return [name for name in DRAWING if has[name] and not (signals and name in IN_RUNS_ALONE)]
 
 
 def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Table:
@@ -137,7 +137,7 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
     row = with_numbers(row)
     drawn: list[str] = []
     sensing = run.scenario.sensing
-    if run.scenario.pairing:
+    if run.scenario.pairing and not signals:
         drawn.append("twins")
         row["twin_of"] = run.scenario.partner
     if run.scenario.balance:

@@ -1,6 +1,7 @@
 """A set with twins: the same noise and surroundings in both runs of a pair, and one column that differs."""
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 
 import rubgen
@@ -38,6 +39,12 @@ def test_one_column_of_a_pair_differs(twins):
         differ = [name for name in columns if runs.loc[twin, name] != runs.loc[partner, name]]
         assert differ == ["friction"]
     assert rubgen.verify(twins.layout.root) == []
+
+
+@pytest.mark.parametrize("table", ["signals", "truth", "windows", "sections"])
+def test_no_file_beside_the_runs_tells_of_a_twin(twins, table):
+    (path,) = twins.layout.root.glob(f"{table}/*.parquet")
+    assert "twin_of" not in pq.read_schema(path).names
 
 
 def test_noise_and_surroundings_of_a_pair_are_the_same_bits(twins):
