@@ -303,9 +303,10 @@ def _pairs_text(pairs: list[dict[str, float]]) -> str:
         return median(each[name] for each in pairs)
 
     return (
-        f"Interleaved pairs: {len(pairs)}; a whole page has seven. Two workers make {middle('runs'):.2f} times as many runs a second "
-        f"as one (median). Two processes with a loop of pure arithmetic do {middle('kernel'):.2f} times as much as one. The "
-        f"load of the computer with two cores was {min(each['load'] for each in pairs):.0f} to "
+        f"Interleaved pairs: {len(pairs)}; a whole page has seven. Two workers make {middle('runs'):.2f} times as "
+        "many runs a second as one (median). Two processes with a loop of pure arithmetic do "
+        f"{middle('kernel'):.2f} times as much as one. The load "
+        f"of the computer with two cores was {min(each['load'] for each in pairs):.0f} to "
         f"{max(each['load'] for each in pairs):.0f}, so both ratios tell of other work too. With start and end, "
         f"{RUNS_A_PAIR} runs took {middle('cpu_1'):.1f} CPU seconds with one worker and {middle('cpu_2'):.1f} with two."
     )

@@ -101,13 +101,15 @@ def said(started: subprocess.Popen[str]) -> str:
 
 def killed(machines: int, out: Path, folder: Path) -> int:
     """Make the set with four Dask workers, of which one is killed every few seconds. The number of kills."""
-    kills, done = [0], threading.Event()
+    kills, seen, done = [0], [0], threading.Event()
     with process(CLUSTER, folder) as started:
         address = said(started)
 
         def kill() -> None:
             while not done.wait(KILL_EVERY_S):
-                if started.stdin and list((out / ".staging" / "kept").glob("*/*.kept")):
+                size = sum(path.stat().st_size for path in (out / ".staging").glob("*/*/*.kept"))
+                if started.stdin and size > seen[0]:  # something was kept since the last kill
+                    seen[0] = size
                     started.stdin.write("kill\n")
                     started.stdin.flush()
                     kills[0] += bool(int(said(started)))

@@ -439,7 +439,7 @@ def label(directory: Place, /, *, json: Json = False) -> int:
 
 @app.command
 def verify(
-    directory: Place,
+    directory: Directory,
     /,
     *,
     sample: Annotated[

@@ -124,7 +124,8 @@ def _ways_to_look(directory: Path) -> Iterator[str]:
         if first and each.look:
             yield f"  {each.look.format(folder=folder, first=first, rerun=_command('rerun'))}"
     yield f"  count classes:  {_command('rubgen')} info {directory}"
-    yield f"  check it all:   {_command('rubgen')} verify {directory}"
+    if not is_url(directory):
+        yield f"  check it all:   {_command('rubgen')} verify {directory}"
     yield f"  {directory}/README.md tells what every column means and how to load it"
 
 

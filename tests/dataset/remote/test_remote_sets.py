@@ -285,5 +285,8 @@ def test_a_server_that_does_not_answer_is_one_line(s3, monkeypatch):
 
 
 def test_a_command_that_needs_a_directory_says_so(capsys):
-    assert called("repair", "s3://bucket/set") == 2
-    assert "s3://bucket/set: this command needs a directory" in capsys.readouterr().err
+    for command in ("repair", "verify"):
+        assert called(command, "s3://bucket/set") == 2
+        assert "s3://bucket/set: this command needs a directory" in capsys.readouterr().err
+    with pytest.raises(rubgen.UserError, match="verify needs a directory"):
+        rubgen.verify("memory://place/set")
