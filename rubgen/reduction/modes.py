@@ -3,11 +3,11 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import block_diag, eig, eigh
+from scipy.linalg import eig, eigh
 
 from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.linalg.threads import one_blas_thread
-from rubgen.reduction.reduced import ReducedModel
+from rubgen.reduction.reduced import ReducedModel, linearised
 from rubgen.units import rev_per_min
 
 REST = 1e-3
@@ -48,8 +48,7 @@ def blisk_modes(model: ReducedModel, speed: float) -> list[Mode]:
     system = model.at_speed(spin)
     C, K = system.C[:size, :size], system.K[:size, :size]
     with one_blas_thread():
-        companion = np.block([[np.zeros((size, size)), np.eye(size)], [-K, -C]])
-        roots, vectors = eig(companion, block_diag(np.eye(size), model.blisk.M))
+        roots, vectors = eig(*linearised(model.blisk.M, C, K))
     blades = model.machine.blades.count
     chosen, waves = _one_of_each_pair(roots, vectors[:size], blades)
     kinds = _support_kinds(model, vectors[:size, chosen])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from scipy.linalg import block_diag, eig, eigh
+from scipy.linalg import block_diag, eigh, eigvals
 
 from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
@@ -207,9 +207,7 @@ class ReducedModel:
             if speed == 0:
                 squares: FloatArray = eigh(K, M, eigvals_only=True)
                 return np.sqrt(squares) / (2 * np.pi)
-            n = len(M)
-            companion = np.block([[np.zeros((n, n)), np.eye(n)], [-K, -2 * speed * self.blisk.G]])
-            values = eig(companion, block_diag(np.eye(n), M), right=False)
+            values = eigvals(*linearised(M, 2 * speed * self.blisk.G, K))
         frequencies: FloatArray = np.sort(np.abs(values.imag))[::2] / (2 * np.pi)
         return frequencies
 
@@ -316,3 +314,13 @@ def elastic_damping(damping: Damping, blade_frequency: float) -> float:
     That frequency is the first of a clamped blade.
     """
     return 2 * damping.blade / blade_frequency
+
+
+def linearised(M: FloatArray, C: FloatArray, K: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return A and B (2 n, 2 n) whose eigenvalues A z = s B z are the roots of (M s^2 + C s + K) q = 0.
+
+    z = (q, s q / c) with c^2 = |K| / |M|. Without c the blocks of A differ by ten orders of magnitude, and rounding
+    moved a frequency of a mistuned blisk by 1.5e-8 of its value.
+    """
+    size, c = len(M), np.sqrt(np.linalg.norm(K) / np.linalg.norm(M))
+    return np.block([[np.zeros((size, size)), c * np.eye(size)], [-K / c, -C]]), block_diag(np.eye(size), M)
