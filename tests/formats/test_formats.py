@@ -36,7 +36,7 @@ def test_signals_of_a_file_are_those_of_its_run(rub_run, tmp_path, each):
     save(rub_run, path)
     name = next(iter(recording.channels))
     found = each.signals(path, [name])
-    assert (found.index, list(found.channels)) == (rub_run.scenario.index, [name])
+    assert (found.number, list(found.channels)) == (rub_run.scenario.number, [name])
     np.testing.assert_array_equal(found.channels[name], recording.channels[name].values)
     np.testing.assert_allclose(found.once_per_rev, recording.once_per_rev, rtol=0, atol=1e-9)
 

@@ -128,7 +128,6 @@ def test_a_sensible_machine_is_not_doubted(size, seed, monkeypatch):
         "simulation": {"record_turns": 1000, "steps_per_turn": 2048},
         "output": {"signal_seconds": min(1.0, 400 / turn)},
         "contact": {
-            "friction": 0.1,
             "liner": {"thickness_m": 0.005 * made.tip_radius_m, "wear_m2_per_n": 1e-12, "width_m": made.casing.width_m},
         },
     }

@@ -249,7 +249,7 @@ def test_what_was_kept_and_is_lost_or_damaged_since_is_made_again(tmp_path, monk
 def test_a_closed_shard_that_lost_a_file_is_made_again(tmp_path, monkeypatch, spoil):
     make(tmp_path / "whole")
     with monkeypatch.context() as patch:
-        patch.setattr(generating, "finish_set", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+        patch.setattr(generating, "finish_set", lambda *_, **__: (_ for _ in ()).throw(KeyboardInterrupt))
         with pytest.raises(KeyboardInterrupt):
             make(tmp_path / "set")
     (path,) = (tmp_path / "set/.staging" / spoil).iterdir()

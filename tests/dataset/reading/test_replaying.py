@@ -68,7 +68,7 @@ def test_a_recording_under_the_name_of_another_run_is_refused(copied_set):
     (copied_set / "manifest.json.sha256").write_text(f"{digest}  manifest.json\n")
     data = rubgen.open(copied_set)
     assert data.signals("run-000000")["proximity_x"].size
-    with pytest.raises(UserError, match=r"run-000001\.mcap: holds the run of index 0"):
+    with pytest.raises(UserError, match=r"run-000001\.mcap: holds run-000000"):
         data.signals("run-000001")
 
 
