@@ -33,6 +33,7 @@ SPEEDS_RPM = tuple(float(speed) for speed in range(6900, 13000, 600))
 START_RPM, END_RPM = 6400.0, 13000.0
 DURATIONS_S = (29.0, 7.3)
 """Of the run-ups: 228 and 904 rev/min/s."""
+DECIDED = (Motion.PERIOD_1, Motion.PERIOD_K, Motion.QUASI_PERIODIC, Motion.CHAOTIC)
 
 
 @dataclass(frozen=True)
@@ -44,13 +45,15 @@ class Pair:
     speed_rpm: float
     steady: Motion
     window: Motion
+    rub: bool
+    """Whether blades touch in the steady run."""
 
     @property
     def verdict(self) -> str:
-        """Whether the two agree, one of them is undecided, or they contradict each other."""
-        if self.steady is self.window:
-            return "agree"
-        return "one undecided" if Motion.UNDECIDED in (self.steady, self.window) else "contradict"
+        """Whether the two agree on a class, one or both are undecided, or they contradict each other."""
+        if Motion.UNDECIDED in (self.steady, self.window):
+            return "undecided"
+        return "agree" if self.steady is self.window else "contradict"
 
 
 def steady_scenario(series: str, speed_rpm: float) -> Scenario:
@@ -76,8 +79,8 @@ def pairs(series: str, seconds: float, found: Found) -> list[Pair]:
     out = []
     for speed in SPEEDS_RPM:
         number = min(range(len(speeds)), key=lambda i: abs(speeds[i] - speed))
-        steady = _labels(steady_scenario(series, speed), found).motion
-        out.append(Pair(series, seconds, speed, steady, windows.motion[number][0]))
+        steady = _labels(steady_scenario(series, speed), found)
+        out.append(Pair(series, seconds, speed, steady.motion, windows.motion[number][0], steady.rub))
     return out
 
 
@@ -92,6 +95,8 @@ def stretches(series: str, seconds: float, found: Found) -> str:
 def page(every: Sequence[Pair], courses: dict[tuple[str, float], str]) -> str:
     """The page: how often they agree, each pair, the course of each run-up."""
     verdicts = [each.verdict for each in every]
+    unseen = [motion.value for motion in DECIDED if not any(motion is each.steady for each in every)]
+    limit = f"No steady run of these is {' or '.join(unseen)}: the page does not test these classes." if unseen else ""
     classes = [motion for motion in Motion if any(motion in (each.steady, each.window) for each in every)]
     count_of = Counter((each.steady, each.window) for each in every)
     counts = [[steady.value, *(str(count_of[steady, window]) for window in classes)] for steady in classes]
@@ -107,8 +112,9 @@ def page(every: Sequence[Pair], courses: dict[tuple[str, float], str]) -> str:
 `{COMMAND}` makes this page. It compares the label of motion of a window of a run-up
 ([labels over time](labels.md#over-time)) with the label of a steady run of 500 turns at the speed of the window.
 
-Of {len(every)} pairs {verdicts.count("agree")} agree. In {verdicts.count("one undecided")} one of the two is
-`undecided`. {verdicts.count("contradict")} contradict each other.
+Of {len(every)} pairs {verdicts.count("agree")} agree on a class. In {verdicts.count("undecided")} one or both are
+`undecided`. {verdicts.count("contradict")} contradict each other. Blades touch in {sum(each.rub for each in every)} of
+the {len(every)} steady runs. {limit}
 
 ## How often they agree
 
@@ -149,7 +155,7 @@ def main(arguments: Sequence[str], folder: Path) -> int:
             every = [each for name in CHOSEN for seconds in DURATIONS_S for each in pairs(name, seconds, store)]
             courses = {(name, seconds): stretches(name, seconds, store) for name in CHOSEN for seconds in DURATIONS_S}
             (folder / "docs/run-up-motion.md").write_text(page(every, courses), encoding="utf-8")
-            sys.stdout.write(f"{len(every)} pairs, {sum(each.verdict == 'agree' for each in every)} agree\n")
+            sys.stdout.write(f"{len(every)} pairs, {sum(each.verdict == 'agree' for each in every)} agree on a class\n")
 
     return run_command("validation.run_up_motion", store.root, work)
 
