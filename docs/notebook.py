@@ -21,7 +21,7 @@ from typing import Any
 DOCS = Path(__file__).parent
 BLOCK = re.compile(r'^```(python|toml|sh|text)(?: title="([^"]+)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 DECIMAL = re.compile(r"\d+\.\d+")
-LAST_PLACES = 2
+LAST_PLACES = 1
 """Most by which a printed decimal may differ from the page, in units of its last place."""
 
 
@@ -74,7 +74,7 @@ def run(page: Path, directory: Path) -> list[Cell]:
 
 
 def _shows(expected: str, printed: str) -> bool:
-    """Return whether the expected lines are among the printed ones; decimals may differ by 2 in their last place.
+    """Return whether the expected lines are among the printed ones; decimals may differ by 1 in their last place.
 
     Scores of a classifier differ so much between processors, whose rounding is not the same.
     """

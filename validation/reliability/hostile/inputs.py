@@ -98,7 +98,7 @@ class Inputs:
     def _recipe(self, generator: np.random.Generator) -> None:
         recipe = mutated(_any(self._recipes, generator), generator)
         loaded = load_recipe(self._write("recipe.toml", recipe))
-        loaded.scenario(loaded.runs - 1)
+        loaded.scenario(loaded.runs - 1, screened=False)
 
     def _machine(self, generator: np.random.Generator) -> None:
         path = self._write("machine.toml", mutated(_any(self._machines, generator), generator))
