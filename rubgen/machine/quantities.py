@@ -1,7 +1,7 @@
 """Kinds of quantities: every number of a machine, recipe or sensor set is one of them.
 
 A value beyond its bounds is an error. A value outside its `Usual` range is allowed but hardly intended:
-`rubgen.scenario.plausible` warns of it.
+`rubgen.scenario.checks.plausible` warns of it.
 """
 
 from collections.abc import Iterator

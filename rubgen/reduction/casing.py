@@ -13,7 +13,7 @@ from rubgen.fem.casing import CasingModel, assemble_casing
 from rubgen.machine.faults.fault import SurfaceHarmonic
 from rubgen.machine.machine import Casing, Machine
 from rubgen.reduction.model import CasingSurface
-from rubgen.scenario.reducible import casing_problem
+from rubgen.scenario.checks.reducible import casing_problem
 
 # Pairs closer than this in omega^2 are one pair to the eigen-solver's precision: their orientation is chosen here.
 DEGENERATE = 1e-8

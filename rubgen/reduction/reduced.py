@@ -23,7 +23,7 @@ from rubgen.reduction.fault_loads import growing_loads, spring_load, steady_load
 from rubgen.reduction.lost_mass import missing_pull, without_masses
 from rubgen.reduction.model import Recovery, SpinningSystem, TurningForces
 from rubgen.scenario import Reduction
-from rubgen.scenario.reducible import reduction_problem
+from rubgen.scenario.checks.reducible import reduction_problem
 from rubgen.units import rev_per_min
 
 # e_z x on the translations and rotations of O_d.

@@ -16,11 +16,11 @@ from rubgen.machine.load import FOR_COMPARISON
 from rubgen.machine.problems import first_problem, nearest, validated
 from rubgen.machine.quantities import MOST_RUNS
 from rubgen.machine.toml_file import check_kind, names_toml, read_toml, toml_path
+from rubgen.scenario.checks.feasible import check_feasible
+from rubgen.scenario.checks.plausible import warn_of
+from rubgen.scenario.checks.profiles import check_used
 from rubgen.scenario.distributions import Choice, Constant
-from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.machines.check import check_machines, check_splits, machine_extremes
-from rubgen.scenario.plausible import warn_of
-from rubgen.scenario.profiles import check_used
 from rubgen.scenario.recipe import Recipe
 from rubgen.scenario.tables.balance import check_balance
 from rubgen.scenario.tables.machines import replaced_runs

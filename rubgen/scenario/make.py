@@ -12,10 +12,10 @@ from pydantic import TypeAdapter
 
 from rubgen.errors import UserError
 from rubgen.machine.problems import nearest, validated
+from rubgen.scenario.checks.feasible import check_feasible
+from rubgen.scenario.checks.plausible import warn_of
+from rubgen.scenario.checks.profiles import check_used
 from rubgen.scenario.faults import FAULT_KEYS, with_given_faults
-from rubgen.scenario.feasible import check_feasible
-from rubgen.scenario.plausible import warn_of
-from rubgen.scenario.profiles import check_used
 from rubgen.scenario.recipe import Recipe
 from rubgen.scenario.scenario import ProfileName, Scenario
 from rubgen.scenario.surroundings import Surroundings

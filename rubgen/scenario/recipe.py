@@ -17,11 +17,11 @@ from rubgen.machine import Machine, load_machine
 from rubgen.machine.load import file_named, machine_id
 from rubgen.machine.quantities import MOST_RUNS, RunCount, Seed, StrictModel, about
 from rubgen.machine.sentences import FILE_NAME
+from rubgen.scenario.checks.feasible import check_feasible
 from rubgen.scenario.contact_laws.contact_law import ContactLaw
 from rubgen.scenario.distributions import Distribution
 from rubgen.scenario.faults import FaultTable, kinds_of, with_faults
 from rubgen.scenario.faults import extremes as fault_extremes
-from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.machines.draw import Population
 from rubgen.scenario.machines.keys import MachineKey, own_keys
 from rubgen.scenario.scenario import Chosen, Labelling, Operation, Reduction, Scenario, Sensing

@@ -9,7 +9,7 @@ from rubgen.linalg.threads import one_blas_thread
 from rubgen.progress import count
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw, Operation
-from rubgen.scenario.profiles import profile_problem
+from rubgen.scenario.checks.profiles import profile_problem
 from rubgen.solver.exponent import changed_after, lyapunov
 from rubgen.solver.linear.admissible import check_system
 from rubgen.solver.linear.rub_free import free_penetration, never_touches, rub_free_motion

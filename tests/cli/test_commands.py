@@ -21,7 +21,7 @@ HEAVY = {"numba", "pandas", "rerun", "pyarrow", "scipy", "numpy", "pydantic", "m
 @pytest.fixture
 def short(monkeypatch):
     """Options of a run of 110 turns; the least number of turns is lowered for them."""
-    monkeypatch.setattr("rubgen.scenario.feasible.MIN_RECORD_TURNS", 100)
+    monkeypatch.setattr("rubgen.scenario.checks.feasible.MIN_RECORD_TURNS", 100)
     return ["--record-turns", "110", "--settle-turns", "90", "--signal-seconds", "0.3"]
 
 

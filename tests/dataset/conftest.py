@@ -27,7 +27,7 @@ RECIPE = {
 def _short_records():
     """Recipes ask for 500 turns; for tests of files 100 will do."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("rubgen.scenario.feasible.MIN_RECORD_TURNS", 100)
+        patch.setattr("rubgen.scenario.checks.feasible.MIN_RECORD_TURNS", 100)
         yield
 
 

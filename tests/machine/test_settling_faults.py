@@ -16,7 +16,7 @@ from rubgen.machine.faults.oil_whirl import OilWhirl
 from rubgen.pipeline import simulate
 from rubgen.reduction import reduce
 from rubgen.scenario import Reduction, make_scenario, parse_recipe
-from rubgen.scenario.feasible import check_feasible
+from rubgen.scenario.checks.feasible import check_feasible
 from rubgen.units import rad_per_s
 
 SPEED = rad_per_s(8000)

@@ -13,7 +13,7 @@ from rubgen.fem.casing import assemble_casing
 from rubgen.machine.load import load_machine
 from rubgen.machine.machine import Machine
 from rubgen.reduction.casing import ReducedCasing, reduce_casing
-from rubgen.scenario.reducible import carried_orders
+from rubgen.scenario.checks.reducible import carried_orders
 
 # Zeng et al. (2019), doi 10.1016/j.ast.2019.105481.
 PUBLISHED_HZ = (180.98, 181.04, 181.05, 181.22, 181.54, 181.99, 181.99, 183.35, 183.36, 186.54, 186.54)

@@ -12,7 +12,7 @@ from rubgen.reduction import craig_bampton as module
 from rubgen.reduction.blisk import reduce_blisk
 from rubgen.reduction.craig_bampton import craig_bampton
 from rubgen.scenario import Reduction
-from rubgen.scenario.reducible import reduction_problem
+from rubgen.scenario.checks.reducible import reduction_problem
 
 
 def chain(n):

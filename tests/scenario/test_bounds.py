@@ -11,8 +11,8 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from rubgen.errors import UserError
 from rubgen.machine import Machine, Mistuning, SqueezeFilm, Unbalance, load_machine
 from rubgen.scenario import Liner, Scenario, make_scenario
-from rubgen.scenario.feasible import check_feasible
-from rubgen.scenario.plausible import implausible
+from rubgen.scenario.checks.feasible import check_feasible
+from rubgen.scenario.checks.plausible import implausible
 from rubgen.scenario.tables.run import Output, Profile, Sensors, Simulation
 from rubgen.sensors.load import load_sensor_set
 from rubgen.sensors.registry import AnySensor

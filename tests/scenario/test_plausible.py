@@ -10,9 +10,9 @@ from rubgen.errors import RubgenWarning, UserError
 from rubgen.machine import preset_names
 from rubgen.machine.load import PRESETS
 from rubgen.scenario import load_recipe, make_scenario, parse_recipe
-from rubgen.scenario.feasible import check_feasible
+from rubgen.scenario.checks.feasible import check_feasible
+from rubgen.scenario.checks.plausible import implausible
 from rubgen.scenario.load import RECIPES
-from rubgen.scenario.plausible import implausible
 from rubgen.sensors.load import load_sensor_set, sensor_set_names
 
 MINIMAL = {"name": "a", "runs": 1, "machine": "zeng2019"}

@@ -3,7 +3,7 @@ import pytest
 from scipy.integrate import quad
 
 from rubgen.scenario import Operation
-from rubgen.scenario.profiles import profile_problem
+from rubgen.scenario.checks.profiles import profile_problem
 from rubgen.scenario.rotation import Rotation, steady_rotation
 
 ROTATIONS = [

@@ -12,8 +12,8 @@ from rubgen.errors import UserError, warn
 from rubgen.machine import Machine, load_machine
 from rubgen.progress import Report
 from rubgen.scenario import Recipe
+from rubgen.scenario.checks.plausible import warn_of
 from rubgen.scenario.costs import steps_per_turn
-from rubgen.scenario.plausible import warn_of
 from rubgen.sensors.load import load_sensor_set
 from rubgen.sensors.sensor_set import SensorSet
 

@@ -10,8 +10,8 @@ from pydantic import TypeAdapter, create_model
 from rubgen.errors import UserError
 from rubgen.machine.problems import validated
 from rubgen.machine.quantities import STRICT
+from rubgen.scenario.checks.feasible import check_feasible
 from rubgen.scenario.distributions import Choice, Constant
-from rubgen.scenario.feasible import check_feasible
 from rubgen.scenario.machines.keys import MACHINE_KEYS, with_values
 from rubgen.scenario.scenario import Scenario
 from rubgen.scenario.tables.machines import MachineTable

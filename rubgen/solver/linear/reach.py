@@ -10,7 +10,7 @@ from rubgen.contact.geometry import blade_tips, casing_surface
 from rubgen.errors import UserError
 from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import Scenario
-from rubgen.scenario.plausible import MOST_TIP_SPEED
+from rubgen.scenario.checks.plausible import MOST_TIP_SPEED
 from rubgen.solver.linear.admissible import check_system
 from rubgen.solver.linear.rub_free import free_penetration, rub_free_motion
 from rubgen.units import rad_per_s, rev_per_min

@@ -14,10 +14,10 @@ from rubgen.dataset.making.outcome import finished_runs
 
 COMMAND = """
 import sys
-import rubgen.scenario.feasible
+import rubgen.scenario.checks.feasible
 from rubgen.cli import main
 if __name__ == "__main__":
-    rubgen.scenario.feasible.MIN_RECORD_TURNS = 100
+    rubgen.scenario.checks.feasible.MIN_RECORD_TURNS = 100
     main(sys.argv[1:])
 """
 PATIENCE_S = 120

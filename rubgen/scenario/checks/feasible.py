@@ -5,11 +5,11 @@ import math
 from rubgen.errors import UserError
 from rubgen.machine.quantities import MOST_STEPS
 from rubgen.machine.schema_nodes import digits
+from rubgen.scenario.checks.plausible import eccentricity, gram, shares, unbalances
+from rubgen.scenario.checks.profiles import profile_problem
+from rubgen.scenario.checks.reducible import reduction_problem
 from rubgen.scenario.costs import STEPS_PER_SAMPLE, run_problem
 from rubgen.scenario.faults import kind_of
-from rubgen.scenario.plausible import eccentricity, gram, shares, unbalances
-from rubgen.scenario.profiles import profile_problem
-from rubgen.scenario.reducible import reduction_problem
 from rubgen.scenario.scenario import Scenario
 from rubgen.sensors.kinds.blade_strain import BladeStrain
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe

@@ -13,8 +13,8 @@ from rubgen.machine import Machine
 from rubgen.machine.mass import blisk_mass
 from rubgen.machine.quantities import Place, usual_values
 from rubgen.machine.schema_nodes import digits
+from rubgen.scenario.checks.idle import idle
 from rubgen.scenario.costs import steps_per_turn
-from rubgen.scenario.idle import idle
 from rubgen.scenario.scenario import Scenario
 from rubgen.scenario.vary import KEYS_AT
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe

@@ -1,0 +1,1 @@
+"""Checks of a scenario from its numbers alone, before anything is built."""
