@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from rubgen.cli.printing import check_new_file, print_json, say
-from rubgen.dataset.making.regenerate import Regenerated, regenerate
+from rubgen.dataset.remaking.regenerate import Regenerated, regenerate
 from rubgen.format_names import FORMAT_NAMES
 from rubgen.progress import shown
 

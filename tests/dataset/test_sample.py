@@ -6,8 +6,8 @@ import pyarrow.parquet as pq
 import pytest
 
 import rubgen
-from rubgen.dataset.making.regenerate import moved_labels, regenerate
 from rubgen.dataset.manifest import identity_of
+from rubgen.dataset.remaking.regenerate import moved_labels, regenerate
 from rubgen.io.parquet.words import with_words
 from rubgen.scenario.load import RECIPES
 

@@ -13,10 +13,10 @@ from rubgen.dataset.croissant import croissant
 from rubgen.dataset.files import json_text, sha256_of, write_text
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.making.finish import write_sensors
-from rubgen.dataset.making.remake import other_versions, remake
 from rubgen.dataset.manifest import Manifest, read_manifest, write_derived
 from rubgen.dataset.reading.open import DataSet
 from rubgen.dataset.reading.replaying import replay_of_mcap, scenario_of
+from rubgen.dataset.remaking.remake import other_versions, remake
 from rubgen.dataset.tally import tally_of
 from rubgen.errors import UserError, write_problems
 from rubgen.formats import format_of

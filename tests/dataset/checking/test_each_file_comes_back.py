@@ -12,7 +12,7 @@ from rubgen.cli import main
 from rubgen.dataset import shards as sharding
 from rubgen.dataset.checking.repair import repair
 from rubgen.dataset.making import generate as generating
-from rubgen.dataset.making.remake import shards_with
+from rubgen.dataset.remaking.remake import shards_with
 from rubgen.errors import UserError
 from rubgen.io.parquet.write import write_table
 
@@ -46,7 +46,7 @@ def simulated(module_with_short_records, make_synthetic_run):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("rubgen.pipeline.simulate", simulate)
         patch.setattr(generating, "warm_up", lambda *_: [])
-        patch.setattr("rubgen.dataset.making.remake.usable_cores", lambda: 1)
+        patch.setattr("rubgen.dataset.remaking.remake.usable_cores", lambda: 1)
         patch.setattr("rubgen.dataset.making.finish.ROWS_PER_GROUP", 2)
         patch.setattr(sharding, "RUNS_PER_SHARD", 2)
         yield numbers
@@ -123,7 +123,7 @@ def test_a_stop_in_between_is_completed(whole, simulated, tmp_path, monkeypatch)
     for name in ("runs.parquet", "signals/train-00000.parquet", "signals/train-00001.parquet"):
         (copy / name).unlink()
     with monkeypatch.context() as patch:
-        patch.setattr("rubgen.dataset.making.remake.write_runs", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+        patch.setattr("rubgen.dataset.remaking.remake.write_runs", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
         with pytest.raises(KeyboardInterrupt):
             repair(copy)
     simulated.clear()

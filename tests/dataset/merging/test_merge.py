@@ -13,7 +13,7 @@ from rubgen.cli import main
 from rubgen.dataset import shards as sharding
 from rubgen.dataset.checking.repair import repair
 from rubgen.dataset.making import generate as generating
-from rubgen.dataset.making.regenerate import regenerate
+from rubgen.dataset.remaking.regenerate import regenerate
 from rubgen.errors import UserError
 from rubgen.labels import Motion
 from rubgen.scenario import Recipe
@@ -44,7 +44,7 @@ def small_shards(module_with_short_records, make_synthetic_run):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("rubgen.pipeline.simulate", simulate)
         patch.setattr(generating, "warm_up", lambda *_: [])
-        patch.setattr("rubgen.dataset.making.remake.usable_cores", lambda: 1)
+        patch.setattr("rubgen.dataset.remaking.remake.usable_cores", lambda: 1)
         patch.setattr(sharding, "RUNS_PER_SHARD", 3)
         patch.setattr(Recipe, "machine_number", lambda _recipe, index: index // 2)
         patch.setattr(Recipe, "parts", property(lambda recipe: {"train": recipe, "test": recipe}))

@@ -12,8 +12,8 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from rubgen.dataset.layout import Layout
-from rubgen.dataset.making.remake import other_versions
 from rubgen.dataset.manifest import read_manifest
+from rubgen.dataset.remaking.remake import other_versions
 from rubgen.dataset.rows import RunTable, asked_bytes
 from rubgen.dataset.shards import shards_of
 from rubgen.dataset.tables import RUNS, tables_of
