@@ -90,10 +90,10 @@ def generate(
     directory.
     """
     if dry_run:
-        from rubgen.cli.planning import plan_command
+        from rubgen.cli.commands.planning import plan_command
 
         return plan_command(recipe, runs, 0, None, force=False, as_json=json, slurm=scheduler == "slurm")
-    from rubgen.cli.generating import Work, generate_command
+    from rubgen.cli.commands.generating import Work, generate_command
 
     work = Work(workers=workers, scheduler=scheduler, shard=shard, finish=finish)
     return generate_command(recipe, out, runs, work, as_json=json)
@@ -108,7 +108,7 @@ def push(
     json: Json = False,
 ) -> int:
     """Copy a finished data set to an object store, the manifest last; the same command completes it after a stop."""
-    from rubgen.cli.generating import push_command
+    from rubgen.cli.commands.generating import push_command
 
     return push_command(directory, url, as_json=json)
 
@@ -124,7 +124,7 @@ def resense(
     json: Json = False,
 ) -> int:
     """Make a data set again with other sensors on the same motions; every run is simulated again."""
-    from rubgen.cli.generating import resense_command
+    from rubgen.cli.commands.generating import resense_command
 
     return resense_command(directory, sensors, out, workers, as_json=json)
 
@@ -136,7 +136,7 @@ def merge(
     json: Json = False,
 ) -> int:
     """Make one data set of several with other seeds; runs get new names, splits stay, nothing is simulated."""
-    from rubgen.cli.generating import merge_command
+    from rubgen.cli.commands.generating import merge_command
 
     return merge_command(directories, out, as_json=json)
 
@@ -152,7 +152,7 @@ def init(
     ] = None,
 ) -> int:
     """Write a file to begin with: a recipe, machine or sensor set of rubgen, with a comment for each key."""
-    from rubgen.cli.starting import init_command
+    from rubgen.cli.commands.starting import init_command
 
     return init_command(kind, origin, file)
 
@@ -177,7 +177,7 @@ def plan(
 
     Exit 1 where a run or an extreme is refused.
     """
-    from rubgen.cli.planning import plan_command
+    from rubgen.cli.commands.planning import plan_command
 
     return plan_command(recipe, runs, tries, out, force=force, as_json=json)
 
@@ -185,7 +185,7 @@ def plan(
 @app.command(name="list")
 def list_offered(*, json: Json = False) -> int:
     """Print the recipes, machines, sensor sets and faults that come with rubgen."""
-    from rubgen.cli.starting import list_command
+    from rubgen.cli.commands.starting import list_command
 
     return list_command(as_json=json)
 
@@ -239,7 +239,7 @@ def simulate(
 ) -> int:
     """Simulate one run and print its labels; with --out also write its signals."""
     options = dict(locals())
-    from rubgen.cli.simulating import simulate_command
+    from rubgen.cli.commands.simulating import simulate_command
 
     return simulate_command(options, out, replay=replay, force=force, as_json=json)
 
@@ -265,7 +265,7 @@ def replay(
     force: Force = False,
 ) -> int:
     """Show a run in Rerun: the machine in 3D, orbit, signals, orders, contact and labels on one time line."""
-    from rubgen.cli.replaying import Showing, replay_command
+    from rubgen.cli.commands.replaying import Showing, replay_command
 
     showing = Showing(save=save, gif=gif, png=png, foxglove=foxglove, time=time, web=web, full=full, force=force)
     return replay_command(source, run, where, showing)
@@ -286,7 +286,7 @@ def browse(
     serve: Annotated[bool, Parameter(negative=(), help="Open no viewer; print the address and serve it.")] = False,
 ) -> int:
     """Show a whole data set in Rerun: a table of its runs with parameters and labels, each run a click away."""
-    from rubgen.cli.browsing import browse_command
+    from rubgen.cli.commands.browsing import browse_command
 
     return browse_command(directory, where, predictions, web=web, serve=serve)
 
@@ -320,7 +320,7 @@ def figure(
     force: Force = False,
 ) -> int:
     """Draw a figure of a machine, a run or a data set."""
-    from rubgen.cli.drawing import figure_command
+    from rubgen.cli.commands.drawing import figure_command
     from rubgen.report.figures import Choice
 
     choice = Choice(
@@ -339,7 +339,7 @@ def report(
     force: Force = False,
 ) -> int:
     """Write one page that shows a data set: classes, coverage, failures, examples, channels, how to load it."""
-    from rubgen.cli.drawing import report_command
+    from rubgen.cli.commands.drawing import report_command
 
     return report_command(directory, out, force=force)
 
@@ -361,7 +361,7 @@ def features(
     json: Json = False,
 ) -> int:
     """Compute features of the recorded channels, one row a window: from channels and pulses alone, without labels."""
-    from rubgen.cli.featuring import features_command
+    from rubgen.cli.commands.featuring import features_command
 
     return features_command(directory, out, window, channels, set_, workers, force=force, as_json=json)
 
@@ -380,7 +380,7 @@ def baseline(
     json: Json = False,
 ) -> int:
     """Score simple models on a data set, by machine or run; exit 1 where one threshold or no model solves a task."""
-    from rubgen.cli.scoring import baseline_command
+    from rubgen.cli.commands.scoring import baseline_command
 
     return baseline_command(directory, task, out, force=force, as_json=json)
 
@@ -399,7 +399,7 @@ def export(
     json: Json = False,
 ) -> int:
     """Write the runs of a data set in a file format of other programs, with units and sensors."""
-    from rubgen.cli.exporting import export_command
+    from rubgen.cli.commands.exporting import export_command
 
     return export_command(directory, out, format_, split, channels, as_json=json)
 
@@ -413,7 +413,7 @@ def modes(
     json: Json = False,
 ) -> int:
     """Print the modes of a machine: frequency, family, nodal diameter, whirl, damping; zeng2019 beside the paper."""
-    from rubgen.cli.modes import modes_command
+    from rubgen.cli.commands.modes import modes_command
 
     return modes_command(machine, speed_rpm, as_json=json)
 
@@ -421,7 +421,7 @@ def modes(
 @app.command
 def info(directory: Place, /, *, json: Json = False) -> int:
     """Count the runs of a data set by status, rub and motion."""
-    from rubgen.cli.inspecting import info_command
+    from rubgen.cli.commands.inspecting import info_command
 
     return info_command(directory, as_json=json)
 
@@ -432,7 +432,7 @@ def label(directory: Place, /, *, json: Json = False) -> int:
 
     The data set is not changed. Labels of orders are left out: they need the signals at every step of the integration.
     """
-    from rubgen.cli.inspecting import label_command
+    from rubgen.cli.commands.inspecting import label_command
 
     return label_command(directory, as_json=json)
 
@@ -449,7 +449,7 @@ def verify(
     json: Json = False,
 ) -> int:
     """Check hashes, checksums, schemas, and labels against signals; exit 1 where something is wrong."""
-    from rubgen.cli.inspecting import verify_command
+    from rubgen.cli.commands.inspecting import verify_command
 
     return verify_command(directory, sample, repair=repair, as_json=json)
 
@@ -461,7 +461,7 @@ def repair(directory: Directory, /, *, json: Json = False) -> int:
     Damaged shards are simulated again from the manifest, which needs the versions that made the set. A file gets the
     bytes that the manifest lists or stays as it is; nothing is deleted.
     """
-    from rubgen.cli.inspecting import repair_command
+    from rubgen.cli.commands.inspecting import repair_command
 
     return repair_command(directory, as_json=json)
 
@@ -477,7 +477,7 @@ def regenerate(
     json: Json = False,
 ) -> int:
     """Make one run again from the manifest and compare it with the stored one; exit 1 where it differs."""
-    from rubgen.cli.regenerating import regenerate_command
+    from rubgen.cli.commands.regenerating import regenerate_command
 
     return regenerate_command(directory, run, out, force=force, as_json=json)
 
@@ -485,7 +485,7 @@ def regenerate(
 @app.command
 def doctor(*, json: Json = False) -> int:
     """Print versions, caches, cores and Vulkan of this machine; exit 1 where a package that is needed is missing."""
-    from rubgen.cli.doctor import doctor_command
+    from rubgen.cli.commands.doctor import doctor_command
 
     return doctor_command(as_json=json)
 

@@ -158,7 +158,7 @@ def test_a_failed_run_ends_with_1(run, short, monkeypatch, rub_run, tmp_path):
 
     response = replace(rub_run.response, status=Status.DIVERGED, reason="in turn 3")
     failed = replace(rub_run, response=response, recording=None, labels=None)
-    monkeypatch.setattr("rubgen.cli.simulating.simulate", lambda _: failed)
+    monkeypatch.setattr("rubgen.cli.commands.simulating.simulate", lambda _: failed)
     code, output, _ = run("simulate", *short, "--json")
     values = json.loads(output)
     assert (code, values["status"], values["reason"]) == (1, "diverged", "in turn 3")
@@ -232,7 +232,7 @@ def test_ctrl_c_ends_with_130(run, monkeypatch, short):
     def interrupt(_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("rubgen.cli.simulating.simulate", interrupt)
+    monkeypatch.setattr("rubgen.cli.commands.simulating.simulate", interrupt)
     assert run("simulate", *short) == (130, "", "rubgen: interrupted\n")
 
 
@@ -306,7 +306,7 @@ def test_what_nobody_foresaw_is_one_line_without_a_cause(run, monkeypatch, error
     def fail(*_args, **_options):
         raise error
 
-    monkeypatch.setattr("rubgen.cli.inspecting.info_command", fail)
+    monkeypatch.setattr("rubgen.cli.commands.inspecting.info_command", fail)
     code, output, errors = run("info", "x")
     assert (code, output, errors.count("\n")) == (2, "", 1)
     assert line in errors

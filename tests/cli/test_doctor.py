@@ -6,7 +6,8 @@ import json
 import pytest
 
 from rubgen import cache_root
-from rubgen.cli import doctor, main
+from rubgen.cli import main
+from rubgen.cli.commands import doctor
 
 
 def told(capsys, *options: str) -> tuple[int, str]:

@@ -129,7 +129,7 @@ def test_a_process_that_cannot_be_started_is_one_line(run, mcap_file, monkeypatc
 
 
 def test_a_simulated_run_is_shown_straight_away(run, rub_run, made_viewer, monkeypatch):
-    monkeypatch.setattr("rubgen.cli.simulating.simulate", lambda _: rub_run)
+    monkeypatch.setattr("rubgen.cli.commands.simulating.simulate", lambda _: rub_run)
     assert run("simulate", "--replay")[0] == 0
     ((_, shown),) = made_viewer.started
     assert {"/machine/rotor", "/orbit/plane/path"} <= shown
@@ -138,7 +138,7 @@ def test_a_simulated_run_is_shown_straight_away(run, rub_run, made_viewer, monke
 def test_a_run_is_not_simulated_where_it_could_not_be_shown(run, monkeypatch):
     for name in viewer.SCREENS:
         monkeypatch.delenv(name, raising=False)
-    monkeypatch.setattr("rubgen.cli.simulating.simulate", lambda _: pytest.fail("simulated"))
+    monkeypatch.setattr("rubgen.cli.commands.simulating.simulate", lambda _: pytest.fail("simulated"))
     code, _, err = run("simulate", "--replay")
     assert (code, err.count("\n")) == (2, 1)
     assert "no screen for the viewer" in err

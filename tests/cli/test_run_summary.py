@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from rubgen.cli.simulating import run_summary
+from rubgen.cli.commands.simulating import run_summary
 from rubgen.labels.labels import Motion
 from rubgen.labels.speed_history import Change, SpeedHistory
 

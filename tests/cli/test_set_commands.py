@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rubgen.cli.generating import _what_was_made
+from rubgen.cli.commands.generating import _what_was_made
 from rubgen.dataset.making.generate import Generated
 from rubgen.dataset.making.outcome import Outcome
 from rubgen.progress import COMPILING

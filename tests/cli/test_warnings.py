@@ -14,7 +14,7 @@ def test_a_warning_is_one_line_without_a_place_in_our_code(capsys, monkeypatch, 
         for _ in range(runs):
             warn("clearance_m = 0.22: no blade can reach\n the casing")
 
-    monkeypatch.setattr("rubgen.cli.inspecting.info_command", warned)
+    monkeypatch.setattr("rubgen.cli.commands.inspecting.info_command", warned)
     with warnings.catch_warnings(), pytest.raises(SystemExit) as ended:
         run.main(["info", "anywhere"])
     assert ended.value.code == 0
@@ -31,7 +31,7 @@ def test_one_run_with_a_clearance_in_millimetres_warns_before_it_is_made(run, mo
     def stop(_scenario):
         raise UserError("made")
 
-    monkeypatch.setattr("rubgen.cli.simulating.simulate", stop)
+    monkeypatch.setattr("rubgen.cli.commands.simulating.simulate", stop)
     with warnings.catch_warnings():
         code, out, err = run("simulate", "--clearance-m", "0.22")
     assert (code, out) == (2, "")

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from rubgen.cli import main
-from rubgen.cli.planning import plan_lines
+from rubgen.cli.commands.planning import plan_lines
 from rubgen.pipeline import simulate
 from rubgen.planning import plan as planning
 from rubgen.planning.picture import plan_figure

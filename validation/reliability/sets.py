@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import rubgen
-from rubgen.cli import generating
+from rubgen.cli.commands import generating
 from rubgen.dataset.checking import verify
 from rubgen.io import mcap
 from rubgen.io.parquet import compact_records, read, write

@@ -34,7 +34,7 @@ def table_of(monkeypatch, capsys):
             tables.append(table)
             raise KeyboardInterrupt
 
-        monkeypatch.setattr("rubgen.cli.browsing.time.sleep", served)
+        monkeypatch.setattr("rubgen.cli.commands.browsing.time.sleep", served)
         assert code_of(*words, "--serve") == 0
         (table,) = tables
         return table.map(lambda cell: cell[0] if hasattr(cell, "__len__") and not isinstance(cell, str) else cell)

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from rubgen.brief import counted
+from rubgen.cli.commands.replaying import Showing, show
 from rubgen.cli.mistakes import meant
 from rubgen.cli.printing import check_new_file, print_json, print_pairs, say
-from rubgen.cli.replaying import Showing, show
 from rubgen.errors import UserError, warn
 from rubgen.format_names import FORMAT_NAMES
 from rubgen.formats import format_of

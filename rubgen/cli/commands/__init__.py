@@ -1,0 +1,1 @@
+"""What each command does: its checks, its work, what it prints. A module is imported when its command is called."""
