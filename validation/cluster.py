@@ -1,32 +1,38 @@
 """One set made twice, by two workers and by four Dask workers that are killed, has the same files: `make cluster`.
 
 The set has virtual machines with four runs each, twins, a balance and four splits. Then it is verified, pushed to a
-server that speaks S3, opened there, and let grow by two machines. The table goes to docs/scale.md.
+server that speaks S3, opened there, let grow by 100 runs, and merged with a set of another seed. The table goes to
+docs/scale.md. All is kept in a folder: the same command after a stop makes the rest.
 """
 
 from __future__ import annotations
 
 import argparse
 import hashlib
+import json
 import os
+import shutil
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import rubgen
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.making.keep import kept_runs
 from validation.markdown import table
 
 PAGE = Path(__file__).parents[1] / "docs" / "scale.md"
 MARKS = ("<!-- study -->\n", "\n<!-- end -->")
-RUNS_PER_MACHINE, GROWN, KILL_EVERY_S = 4, 2, 5.0
+RUNS_PER_MACHINE, GROWN, OTHER, KILL_EVERY_S = 4, 25, 16, 5.0
+"""Runs of a machine, machines of the growth and of the other set of the merge, seconds between two kills."""
+FOLDER = Path("build/cluster")
 RECIPE: dict[str, Any] = {
     "name": "cluster",
-    "seed": 15,
     "machine": ["zeng2019", "zeng2019-fitted"],
     "machines": {
         "vary": {
@@ -43,7 +49,7 @@ RECIPE: dict[str, Any] = {
     },
     "balance": {"rub": 0.5},
     "twins": {"clearance_m": 1e-3},
-    "vary": {"speed_rpm": {"uniform": [9000, 11500]}, "clearance_m": {"uniform": [2.2e-4, 3.5e-4]}},
+    "vary": {"speed_rpm": {"uniform": [9000, 11500]}, "clearance_m": {"uniform": [2.2e-4, 9e-4]}},
     "labels": {"lyapunov": False},
     "output": {"formats": ["parquet"], "signal_seconds": 0.2},
 }
@@ -56,7 +62,7 @@ if __name__ == "__main__":
         with Client(cluster) as client:
             print(cluster.scheduler_address, flush=True)
             while sys.stdin.readline():
-                pids = sorted(client.run(os.getpid).values())
+                pids = sorted(client.run(os.getpid, on_error='ignore').values())
                 if pids:
                     os.kill(pids[0], signal.SIGKILL)
                 print(len(pids), flush=True)
@@ -71,9 +77,13 @@ sys.stdin.read()
 """
 
 
-def recipe(machines: int) -> dict[str, Any]:
+def recipe(machines: int, seed: int = 15) -> dict[str, Any]:
     """The recipe with that many machines."""
-    return {**RECIPE, "machines": {**RECIPE["machines"], "count": machines, "runs_per_machine": RUNS_PER_MACHINE}}
+    return {
+        **RECIPE,
+        "seed": seed,
+        "machines": {**RECIPE["machines"], "count": machines, "runs_per_machine": RUNS_PER_MACHINE},
+    }
 
 
 def digests(directory: Path) -> dict[str, str]:
@@ -99,29 +109,48 @@ def said(started: subprocess.Popen[str]) -> str:
     return started.stdout.readline().strip() if started.stdout else ""
 
 
+def say(text: str) -> None:
+    """Print the time and a step that begins."""
+    print(f"{time.strftime('%H:%M:%S')} {text}", file=sys.stderr, flush=True)
+
+
+def finished(out: Path) -> int:
+    """The number of finished runs of a set that is being made."""
+    layout = Layout(out)
+    kept = sum(len(kept_runs(layout, path.name)) for path in (out / ".staging" / "kept").glob("*"))
+    return kept + sum(
+        int(json.loads(path.read_text())["runs"]) for path in (out / ".staging" / "closed").glob("*.json")
+    )
+
+
 def killed(machines: int, out: Path, folder: Path) -> int:
-    """Make the set with four Dask workers, of which one is killed every few seconds. The number of kills."""
-    kills, seen, done = [0], [0], threading.Event()
+    """Make the set with four Dask workers, of which one is killed every few seconds. The number of kills so far."""
+    done, log = threading.Event(), folder / "kills.txt"
     with process(CLUSTER, folder) as started:
         address = said(started)
 
         def kill() -> None:
+            seen = 0
             while not done.wait(KILL_EVERY_S):
-                size = sum(path.stat().st_size for path in (out / ".staging").glob("*/*/*.kept"))
-                if started.stdin and size > seen[0]:  # something was kept since the last kill
-                    seen[0] = size
+                try:
+                    runs = finished(out)
+                except FileNotFoundError:  # a shard was closed meanwhile
+                    continue
+                if started.stdin and runs > seen:  # the set went on since the last kill
+                    seen = runs
                     started.stdin.write("kill\n")
                     started.stdin.flush()
-                    kills[0] += bool(int(said(started)))
+                    with log.open("a", encoding="utf-8") as stream:
+                        stream.write("kill\n" * bool(int(said(started))))
 
         killer = threading.Thread(target=kill)
         killer.start()
         try:
-            rubgen.generate(recipe(machines), out, scheduler=address, progress=False)
+            rubgen.generate(recipe(machines), out, scheduler=address, progress=True)
         finally:
             done.set()
             killer.join()
-    return kills[0]
+    return log.read_text(encoding="utf-8").count("kill") if log.exists() else 0
 
 
 def opened_at_s3(directory: Path, folder: Path) -> bool:
@@ -144,28 +173,49 @@ def opened_at_s3(directory: Path, folder: Path) -> bool:
         return bool(there.runs.equals(here.runs)) and same
 
 
-def study(machines: int) -> str:
-    """Do all and compose the table."""
+def study(machines: int, folder: Path) -> str:
+    """Do all in the folder and compose the table."""
+    quiet, rough, grown, other, merged = (folder / name for name in ("quiet", "rough", "grown", "other", "merged"))
     rows: list[list[str]] = []
-    with TemporaryDirectory() as name:
-        folder = Path(name)
-        quiet, rough = folder / "quiet", folder / "rough"
-        made = rubgen.generate(recipe(machines), quiet, workers=2, progress=False)
-        data = rubgen.open(quiet)
-        rows.append(["runs", f"{made.runs}: {', '.join(f'{count} {each}' for each, count in made.status.items())}"])
-        splits = data.runs["split"].value_counts().items()
-        rows.append(["splits", ", ".join(f"{each} {count}" for each, count in splits)])
-        rows.append(["machines", str(data.runs["machine_id"].nunique())])
-        rows.append(["kills", str(killed(machines, rough, folder))])
-        before = digests(quiet)
-        rows.append(["files with other bytes", f"{_different(before, digests(rough))} of {len(before)}"])
-        rows.append(["problems that verify finds", str(len(rubgen.verify(quiet)))])
-        rows.append(["equal when read from S3", "yes" if opened_at_s3(rough, folder) else "no"])
-        rubgen.generate(recipe(machines + GROWN), quiet, workers=2, progress=False)
-        grown = rubgen.open(quiet).runs
-        kept = grown.iloc[: made.runs].equals(data.runs)
-        rows.append([f"grown to {len(grown)} runs", f"old rows {'equal' if kept else 'changed'}"])
-        rows.append(["problems that verify finds then", str(len(rubgen.verify(quiet)))])
+
+    def found(what: str, text: object) -> None:
+        say(f"{what}: {text}")
+        rows.append([what, str(text)])
+
+    say("make the set with two workers")
+    made = rubgen.generate(recipe(machines), quiet, workers=2, progress=True)
+    data = rubgen.open(quiet)
+    found("runs", f"{made.runs}: {', '.join(f'{count} {each}' for each, count in made.status.items())}")
+    found("splits", ", ".join(f"{each} {count}" for each, count in data.runs["split"].value_counts().items()))
+    found("machines", data.runs["machine_id"].nunique())
+    good = data.ok
+    found("twins; runs that rub", f"{data.runs['twin_of'].notna().sum()}; {good['rub'].sum()}")
+    say("make it with four Dask workers that are killed")
+    found("workers killed", killed(machines, rough, folder))
+    before = digests(quiet)
+    found("files with other bytes", f"{_different(before, digests(rough))} of {len(before)}")
+    found("problems that verify finds", len(rubgen.verify(rough)))
+    found("equal when read from S3", "yes" if opened_at_s3(rough, folder) else "no")
+    say("let it grow")
+    if not grown.exists():
+        shutil.copytree(quiet, folder / "copied", dirs_exist_ok=True)
+        (folder / "copied").rename(grown)
+    rubgen.generate(recipe(machines + GROWN), grown, workers=2, progress=True)
+    after = rubgen.open(grown)
+    same = after.runs.iloc[: made.runs].equals(data.runs)
+    found(f"grown to {len(after.runs)} runs", f"old rows {'equal' if same else 'changed'}")
+    found("problems that verify finds then", len(rubgen.verify(grown)))
+    say("merge it")
+    rubgen.generate(recipe(OTHER, seed=16), other, workers=2, progress=True)
+    second = rubgen.open(other).runs
+    rubgen.merge([grown, other], merged, progress=True)
+    both = rubgen.open(merged).runs
+    parts = [each.reset_index(drop=True).drop(columns="twin_of") for each in (after.runs, second)]
+    halves = [both.iloc[: len(after.runs)], both.iloc[len(after.runs) :]]
+    halves = [half.reset_index(drop=True)[list(part.columns)] for half, part in zip(halves, parts, strict=True)]
+    same = all(half.equals(part) for half, part in zip(halves, parts, strict=True))
+    found(f"merged with a set of {len(second)}", f"{len(both)} runs, rows {'equal' if same else 'changed'}")
+    found("problems that verify finds in it", len(rubgen.verify(merged)))
     return table(["what", "found"], rows)
 
 
@@ -177,7 +227,11 @@ def main() -> None:
     """Write the table to the page."""
     parser = argparse.ArgumentParser(prog="python -m validation.cluster")
     parser.add_argument("--machines", type=int, default=200, help=f"each has {RUNS_PER_MACHINE} runs")
-    text = study(parser.parse_args().machines)
+    parser.add_argument("--folder", type=Path, default=FOLDER, help="where the sets are; it is kept")
+    options = parser.parse_args()
+    folder = options.folder / str(options.machines)
+    folder.mkdir(parents=True, exist_ok=True)
+    text = study(options.machines, folder)
     print(text)
     page = PAGE.read_text(encoding="utf-8")
     head, _, rest = page.partition(MARKS[0])

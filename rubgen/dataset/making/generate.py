@@ -34,7 +34,7 @@ KEPT = "finished runs are kept"
 BEGIN_S = 600.0
 """How long a part waits for another that begins the set: a large one that grows is read first."""
 TRIES = 5
-"""How often workers may die one after another without one job done in between."""
+"""How often workers may die one after another without one run kept in between."""
 LOOKED_AT, MACHINES = 16, 4
 """Numbers of first runs and machines of which one must be able to rub. Where none can, runs rub rarely at best."""
 
@@ -245,15 +245,16 @@ def _make_missing(task: _Task) -> int:
     local = min(task.workers, max(1, plan.missing))
     chosen: AbstractContextManager[Pool | None] = worker_pool(local)
     if task.scheduler:
-        jobs = slurm(task.workers, layout.root) if task.scheduler == SLURM else None
-        chosen = jobs or cluster(task.scheduler, layout.root)
+        slurm_workers = slurm(task.workers, layout.root) if task.scheduler == SLURM else None
+        chosen = slurm_workers or cluster(task.scheduler, layout.root)
     with chosen as pool:
         if plan.missing:
             _warm_up(recipe, plan, pool)
         with step("simulate", "runs", long=True):
             done = plan.done
             count(done, plan.total)
-            for shard, made in unordered(pool, do, plan.jobs(pool.number if pool else 1), tries=TRIES):
+            jobs = plan.jobs(pool.number if pool else 1)
+            for shard, made in unordered(pool, do, jobs, tries=TRIES, progress=plan.kept_now):
                 if not made:
                     if task.remote:
                         task.remote.put_shard(shard.name, formats)

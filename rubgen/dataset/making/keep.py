@@ -73,12 +73,17 @@ def kept_runs(layout: Layout, shard: str) -> dict[int, Kept]:
     return found
 
 
-def unended_runs(layout: Layout, shard: str, session: str) -> set[int]:
-    """Return the numbers of runs that began in this session and were not kept: their worker died, or is at work."""
+def runs_of_session(layout: Layout, shard: str, session: str) -> tuple[set[int], set[int]]:
+    """Return the numbers of runs that this session kept, and of those that began and were not kept.
+
+    The worker of the latter died, or is at work.
+    """
+    kept: set[int] = set()
     begun: set[int] = set()
     for file in layout.kept(shard).glob(f"{session}-*.kept"):
-        begun |= {index for index, kept in _records(file) if not kept.length}
-    return begun - set(kept_runs(layout, shard))
+        for index, record in _records(file):
+            (kept if record.length else begun).add(index)
+    return kept, begun - kept
 
 
 def _records(file: Path) -> Iterator[tuple[int, Kept]]:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+import threading
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rubgen.dataset.layout import Layout
-from rubgen.dataset.making.keep import Keeper, kept_runs, unended_runs
+from rubgen.dataset.making.keep import Keeper, kept_runs, runs_of_session
 from rubgen.dataset.manifest import read_identity
 from rubgen.dataset.tables import RUNS, tables_of
 from rubgen.errors import RubgenError, UserError
@@ -37,8 +39,9 @@ def recipe_at(root: Path) -> Recipe:
 def make_runs(root: Path, shard: str, session: str, indexes: tuple[int, ...]) -> int:
     """Make runs of an open shard and keep each as it finishes. Return their number. A worker process calls it.
 
-    Runs that are kept already are left alone. A run that was being made when a worker of this session died is made in
-    a process of its own; where that dies too, the run is recorded as failed.
+    Runs that this session kept already are left alone: a job that is lost is given again. A run that was being made
+    when a worker of this session died is made in a process of its own; where that dies too, the run is recorded as
+    failed.
 
     - root: directory of the set.
     - shard: name of the shard.
@@ -46,8 +49,7 @@ def make_runs(root: Path, shard: str, session: str, indexes: tuple[int, ...]) ->
     - indexes: numbers of the runs.
     """
     layout, recipe = Layout(root), recipe_at(root)
-    suspected = unended_runs(layout, shard, session)
-    kept = set(kept_runs(layout, shard)) if suspected else set()
+    kept, suspected = runs_of_session(layout, shard, session)
     keeper = Keeper(layout, shard, session)
     for index in indexes:
         if index in kept:
@@ -60,9 +62,17 @@ def make_runs(root: Path, shard: str, session: str, indexes: tuple[int, ...]) ->
 
 
 def make_one(root: str, shard: str, session: str, index: int) -> None:
-    """Make one run in this process and keep it, as `make_runs` does."""
+    """Make one run in this process and keep it, as `make_runs` does. The process ends with its standard input."""
+    threading.Thread(target=_end_with_input, daemon=True).start()
     layout = Layout(root)
     _make(layout, recipe_at(layout.root), Keeper(layout, shard, session), index)
+
+
+def _end_with_input() -> None:
+    """End this process when its standard input ends: a worker that is killed leaves no process behind it."""
+    while os.read(0, 1):
+        pass
+    os._exit(1)
 
 
 def _make(layout: Layout, recipe: Recipe, keeper: Keeper, index: int) -> None:
@@ -103,10 +113,15 @@ def _make_alone(layout: Layout, recipe: Recipe, shard: str, session: str, index:
     from rubgen.solver.response import Status
 
     call = ALONE.format(root=str(layout.root), shard=shard, session=session, index=index)
-    done = subprocess.run([sys.executable, "-c", call], check=False, capture_output=True, text=True)  # noqa: S603
-    if done.returncode == 1:  # of an exception of Python, which is no fault of the run's
-        raise RubgenError(f"{run_id_of(index)}: {done.stderr.strip().rpartition(chr(10))[2] or 'cannot be made'}")
+    pipe, nothing = subprocess.PIPE, subprocess.DEVNULL
+    with subprocess.Popen(  # noqa: S603
+        [sys.executable, "-c", call], stdin=pipe, stdout=nothing, stderr=pipe, text=True
+    ) as alone:
+        errors = alone.stderr.read() if alone.stderr else ""
+        code = alone.wait()
+    if code == 1:  # of an exception of Python, which is no fault of the run's
+        raise RubgenError(f"{run_id_of(index)}: {errors.strip().rpartition(chr(10))[2] or 'cannot be made'}")
     if index not in kept_runs(layout, shard):
-        reason = f"its worker process died, and so did a process for it alone, which {how_ended([done.returncode])}"
+        reason = f"its worker process died, and so did a process for it alone, which {how_ended([code])}"
         run = refused(recipe.scenario(index, screened=False), reason, Status.DIED)
         _keep(layout, recipe, Keeper(layout, shard, session), run)

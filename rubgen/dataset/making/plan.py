@@ -83,6 +83,10 @@ class Plan:
         """Number of runs to make."""
         return self.total - self.done
 
+    def kept_now(self) -> int:
+        """Return the number of runs that are kept of the shards at work."""
+        return sum(len(kept_runs(self.layout, name)) for name in self._left)
+
     def jobs(self, workers: int) -> Iterator[Job]:
         """Yield the jobs for `do`. More follow from `ended`, so take the next job after each result."""
         self._size = max(1, min(MOST_RUNS_A_JOB, ceil(self.missing / (JOBS_PER_WORKER * workers))))

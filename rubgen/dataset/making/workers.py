@@ -153,23 +153,29 @@ def worker_pool(workers: int) -> Iterator[Workers | None]:
 
 
 def unordered(
-    pool: Pool | None, work: Callable[..., R], jobs: Iterable[tuple[object, ...]], *, tries: int = 1
+    pool: Pool | None,
+    work: Callable[..., R],
+    jobs: Iterable[tuple[object, ...]],
+    *,
+    tries: int = 1,
+    progress: Callable[[], int] = lambda: 0,
 ) -> Iterator[R]:
     """Call `work(*job)` for every job and yield the results as they finish, in any order.
 
     Only a few jobs are submitted at a time. Where a process dies, others do the jobs that are lost. Raises RubgenError
-    where processes die `tries` times without one result in between.
+    where processes die `tries` times without one result and without progress in between.
 
     - pool: from `worker_pool` or a cluster; None works in this process.
     - work: a function that can be pickled.
     - jobs: the tuples of its arguments. After its end more may follow from results.
+    - progress: called after a death; returns another number where unfinished jobs went on since the death before.
     """
     if pool is None:
         yield from (work(*job) for job in jobs)
         return
     remaining = iter(jobs)
     running: dict[Future[R], tuple[object, ...]] = {}
-    deaths = 0
+    deaths = so_far = 0
     while True:
         try:
             with _interrupts_delayed():
@@ -183,7 +189,8 @@ def unordered(
                 deaths = 0
                 yield result
         except pool.died:
-            deaths += 1
+            before, so_far = so_far, progress()
+            deaths = deaths + 1 if so_far == before else 1
             how, lost = pool.replaced(running)
             if deaths >= tries:
                 raise RubgenError(
