@@ -68,8 +68,9 @@ if __name__ == "__main__":
                 print(len(pids), flush=True)
 """
 SERVER = """
-import sys
+import logging, sys
 from moto.moto_server.threaded_moto_server import ThreadedMotoServer
+logging.getLogger("werkzeug").setLevel("ERROR")  # no line for each request
 server = ThreadedMotoServer(ip_address="127.0.0.1", port=0, verbose=False)
 server.start()
 print(server.get_host_and_port()[1], flush=True)

@@ -12,6 +12,8 @@ from rubgen.dataset.reading.balance import balance_table, balance_weights
 from rubgen.errors import UserError
 from rubgen.pipeline import simulate
 from rubgen.scenario import parse_recipe
+from rubgen.scenario.merged import merged_recipe
+from rubgen.scenario.run_id import run_id_of
 from rubgen.solver.response import Status
 
 RECIPE = {
@@ -101,17 +103,7 @@ def test_natural_shares_and_weights_are_those_of_the_drawing(monkeypatch, bands)
     monkeypatch.setattr("rubgen.scenario.vary.sobol_point", _point)
     table = {"rub": 0.5, "motion": {"period-1": 0.4, "chaotic": 0.6}, "speed_bands": bands, "tries": 500}
     recipe = parse_recipe({**RECIPE, "balance": table})
-    chosen = [choose(recipe, recipe.balance, index) for index in range(300)]
-    runs = pd.DataFrame(
-        {
-            "split": "train",
-            "status": ["ok"] * 299 + ["refused"],
-            "balance_cell": [each.balance.cell for each in chosen],
-            "balance_tries": [each.balance.tries for each in chosen],
-            "balance_seen": [np.array(each.balance.seen) for each in chosen],
-        },
-        index=[each.run_id for each in chosen],
-    )
+    runs = _rows_of(recipe, 300)
     found = balance_table(runs, recipe).groupby(lambda row: row // len(recipe.balance.cells))["natural"]
     natural = sum(group.to_numpy() for _, group in found)
     np.testing.assert_allclose(natural, [0.75, 0.25 * 0.7, 0.25 * 0.3, 0], atol=0.03)
@@ -121,6 +113,40 @@ def test_natural_shares_and_weights_are_those_of_the_drawing(monkeypatch, bands)
     assert np.average(rub[good], weights=weights[good]) == pytest.approx(0.25, abs=0.03)
     assert weights[good].mean() == pytest.approx(1)
     assert weights[~good].isna().all()
+
+
+def _rows_of(recipe, number):
+    """The columns of runs that a balance needs. The last run is refused."""
+    chosen = [choose(recipe, recipe.balance, index) for index in range(number)]
+    return pd.DataFrame(
+        {
+            "split": "train",
+            "status": ["ok"] * (number - 1) + ["refused"],
+            "balance_cell": [each.balance.cell for each in chosen],
+            "balance_tries": [each.balance.tries for each in chosen],
+            "balance_seen": [np.array(each.balance.seen) for each in chosen],
+        },
+        index=[each.run_id for each in chosen],
+    )
+
+
+def test_each_source_of_a_merged_set_has_its_own_shares_and_weights(monkeypatch):
+    monkeypatch.setattr("rubgen.balancing.choose.screen", _verdict)
+    recipes = [
+        parse_recipe({**RECIPE, "runs": 20, "seed": seed, "balance": {"rub": rub, "speed_bands": 2}})
+        for seed, rub in [(1, 0.5), (2, 0.8)]
+    ]
+    whole = merged_recipe(recipes[0].model_copy(update={"runs": 40}), recipes, ["aa", "bb"])
+    parts = [_rows_of(recipe, 20) for recipe in recipes]
+    runs = pd.concat(parts)
+    runs.index = [run_id_of(number) for number in range(40)]
+    runs["merged_from"] = ["aa/"] * 20 + ["bb/"] * 20
+    table = balance_table(runs, whole)
+    for source, part, recipe in zip(["aa", "bb"], parts, recipes, strict=True):
+        own = table[table["source"] == source].drop(columns="source").reset_index(drop=True)
+        pd.testing.assert_frame_equal(own, balance_table(part, recipe))
+    alone = [balance_weights(part, balance_table(part, recipe)) for part, recipe in zip(parts, recipes, strict=True)]
+    np.testing.assert_array_equal(balance_weights(runs, table), np.concatenate(alone))
 
 
 def _point(seed, index):

@@ -31,18 +31,32 @@ def balance_table(runs: pd.DataFrame, recipe: Recipe) -> pd.DataFrame:
 
     The second factor counts only candidates whose class was asked. Every candidate is an independent draw and a run
     stops at the first in its class, so these ratios tend to the shares (Wald's equation). Candidates that are not
-    possible do not count. The weight is p(c) over the share of class c among the good runs of the split. Raises
-    UserError for a set without `[balance]` and for a merged one.
+    possible do not count. The weight is p(c) over the share of class c among the good runs of the split. In a merged
+    set each source has rows of its own, after the column `source` with the digits of `merged_from`. Raises UserError
+    for a set without `[balance]`.
     """
     import pandas as pd
 
-    if len(recipe.sources) > 1:
-        raise UserError(f"{recipe.name}: a merged set has no balance of its own; open its sources")
+    if len(recipe.sources) == 1:
+        return _table(runs, recipe, 0)
+    tables, begin = [], 0
+    for first, own in recipe.sources:
+        mine = runs.iloc[begin : begin + own.runs]
+        begin += own.runs
+        tables.append(_table(mine, own, first))
+        tables[-1].insert(0, "source", str(mine["merged_from"].iloc[0]).partition("/")[0])
+    return pd.concat(tables, ignore_index=True)
+
+
+def _table(runs: pd.DataFrame, recipe: Recipe, first: int) -> pd.DataFrame:
+    """Return the rows of one source, whose first run has the number `first`."""
+    import pandas as pd
+
     balance = recipe.balance
     if balance is None:
         raise UserError(f"{recipe.name}: the set has no [balance], so every run has the same weight")
     base = runs[runs["twin_of"].isna()] if "twin_of" in runs else runs
-    bands = np.array([balance.place(recipe.seed, index_of(str(name)))[1] for name in base.index])
+    bands = np.array([balance.place(recipe.seed, index_of(str(name)) - first)[1] for name in base.index])
     rows = []
     for split, group in base.groupby("split", sort=False, observed=True):
         in_split = np.asarray(base["split"] == split)
@@ -76,11 +90,14 @@ def balance_weights(runs: pd.DataFrame, table: pd.DataFrame) -> pd.Series[float]
     """Return the importance weight of each run by its name, NaN where it failed; a twin has that of its run.
 
     A mean over the good runs of a split with these weights is that of a set drawn without balance, but for classes
-    that the balance leaves out.
+    that the balance leaves out. In a merged set it is that of the sources, each drawn without balance.
     """
     import pandas as pd
 
-    by_cell = {(row.split, row.cell): row.weight for row in table.itertuples()}
-    keys = zip(runs["split"].astype(str), runs["balance_cell"].astype(str), runs["status"] == "ok", strict=True)
-    values = [by_cell[split, cell] if good else np.nan for split, cell, good in keys]
+    merged = "source" in table
+    by_cell = {(row.source if merged else "", row.split, row.cell): row.weight for row in table.itertuples()}
+    sources = runs["merged_from"].str.partition("/")[0] if merged else [""] * len(runs)
+    splits, cells = (runs[name].astype(str) for name in ("split", "balance_cell"))
+    keys = zip(sources, splits, cells, runs["status"] == "ok", strict=True)
+    values = [by_cell[source, split, cell] if good else np.nan for source, split, cell, good in keys]
     return pd.Series(values, index=runs.index, name="weight", dtype=np.float64)

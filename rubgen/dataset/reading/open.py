@@ -106,7 +106,7 @@ class DataSet:
     def balance(self) -> pd.DataFrame:
         """The classes of `[balance]` with wanted and natural shares, candidates and weights: `balance_table`.
 
-        Raises UserError for a set without a balance, and for a merged set, whose sources have one each.
+        Each source of a merged set has its own rows. Raises UserError for a set without a balance.
         """
         return balance_table(self.runs, self._recipe)
 

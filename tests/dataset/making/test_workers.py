@@ -1,8 +1,10 @@
+import itertools
 import math
 import os
 import signal
 import subprocess
 import sys
+from concurrent.futures import Future
 from contextlib import ExitStack
 from types import SimpleNamespace
 
@@ -166,3 +168,33 @@ def test_the_affinity_limits_the_cores_where_the_system_has_one(tmp_path, monkey
     assert usable_cores(tmp_path) == 6
     monkeypatch.setattr(os, "cpu_count", lambda: None)
     assert usable_cores(tmp_path) == 1
+
+
+class _DyingPool:
+    """A pool of one worker that dies so often before it does a job."""
+
+    died = (InterruptedError,)
+    number = 1
+
+    def __init__(self, deaths):
+        self.deaths = deaths
+
+    def submit(self, work, job):
+        future = Future()
+        if self.deaths:
+            self.deaths -= 1
+            future.set_exception(InterruptedError())
+        else:
+            future.set_result(work(*job))
+        return future
+
+    def replaced(self, running):
+        return "died", list(running)
+
+
+def test_deaths_count_only_where_nothing_goes_on_between_them():
+    runs = itertools.count()
+    with pytest.warns(RubgenWarning):
+        assert list(unordered(_DyingPool(9), abs, [(-1,)], tries=3, progress=lambda: next(runs))) == [1]
+    with pytest.warns(RubgenWarning), pytest.raises(RubgenError, match="a worker process died"):
+        list(unordered(_DyingPool(3), abs, [(-1,)], tries=3))
