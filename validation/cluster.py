@@ -28,7 +28,7 @@ from validation.markdown import table
 
 PAGE = Path(__file__).parents[1] / "docs" / "scale.md"
 MARKS = ("<!-- study -->\n", "\n<!-- end -->")
-RUNS_PER_MACHINE, GROWN, OTHER, KILL_EVERY_S = 4, 25, 16, 5.0
+RUNS_PER_MACHINE, GROWN, OTHER, KILL_EVERY_S = 4, 25, 8, 5.0
 """Runs of a machine, machines of the growth and of the other set of the merge, seconds between two kills."""
 FOLDER = Path("build/cluster")
 RECIPE: dict[str, Any] = {
