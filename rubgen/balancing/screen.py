@@ -47,17 +47,17 @@ def reaches(scenario: Scenario) -> bool | None:
 def short_run(scenario: Scenario) -> Verdict | None:
     """Return the class of the run from its first 64 turns after settling; None for a run that fails.
 
-    The short run is the beginning of the run itself: the same steps, without the companion trajectory. A run with
-    faults that grow is made to its end. Raises UserError for a run that is not possible.
+    The short run is the beginning of the run itself, without the companion trajectory. Its steps are the same unless
+    the sensors need more: no sensor decides, so other sensors get the same motions. A run with faults that grow is made
+    to its end. Raises UserError for a run that is not possible.
     """
     with one_blas_thread():
         scenario = with_clearance(scenario)
         model = reduce(scenario.machine, scenario.reduction)
-        operation, sensing = scenario.operation, scenario.sensing
+        operation = scenario.operation
         if operation.profile == "steady" and not model.at_speed(operation.speed_rad_per_s).ramps:
             operation = replace(operation, record_turns=min(SCREEN_TURNS, operation.record_turns))
-        wants = Wants(sample_rate_hz=sensing.fastest_hz, repeats_free_turn=True)
-        response = integrate(model, operation, scenario.contact, wants)
+        response = integrate(model, operation, scenario.contact, Wants(repeats_free_turn=True))
         if response.status is not Status.OK:
             return None
         labels = label(response)

@@ -55,13 +55,14 @@ def test_a_clearance_that_closes_within_the_record_is_left_to_the_run():
 def test_the_short_run_is_short(monkeypatch):
     asked = []
 
-    def integrate(_model, operation, *_):
-        asked.append(operation)
+    def integrate(_model, operation, _contact, wants):
+        asked.append((operation, wants))
         return SimpleNamespace(status=Status.UNSTABLE)
 
     monkeypatch.setattr("rubgen.balancing.screen.integrate", integrate)
     assert short_run(parse_recipe(RECIPE).scenario(0)) is None
-    assert [operation.record_turns for operation in asked] == [SCREEN_TURNS]
+    assert [operation.record_turns for operation, _ in asked] == [SCREEN_TURNS]
+    assert asked[0][1].sample_rate_hz == 0  # sensors decide nothing, so others get the same motions
 
 
 def test_a_class_that_is_not_found_refuses_the_run_with_what_was_found():

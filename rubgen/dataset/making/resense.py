@@ -35,11 +35,11 @@ def resense(
     - sensors: name of a sensor set, or the path of its TOML file.
     - out, workers, progress: as in `generate`. The same call completes an interrupted set.
 
-    Labels that need no sensor are equal to the bit where a run has the same steps a turn and the versions are the same.
-    Fast sensors need more steps: a warning says at which speeds. Amplitudes at orders belong to the sensors' signals. A
-    sensor on the housing adds the machine's frame, which changes `machine_id`. Raises UserError for a directory without
-    a finished set, an unknown sensor set, the sensors that the set has already, and sensors that the machine cannot
-    have.
+    The candidates of `[balance]` are the same: no sensor decides about them. Labels that need no sensor are equal to
+    the bit where a run has the same steps a turn and the versions are the same. Fast sensors need more steps: a warning
+    says at which speeds. Amplitudes at orders belong to the sensors' signals. A sensor on the housing adds the
+    machine's frame, which changes `machine_id`. Raises UserError for a directory without a finished set, an unknown
+    sensor set, the sensors that the set has already, and sensors that the machine cannot have.
     """
     identity = read_manifest(Layout(directory)).identity
     if identity.sources:
