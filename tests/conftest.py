@@ -1,6 +1,11 @@
 import pytest
 
 
+def pytest_collection_modifyitems(items):
+    """Long modules come first, so that all processes end at about the same time."""
+    items.sort(key=lambda item: item.get_closest_marker("long") is None)
+
+
 @pytest.fixture(scope="session")
 def make_synthetic_run():
     """Makes runs with made-up signals (tests of files and pictures); imported late, for it needs the whole pipeline."""

@@ -16,6 +16,8 @@ from validation.reliability.hostile.documents import json_bytes, mutated, toml_t
 from validation.reliability.rows import Row, table_of
 from validation.reliability.sets import Truth
 
+pytestmark = pytest.mark.long
+
 HARM = ("lost", "differing", "missed", "tracebacks")
 PATIENCE_S = 600
 

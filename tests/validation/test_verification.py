@@ -11,14 +11,15 @@ from validation.verification import __main__ as command
 from validation.verification.report import Group, page, pages, shown
 from validation.verification.row import relative, within
 
+pytestmark = pytest.mark.long
+
 # The others take seconds each; `make verification` runs them all.
 SLOW = {"plates", "impact_oscillator", "turning_frame", "exponent_errors"}
 
 
 @pytest.fixture(scope="module")
-def table(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch, threadpool_limits(1):
-        patch.setenv("RUBGEN_CACHE_DIR", str(tmp_path_factory.mktemp("cache")))
+def table():
+    with threadpool_limits(1):
         return {name: check(name) for name in GROUPS if name not in SLOW}
 
 

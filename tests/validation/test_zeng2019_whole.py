@@ -3,6 +3,8 @@
 import json
 from dataclasses import replace
 
+import pytest
+
 from validation.piece import Piece
 from validation.zeng2019 import reproduce
 from validation.zeng2019.conclusions import causes, conclusion1, conclusion2, friction
@@ -11,6 +13,8 @@ from validation.zeng2019.models.mixed_frames import crossings_by_frame
 from validation.zeng2019.runs.cases import SUPPORT_RPM
 from validation.zeng2019.sections import SECTIONS
 from validation.zeng2019.size import MACHINES, QUICK
+
+pytestmark = pytest.mark.long
 
 TINY = replace(
     QUICK, settle_turns=40, record_turns=100, thin=60, speed_thin=120, campbell_step=5000, full_speeds=(0.0,), samples=1
@@ -42,4 +46,4 @@ def test_every_section_is_computed_judged_and_drawn(tmp_path, monkeypatch):
     assert "| main cause | meaning | statements |" in text
     assert "| before, the paper's statements | 46 | 19 | 36 | 6 | 107 |" in text
     assert "not asked any more" not in text
-    assert reproduce(tmp_path, size=TINY, workers=1).made == 0
+    assert reproduce(tmp_path, figure=SECTIONS[0].name, size=TINY, workers=1).made == 0

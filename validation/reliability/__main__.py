@@ -31,7 +31,7 @@ def fault_rows(truth: Truth, *, quick: bool) -> dict[str, Callable[[], Row]]:
     """The rows about generation by name, each made when it is called."""
     return {
         "kill-1": lambda: signal_row(truth, "SIGKILL", 1, 4 if quick else 100),
-        "kill-2": lambda: signal_row(truth, "SIGKILL", 2, 2 if quick else 100),
+        "kill-2": lambda: signal_row(truth, "SIGKILL", 2, 1 if quick else 100),
         "interrupt": lambda: signal_row(truth, "SIGINT", 1, 2 if quick else 40),
         "terminate": lambda: signal_row(truth, "SIGTERM", 1, 2 if quick else 40),
         "interrupt-2": lambda: signal_row(truth, "SIGINT", 2, 1 if quick else 20),
@@ -75,7 +75,7 @@ def rows(*, quick: bool, only: list[str]) -> Iterator[Row]:
         yield from damage_rows(11 if quick else 1000)
     kinds = [kind for kind in SHARES if not only or "fuzz" in only or f"fuzz-{kind}" in only]
     if kinds:
-        yield from fuzz_rows(300 if quick else 100_000, kinds)
+        yield from fuzz_rows(150 if quick else 100_000, kinds)
 
 
 if __name__ == "__main__":

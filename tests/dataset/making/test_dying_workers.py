@@ -22,6 +22,8 @@ signal_seconds = 0.1
 PATCH = """
 import importlib.abc, importlib.util, os, signal, sys, time
 
+pytestmark = pytest.mark.long
+
 def simulate(scenario):
     if scenario.index == int(os.environ.get("DEADLY", "-1")) and scenario.operation.settle_turns == "auto":
         os.kill(os.getpid(), signal.SIGKILL)

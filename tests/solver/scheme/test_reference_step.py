@@ -9,6 +9,8 @@ from rubgen.solver.speed.start import rub_free_stepper
 from rubgen.units import rad_per_s
 from validation.reference_step import ReferenceStepper, differentiation_matrix
 
+pytestmark = pytest.mark.long
+
 
 def compare_turns(system, friction, steps, turns, opening, settle=6, restitution=0.0):
     """Largest relative differences over one turn each, restarted from the reference, and touching steps."""
