@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import rubgen
-from rubgen.cli.app import app, simulate
+from rubgen.cli.app import app
+from rubgen.cli.declarations.single_run import simulate
 from rubgen.cli.printing import check_new_file, write_file
 from rubgen.errors import UserError
 from rubgen.io.mcap import read_mcap

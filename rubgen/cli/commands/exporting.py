@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rubgen.brief import counted
 from rubgen.cli.interrupts import terminable
-from rubgen.cli.names import names_in
+from rubgen.cli.options import names_in
 from rubgen.cli.printing import print_json, say
 from rubgen.errors import write_problems
 from rubgen.export.formats import FORMATS

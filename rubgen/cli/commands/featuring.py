@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rubgen.brief import counted
 from rubgen.cli.interrupts import terminable
-from rubgen.cli.names import names_in
+from rubgen.cli.options import names_in
 from rubgen.cli.printing import check_new_file, print_json, say
 from rubgen.dataset.making.workers import usable_cores
 from rubgen.errors import UserError, write_problems

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rubgen.baseline.baseline import baselines
 from rubgen.baseline.table import document, table
-from rubgen.cli.names import names_in
+from rubgen.cli.options import names_in
 from rubgen.cli.printing import check_new_file, print_json, say, write_file
 from rubgen.dataset.files import sha256_of
 from rubgen.dataset.making.workers import usable_cores

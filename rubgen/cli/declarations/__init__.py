@@ -1,0 +1,1 @@
+"""The commands as users see them: names, options, help. Each function imports its work when it is called."""

@@ -1,0 +1,58 @@
+"""Declare the commands that count, check and repair."""
+
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from rubgen.cli.options import Directory, Json, Place, whole_number
+
+
+def info(directory: Place, /, *, json: Json = False) -> int:
+    """Count the runs of a data set by status, rub and motion."""
+    from rubgen.cli.commands.inspecting import info_command
+
+    return info_command(directory, as_json=json)
+
+
+def label(directory: Place, /, *, json: Json = False) -> int:
+    """Make the labels again from what is kept of each run, and compare; exit 1 where one differs.
+
+    The data set is not changed. Labels of orders are left out: they need the signals at every step of the integration.
+    """
+    from rubgen.cli.commands.inspecting import label_command
+
+    return label_command(directory, as_json=json)
+
+
+def verify(
+    directory: Directory,
+    /,
+    *,
+    sample: Annotated[
+        int | None, whole_number("Read only that many shards, drawn anew; of the rest, presence and size.")
+    ] = None,
+    repair: Annotated[bool, Parameter(negative=(), help="Then do what rubgen repair does.")] = False,
+    json: Json = False,
+) -> int:
+    """Check hashes, checksums, schemas, and labels against signals; exit 1 where something is wrong."""
+    from rubgen.cli.commands.inspecting import verify_command
+
+    return verify_command(directory, sample, repair=repair, as_json=json)
+
+
+def repair(directory: Directory, /, *, json: Json = False) -> int:
+    """Make lost or damaged files again; exit 1 if something is still wrong.
+
+    Damaged shards are simulated again from the manifest, which needs the versions that made the set. A file gets the
+    bytes that the manifest lists or stays as it is; nothing is deleted.
+    """
+    from rubgen.cli.commands.inspecting import repair_command
+
+    return repair_command(directory, as_json=json)
+
+
+def doctor(*, json: Json = False) -> int:
+    """Print versions, caches, cores and Vulkan of this machine; exit 1 where a package that is needed is missing."""
+    from rubgen.cli.commands.doctor import doctor_command
+
+    return doctor_command(as_json=json)
