@@ -1,5 +1,6 @@
 import json
 import tomllib
+from functools import cache
 from inspect import signature
 from pathlib import Path
 
@@ -10,11 +11,20 @@ import pytest
 from rubgen.cli.app import app
 from rubgen.cli.option_texts import TEXTS
 from rubgen.scenario import make_scenario
-from schemas.make import schemas, write_schemas
+from schemas import make, reference
+from schemas.make import write_schemas
 from schemas.option_texts import MAKE_FILE, TEXTS_FILE, texts_module, with_keys
-from schemas.reference import pages
 
 ROOT = Path(__file__).parents[2]
+schemas, pages = cache(make.schemas), cache(reference.pages)
+
+
+@cache
+def validator(name):
+    """Return what raises ValidationError for a document that does not fit the schema of that name."""
+    checks = jsonschema.validators.validator_for(schemas()[name])
+    checks.check_schema(schemas()[name])
+    return checks(schemas()[name])
 
 
 @pytest.mark.parametrize("name", sorted(schemas()))
@@ -76,7 +86,7 @@ def test_toml_files_name_their_schema_for_editors_and_fit_it(path):
     text = path.read_text(encoding="utf-8")
     schema = path.parent / text.removeprefix("#:schema ").partition("\n")[0]
     assert schema.resolve().parent == ROOT / "schemas"
-    jsonschema.validate(tomllib.loads(text), schemas()[schema.name])
+    validator(schema.name).validate(tomllib.loads(text))
 
 
 def test_every_recipe_machine_and_sensor_set_is_looked_at():
@@ -89,11 +99,11 @@ def test_every_recipe_machine_and_sensor_set_is_looked_at():
 def test_wrong_recipes_do_not_fit_the_schema(change):
     recipe = {"name": "a", "runs": 1, "machine": "zeng2019", **change}
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate(recipe, schemas()["recipe.schema.json"])
+        validator("recipe.schema.json").validate(recipe)
 
 
 def test_a_real_set_fits_the_schemas(small_set):
     manifest = json.loads((small_set.directory / "manifest.json").read_text())
-    jsonschema.validate(manifest, schemas()["manifest.schema.json"])
+    validator("manifest.schema.json").validate(manifest)
     for row in pq.read_table(small_set.directory / "runs.parquet").to_pylist():
-        jsonschema.validate(row, schemas()["run.schema.json"])
+        validator("run.schema.json").validate(row)
