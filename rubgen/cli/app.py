@@ -17,6 +17,7 @@ app = App(
     help_format="plaintext",
     suppress_keyboard_interrupt=False,
 )
+app.command(begin.list_offered, name="list")
 for command in (
     begin.init,
     begin.plan,
@@ -41,7 +42,6 @@ for command in (
     checking.doctor,
 ):
     app.command(command)
-app.command(begin.list_offered, name="list")
 
 _ZSH_END = """
 if [[ "${funcstack[1]}" == "_rubgen" ]]; then
