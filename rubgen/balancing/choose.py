@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from rubgen.balancing.screen import Verdict, screen
 from rubgen.scenario import Recipe, Scenario
-from rubgen.scenario.tables.balance import Balance, Cell
+from rubgen.scenario.tables.balance import NO_CANDIDATE, Balance, Cell
 
 UNCLASSED, IMPOSSIBLE = "rub, class not asked", "not possible"
 """The two last counts of `Chosen.seen`, behind those of the cells."""
@@ -28,7 +28,7 @@ def choose(recipe: Recipe, balance: Balance, index: int) -> Scenario:
             return _with(candidate, seen)
     names = (*(each.name for each in cells), UNCLASSED, IMPOSSIBLE)
     found = ", ".join(f"{count} {each}" for each, count in zip(names, seen, strict=True) if count)
-    problem = f"balance: none of {balance.tries} candidates is in the class {cell.name!r}; found: {found}"
+    problem = f"{NO_CANDIDATE}{balance.tries} candidates is in the class {cell.name!r}; found: {found}"
     return _with(candidate, seen, problem)
 
 

@@ -54,6 +54,8 @@ class Layout:
         """Kept runs and closed shards until the set is complete."""
         self.identity = self.staging / "identity.json"
         """The identity of an unfinished set."""
+        self.decided = self.staging / "decided.parquet"
+        """Rows of runs that have the candidates of an unfinished set: those of the set with other sensors."""
 
     def kept(self, shard: str) -> Path:
         """Return the folder of the finished runs of an open shard."""

@@ -1,11 +1,11 @@
 """Find the rows of single runs in Parquet files with many runs."""
 
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache, partial
 from itertools import accumulate, groupby
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pyarrow as pa
 
@@ -14,6 +14,8 @@ from rubgen.errors import UserError
 from rubgen.io.parquet.read import ParquetSource, damage_named
 from rubgen.scenario import Recipe
 from rubgen.scenario.costs import stored_bytes
+from rubgen.scenario.scenario import Chosen
+from rubgen.scenario.tables.balance import NO_CANDIDATE
 
 GROUPS_IN_MEMORY = 8
 """Of `runs.parquet`: shards of several splits lie beside each other in the order of runs."""
@@ -28,6 +30,27 @@ def asked_bytes(recipe: Recipe) -> float:
     it beyond their general bound.
     """
     return RUNS_PER_ROW_GROUP * max(map(stored_bytes, recipe.corners()))
+
+
+def remember(recipe: Recipe, index: int, row: Mapping[str, Any]) -> None:
+    """Take the candidates that a run of a set has, of its machine and of its balance, without checking them again.
+
+    - recipe: the recipe of the set, not a merged one.
+    - index: number of the run.
+    - row: its row in `runs.parquet`, with the words of classes.
+    """
+    if recipe.machines and row["machine_candidate"] < recipe.machines.tries:
+        recipe.remember(row["machine_number"], row["machine_candidate"])
+    if not recipe.balance or not len(row["balance_seen"]):  # it was never screened
+        return
+    chosen = Chosen(
+        cell=row["balance_cell"],
+        tries=row["balance_tries"],
+        seen=tuple(row["balance_seen"]),
+        problem=row["reason"] if row["status"] == "refused" and row["reason"].startswith(NO_CANDIDATE) else "",
+    )
+    partner = recipe.twin_of(index)
+    recipe.remember_choice(index if partner is None else partner, chosen)
 
 
 class Place(NamedTuple):

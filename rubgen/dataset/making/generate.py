@@ -91,6 +91,24 @@ def generate(
     Raises UserError, one line, for bad input, a directory with other content or not writable, and a full disk;
     RubgenError where worker processes die again and again or the system fails elsewhere.
     """
+    return generate_as(
+        recipe, out, runs=runs, workers=workers, scheduler=scheduler, shard=shard, finish=finish, progress=progress
+    )
+
+
+def generate_as(
+    recipe: Recipe | Mapping[str, object] | Path | str | None,
+    out: Path | str,
+    *,
+    decided: Path | None = None,
+    runs: int | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    shard: str | None = None,
+    finish: bool = False,
+    progress: Report | bool | None = None,
+) -> Generated:
+    """Make a data set as `generate` does. Its runs have the candidates of the rows in `decided`, a `runs.parquet`."""
     recipe = _recipe(recipe, runs)
     remote = RemoteMaking(str(out), shard or "") if is_url(out) else None
     task = _Task(
@@ -102,6 +120,7 @@ def generate(
         scheduler=scheduler,
         part=None if shard is None else part_of(shard),
         finish=finish,
+        decided=decided,
         progress=progress,
     )
     if finish and shard is not None:
@@ -133,6 +152,7 @@ class _Task:
     scheduler: str | None
     part: Part | None
     finish: bool
+    decided: Path | None
     progress: Report | bool | None
 
 
@@ -157,6 +177,8 @@ def _workers(workers: int | None) -> int:
 def _make(task: _Task) -> Generated:
     recipe, layout = task.recipe, task.layout
     with begun(layout, task.identity):
+        if task.decided:
+            shutil.copyfile(task.decided, layout.decided)
         with _shown(task.progress):
             made = _make_missing(task)
         status = finish_set(recipe, layout, task.identity, moved=task.remote is not None)

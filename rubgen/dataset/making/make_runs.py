@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.making.keep import Keeper, kept_runs, runs_of_session
 from rubgen.dataset.manifest import read_identity
+from rubgen.dataset.rows import RunTable, remember
 from rubgen.dataset.tables import RUNS, tables_of
 from rubgen.errors import RubgenError, UserError
 from rubgen.formats import run_formats
+from rubgen.io.parquet.words import with_words
 from rubgen.scenario import Recipe
 from rubgen.scenario.run_id import run_id_of
 
@@ -51,6 +53,9 @@ def make_runs(root: Path, shard: str, session: str, indexes: tuple[int, ...]) ->
     layout, recipe = Layout(root), recipe_at(root)
     kept, suspected = runs_of_session(layout, shard, session)
     keeper = Keeper(layout, shard, session)
+    if layout.decided.exists():
+        for index, row in zip(indexes, with_words(RunTable(layout.decided).rows(indexes)).to_pylist(), strict=True):
+            remember(recipe, index, row)
     for index in indexes:
         if index in kept:
             continue

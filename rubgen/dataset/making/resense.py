@@ -6,7 +6,7 @@ from pathlib import Path
 from pydantic import TypeAdapter
 
 from rubgen.dataset.layout import Layout
-from rubgen.dataset.making.generate import Generated, generate
+from rubgen.dataset.making.generate import Generated, generate_as
 from rubgen.dataset.manifest import Identity, identity_of, read_manifest
 from rubgen.errors import UserError, warn
 from rubgen.machine import Machine, load_machine
@@ -28,18 +28,19 @@ def resense(
 ) -> Generated:
     """Make the data set in `directory` again in the directory `out`, with another sensor set on the same motions.
 
-    Every run is simulated again from the recorded recipe and machine: a set keeps no true signals for new sensors. The
+    Every run is simulated again from the recorded recipe and machine: a set keeps no true signals for new sensors. No
+    candidate of `[machines]` or `[balance]` is checked again: each run has the one that it has in `directory`. The
     new set is complete, with its own manifest: it is the set that `generate` makes of the recipe with these sensors.
 
     - directory: a finished data set; it is only read.
     - sensors: name of a sensor set, or the path of its TOML file.
     - out, workers, progress: as in `generate`. The same call completes an interrupted set.
 
-    The candidates of `[balance]` are the same: no sensor decides about them. Labels that need no sensor are equal to
-    the bit where a run has the same steps a turn and the versions are the same. Fast sensors need more steps: a warning
-    says at which speeds. Amplitudes at orders belong to the sensors' signals. A sensor on the housing adds the
-    machine's frame, which changes `machine_id`. Raises UserError for a directory without a finished set, an unknown
-    sensor set, the sensors that the set has already, and sensors that the machine cannot have.
+    Labels that need no sensor are equal to the bit where a run has the same steps a turn and the versions are the same.
+    Fast sensors need more steps: a warning says at which speeds. Amplitudes at orders belong to the sensors' signals. A
+    sensor on the housing adds the machine's frame, which changes `machine_id`. Raises UserError for a directory without
+    a finished set, an unknown sensor set, the sensors that the set has already, and sensors that the machine cannot
+    have.
     """
     identity = read_manifest(Layout(directory)).identity
     if identity.sources:
@@ -55,7 +56,7 @@ def resense(
     if other:
         warn(f"{directory}: made with other versions of {', '.join(other)}; chaotic motions may differ from it")
     warn_of(recipe.corners(), f"{directory}: ")
-    return generate(recipe, out, workers=workers, progress=progress)
+    return generate_as(recipe, out, decided=Layout(directory).runs, workers=workers, progress=progress)
 
 
 def _with_sensors(identity: Identity, name: str, new: SensorSet, directory: Path) -> Recipe:

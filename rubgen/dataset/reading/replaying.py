@@ -13,6 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 from rubgen.arrays import FloatArray
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.reading.open import DataSet
+from rubgen.dataset.rows import remember
 from rubgen.errors import UserError
 from rubgen.io.mcap.messages import CONTACT_FIELDS
 from rubgen.io.mcap.read import McapRun
@@ -24,7 +25,6 @@ from rubgen.measurement.motion import ContactIntervals
 from rubgen.scenario import Scenario
 from rubgen.scenario.load import check_recipe
 from rubgen.scenario.run_id import index_of
-from rubgen.scenario.scenario import Chosen
 from rubgen.viz.replay import Replay, sorted_touches
 
 ONLY_READ: dict[str, bool | int | float | str | list[str]] = {
@@ -135,13 +135,7 @@ def scenario_of(data: DataSet, run_id: str) -> Scenario:
     """Return the scenario of a run, drawn again from the recipe and machine in the manifest."""
     whole, row, number = data.recipe, data.row(run_id), index_of(run_id)
     first, recipe = max((each for each in whole.sources if each[0] <= number), key=lambda each: each[0])
-    if recipe.machines and row["machine_candidate"] < recipe.machines.tries:
-        recipe.remember(row["machine_number"], row["machine_candidate"])
-    index = number - first
-    if "balance_cell" in row and row["status"] == "ok":
-        chosen = Chosen(cell=row["balance_cell"], tries=row["balance_tries"], seen=tuple(row["balance_seen"]))
-        partner = recipe.twin_of(index)
-        recipe.remember_choice(index if partner is None else partner, chosen)
+    remember(recipe, number - first, row)
     return whole.scenario(number)
 
 

@@ -17,6 +17,8 @@ MotionName = Literal["period-1", "period-k", "quasi-periodic", "chaotic"]
 NO_RUB, ANY_MOTION, OTHER_MOTION = "no rub", "", "other motion"
 WEYL = (0.7548776662466927, 0.5698402909980532)
 """1/g and 1/g^2 with g^3 = g + 1: steps of an even sequence in two dimensions (Roberts, 2018)."""
+NO_CANDIDATE = "balance: none of "
+"""Beginning of the reason where no candidate of a run is in its class."""
 MOST_BANDS = 16
 MOST_TRIES = 10_000
 

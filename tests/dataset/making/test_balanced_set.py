@@ -56,3 +56,12 @@ def test_a_run_is_made_again_from_its_recorded_candidate(balanced, monkeypatch):
     monkeypatch.setattr("rubgen.balancing.choose.screen", lambda *_, **__: pytest.fail("screened again"))
     for run_id in balanced.ok.index:
         assert scenario_of(balanced, run_id) == once[run_id]
+
+
+def test_other_sensors_get_the_candidates_of_the_set_without_screening(balanced, monkeypatch, tmp_path):
+    monkeypatch.setattr("rubgen.balancing.choose.screen", lambda *_, **__: pytest.fail("screened again"))
+    rubgen.resense(balanced.layout.root, "field", tmp_path / "field", workers=1)
+    other = rubgen.open(tmp_path / "field")
+    same = ["status", "reason", "balance_cell", "balance_tries", "balance_seen", "rub", "speed_rpm", "clearance_m"]
+    assert other.runs[same].astype(str).equals(balanced.runs[same].astype(str))
+    assert rubgen.verify(other.layout.root) == []
