@@ -27,7 +27,6 @@ from validation.markdown import table
 
 ROOT = Path(__file__).parents[1]
 PAGE, TEXT, KEPT = ROOT / "docs" / "scale.md", Path(__file__).parent / "scale.md", ROOT / "out" / "scale"
-STUDY = ROOT / "out" / "cluster" / "table.md"
 PROJECTED = (100_000, 1_000_000)
 PAIRS, RUNS_A_PAIR = 7, 24
 RECIPE = {
@@ -48,10 +47,10 @@ def made(runs: int) -> dict[str, float]:
     spent = {"finish": 0.0}
     true = generate.finish_set
 
-    def timed(*arguments: object) -> object:
+    def timed(*arguments: object, **options: object) -> object:
         before = time.process_time()
         try:
-            return true(*arguments)  # type: ignore[arg-type]
+            return true(*arguments, **options)  # type: ignore[arg-type]
         finally:
             spent["finish"] = time.process_time() - before
 
@@ -214,14 +213,13 @@ def page(sizes: list[int]) -> str:
     costs = {runs: _kept("made", runs) for runs in sizes}
     pairs = [_kept("pair", label=str(number)) for number in range(PAIRS)]
     text = TEXT.read_text(encoding="utf-8")
-    study = STUDY.read_text(encoding="utf-8").rstrip() if STUDY.exists() else _old_study()
     parts: dict[str, Callable[[], str]] = {
         "MEASURED": lambda: _measured_table(costs),
         "SHARES": lambda: _shares(costs, one),
         "PROJECTED": lambda: _projected_table(costs, one),
         "PAIRS": lambda: _pairs_text(pairs),
         "COORDINATOR": lambda: _plan_table(plans),
-        "STUDY": lambda: study,
+        "STUDY": _old_study,
     }
     for name, part in parts.items():
         text = text.replace(f"{name}\n", f"{part()}\n")
@@ -229,7 +227,7 @@ def page(sizes: list[int]) -> str:
 
 
 def _old_study() -> str:
-    """Return the table of the study that stands on the page, so that `make scale` alone does not lose it."""
+    """Return the table of `make cluster`, which stands on the page."""
     _, _, rest = PAGE.read_text(encoding="utf-8").partition("<!-- study -->\n")
     return rest.partition("\n<!-- end -->")[0] or "Not made yet: `make cluster`."
 
