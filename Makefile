@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check docs tutorial scale cluster bench verification sensitivity confusion run-up-motion balance contact difficulty faults fuzz bench-set sample adapters zeng2019 zeng2019-fit pictures schemas reference clean
+.PHONY: setup demo test check docs tutorial scale cluster bench verification sensitivity confusion run-up-motion balance contact difficulty faults fuzz bench-set baselines sample adapters zeng2019 zeng2019-fit pictures schemas reference clean
 
 setup: $(VENV)/.installed-dev
 
@@ -49,6 +49,9 @@ adapters: $(VENV)/.installed-dev
 sample: $(VENV)/.installed
 	rm -rf datasets/sample
 	$(BIN)/rubgen generate rubgen/scenario/recipes/sample.toml --out datasets/sample
+
+baselines: $(VENV)/.installed-dev
+	$(BIN)/python -m validation.benchmark out/blade-rub-bench-v1
 
 bench-set: $(VENV)/.installed
 	$(BIN)/rubgen generate rubgen/scenario/recipes/blade-rub-bench-v1.toml --out out/blade-rub-bench-v1

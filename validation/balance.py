@@ -5,7 +5,6 @@ Both sets are kept in `out/balance/`, so that the command goes on where it was s
 
 from __future__ import annotations
 
-import re
 import sys
 import time
 import tomllib
@@ -24,6 +23,7 @@ from rubgen.pipeline import simulate
 from rubgen.scenario import Recipe, parse_recipe
 from rubgen.scenario.load import RECIPES
 from validation.command import run_command
+from validation.markdown import with_tables
 
 RUNS = 48
 """Runs of each of the two sets."""
@@ -57,14 +57,6 @@ def main(folder: Path) -> int:
 def _made(recipe: Recipe, directory: Path) -> DataSet:
     rubgen.generate(recipe, directory)
     return rubgen.open(directory)
-
-
-def with_tables(page: str, tables: dict[str, str]) -> str:
-    """The page with these tables, each from `<!-- name -->` to `<!-- end -->`."""
-    for name, table in tables.items():
-        text = f"<!-- {name} -->\n{table}\n<!-- end -->"
-        page = re.sub(rf"<!-- {name} -->\n.*?<!-- end -->", lambda _, text=text: text, page, flags=re.DOTALL)  # type: ignore[misc]
-    return page
 
 
 def classes(data: DataSet) -> str:

@@ -1,8 +1,9 @@
-"""The one writer of Markdown tables."""
+"""The one writer of Markdown tables, and of made parts of a page."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[str]], *, numbers_from: int | None = None) -> str:
@@ -13,3 +14,11 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]], *, numbers_from:
     rules = ["---:" if numbers_from is not None and column >= numbers_from else "---" for column in range(len(header))]
     lines = ([cell.replace("|", r"\|") for cell in line] for line in (header, rules, *rows))
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def with_tables(page: str, tables: Mapping[str, str]) -> str:
+    """The page with these texts, each from `<!-- name -->` to the next `<!-- end -->`."""
+    for name, text in tables.items():
+        part = f"<!-- {name} -->\n{text}\n<!-- end -->"
+        page = re.sub(rf"<!-- {name} -->\n.*?<!-- end -->", lambda _, part=part: part, page, flags=re.DOTALL)  # type: ignore[misc]
+    return page
