@@ -14,7 +14,7 @@ from rubgen.arrays import FloatArray
 from rubgen.dataset.manifest import Manifest
 from rubgen.errors import UserError
 from rubgen.io.columns import every_scalar
-from rubgen.labels.compact_record import SCALARS, TOUCHES
+from rubgen.labels.compact_record import TOUCHES, named_scalars
 from rubgen.labels.labels import Motion
 from rubgen.scenario import Sensing
 from rubgen.scenario.run_id import run_id_of
@@ -100,7 +100,7 @@ def touches_frame(table: pa.Table, sensing: Sensing, seconds: float) -> pd.DataF
     from rubgen.measurement.chain import start_seconds
 
     record = {name: np.asarray(table[name][0].values) for name in COLUMNS}
-    scalars = dict(zip(SCALARS, record["scalars"].tolist(), strict=True))
+    scalars = named_scalars(record["scalars"].tolist())
     dt, turns = scalars["dt"], record["turn_steps"]
     steps = int(turns[-1]) if turns.size else int(scalars["record_turns"] * scalars["steps_per_turn"])
     first = start_seconds(sensing, seconds, steps=steps, dt=dt)

@@ -7,16 +7,18 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 import rubgen
 from rubgen.dataset.reading.stored_run import StoredRun
-from rubgen.dataset.reading.tables import runs_frame
+from rubgen.dataset.reading.tables import COLUMNS, runs_frame, touches_frame
 from rubgen.errors import UserError
 from rubgen.io.mcap import read_mcap
 from rubgen.io.parquet.read import read_table
 from rubgen.io.parquet.words import with_words
 from rubgen.io.parquet.write import schema
+from rubgen.scenario import Sensing
 from rubgen.sensors.load import default_sensor_set
 from tests.default_columns import CHANNELS, SCALARS
 from tests.whole_table import whole_table
@@ -176,6 +178,18 @@ def test_touches_are_those_beside_the_signals(data, small_set):
         np.testing.assert_allclose(within[name], row[kept], rtol=1e-6)
     touched = data.row(rubbing)["blades_touched"]
     assert touches["blade"].nunique() == touched
+
+
+def test_touches_are_read_where_a_fault_grows(small_set):
+    """The record of such a run has one number more."""
+    (path,) = sorted((small_set.directory / "sections").glob("*.parquet"))
+    row = pq.read_table(path, columns=list(COLUMNS)).slice(0, 1)
+    at = row.schema.get_field_index("scalars")
+    grows = row.set_column(
+        at, row.schema.field(at), pa.array([[*row["scalars"][0].as_py(), 1.0]], row.schema.types[at])
+    )
+    frames = [touches_frame(each, Sensing(), 0.62) for each in (row, grows)]
+    assert frames[1].equals(frames[0])
 
 
 def test_a_damaged_page_is_one_line_that_names_file_and_run(copied_set):
