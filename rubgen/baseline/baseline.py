@@ -95,7 +95,9 @@ def mark_of(scores: ModelScores, task: Task) -> str:
     threshold, best = by_model["one threshold"], max(by_model.values())
     if threshold > SOLVED:
         return f"one threshold solves it ({threshold:.2f} > {SOLVED})"
-    return f"nothing learns it ({best:.2f} < {NOTHING})" if best < NOTHING else ""
+    if best < NOTHING:
+        return f"nothing learns it ({best:.2f} < {NOTHING})"
+    return f"nothing learns it ({best:.2f}, as the majority)" if best == by_model["majority"] else ""
 
 
 def _of_task(name: str, samples: Samples, splits: npt.NDArray[np.str_]) -> Baseline:

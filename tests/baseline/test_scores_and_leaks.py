@@ -100,6 +100,8 @@ def test_a_task_of_noise_is_marked_and_a_good_one_is_not():
     assert mark_of(noise, TASKS["rub"]) == "nothing learns it (0.58 < 0.6)"
     good = said("by group", majority=0.5, one_threshold=0.7, boosting=0.85)
     assert mark_of(good, TASKS["rub"]) == ""
+    lopsided = said("by group", majority=0.94, one_threshold=0.9, boosting=0.92)
+    assert mark_of(lopsided, TASKS["rub"]) == "nothing learns it (0.94, as the majority)"
 
 
 def test_an_onset_is_learned_where_the_error_is_below_that_of_the_majority():
