@@ -17,12 +17,13 @@ import sys
 import rubgen.scenario.checks.feasible
 from rubgen.cli import main
 
-pytestmark = pytest.mark.long
 if __name__ == "__main__":
     rubgen.scenario.checks.feasible.MIN_RECORD_TURNS = 100
     main(sys.argv[1:])
 """
 PATIENCE_S = 120
+
+pytestmark = pytest.mark.long
 
 
 @pytest.fixture
