@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.long
+
 RECIPE = """
 name = "small"
 runs = 24
@@ -21,8 +23,6 @@ signal_seconds = 0.1
 """
 PATCH = """
 import importlib.abc, importlib.util, os, signal, sys, time
-
-pytestmark = pytest.mark.long
 
 def simulate(scenario):
     if scenario.index == int(os.environ.get("DEADLY", "-1")) and scenario.operation.settle_turns == "auto":
