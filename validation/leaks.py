@@ -1,9 +1,10 @@
 """`python -m validation.leaks DIR`: whether anything in `signals/` but the signals tells of a rub.
 
-A tree learns `rub` from names, places in the files, sizes, counts of samples, of nulls and of zeros, and pulses. Its
-balanced accuracy by group is compared with the one after the answers were dealt anew among runs of one split and of
-nearly one speed. So what the speed tells is no leak, and the error of the score is that of this set. Exit code 1 where
-a leak was found.
+A tree learns `rub` from names, places in the files, counts of samples, of nulls and of zeros, pulses, and the
+compressed sizes of all columns but the channels and the answers: their sizes follow from what they hold. Its balanced
+accuracy by group is compared with the one after the answers were dealt anew among runs of one split and of nearly one
+speed. So what the speed tells is no leak, and the error of the score is that of this set. Exit code 1 where a leak was
+found.
 """
 
 from __future__ import annotations
@@ -62,11 +63,10 @@ def facts_of(files: Sequence[Path]) -> pd.DataFrame:
     for number, path in enumerate(files):
         with pq.ParquetFile(path) as file:
             for group in range(file.num_row_groups):
-                columns = file.metadata.row_group(group)
-                sizes = sum(columns.column(each).total_compressed_size for each in range(columns.num_columns))
+                size = _size_beside_signals(file, group)
                 for place, row in enumerate(_rows(file, group)):
-                    where = {"file": number, "file_bytes": path.stat().st_size, "row_group": group}
-                    where |= {"place_in_group": place, "group_bytes": sizes, "place": len(rows)}
+                    where = {"file": number, "row_group": group, "place_in_group": place, "place": len(rows)}
+                    where |= {"bytes_beside_signals": size}
                     rows.append(where | {f"place_of_{each}": len(rows) % each for each in PERIODS} | row)
     table = pd.DataFrame(rows)
     for name in table.select_dtypes(exclude="number").columns:
@@ -92,6 +92,15 @@ def verdict(facts: pd.DataFrame, seed: int = 0) -> Verdict:
     tree = _tree().fit(values, answers)
     best = str(known.columns[int(np.argmax(tree.feature_importances_))])
     return Verdict(score, float(np.mean(dealt)), float(np.std(dealt)), score > max(dealt), best)
+
+
+def _size_beside_signals(file: pq.ParquetFile, group: int) -> int:
+    """Return the compressed bytes of a row group without its channels and answers."""
+    told = {
+        field.name for field in file.schema_arrow if Role(field.metadata[b"role"].decode()) in (Role.INPUT, Role.TARGET)
+    }
+    columns = (file.metadata.row_group(group).column(each) for each in range(file.metadata.num_columns))
+    return sum(each.total_compressed_size for each in columns if each.path_in_schema.split(".")[0] not in told)
 
 
 def _rows(file: pq.ParquetFile, group: int) -> Iterator[dict[str, Any]]:

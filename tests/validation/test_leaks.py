@@ -92,3 +92,14 @@ def test_what_the_speed_tells_is_no_leak(tmp_path):
     told = verdict(facts_of([path]))
     assert told.score > 0.8
     assert told.chance > 0.7
+
+
+def test_the_size_of_a_channel_is_no_leak(tmp_path):
+    rng = np.random.default_rng(7)
+    found, schema = rows(rng)
+    for row in found:
+        if not row["rub"]:
+            row["casing_acc_0"] = [1.0] * len(row["casing_acc_0"])
+    path = tmp_path / "train-00000.parquet"
+    pq.write_table(pa.Table.from_pylist(found, schema), path, row_group_size=1)
+    assert not verdict(facts_of([path])).found
