@@ -36,33 +36,14 @@ def card(identity: Identity, status: dict[str, int], tally: Tally) -> str:
 
     `status` is the number of runs by status, `tally` what the splits hold.
     """
-    recipe = identity.recipe
+    recipe, recipes = identity.recipe, identity.recipes
     formats = recipe["output"]["formats"]
-    sensors = identity.sensor_set
-    signals = signal_columns(sensors, clean=recipe["sensors"]["keep_clean"])
-    columns = scalar_columns(
-        sensors,
-        surroundings="surroundings" in recipe,
-        faults=identity.fault_kinds,
-        machines=identity.machine_keys,
-        drawing=[*recipe, *(["merged"] if identity.sources else [])],
-    )
-    inputs = [column for column in signals if column.role is Role.INPUT]
-    channel = next((x.name for x in inputs if x.kind == "signal"), "contact_force")
-    loading = "\n\n".join(format_of(name).loading for name in FORMAT_NAMES if name in formats)
-    loading = loading.replace("CHANNEL", channel).replace("SPLIT", next(iter(tally.splits), SPLIT))
-    ended = ", ".join(f"{count} {name}" for name, count in status.items())
-    recipes = identity.recipes
-    record, limits = (" ".join(dict.fromkeys(map(text, recipes))) for text in (_record, _limits))
-    origin = _merged_from(identity) or f"machine `{recipe['machine']}`, seed\n{recipe['seed']}"
-    runs = counted(recipe["runs"], "run")
+    signals = signal_columns(identity.sensor_set, clean=recipe["sensors"]["keep_clean"])
+    limits = " ".join(dict.fromkeys(map(_limits, recipes)))
     return f"""{_head(recipe, tally)}
 # {recipe["name"]}
 
-{runs} of a bladed disk that may rub its flexible oval casing: {origin}.
-Simulated with rubgen {identity.packages["rubgen"]}: a finite-element blisk and casing, reduced,
-integrated through unilateral contact with friction; virtual sensors with noise, range and ADC; labels from the true
-motion, never from the noisy channels. Runs by status: {ended}. {record}
+{_introduction(identity, status)}
 
 {_tables(formats)}
 
@@ -78,22 +59,67 @@ motion, never from the noisy channels. Runs by status: {ended}. {record}
 
 ## Loading
 
-{loading}
+{_loading(formats, signals, tally)}
+
+{_columns(identity, signals)}
+
+{"## Recipes" if identity.sources else "## Recipe"}
+
+```json
+{json.dumps(recipes if identity.sources else recipe, indent=2)}
+```
+
+## Limits
+
+{limits} Clearance, unbalance and damping of the
+published machine are not known and were chosen. Simulated data: learn from it, do not certify with it.
+"""
+
+
+def _introduction(identity: Identity, status: dict[str, int]) -> str:
+    """Say what the runs are, where they come from and how they ended."""
+    recipe = identity.recipe
+    origin = _merged_from(identity) or f"machine `{recipe['machine']}`, seed\n{recipe['seed']}"
+    ended = ", ".join(f"{count} {name}" for name, count in status.items())
+    record = " ".join(dict.fromkeys(map(_record, identity.recipes)))
+    return f"""{counted(recipe["runs"], "run")} of a bladed disk that may rub its flexible oval casing: {origin}.
+Simulated with rubgen {identity.packages["rubgen"]}: a finite-element blisk and casing, reduced,
+integrated through unilateral contact with friction; virtual sensors with noise, range and ADC; labels from the true
+motion, never from the noisy channels. Runs by status: {ended}. {record}"""
+
+
+def _loading(formats: Sequence[str], signals: Sequence[Column], tally: Tally) -> str:
+    """Say how to read the set, and what its other files are for."""
+    channel = next((x.name for x in signals if x.kind == "signal" and x.role is Role.INPUT), "contact_force")
+    loading = "\n\n".join(format_of(name).loading for name in FORMAT_NAMES if name in formats)
+    loading = loading.replace("CHANNEL", channel).replace("SPLIT", next(iter(tally.splits), SPLIT))
+    return f"""{loading}
 
 `sections/` holds what labels come from, one row a run: the state once a turn, every touch of the
 record, the growths behind the Lyapunov exponent. `rubgen label DIR` makes all labels but those of orders from it again.
 
 `manifest.json` holds the recipe, the machine, the versions and the sha256 of every file; `rubgen verify DIR` checks
 all of them, and labels against signals. `rubgen repair DIR` makes again what is not data: this page, `croissant.json`,
-.rrd files.
+.rrd files."""
 
-## Columns of runs
+
+def _columns(identity: Identity, signals: Sequence[Column]) -> str:
+    """Write the columns of every table, with their meaning."""
+    recipe = identity.recipe
+    columns = scalar_columns(
+        identity.sensor_set,
+        surroundings="surroundings" in recipe,
+        faults=identity.fault_kinds,
+        machines=identity.machine_keys,
+        drawing=[*recipe, *(["merged"] if identity.sources else [])],
+    )
+    return f"""## Columns of runs
 
 A column of the type class is an integer; its numbers are the same in every set:
 {_numbers()}.
 
 {column_table(columns)}
-{_signal_tables(signals) if "parquet" in formats else ""}
+{_signal_tables(signals) if "parquet" in recipe["output"]["formats"] else ""}
 ## Columns of windows
 
 One row for each window of 16 turns that the signals hold whole.
@@ -107,19 +133,7 @@ Each a list, row after row where it holds rows. A state has 3 n_blades + 4 + 2 n
 | column | type | meaning |
 |---|---|---|
 | `run_id` | string | name of the run |
-{_section_table()}
-
-{"## Recipes" if identity.sources else "## Recipe"}
-
-```json
-{json.dumps(recipes if identity.sources else recipe, indent=2)}
-```
-
-## Limits
-
-{limits} Clearance, unbalance and damping of the
-published machine are not known and were chosen. Simulated data: learn from it, do not certify with it.
-"""
+{_section_table()}"""
 
 
 def _merged_from(identity: Identity) -> str:

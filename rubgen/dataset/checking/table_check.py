@@ -11,7 +11,7 @@ from rubgen.dataset.checking.channel_check import Row
 from rubgen.dataset.checking.consistency import label_problems, signal_problems
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import Manifest
-from rubgen.dataset.reading.open import is_signal, row_signals
+from rubgen.dataset.reading.recorded import is_signal, row_signals
 from rubgen.dataset.rows import RunTable, asked_bytes
 from rubgen.dataset.shards import Shard, shards_of
 from rubgen.dataset.tables import RUNS, SIGNALS, TABLES, TRUTH, WINDOWS, SetTable, tables_of

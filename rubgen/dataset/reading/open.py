@@ -21,13 +21,13 @@ from rubgen.dataset.manifest import Manifest, read_manifest
 from rubgen.dataset.reading.balance import balance_table, balance_weights
 from rubgen.dataset.reading.cutting import Cut, cut_of
 from rubgen.dataset.reading.folds import Fold, base_runs, folds
+from rubgen.dataset.reading.recorded import PULSES, exported_signals, is_signal, parquet_signals, row_signals
 from rubgen.dataset.reading.samples import Arrays, Windows, arrays, window_index, windows
 from rubgen.dataset.reading.stored_run import StoredRun, stored_run
 from rubgen.dataset.reading.tables import COLUMNS, check_runs, runs_frame, touches_frame
 from rubgen.dataset.rows import RunRows, asked_bytes
 from rubgen.dataset.tables import SECTIONS, SIGNALS, TRUTH, SetTable
 from rubgen.errors import UserError
-from rubgen.formats import run_formats
 from rubgen.io.columns import Column, Role, scalar_columns, signal_columns
 from rubgen.io.parquet.read import damage_named, read_table
 from rubgen.io.parquet.words import with_words
@@ -44,7 +44,6 @@ if TYPE_CHECKING:
 
 MOST_SHOWN = 5
 """Number of runs of a set that a notebook shows."""
-PULSES = "once_per_rev_s"
 
 
 class DataSet:
@@ -175,7 +174,7 @@ class DataSet:
         """
         names = self.known_channels(channels)
         self.check_has_signals(run_id)
-        ((_, table),) = self._tables([run_id], names)
+        ((_, table),) = self._recorded([run_id], names)
         return row_signals(table, 0)
 
     def touches(self, run_id: str) -> pd.DataFrame:
@@ -281,7 +280,7 @@ class DataSet:
         One run is in memory at a time. Channels are as in `signals`, which also names what raises UserError.
         """
         names = self.known_channels(channels)
-        for run_id, table in self._tables(run_ids, names):
+        for run_id, table in self._recorded(run_ids, names):
             yield run_id, row_signals(table, 0), np.asarray(table[PULSES][0].values, dtype=np.float64)
 
     def each_channel(self, name: str) -> Iterator[tuple[str, Float32Array, FloatArray]]:
@@ -337,38 +336,11 @@ class DataSet:
         files = [self.layout.root / name for name in self.manifest.listed(table.name)]
         return RunRows(files, table.schema(self._recipe), asked_bytes(self._recipe))
 
-    def _tables(self, run_ids: Sequence[str], names: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
-        """Channels and pulses of each run, from Parquet where the set has it, else from files of single runs."""
+    def _recorded(self, run_ids: Sequence[str], names: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
+        """Yield channels and pulses of each run, from Parquet where the set has it, else from files of single runs."""
         if self._signals.files:
-            yield from self._joined(run_ids, [*names, PULSES])
-            return
-        readers = [(each.signals, each.name) for each in run_formats() if each.signals]
-        listed = {name for _, folder in readers for name in self.manifest.listed(folder)}
-        for run_id in run_ids:
-            paths = [(read, self.layout.export(name, run_id)) for read, name in readers]
-            found = [each for each in paths if each[1].relative_to(self.layout.root).as_posix() in listed]
-            if not found:
-                raise UserError(
-                    f"{self.layout.root}: has no files with signals; generate it with formats parquet or mcap"
-                )
-            read, path = found[0]
-            run = read(path, names)
-            if run_id != run_id_of(run.number):
-                raise UserError(f"{path}: holds {run_id_of(run.number)}; run rubgen verify")
-            yield run_id, pa.table({name: [run.channels[name]] for name in names} | {PULSES: [run.once_per_rev]})
-
-    def _joined(self, run_ids: Sequence[str], names: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
-        """Columns of `signals` and `truth` side by side; a table without any of them is not opened."""
-        seen = [name for name in names if name in self._signals.types.names]
-        hidden = [name for name in names if name not in seen]
-        if not hidden or not seen:
-            yield from self._truth.each(run_ids, hidden) if hidden else self._signals.each(run_ids, seen)
-            return
-        for (run_id, left), (_, right) in zip(
-            self._signals.each(run_ids, seen), self._truth.each(run_ids, hidden), strict=True
-        ):
-            columns = _columns(left) | _columns(right)
-            yield run_id, pa.table({name: columns[name] for name in names})
+            return parquet_signals(self._signals, self._truth, run_ids, [*names, PULSES])
+        return exported_signals(self.layout, self.manifest, run_ids, names)
 
     def known_channels(self, channels: Sequence[str] | None) -> tuple[str, ...]:
         """Return the names of these channels, each once; None is all. Raises UserError for an unknown one."""
@@ -408,19 +380,3 @@ class DataSet:
         shown = [*(varied_keys(self.runs) or ["speed_rpm"]), "rub", "motion", "contact_impulse_per_turn_n_s", "status"]
         table: str = self.runs[shown].head(MOST_SHOWN).to_html()
         return f"<p>{escape(repr(self))}</p>{table}"
-
-
-def _columns(table: pa.Table) -> dict[str, pa.ChunkedArray]:
-    return dict(zip(table.column_names, table.columns, strict=True))
-
-
-def is_signal(field: Any) -> bool:
-    """Return whether the column of this Arrow field holds a recorded channel: lists of float32."""
-    a_list = pa.types.is_list(field.type) or pa.types.is_fixed_size_list(field.type)
-    return bool(a_list and field.type.value_type == pa.float32())
-
-
-def row_signals(table: pa.Table, row: int) -> dict[str, Float32Array]:
-    """Return the recorded channels in row number `row` of a data table, by name."""
-    names = [field.name for field in table.schema if is_signal(field)]
-    return {name: np.asarray(table[name][row].values, dtype=np.float32) for name in names}

@@ -13,7 +13,7 @@ from rubgen.dataset.checking.channel_check import (
     windows_fit,
 )
 from rubgen.dataset.checking.consistency import label_problems, signal_problems
-from rubgen.dataset.reading.open import row_signals
+from rubgen.dataset.reading.recorded import row_signals
 from rubgen.scenario import Sensing
 from tests.whole_table import whole_table
 

@@ -12,7 +12,7 @@ import rubgen
 from rubgen.dataset.checking.channel_check import order_amplitudes
 from rubgen.dataset.checking.consistency import label_problems, signal_problems
 from rubgen.dataset.files import sha256_of
-from rubgen.dataset.reading.open import row_signals
+from rubgen.dataset.reading.recorded import row_signals
 from rubgen.errors import UserError
 from rubgen.io.parquet.write import write_table
 from rubgen.scenario import Sensing

@@ -1,0 +1,73 @@
+"""Read recorded channels and pulses of runs, from the Parquet files of a set or from files of single runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from rubgen.dataset.layout import Layout
+from rubgen.dataset.manifest import Manifest
+from rubgen.dataset.rows import RunRows
+from rubgen.errors import UserError
+from rubgen.formats import run_formats
+from rubgen.measurement.channel import Float32Array
+from rubgen.scenario.run_id import run_id_of
+
+PULSES = "once_per_rev_s"
+
+
+def parquet_signals(
+    signals: RunRows, truth: RunRows, run_ids: Sequence[str], names: Sequence[str]
+) -> Iterator[tuple[str, pa.Table]]:
+    """Yield the name of each run and its columns `names` from two tables of a set.
+
+    A table without any of the columns is not opened. UserError where a file is damaged.
+    """
+    seen = [name for name in names if name in signals.types.names]
+    hidden = [name for name in names if name not in seen]
+    if not hidden or not seen:
+        yield from truth.each(run_ids, hidden) if hidden else signals.each(run_ids, seen)
+        return
+    for (run_id, left), (_, right) in zip(signals.each(run_ids, seen), truth.each(run_ids, hidden), strict=True):
+        columns = _columns(left) | _columns(right)
+        yield run_id, pa.table({name: columns[name] for name in names})
+
+
+def exported_signals(
+    layout: Layout, manifest: Manifest, run_ids: Sequence[str], names: Sequence[str]
+) -> Iterator[tuple[str, pa.Table]]:
+    """Yield the name of each run, its channels `names` and its pulses from files of single runs, as MCAP.
+
+    UserError where no format of the set has signals, or a file holds another run.
+    """
+    readers = [(each.signals, each.name) for each in run_formats() if each.signals]
+    listed = {name for _, folder in readers for name in manifest.listed(folder)}
+    for run_id in run_ids:
+        paths = [(read, layout.export(name, run_id)) for read, name in readers]
+        found = [each for each in paths if each[1].relative_to(layout.root).as_posix() in listed]
+        if not found:
+            raise UserError(f"{layout.root}: has no files with signals; generate it with formats parquet or mcap")
+        read, path = found[0]
+        run = read(path, names)
+        if run_id != run_id_of(run.number):
+            raise UserError(f"{path}: holds {run_id_of(run.number)}; run rubgen verify")
+        yield run_id, pa.table({name: [run.channels[name]] for name in names} | {PULSES: [run.once_per_rev]})
+
+
+def is_signal(field: Any) -> bool:
+    """Return whether the column of this Arrow field holds a recorded channel: lists of float32."""
+    a_list = pa.types.is_list(field.type) or pa.types.is_fixed_size_list(field.type)
+    return bool(a_list and field.type.value_type == pa.float32())
+
+
+def row_signals(table: pa.Table, row: int) -> dict[str, Float32Array]:
+    """Return the recorded channels in row number `row` of a data table, by name."""
+    names = [field.name for field in table.schema if is_signal(field)]
+    return {name: np.asarray(table[name][row].values, dtype=np.float32) for name in names}
+
+
+def _columns(table: pa.Table) -> dict[str, pa.ChunkedArray]:
+    return dict(zip(table.column_names, table.columns, strict=True))
