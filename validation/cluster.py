@@ -24,10 +24,9 @@ from typing import Any
 import rubgen
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.making.keep import kept_runs
-from validation.markdown import table
+from validation.markdown import table, with_tables
 
 PAGE = Path(__file__).parents[1] / "docs" / "scale.md"
-MARKS = ("<!-- study -->\n", "\n<!-- end -->")
 RUNS_PER_MACHINE, GROWN, OTHER, KILL_EVERY_S = 4, 25, 8, 5.0
 """Runs of a machine, machines of the growth and of the other set of the merge, seconds between two kills."""
 FOLDER = Path("build/cluster")
@@ -235,9 +234,7 @@ def main() -> None:
     text = study(options.machines, folder)
     print(text)
     page = PAGE.read_text(encoding="utf-8")
-    head, _, rest = page.partition(MARKS[0])
-    _, _, tail = rest.partition(MARKS[1])
-    PAGE.write_text(f"{head}{MARKS[0]}{text}{MARKS[1]}{tail}", encoding="utf-8")
+    PAGE.write_text(with_tables(page, {"study": text}), encoding="utf-8")
 
 
 if __name__ == "__main__":

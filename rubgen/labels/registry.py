@@ -133,7 +133,7 @@ CONTACT = (
     _number(
         "free_penetration_m",
         "m",
-        "how deep tips would be without contact; null at changing speeds",
+        "how deep tips would be without contact; null at changing speeds and where a support is loose or oil whirls",
         lambda x: x.amounts.free_penetration,
     ),
     _text("rub_extent", "none, partial or full-annular", RubExtent, lambda x: x.amounts.extent),
