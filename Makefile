@@ -45,8 +45,7 @@ bench: $(VENV)/.installed-dev
 	$(BIN)/python -m benchmarks.page
 
 adapters: $(VENV)/.installed-dev
-	$(BIN)/rubgen generate --out out/demo
-	$(BIN)/python -m validation.adapters out/demo docs/adapters.md
+	$(BIN)/python -m validation.adapters
 
 sample: $(VENV)/.installed
 	rm -rf datasets/sample

@@ -19,6 +19,7 @@ from rubgen.features.of_run import run_features
 from rubgen.features.plan import IDS, Plan, make_plan
 from rubgen.features.vocabulary import GENERIC
 from rubgen.io.files import write_durably
+from rubgen.linalg.threads import one_blas_thread
 from rubgen.progress import count
 
 RUNS_PER_JOB = 8
@@ -38,8 +39,8 @@ class Written:
 
 
 def write_features(
-    directory: Path,
-    out: Path,
+    directory: Path | str,
+    out: Path | str,
     *,
     window: str | None = None,
     channels: Sequence[str] | None = None,
@@ -51,6 +52,7 @@ def write_features(
     The bytes depend on the data set, the choices and the versions of the packages, not on `workers`. The file is
     complete or not written at all. Options are as in `make_plan`, which also names the mistakes that raise UserError.
     """
+    directory, out = Path(directory), Path(out)
     data = DataSet(directory)
     good = list(data.ok.index)
     if not good:
@@ -82,7 +84,8 @@ def features_of(data: DataSet, plan: Plan, run_ids: Sequence[str]) -> pa.Table:
     tables = []
     for run_id, signals, pulses in data.recorded(run_ids, plan.channels):
         row = data.row(run_id)
-        tables.append(run_features(plan, (run_id, row["machine_id"], row["split"]), signals, pulses))
+        with one_blas_thread():  # as in a worker: the bytes depend on it
+            tables.append(run_features(plan, (run_id, row["machine_id"], row["split"]), signals, pulses))
     return pa.concat_tables(tables).combine_chunks()
 
 
