@@ -188,3 +188,7 @@ def test_the_preset_for_comparison_is_the_result_of_the_kept_search():
     made = page(scores, lambda piece: made_up_room(*piece.arguments))
     assert made.partition("The table shows the range")[0] == text.partition("The table shows the range")[0]
     assert isinstance(taken, Score)
+    plain = [one for one in scores if (one.candidate.friction, one.candidate.springs) == (0.0, 1.0)]
+    chords = [one for one in plain if one.candidate.surface == "chords"]
+    equal = {one.candidate.mass for one in chords if one.accuracy > taken.accuracy - 1e-9}
+    assert equal == {8.0, 10.0, 12.0}, "the first page says that these masses fit equally well"

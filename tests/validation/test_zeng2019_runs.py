@@ -13,15 +13,16 @@ from rubgen.solver.response import ContactEvents
 from validation.zeng2019 import reproduce
 from validation.zeng2019.changes import AT_CENTRE, changed, tally
 from validation.zeng2019.conclusions.causes import _by_modes
-from validation.zeng2019.conclusions.conclusion3 import indices
+from validation.zeng2019.conclusions.conclusion3 import indices, uncommon
 from validation.zeng2019.conclusions.scale import reaches
-from validation.zeng2019.differences import BOUND, DIMENSION, GEOMETRY, SYMMETRY, UNKNOWN, WORDS, cause_of, words_of
+from validation.zeng2019.differences import Experiment, cause_of, words_of
 from validation.zeng2019.figures.figure10 import _onset
 from validation.zeng2019.figures.figure16 import unevenness, zones_and_motion
 from validation.zeng2019.figures.figure17 import _end, jump
 from validation.zeng2019.figures.figure19 import crossings
 from validation.zeng2019.fitting.evidence import read_evidence
 from validation.zeng2019.fitting.targets import TARGETS, words
+from validation.zeng2019.meanings import BOUND, DIMENSION, GEOMETRY, SYMMETRY, UNKNOWN, WORDS
 from validation.zeng2019.runs.cases import (
     CASING_SUPPORTS,
     DISK_SUPPORTS,
@@ -42,7 +43,7 @@ from validation.zeng2019.runs.measures import fractional, harmonics, looks_regul
 from validation.zeng2019.runs.outcome import POINTS, Outcome, outcome, outcome_of, run, run_piece
 from validation.zeng2019.runs.region import one_class, switching
 from validation.zeng2019.size import AS_COMPUTED, FULL, MACHINES, QUICK, TWIN, sizes
-from validation.zeng2019.statement import Statement
+from validation.zeng2019.statement import Reading, Statement, read_as
 
 TINY = replace(QUICK, settle_turns=50, record_turns=100, thin=30, speed_thin=100)
 NONE = np.zeros(0)
@@ -256,8 +257,6 @@ def test_a_difference_has_the_cause_that_an_experiment_shows():
         return Statement(statement="Region V: the casing moves in chaotic motion.", verdict=kind, found="x", **more)
 
     search = read_evidence()
-    known = Statement(statement="Even orders, 2 f_r, stand out.", verdict="differs", found="x")
-    assert cause_of(known, None, None, search).name == SYMMETRY
     assert cause_of(verdict("differs"), verdict("agrees"), verdict("differs"), search).name == GEOMETRY
     assert cause_of(verdict("differs"), verdict("agrees"), verdict("agrees"), search).name == DIMENSION
     by_eye = verdict("differs", by_eye="agrees", by_words="agrees")
@@ -265,6 +264,48 @@ def test_a_difference_has_the_cause_that_an_experiment_shows():
     assert cause_of(verdict("differs", by_words="agrees"), None, None, search).name == WORDS
     assert "candidates of the search" in cause_of(verdict("differs"), None, None, search).experiment
     assert cause_of(verdict("differs"), None, None, []).name == UNKNOWN
+    seen = verdict("differs", by_eye="agrees within 34 % of the runs")
+    assert cause_of(verdict("differs"), seen, verdict("differs"), []).name == GEOMETRY
+    assert cause_of(verdict("differs"), seen, seen, []).name == DIMENSION
+    assert cause_of(verdict("differs"), verdict("differs"), seen, []).name == UNKNOWN
+
+
+@pytest.mark.parametrize(("found", "name"), [("agrees", SYMMETRY), ("differs", UNKNOWN), ("unknowable", UNKNOWN)])
+def test_an_experiment_is_a_cause_only_where_it_agrees(found, name):
+    one = Statement(statement="Even orders, 2 f_r, stand out.", verdict="differs", found="x")
+    tried = Statement(statement="Without.", verdict=found, found="x", about=("ven orders",), cause=SYMMETRY)
+    chords = replace(tried, verdict="differs")
+    cause = cause_of(one, None, None, [], [Experiment(section="causes", preset=tried, chords=chords)])
+    assert cause.name == name
+    assert (cause.experiment == '`causes`, "Without": agrees; with zeng2019-as-computed: differs') == (
+        found == "agrees"
+    )
+
+
+def test_the_first_reading_that_agrees_is_taken():
+    no, yes = Reading(words="one", verdict="differs"), Reading(words="two", verdict="agrees")
+    assert read_as(no, yes) == {"by_words": "agrees", "other_words": "two"}
+    assert read_as(no, replace(yes, verdict="differs")) == {"by_words": "differs", "other_words": "one; two"}
+
+
+def test_a_class_that_occurs_once_is_seen_by_another_bound():
+    runs = {float(i): made_up(motion_casing="chaotic" if i else "period-k") for i in range(40)}
+    rare = switching("Region III", ("chaotic", "multi-period"), "casing", runs, list(runs.values()))[0]
+    assert (rare.verdict, rare.by_eye) == ("differs", "agrees")
+    none = switching("Region III", ("chaotic", "multi-period", "period-1"), "casing", runs, list(runs.values()))[0]
+    assert (none.verdict, none.by_eye) == ("differs", "differs")
+
+
+def test_runs_of_another_class_than_the_commonest_are_counted():
+    names = ("period-1", "period-1", "chaotic", "period-k")
+    assert uncommon({float(i): made_up(motion_centre=name) for i, name in enumerate(names)}, "blisk") == (2, 4)
+
+
+def test_fractional_lines_are_measured_against_the_orders_asked_for():
+    spectrum = np.zeros(1001)
+    spectrum[100], spectrum[150], spectrum[300] = 1.0, 1e-4, 2e-4
+    assert fractional(spectrum) == pytest.approx(1e-4)
+    assert fractional(spectrum, 2) == pytest.approx(0.5)
 
 
 def test_a_verdict_that_changed_has_its_reason():

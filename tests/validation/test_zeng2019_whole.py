@@ -8,8 +8,9 @@ import pytest
 from validation.piece import Piece
 from validation.zeng2019 import reproduce
 from validation.zeng2019.conclusions import causes, conclusion1, conclusion2, friction
+from validation.zeng2019.figures import figure16
 from validation.zeng2019.figures.figure19 import SWEPT
-from validation.zeng2019.models.mixed_frames import crossings_by_frame
+from validation.zeng2019.models.mixed_frames import crossings_by_frame, points_by_frame
 from validation.zeng2019.runs.cases import SUPPORT_RPM
 from validation.zeng2019.sections import SECTIONS
 from validation.zeng2019.size import MACHINES, QUICK
@@ -28,6 +29,8 @@ def test_every_section_is_computed_judged_and_drawn(tmp_path, monkeypatch):
     monkeypatch.setattr(conclusion2, "SPEEDS", (9500.0, 10500.0))
     monkeypatch.setattr(conclusion2, "LOBES", (2, 3))
     monkeypatch.setattr(causes, "FRAMES", Piece(crossings_by_frame, (SWEPT[::7], SUPPORT_RPM)))
+    monkeypatch.setattr(causes, "POINTS", Piece(points_by_frame, (SWEPT[::7], SUPPORT_RPM)))
+    monkeypatch.setattr(figure16, "LESS_AIR", (0, 4e-5))
     monkeypatch.setattr(friction, "SPEEDS", (7020.0, 11820.0))
     made = reproduce(tmp_path, size=TINY, workers=1)
     statements = json.loads((tmp_path / "statements.json").read_text(encoding="utf-8"))

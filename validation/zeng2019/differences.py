@@ -8,36 +8,17 @@ from dataclasses import dataclass
 from validation.zeng2019.figures.figure20 import REGIONS as SUPPORT_REGIONS
 from validation.zeng2019.fitting.score import Score
 from validation.zeng2019.fitting.targets import ANY, TARGETS, Target
+from validation.zeng2019.meanings import BOUND, DIMENSION, GEOMETRY, REDUCTION, UNKNOWN, WORDS
 from validation.zeng2019.runs.cases import REGIONS
-from validation.zeng2019.size import TWIN
+from validation.zeng2019.size import AS_COMPUTED, MACHINE, TWIN
 from validation.zeng2019.statement import AGREES, HALF, Statement
 
-SYMMETRY = "the paper contradicts symmetry"
-REDUCTION = "tolerance of a reduction"
-GEOMETRY = "contact geometry"
-DIMENSION = "a lost dimension"
-BOUND = "bound of a label"
-WORDS = "reading of the words"
-UNKNOWN = "not found"
-MEANINGS = {
-    SYMMETRY: "A machine whose blades are equal and whose casing has two equal lobes cannot do it.",
-    REDUCTION: "The reduced basis is less accurate than the paper says, or its limit is another one than ours.",
-    GEOMETRY: "Chords agree, and the same machine on the smooth curve does not.",
-    DIMENSION: "Another value of what is not published agrees: mass, springs, damping or friction.",
-    BOUND: "Another bound between two classes agrees, such as the eye's.",
-    WORDS: "Another reading of the paper's sentence agrees, such as with the tips or at the values it names.",
-    UNKNOWN: "No experiment of this page agrees.",
-}
 KNOWN = {
     "Four modes a blade": (REDUCTION, "Figure 6: the largest error falls with the number of modes a blade"),
     "86 modes of the blisk": (REDUCTION, "Figure 6: eight modes a blade in the first step change little"),
     "four blisk modes are as good": (REDUCTION, "Figure 6: the error against the full model grows with the speed"),
-    "Another natural frequency": (SYMMETRY, "`causes`: one crossing in a consistent model, two in mixed frames"),
-    "one stiffness, 1.4e8": (SYMMETRY, "`causes`: it lies between the two crossings of mixed frames"),
-    "ven orders": (SYMMETRY, "`causes`: without the casing's odd shapes the point shows even orders only"),
-    "casing's vibration is f_r times": (SYMMETRY, "`causes`: a point shows odd orders of the casing's odd shapes"),
 }
-"""Part of a statement, its cause, and the section of the page whose runs show it."""
+"""Part of a statement on the reduction, its cause, and the rows of figure 6 that show it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,33 +29,104 @@ class Cause:
     experiment: str
 
 
-def cause_of(one: Statement, chords: Statement | None, twin: Statement | None, search: Sequence[Score]) -> Cause:
+@dataclass(frozen=True, kw_only=True)
+class Experiment:
+    """A row that is `about` statements: its section, and what it found with the preset and with AS_COMPUTED."""
+
+    section: str
+    preset: Statement
+    chords: Statement | None
+
+
+def cause_of(
+    one: Statement,
+    chords: Statement | None,
+    twin: Statement | None,
+    search: Sequence[Score],
+    experiments: Sequence[Experiment] = (),
+) -> Cause:
     """The cause of a statement that differs; `chords` and `twin` are the verdicts of the other two machines."""
-    for part, (name, shown) in KNOWN.items():
-        if part in one.statement:
-            return Cause(name=name, experiment=shown)
-    if chords and chords.verdict.startswith(AGREES) and twin:
-        if twin.verdict.startswith(AGREES):
-            return Cause(name=DIMENSION, experiment=f"{TWIN}: {twin.verdict} ({twin.found})")
-        return Cause(name=GEOMETRY, experiment=f"{TWIN}: {twin.verdict} ({twin.found})")
+    return (
+        _known(one)
+        or _by_experiment(one, experiments)
+        or _by_machine(chords, twin)
+        or _otherwise(one, chords)
+        or _by_twin(chords, twin)
+        or _by_search(one, search)
+        or _chords_otherwise(chords, twin)
+        or Cause(name=UNKNOWN, experiment=_tried(one, search))
+    )
+
+
+def _known(one: Statement) -> Cause | None:
+    found = next((cause for part, cause in KNOWN.items() if part in one.statement), None)
+    return Cause(name=found[0], experiment=found[1]) if found else None
+
+
+def _by_experiment(one: Statement, experiments: Sequence[Experiment]) -> Cause | None:
+    """The first experiment about the statement that agrees with the preset."""
+    for each in experiments:
+        if any(part in one.statement for part in each.preset.about) and each.preset.verdict.startswith(AGREES):
+            told = f'`{each.section}`, "{each.preset.statement.rstrip(".")}": {each.preset.verdict}'
+            both = _with_chords(each.chords.verdict if each.chords else "")
+            return Cause(name=each.preset.cause, experiment=told + both)
+    return None
+
+
+def _by_machine(chords: Statement | None, twin: Statement | None) -> Cause | None:
+    if not (chords and twin and chords.verdict.startswith(AGREES)):
+        return None
+    name = DIMENSION if twin.verdict.startswith(AGREES) else GEOMETRY
+    return Cause(name=name, experiment=f"{TWIN}: {twin.verdict} ({twin.found})")
+
+
+def _otherwise(one: Statement, chords: Statement | None) -> Cause | None:
+    """Another bound, then another reading, with which the preset agrees; and what the other machine has by it."""
     if one.by_eye.startswith(AGREES):
-        return Cause(name=BOUND, experiment=f"by {one.other_bound}: {one.by_eye}")
+        told = f"by {one.other_bound}: {one.by_eye}"
+        return Cause(name=BOUND, experiment=told + _with_chords(chords.by_eye or chords.verdict if chords else ""))
     if one.by_words.startswith(AGREES):
-        return Cause(name=WORDS, experiment=f"{one.other_words}: {one.by_words}")
-    if chords and twin and twin.verdict.startswith(AGREES):
-        return Cause(
-            name=DIMENSION, experiment=f"the casing of zeng2019-as-computed on the smooth curve: {twin.verdict}"
-        )
-    return _by_search(one, search)
+        told = f"{one.other_words}: {one.by_words}"
+        return Cause(name=WORDS, experiment=told + _with_chords(chords.by_words or chords.verdict if chords else ""))
+    return None
 
 
-def _by_search(one: Statement, search: Sequence[Score]) -> Cause:
+def _with_chords(verdict: str) -> str:
+    return f"; with {AS_COMPUTED}: {verdict}" if verdict else ""
+
+
+def _by_twin(chords: Statement | None, twin: Statement | None) -> Cause | None:
+    if not (chords and twin and twin.verdict.startswith(AGREES)):
+        return None
+    return Cause(name=DIMENSION, experiment=f"the casing of {AS_COMPUTED} on the smooth curve: {twin.verdict}")
+
+
+def _chords_otherwise(chords: Statement | None, twin: Statement | None) -> Cause | None:
+    """Another bound or reading with which AS_COMPUTED agrees, though the preset does not."""
+    if not (chords and twin):
+        return None
+    for told, here, there in (
+        (f"by {chords.other_bound}", chords.by_eye, twin.by_eye or twin.verdict),
+        (chords.other_words, chords.by_words, twin.by_words or twin.verdict),
+    ):
+        if here.startswith(AGREES):
+            name = DIMENSION if there.startswith(AGREES) else GEOMETRY
+            return Cause(name=name, experiment=f"{told}: {AS_COMPUTED} {here}; {TWIN} {there}; {MACHINE} differs")
+    return None
+
+
+def _tried(one: Statement, search: Sequence[Score]) -> str:
+    """What was tried without success."""
+    tried = [f"by {one.other_bound}: {one.by_eye}" if one.by_eye else "", one.other_words, "no machine that was run"]
+    count = f"none of the {len(search)} candidates of the search" if words_of(one.statement) else ""
+    return "nothing agrees that was tried: " + "; ".join(filter(None, [*tried, count]))
+
+
+def _by_search(one: Statement, search: Sequence[Score]) -> Cause | None:
     places = words_of(one.statement)
-    if not places:
-        return Cause(name=UNKNOWN, experiment="no machine that was run agrees")
-    agree = [score for score in search if sum(score.hits[place] for place in places) >= HALF * len(places)]
+    agree = [score for score in search if places and sum(score.hits[i] for i in places) >= HALF * len(places)]
     told = f"{len(agree)} of the {len(search)} candidates of the search confirm half or more of its {len(places)} words"
-    return Cause(name=DIMENSION if agree else UNKNOWN, experiment=told)
+    return Cause(name=DIMENSION, experiment=told) if agree else None
 
 
 def words_of(statement: str) -> list[int]:

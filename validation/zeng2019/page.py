@@ -9,8 +9,9 @@ from html import escape
 
 from validation.markdown import table
 from validation.zeng2019.changes import changed, tally
-from validation.zeng2019.differences import MEANINGS, cause_of
+from validation.zeng2019.differences import Experiment, cause_of
 from validation.zeng2019.fitting.evidence import read_evidence
+from validation.zeng2019.meanings import MEANINGS
 from validation.zeng2019.remarks import (
     CHANGES,
     CHANGES_TEXT,
@@ -181,17 +182,27 @@ def _closing(judged: Sequence[Judged]) -> list[tuple[str, str, list[tuple[Sequen
 
 def _differences(judged: Sequence[Judged]) -> tuple[Rows, Rows]:
     """Each of the paper's statements that differs with the preset, and how often each cause is named."""
-    search, rows = read_evidence(), []
+    search, experiments, rows = read_evidence(), _experiments(judged), []
     for each, one in _counted(judged):
         if one.verdict != DIFFERS:
             continue
         chords, twin = each.other(0, one), each.other(1, one)
-        cause = cause_of(one, chords, twin, search)
+        cause = cause_of(one, chords, twin, search, experiments)
         title = each.section.title.split(":")[0]
-        told = _verdict(chords) if chords else "not run"
+        told = _verdict(chords) if chords else "the same blisk" if part_of(each.section.name) == "modes" else "not run"
         rows.append((title, one.statement, _verdict(one), told, cause.name, cause.experiment))
     counts = [(name, meaning, str(sum(row[4] == name for row in rows))) for name, meaning in MEANINGS.items()]
     return rows, counts
+
+
+def _experiments(judged: Sequence[Judged]) -> list[Experiment]:
+    """The experiments about statements of the paper."""
+    return [
+        Experiment(section=each.section.name, preset=one, chords=each.other(0, one))
+        for each in judged
+        for one in each.statements
+        if one.about
+    ]
 
 
 def _counted(judged: Sequence[Judged]) -> Iterator[tuple[Judged, Statement]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypedDict
 
 AGREES, DIFFERS, UNKNOWABLE = "agrees", "differs", "unknowable"
 EXPERIMENT, TIPS = "experiment", "tips"
@@ -20,6 +21,7 @@ class Statement:
     agreement is no evidence. `apart` marks what is no statement of the paper and stays out of the tally: EXPERIMENT, a
     hypothesis of ours about a cause, or TIPS, a statement on the blisk judged by the tips as well.
     `by_eye` is the verdict with `other_bound`, and `by_words` that with the reading `other_words`, where it is another.
+    An experiment may be `about` statements: it agrees where `cause` makes them differ. `about` holds parts of them.
     """
 
     statement: str
@@ -32,11 +34,36 @@ class Statement:
     other_bound: str = "the scatter of 49 points"
     by_words: str = ""
     other_words: str = ""
+    about: tuple[str, ...] = ()
+    cause: str = ""
 
     def __post_init__(self) -> None:
         kinds = (AGREES, DIFFERS, UNKNOWABLE)
         if self.verdict not in kinds and not self.verdict.startswith(f"{AGREES} within "):
             raise ValueError(f"verdict {self.verdict!r}: must be one of {', '.join(kinds)} or `agrees within X`")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reading:
+    """What else the words of a statement may mean, and the verdict by it."""
+
+    words: str
+    verdict: str
+
+
+class Read(TypedDict):
+    """Two fields of a Statement."""
+
+    by_words: str
+    other_words: str
+
+
+def read_as(*readings: Reading) -> Read:
+    """The first reading that agrees; where none does, all of them, which differ."""
+    chosen = next((one for one in readings if one.verdict.startswith(AGREES)), None)
+    if chosen:
+        return {"by_words": chosen.verdict, "other_words": chosen.words}
+    return {"by_words": DIFFERS, "other_words": "; ".join(one.words for one in readings)}
 
 
 def yes_or_no(holds: bool) -> str:

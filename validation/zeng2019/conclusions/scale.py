@@ -128,9 +128,10 @@ SECTION = Section(
     "miss the fitted values a little; on chords c is larger by their inset.) A contact impulse p a turn is a mean "
     "force p Omega / (2 pi). The unbalance force is U Omega^2. Their ratio is p / (2 pi U Omega). If it is one "
     "hundredth, even a contact force that is irregular as a whole moves the disk centre by about one hundredth of its "
-    "orbit, away from resonances. That is the bound below which points are one cluster, and what the eye cannot see "
-    "in a diagram. So at the disk centre chaos of the contact hardly shows, whatever the surface. These rows are "
-    "experiments of ours and are not counted.",
+    "orbit, away from resonances. The third row counts how often this holds over the speed, on both surfaces. An eye "
+    "hardly sees it in a diagram. The labels are finer: they call some of these motions chaotic all the same (figure "
+    "12), and on soft supports of the casing the disk centre strays farther (figure 20). These rows are experiments "
+    "of ours and are not counted.",
     pieces=pieces,
     statements=statements,
     figures=no_figures,

@@ -11,13 +11,14 @@ from scipy.stats import spearmanr
 from rubgen.arrays import FloatArray
 from validation.piece import Found, Piece
 from validation.zeng2019.drawing.contact_figure import contact_figure
-from validation.zeng2019.runs.cases import NAMED_SPEEDS, at_speed, outcomes, speed_sweep
+from validation.zeng2019.meanings import WORDS
+from validation.zeng2019.runs.cases import NAMED_SPEEDS, at_speed, case, outcomes, speed_sweep
 from validation.zeng2019.runs.measures import PROMINENT, harmonics, motion_of, rubbing, strongest
-from validation.zeng2019.runs.outcome import Outcome
+from validation.zeng2019.runs.outcome import Outcome, outcome_of, run_piece
 from validation.zeng2019.runs.region import SEEN, with_tips
 from validation.zeng2019.section import Section
-from validation.zeng2019.size import Size
-from validation.zeng2019.statement import Statement, by_share, counted, yes_or_no
+from validation.zeng2019.size import TWIN, Size
+from validation.zeng2019.statement import EXPERIMENT, Statement, by_share, counted, yes_or_no
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,16 +30,64 @@ RANK = 0.5
 """Least rank correlation that is called a dependence."""
 
 
+LESS_AIR = tuple(1e-6 * um for um in (0, 20, 40, 60, 80))
+"""By how much the clearance is made smaller in the experiment on area and blades, in m."""
+CLOSED_RPM = 10601.0
+"""Rev/min from which the tips grow as far as the clearance without any whirl: `docs/preset-zeng2019.md`."""
+
+
 def pieces(size: Size) -> Sequence[Piece]:
-    """The sweep and the six named speeds."""
-    return [*speed_sweep(size).values(), *(at_speed(size, rpm) for rpm in NAMED_SPEEDS)]
+    """The sweep, the six named speeds, and these with less air; the twin has no experiment."""
+    tight = [piece for runs in tighter(size).values() for piece in runs] if size.machine != TWIN else []
+    return [*speed_sweep(size).values(), *(at_speed(size, rpm) for rpm in NAMED_SPEEDS), *tight]
+
+
+def tighter(size: Size) -> dict[float, list[Piece]]:
+    """Runs with LESS_AIR at the named speeds."""
+    own = size.scenario().machine.casing.clearance_m
+    return {
+        rpm: [
+            run_piece(case(size, speed_rpm=rpm, clearance_m=own - less)) if less else at_speed(size, rpm)
+            for less in LESS_AIR
+        ]
+        for rpm in NAMED_SPEEDS
+    }
 
 
 def statements(size: Size, found: Found) -> Sequence[Statement]:
     """Zones, harmonics of contact, area and blades, symmetry and motion."""
     runs = rubbing(outcomes(speed_sweep(size), found))
     rub, named = list(runs.values()), [runs[rpm] for rpm in NAMED_SPEEDS if rpm in runs]
-    return [*_places(rub), *_impacts(rub), *_blades(rub, named), *zones_and_motion(rub)]
+    made = [*_places(rub), *_impacts(rub), *_blades(rub, named), *zones_and_motion(rub)]
+    return made if size.machine == TWIN else [*made, _heavier(size, found)]
+
+
+def _heavier(size: Size, found: Found) -> Statement:
+    """Area and blades at one speed, as the rub gets heavier: an experiment on why they part over the speed."""
+    ranks, told = {}, []
+    for rpm, pieces_ in tighter(size).items():
+        runs = [run for run in (outcome_of(found(piece)) for piece in pieces_) if run.ok and run.rub]
+        ranks[rpm], area, blades = _area_and_blades(runs)
+        told.append(
+            f"{rpm:,.0f} rev/min {area[0]:.0f} to {area[-1]:.0f} degrees and {blades[0]} to {blades[-1]} blades"
+        )
+    whirl = [rank for rpm, rank in ranks.items() if rpm < CLOSED_RPM]
+    true = sum(rank >= RANK for rank in whirl)
+    values = ", ".join(
+        f"{rpm:,.0f}: {rank:.2f}".replace("nan", "one of them does not change") for rpm, rank in ranks.items()
+    )
+    return Statement(
+        statement="At one speed, where the tips reach the casing by whirl, heavier rub has both a larger contact area "
+        "and more blades.",
+        verdict=by_share(true, len(whirl)),
+        found=f"with up to {1e6 * LESS_AIR[-1]:.0f} um less air the rank correlation is at least {RANK:g} at "
+        f"{counted(true, len(whirl), 'speeds')} below {CLOSED_RPM:,.0f} rev/min ({values}); {'; '.join(told)}",
+        why=f"From {CLOSED_RPM:,.0f} rev/min on growth alone closes the clearance: all blades touch, on a narrow arc. "
+        "So area and blades part over the speed.",
+        apart=EXPERIMENT,
+        about=("The larger the contact area",),
+        cause=WORDS,
+    )
 
 
 def _places(rub: list[Outcome]) -> Sequence[Statement]:
@@ -167,7 +216,8 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
 SECTION = Section(
     name="16",
     title="Figure 16: where the casing is touched",
-    text="Statements are judged over every rubbing run of the speed sweep. The picture shows the paper's six speeds.",
+    text="Statements are judged over every rubbing run of the speed sweep. The picture shows the paper's six speeds. "
+    "The last row is an experiment on area and blades: at each of them the rub is made heavier by less air.",
     pieces=pieces,
     statements=statements,
     figures=figures,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +11,7 @@ from rubgen.arrays import FloatArray
 from validation.piece import Found, Piece
 from validation.zeng2019.drawing.sweep_figure import COLOR_NAMES, sweep_figure
 from validation.zeng2019.runs.cases import END_OF_RUB, disk_sweep, outcomes, within
-from validation.zeng2019.runs.measures import harmonics, rubbing, strongest
+from validation.zeng2019.runs.measures import harmonics, rms, rubbing, strongest
 from validation.zeng2019.runs.outcome import Outcome
 from validation.zeng2019.runs.region import CHAOTIC, PERIODIC, one_class, switching
 from validation.zeng2019.section import Section
@@ -26,6 +26,8 @@ TRIP = 1.4e8
 RESONANT, FAR = (1.2e8, 1.6e8), 3.0e8
 AMPLIFIED = 2.0
 """An amplitude is amplified where it exceeds the one at 3e8 N/m so many times."""
+Measure = Callable[[Outcome, str], float]
+"""The amplitude of a part of a run."""
 
 
 def pieces(size: Size) -> Sequence[Piece]:
@@ -91,18 +93,18 @@ def _orders(runs: dict[float, Outcome]) -> Sequence[Statement]:
     ]
 
 
-def curve(runs: dict[float, Outcome], part: str) -> tuple[FloatArray, FloatArray]:
-    """Stiffness and rms of a part, without failed runs."""
+def curve(runs: dict[float, Outcome], part: str, measure: Measure = rms) -> tuple[FloatArray, FloatArray]:
+    """Stiffness and amplitude of a part, its rms unless another measure is given, without failed runs."""
     good = {k: run for k, run in runs.items() if run.ok}
-    return np.array(list(good)), np.array([getattr(run, f"{part}_rms") for run in good.values()])
+    return np.array(list(good)), np.array([measure(run, part) for run in good.values()])
 
 
-def amplification(runs: dict[float, Outcome], part: str) -> tuple[float, float]:
-    """Where the rms of a part is largest, in N/m, and how many times that at 3e8 N/m."""
-    k, rms = curve(runs, part)
-    far = rms[int(np.argmin(np.abs(k - FAR)))]
-    top = int(np.argmax(rms))
-    return float(k[top]), float(rms[top] / far) if far > 0 else float("inf")
+def amplification(runs: dict[float, Outcome], part: str, measure: Measure = rms) -> tuple[float, float]:
+    """Where that amplitude of a part is largest, in N/m, and how many times the one at 3e8 N/m."""
+    k, amplitude = curve(runs, part, measure)
+    far = amplitude[int(np.argmin(np.abs(k - FAR)))]
+    top = int(np.argmax(amplitude))
+    return float(k[top]), float(amplitude[top] / far) if far > 0 else float("inf")
 
 
 def _amplified(runs: dict[float, Outcome]) -> Statement:

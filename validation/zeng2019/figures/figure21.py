@@ -11,12 +11,21 @@ from scipy.stats import spearmanr
 from validation.piece import Found, Piece
 from validation.zeng2019.drawing.contact_figure import contact_figure
 from validation.zeng2019.figures.figure16 import RANK, zones_and_motion
-from validation.zeng2019.runs.cases import NAMED_CASING_SUPPORTS, casing_sweep, on_casing_support, outcomes, readings
+from validation.zeng2019.meanings import DIMENSION
+from validation.zeng2019.runs.cases import (
+    NAMED_CASING_SUPPORTS,
+    PRINTED,
+    SCALED,
+    casing_sweep,
+    on_casing_support,
+    outcomes,
+    readings,
+)
 from validation.zeng2019.runs.measures import rubbing
 from validation.zeng2019.runs.outcome import Outcome, outcome_of
 from validation.zeng2019.section import Section
 from validation.zeng2019.size import Size
-from validation.zeng2019.statement import UNKNOWABLE, Statement, power, yes_or_no
+from validation.zeng2019.statement import EXPERIMENT, UNKNOWABLE, Statement, power, yes_or_no
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,8 +50,27 @@ def statements(size: Size, found: Found) -> Sequence[Statement]:
     both = {reading: rubbing(outcomes(casing_sweep(size, reading), found)) for reading in readings(size)}
     return [
         *(_area(reading, runs) for reading, runs in both.items()),
+        _softer(size, both[PRINTED]),
         *zones_and_motion([run for runs in both.values() for run in runs.values()]),
     ]
+
+
+def _softer(size: Size, runs: dict[float, Outcome]) -> Statement:
+    """The printed numbers on the heavier casing, on the two supports that the paper draws."""
+    area = {k: float(runs[k].area_deg) for k in NAMED_CASING_SUPPORTS if k in runs}
+    told = " and ".join(f"{value:.1f} degrees at {power(k)} N/m" for k, value in area.items())
+    soft, stiff = (area.get(k, float("nan")) for k in NAMED_CASING_SUPPORTS)
+    return Statement(
+        statement="Each kg of the casing on a softer support than in that proportion: of the two that the paper draws, "
+        "the softer has the larger contact area.",
+        verdict=UNKNOWABLE if np.isnan(soft + stiff) else yes_or_no(soft > stiff),
+        found=f"{readings(size)[SCALED]:g} times softer, that is as printed: {told}",
+        why="The paper does not name the support on which the casing has its frequencies, and the unit of the sweep is "
+        "lost: so is the support of each kg.",
+        apart=EXPERIMENT,
+        about=(f"Casing support {SCALED}: the softer",),
+        cause=DIMENSION,
+    )
 
 
 def _area(reading: str, runs: dict[float, Outcome]) -> Statement:

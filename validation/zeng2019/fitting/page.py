@@ -101,10 +101,12 @@ def _runs(scores: Sequence[Score]) -> str:
 def _sentence(found: Score, drawn: FloatArray) -> str:
     low, high = interval(drawn)
     better = low > always(CHAOTIC, FITTED)
-    told = "It is better than chaos everywhere" if better else "So no candidate is surely better than chaos everywhere"
+    told = "On these words it is better" if better else "So no candidate is surely better than chaos everywhere"
+    held = "better than" if found.held_out > always(CHAOTIC, PREDICTED) else "no better than"
     return (
         f"The best of all has {found.accuracy:.2f} [{low:.2f}, {high:.2f}], chaos everywhere 0.50. {told}. Its score "
-        f"is the largest of many, so it is too high by selection; the held-out words give {found.held_out:.2f}."
+        f"is the largest of many, so it is too high by selection; the held-out words give {found.held_out:.2f}, {held} "
+        "chaos everywhere."
     )
 
 

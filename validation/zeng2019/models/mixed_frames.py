@@ -8,6 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rubgen.arrays import FloatArray, SparseMatrix
+from rubgen.fem.blisk import rigid_motions
 from rubgen.fem.constraints import on_springs, support_stiffness
 from rubgen.units import rad_per_s
 from validation.piece import Arrays
@@ -16,6 +17,7 @@ from validation.zeng2019.models.reduced import SHOWN, seen_frequencies, whirl
 
 BASIS = 130
 """Modes of the full blisk at rest that carry the experiment."""
+MODELS = ("consistent", "mixed", "halved")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +34,7 @@ class _Parts:
     S_disk: FloatArray
     K_sigma: FloatArray
     tips: FloatArray
+    centre: FloatArray
 
 
 def crossings_by_frame(stiffnesses: list[float], speed_rpm: float) -> Arrays:
@@ -43,18 +46,52 @@ def crossings_by_frame(stiffnesses: list[float], speed_rpm: float) -> Arrays:
     in place of 2 Omega G for the blades.
     """
     parts, speed = _parts(), rad_per_s(speed_rpm)
-    centrifugal = speed**2 * (parts.K_sigma - parts.S_blades)
-    spin = 2 * speed * parts.G_spin
-    models = {
-        "consistent": (2 * speed * (parts.G_blades + parts.G_disk), centrifugal - speed**2 * parts.S_disk),
-        "mixed": (2 * speed * parts.G_blades + spin, centrifugal),
-        "halved": (speed * parts.G_blades + spin, centrifugal),
-    }
     drawn = {
-        name: np.array([_drawn(parts, C, parts.K + K + (k - 1e8) * parts.lateral, speed, name) for k in stiffnesses])
-        for name, (C, K) in models.items()
+        name: np.array([_drawn(parts, C, _on_support(parts, K, k), speed, name) for k in stiffnesses])
+        for name, (C, K) in _models(parts, speed).items()
     }
     return {"k": np.array(stiffnesses)} | drawn
+
+
+def points_by_frame(stiffnesses: list[float], speed_rpm: float) -> Arrays:
+    """x of the disk centre (s,) once a turn over the lateral stiffness `k` (s,), with each of the same models, in m.
+
+    The answer to the preset's unbalance without rub, with the dampers of the lateral support alone. It turns with the
+    unbalance: at rest in the turning frame, circular in the inertial one.
+    """
+    parts, speed = _parts(), rad_per_s(speed_rpm)
+    machine, model = full_blisk()
+    x, y = parts.centre
+    shift = rigid_motions(model)[:, 0]
+    mass = float(shift @ (model.M @ shift))
+    force = speed**2 * machine.unbalance_kg_m
+    found: dict[str, list[float]] = {name: [] for name in MODELS}
+    for k in stiffnesses:
+        damper = 2 * machine.damping.lateral * np.sqrt(k * mass)
+        for name, (C, K) in _models(parts, speed).items():
+            stiffness = _on_support(parts, K, k)
+            if name == "consistent":
+                turned = speed * damper * (np.outer(y, x) - np.outer(x, y))
+                found[name].append(float(x @ np.linalg.solve(stiffness + turned, force * x)))
+            else:
+                dynamic = stiffness - speed**2 * parts.M + 1j * speed * (C + damper * parts.lateral)
+                found[name].append(float((x @ np.linalg.solve(dynamic, force * (x - 1j * y))).real))
+    return {"k": np.array(stiffnesses)} | {name: np.array(points) for name, points in found.items()}
+
+
+def _models(parts: _Parts, speed: float) -> dict[str, tuple[FloatArray, FloatArray]]:
+    """Damping and stiffness beside K of each of MODELS."""
+    centrifugal, spin = speed**2 * (parts.K_sigma - parts.S_blades), 2 * speed * parts.G_spin
+    made = (
+        (2 * speed * (parts.G_blades + parts.G_disk), centrifugal - speed**2 * parts.S_disk),
+        (2 * speed * parts.G_blades + spin, centrifugal),
+        (speed * parts.G_blades + spin, centrifugal),
+    )
+    return dict(zip(MODELS, made, strict=True))
+
+
+def _on_support(parts: _Parts, K: FloatArray, k: float) -> FloatArray:
+    return np.asarray(parts.K + K + (k - 1e8) * parts.lateral)
 
 
 def _parts() -> _Parts:
@@ -78,6 +115,7 @@ def _parts() -> _Parts:
         S_disk=on(model.S, of_disk),
         K_sigma=on(model.K_sigma),
         tips=V[model.tips[:, :3]].reshape(-1, BASIS),
+        centre=V[:2],
     )
 
 

@@ -34,11 +34,24 @@ def strongest(amplitudes: FloatArray, least: int = 1) -> int:
     return least + int(np.argmax(part)) if part.any() else 0
 
 
-def fractional(spectrum: FloatArray) -> float:
-    """The largest amplitude off whole orders (from 0.1 on) over the largest of all; 0 for silence."""
+def rms(run: Outcome, part: str) -> float:
+    """Rms of a part, `blisk` or `casing`, over the last 49 turns, without the mean."""
+    return float(getattr(run, f"{part}_rms"))
+
+
+def strongest_line(run: Outcome, part: str) -> float:
+    """The largest amplitude of a part at whole orders."""
+    return float(harmonics(getattr(run, f"spectrum_{part}")).max())
+
+
+def fractional(spectrum: FloatArray, least: int = 0) -> float:
+    """The largest amplitude off whole orders (from 0.1 on) over the largest of all; 0 for silence.
+
+    With `least` over the largest at the orders from that one on.
+    """
     order = np.arange(len(spectrum)) / LINES_PER_ORDER
     off = (np.abs(order - np.round(order)) > CLOSE) & (order >= 0.1)
-    top = float(spectrum[order >= 0.1].max())
+    top = float(harmonics(spectrum)[least - 1 :].max() if least else spectrum[order >= 0.1].max())
     return float(spectrum[off].max()) / top if top > 0 else 0.0
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from validation.zeng2019.runs.measures import EYE, class_counts, height, looks_regular, motion_of, scatter
 from validation.zeng2019.runs.outcome import Outcome
-from validation.zeng2019.statement import AGREES, DIFFERS, TIPS, UNKNOWABLE, Statement, by_share
+from validation.zeng2019.statement import AGREES, DIFFERS, TIPS, UNKNOWABLE, Statement, by_share, yes_or_no
 
 SEEN = 0.05
 """A class belongs to those among which a motion switches when at least this share of the runs has it."""
@@ -64,16 +64,26 @@ def switching(
     good = [run for run in runs.values() if run.ok]
     meant = MEMBERS | ({CHAOTIC: ("chaotic",)} if MULTIPLE in words else {})
 
+    def rare(judged_part: str, least: float) -> list[str]:
+        counts = {word: sum(motion_of(run, judged_part) in meant[word] for run in good) for word in words}
+        return [word for word, count in counts.items() if count < least]
+
     def judged(judged_part: str) -> tuple[str, str]:
-        shares = {word: sum(motion_of(run, judged_part) in meant[word] for run in good) for word in words}
-        missing = [word for word, count in shares.items() if count < SEEN * len(good)]
+        missing = rare(judged_part, SEEN * len(good))
         told = f"; {' and '.join(missing)} too rare" if missing else ""
         return UNKNOWABLE if not good else DIFFERS if missing else AGREES, _found(runs, judged_part, every) + told
 
     named = f"{', '.join(words[:-1])} and {words[-1]}"
     verdict, found = judged(part)
-    statement = f"{where}: the {part} switches {'among' if len(words) > 2 else 'between'} {named} motion."
-    return with_tips(part, Statement(statement=statement, verdict=verdict, found=found, why=why), judged)
+    first = Statement(
+        statement=f"{where}: the {part} switches {'among' if len(words) > 2 else 'between'} {named} motion.",
+        verdict=verdict,
+        found=found,
+        why=why,
+        by_eye=yes_or_no(not rare(part, 1)) if good and verdict == DIFFERS else "",
+        other_bound=f"one run, not {100 * SEEN:.0f} % of them, as the bound of what occurs",
+    )
+    return with_tips(part, first, judged)
 
 
 def with_tips(part: str, first: Statement, judged: Callable[[str], tuple[str, str]]) -> list[Statement]:
