@@ -39,7 +39,8 @@ CALM_RPM = 12300.0
 AS_IT_IS, EVEN, ODD = "as it is", "even shapes only", f"{ODD_NODES} nodes"
 SMOOTH, CHORDS, ODD_CHORDS = "smooth", "chords", f"chords, {ODD_NODES} nodes"
 FRAMES = Piece(crossings_by_frame, (SWEPT, SUPPORT_RPM))
-POINTS = Piece(points_by_frame, (SWEPT, SUPPORT_RPM))
+FINE = [8e7 + 1e6 * i for i in range(171)]
+POINTS = Piece(points_by_frame, (FINE, SUPPORT_RPM))
 
 
 def _scenario(size: Size) -> Scenario:
@@ -85,12 +86,11 @@ def _other_modes(size: Size) -> dict[int, Piece]:
 
 
 def pieces(size: Size) -> Sequence[Piece]:
-    """Nine runs, one set of frequencies; the twin takes no part."""
-    return (
-        []
-        if size.machine == TWIN
-        else [FRAMES, *(piece for made in (_runs, _on_both_surfaces, _other_modes) for piece in made(size).values())]
-    )
+    """Nine runs, and two sets of lines by model; the twin takes no part."""
+    if size.machine == TWIN:
+        return []
+    runs = (_runs(size), _on_both_surfaces(size), _other_modes(size))
+    return [FRAMES, POINTS, *(piece for made in runs for piece in made.values())]
 
 
 def odd_share(amplitudes: np.ndarray) -> float:

@@ -64,7 +64,7 @@ def statements(size: Size, found: Found) -> Sequence[Statement]:
 
 def _heavier(size: Size, found: Found) -> Statement:
     """Area and blades at one speed, as the rub gets heavier: an experiment on why they part over the speed."""
-    ranks, told = {}, []
+    ranks, told = dict[float, float](), list[str]()
     for rpm, pieces_ in tighter(size).items():
         runs = [run for run in (outcome_of(found(piece)) for piece in pieces_) if run.ok and run.rub]
         ranks[rpm], area, blades = _area_and_blades(runs)
