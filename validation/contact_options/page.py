@@ -14,7 +14,7 @@ COMMAND = "python -m validation.contact_options"
 
 def page(options: Sequence[Found], heavy: Sequence[Found], chords: str, factor: float) -> str:
     """The page: options run by run, `chords` (see `chords_section`), the liner, heavy rub, how far blades shorten."""
-    parts = [_introduction(), _options(options), chords, _liner(options), _heavy(heavy), _draw_in(factor)]
+    parts = [_introduction(), _options(options), chords, _liner(options), _heavy(heavy), _draw_in(factor, options)]
     return "\n\n".join(part.strip() for part in parts) + "\n"
 
 
@@ -41,10 +41,17 @@ def _options(found: Sequence[Found]) -> str:
 {table(header, rows)}
 
 Impulses are mean and standard deviation over the turns of the record. The half thickness of the casing, 0.65 mm in
-the preset, moves the line of action of friction by 0.16 % of the radius. It changes no class of these runs. In
+the preset, moves the line of action of friction by 0.16 % of the radius. It changes {_changed(found)}. In
 chaotic motion every change of the last digit leads to another trajectory. The row of the chords has unbalance and
 clearance fitted for chords: see below.
 """
+
+
+def _changed(found: Sequence[Found]) -> str:
+    """In how many cases the half thickness has another class of motion than the default law."""
+    plain = {each.case: each.motion for each in found if each.option == "none"}
+    moved = [each.case for each in found if each.option == "half_thickness" and each.motion != plain[each.case]]
+    return f"the class of {', '.join(moved)}" if moved else "no class of these runs"
 
 
 def chords_section(artefact: Artefact, matched: str) -> str:
@@ -127,7 +134,8 @@ was always this large. With blades bent by several millimetres the model is no l
 """
 
 
-def _draw_in(factor: float) -> str:
+def _draw_in(factor: float, light: Sequence[Found]) -> str:
+    largest = 1e6 * max(each.shortened for each in light)
     rows = [[f"{bent:g}", f"{1e6 * factor * (1e-3 * bent) ** 2:.2g}"] for bent in (0.1, 0.5, 1, 2, 5, 8)]
     return f"""
 ## Blades do not grow shorter
@@ -141,9 +149,9 @@ tip in its softest direction.
 
 The clearance is 272 um. The tables above show the largest deflection of each run and the draw-in of the tip at this
 deflection. The deflection is taken from the sections and from the eight turns around the hardest touch, without the
-motion of the disk. With the friction of the default recipe the draw-in is at most a few micrometres, so the model
-neglects it. If blades chatter by more than 2 mm, it is 17 um and more, and a real gap opens when a blade swings
-widest. The labels of such runs describe the linear model.
+motion of the disk. In the runs of the first table the draw-in is at most {largest:.2g} um, so the model neglects it. If
+blades chatter by more than 2 mm, it is 17 um and more, and a real gap opens when a blade swings widest. The labels of
+such runs describe the linear model.
 """
 
 
