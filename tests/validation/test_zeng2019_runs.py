@@ -297,13 +297,13 @@ def test_a_class_that_occurs_once_is_seen_by_another_bound():
 
 
 def test_runs_of_another_class_than_the_commonest_are_counted():
-    names = ("period-1", "period-1", "chaotic", "period-k")
-    assert uncommon({float(i): made_up(motion_centre=name) for i, name in enumerate(names)}, "blisk") == (2, 4)
+    names = ("period-1", "period-1", "period-1", "chaotic", "period-k")
+    assert uncommon({float(i): made_up(motion_centre=name) for i, name in enumerate(names)}, "blisk") == (2, 5)
 
 
 def test_fractional_lines_are_measured_against_the_orders_asked_for():
     spectrum = np.zeros(1001)
-    spectrum[100], spectrum[150], spectrum[300] = 1.0, 1e-4, 2e-4
+    spectrum[100], spectrum[150], spectrum[200], spectrum[300] = 1.0, 1e-4, 2e-4, 1e-5
     assert fractional(spectrum) == pytest.approx(1e-4)
     assert fractional(spectrum, 2) == pytest.approx(0.5)
 
