@@ -5,6 +5,7 @@ import pytest
 from mcap.reader import make_reader
 
 from rubgen import make_scenario, simulate
+from rubgen.dataset.reading.replaying import replay_of_mcap
 from rubgen.io.mcap import check_mcap, write_mcap
 from rubgen.io.parquet.read import read_table
 from rubgen.io.parquet.write import write_parquet
@@ -63,6 +64,8 @@ def test_files_hold_the_labels_over_time(run, tmp_path):
         times = [message.log_time for _, _, message in make_reader(stream).iter_messages(topics=["/labels/motion"])]
     onset = run.labels.history.changes[1].time - run.recording.start_seconds
     assert times == [0, pytest.approx(onset * 1e9, abs=1)]
+    begin = replay_of_mcap(tmp_path / "run.mcap").replay.recording.start_seconds
+    assert begin == pytest.approx(run.recording.start_seconds, abs=run.response.dt)
     write_parquet(run, tmp_path / "run.parquet")
     row = read_table(tmp_path / "run.parquet").to_pylist()[0]
     assert row["change_rub"] == [0, 1]

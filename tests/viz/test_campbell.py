@@ -83,3 +83,13 @@ def test_the_figure_says_machine_frames_and_directions(model):
     points = next(line for line in figure.axes[2].lines if line.get_marker() == "o").get_xydata()
     orders = points[:, 1] / (points[:, 0] / 60) / model.machine.casing.lobes
     np.testing.assert_allclose(orders, np.rint(orders), atol=1e-9)
+
+
+def test_legends_cover_no_panel(model, monkeypatch):
+    monkeypatch.setattr("rubgen.viz.figures.campbell_diagram.SPEEDS", 9)
+    figure = campbell(model)
+    figure.draw_without_rendering()
+    panels = [axes.get_window_extent() for axes in figure.axes]
+    legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
+    assert len(legends) == 2
+    assert not any(legend.get_window_extent().overlaps(panel) for legend in legends for panel in panels)

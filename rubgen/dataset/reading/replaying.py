@@ -20,6 +20,7 @@ from rubgen.io.mcap.read import McapRun
 from rubgen.io.parquet.read import read_table
 from rubgen.io.parquet.words import with_words
 from rubgen.measurement.blade_tip_timing import TipTimes
+from rubgen.measurement.chain import start_seconds
 from rubgen.measurement.channel import NUMBERS, TEXTS, Channel, Recording
 from rubgen.measurement.motion import ContactIntervals
 from rubgen.scenario import Scenario
@@ -92,6 +93,7 @@ def replay_of_recorded(run: McapRun, *, source: str = "the file") -> Replay:
         rotation_angle=float(np.mod(-run.once_per_rev[:1].sum() * scenario.operation.speed_rad_per_s, 2 * np.pi)),
         channels=channels,
         once_per_rev=run.once_per_rev,
+        start_seconds=_first_sample(scenario),
         tip_timing={name: _timing(columns) for name, columns in run.tip_timing.items()},
     )
     return Replay(
@@ -169,6 +171,14 @@ def _choose(data: DataSet, run_id: str | None, where: str | None) -> tuple[str, 
         raise UserError(f"{data.layout.root}: no run {what}; see `rubgen info {data.layout.root}`")
     more = f"{len(found)} runs meet the condition, {found[0]} is shown" if where and len(found) > 1 else ""
     return found[0], (more,) if more else ()
+
+
+def _first_sample(scenario: Scenario) -> float:
+    """Return the time of the first sample from the start of the record in s, to one step."""
+    operation = scenario.operation
+    record = operation.rotation.time_of(2 * np.pi * operation.recorded_turns)
+    steps = operation.recorded_turns * operation.steps_per_turn
+    return start_seconds(scenario.sensing, scenario.signal_seconds, steps=steps, dt=record / steps)
 
 
 def _channel(name: str, values: Any, run: McapRun) -> Channel:

@@ -43,7 +43,7 @@ def campbell(
     low, high = speeds_rpm or (0.0, max(HIGHEST_RPM, ABOVE_CRITICAL * model.critical_speed_rpm))
     speeds = np.linspace(low, high, SPEEDS)
     modes = [blisk_modes(model, rad_per_s(max(speed, SLOWEST_RPM))) for speed in speeds]
-    figure = new_figure(14.0, 5.2)
+    figure = new_figure(14.0, 5.4)
     whirl, waves, casing = figure.subplots(1, 3)
     _whirl(whirl, model, speeds, modes, frequencies_hz)
     _waves(waves, model, speeds, modes, frequencies_hz)
@@ -92,7 +92,7 @@ def _whirl(
             _mark(axes, met, met / 60, f"{met:,.0f} rev/min, {damping:.1f} %")
     axes.axvline(critical, color=VERMILION, linewidth=0.8, linestyle=":", zorder=1)
     handles = [Line2D([], [], color=BLUE, label="forward"), Line2D([], [], color=ORANGE, ls="--", label="backward")]
-    axes.legend(handles=handles, loc="upper left", fontsize=8, frameon=False)
+    _legend(axes, handles)
     axes.set_title(f"Whirl, inertial frame; undamped critical {critical:,.0f} rev/min", fontsize=9.5, pad=14)
     _finish(axes, speeds, band, "Frequency of one nodal diameter, Hz")
 
@@ -111,11 +111,9 @@ def _waves(
             for met in crossings(speeds, seen, 0.0):  # there the wave stands still in the inertial frame
                 axes.plot(met, waves * met / 60, "o", color=VERMILION, markersize=3.5, zorder=4)
     ends = [(0, colors[0]), (max(every), colors[-1])]
-    axes.legend(
-        handles=[Line2D([], [], color=color, label=f"ND {waves}") for waves, color in ends]
-        + [Line2D([], [], ls="none", marker="o", color=VERMILION, ms=4, label="backward, order = ND")],
-        loc="upper left", fontsize=8, frameon=False,
-    )  # fmt: skip
+    handles = [Line2D([], [], color=color, label=f"ND {waves}") for waves, color in ends]
+    crossing = Line2D([], [], ls="none", marker="o", color=VERMILION, ms=4, label="backward, order = ND")
+    _legend(axes, [*handles, crossing])
     axes.set_title("Blades, turning frame, all nodal diameters", fontsize=9.5, pad=14)
     _finish(axes, speeds, band, "Frequency, Hz")
 
@@ -156,6 +154,13 @@ def _orders(axes: Axes, speeds: FloatArray, band: Band, orders: range | list[int
             f"{order}", (end, order * end / 60), xytext=(0, 2) if inside else (3, 0), textcoords="offset points",
             ha="center" if inside else "left", va="bottom" if inside else "center", fontsize=8, color=INK,
         )  # fmt: skip
+
+
+def _legend(axes: Axes, handles: list[Line2D]) -> None:
+    """Put a legend below the panel, where it covers nothing."""
+    axes.legend(
+        handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=len(handles), fontsize=8, frameon=False
+    )
 
 
 def _finish(axes: Axes, speeds: FloatArray, band: Band, text: str) -> None:

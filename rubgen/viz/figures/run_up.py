@@ -1,10 +1,13 @@
 """Draw a run whose speed changes: spectra of the whirl over the speed, and the answer to the unbalance."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rubgen.arrays import ComplexArray, FloatArray
+from rubgen.units import rev_per_min
 from rubgen.viz.colors import BLUE, VERMILION
 from rubgen.viz.derived import shaft_orbit
 from rubgen.viz.figures.style import head, label_axes, new_figure
@@ -20,8 +23,8 @@ def waterfall(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> 
     """Draw full spectra of the orbit over the speed: forward orders to the right, backward ones to the left.
 
     Each line is of 16 turns at equal angles. A circle that turns with the rotation is order 1, against it order -1. The
-    first touch is marked. `speeds_rpm` is the range that is shown, in rev/min. Raises ValueError where no pair of
-    proximity probes was recorded, or the speed is steady.
+    first touch is marked, or a line of text says where it is. `speeds_rpm` is the range that is shown, in rev/min.
+    Raises ValueError where no pair of proximity probes was recorded, or the speed is steady.
     """
     speeds, turns = whirl_by_turn(replay)
     count = len(turns) // BLOCK_TURNS
@@ -40,18 +43,21 @@ def waterfall(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> 
     label_axes(axes, "Order $f / f_r$ (backward on the left, forward on the right)", "Speed, rev/min")
     axes.set_xticks(range(-HIGHEST_ORDER, HIGHEST_ORDER + 1))
     axes.set_ylim(speeds_rpm)
-    onset = _onset(replay)
-    if onset is not None and _is_shown(onset, speeds_rpm):
+    low, high = sorted(axes.get_ylim())
+    onset, elsewhere = _first_touch(replay, (low, high))
+    if onset is not None:
         axes.axhline(onset, color=VERMILION, linewidth=1.2)
-        axes.text(-HIGHEST_ORDER, onset, " first touch", color="white", fontsize=9, va="bottom")
-    head(figure, f"{replay.title}; {replay.headline}")
+        side = "top" if onset > (low + high) / 2 else "bottom"
+        axes.text(-HIGHEST_ORDER, onset, " first touch", color="white", fontsize=9, va=side)
+    head(figure, f"{replay.title}; {replay.headline}", elsewhere)
     return figure
 
 
 def bode(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> Figure:
-    """Draw amplitude and phase of the forward 1X whirl over the speed, turn by turn, with the first touch marked.
+    """Draw amplitude and phase of the forward 1X whirl over the speed, turn by turn.
 
-    The phase is that of the whirl behind the mark of the once-per-turn pulse, in degrees. `speeds_rpm` is the range
+    The first touch is marked, or a line of text says where it is. The phase is that of the whirl behind the mark of the
+    once-per-turn pulse, in degrees. `speeds_rpm` is the range
     that is shown, in rev/min. Raises ValueError where no pair of proximity probes was recorded, or the speed is steady.
     """
     speeds, turns = whirl_by_turn(replay)
@@ -62,12 +68,13 @@ def bode(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> Figur
     lower.plot(speeds, np.degrees(np.unwrap(np.angle(whirl))), color=BLUE, linewidth=0.9)
     label_axes(upper, "", "Forward 1X, µm")
     label_axes(lower, "Speed, rev/min", "Phase, degrees")
-    for axes in (upper, lower):
-        axes.set_xlim(speeds_rpm)
-        onset = _onset(replay)
-        if onset is not None and _is_shown(onset, speeds_rpm):
+    upper.set_xlim(speeds_rpm)
+    low, high = sorted(upper.get_xlim())
+    onset, elsewhere = _first_touch(replay, (low, high))
+    if onset is not None:
+        for axes in (upper, lower):
             _mark_onset(axes, onset)
-    head(figure, f"{replay.title}; {replay.headline}")
+    head(figure, f"{replay.title}; {replay.headline}", elsewhere)
     return figure
 
 
@@ -99,13 +106,33 @@ def forward_1x(turns: ComplexArray) -> ComplexArray:
     return amplitude
 
 
-def _onset(replay: Replay) -> float | None:
-    found = replay.labels["onset_speed_rpm"]
-    return float(str(found)) if found is not None else None
+def _first_touch(replay: Replay, shown: tuple[float, float]) -> tuple[float | None, str]:
+    """Return the speed of the first touch in rev/min if it is to be marked, and else a sentence that says where it is.
+
+    It is not marked where it lies before the first sample, whatever its speed, or outside of the range `shown`.
+    """
+    labels: dict[str, Any] = replay.labels
+    onset = labels["onset_speed_rpm"]
+    if onset is None:
+        return None, ""
+    before, at = replay.recording.start_seconds - _time_of_first_touch(replay), f"at {onset:,.0f} rev/min"
+    if before > 0:
+        return None, f"The first touch lies before these signals: {before:.2f} s before they begin, {at}"
+    if not shown[0] <= onset <= shown[1]:
+        return None, f"The first touch lies outside of these speeds, {at}"
+    return onset, ""
 
 
-def _is_shown(speed: float, speeds_rpm: tuple[float, float] | None) -> bool:
-    return speeds_rpm is None or speeds_rpm[0] <= speed <= speeds_rpm[1]
+def _time_of_first_touch(replay: Replay) -> float:
+    """Return its time from the start of the record, s: where the rub begins, or within the first turn of the record."""
+    labels: dict[str, Any] = replay.labels
+    changes = zip(labels["change_times_s"], labels["change_rub"], strict=True)
+    begin = next(float(time) for time, rub in changes if rub)
+    if begin > 0:
+        return begin
+    rotation = replay.scenario.operation.rotation
+    turn = np.linspace(0, 2 * np.pi / rotation.start, SAMPLES_PER_TURN)
+    return float(turn[np.argmin(np.abs(rev_per_min(rotation.speed(turn)) - labels["onset_speed_rpm"]))])
 
 
 def _mark_onset(axes: Axes, onset: float) -> None:
