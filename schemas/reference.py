@@ -195,7 +195,11 @@ def _cell(text: str) -> str:
 
 
 def _command(name: str, command: App) -> str:
-    lines = [f"## `rubgen {name}`\n\n{command.help}\n", "| argument | meaning | default |", "|---|---|---|"]
+    lines = [
+        f"## `rubgen {name}`\n\n{inspect.cleandoc(command.help or '')}\n",
+        "| argument | meaning | default |",
+        "|---|---|---|",
+    ]
     for each in command.assemble_argument_collection():
         default = each.field_info.default
         shown = "" if default in (None, False, inspect.Parameter.empty) else f"`{default}`"

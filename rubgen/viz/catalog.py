@@ -17,10 +17,12 @@ from typing import TYPE_CHECKING, Any, Self
 import pyarrow as pa
 
 from rubgen.errors import UserError
+from rubgen.viz.entities.signals import TIMELINE
 from rubgen.viz.rerun import APPLICATION
 from rubgen.viz.viewer import HOST
 
 if TYPE_CHECKING:
+    from rerun.blueprint import View
     from rerun.catalog import DatasetEntry
 
 Values = Mapping[str, Any]
@@ -96,13 +98,19 @@ class Catalog:
         if places:
             self.dataset.register(places, layer_name=group).wait()
 
-    def arrange(self, columns: Sequence[tuple[str, str]]) -> None:
-        """Show these columns of the table first, each a group and a name, in this order, under their names."""
-        from rerun.blueprint.table import Column, TableBlueprint, TableLayout
+    def arrange(self, columns: Sequence[tuple[str, str]], previews: Sequence[View] = ()) -> None:
+        """Show these columns of the table first, each a group and a name, in this order, under their names.
+
+        - previews: views that each row shows of its recording.
+        """
+        from rerun.blueprint.table import Column, PreviewCell, PreviewsConfig, TableBlueprint, TableLayout
 
         shown = [Column(SHOWN.format(group, name), name=name if group == "run" else f"{group} {name}")
                  for group, name in columns]  # fmt: skip
-        layout = TableLayout(columns=[Column(LINK, name="open"), *shown, Column(SEGMENT, visible=False)])
+        link = Column(LINK, name="open", column_type=PreviewCell(*previews) if previews else None)
+        layout = TableLayout(columns=[link, *shown, Column(SEGMENT, visible=False)])
         path = self.folder / "table.rbl"
-        TableBlueprint(table_layout=layout, sort_by=SEGMENT).save(APPLICATION, path)
+        TableBlueprint(table_layout=layout, sort_by=SEGMENT, previews_config=PreviewsConfig(timeline=TIMELINE)).save(
+            APPLICATION, path
+        )
         self.dataset.register_blueprint(path.as_uri(), segment_table=True)

@@ -1,10 +1,14 @@
 """Arrange the views of a replay in the Rerun viewer."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
-from rubgen.measurement.channel import Channel
+from rubgen.measurement.channel import Channel, quantity_key
+from rubgen.sensors.kinds.proximity import Proximity
+from rubgen.sensors.sensor import SampledSensor
 from rubgen.viz.entities.machine_shape import drawing_factor
 from rubgen.viz.entities.orbit import Bounds, orbit_bounds, section_bounds
 from rubgen.viz.entities.orders import spectrum_channels
@@ -16,6 +20,8 @@ SHADE = np.uint32(0x80808066)
 """Colour of the preview behind the samples."""
 MOST_NAMES = 8
 """Longer legends hide the lines."""
+ORBIT = ["$origin/**", "- /orbit/plane/scale/section"]
+"""Path, points once a turn, and the scale of the path."""
 PLAYBACK = 0.02
 """Speed of playback: a turn of 6 ms takes 0.3 s."""
 
@@ -37,6 +43,22 @@ def arrangement(replay: Replay, *, full: bool = False) -> rrb.Blueprint:
         rrb.BlueprintPanel(state="collapsed"),
         auto_views=False,
     )
+
+
+def previews(sensors: Sequence[SampledSensor]) -> tuple[rrb.View, ...]:
+    """Return small views of a run for a table: the orbit of all drawn turns, and the acceleration or first quantity.
+
+    There is no orbit without two proximity probes. Recordings of these sensors have what the views show.
+    """
+    hidden = rrb.PlotLegend(visible=False)
+    keys = [quantity_key(sensor.description.quantity) for sensor in sensors]
+    chosen = "acceleration" if "acceleration" in keys else keys[0]
+    series = rrb.TimeSeriesView(origin=f"/preview/{chosen}", name=chosen.replace("_", " "), plot_legend=hidden)
+    if sum(isinstance(sensor, Proximity) for sensor in sensors) < 2:
+        return (series,)
+    ever = rrb.TimeRangeBoundary.infinite()
+    whole = rrb.VisibleTimeRange(TIMELINE, start=ever, end=ever)
+    return (rrb.Spatial2DView(origin="/orbit", contents=ORBIT, name="orbit", time_ranges=whole), series)
 
 
 def _has_frames(replay: Replay) -> bool:
@@ -149,7 +171,7 @@ def _orbits(replay: Replay) -> rrb.Tabs:
     start, end = _near(replay, ORBIT_TURNS)
     orbit = rrb.Spatial2DView(
         origin="/orbit",
-        contents=["$origin/**", "- /orbit/plane/scale/section"],
+        contents=ORBIT,
         name="orbit of the disk centre",
         visual_bounds=_square(orbit_bounds(replay)),
         time_ranges=rrb.VisibleTimeRange(TIMELINE, start=start, end=end),

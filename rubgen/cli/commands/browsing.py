@@ -14,6 +14,7 @@ from rubgen.progress import count, step
 from rubgen.viz.catalog import Catalog
 from rubgen.viz.rerun import id_in, write_replay
 from rubgen.viz.viewer import has_screen, start_viewer
+from rubgen.viz.views import previews
 
 
 def browse_command(directory: Path, where: str | None, predictions: Path | None, *, web: bool, serve: bool) -> int:
@@ -62,7 +63,7 @@ def _fill(catalog: Catalog, data: DataSet, run_ids: Sequence[str], rows: Rows) -
         for group, values in rows.groups.items():
             catalog.add_columns(group, {ids[run_id] or run_id: each for run_id, each in values.items()})
         catalog.add_recordings([paths[run_id] for run_id, found in ids.items() if found])
-        catalog.arrange(rows.columns)
+        catalog.arrange(rows.columns, previews(data.recipe.sensing.set.sampled))
     return [run_id for run_id in data.ok.index if run_id in ids and not ids[run_id]]
 
 
