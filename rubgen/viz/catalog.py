@@ -109,7 +109,7 @@ class Catalog:
                  for group, name in columns]  # fmt: skip
         link = Column(LINK, name="open", column_type=PreviewCell(*previews) if previews else None)
         layout = TableLayout(columns=[link, *shown, Column(SEGMENT, visible=False)])
-        path = self.folder / "table.rbl"
+        path = self.folder / f"table-{len(previews)}.rbl"
         TableBlueprint(table_layout=layout, sort_by=SEGMENT, previews_config=PreviewsConfig(timeline=TIMELINE)).save(
             APPLICATION, path
         )

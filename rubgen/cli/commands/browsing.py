@@ -26,7 +26,8 @@ def browse_command(directory: Path, where: str | None, predictions: Path | None,
     - serve: without a viewer.
 
     Recordings that the set does not have are made while the viewer is open, in the order of the table, in a temporary
-    folder. Returns the exit code 0.
+    folder. The viewer keeps what it once saw of a recording, so rows have previews only when all recordings are there.
+    Returns the exit code 0.
     """
     if web and serve:
         raise UserError("--web and --serve: one opens a viewer and the other none; give one of them")
@@ -43,7 +44,9 @@ def browse_command(directory: Path, where: str | None, predictions: Path | None,
         say(f"{len(run_ids)} runs at {catalog.url}")
         viewer = None if serve else start_viewer(catalog.url, web=web)
         try:
-            _make(catalog, directory, missing, viewer)
+            if _make(catalog, directory, missing, viewer):
+                catalog.arrange(rows.columns, previews(data.recipe.sensing.set.sampled))
+                say("all recordings are there; reload the table, with the arrow beside its name, to see previews")
             while viewer is None or viewer.poll() is None:
                 time.sleep(0.2)
         except KeyboardInterrupt:
@@ -63,17 +66,19 @@ def _fill(catalog: Catalog, data: DataSet, run_ids: Sequence[str], rows: Rows) -
         for group, values in rows.groups.items():
             catalog.add_columns(group, {ids[run_id] or run_id: each for run_id, each in values.items()})
         catalog.add_recordings([paths[run_id] for run_id, found in ids.items() if found])
-        catalog.arrange(rows.columns, previews(data.recipe.sensing.set.sampled))
-    return [run_id for run_id in data.ok.index if run_id in ids and not ids[run_id]]
+        missing = [run_id for run_id in data.ok.index if run_id in ids and not ids[run_id]]
+        catalog.arrange(rows.columns, () if missing else previews(data.recipe.sensing.set.sampled))
+    return missing
 
 
-def _make(catalog: Catalog, directory: Path, run_ids: Sequence[str], viewer: subprocess.Popen[bytes] | None) -> None:
-    """Make these recordings and add each to the catalog, until the viewer is closed."""
+def _make(catalog: Catalog, directory: Path, run_ids: Sequence[str], viewer: subprocess.Popen[bytes] | None) -> bool:
+    """Make these recordings and add each to the catalog, until the viewer is closed. Return whether all were made."""
     with step("make recordings", "runs"):
         for number, run_id in enumerate(run_ids):
             if viewer is not None and viewer.poll() is not None:
-                return
+                return False
             path = catalog.folder / f"{run_id}.rrd"
             write_replay(find_replay(directory, run_id).replay, path, named=run_id)
             catalog.add_recordings([path])
             count(number + 1, len(run_ids))
+    return bool(run_ids)

@@ -6,9 +6,14 @@ import sys
 import pandas as pd
 import pytest
 from rerun.catalog import CatalogClient
+from rerun.chunk import RrdReader
 
 import rubgen
 from rubgen.cli import main
+from rubgen.sensors.kinds.proximity import Proximity
+from rubgen.sensors.load import load_sensor_set
+from rubgen.viz.catalog import Catalog
+from rubgen.viz.views import previews
 
 ADDRESS = re.compile(r"(\d+) runs at (rerun\+http://127\.0\.0\.1:\d+)/entry/(\w+)")
 
@@ -57,6 +62,32 @@ def test_each_run_is_a_row_with_its_parameters_labels_and_recording(copied_shown
     assert list(table["property:labels:motion"]) == list(runs["motion"])  # from the recordings themselves
     assert table["time:end"].notna().all()
     assert sorted(copied_shown_set.rglob("*")) == before
+
+
+def test_rows_have_previews_once_all_recordings_are_there(copied_shown_set, table_of, monkeypatch):
+    """The viewer keeps an empty preview for ever, so a table that lacks a recording has none until it is made."""
+    asked, arrange = [], Catalog.arrange
+
+    def noted(catalog, columns, previews=()):
+        asked.append([view.origin for view in previews])
+        arrange(catalog, columns, previews)
+
+    monkeypatch.setattr(Catalog, "arrange", noted)
+    table_of(copied_shown_set)
+    (path, *_) = sorted(copied_shown_set.glob("rrd/*/*.rrd"))
+    found = {chunk.entity_path for chunk in RrdReader(path).stream().to_chunks()}
+    assert asked == [["/orbit", "/preview/acceleration"]]
+    assert all(any(f"{entity}/".startswith(f"{origin}/") for entity in found) for origin in asked[0])
+    path.unlink()
+    table_of(copied_shown_set)
+    assert asked[1:] == [[], asked[0]]
+
+
+def test_previews_are_of_what_the_sensors_record():
+    sensors = load_sensor_set("default").sampled
+    probes = [each for each in sensors if isinstance(each, Proximity)]
+    assert [view.origin for view in previews(sensors)] == ["/orbit", "/preview/acceleration"]
+    assert [view.origin for view in previews(probes[:1])] == ["/preview/displacement"]
 
 
 def test_answers_of_a_model_stand_beside_the_truth(shown_set, table_of, tmp_path):
