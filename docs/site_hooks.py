@@ -1,4 +1,4 @@
-"""Where lines of the site may break: a number stays with its error, a long name in a table breaks after _ and /."""
+"""Say where lines of tables may break: never between a number and its error, in long names after _, / and a dot."""
 
 import re
 
@@ -9,7 +9,7 @@ def on_page_markdown(markdown: str, **_: object) -> str:
 
 
 def on_page_content(html: str, **_: object) -> str:
-    """Let names and paths in the cells of tables break after an underscore or a slash."""
+    """Let names and paths in the cells of tables break after an underscore, a slash or a dot."""
     return re.sub(r"<td[^>]*>.*?</td>", _with_breaks, html, flags=re.DOTALL)
 
 
@@ -18,4 +18,6 @@ def _with_errors(row: re.Match[str]) -> str:
 
 
 def _with_breaks(cell: re.Match[str]) -> str:
-    return re.sub(r"(?<=<code>)[^<]+(?=</code>)", lambda name: re.sub(r"([_/])(?=.)", r"\1<wbr>", name[0]), cell[0])
+    return re.sub(
+        r"(?<=<code>)[^<]+(?=</code>)", lambda name: re.sub(r"(_|/|\.(?=[a-zA-Z]))(?=.)", r"\1<wbr>", name[0]), cell[0]
+    )
