@@ -35,6 +35,7 @@ FAULTS: dict[str, dict[str, Any]] = {
     "crack": {"crack_loss": 0.3, "speed_rpm": 4300, "gravity_m_per_s2": 9.81},
     "cracked-blade": {"stiffness_loss": 0.2},
     "lost-tip": {"lost_kg": 0.005},
+    "lost-blade": {"clearance_m": 4e-3},
 }
 """Keys of each kind of fault, beside keys of the machine where it needs others."""
 SHARED = ("speed_rpm", "gravity_m_per_s2")

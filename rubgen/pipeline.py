@@ -118,7 +118,7 @@ def simulate(scenario: Scenario) -> Run:
         rng = np.random.default_rng(np.random.SeedSequence(scenario.seed, spawn_key=(scenario.drawn_as,)))
         recording = measure(
             response, sensing, seconds=seconds, rng=rng, surroundings=scenario.surroundings, frame=scenario.frame,
-            faults=scenario.machine.faults,
+            faults=scenario.machine.faults, lost=scenario.machine.lost_blades,
         )  # fmt: skip
         return Run(scenario=scenario, response=response, recording=recording, labels=label(response))
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigh
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.linalg.threads import one_blas_thread
 from rubgen.reduction import ReducedModel
 
 FIRST_OF_CASING, FIRST_OF_TIPS, CENTRE = 1001, 2001, 3001
@@ -49,8 +47,7 @@ def modes_of(model: ReducedModel, highest_hz: float) -> list[ShownMode]:
     for number, hertz in enumerate(casing.frequencies_hz):
         shape = np.column_stack([casing.modes_xy[..., number], np.zeros(numbers.size)])
         found.append(ShownMode(f"casing {number + 1}", float(hertz), numbers, shape))
-    with one_blas_thread():
-        squares, vectors = eigh(model.stiffness(0.0), model.blisk.M)
+    squares, vectors = model.modes_at_rest()
     blades = model.machine.blades.count
     numbers = np.append(FIRST_OF_TIPS + np.arange(blades), CENTRE)
     (cosine, sine), moved = _directions(blades).T, model.blisk.centre[:3] @ vectors

@@ -3,6 +3,7 @@
 O_d is the disk centre.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,14 +47,18 @@ class BliskModel:
     """Centrifugal load at 1 rad/s (n,)."""
     disk_size: int
     """Number of DoFs of O_d and the disk."""
+    count: int
+    """Number of blades of the whole blisk."""
+    present: IntArray
+    """Numbers of the blades that are there (blades,)."""
     rim: IntArray
-    """DoFs of the rim node of each blade (blades, 6)."""
+    """DoFs of the rim node of each blade that is there (blades, 6)."""
     roots: IntArray
-    """DoFs of each blade's root (blades, 6)."""
+    """DoFs of its root (blades, 6)."""
     tips: IntArray
-    """DoFs of each blade's tip (blades, 6)."""
+    """DoFs of its tip (blades, 6)."""
     angles: FloatArray
-    """Polar angle of each blade (blades,), rad."""
+    """Its polar angle (blades,), rad."""
     blade_radius: FloatArray
     """Radii of a blade's nodes, m."""
     penalty: float
@@ -65,11 +70,15 @@ class BliskModel:
     beam: BeamMatrices
     """Matrices of one blade without mistuning."""
     blade_stiffness: FloatArray
-    """Stiffness of each blade over the stiffness of `beam` (blades,)."""
+    """Its stiffness over the stiffness of `beam` (blades,)."""
 
 
-def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskModel:
+def assemble_blisk(
+    disk: Disk, blades: BladeRow, support: DiskSupport, missing: Sequence[int] = ()
+) -> BliskModel:
     """Assemble the full model of the blisk, 14,478 DoFs in the preset.
+
+    The blades `missing` have no DoFs: their mass, their stiffness and their pull on the rim are not there.
 
     The supports only affect the centrifugal stress. In the steady state at 1 rad/s the blades pull at the rim and the
     rigid link fixes the bore. That state determines the disk's plane stress, the forces in the link and the link's
@@ -86,18 +95,19 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
     pitch = disk.circumferential_elements // blades.count
     plate, beam = assemble_disk(disk), blade_matrices(blades, disk.rim_radius_m)
     disk_size, n_blade = 6 + plate.M.shape[0], len(beam.f_c)
-    size = disk_size + blades.count * n_blade
-    roots = _dof(disk_size // 6 + n_blade // 6 * np.arange(blades.count))
-    bore, rim, tips = _dof(1 + plate.bore), _dof(1 + plate.rim[::pitch]), roots + n_blade - 6
-    angles = 2 * np.pi * np.arange(blades.count) / blades.count
-    equal, stiffness = np.ones(blades.count), 1 + np.array(blades.stiffness_deviations)
+    present = np.setdiff1d(np.arange(blades.count), missing)
+    size = disk_size + present.size * n_blade
+    roots = _dof(disk_size // 6 + n_blade // 6 * np.arange(present.size))
+    bore, rim, tips = _dof(1 + plate.bore), _dof(1 + plate.rim[::pitch][present]), roots + n_blade - 6
+    angles = 2 * np.pi * present / blades.count
+    equal, stiffness = np.ones(present.size), 1 + np.array(blades.stiffness_deviations)[present]
 
     penalty = float(plate.K.diagonal().max())
     arm = plate.mesh.nodes[plate.bore]
     link, joint = rigid_link(arm, bore, CENTRE, size), rim_joint(angles, rim, roots, size)
     K_apart = sp.csr_array(_blocks(plate.K, beam.K, stiffness) + penalty * (link.T @ link))
     K = sp.csr_array(K_apart + penalty * (joint.T @ joint))
-    f_c = np.concatenate([np.zeros(6), plate.f_c, *[beam.f_c] * blades.count])
+    f_c = np.concatenate([np.zeros(6), plate.f_c, *[beam.f_c] * present.size])
     fixed_centre = FixedCentreStiffness(K, support)
     static = fixed_centre.solve(f_c)
     K_plate = shell_stress_stiffness(plate.mesh, disk.material, static[6:disk_size])
@@ -111,6 +121,8 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport) -> BliskM
         K_sigma=_blocks(K_plate, beam.K_sigma, equal, link_stress_stiffness(arm, link_force)),
         f_c=f_c,
         disk_size=disk_size,
+        count=blades.count,
+        present=present,
         rim=rim,
         roots=roots,
         tips=tips,
@@ -128,12 +140,14 @@ def rigid_motions(model: BliskModel) -> FloatArray:
     """Return displacements (n, 6) of the blisk moved as a rigid body by unit u, v, w (m), th_x, th_y, th_z (rad)."""
     plate = model.plate.mesh.nodes
     x, y = np.concatenate([[0.0], plate[:, 0]]), np.concatenate([[0.0], plate[:, 1]])
-    parts = [_rigid_nodes(x, y)]
+    return np.concatenate([_rigid_nodes(x, y), *[blade_motions(model, angle) for angle in model.angles]])
+
+
+def blade_motions(model: BliskModel, angle: float) -> FloatArray:
+    """Return the displacements (DoFs of a blade, 6) of a blade at a polar angle (rad), as `rigid_motions`."""
     radius = model.blade_radius
-    for angle in model.angles:
-        in_disk_axes = _rigid_nodes(radius * np.cos(angle), radius * np.sin(angle)).reshape(-1, 6, 6)
-        parts.append((blade_rotation(angle).T @ in_disk_axes).reshape(-1, 6))
-    return np.concatenate(parts)
+    in_disk_axes = _rigid_nodes(radius * np.cos(angle), radius * np.sin(angle)).reshape(-1, 6, 6)
+    return np.asarray((blade_rotation(angle).T @ in_disk_axes).reshape(-1, 6))
 
 
 def _rigid_nodes(x: FloatArray, y: FloatArray) -> FloatArray:

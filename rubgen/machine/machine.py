@@ -390,6 +390,11 @@ class Machine:
         return self.disk.rim_radius_m + self.blades.length_m
 
     @property
+    def lost_blades(self) -> tuple[int, ...]:
+        """Numbers of the blades that its faults have taken away, ascending."""
+        return tuple(sorted({blade for fault in self.faults for blade in fault.lost_blades(self)}))
+
+    @property
     def casing_mean_radius_m(self) -> float:
         """Mean radius of the casing's undeformed inner surface, in m."""
         return self.tip_radius_m + self.casing.clearance_m + self.casing.ovality_m / 2

@@ -1,5 +1,6 @@
 """Record passages of the blades at each timing probe, and compute the tip deflections from them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,10 +49,11 @@ def tip_times(
     seconds: float,
     noise: float,
     rng: np.random.Generator,
+    lost: Sequence[int] = (),
 ) -> TipTimes:
     """Record the passages of a probe within a recording, with jitter, counter and clock offset.
 
-    Missed passages are left out.
+    Missed passages and lost blades are left out.
 
     - probe: the sensor.
     - arrivals: the true passages in steps.
@@ -60,9 +62,10 @@ def tip_times(
     - seconds: length of the recording.
     - noise: factor of the jitter.
     - rng: random numbers.
+    - lost: numbers of the lost blades.
     """
     true = arrivals.step * dt - start
-    seen = (true >= 0) & (true < seconds)
+    seen = (true >= 0) & (true < seconds) & ~np.isin(arrivals.blade, lost)
     if probe.missed:
         seen &= rng.uniform(size=seen.size) >= probe.missed
     time = blurred(probe, true[seen] + probe.clock_offset_s, noise, rng)

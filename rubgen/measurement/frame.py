@@ -33,22 +33,22 @@ class FrameMotion:
         return self._sum([mode.casing_share * _cosine(a) for mode, a in zip(self.frame.modes, turned, strict=True)])
 
     def _sum(self, factors: list[float]) -> FloatArray:
-        total = np.zeros(self.force[0].size)
-        for factor, acceleration in zip(factors, self._accelerations, strict=True):
-            if acceleration is not None:
-                total += factor * acceleration
-        return total
+        return np.asarray(np.array(factors)[self._shown] @ self._accelerations)
 
     @cached_property
-    def _accelerations(self) -> list[FloatArray | None]:
-        """Acceleration q'' (steps,) of each mode in m/s2, None where the steps do not show it."""
-        shown = [2 * mode.frequency_hz * self.dt < 1 for mode in self.frame.modes]
-        return [self._acceleration(mode) if here else None for mode, here in zip(self.frame.modes, shown, strict=True)]
+    def _shown(self) -> list[int]:
+        """Numbers of the modes that the steps show."""
+        return [number for number, mode in enumerate(self.frame.modes) if 2 * mode.frequency_hz * self.dt < 1]
 
-    def _acceleration(self, mode: FrameMode) -> FloatArray:
-        x, y = self.force
-        along = _cosine(mode.direction_deg) * x + _cosine(mode.direction_deg - 90) * y
-        return accelerations(mode, along, self.dt)
+    @cached_property
+    def _accelerations(self) -> FloatArray:
+        """Acceleration q'' of each mode that is shown (modes, steps), in m/s2."""
+        found, (x, y) = np.zeros((len(self._shown), self.force[0].size)), self.force
+        for row, number in zip(found, self._shown, strict=True):
+            mode = self.frame.modes[number]
+            along = _cosine(mode.direction_deg) * x + _cosine(mode.direction_deg - 90) * y
+            row[:] = accelerations(mode, along, self.dt)
+        return found
 
 
 def accelerations(mode: FrameMode, force: FloatArray, dt: float) -> FloatArray:

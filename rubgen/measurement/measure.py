@@ -16,7 +16,8 @@ from rubgen.measurement.frame import FrameMotion, spread
 from rubgen.measurement.sampled import Source, feed_of, filtered, recorded
 from rubgen.measurement.shaft import pulse_channel, pulse_times, shaft_angle, shaft_speed
 from rubgen.measurement.strikes import force_of
-from rubgen.measurement.surroundings import Disturbances, Tail
+from rubgen.measurement.surroundings import Disturbances
+from rubgen.measurement.tail import Tail
 from rubgen.scenario import Sensing
 from rubgen.scenario.costs import STEPS_PER_SAMPLE
 from rubgen.scenario.surroundings import Surroundings
@@ -42,6 +43,7 @@ def measure(
     surroundings: Surroundings | None = None,
     frame: Frame | None = None,
     faults: Sequence[Fault] = (),
+    lost: Sequence[int] = (),
 ) -> Recording:
     """Record the channels and events of a run with the sensors of `sensing.set`.
 
@@ -57,6 +59,7 @@ def measure(
     - surroundings: what sensors feel beside the motion; nothing with None.
     - frame: of the machine, which takes the force of the disk's support to sensors.
     - faults: of the machine; only their blows on the frame count here.
+    - lost: numbers of blades that pass no probe.
 
     Raises UserError where the tail is too short for `seconds` and the filter, where the step rate is below 2.56 sample
     rates, and where a sensor or the surroundings need a frame and there is none.
@@ -81,7 +84,7 @@ def measure(
         if isinstance(sensor, TimingProbe):
             timing[sensor.name] = tip_times(
                 sensor, response.arrivals[sensor.name], dt=response.dt, start=start, seconds=covered,
-                noise=sensing.noise, rng=streams[sensor.name],
+                noise=sensing.noise, rng=streams[sensor.name], lost=lost,
             )  # fmt: skip
     return Recording(
         sample_rate_hz=rate,
@@ -153,7 +156,7 @@ def _frame_motion(
     """Move the run's own frame by the force on the disk's support and by the blows of faults."""
     own = spread(frame, surroundings.frame_spread, _stream(rng, FRAME_STREAM)) if surroundings else frame
     x, y = response.taps["support_force_x"], response.taps["support_force_y"]
-    for fault in faults:
+    for fault in (each for each in faults if each.STRIKES):
         stream = _stream(rng, STRIKES_STREAM, zlib.crc32(type(fault).__name__.encode()))
         strikes = fault.strikes(tail.turned, tail.speed, stream)
         if strikes:
@@ -171,6 +174,7 @@ def _tail(response: Response, seconds: float) -> Tail:
         speed=shaft_speed(response, steps),
         seconds=seconds,
         blades=response.n_blades,
+        turn=response.steps_per_turn if response.changing_speed is None else None,
     )
 
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.errors import UserError
 from rubgen.measurement.frame import FrameMotion
+from rubgen.measurement.tail import Tail
 from rubgen.scenario.surroundings import Surroundings, Tone
 from rubgen.scenario.vary import DEFAULT_SPEED_RPM
 from rubgen.taps import CasingAcceleration, CentreDisplacement, HousingAcceleration, Tap
@@ -27,46 +26,6 @@ PERIOD_MARGIN_S = 0.5
 """The background repeats after the recorded seconds and this margin, whatever tail the sensors need."""
 BLADE_PASSING_HARMONICS = 3
 RUNOUT_ORDERS = 3
-
-
-@dataclass(frozen=True, kw_only=True)
-class Tail:
-    """The steps that are measured: their number, their length in s, theta (steps,) and speed (steps,) in rad/s."""
-
-    dt: float
-    angle: FloatArray
-    speed: FloatArray
-    seconds: float
-    """Length of the recording in s."""
-    blades: int
-
-    @property
-    def time(self) -> FloatArray:
-        """Time (steps,) in s before the step after the last one. It does not depend on how long the tail is."""
-        return np.asarray(self.dt * np.arange(-self.angle.size, 0), dtype=np.float64)
-
-    @cached_property
-    def turned(self) -> FloatArray:
-        """Angle (steps,) in rad before the step after the last one, at which theta is 0; without jumps."""
-        angle = np.unwrap(self.angle)
-        return np.asarray(angle - angle[-1] + self.angle[-1] - 2 * np.pi)
-
-    def wave(self, order: float) -> ComplexArray:
-        """Return exp(i order theta) (steps,), theta without jumps. A whole order is a product of lower whole orders."""
-        if not float(order).is_integer():
-            return np.asarray(np.exp(1j * order * self.turned))
-        if order not in self._waves:
-            half = order // 2
-            self._waves[order] = self.wave(half) * self.wave(order - half)
-        return self._waves[order]
-
-    @cached_property
-    def _waves(self) -> dict[float, ComplexArray]:
-        return {0: np.ones(self.angle.size, dtype=np.complex128), 1: np.asarray(np.exp(1j * self.angle))}
-
-    def resolved(self, order: float) -> npt.NDArray[np.bool_]:
-        """Return whether an order of the rotation has two steps a period (steps,). With fewer it is left out."""
-        return np.asarray(order * self.speed * self.dt < np.pi)
 
 
 class Disturbances:
@@ -88,8 +47,8 @@ class Disturbances:
             raise UserError("surroundings.path_gain: needs the machine's [frame], which is missing")
         self.frame = frame
         self.surroundings, self.tail = surroundings, tail
-        level = (tail.speed / rad_per_s(DEFAULT_SPEED_RPM)) ** surroundings.speed_exponent
-        self.level = np.asarray(level, dtype=np.float64)
+        level = (tail.once.speed / rad_per_s(DEFAULT_SPEED_RPM)) ** surroundings.speed_exponent
+        self._level = np.asarray(level, dtype=np.float64)
         tones, runout, passing, drift, background = rng.spawn(5)
         self._tones = [_tone_field(each) for each in tones.spawn(len(surroundings.tones))]
         self._runout = runout.uniform(0, 2 * np.pi, RUNOUT_ORDERS)
@@ -108,7 +67,7 @@ class Disturbances:
     def _on_the_casing(self, around: float, angle_deg: float) -> FloatArray:
         added = self._shaking(_elastic(around))
         if self.surroundings.blade_passing_m_per_s2:
-            added += self.level * self._blade_passing(around)
+            added += self.tail.everywhere(self._level * self._blade_passing(around))
         if self.surroundings.path_gain and self.frame is not None:
             added += self.surroundings.path_gain * self.frame.of_casing(angle_deg)
         return added
@@ -117,30 +76,49 @@ class Disturbances:
         """Background and tones (steps,) where the parts of the fields have these weights (2 n + 1,)."""
         added = np.zeros(self.tail.angle.size)
         if self.surroundings.background_m_per_s2:
-            added += self.level * self._broadband(weights)
-        for waves, parts in zip(self._waves, self._tones, strict=True):
-            amplitude = weights @ parts
-            cosine, sine = waves
-            added += amplitude.real * cosine - amplitude.imag * sine
+            added += self._broadband(weights)
+        amplitudes = np.array([weights @ parts for parts in self._tones], dtype=np.complex128)
+        turning, waves = self._waves
+        if len(turning):
+            a = amplitudes[turning]
+            added += self.tail.everywhere(np.concatenate([a.real, -a.imag]) @ waves)
+        steady, advances, levels = self._steady
+        if len(steady):
+            added += self.tail.sinusoids(levels * amplitudes[steady], advances)
         return added
 
     @cached_property
-    def _waves(self) -> list[tuple[FloatArray, FloatArray]]:
-        """Cosine and sine (steps,) of each tone with its level, once for all sensors."""
-        return [self._wave(tone) for tone in self.surroundings.tones]
-
-    def _wave(self, tone: Tone) -> tuple[FloatArray, FloatArray]:
-        if tone.order is None:
-            frequency = 2 * np.pi * (tone.frequency_hz or 0.0)
-            wave, heard = np.exp(1j * frequency * self.tail.time), np.asarray(frequency * self.tail.dt < np.pi)
-        else:
-            wave, heard = self.tail.wave(tone.order), self.tail.resolved(tone.order)
-        level = np.sqrt(2) * tone.level_m_per_s2 * heard
-        return level * wave.real, level * wave.imag
+    def _steady(self) -> tuple[list[int], FloatArray, FloatArray]:
+        """Numbers of the tones of one frequency that are no whole order, their rad a step and their amplitudes."""
+        found = []
+        for number, tone in enumerate(self.surroundings.tones):
+            if tone.order is None:
+                advance = 2 * np.pi * (tone.frequency_hz or 0.0) * self.tail.dt
+            elif self.tail.turn is not None and not float(tone.order).is_integer():
+                advance = 2 * np.pi * tone.order / self.tail.turn
+            else:
+                continue
+            found.append((number, advance, np.sqrt(2) * tone.level_m_per_s2 * (advance < np.pi)))
+        numbers, advances, levels = zip(*found, strict=True) if found else ((), (), ())
+        return list(numbers), np.array(advances, dtype=np.float64), np.array(levels, dtype=np.float64)
 
     @cached_property
-    def _lines(self) -> tuple[int, slice, ComplexArray]:
-        """Length of the transform, its lines in the band, and their amplitudes (2 n + 1, lines): one draw for all."""
+    def _waves(self) -> tuple[list[int], FloatArray]:
+        """Numbers of the other tones, and their cosines and then their sines over a turn with their levels."""
+        numbers = sorted(set(range(len(self._tones))) - set(self._steady[0]))
+        waves = [self._wave(self.surroundings.tones[number]) for number in numbers]
+        return numbers, np.array([wave.real for wave in waves] + [wave.imag for wave in waves])
+
+    def _wave(self, tone: Tone) -> ComplexArray:
+        order, once = tone.order or 0.0, self.tail.once
+        return np.asarray(np.sqrt(2) * tone.level_m_per_s2 * once.resolved(order) * once.wave(order))
+
+    @cached_property
+    def _lines(self) -> tuple[int, slice, FloatArray, FloatArray]:
+        """Length of the transform, its lines in the band, their rms, and one draw (2, 2 n + 1, lines) for all.
+
+        The draw has real and imaginary parts with a mean square of 1.
+        """
         from scipy.fft import next_fast_len  # slow to import
 
         length = next_fast_len(round((self.tail.seconds + PERIOD_MARGIN_S) / self.tail.dt), real=True)
@@ -148,27 +126,35 @@ class Disturbances:
         first, end = int(np.ceil(BAND_HZ[0] / resolution)), int(BAND_HZ[1] / resolution) + 1
         power = np.arange(first, end, dtype=np.float64) ** -self.surroundings.background_slope
         rms = self.surroundings.background_m_per_s2 * np.sqrt(power / power.sum())
-        amplitudes = rms * _complex_normal(self._background, (2 * HIGHEST_CIRCUMFERENTIAL + 1, power.size))
+        drawn = self._background.standard_normal((2, 2 * HIGHEST_CIRCUMFERENTIAL + 1, power.size))
         lines = slice(first, min(end, (length + 1) // 2))  # the steps show no higher ones
-        return length, lines, amplitudes[:, : lines.stop - lines.start]
+        shown = lines.stop - lines.start
+        return length, lines, rms[:shown], drawn[..., :shown]
 
     def _broadband(self, weights: FloatArray) -> FloatArray:
-        """Return the background (steps,) where its parts have these weights (2 n + 1,).
+        """Return the background with its level (steps,) where its parts have these weights (2 n + 1,).
 
         A line of rms r is r sqrt(2) Re(z exp(i w t)), |z| = 1 in the mean.
         """
         from scipy.fft import irfft  # slow to import
 
-        length, lines, amplitudes = self._lines
+        length, lines, rms, drawn = self._lines
+        steady, steps = self.tail.turn is not None, self.tail.angle.size
+        scale = length / 2 * (self._level[-1] if steady else 1.0)
         spectrum = np.zeros(length // 2 + 1, dtype=np.complex128)
-        spectrum[lines] = np.tensordot(weights, amplitudes, axes=1) * (length / np.sqrt(2))
-        return np.asarray(irfft(spectrum, length)[np.arange(-self.tail.angle.size, 0) % length])
+        real, imaginary = weights @ drawn
+        spectrum.real[lines], spectrum.imag[lines] = scale * rms * real, scale * rms * imaginary
+        signal = irfft(spectrum, length)
+        signal = signal[length - steps :] if steps <= length else signal[np.arange(-steps, 0) % length]
+        return np.asarray(signal if steady else self._level * signal)
 
     def _blade_passing(self, around: float) -> FloatArray:
+        """Return the blade passing (steps of a turn,) at the polar angle `around` in rad."""
+        once = self.tail.once
         order = np.arange(1, BLADE_PASSING_HARMONICS + 1)
         shares = np.sqrt(2) / order / np.sqrt(np.sum(1 / order**2))
         waves = (
-            share * (np.exp(1j * (psi - n * around)) * self.tail.wave(n)).real * self.tail.resolved(n)
+            share * (np.exp(1j * (psi - n * around)) * once.wave(n)).real * once.resolved(n)
             for n, share, psi in zip(map(float, order * self.tail.blades), shares, self._passing, strict=True)
         )
         return np.asarray(self.surroundings.blade_passing_m_per_s2 * sum(waves))
@@ -178,12 +164,12 @@ class Disturbances:
         around = np.deg2rad(tap.angle_deg)
         orders = np.arange(1, RUNOUT_ORDERS + 1)
         profile = sum(
-            (np.exp(1j * (phase - m * around)) * self.tail.wave(m)).real / m
+            (np.exp(1j * (phase - m * around)) * self.tail.once.wave(m)).real / m
             for m, phase in zip(map(float, orders), self._runout, strict=True)
         )
         share = 1 + self.tail.time / self.tail.seconds
         drift = self.surroundings.shaft_drift_m * np.cos(around - self._drift) * share
-        return np.asarray(self.surroundings.runout_m * profile + drift)
+        return np.asarray(self.tail.everywhere(self.surroundings.runout_m * np.asarray(profile)) + drift)
 
 
 def _tone_field(rng: np.random.Generator) -> ComplexArray:

@@ -3,7 +3,8 @@
 O_d is the disk centre.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,19 +12,24 @@ from scipy.linalg import block_diag, eigh
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.fem.beam import BeamMatrices, skew, symmetric
-from rubgen.fem.blisk import BliskModel, assemble_blisk, rigid_motions
+from rubgen.fem.blisk import BliskModel, assemble_blisk, blade_motions, rigid_motions
 from rubgen.fem.constraints import on_springs, rim_joint, support_stiffness
 from rubgen.machine import BladeRow, Disk, DiskSupport
 from rubgen.reduction.craig_bampton import Turning, craig_bampton, disk_turning
 from rubgen.reduction.growth import CentrifugalGrowth, centrifugal_growth
 from rubgen.scenario import Reduction
 
+DUST = 1e-9
+"""Mass of a tip without a blade over the largest mass of a coordinate: matrices of masses must be regular."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class ReducedBlisk:
     """The reduced blisk with n DoFs, without supports.
 
-    The DoFs are the tips' translations along the blades' axes, x and y of the disk centre O_d, and modes.
+    The DoFs are the tips' translations along the blades' axes, x and y of the disk centre O_d, and modes. The tip of a
+    blade that is missing keeps its DoFs, so that blades keep their numbers. They have a hardly noticeable mass, are
+    coupled with nothing, and no load reaches them.
     """
 
     M: FloatArray
@@ -43,7 +49,7 @@ class ReducedBlisk:
     growth: CentrifugalGrowth
     """The tips' steady centrifugal displacement."""
     rigid_inertia: FloatArray
-    """m, m, m, I_d, I_d, I_p of the whole (6,), kg, kg m2."""
+    """m, m, m, I_d, I_d, I_p of the whole (6,), kg, kg m2, with the blades that are missing."""
     blade_frequency: float
     """First frequency of a blade clamped at its root, without mistuning, rad/s."""
     full_size: int
@@ -67,7 +73,13 @@ class _Joined:
 
 
 def reduce_blisk(
-    disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction, *, cyclic: bool = True
+    disk: Disk,
+    blades: BladeRow,
+    support: DiskSupport,
+    reduction: Reduction,
+    missing: Sequence[int] = (),
+    *,
+    cyclic: bool = True,
 ) -> ReducedBlisk:
     """Reduce the blisk to its tips, O_d x and y, and modes.
 
@@ -80,16 +92,16 @@ def reduce_blisk(
 
     - disk, blades, support: the machine's.
     - reduction: numbers of modes.
+    - missing: numbers of blades that are not there.
     - cyclic: use one sector of the disk for all. False uses the sparse matrices of the whole disk, in twice the time
-      and with the same result to 1e-9.
+      and with the same result to 1e-9. A disk of which blades are missing is never cyclic.
     """
-    model = assemble_blisk(disk, blades, support)
-    joined = _join_components(model, reduction, _turning(disk, blades) if cyclic else None)
+    model = assemble_blisk(disk, blades, support, missing)
+    joined = _join_components(model, reduction, _turning(disk, blades) if cyclic and not missing else None)
     masters = np.concatenate([joined.tips[:, :3].ravel(), [0, 1]])
     supported = on_springs(sp.csr_array(joined.K), support_stiffness(support))
     V = craig_bampton(sp.csr_array(joined.M), supported, masters, reduction.blisk_modes)
-    R = rigid_motions(model)
-    return ReducedBlisk(
+    reduced = ReducedBlisk(
         M=symmetric(V.T @ joined.M @ V),
         K=symmetric(V.T @ joined.K @ V),
         G=skew(V.T @ joined.G @ V),
@@ -98,10 +110,53 @@ def reduce_blisk(
         centre=np.ascontiguousarray(V[:6]),
         roots=np.ascontiguousarray(V[joined.roots]),
         growth=centrifugal_growth(model),
-        rigid_inertia=np.einsum("ij,ij->j", R, model.M @ R),
+        rigid_inertia=_rigid_inertia(model),
         blade_frequency=_clamped_frequency(model.beam),
         full_size=model.M.shape[0],
     )
+    return with_places(reduced, model.present, model.count) if missing else reduced
+
+
+def with_places(blisk: ReducedBlisk, present: IntArray, count: int) -> ReducedBlisk:
+    """Return the blisk with DoFs for the tips of all `count` blades, where only those of `present` have any.
+
+    A tip without a blade has the mass DUST of the heaviest coordinate. Its frequency is the highest one of the blisk.
+    """
+    size = len(blisk.M) + 3 * (count - present.size)
+    own = np.concatenate([(3 * present[:, None] + np.arange(3)).ravel(), np.arange(3 * count, size)])
+    lost = np.setdiff1d(np.arange(size), own)
+    highest = float(eigh(blisk.K, blisk.M, eigvals_only=True)[-1])
+    mass = DUST * float(blisk.M.diagonal().max())
+
+    def placed(matrix: FloatArray, diagonal: float = 0.0) -> FloatArray:
+        whole = np.zeros((size, size))
+        whole[np.ix_(own, own)] = matrix
+        whole[lost, lost] = diagonal
+        return whole
+
+    euler, centre, roots = np.zeros(size), np.zeros((6, size)), np.zeros((count, 6, size))
+    euler[own], centre[:, own] = blisk.euler, blisk.centre
+    roots[np.ix_(present, range(6), own)] = blisk.roots
+    return replace(
+        blisk,
+        M=placed(blisk.M, mass),
+        K=placed(blisk.K, mass * highest),
+        G=placed(blisk.G),
+        A=placed(blisk.A),
+        euler=euler,
+        centre=centre,
+        roots=roots,
+    )
+
+
+def _rigid_inertia(model: BliskModel) -> FloatArray:
+    """Return the inertia (6,) of the blisk with all of its blades: its dampers were made for it."""
+    R = rigid_motions(model)
+    inertia = np.einsum("ij,ij->j", R, model.M @ R)
+    for number in np.setdiff1d(np.arange(model.count), model.present):
+        motions = blade_motions(model, 2 * np.pi * number / model.count)
+        inertia += np.einsum("ij,ij->j", motions, model.beam.M @ motions)
+    return np.asarray(inertia)
 
 
 def _turning(disk: Disk, blades: BladeRow) -> Turning:

@@ -3,7 +3,7 @@
 import hashlib
 import io
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from functools import cache
@@ -26,12 +26,14 @@ from rubgen.scenario import Reduction
 _PACKAGE = Path(__file__).parents[1]
 _ARRAYS = ("M", "K", "G", "A", "euler", "centre", "roots", "rigid_inertia")
 _NUMBERS = ("blade_frequency", "full_size")
-_GROWTH = ("K", "A", "f", "tips", "moment")
+_GROWTH = ("K", "A", "f", "tips", "moment", "missing")
 PATIENCE_S = 120.0
 """Longest wait for another process that makes the same blisk; it may have been stopped."""
 
 
-def cached_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> ReducedBlisk:
+def cached_blisk(
+    disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction, missing: Sequence[int] = ()
+) -> ReducedBlisk:
     """Return the reduced blisk from the cache, or make it with `reduce_blisk` and store it. The bits are the same.
 
     Lateral stiffness and the number of casing modes are no inputs, so runs that vary them share one file. A damaged
@@ -39,15 +41,15 @@ def cached_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: 
     """
     folder = cache_folder("reduction")
     if folder is None:
-        return _made(disk, blades, support, reduction)
-    path = folder / f"{_key(disk, blades, support, reduction)}.blisk"
+        return _made(disk, blades, support, reduction, missing)
+    path = folder / f"{_key(disk, blades, support, reduction, missing)}.blisk"
     stored = _load(path)
     if stored is not None:
         return stored
     with _lock(path):
         stored = _load(path)
         if stored is None:
-            stored = _made(disk, blades, support, reduction)
+            stored = _made(disk, blades, support, reduction, missing)
             write_cached(path, _packed(stored))
     return stored
 
@@ -67,18 +69,22 @@ def _lock(path: Path) -> Iterator[None]:
         lock.release()
 
 
-def _made(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> ReducedBlisk:
+def _made(
+    disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction, missing: Sequence[int]
+) -> ReducedBlisk:
     with step("reduce the machine, once"):
-        return reduce_blisk(disk, blades, support, reduction)
+        return reduce_blisk(disk, blades, support, reduction, missing)
 
 
-def _key(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction) -> str:
+def _key(
+    disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction, missing: Sequence[int]
+) -> str:
     springs, modes = asdict(support), asdict(reduction)
     del modes["casing_modes"]
     lateral_keys = ("lateral_stiffness_n_per_m", "lateral_stiffness_anisotropy", "lateral_damping_anisotropy")
     for lateral in (*lateral_keys, *SUPPORT_LAWS):
         del springs[lateral]
-    what = [asdict(disk), asdict(blades), springs, modes, np.__version__, scipy.__version__]
+    what = [asdict(disk), asdict(blades), [*missing], springs, modes, np.__version__, scipy.__version__]
     return hashlib.sha256(json.dumps(what, sort_keys=True).encode() + _digest_of_code(_PACKAGE)).hexdigest()[:32]
 
 

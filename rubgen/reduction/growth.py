@@ -21,7 +21,7 @@ class CentrifugalGrowth:
     """The steady displacement in a small basis of m vectors: (K + Omega^2 A) y = Omega^2 f gives the coefficients y.
 
     K and A are (m, m), f (m,). `tips` (blades, 3, m) are the vectors at the tips. `moment` (2, m) in kg is each
-    vector's int rho (u_x, u_y) dV, by which it shifts the centre of mass.
+    vector's int rho (u_x, u_y) dV, by which it shifts the centre of mass. A tip that is missing does not grow.
     """
 
     K: FloatArray
@@ -29,6 +29,8 @@ class CentrifugalGrowth:
     f: FloatArray
     tips: FloatArray
     moment: FloatArray
+    missing: FloatArray
+    """First moment (2,) in kg m of the blisk at rest, which blades that are missing leave; 0 where none is."""
 
     def at(self, speed: float) -> FloatArray:
         """Return the tips' displacement (blades, 3) in m along the blades' axes at `speed` in rad/s."""
@@ -48,11 +50,13 @@ def centrifugal_growth(model: BliskModel) -> CentrifugalGrowth:
     """Solve (K + Omega^2 (K_sigma - S)) u = Omega^2 f_c for the steady displacement at any speed, in a small basis.
 
     Galerkin's method in the Krylov space of K^-1 A and K^-1 f_c. K is on its axial, tilt and torsion springs with O_d
-    fixed laterally, where a symmetric load leaves it. Equal to the direct solution to 1e-9 of its size at the preset's
+    fixed laterally, where a symmetric load leaves it. Where blades are missing, O_d also bears the net load. Equal to the direct solution to 1e-9 of its size at the preset's
     top speed: tests/reduction/test_reduced_model.py. Blades that differ grow unevenly, and O_d then bears Omega^2
     `unbalance`: the reduced model takes it over as a load.
     """
-    equal = bool(np.ptp(model.blade_stiffness) == 0)
+    count = model.count
+    whole = model.present.size == count
+    equal = whole and bool(np.ptp(model.blade_stiffness) == 0)
     K, A = model.fixed_centre.K, model.K_sigma - model.S
     basis = np.zeros((len(model.f_c), 0))
     vector = model.fixed_centre.solve(model.f_c)
@@ -63,12 +67,16 @@ def centrifugal_growth(model: BliskModel) -> CentrifugalGrowth:
         vector = vector / np.sqrt(vector @ (K @ vector))
         basis = np.column_stack([basis, vector])
         vector = model.fixed_centre.solve(A @ vector)
-    moment = (model.S @ rigid_motions(model)[:, :2]).T @ basis
+    shifts = rigid_motions(model)[:, :2]
+    moment = (model.S @ shifts).T @ basis
+    tips = np.zeros((count, 3, basis.shape[1]))
+    tips[model.present] = basis[model.tips[:, :3]]
     return CentrifugalGrowth(
         K=basis.T @ (K @ basis),
         A=basis.T @ (A @ basis),
         f=basis.T @ model.f_c,
-        tips=basis[model.tips[:, :3]],
+        tips=tips,
         # Exactly 0 by symmetry: rounding must not make an unbalance.
         moment=np.zeros_like(moment) if equal else moment,
+        missing=np.zeros(2) if whole else shifts.T @ model.f_c,
     )

@@ -44,14 +44,11 @@ def blisk_modes(model: ReducedModel, speed: float) -> list[Mode]:
     has the frequency omega + n Omega. A mistuned blisk mixes waves: n is that of the largest. A family counts the modes
     of one n and direction. Springs and laws of the support that are uneven or not linear are left out.
     """
-    spin, size = max(speed, REST), len(model.blisk.M)
-    system = model.at_speed(spin)
-    C, K = system.C[:size, :size], system.K[:size, :size]
-    with one_blas_thread():
-        roots, vectors = eig(*linearised(model.blisk.M, C, K))
+    system = model.at_speed(max(speed, REST))
+    roots, shapes = _shapes(model, system.C, system.K)
     blades = model.machine.blades.count
-    chosen, waves = _one_of_each_pair(roots, vectors[:size], blades)
-    kinds = _support_kinds(model, vectors[:size, chosen])
+    chosen, waves = _one_of_each_pair(roots, shapes, blades)
+    kinds = _support_kinds(model, shapes[:, chosen])
     found = sorted(zip(roots[chosen], waves, kinds, strict=True), key=lambda each: abs(each[0]))
     counts: dict[tuple[int, bool], int] = {}
     modes = []
@@ -72,6 +69,17 @@ def blisk_modes(model: ReducedModel, speed: float) -> list[Mode]:
             )
         )
     return modes
+
+
+def _shapes(model: ReducedModel, C: FloatArray, K: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return the roots of M s^2 + C s + K and their shapes (blisk DoFs, roots), which are 0 where a blade is lost."""
+    own = model.own_dofs
+    part = np.ix_(own, own)
+    with one_blas_thread():
+        roots, vectors = eig(*linearised(model.blisk.M[part], C[part], K[part]))
+    shapes = np.zeros((len(model.blisk.M), roots.size), dtype=np.complex128)
+    shapes[own] = vectors[: own.size]
+    return roots, shapes
 
 
 def _one_of_each_pair(roots: ComplexArray, shapes: ComplexArray, blades: int) -> tuple[list[int], list[int]]:

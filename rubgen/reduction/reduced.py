@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 from scipy.linalg import block_diag, eigh, eigvals
 
-from rubgen.arrays import FloatArray
+from rubgen.arrays import FloatArray, IntArray
 from rubgen.errors import UserError
 from rubgen.fem.beam import blade_matrices, static_root_strain
 from rubgen.fem.constraints import support_stiffness
@@ -26,6 +26,8 @@ from rubgen.scenario import Reduction
 from rubgen.scenario.checks.reducible import reduction_problem
 from rubgen.units import rev_per_min
 
+LOST_TIP_SHARE = 0.05
+"""How far inside of the others, in tip radii, the place of a lost blade's tip is kept, so that it never touches."""
 # e_z x on the translations and rotations of O_d.
 S6 = np.kron(np.eye(2), np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]))
 
@@ -90,7 +92,7 @@ class ReducedModel:
         if machine.faults:
             growth, lost = blisk.growth.at(speed), lost_masses(machine)
             force += speed**2 * missing_pull(lost, machine.tip_radius_m, growth, self.reduced_dof)
-            force[3 * count : 3 * count + 2] += steady_loads(machine, speed)[0].real
+            force[3 * count : 3 * count + 2] += speed**2 * blisk.growth.missing + steady_loads(machine, speed)[0].real
         return SpinningSystem(
             speed=speed,
             M=block_diag(blisk.M, np.eye(len(omega))),
@@ -101,7 +103,7 @@ class ReducedModel:
             n_casing=len(omega),
             tip_radius=machine.tip_radius_m,
             blade_angles=2 * np.pi * np.arange(count) / count,
-            tip_static=blisk.growth.at(speed),
+            tip_static=self._tip_static(speed),
             surface=self.casing.surface,
             casing_modes=self.casing.modes_xy,
             casing_rotations=self.casing.rotations,
@@ -113,6 +115,26 @@ class ReducedModel:
             narrowings=tuple(each for fault in machine.faults for each in fault.narrowings(machine)),
             spring_load=spring_load(machine, speed) if machine.faults else None,
         )
+
+    def _tip_static(self, speed: float) -> FloatArray:
+        """Return the steady growth of the tips (blades, 3) in m; the place of a lost blade's tip is kept inside."""
+        growth = self.blisk.growth.at(speed)
+        growth[list(self.machine.lost_blades), 0] = -LOST_TIP_SHARE * self.machine.tip_radius_m
+        return growth
+
+    @property
+    def _shifts(self) -> FloatArray:
+        """The coordinates (blisk DoFs, 2) of the blisk moved by 1 m along x and along y; 0 where no blade is."""
+        shifts = rigid_shifts(self.machine.blades.count, len(self.blisk.M))
+        moved = np.zeros_like(shifts)
+        moved[self.own_dofs] = shifts[self.own_dofs]
+        return moved
+
+    @property
+    def own_dofs(self) -> IntArray:
+        """Numbers of the blisk's coordinates, without the places of lost blades' tips."""
+        lost = 3 * np.array(self.machine.lost_blades, dtype=np.int64)[:, None] + np.arange(3)
+        return np.setdiff1d(np.arange(len(self.blisk.M)), lost)
 
     def root_strain(self, blade: int, speed: float) -> FloatArray:
         """Return the row (blisk DoFs,) that gives the spanwise strain at a blade's root from the blisk's DoFs.
@@ -144,7 +166,7 @@ class ReducedModel:
     @property
     def blisk_mass(self) -> float:
         """Mass of disk and blades in kg, t^T M t of the rigid motion t along x."""
-        shift = rigid_shifts(self.machine.blades.count, len(self.blisk.M))[:, 0]
+        shift = self._shifts[:, 0]
         return float(shift @ self.blisk.M @ shift)
 
     def _turning_forces(self, speed: float) -> TurningForces | None:
@@ -163,7 +185,7 @@ class ReducedModel:
         if not (stiffness or damping or laws or g or loads.any() or growing):
             return None
         weight = np.zeros((self.reduced_dof, 2))
-        weight[: len(self.blisk.M)] = g * self.blisk.M @ rigid_shifts(self.machine.blades.count, len(self.blisk.M))
+        weight[: len(self.blisk.M)] = g * self.blisk.M @ self._shifts
         return TurningForces(
             stiffness=stiffness,
             damping=damping,
@@ -198,18 +220,33 @@ class ReducedModel:
     def blisk_frequencies_hz(self, speed: float = 0.0) -> FloatArray:
         """Compute the undamped natural frequencies (blisk DoFs,) in Hz of the turning frame, ascending.
 
+        A lost blade has none.
         `speed` is in rad/s. An inertial-frame whirl at omega appears at omega - Omega (forward) or omega + Omega
         (backward), without sign. Above a critical speed the stiffness is indefinite, so the quadratic problem is solved
         directly.
         """
-        M, K = self.blisk.M, self.stiffness(speed)
+        own = self.own_dofs
+        M, G, K = (X[np.ix_(own, own)] for X in (self.blisk.M, self.blisk.G, self.stiffness(speed)))
         with one_blas_thread():
             if speed == 0:
                 squares: FloatArray = eigh(K, M, eigvals_only=True)
                 return np.sqrt(squares) / (2 * np.pi)
-            values = eigvals(*linearised(M, 2 * speed * self.blisk.G, K))
+            values = eigvals(*linearised(M, 2 * speed * G, K))
         frequencies: FloatArray = np.sort(np.abs(values.imag))[::2] / (2 * np.pi)
         return frequencies
+
+    def modes_at_rest(self) -> tuple[FloatArray, FloatArray]:
+        """Compute the blisk's undamped modes at rest: omega^2 (modes,) ascending, and shapes (blisk DoFs, modes).
+
+        The modal masses are 1 kg. A lost blade has no modes, and its tip has zeros.
+        """
+        own = self.own_dofs
+        part = np.ix_(own, own)
+        with one_blas_thread():
+            squares, vectors = eigh(self.stiffness(0.0)[part], self.blisk.M[part])
+        shapes = np.zeros((len(self.blisk.M), squares.size))
+        shapes[own] = vectors
+        return squares, shapes
 
     @property
     def casing_frequencies_hz(self) -> FloatArray:
@@ -259,7 +296,8 @@ def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:
         raise UserError(problem)
     try:
         with one_blas_thread():
-            blisk = cached_blisk(machine.disk, machine.blades, machine.disk_support, reduction)
+            parts = machine.disk, machine.blades, machine.disk_support
+            blisk = cached_blisk(*parts, reduction, machine.lost_blades)
             blisk = without_masses(blisk, lost_masses(machine), machine.tip_radius_m)
             casing = reduce_casing(machine, reduction.casing_modes)
     except (np.linalg.LinAlgError, RuntimeError) as error:  # of LAPACK, ARPACK and SuperLU

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from rubgen.measurement import measure
-from rubgen.measurement.surroundings import BAND_HZ, Disturbances, Tail
+from rubgen.measurement.surroundings import BAND_HZ, Disturbances
+from rubgen.measurement.tail import Tail
 from rubgen.scenario.surroundings import Surroundings, Tone
 from rubgen.taps import CasingAcceleration, CentreDisplacement, SupportForce
 
@@ -25,6 +26,7 @@ def felt(surroundings: Surroundings, seed: int = 0, speed: float = SPEED, turns:
         speed=np.full(steps.size, speed),
         seconds=dt * (steps.size - 1),
         blades=BLADES,
+        turn=STEPS,
     )
     return Disturbances(surroundings, tail, np.random.default_rng(seed))
 
@@ -129,6 +131,24 @@ def test_a_longer_tail_of_another_set_of_sensors_hears_the_same():
     short = replace(whole.tail, angle=whole.tail.angle[5000:], speed=whole.tail.speed[5000:])
     later = Disturbances(around, short, np.random.default_rng(0))
     assert later.by(casing(40)) == pytest.approx(whole.by(casing(40))[5000:], abs=1e-9)
+
+
+def test_a_steady_speed_is_heard_as_any_other():
+    """Where every turn is alike, one turn and few exponentials make the signals; they are those of each step."""
+    tones = tuple(Tone(order=order, level_m_per_s2=2) for order in (1, 2, 3.7, 12))
+    around = Surroundings(
+        background_m_per_s2=3, blade_passing_m_per_s2=4, runout_m=5e-6, shaft_drift_m=1e-5,
+        tones=(*tones, Tone(frequency_hz=777.7, level_m_per_s2=1)),
+    )  # fmt: skip
+    for cut in (0, 1500):
+        tail = felt(around).tail
+        tail = replace(tail, angle=tail.angle[cut:], speed=tail.speed[cut:])
+        for tap in (casing(40), probe(40)):
+            one, each = (
+                Disturbances(around, replace(tail, turn=turn), np.random.default_rng(0)).by(tap)
+                for turn in (STEPS, None)
+            )
+            assert one == pytest.approx(each, abs=1e-9 * np.abs(each).max())
 
 
 def test_runout_is_seen_a_quarter_turn_later_by_a_probe_at_90_degrees():

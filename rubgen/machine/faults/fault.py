@@ -126,6 +126,10 @@ class Fault(ABC):
         """Return the masses that the fault has taken from the tips of blades."""
         return ()
 
+    def lost_blades(self, machine: Machine) -> tuple[int, ...]:
+        """Return the numbers of the blades that the fault has taken away as a whole."""
+        return ()
+
     def narrowings(self, machine: Machine) -> tuple[Narrowing, ...]:
         """Return how the fault closes the clearance within the record."""
         return ()
@@ -151,4 +155,8 @@ class Fault(ABC):
 def missing_blade(blade: int, machine: Machine) -> str | None:
     """Return the problem of a blade number that the machine does not have; None where it has that blade."""
     last = machine.blades.count - 1
-    return f"blade = {blade}: there is no such blade; give 0 to {last}" if blade > last else None
+    if blade > last:
+        return f"blade = {blade}: there is no such blade; give 0 to {last}"
+    if blade in machine.lost_blades:
+        return f"blade = {blade}: the fault lost-blade has taken this blade; give another one"
+    return None

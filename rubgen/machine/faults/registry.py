@@ -13,6 +13,7 @@ from rubgen.machine.faults.cracked_blade import CrackedBlade
 from rubgen.machine.faults.fault import Fault
 from rubgen.machine.faults.growing_unbalance import GrowingUnbalance
 from rubgen.machine.faults.loose_support import LooseSupport
+from rubgen.machine.faults.lost_blade import LostBlade
 from rubgen.machine.faults.lost_tip import LostTip
 from rubgen.machine.faults.misalignment import Misalignment
 from rubgen.machine.faults.oil_whirl import OilWhirl
@@ -28,7 +29,8 @@ AnyFault = Annotated[
     | OilWhirl
     | Crack
     | CrackedBlade
-    | LostTip,
+    | LostTip
+    | LostBlade,
     Field(discriminator="kind"),
 ]
 _KINDS: Any = AnyFault

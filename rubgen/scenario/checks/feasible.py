@@ -102,12 +102,17 @@ def _front_end_problem(scenario: Scenario) -> str | None:
 
 
 def _blade_problem(scenario: Scenario) -> str | None:
-    blades = scenario.machine.blades
+    blades, lost = scenario.machine.blades, scenario.machine.lost_blades
     for sensor in scenario.sensing.set.sensors:
         if isinstance(sensor, BladeStrain) and sensor.blade >= blades.count:
             return (
                 f"sensors.set: blade = {sensor.blade} of {sensor.name}: the machine has {blades.count} blades; "
                 f"give 0 to {blades.count - 1}"
+            )
+        if isinstance(sensor, BladeStrain) and sensor.blade in lost:
+            return (
+                f"sensors.set: blade = {sensor.blade} of {sensor.name}: the fault lost-blade has taken this blade; "
+                f"give another one"
             )
     return None
 

@@ -42,7 +42,8 @@ def drawing_factor(machine: Machine, frames: MotionFrames | None) -> float:
     """
     largest = max(machine.casing.ovality_m / 2, machine.casing.clearance_m)
     if frames is not None and frames.time.size:
-        largest = max(largest, float(np.abs(frames.tips).max()), float(np.abs(frames.centre).max()))
+        tips = np.delete(frames.tips, machine.lost_blades, axis=1)
+        largest = max(largest, float(np.abs(tips).max()), float(np.abs(frames.centre).max()))
     wanted = DRAWN_SHARE * machine.tip_radius_m / largest
     power = 10.0 ** math.floor(math.log10(wanted))
     return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted * (1 + 1e-9))
@@ -223,6 +224,7 @@ def blade_leanings(machine: Machine, frames: MotionFrames, factor: float) -> Flo
     They hold in the blisk's turning frame, about the root: `blade_placements` adds the place of the root. The matrix of
     blade k is R_k (I + s d e_x^T / L), with R_k the rotation about Z by its angle on the disk, s the factor of the
     drawing, L the blade's length and d the tip's displacement relative to the disk centre (radial, tangential, axial).
+    A lost blade shrinks to its root.
     """
     angle = blade_angles(machine.blades)
     cosine, sine = np.cos(angle), np.sin(angle)
@@ -232,6 +234,7 @@ def blade_leanings(machine: Machine, frames: MotionFrames, factor: float) -> Flo
     lean = np.broadcast_to(np.eye(3), (*frames.tips.shape, 3)).copy()
     lean[..., :, 0] += factor * frames.tips / machine.blades.length_m
     lean[..., :2, 0] -= factor * root / machine.blades.length_m
+    lean[:, list(machine.lost_blades)] = 0.0
     turned = np.zeros((len(angle), 3, 3))
     turned[:, 0, 0], turned[:, 0, 1], turned[:, 1, 0], turned[:, 1, 1] = cosine, -sine, sine, cosine
     turned[:, 2, 2] = 1.0
@@ -241,11 +244,13 @@ def blade_leanings(machine: Machine, frames: MotionFrames, factor: float) -> Flo
 def drawn_tips(machine: Machine, frames: MotionFrames, factor: float) -> FloatArray:
     """Return the drawn places (frames, n_blades, 2) of the tips in the inertial frame, m.
 
-    `factor` enlarges deviations from the tip circle.
+    `factor` enlarges deviations from the tip circle. A lost blade has its tip at the rim.
     """
     angle = frames.angle[:, None] + blade_angles(machine.blades)
     radial = machine.tip_radius_m + factor * frames.tips[..., 0]
     tangential = factor * frames.tips[..., 1]
+    lost = list(machine.lost_blades)
+    radial[..., lost], tangential[..., lost] = machine.disk.rim_radius_m, 0.0
     x = radial * np.cos(angle) - tangential * np.sin(angle)
     y = radial * np.sin(angle) + tangential * np.cos(angle)
     return np.stack([x, y], axis=-1)

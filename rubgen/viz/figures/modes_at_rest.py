@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy.linalg import eigh
 
 from rubgen.arrays import FloatArray
 from rubgen.reduction import ReducedModel
@@ -65,7 +64,7 @@ def mode_shapes(model: ReducedModel, modes: str | None = None) -> Figure:
 
 
 def _blisk_shapes(model: ReducedModel) -> list[_Shape]:
-    squares, vectors = eigh(model.stiffness(0.0), model.blisk.M)
+    squares, vectors = model.modes_at_rest()
     blades = model.machine.blades.count
     shapes = []
     for number, (square, vector, mode) in enumerate(zip(squares, vectors.T, blisk_modes(model, 0.0), strict=True), 1):

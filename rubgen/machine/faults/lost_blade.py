@@ -1,0 +1,52 @@
+"""Blades that are lost as a whole."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+from pydantic.dataclasses import dataclass
+
+from rubgen.machine.faults.fault import Fault, Severity
+from rubgen.machine.quantities import STRICT, BladeNumber, LostBladeCount, about
+
+if TYPE_CHECKING:
+    from rubgen.machine.machine import Machine
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT)
+class LostBlade(Fault):
+    """Blade number `blade` is gone from its root, and with `lost_count` above 1 the blades after it too.
+
+    What is lost has no mass, no stiffness, no pull on the rim and no contact. So the disk has the unbalance of the
+    missing blades opposite to them, its stress is uneven, and the lines of the other blades change. The disk itself and
+    the dampers of its support stay as they are. The blades are gone from the beginning: their way through the casing is
+    not modelled. Each choice of blades needs a reduction of its own, about two seconds.
+    """
+
+    SEVERITY: ClassVar = Severity(column="lost_blades", unit="1", meaning="number of blades that are lost as a whole")
+    kind: Annotated[Literal["lost-blade"], about("Kind of this fault.")] = "lost-blade"
+    lost_count: Annotated[
+        LostBladeCount, about("Number of neighbouring blades that are lost. At most a quarter of all can be lost.")
+    ] = 1
+    blade: Annotated[BladeNumber, about("Number of the first lost blade.")] = 0
+
+    @property
+    def severity(self) -> float:
+        """The number of lost blades."""
+        return float(self.lost_count)
+
+    def problem(self, machine: Machine) -> str | None:
+        """Return the problem of blades that the machine does not have, or cannot spare."""
+        count = machine.blades.count
+        if self.blade >= count:
+            return f"blade = {self.blade}: there is no such blade; give 0 to {count - 1}"
+        if self.lost_count > max(count // 4, 1) or count - self.lost_count < 2:
+            return f"lost_count = {self.lost_count}: a quarter of {count} blades, and all but two, is the most; lower it"
+        heavy = {each.blade for each in machine.unbalances} & set(self.lost_blades(machine))
+        if heavy:
+            return f"blade = {self.blade}: an unbalance of the machine is on blade {min(map(int, heavy))}; move one of them"
+        return None
+
+    def lost_blades(self, machine: Machine) -> tuple[int, ...]:
+        """Return the numbers of the lost blades; after the last blade comes blade 0."""
+        return tuple((self.blade + each) % machine.blades.count for each in range(self.lost_count))

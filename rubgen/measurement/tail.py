@@ -1,0 +1,89 @@
+"""The steps of a run that are measured, and signals that follow the angle of the shaft over them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from rubgen.arrays import ComplexArray, FloatArray
+
+BLOCK = 1024
+"""Steps of a sinusoid that are computed from one of its exponentials."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tail:
+    """The steps that are measured: their number, their length in s, theta (steps,) and speed (steps,) in rad/s.
+
+    The step after the last one has theta = 0.
+    """
+
+    dt: float
+    angle: FloatArray
+    speed: FloatArray
+    seconds: float
+    """Length of the recording in s."""
+    blades: int
+    turn: int | None = None
+    """Number of steps of each turn where the speed is steady; None where it is not known to be."""
+
+    @property
+    def time(self) -> FloatArray:
+        """Time (steps,) in s before the step after the last one. It does not depend on how long the tail is."""
+        return np.asarray(self.dt * np.arange(-self.angle.size, 0), dtype=np.float64)
+
+    @cached_property
+    def once(self) -> Tail:
+        """The last turn where every turn is like it, else the whole tail: what follows the angle needs no more."""
+        if self.turn is None or self.turn >= self.angle.size:
+            return self
+        return replace(self, angle=self.angle[-self.turn :], speed=self.speed[-self.turn :])
+
+    def everywhere(self, signal: FloatArray) -> FloatArray:
+        """Return a signal over the steps of `once` at all steps of the tail."""
+        if signal.size == self.angle.size:
+            return signal
+        turns = -(-self.angle.size // signal.size)
+        return np.tile(signal, turns)[turns * signal.size - self.angle.size :]
+
+    @cached_property
+    def turned(self) -> FloatArray:
+        """Angle (steps,) in rad before the step after the last one, at which theta is 0; without jumps."""
+        if self.turn is not None:
+            return np.asarray(2 * np.pi / self.turn * np.arange(-self.angle.size, 0))
+        angle = np.unwrap(self.angle)
+        return np.asarray(angle - angle[-1] + self.angle[-1] - 2 * np.pi)
+
+    def wave(self, order: float) -> ComplexArray:
+        """Return exp(i order theta) (steps,), theta without jumps. A whole order is a product of lower whole orders."""
+        if not float(order).is_integer():
+            return np.asarray(np.exp(1j * order * self.turned))
+        if order not in self._waves:
+            half = order // 2
+            self._waves[order] = self.wave(half) * self.wave(order - half)
+        return self._waves[order]
+
+    @cached_property
+    def _waves(self) -> dict[float, ComplexArray]:
+        return {0: np.ones(self.angle.size, dtype=np.complex128), 1: np.asarray(np.exp(1j * self.angle))}
+
+    def resolved(self, order: float) -> npt.NDArray[np.bool_]:
+        """Return whether an order of the rotation has two steps a period (steps,). With fewer it is left out."""
+        return np.asarray(order * self.speed * self.dt < np.pi)
+
+    def sinusoids(self, amplitudes: ComplexArray, advances: FloatArray) -> FloatArray:
+        """Return sum_j Re(a_j exp(i w_j n)) (steps,), n counted from the step after the last one.
+
+        The exponential of n = BLOCK k + m is the product of those of BLOCK k and of m, so few are computed.
+
+        - amplitudes (sinusoids,): a.
+        - advances (sinusoids,): w, rad a step.
+        """
+        blocks = -(-self.angle.size // BLOCK)
+        far = amplitudes * np.exp(1j * np.multiply.outer(BLOCK * np.arange(-blocks, 0), advances))
+        near = np.exp(1j * np.multiply.outer(advances, np.arange(BLOCK)))
+        whole = np.concatenate([far.real, -far.imag], axis=1) @ np.concatenate([near.real, near.imag])
+        return whole.ravel()[blocks * BLOCK - self.angle.size :]
