@@ -73,9 +73,7 @@ class BliskModel:
     """Its stiffness over the stiffness of `beam` (blades,)."""
 
 
-def assemble_blisk(
-    disk: Disk, blades: BladeRow, support: DiskSupport, missing: Sequence[int] = ()
-) -> BliskModel:
+def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, missing: Sequence[int] = ()) -> BliskModel:
     """Assemble the full model of the blisk, 14,478 DoFs in the preset.
 
     The blades `missing` have no DoFs: their mass, their stiffness and their pull on the rim are not there.

@@ -76,9 +76,7 @@ def _made(
         return reduce_blisk(disk, blades, support, reduction, missing)
 
 
-def _key(
-    disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction, missing: Sequence[int]
-) -> str:
+def _key(disk: Disk, blades: BladeRow, support: DiskSupport, reduction: Reduction, missing: Sequence[int]) -> str:
     springs, modes = asdict(support), asdict(reduction)
     del modes["casing_modes"]
     lateral_keys = ("lateral_stiffness_n_per_m", "lateral_stiffness_anisotropy", "lateral_damping_anisotropy")

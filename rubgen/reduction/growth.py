@@ -50,9 +50,9 @@ def centrifugal_growth(model: BliskModel) -> CentrifugalGrowth:
     """Solve (K + Omega^2 (K_sigma - S)) u = Omega^2 f_c for the steady displacement at any speed, in a small basis.
 
     Galerkin's method in the Krylov space of K^-1 A and K^-1 f_c. K is on its axial, tilt and torsion springs with O_d
-    fixed laterally, where a symmetric load leaves it. Where blades are missing, O_d also bears the net load. Equal to the direct solution to 1e-9 of its size at the preset's
-    top speed: tests/reduction/test_reduced_model.py. Blades that differ grow unevenly, and O_d then bears Omega^2
-    `unbalance`: the reduced model takes it over as a load.
+    fixed laterally, where a symmetric load leaves it. Where blades are missing, O_d also bears the net load. Equal to
+    the direct solution to 1e-9 of its size at the preset's top speed: tests/reduction/test_reduced_model.py. Blades
+    that differ grow unevenly, and O_d then bears Omega^2 `unbalance`: the reduced model takes it over as a load.
     """
     count = model.count
     whole = model.present.size == count

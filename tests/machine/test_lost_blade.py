@@ -20,7 +20,7 @@ from rubgen.scenario.checks.feasible import SENSOR_PROBLEMS
 from rubgen.sensors.kinds.blade_strain import BladeStrain
 from rubgen.sensors.kinds.blade_tip_timing import TimingProbe
 from rubgen.solver.linear.rub_free import rub_free_motion
-from rubgen.viz.entities.machine_shape import blade_leanings, drawn_tips, drawing_factor
+from rubgen.viz.entities.machine_shape import blade_leanings, drawing_factor, drawn_tips
 
 BLADE = 9
 LOST = {"fault": "lost-blade", "blade": BLADE}
@@ -127,7 +127,9 @@ def test_what_a_machine_cannot_lose(keys, message):
 
 def test_nothing_is_put_on_a_lost_blade(preset):
     heavy = replace(preset, unbalances=(Unbalance(kg_m=1e-4, blade=BLADE),))
-    assert "an unbalance of the machine is on blade 9" in (LostBlade(blade=8, lost_count=2).problem(heavy) or "")
+    assert "an unbalance of the machine is on the lost blade 9" in (
+        LostBlade(blade=8, lost_count=2).problem(heavy) or ""
+    )
     machine = replace(preset, faults=(LostBlade(blade=BLADE), CrackedBlade(stiffness_loss=0.1, blade=8)))
     assert machine.faults[1].problem(machine) is None
     taken = CrackedBlade(stiffness_loss=0.1, blade=BLADE).problem(machine)

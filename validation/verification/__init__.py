@@ -34,6 +34,7 @@ _MODULES = (
     "contact.annular_rub",
     "contact.misaligned_rub",
     "contact.surface_options",
+    "contact.blade_passing",
     "chaos.chaos_indicators",
     "chaos.lyapunov_exponents",
     "chaos.exponent_errors",

@@ -41,10 +41,13 @@ class LostBlade(Fault):
         if self.blade >= count:
             return f"blade = {self.blade}: there is no such blade; give 0 to {count - 1}"
         if self.lost_count > max(count // 4, 1) or count - self.lost_count < 2:
-            return f"lost_count = {self.lost_count}: a quarter of {count} blades, and all but two, is the most; lower it"
-        heavy = {each.blade for each in machine.unbalances} & set(self.lost_blades(machine))
+            return (
+                f"lost_count = {self.lost_count}: a quarter of {count} blades, and all but two, is the most; lower it"
+            )
+        lost = self.lost_blades(machine)
+        heavy = [each.blade for each in machine.unbalances if each.blade is not None and each.blade in lost]
         if heavy:
-            return f"blade = {self.blade}: an unbalance of the machine is on blade {min(map(int, heavy))}; move one of them"
+            return f"blade = {self.blade}: an unbalance of the machine is on the lost blade {min(heavy)}; move one"
         return None
 
     def lost_blades(self, machine: Machine) -> tuple[int, ...]:

@@ -1,10 +1,10 @@
 """A cracked blade, a blade that has lost a piece of its tip, and a blade that is lost as a whole.
 
 Frequencies are compared with the full finite-element model at rest, in which the stiffness of one blade, or the mass at
-one tip, is changed in its matrices, or from which one blade is cut. The machine has few elements and seven blades, and its reduction stiffens the first
-bending by 6e-4. In the preset, whose disk is stiff, the cracked blade's line stands near sqrt(1 - loss) times that of
-the family; the root's flexibility gives 0.3 %. The unbalance of the lost mass moves the disk as a rigid body.
-The unbalance of a whole blade is the integral over its profile.
+one tip, is changed in its matrices, or from which one blade is cut. The machine has few elements and seven blades, and
+its reduction stiffens the first bending by 6e-4. In the preset, whose disk is stiff, the cracked blade's line stands
+near sqrt(1 - loss) times that of the family; the root's flexibility gives 0.3 %. The unbalance of the lost mass moves
+the disk as a rigid body. The unbalance of a whole blade is the integral over its profile.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from validation.verification.row import Row, relative
 TITLE = "Cracked blade, lost tip and lost blade"
 BLADES, BLADE, MODES = 7, 2, 14
 BENT = 12
-"""Modes of a machine of six blades up to the axial one; the reduction stiffens higher ones, also of the whole machine."""
+"""Modes of the machine without a blade up to the axial one. The reduction stiffens higher ones of any machine."""
 LOSS, LOST = 0.25, 4e-3
 BENDING = (100.0, 200.0)
 FINE = Reduction(blade_modes=6, disk_modes=12, blisk_modes=12)
