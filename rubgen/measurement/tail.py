@@ -86,4 +86,4 @@ class Tail:
         far = amplitudes * np.exp(1j * np.multiply.outer(BLOCK * np.arange(-blocks, 0), advances))
         near = np.exp(1j * np.multiply.outer(advances, np.arange(BLOCK)))
         whole = np.concatenate([far.real, -far.imag], axis=1) @ np.concatenate([near.real, near.imag])
-        return whole.ravel()[blocks * BLOCK - self.angle.size :]
+        return np.asarray(whole.ravel()[blocks * BLOCK - self.angle.size :])

@@ -136,7 +136,7 @@ def with_places(blisk: ReducedBlisk, present: IntArray, count: int) -> ReducedBl
 
     euler, centre, roots = np.zeros(size), np.zeros((6, size)), np.zeros((count, 6, size))
     euler[own], centre[:, own] = blisk.euler, blisk.centre
-    roots[np.ix_(present, range(6), own)] = blisk.roots
+    roots[np.ix_(present, np.arange(6), own)] = blisk.roots
     return replace(
         blisk,
         M=placed(blisk.M, mass),

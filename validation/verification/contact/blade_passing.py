@@ -56,7 +56,8 @@ def lines(run: Run, name: str, orders: FloatArray) -> ComplexArray:
     values = run.recording.channels[name].values.astype(np.float64)
     count = round(np.floor(values.size * turn_hz / rate) * rate / turn_hz)
     angle = 2 * np.pi * turn_hz / rate * np.arange(count)
-    return 2 * np.exp(-1j * np.outer(orders, angle)) @ (values[:count] - values[:count].mean()) / count
+    centred = values[:count] - values[:count].mean()
+    return np.asarray(2 * np.exp(-1j * np.outer(orders, angle)) @ centred / count)
 
 
 def accelerance(run: Run, orders: FloatArray) -> ComplexArray:
