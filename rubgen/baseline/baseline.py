@@ -18,7 +18,7 @@ from rubgen.dataset.reading.open import DataSet
 from rubgen.errors import UserError
 from rubgen.machine.problems import nearest
 
-SOLVED, NOTHING = 0.95, 0.6
+SOLVED, NOTHING, LEAST_GAIN = 0.95, 0.6, 0.1
 """A task that one threshold scores higher on is too easy; one that no model scores so much on teaches nothing."""
 LEAKY = ("boosting", "rocket")
 """The models whose leaky score is made too."""
@@ -82,22 +82,26 @@ def mark_of(scores: ModelScores, task: Task) -> str:
     """Say whether one threshold solves the task, or no model learns it. Empty for a good task.
 
     The first metric counts, by group. Where it is defined on another split alone, as the onset where training has
-    steady speeds, that split counts. An error is learned where it is below that of the majority.
+    steady speeds, that split counts. A task is learned where a model takes away at least `LEAST_GAIN` of what the
+    majority lacks: of its error, or of 1 less its score.
     """
     metric = next(iter(task.metrics))
     way = next((way for way, each in scores["majority"].items() if metric in each), None)
     if way is None:
         return ""
     by_model = {model: ways[way][metric][0] for model, ways in scores.items() if metric in ways.get(way, {})}
+    majority = by_model["majority"]
     if task.error:
         least = min(by_model.values())
-        return "" if least < by_model["majority"] else f"nothing learns it ({least:.2g} s, as the majority)"
+        learned = least < majority * (1 - LEAST_GAIN)
+        return "" if learned else f"nothing learns it ({least:.2g} s, the majority {majority:.2g} s)"
     threshold, best = by_model["one threshold"], max(by_model.values())
     if threshold > SOLVED:
         return f"one threshold solves it ({threshold:.2f} > {SOLVED})"
     if best < NOTHING:
         return f"nothing learns it ({best:.2f} < {NOTHING})"
-    return f"nothing learns it ({best:.2f}, as the majority)" if best == by_model["majority"] else ""
+    learned = best - majority > LEAST_GAIN * (1 - majority)
+    return "" if learned else f"nothing learns it ({best:.2f}, the majority {majority:.2f})"
 
 
 def _of_task(name: str, samples: Samples, splits: npt.NDArray[np.str_]) -> Baseline:

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from rubgen import __version__
-from rubgen.baseline.baseline import NOTHING, SOLVED, Baseline
+from rubgen.baseline.baseline import LEAST_GAIN, NOTHING, SOLVED, Baseline
 from rubgen.baseline.evaluate import FOLDS, SEEDS
 from rubgen.baseline.tasks import TASKS
 
@@ -38,6 +38,7 @@ def document(name: str, manifest_sha256: str, found: Sequence[Baseline], reasons
         "seeds": SEEDS,
         "one_threshold_solves_above": SOLVED,
         "nothing_learned_below": NOTHING,
+        "least_gain_over_the_majority": LEAST_GAIN,
         "tasks": [asdict(each) for each in found],
         "not_possible": reasons,
     }

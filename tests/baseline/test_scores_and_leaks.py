@@ -100,15 +100,16 @@ def test_a_task_of_noise_is_marked_and_a_good_one_is_not():
     assert mark_of(noise, TASKS["rub"]) == "nothing learns it (0.58 < 0.6)"
     good = said("by group", majority=0.5, one_threshold=0.7, boosting=0.85)
     assert mark_of(good, TASKS["rub"]) == ""
-    lopsided = said("by group", majority=0.94, one_threshold=0.9, boosting=0.92)
-    assert mark_of(lopsided, TASKS["rub"]) == "nothing learns it (0.94, as the majority)"
+    lopsided = said("by group", majority=0.94, one_threshold=0.9, boosting=0.945)
+    assert mark_of(lopsided, TASKS["rub"]) == "nothing learns it (0.94, the majority 0.94)"
+    assert mark_of(said("by group", majority=0.94, one_threshold=0.9, boosting=0.95), TASKS["rub"]) == ""
 
 
 def test_an_onset_is_learned_where_the_error_is_below_that_of_the_majority():
     metric = "median error, s"
     assert mark_of(said("on run_ups", metric, majority=0.3, one_threshold=0.4, boosting=0.1), TASKS["onset"]) == ""
-    bad = said("on run_ups", metric, majority=0.3, one_threshold=0.4, boosting=0.35)
-    assert mark_of(bad, TASKS["onset"]) == "nothing learns it (0.3 s, as the majority)"
+    bad = said("on run_ups", metric, majority=0.3, one_threshold=0.4, boosting=0.28)
+    assert mark_of(bad, TASKS["onset"]) == "nothing learns it (0.28 s, the majority 0.3 s)"
 
 
 def test_detections_are_counted_above_all_but_one_percent_of_the_false():
