@@ -15,7 +15,7 @@ def test_every_fault_has_a_picture_in_the_documents():
     assert set(pictures.FAULTS) == set(FAULTS)
     for kind, values in pictures.FAULTS.items():
         assert set(values) <= {field.name for field in fields(FAULTS[kind])} | set(KEYS)
-    shown = "".join((ROOT / "docs" / page).read_text() for page in ("faults.md", "surroundings.md"))
+    shown = "".join((ROOT / "docs" / page).read_text() for page in ("faults-laws.md", "surroundings.md"))
     for name in (*pictures.FAULTS, *pictures.SURROUNDINGS):
         assert f"](pictures/{name}.png)" in shown
         assert (ROOT / "docs" / "pictures" / f"{name}.png").is_file()

@@ -46,7 +46,7 @@ def browse_command(directory: Path, where: str | None, predictions: Path | None,
         try:
             if _make(catalog, directory, missing, viewer):
                 catalog.arrange(rows.columns, previews(data.recipe.sensing.set.sampled))
-                say("all recordings are there; reload the table, with the arrow beside its name, to see previews")
+                say(f"all recordings are there; for previews reload the page, or: rerun {catalog.url}")
             while viewer is None or viewer.poll() is None:
                 time.sleep(0.2)
         except KeyboardInterrupt:
