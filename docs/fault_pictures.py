@@ -1,4 +1,4 @@
-"""The pictures of docs/faults-laws.md and docs/surroundings.md: each fault beside a healthy machine and beside a rub."""
+"""The pictures of docs/faults-laws.md and docs/surroundings.md: each fault beside a healthy machine and a rub."""
 
 from __future__ import annotations
 
