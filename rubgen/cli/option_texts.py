@@ -20,7 +20,7 @@ TEXTS = {
     "fluctuation_rpm": "Amplitude of a fluctuating speed, which needs it; in rev/min, at least 0 and at most 1,000,000; 0 when not given.",
     "fluctuation_period_s": "Period of a fluctuating speed; in s, above 0 and at most 100,000; 1 when not given.",
     "unbalance_angle_deg": "Angle of unbalance_kg_m from blade 0, in the sense of rotation; in deg, at least -360 and at most 360.",
-    "free_penetration_m": "How deep tips would be without contact; the clearance follows from it; in m, at least -100 and at most 100.",
+    "free_penetration_m": "How deep tips would be without contact; the clearance follows from it; in m, at least -0.1 and at most 0.1.",
     "background_m_per_s2": "Rms of the casing's broadband background from 10 Hz to 20 kHz, at 10,000 rev/min; in m/s2, at least 0 and at most 1,000,000,000; 0 when not given.",
     "blade_passing_m_per_s2": "Rms of the casing's answer to the pressure of the blades, at 10,000 rev/min; in m/s2, at least 0 and at most 1,000,000,000; 0 when not given.",
     "runout_m": "Amplitude of order 1 of the shaft's runout under the proximity probes; in m, at least 0 and at most 100; 0 when not given.",

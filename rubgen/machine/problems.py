@@ -24,6 +24,8 @@ SHARES = ("below 1", "at most 1", "at most 0.3")
 """How the range of a share ends."""
 SIGNED = re.compile(r"at least -")
 """Times and angles may be negative."""
+UNIT = re.compile("_([a-z]+_per_[a-z0-9]+|kg_m|deg|hz|kg|m|pa|ppm|rpm|s)$")
+"""The unit at the end of a key, such as `_m_per_s2`."""
 LONGEST = 120
 """Longer values are not shown."""
 MOST_LISTED = 40
@@ -212,7 +214,7 @@ def _instead(path: Path, data: object, schema: SchemaNodes | None) -> str:
 def _closest(name: str, known: list[str], cutoff: float = NEAR) -> str | None:
     """Return the known name that is most like `name`, or has it as one of its words."""
     lower = {each.lower(): each for each in known}
-    units = [each for each in lower if each.rpartition("_")[0] == name.lower()]  # all but its unit
+    units = [each for each in lower if UNIT.sub("", each) == name.lower()]  # all but its unit
     if len(units) == 1:
         return lower[units[0]]
     close = get_close_matches(name.lower(), lower, n=1, cutoff=cutoff)

@@ -117,7 +117,7 @@ Positive = Annotated[float, real(gt=0)]
 # Lengths, places and angles.
 Length = Annotated[float, real(ge=1e-7, le=100)]
 Height = Annotated[float, real(ge=0, le=100)]
-Penetration = Annotated[float, real(ge=-100, le=100)]
+Penetration = Annotated[float, real(ge=-0.1, le=0.1)]
 AxialPlace = Annotated[float, real(ge=-100, le=100)]
 Angle = Annotated[float, real(ge=-360, le=360)]
 Direction = Annotated[float, real(ge=0, lt=360)]

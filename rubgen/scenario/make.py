@@ -94,7 +94,7 @@ def make_scenario(
       1,000,000; 10,000 when not given.
     - `clearance_m`: Smallest gap between blade tips and casing at rest; in m, at least 1e-07 and at most 100.
     - `free_penetration_m`: How deep tips would be without contact; the clearance follows from it; in m, at least
-      -100 and at most 100.
+      -0.1 and at most 0.1.
     - `ovality_m`: Largest minus smallest radius of the inner surface; in m, at least 0 and at most 100.
     - `disk_support_stiffness_n_per_m`: Lateral stiffness of the shaft and bearings at the disk centre, mean of X
       and Y; in N/m, at least 0.001 and at most 1e+16.

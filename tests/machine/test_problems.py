@@ -135,6 +135,10 @@ UNKNOWN = {
     "table": ({"simulaton": {}}, "simulaton: unknown key; did you mean simulation? allowed: "),
     "capitals": ({"Seed": 3}, "Seed: unknown key; did you mean seed? allowed: "),
     "one word of a key": ({"vary": {"speed": 1}}, "vary.speed: unknown key; did you mean speed_rpm? allowed: "),
+    "all but a unit of several words": (
+        {"surroundings": {"background": 30}},
+        "surroundings.background: unknown key; did you mean background_m_per_s2? allowed: ",
+    ),
     "deep": (
         {"contact": {"liner": {"thickness": 1, "wear_m2_per_n": 1, "width_m": 1}}},
         "contact.liner.thickness: unknown key; did you mean thickness_m? allowed: bins, thickness_m, wear",
