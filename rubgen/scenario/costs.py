@@ -31,8 +31,8 @@ virtual cores with other work, where the reduction alone took 1.1 to 1.5 s inste
 AUTOMATIC_SETTLE_TURNS = 250
 """Usual turns before the record: 155 to 399 in the recipes of rubgen."""
 KEPT_SHARE = {"parquet": 0.4, "mcap": 0.8, "rrd": 0.7}
-"""Size of a run's file over `stored_bytes`. Sets of five recipes had 0.27 to 0.71 with Parquet, whose files of two short
-run-ups are the largest. In 14 runs of five recipes MCAP had 0.48 to 1.08, .rrd 0.32 to 0.89."""
+"""Size of a run's file over `stored_bytes`. Sets of four recipes had 0.27 to 0.42 with Parquet, short run-ups 0.71. In
+14 runs of five recipes MCAP had 0.48 to 1.08, .rrd 0.32 to 0.89."""
 SECONDS_A_STORED_MEGABYTE = {"parquet": 0.02, "mcap": 0.06, "rrd": 0.13}
 """CPU time to write a file, for each megabyte of `stored_bytes`."""
 
