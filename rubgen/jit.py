@@ -17,6 +17,9 @@ from typing import Any, Concatenate, ParamSpec, TypeVar, cast
 
 import numba
 import numba.core.caching
+import numba.core.codegen
+import numba.core.compiler
+import numba.core.registry
 import numpy as np
 
 from rubgen.cache_root import cache_folder, read_cached, write_cached
@@ -24,8 +27,9 @@ from rubgen.cache_root import cache_folder, read_cached, write_cached
 P = ParamSpec("P")
 R = TypeVar("R")
 PACKAGE = Path(__file__).parent
-caching: Any = numba.core.caching
+core: Any = numba.core
 """Private to numba. Therefore pyproject.toml bounds the version of numba."""
+caching: Any = core.caching
 LAST_COMPILED = "turn_kernels.run_turns-*.nbc"
 """The kernel that calls all others of a run."""
 
@@ -79,7 +83,7 @@ def inlined_kernel(function: Callable[P, R]) -> Callable[P, R]:
 
     A call passes every field of every named tuple, 100 to 300 words. That takes longer than a short kernel itself.
     """
-    return _compiled(function, _nrt=False, forceinline=True)
+    return _compiled(function, _nrt=False, inlined=True)
 
 
 def switch(functions: Sequence[Callable[P, R]]) -> Callable[Concatenate[int, P], R]:
@@ -97,17 +101,74 @@ def switch(functions: Sequence[Callable[P, R]]) -> Callable[Concatenate[int, P],
     def chosen(number: int, *arguments: Any) -> Any:
         return first(*arguments) if number == 0 else others(number - 1, *arguments)
 
-    choice = _compiled(chosen if others else only, kept=False, _nrt=False, forceinline=True)
+    choice = _compiled(chosen if others else only, kept=False, _nrt=False, inlined=True)
     return cast("Callable[Concatenate[int, P], R]", choice)
 
 
-def _compiled(function: Callable[P, R], *, kept: bool = True, **options: bool) -> Callable[P, R]:
-    """The kernel; not `kept` in the cache where it encloses other kernels, whose names differ between processes."""
-    njit: Any = numba.njit
-    dispatcher = njit(nogil=True, error_model="numpy", **options)(function)
-    if kept and dispatcher is not function:  # NUMBA_DISABLE_JIT gives the function back
-        dispatcher._cache = _KernelCache(function)
-    return cast("Callable[P, R]", dispatcher)
+def _compiled(function: Callable[P, R], *, kept: bool = True, inlined: bool = False, **options: bool) -> Callable[P, R]:
+    """Return the kernel; not `kept` in the cache where it encloses others, whose names differ between processes."""
+    config: Any = numba.config
+    if config.DISABLE_JIT:
+        return function
+    return cast("Callable[P, R]", _Kernel(function, kept=kept, inlined=inlined, **options))
+
+
+class _Kernel(core.registry.CPUDispatcher):  # type: ignore[misc]
+    """A kernel that is compiled twice: to machine code where Python calls it, to LLVM code for kernels that call it.
+
+    Most kernels are only called by others. Numba would make machine code of each of them, with all that it calls, and
+    two wrappers that have a copy of it. That took most of the time.
+    """
+
+    def __init__(self, function: Callable[..., Any], *, kept: bool, inlined: bool, **options: bool) -> None:
+        always: dict[str, Any] = {"nopython": True, "error_model": "numpy", "no_cfunc_wrapper": True} | options
+        super().__init__(function, targetoptions=always | {"nogil": True})
+        called = always | {"forceinline": inlined, "no_cpython_wrapper": True}
+        self._called = _CalledKernel(function, targetoptions=called, pipeline_class=_CalledCompiler)
+        if kept:
+            self._cache = _KernelCache(function)
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Compile for a kernel that calls this one. Numba would compile `f(0)` and `f(n)` apart; here they are one."""
+        return self._called.get_call_template([core.types.unliteral(each) for each in args], kws)
+
+    def get_overload(self, sig: Any) -> Any:
+        """Return the key of what was compiled for a caller."""
+        return self._called.get_overload(sig)
+
+
+class _CalledKernel(core.registry.CPUDispatcher):  # type: ignore[misc]
+    """A kernel as other kernels call it. Python cannot call it."""
+
+    def add_overload(self, cres: Any) -> None:
+        """Store the LLVM code for these types."""
+        self.overloads[tuple(cres.signature.args)] = cres
+
+
+class _CalledCompiler(core.compiler.Compiler):  # type: ignore[misc]
+    """Makes LLVM code, and no machine code."""
+
+    def compile_extra(self, func: Callable[..., Any]) -> Any:
+        """Return numba's result, with a key in place of the machine code; callers find the LLVM code by it."""
+        context, key = self.state.targetctx, object()
+        self.state.flags.no_compile = True
+        self.state.library = _CalledLibrary(context.codegen(), func.__qualname__)
+        result = super().compile_extra(func)
+        context.insert_user_function(key, result.fndesc, [result.library])
+        return result._replace(entry_point=key)
+
+
+class _CalledLibrary(core.codegen.JITCodeLibrary):  # type: ignore[misc]
+    """LLVM code of a kernel and of what it calls. Its functions are simplified; loops are optimised in the caller."""
+
+    def _optimize_final_module(self) -> None:
+        passes, builder = self._codegen._module_pass_manager(
+            opt=0, cost="cheap", loop_vectorize=False, slp_vectorize=False
+        )
+        passes.run(self._final_module, builder)
+
+    def _finalize_final_module(self) -> None:
+        self._finalized = True
 
 
 class _KernelCache(caching.NullCache):  # type: ignore[misc]

@@ -13,7 +13,7 @@ import rubgen
 from rubgen import cache_root
 from rubgen.cache_root import CACHE_VARIABLE
 from rubgen.errors import RubgenWarning
-from rubgen.jit import kernel, kernel_key, kernels_are_compiled
+from rubgen.jit import inlined_kernel, kernel, kernel_key, kernels_are_compiled
 
 PACKAGE = Path(rubgen.__file__).parent
 CALLED = "from rubgen.jit import kernel\n@kernel\ndef called(x: float) -> float:\n    return x + 1.0\n"
@@ -52,6 +52,31 @@ def files(tmp_path: Path, name: str, ending: str) -> Path:
 
 def test_a_kernel_is_compiled_once(functions):
     assert [run(functions.double), run(functions.double)] == [(2.0, False), (2.0, True)]
+
+
+def test_python_and_another_kernel_can_call_the_same_kernel(functions):
+    double = kernel(functions.double)
+
+    @kernel
+    def quadruple(x):
+        return double(double(x))
+
+    assert [quadruple(1.5), double(1.5), quadruple(2)] == [6.0, 3.0, 8.0]
+
+
+def test_an_inlined_kernel_can_be_called_from_python(functions):
+    assert inlined_kernel(functions.double)(1.5) == 3.0
+
+
+def test_a_number_in_the_source_and_others_are_compiled_once(functions):
+    double = kernel(functions.double)
+
+    @kernel
+    def both(n):
+        return double(0) + double(n)
+
+    assert both(3) == 6.0
+    assert len(double._called.overloads) == 1
 
 
 @pytest.mark.parametrize("ending", ["nbi", "nbc"])
@@ -146,7 +171,7 @@ def test_the_same_sources_in_another_place_share_the_kernels(small_package, tmp_
         return {path: path.stat().st_mtime_ns for path in cache.rglob("*.nb?")}
 
     first = compiled(small_package)
-    assert len(first) == 4  # index and code of two kernels
+    assert len(first) == 2  # index and code of the kernel that Python calls; what it calls is in it
     other = shutil.copytree(small_package.parent, tmp_path / "other") / "rubgen"
     shutil.rmtree(small_package)
     assert compiled(other) == first

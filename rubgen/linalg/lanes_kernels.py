@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 from numba.core import cgutils
 
@@ -170,10 +171,9 @@ def _summed(emit: _Emitter, sources: list[Source], use: Callable[[Any, Any], Non
     return visit
 
 
-def _each_line(emit: _Emitter, array: Any, visit: Visit) -> None:
-    """Loop over lines, with code of its own for each kind."""
+def _each_line(emit: _Emitter, lines: Any, count: Any, visit: Visit) -> None:
+    """Loop over `count` lines, with code of its own for each kind."""
     builder, index = emit.builder, emit.index
-    lines, count = array.data, emit.shape(array, 0)
     with cgutils.for_range(builder, count) as loop:
         line = [
             builder.load(builder.gep(lines, [builder.add(builder.mul(loop.index, index(5)), index(i))]))
@@ -192,63 +192,82 @@ def _each_line(emit: _Emitter, array: Any, visit: Visit) -> None:
 
 
 def _add_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-    """The vector code of `add_lines`."""
-    emit = _Emitter(context, builder)
-    lines, a, x, out = (emit.array(kind, array) for kind, array in zip(signature.args, args, strict=True))
+    """Write the vector code of `add_lines`."""
+    caller = _Emitter(context, builder)
+    lines, a, x, out = (caller.array(kind, array) for kind, array in zip(signature.args, args, strict=True))
 
-    def add(row: Any, total: Any) -> None:
-        emit.store(builder.fadd(emit.load(out.data, row), total), out.data, row)
+    def body(emit: _Emitter, lines: Any, count: Any, a: Any, x: Any, out: Any) -> None:
+        def add(row: Any, total: Any) -> None:
+            emit.store(emit.builder.fadd(emit.load(out, row), total), out, row)
 
-    _each_line(emit, lines, _summed(emit, [(a.data, x.data)], add))
+        _each_line(emit, lines, count, _summed(emit, [(a, x)], add))
+
+    caller.call("add_lines", ir.VoidType(), body, lines.data, caller.shape(lines, 0), a.data, x.data, out.data)
     return context.get_dummy_value()
 
 
 def _set_two_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-    """The vector code of `set_two_lines`."""
-    emit = _Emitter(context, builder)
-    lines, a, b, x, y, base, out = (emit.array(kind, array) for kind, array in zip(signature.args, args, strict=True))
+    """Write the vector code of `set_two_lines`."""
+    caller = _Emitter(context, builder)
+    lines, *others = (caller.array(kind, array) for kind, array in zip(signature.args, args, strict=True))
 
-    def place(row: Any, total: Any) -> None:
-        emit.store(builder.fadd(emit.load(base.data, row), total), out.data, row)
+    def body(emit: _Emitter, lines: Any, count: Any, a: Any, b: Any, x: Any, y: Any, base: Any, out: Any) -> None:
+        def place(row: Any, total: Any) -> None:
+            emit.store(emit.builder.fadd(emit.load(base, row), total), out, row)
 
-    _each_line(emit, lines, _summed(emit, [(a.data, x.data), (b.data, y.data)], place))
+        _each_line(emit, lines, count, _summed(emit, [(a, x), (b, y)], place))
+
+    caller.call(
+        "set_two_lines", ir.VoidType(), body, lines.data, caller.shape(lines, 0), *[each.data for each in others]
+    )
     return context.get_dummy_value()
 
 
 def _gather_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-    """The vector code of `gather_lines`."""
-    emit, chosen = _Emitter(context, builder), args[4:6]
+    """Write the vector code of `gather_lines`."""
+    caller, chosen = _Emitter(context, builder), args[4:6]
     arrays = [(kind, array) for kind, array in zip(signature.args, args, strict=True) if isinstance(kind, types.Array)]
-    lines, a, z, places, out = (emit.array(kind, array) for kind, array in arrays)
-    numbers = [emit.line_of(places, c) for c in chosen]
-    outputs = [emit.line_of(out, c) for c in chosen]
+    lines, a, z, places, out = (caller.array(kind, array) for kind, array in arrays)
 
-    def visit(line: list[Any], rows: int, broadcast: bool) -> None:
-        if broadcast:
-            for output, totals in zip(outputs, emit.sum_gathered(a.data, z.data, numbers, line, rows), strict=True):
-                for row, total in enumerate(totals):
-                    emit.store(total, output, builder.add(line[ROW], emit.index(row)))
+    def body(emit: _Emitter, lines: Any, count: Any, a: Any, z: Any, *ends: Any) -> None:
+        numbers, outputs = list(ends[:2]), ends[2:]
 
-    _each_line(emit, lines, visit)
+        def visit(line: list[Any], rows: int, broadcast: bool) -> None:
+            if broadcast:
+                for output, totals in zip(outputs, emit.sum_gathered(a, z, numbers, line, rows), strict=True):
+                    for row, total in enumerate(totals):
+                        emit.store(total, output, emit.builder.add(line[ROW], emit.index(row)))
+
+        _each_line(emit, lines, count, visit)
+
+    ends = [caller.line_of(array, c) for array in (places, out) for c in chosen]
+    caller.call("gather_lines", ir.VoidType(), body, lines.data, caller.shape(lines, 0), a.data, z.data, *ends)
     return context.get_dummy_value()
 
 
 def _dot_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-    """The vector code of `dot_lines`."""
-    emit = _Emitter(context, builder)
-    lines, a, x, left = (emit.array(kind, array) for kind, array in zip(signature.args, args, strict=True))
-    sums = cgutils.alloca_once(builder, emit.vector)  # type: ignore[no-untyped-call]
-    builder.store(emit.zero, sums)
+    """Write the vector code of `dot_lines`."""
+    caller = _Emitter(context, builder)
+    lines, a, x, left = (caller.array(kind, array) for kind, array in zip(signature.args, args, strict=True))
 
-    def add(row: Any, total: Any) -> None:
-        builder.store(builder.call(emit.fma, [emit.load(left.data, row), total, builder.load(sums)]), sums)
+    def body(emit: _Emitter, lines: Any, count: Any, a: Any, x: Any, left: Any) -> Any:
+        builder = emit.builder
+        sums = cgutils.alloca_once(builder, emit.vector)  # type: ignore[no-untyped-call]
+        builder.store(emit.zero, sums)
 
-    _each_line(emit, lines, _summed(emit, [(a.data, x.data)], add))
-    return emit.lane_sum(builder.load(sums))
+        def add(row: Any, total: Any) -> None:
+            builder.store(builder.call(emit.fma, [emit.load(left, row), total, builder.load(sums)]), sums)
+
+        _each_line(emit, lines, count, _summed(emit, [(a, x)], add))
+        return emit.lane_sum(builder.load(sums))
+
+    return caller.call(
+        "dot_lines", ir.DoubleType(), body, lines.data, caller.shape(lines, 0), a.data, x.data, left.data
+    )
 
 
 def _dot_rows(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-    """The vector code of `dot_rows`."""
+    """Write the vector code of `dot_rows`."""
     emit = _Emitter(context, builder)
     a, b = (emit.array(kind, array).data for kind, array in zip(signature.args[:2], args[:2], strict=True))
     none = emit.index(0)

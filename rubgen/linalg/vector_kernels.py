@@ -81,6 +81,26 @@ class Emitter:
         """Return how many rows of eight so many numbers fill."""
         return self.builder.udiv(numbers, self.index(LANES))
 
+    def call(self, name: str, result: Any, body: Callable[..., Any], *arguments: Any) -> Any:
+        """Call a function of LLVM that `body` writes, once in a module. Returns its value.
+
+        Code is thus not written again at each call. With addresses and numbers for arguments a call costs next to
+        nothing.
+
+        - name: of the function; one name has one body.
+        - result: LLVM's type of the value.
+        - body: takes an emitter and the arguments, and returns the value; None for no value.
+        """
+        module, symbol = self.builder.module, f"rubgen.{name}"
+        if symbol not in module.globals:
+            function = ir.Function(module, ir.FunctionType(result, [each.type for each in arguments]), symbol)
+            function.linkage = "linkonce_odr"
+            function.attributes.add("noinline")
+            within = type(self)(self.context, ir.IRBuilder(function.append_basic_block("entry")))
+            value = body(within, *function.args)
+            _ = within.builder.ret_void() if value is None else within.builder.ret(value)
+        return self.builder.call(module.globals[symbol], arguments)
+
 
 def compile_as(plain: Callable[..., Any], result: Any, vector_code: Callable[..., Any]) -> None:
     """Register vector code for a plain function: compiled kernels take it wherever their source calls the function.

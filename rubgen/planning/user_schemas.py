@@ -26,7 +26,7 @@ def user_schema(kind: str) -> dict[str, Any]:
 
 
 def _sensor_set_schema() -> dict[str, Any]:
-    """A file's `[kinds.<kind>]` tables are merged into its sensors before anything is validated."""
+    """Return the schema of a sensor set. Its `[kinds.<kind>]` tables are merged into the sensors before validation."""
     schema: dict[str, Any] = TypeAdapter(SensorSet).json_schema()
     tables = {
         "type": "object",
