@@ -20,7 +20,7 @@ SOON_S = 1.0
 """A step that ends within this time is not shown."""
 EVERY_S = 60.0
 """Time between two lines where there is no terminal."""
-COMPILING = "simulate (the kernels are compiled first, once, in one to three minutes)"
+COMPILING = "simulate (the kernels are compiled first, once, in about a minute)"
 _NOTEBOOK = "ipykernel"
 
 
