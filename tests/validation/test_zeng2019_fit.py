@@ -159,7 +159,8 @@ def test_the_search_writes_its_evidence(tmp_path, monkeypatch):
     text = found.page.read_text()
     assert "| `zeng2019-as-computed` | chords | 8.0 | 0.1 | 0.0 | 1.0 | 1.000 [1.00, 1.00] | 1.000 |" in text
     assert "| chaotic everywhere |  |  |  |  |  | 0.500 | 0.500 |" in text
-    assert "It is better than chaos everywhere" in text
+    assert "On these words it is better." in text
+    assert "the held-out words give 1.00, better than chaos everywhere." in text
     assert "| 0.1 | 0.013 to 0.015 | 270.0 to 274.0 |" in text
     assert load_machine(str(found.machine)).casing.width_m == pytest.approx(0.26662 * 8 / 5, rel=1e-5)
     kept = read_evidence(tmp_path / "fit" / "found.json")
