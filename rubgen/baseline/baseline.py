@@ -18,8 +18,10 @@ from rubgen.dataset.reading.open import DataSet
 from rubgen.errors import UserError
 from rubgen.machine.problems import nearest
 
-SOLVED, NOTHING, LEAST_GAIN = 0.95, 0.6, 0.1
+SOLVED, NOTHING = 0.95, 0.6
 """A task that one threshold scores higher on is too easy; one that no model scores so much on teaches nothing."""
+LEAST_GAIN = 0.1
+"""Share of what the majority lacks, which a model must take away."""
 LEAKY = ("boosting", "rocket")
 """The models whose leaky score is made too."""
 BY_GROUP = "by group"

@@ -57,8 +57,8 @@ def bode(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> Figur
     """Draw amplitude and phase of the forward 1X whirl over the speed, turn by turn.
 
     The first touch is marked, or a line of text says where it is. The phase is that of the whirl behind the mark of the
-    once-per-turn pulse, in degrees. `speeds_rpm` is the range
-    that is shown, in rev/min. Raises ValueError where no pair of proximity probes was recorded, or the speed is steady.
+    once-per-turn pulse, in degrees. `speeds_rpm` is the range that is shown, in rev/min. Raises ValueError where no
+    pair of proximity probes was recorded, or the speed is steady.
     """
     speeds, turns = whirl_by_turn(replay)
     whirl = forward_1x(turns)
