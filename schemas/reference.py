@@ -11,6 +11,7 @@ from typing import Any
 from cyclopts import App
 
 from rubgen.cli.app import app
+from rubgen.cli.run import EXIT_CODES
 from rubgen.dataset.card import column_table
 from rubgen.dataset.files import write_text
 from rubgen.io.columns import label_columns, scalar_columns, signal_columns, tap_columns
@@ -145,7 +146,12 @@ def columns_page() -> str:
 def commands_page(commands: App) -> str:
     """Each command of `rubgen` with its arguments and options, from its `--help`."""
     parts = [_command(name, commands[name]) for name in commands if not name.startswith("-")]
-    return _page("Commands", "`rubgen COMMAND --help` prints the same in the terminal.", *parts)
+    return _page("Commands", "`rubgen COMMAND --help` prints the same in the terminal.", _exit_codes(), *parts)
+
+
+def _exit_codes() -> str:
+    rows = [f"| {code} | {meaning} |" for code, meaning in EXIT_CODES.items()]
+    return "\n".join(["| exit code | meaning |", "|---:|---|", *rows])
 
 
 def sections(table: Node, root: Node) -> Iterator[str]:

@@ -14,15 +14,22 @@ from rubgen.cli.printing import printable
 from rubgen.errors import RubgenError, RubgenWarning, UserError, os_reason
 from rubgen.progress import shown
 
-DONE, WANTING, MISTAKE, INTERRUPTED = 0, 1, 2, 130
-"""Exit codes. WANTING: the command ran and found something wrong. MISTAKE: the user's input is wrong."""
+DONE, WANTING, MISTAKE, INTERRUPTED, UNREAD = 0, 1, 2, 130, 141
+EXIT_CODES = {
+    DONE: "the command did what it was asked",
+    WANTING: "the command ran and found something wrong, such as a damaged set, or the system failed",
+    MISTAKE: "the input is wrong: one line on stderr says what, and what is allowed",
+    INTERRUPTED: "Ctrl-C or SIGTERM",
+    UNREAD: "the program that read the output has closed the pipe, as `head` does",
+}
+"""Meaning of each. Shells show the last two, 128 and the number of a signal, also where that signal ends a program."""
 
 
 def main(arguments: list[str] | None = None) -> NoReturn:
     """Run the command line with `arguments`, by default those of the process, and exit. It never returns.
 
-    Any error becomes one line on stderr and an exit code: 1 for a RubgenError, 2 for the user's mistake, 130 for
-    Ctrl-C.
+    Any error becomes one line on stderr and one of EXIT_CODES: 1 for a RubgenError, 2 for the user's mistake. Where the
+    reader of our output has closed it, nothing is printed.
     """
     warnings.simplefilter("always", RubgenWarning)
     warnings.showwarning = _show_warning
@@ -33,26 +40,38 @@ def main(arguments: list[str] | None = None) -> NoReturn:
             )  # a name that this terminal cannot show must not fail the command
     words = sys.argv[1:] if arguments is None else arguments
     try:
+        code = _code_of(words)
+    except (BrokenPipeError, SystemExit) as error:
+        if isinstance(error, SystemExit) and not isinstance(error.__context__, BrokenPipeError):
+            raise
+        # rich, which prints the help, makes a SystemExit of it. Python must not flush to the closed pipe at exit.
+        for stream in (sys.stdout, sys.stderr):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+        code = UNREAD
+    sys.exit(code)
+
+
+def _code_of(words: list[str]) -> int:
+    """Run the command line and return its exit code. An error is printed on stderr."""
+    try:
         with shown("--json" not in words):
             code = app(words, exit_on_error=False, print_error=False, result_action="return_value")
         sys.stdout.flush()
-        sys.exit(DONE if code is None else code)
+        return DONE if code is None else int(code)
     except CycloptsError as error:
-        _fail(mistake(error, app), MISTAKE)
+        return _failed(mistake(error, app), MISTAKE)
     except UserError as error:
-        _fail(str(error), MISTAKE)
+        return _failed(str(error), MISTAKE)
     except RubgenError as error:
-        _fail(str(error), WANTING)
+        return _failed(str(error), WANTING)
     except KeyboardInterrupt:
-        _fail("interrupted", INTERRUPTED)
+        return _failed("interrupted", INTERRUPTED)
     except BrokenPipeError:
-        # The reader of our output has closed it. Python must not flush to it at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(WANTING)
+        raise
     except UnicodeEncodeError as error:
-        _fail(f"{str(error.object)[:200]!r}: cannot be encoded as {error.encoding} ({error.reason})", MISTAKE)
+        return _failed(f"{str(error.object)[:200]!r}: cannot be encoded as {error.encoding} ({error.reason})", MISTAKE)
     except OSError as error:
-        _fail(os_reason(error), MISTAKE)
+        return _failed(os_reason(error), MISTAKE)
 
 
 def _show_warning(message: Warning | str, category: type[Warning], *_where: Any, **_how: Any) -> None:
@@ -65,6 +84,6 @@ def _one_line(error: Exception | str) -> str:
     return printable(" ".join(str(error).split())).rstrip(".")
 
 
-def _fail(message: str, code: int) -> NoReturn:
+def _failed(message: str, code: int) -> int:
     sys.stderr.write(f"rubgen: {printable(message)}\n")
-    sys.exit(code)
+    return code

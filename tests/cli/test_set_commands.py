@@ -9,6 +9,7 @@ import pytest
 from rubgen.cli.commands.generating import _what_was_made
 from rubgen.dataset.making.generate import Generated
 from rubgen.dataset.making.outcome import Outcome
+from rubgen.errors import UserError
 from rubgen.progress import COMPILING
 from rubgen.solver.response import Status
 
@@ -42,6 +43,21 @@ def test_generate_says_what_it_made(generate, tmp_path):
     assert failed == "  1 diverged, such as run-000002: in turn 7"
     assert any(line.endswith(f"verify {tmp_path / 'set'}") for line in look)
     assert errors == "rubgen: simulate\n"  # no terminal: the step at once, then a line a minute
+
+
+def test_a_set_without_a_run_that_is_ok_ends_with_1(generate, tmp_path, monkeypatch):
+    def refuse(scenario):
+        raise UserError("too thick")
+
+    monkeypatch.setattr("rubgen.pipeline.simulate", refuse)
+    line = f"rubgen: {tmp_path / 'set'}: no run is ok; the reason of each: rubgen info {tmp_path / 'set'}\n"
+    code, output, errors = generate("--shard", "1/1")
+    assert (code, errors) == (0, "rubgen: simulate\n")  # of a set that is not complete nothing is known
+    code, output, errors = generate("--finish", "--json")
+    assert (code, errors, json.loads(output)["status"]) == (1, line, {"refused": 3})
+    code, output, errors = generate()
+    assert (code, errors) == (1, line)
+    assert "nothing to do, all files are there: 3 refused" in output
 
 
 def test_the_first_run_on_a_machine_says_that_it_compiles(generate, monkeypatch):

@@ -42,3 +42,16 @@ def test_a_name_with_control_characters_stays_one_line_that_no_terminal_obeys(ru
     for text in (told, capsys.readouterr().out):
         assert text.removesuffix("\n").isprintable()
     assert text.endswith(": 1.5 µm, 90° ± 1\n")
+
+
+@pytest.mark.parametrize("buffered", [True, False])
+@pytest.mark.parametrize("arguments", ["list", "list --json", "--help", "plan --help", "completion zsh", "modes none"])
+def test_a_reader_that_goes_ends_a_command_without_a_word(arguments, buffered):
+    code = "import sys; from rubgen.cli import main; main(sys.argv[1:])"
+    reading, writing = os.pipe()
+    os.close(reading)
+    streams = {"stdout": writing, "stderr": writing if arguments == "modes none" else subprocess.PIPE}
+    command = [sys.executable, *([] if buffered else ["-u"]), "-c", code, *arguments.split()]
+    done = subprocess.run(command, **streams, text=True, check=False)
+    os.close(writing)
+    assert (done.stderr or "", done.returncode) == ("", 141)

@@ -36,7 +36,7 @@ class Work:
 def generate_command(recipe: Path | None, out: Path, runs: int | None, work: Work, *, as_json: bool) -> int:
     """Generate a data set and print a summary. The parameters are those of `rubgen.generate`.
 
-    Returns the exit code 0. After Ctrl-C it prints how to continue and returns 130.
+    Returns the exit code 1 where no run of the set is ok, else 0; after Ctrl-C 130, and says how to continue.
     """
     made = partial(generate, recipe, out, runs=runs, progress=not as_json, **dataclasses.asdict(work))
     kept_in = RemoteMaking(str(out), work.shard or "").layout.root if is_url(out) else out
@@ -46,7 +46,7 @@ def generate_command(recipe: Path | None, out: Path, runs: int | None, work: Wor
 def resense_command(directory: Path, sensors: str, out: Path, workers: int | None, *, as_json: bool) -> int:
     """Make a data set again with other sensors and print a summary. The parameters are those of `resense`.
 
-    Returns the exit code 0. After Ctrl-C it prints how to continue and returns 130.
+    Returns the exit code 1 where no run of the set is ok, else 0; after Ctrl-C 130, and says how to continue.
     """
     made = partial(resense, directory, sensors, out, workers=workers, progress=not as_json)
     return _made_in(out, made, out, as_json=as_json)
@@ -55,7 +55,7 @@ def resense_command(directory: Path, sensors: str, out: Path, workers: int | Non
 def merge_command(directories: Sequence[Path], out: Path, *, as_json: bool) -> int:
     """Merge data sets and print a summary. The parameters are those of `rubgen.merge`.
 
-    Returns the exit code 0. After Ctrl-C it prints how to continue and returns 130.
+    Returns the exit code 1 where no run of the set is ok, else 0; after Ctrl-C 130, and says how to continue.
     """
     return _made_in(out, partial(merge, directories, out, progress=not as_json), out, as_json=as_json)
 
@@ -89,7 +89,10 @@ def _made_in(out: Path, make: Callable[[], Generated], kept_in: Path, *, as_json
         )
         return 130
     _report(made, as_json=as_json)
-    return 0
+    if made.part or "ok" in made.status:
+        return 0
+    sys.stderr.write(f"rubgen: {made.directory}: no run is ok; the reason of each: rubgen info {made.directory}\n")
+    return 1
 
 
 def _report(made: Generated, *, as_json: bool) -> None:

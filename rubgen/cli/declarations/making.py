@@ -31,8 +31,8 @@ def generate(
 ) -> int:
     """Make the data set of a recipe, or complete it where it was interrupted.
 
-    One job of an array makes one part with --shard; after the last, --finish completes the set. All write to the same
-    directory.
+    Exit 1 where no run of the set is ok. One job of an array makes one part with --shard; after the last, --finish
+    completes the set. All write to the same directory.
     """
     if dry_run:
         from rubgen.cli.commands.planning import plan_command
@@ -53,7 +53,10 @@ def resense(
     workers: Annotated[int | None, whole_number("Number of processes; the number of cores when not given.")] = None,
     json: Json = False,
 ) -> int:
-    """Make a data set again with other sensors on the same motions; every run is simulated again."""
+    """Make a data set again with other sensors on the same motions; every run is simulated again.
+
+    Exit 1 where no run of the set is ok.
+    """
     from rubgen.cli.commands.generating import resense_command
 
     return resense_command(directory, sensors, out, workers, as_json=json)
@@ -64,7 +67,10 @@ def merge(
     out: Annotated[Path, option("New or empty directory, or the one of the same command, which is then completed.")],
     json: Json = False,
 ) -> int:
-    """Make one data set of several with other seeds; runs get new names, splits stay, nothing is simulated."""
+    """Make one data set of several with other seeds; runs get new names, splits stay, nothing is simulated.
+
+    Exit 1 where no run of the set is ok.
+    """
     from rubgen.cli.commands.generating import merge_command
 
     return merge_command(directories, out, as_json=json)
