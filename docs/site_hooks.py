@@ -1,6 +1,12 @@
-"""Say where lines of tables may break: never between a number and its error, in long names after _, / and a dot."""
+"""Tables and pictures of the site: where cells may break, which tables stack on a phone, pictures that open alone.
+
+Cells never break between a number and its error, and break in long names after _, / and a dot.
+"""
 
 import re
+
+STACKED = {"cause", "class", "expected", "found with zeng2019", "main cause", "meaning", "reason", "result", "test"}
+"""A table of four columns or more with one of these stacks its cells on a phone: the column holds text."""
 
 
 def on_page_markdown(markdown: str, **_: object) -> str:
@@ -9,8 +15,10 @@ def on_page_markdown(markdown: str, **_: object) -> str:
 
 
 def on_page_content(html: str, **_: object) -> str:
-    """Let names and paths in the cells of tables break after an underscore, a slash or a dot."""
-    return re.sub(r"<td[^>]*>.*?</td>", _with_breaks, html, flags=re.DOTALL)
+    """Let names break in cells, name the column in each cell of a table that stacks, let a click open a picture."""
+    html = re.sub(r"<td[^>]*>.*?</td>", _with_breaks, html, flags=re.DOTALL)
+    html = re.sub(r"<table>.*?</table>", _stacked, html, flags=re.DOTALL)
+    return re.sub(r'(<a [^>]*>\s*)?<img [^>]*?src="([^"]+)"[^>]*>', _opened, html)
 
 
 def _with_errors(row: re.Match[str]) -> str:
@@ -21,3 +29,21 @@ def _with_breaks(cell: re.Match[str]) -> str:
     return re.sub(
         r"(?<=<code>)[^<]+(?=</code>)", lambda name: re.sub(r"(_|/|\.(?=[a-zA-Z]))(?=.)", r"\1<wbr>", name[0]), cell[0]
     )
+
+
+def _opened(picture: re.Match[str]) -> str:
+    return picture[0] if picture[1] else f'<a href="{picture[2]}" title="Open the picture">{picture[0]}</a>'
+
+
+def _stacked(table: re.Match[str]) -> str:
+    names = [re.sub(r"<[^>]+>", "", name).strip() for name in re.findall(r"<th[^>]*>(.*?)</th>", table[0], re.DOTALL)]
+    if len(names) < 4 or not STACKED & set(names):
+        return table[0]
+    return re.sub(r"<tr>.*?</tr>", lambda row: _named(row[0], names), table[0], flags=re.DOTALL).replace(
+        "<table>", "<table data-stack>"
+    )
+
+
+def _named(row: str, names: list[str]) -> str:
+    columns = iter(names)
+    return re.sub(r"<td", lambda _: f'<td data-column="{next(columns)}"', row)
