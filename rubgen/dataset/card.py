@@ -22,11 +22,11 @@ from rubgen.labels.registry import LABELS
 
 
 def write_card(layout: Layout, identity: Identity, status: dict[str, int]) -> None:
-    """Write README.md of a data set. Its bytes depend only on these inputs and `runs.parquet`, which must be there.
+    """Write README.md of a data set. Its bytes depend only on these inputs and `runs.parquet`, which must exist.
 
     - layout: paths of the set.
     - identity: recipe, machine, sensors and versions.
-    - status: number of runs by status.
+    - status: number of runs by status, such as ok or refused.
     """
     write_text(layout.card, card(identity, status, tally_of(layout.runs)))
 
@@ -34,7 +34,9 @@ def write_card(layout: Layout, identity: Identity, status: dict[str, int]) -> No
 def card(identity: Identity, status: dict[str, int], tally: Tally) -> str:
     """Compose the text of README.md. Its YAML head names the files of each configuration and the licence, for hubs.
 
-    `status` is the number of runs by status, `tally` what the splits hold.
+    - identity: recipe, machine, sensors and versions.
+    - status: number of runs by status, such as ok or refused.
+    - tally: counts of runs, machines and classes by split.
     """
     recipe, recipes = identity.recipe, identity.recipes
     formats = recipe["output"]["formats"]

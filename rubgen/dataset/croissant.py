@@ -50,7 +50,10 @@ CITATION = (
 
 
 def write_croissant(layout: Layout, identity: Identity) -> None:
-    """Write croissant.json beside the files that it describes. `runs.parquet` must be there: its sha256 is named."""
+    """Write croissant.json of a data set.
+
+    `runs.parquet` and `sensors.parquet` must exist: they are read for their sha256.
+    """
     write_json(layout.croissant, croissant(layout, identity))
 
 

@@ -21,22 +21,25 @@ def is_system_file(name: str) -> bool:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write `text` to a file in UTF-8, with its line ends, completely and durably or not at all."""
+    """Write `text` in UTF-8 with its own line ends. The file is written completely and durably, or not at all."""
     write_durably(path, lambda part: part.write_bytes(text.encode()))
 
 
 def write_json(path: Path, values: object) -> None:
-    """Write values to a JSON file, durably and completely or not at all. Keys keep their order, numbers their bits."""
+    """Write `values` to a JSON file, completely and durably or not at all.
+
+    Keys keep their order, floats all their bits.
+    """
     write_text(path, json_text(values))
 
 
 def json_text(values: object) -> str:
-    """Return the JSON of values in the form of rubgen's files: indented by two spaces, with a line end."""
+    """Return the JSON text of `values`, indented by two spaces, with a line end."""
     return json.dumps(values, indent=2, ensure_ascii=False) + "\n"
 
 
 def remove_parts(directory: Path) -> None:
-    """Delete the incomplete files that a killed process left in this folder."""
+    """Delete the incomplete files that a killed process left in the folder `directory`."""
     for path in directory.glob(f"*{PART}*"):
         if path.is_file():
             path.unlink(missing_ok=True)

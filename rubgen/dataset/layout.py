@@ -62,11 +62,11 @@ class Layout:
         return self.staging / "kept" / shard
 
     def closed(self, shard: str) -> Path:
-        """Return the path of the record of a closed shard. Its existence proves that all files of it are complete."""
+        """Return the path of the record of a closed shard. Where it exists, all files of the shard are complete."""
         return self.staging / "closed" / f"{shard}.json"
 
     def staged(self, table: str, shard: str) -> Path:
-        """Return the path of a closed shard's file of a table, until the set is complete."""
+        """Return the path of a closed shard's file of a table in the staging folder of an unfinished set."""
         return self.staging / table / f"{shard}.parquet"
 
     def shard(self, table: str, shard: str) -> Path:
@@ -74,9 +74,9 @@ class Layout:
         return self.root / table / f"{shard}.parquet"
 
     def export(self, kind: str, run_id: str) -> Path:
-        """Return the path of a run's file in the format `kind`, whose name is its folder and its ending.
+        """Return the path of a run's file in the format `kind`, which is also the file's ending and its top folder.
 
-        A folder there has up to RUNS_PER_FOLDER runs. Raises ValueError for a text that names no run.
+        It is in a subfolder with up to RUNS_PER_FOLDER runs. Raises ValueError for a text that is no name of a run.
         """
         return self.root / kind / f"{index_of(run_id) // RUNS_PER_FOLDER:04d}" / f"{run_id}.{kind}"
 

@@ -77,7 +77,7 @@ class Identity(StrictModel):
         return {key: each for key, each in values.items() if key not in absent}
 
     def same_recipe(self, other: "Identity") -> bool:
-        """Return whether both describe the same data set, ignoring versions."""
+        """Return whether both identities describe the same data set. Package versions are ignored."""
         return self._described == other._described
 
     @property
@@ -89,7 +89,7 @@ class Identity(StrictModel):
         return self.model_copy(update={"recipe": {**self.recipe, "runs": runs}})
 
     def checked(self, source: str) -> "Identity":
-        """Return the identity with every key of its recipe present. It may come from a file.
+        """Return the identity, which may come from a file, with every key of its recipe present.
 
         Raises UserError, beginning with `source`, where a key or value is not valid.
         """
@@ -103,7 +103,7 @@ class Identity(StrictModel):
         return whole.model_copy(update={"sources": sources})
 
     def recorded(self, source: str = "manifest") -> Recipe:
-        """Make the recipe with its recorded machine and sensors, instead of those that its names now mean.
+        """Make the recipe with the recorded machine and sensors. The files that the recipe names are not read.
 
         Raises UserError, beginning with `source`, where a key or value is not valid.
         """
@@ -127,38 +127,41 @@ class Identity(StrictModel):
 
     @property
     def machines(self) -> list[dict[str, Any]]:
-        """The machines of the recipe's files, in their order; of a merged set those of each source."""
+        """The machines of the recipe's files, in their order.
+
+        A merged set has the machines of each source after each other.
+        """
         if self.sources:
             return [machine for each in self.sources for machine in each.identity.machines]
         return self.machine if isinstance(self.machine, list) else [self.machine]
 
     @property
     def recipes(self) -> list[dict[str, Any]]:
-        """The recipe; of a merged set those of its sources."""
+        """The recipe, in a list; for a merged set the recipes of its sources."""
         return [each.identity.recipe for each in self.sources] or [self.recipe]
 
     @property
     def machine_keys(self) -> tuple[MachineKey, ...]:
-        """The keys of virtual machines that have columns of their own."""
+        """The keys of `[machines.vary]` that have columns of their own; none without `[machines]`."""
         return own_keys(frame=bool(self.machines[0].get("frame"))) if "machines" in self.recipe else ()
 
 
 class Source(StrictModel):
-    """One of the sets of which a merged set was made."""
+    """One of the data sets from which a merged set was made."""
 
     sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$"), about("SHA-256 of its manifest.json.")]
     identity: Annotated[Identity, about("What decided its bytes: with it any of its runs is made again.")]
 
     @property
     def digits(self) -> str:
-        """The first digits of its sha256, by which the column `merged_from` names it."""
+        """The first 12 digits of the manifest's sha256. The column `merged_from` names the source by these digits."""
         return self.sha256[:DIGITS]
 
 
 class Manifest(StrictModel):
-    """The content of manifest.json. `derived` lists files whose bytes may differ and that can be made again.
+    """The content of manifest.json. `derived` lists files that can be made again and whose bytes may differ then.
 
-    Their digests are in derived.json, so that making a set twice makes the same manifest.
+    The digests of derived files are in derived.json, so that making a set twice makes the same manifest.
     """
 
     format: Annotated[
@@ -174,13 +177,13 @@ class Manifest(StrictModel):
     derived: Annotated[tuple[InnerPath, ...], about("Paths of files that can be made again from the others.")]
 
     def listed(self, folder: str) -> list[str]:
-        """Return the paths of the set's files below `folder`, sorted. Unlisted files there are ignored."""
+        """Return the paths of the listed files below `folder`, sorted, relative to the set."""
         names = [*(entry.path for entry in self.files), *self.derived]
         return sorted(name for name in names if name.startswith(f"{folder}/"))
 
 
 def identity_of(recipe: Recipe) -> Identity:
-    """Return the identity of the data set that this recipe makes with the installed packages."""
+    """Return the identity of the data set that `recipe` makes with the installed packages."""
     return _identity(recipe, {name: version(name) for name in PACKAGES} | {"python": platform.python_version()})
 
 
@@ -206,13 +209,16 @@ def write_manifest(
     files: Sequence[FileEntry],
     derived: Sequence[FileEntry],
 ) -> Manifest:
-    """Finish a data set: write the digests of derived files, the manifest, and its digest.
+    """Finish a data set: write derived.json, then manifest.json, then the digest of manifest.json. Return the manifest.
 
-    - layout: paths of the set, whose other files are complete.
+    All other files of the set must be complete.
+
+    - layout: paths of the set.
     - identity: recipe, machine, sensors and versions.
-    - status: number of runs by status.
-    - files: sizes and digests of the files of the set.
-    - derived: those of the files that can be made again.
+    - status: number of runs by status, such as ok or refused.
+    - files: path, size and sha256 of each file with reproducible bytes. The manifest lists them with their sha256.
+    - derived: the same for files that can be made again (.rrd), which are not in `files`. The manifest lists their
+      paths. derived.json lists their sizes and sha256; it is not written if there are none.
     """
     recipe = identity.recipe
     manifest = Manifest(
@@ -234,7 +240,7 @@ def write_manifest(
 def read_identity(layout: Layout) -> Identity:
     """Read the identity of an unfinished data set.
 
-    Raises UserError where it is damaged, OSError where there is none.
+    Raises UserError where it is damaged, OSError where no file is there.
     """
     try:
         return Identity.model_validate(read_json(layout.identity.read_bytes()))
@@ -248,7 +254,7 @@ def read_identity(layout: Layout) -> Identity:
 def read_manifest(layout: Layout) -> Manifest:
     """Read the manifest of a finished data set and check it against its digest.
 
-    Raises UserError where there is none, or it is damaged or not of rubgen.
+    Raises UserError where there is no manifest, or it is damaged or was not written by rubgen.
     """
     if not is_there(layout.manifest):
         raise UserError(f"{layout.root}: no finished data set of rubgen: {_why_none(layout)}")
@@ -296,9 +302,9 @@ def entry_of(path: Path, root: Path) -> FileEntry:
 
 
 def write_derived(layout: Layout, names: Sequence[str]) -> bool:
-    """Write sizes and digests of the derived files `names` to derived.json. Return whether that file changed.
+    """Write sizes and digests of the derived files `names` to derived.json. Return whether derived.json changed.
 
-    Without derived files nothing is written.
+    If `names` is empty, nothing is written.
     """
     return _write_derived(layout, [entry_of(layout.root / name, layout.root) for name in names])
 
@@ -312,7 +318,7 @@ def _write_derived(layout: Layout, entries: Sequence[FileEntry]) -> bool:
 
 
 def read_derived(layout: Layout) -> dict[str, FileEntry]:
-    """Read sizes and digests of the derived files as they were written, by path.
+    """Read derived.json: path, size and sha256 of each derived file when it was written, by path.
 
     Raises UserError where derived.json is missing or damaged.
     """

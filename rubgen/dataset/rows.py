@@ -26,16 +26,16 @@ FILES_OPEN = 16
 def asked_bytes(recipe: Recipe) -> float:
     """Estimate the largest unpacked size in bytes of a row group in the data set of this recipe.
 
-    It is the size of RUNS_PER_ROW_GROUP runs with their channels and states, at the extremes of `[vary]`. Readers allow
-    it beyond their general bound.
+    It is the size of RUNS_PER_ROW_GROUP runs with their channels and states, at the extreme values of `[vary]`. Readers
+    allow this size beyond their general bound.
     """
     return RUNS_PER_ROW_GROUP * max(map(stored_bytes, recipe.corners()))
 
 
 def remember(recipe: Recipe, index: int, row: Mapping[str, Any]) -> None:
-    """Take the candidates that a run of a set has, of its machine and of its balance, without checking them again.
+    """Make `recipe` use the recorded candidates of a run's machine and balance, so that they are not checked again.
 
-    - recipe: the recipe of the set, not a merged one.
+    - recipe: the recipe of the set, not of a merged set.
     - index: number of the run.
     - row: its row in `runs.parquet`, with the words of classes.
     """
@@ -54,7 +54,7 @@ def remember(recipe: Recipe, index: int, row: Mapping[str, Any]) -> None:
 
 
 class Place(NamedTuple):
-    """Where the row of a run is: file, number of the row group, number of the row in that group."""
+    """The position of a run's row: file, number of the row group, number of the row in the group."""
 
     file: Path
     group: int
@@ -71,7 +71,7 @@ class RunRows:
 
     @cached_property
     def places(self) -> dict[str, Place]:
-        """The place of every run by its name. Raises UserError where a file is missing or damaged."""
+        """The position of every run's row, by the run's name. Raises UserError where a file is missing or damaged."""
         places: dict[str, Place] = {}
         for path in self.files:
             file = self._open(path)
@@ -81,10 +81,10 @@ class RunRows:
         return places
 
     def each(self, run_ids: Iterable[str], columns: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
-        """Yield name and row of each run in `run_ids`, in that order, with only these columns.
+        """Yield name and row of each run in `run_ids`, in the same order, with only the columns `columns`.
 
-        A row group is read once for successive runs in it. Raises UserError that names file and run where a page is
-        damaged, or a run lacks a value.
+        A row group is read once for successive runs in it. Raises UserError, with file and run, where a run has no row
+        or no value, or a page is damaged.
         """
         run_ids = list(run_ids)
         lost = [run_id for run_id in run_ids if run_id not in self.places]
@@ -124,7 +124,10 @@ class RunTable:
         self._group = lru_cache(GROUPS_IN_MEMORY)(self._file.read_row_group)
 
     def rows(self, indexes: Sequence[int]) -> pa.Table:
-        """Return the rows of these runs, in that order, which ascends. Raises UserError where one cannot be read."""
+        """Return the rows of the runs with these numbers, which must ascend.
+
+        Raises UserError where a row cannot be read.
+        """
         if indexes and indexes[-1] >= self._starts[-1]:
             raise UserError(f"{self._file.path}: has no run number {indexes[-1]}")
         pieces = []

@@ -13,9 +13,9 @@ of a large set; twice as many double the work that one close of a shard repeats.
 
 @dataclass(frozen=True)
 class Shard:
-    """Up to RUNS_PER_SHARD runs of one split, failed runs too.
+    """Up to RUNS_PER_SHARD runs of one split, failed runs included.
 
-    Only the last shard of a split has fewer, in a merged set the last shard of each source.
+    Only the last shard of a split has fewer runs; in a merged set, the last shard of a split in each source.
     """
 
     split: str
@@ -26,7 +26,7 @@ class Shard:
 
     @property
     def name(self) -> str:
-        """Name of its files without the ending. A set that grows keeps all names."""
+        """Name of its files without the ending. It stays the same when runs are added to the set."""
         return f"{self.split}-{self.number:05d}"
 
     @property
@@ -38,13 +38,14 @@ class Shard:
 def shards_of(recipe: Recipe) -> Iterator[Shard]:
     """Yield the shards of the recipe's set: full ones in the order of their last runs, then the last of each split.
 
-    Only the runs of open shards are in memory, whatever the number of runs. A merged set has the shards of its sources.
+    A merged set has the shards of its sources, one source after the other. Memory does not grow with the number of
+    runs.
     """
     yield from (shard for _, _, shard in source_shards(recipe))
 
 
 def source_shards(recipe: Recipe) -> Iterator[tuple[int, Shard, Shard]]:
-    """Yield the number of a source, a shard of it, and the same shard in the set, of every source."""
+    """Yield for each shard of each source: the source's number, the shard there, and the shard in the merged set."""
     before = Counter[str]()
     for number, (first, source) in enumerate(recipe.sources):
         mine = Counter[str]()

@@ -26,7 +26,7 @@ if TYPE_CHECKING:  # Run carries the solver's imports; who reads a set needs non
 
 @dataclass(frozen=True, kw_only=True)
 class SetTable:
-    """One table of a data set, with one row a run, or some."""
+    """One table of a data set: its folder and columns, and a function that makes its rows of a run."""
 
     name: str
     """Folder of its files."""
@@ -73,7 +73,7 @@ TABLES = (SIGNALS, TRUTH, WINDOWS, SECTIONS)
 
 
 def files_of(table: str, split: str) -> str:
-    """Return the pattern of the paths in a set of all files of a table with runs of a split."""
+    """Return the glob pattern, within a set, of all files of the table `table` with runs of the split `split`."""
     return f"{table}/{split}-*.parquet"
 
 

@@ -32,7 +32,7 @@ class SplitTally:
 
 @dataclass(frozen=True, kw_only=True)
 class Shift:
-    """A parameter whose mean over failed runs differs from its mean over good ones."""
+    """A parameter whose mean over failed runs differs from its mean over good runs; both means are in `unit`."""
 
     key: str
     unit: str
@@ -42,16 +42,16 @@ class Shift:
 
 @dataclass(frozen=True, kw_only=True)
 class Tally:
-    """Counts of a set by the name of the split, and where its failed runs are."""
+    """Counts of a set by the name of the split, and the parameters in which failed runs differ from good runs."""
 
     splits: dict[str, SplitTally]
     shifts: tuple[Shift, ...]
 
 
 def tally_of(runs: Path) -> Tally:
-    """Count the runs of a set in its file `runs.parquet`. A row group at a time and all machines' names are in memory.
+    """Count the runs of a set in its file `runs.parquet`: runs, machines, status, rub and motion, by split.
 
-    Raises UserError where the file is missing or damaged.
+    One row group and the names of all machines are in memory. Raises UserError where the file is missing or damaged.
     """
     splits: dict[str, SplitTally] = {}
     machines: set[tuple[str, str]] = set()

@@ -55,7 +55,7 @@ def reduction_bytes(machine: Machine, reduction: Reduction) -> float:
 
 
 def memory_problem(machine: Machine, reduction: Reduction) -> str | None:
-    """Return the problem where the reduction takes too much memory, with the remedy; None without one."""
+    """Return the problem where the reduction takes more than 4 GB of memory, with the remedy; None where it fits."""
     disk, blades, most = machine.disk, machine.blades, f"at most {MOST_REDUCTION_BYTES / GIGA:g} GB"
     if _fits(machine, reduction):
         return None
@@ -82,9 +82,10 @@ def _fits(machine: Machine, reduction: Reduction) -> bool:
 
 
 def steps_per_turn(scenario: Scenario) -> int:
-    """Return the steps of a turn at the highest speed: the operation's, doubled until they are enough for the sensors.
+    """Return the steps of a turn: the operation's `steps_per_turn`, doubled until they are enough for the sensors.
 
-    Stability may double them further, which is known only from the reduced model.
+    They are counted at the highest speed. Stability may double them further, which is known only from the reduced
+    model.
     """
     operation = scenario.operation
     needed = max(1.0, STEPS_PER_SAMPLE * scenario.sensing.fastest_hz * 2 * math.pi / operation.rotation.fastest)
@@ -93,16 +94,17 @@ def steps_per_turn(scenario: Scenario) -> int:
 
 
 def bytes_a_turn(scenario: Scenario) -> float:
-    """Return the bytes recorded of each turn: state and velocity once a turn, orders at a changing speed."""
+    """Return the bytes recorded in each turn: one state with its velocity, and order sums where the speed changes."""
     orders = 0 if scenario.operation.profile == "steady" else 20 * 16 * _taps(scenario)
     return 8 * 2 * coordinates(scenario) + orders
 
 
 def bytes_a_second(scenario: Scenario) -> float:
-    """Return the bytes of each second of signal: taps at every step, twice while they are joined; channels.
+    """Return the bytes of memory for each second of signal.
 
-    Channels count three times where those without noise are recorded too, else twice. Surroundings and a frame add
-    arrays: 12, and 17 with eight modes, measured (tracemalloc) in the set default.
+    Taps have a value at every step, and count twice because they are joined. Channels count three times where clean
+    ones are recorded too, else twice. Surroundings and a frame add arrays: 12, and 17 with eight modes, measured
+    (tracemalloc) in the set default.
     """
     operation, sensing = scenario.operation, scenario.sensing
     steps = steps_per_turn(scenario) * operation.rotation.fastest / (2 * math.pi)
@@ -114,13 +116,13 @@ def bytes_a_second(scenario: Scenario) -> float:
 
 
 def coordinates(scenario: Scenario) -> int:
-    """Return the number of DoFs of the reduced model: three a blade, two of the disk centre, all modes."""
+    """Return the number of DoFs of the reduced model: three a blade, two of the disk centre, one a mode."""
     modes = scenario.reduction.blisk_modes + scenario.reduction.casing_modes
     return 3 * scenario.machine.blades.count + 2 + modes
 
 
 def stored_bytes(scenario: Scenario) -> float:
-    """Return the bytes of a run's channels and states in a file, unpacked: numbers of 4 bytes."""
+    """Return the bytes of a run's channels and states in a file before compression, with 4 bytes a number."""
     sensing = scenario.sensing
     channels = (2 if sensing.keep_clean else 1) * len(sensing.set.sensors)
     states = 2 * coordinates(scenario) * scenario.operation.recorded_turns
@@ -128,7 +130,10 @@ def stored_bytes(scenario: Scenario) -> float:
 
 
 def run_seconds(scenario: Scenario, *, rubs: bool, formats: Sequence[str] = ()) -> float:
-    """Estimate the CPU time of a run with its files in s, within a factor of two on a computer of today."""
+    """Estimate the CPU time in s of a run with its files in `formats`, within a factor of two on a computer of today.
+
+    `rubs` is whether blades touch in the run: a steady run without contact is made from one turn.
+    """
     operation, megabytes = scenario.operation, stored_bytes(scenario) / 1e6
     writing = sum(SECONDS_A_STORED_MEGABYTE.get(name, 0.0) * megabytes for name in formats)
     steady = operation.profile == "steady"
@@ -140,12 +145,15 @@ def run_seconds(scenario: Scenario, *, rubs: bool, formats: Sequence[str] = ()) 
 
 
 def file_bytes(scenario: Scenario, name: str) -> float:
-    """Estimate the size of a run's file in the format `name` in bytes, within a factor of two."""
+    """Estimate the size in bytes of a run's file, within a factor of two.
+
+    `name` is the format: parquet, mcap or rrd.
+    """
     return KEPT_SHARE.get(name, 1.0) * stored_bytes(scenario)
 
 
 def run_problem(scenario: Scenario) -> str | None:
-    """Return the problem where a run records more than fits in memory, with a number that fits; None without one."""
+    """Return the problem where a run records more than 2 GB, with a length that fits; None without a problem."""
     operation = scenario.operation
     turn, second = bytes_a_turn(scenario), bytes_a_second(scenario)
     if operation.recorded_turns * turn > MOST_RUN_BYTES:

@@ -31,7 +31,7 @@ class Constant(RootModel[Finite]):
         return self.root
 
     def extremes(self) -> tuple[float, ...]:
-        """Return the values that bound what can be drawn."""
+        """Return the value, as the only one that can be drawn."""
         return (self.root,)
 
 
@@ -45,12 +45,12 @@ class Uniform(StrictModel):
         return _check_order(self, *self.uniform)
 
     def quantile(self, u: float) -> float:
-        """Return a + u (b - a)."""
+        """Return a + u (b - a), for u in [0, 1)."""
         low, high = self.uniform
         return low + u * (high - low)
 
     def extremes(self) -> tuple[float, ...]:
-        """Return the values that bound what can be drawn."""
+        """Return the least and the largest value that can be drawn."""
         return self.uniform
 
 
@@ -71,12 +71,12 @@ class LogUniform(StrictModel):
         return _check_order(self, *self.log_uniform)
 
     def quantile(self, u: float) -> float:
-        """Return a (b / a)^u."""
+        """Return a (b / a)^u, for u in [0, 1)."""
         low, high = self.log_uniform
         return float(low * (high / low) ** u)
 
     def extremes(self) -> tuple[float, ...]:
-        """Return the values that bound what can be drawn."""
+        """Return the least and the largest value that can be drawn."""
         return self.log_uniform
 
 
@@ -113,14 +113,14 @@ class Normal(StrictModel):
         return self
 
     def quantile(self, u: float) -> float:
-        """Return mean + std Phi^-1(Phi(a) + u (Phi(b) - Phi(a))), a and b the standardised min and max."""
+        """Return mean + std Phi^-1(Phi(a) + u (Phi(b) - Phi(a))), u in [0, 1). a, b: the standardised min and max."""
         shape = self.normal
         low, high = self._shares()
         value = shape.mean + shape.std * float(ndtri(low + u * (high - low)))
         return min(max(value, shape.min), shape.max)
 
     def extremes(self) -> tuple[float, ...]:
-        """Return the values that bound what can be drawn."""
+        """Return the least and the largest value that can be drawn."""
         return (self.normal.min, self.normal.max)
 
     def _shares(self) -> tuple[float, float]:
@@ -136,7 +136,7 @@ class Choice(StrictModel):
     choice: Annotated[tuple[Finite, ...], Field(min_length=1), about("Values of which each is equally likely.")]
 
     def quantile(self, u: float) -> float:
-        """Return the value number floor(u n)."""
+        """Return the value number floor(u n) of the n listed values, for u in [0, 1)."""
         return self.choice[min(math.floor(u * len(self.choice)), len(self.choice) - 1)]
 
     def extremes(self) -> tuple[float, ...]:

@@ -92,15 +92,18 @@ else:
 
 
 def kind_of(fault: Fault | BaseModel) -> str:
-    """Return the kind of a fault, or of its table in a recipe."""
+    """Return the kind of a fault, or of a `[[faults]]` table of a recipe, such as "bearing-defect"."""
     return str(cast("Any", fault).kind)
 
 
 def with_faults(scenario: Scenario, tables: Sequence[BaseModel]) -> Scenario:
-    """Draw the scenario's faults from the tables of its recipe, by its seed and index. Return the scenario with them.
+    """Draw the faults of a run and return the scenario with them.
 
-    `fault_kinds` becomes every kind that machine or recipe name. Each key of each kind has random numbers of its own,
-    whatever other keys and kinds there are.
+    - scenario: its seed and index determine the random numbers.
+    - tables: the `[[faults]]` tables of the recipe.
+
+    `fault_kinds` of the result are all kinds that the machine or the recipe names. Each key of each kind has its own
+    random numbers, which do not depend on the other keys and kinds.
     """
 
     def number(name: str) -> float:
@@ -118,10 +121,13 @@ def with_faults(scenario: Scenario, tables: Sequence[BaseModel]) -> Scenario:
 
 
 def with_given_faults(scenario: Scenario, kinds: str | Sequence[str], values: Mapping[str, object]) -> Scenario:
-    """Return the scenario with faults of these kinds; each of `values` goes to the kind that has its key.
+    """Return the scenario with faults of these kinds in addition to the machine's own.
 
-    Raises UserError of one line for an unknown kind, a key that none or several of the kinds have, and a value that is
-    not allowed.
+    - kinds: one kind or several.
+    - values: the values of the faults' keys. Each goes to the kind that has the key.
+
+    Raises UserError of one line for an unknown kind, a kind that the machine has already, a key that no kind or several
+    kinds have, and a value that is not allowed.
     """
     named = [kinds] if isinstance(kinds, str) else list(kinds)
     already = kinds_of(scenario.machine.faults)
@@ -158,9 +164,12 @@ FAULT_KEYS = tuple(dict.fromkeys(key for kind in FAULTS for key in _keys(kind)))
 
 
 def extremes(scenario: Scenario, tables: Sequence[BaseModel], source: str) -> Iterator[Scenario]:
-    """Yield the scenario with each fault alone, at its least and its largest values, then with all at their largest.
+    """Yield the scenario with each fault alone, at its least and at its largest values, then with all at their largest.
 
-    Raises UserError, beginning with `source`, for a value that is not allowed, and for a kind that stands there twice.
+    - tables: the `[[faults]]` tables of the recipe, from which the values come.
+    - source: beginning of messages.
+
+    Raises UserError for a value that is not allowed, and for a kind that the machine and the recipe name twice.
     """
     kinds = [kind_of(fault) for fault in scenario.machine.faults]
     largest = []
@@ -178,7 +187,10 @@ def extremes(scenario: Scenario, tables: Sequence[BaseModel], source: str) -> It
 
 
 def named_kinds(*documents: dict[str, Any]) -> tuple[str, ...]:
-    """Return the kinds of fault that documents of a recipe and its machines name, in the order of the registry."""
+    """Return the kinds of fault that the documents of a recipe and of its machines name, in the order of the registry.
+
+    A document is the TOML or JSON content as nested dicts. The fault of `[twins]` counts too.
+    """
     named = {each["kind"] for document in documents for each in document.get("faults") or ()}
     twins: list[dict[str, Any]] = [document.get("twins") or {} for document in documents]
     named |= {each["fault"]["kind"] for each in twins if each.get("fault")}

@@ -38,10 +38,10 @@ NOT_FOR_DATA = (
 
 
 def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> Recipe:
-    """Load the recipe in that TOML file, the recipe of rubgen with that name, or the default recipe.
+    """Load the recipe of a TOML file, a recipe that comes with rubgen, or the default recipe.
 
-    - path: of the file; or a name that `rubgen list` prints, without .toml; None is the default recipe.
-    - runs: overrides the number of runs.
+    - path: path of the file, or a name that `rubgen list` prints, without .toml. None is the default recipe.
+    - runs: number of runs in place of the recipe's; None keeps the recipe's.
 
     Raises UserError with file, key, value, what is allowed and the remedy, before anything is computed.
     """
@@ -69,8 +69,8 @@ def parse_recipe(
 
     - data: the TOML values.
     - source: beginning of messages.
-    - folder: start of relative paths.
-    - runs: overrides the number of runs.
+    - folder: folder from which relative paths start; None is the current folder.
+    - runs: number of runs in place of the recipe's; None keeps the recipe's.
 
     Raises UserError for anything that is not allowed.
     """
@@ -83,7 +83,7 @@ def parse_recipe(
 
 
 def checked_runs(runs: int) -> int:
-    """Return a number of runs that replaces the recipe's. Raises UserError where a recipe would not allow it."""
+    """Return `runs`. Raises UserError where it is no whole number from 1 to the largest number of runs of a recipe."""
     if isinstance(runs, bool) or not isinstance(runs, int) or not 1 <= runs <= MOST_RUNS:
         raise UserError(f"--runs {runs}: must be at least 1 and at most {MOST_RUNS:,}; give a whole number of runs")
     return runs
@@ -98,13 +98,13 @@ def recorded_recipe(
 ) -> Recipe:
     """Make the recipe of a data set from its manifest, with the recorded machines and sensors.
 
-    Changes of the machines' or sensors' files since then have no effect.
+    The files of the machines and sensors are not read: changes to them have no effect.
 
     - data, machine, sensors: the three documents of the manifest. Several machines stand in a list.
     - source: beginning of messages.
-    - split_sensors: the sensor sets of splits that have their own, by the name in the recipe.
+    - split_sensors: sensor sets of the splits that have their own, by the set's name in the recipe.
 
-    Raises UserError where this version of rubgen cannot read them.
+    Raises UserError where this version of rubgen cannot read a document.
     """
     recipe: Recipe = _recorded(Recipe, data, f"{source}: recipe")
     recipe._checked = True
@@ -124,14 +124,12 @@ def _recorded(kind: Any, data: object, source: str) -> Any:
 
 
 def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | None = None) -> None:
-    """Check that every run of the recipe is possible, at single values and at the extremes of `[vary]`.
-
-    Warns once of each value that is hardly intended.
+    """Check that every run of the recipe is possible, at fixed values and at the extreme values of `[vary]`.
 
     - source: beginning of messages.
     - data: the TOML values of the recipe; without them, fields that are set count as given.
 
-    Raises UserError where some run is not possible.
+    Warns once of each value that is hardly intended. Raises UserError where some run is not possible.
     """
     validated(
         source, recipe.model_dump(mode="json", warnings=False), TypeAdapter(Recipe)

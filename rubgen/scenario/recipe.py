@@ -137,19 +137,20 @@ class Recipe(StrictModel):
 
     @property
     def files(self) -> tuple[str, ...]:
-        """The presets or files of its machines."""
+        """The presets or machine files that the recipe names."""
         return (self.machine,) if isinstance(self.machine, str) else self.machine
 
     @property
     def base(self) -> Scenario:
-        """The scenario before `[vary]`: the machine of the first file, at the default speed."""
+        """The scenario of the first machine file without the draws of `[vary]`, at 10,000 rev/min."""
         return self.bases[0]
 
     @cached_property
     def bases(self) -> tuple[Scenario, ...]:
-        """The scenario before `[vary]` of each machine file, at the default speed.
+        """One scenario for each machine file, without the draws of `[vary]`, at 10,000 rev/min.
 
-        A frame is left out where no sensor feels it: the machine has the same digits and JSON as one without.
+        The machine's frame is removed if no sensor feels the frame: `machine_id` and JSON are then those of the machine
+        without a frame. Reading a file may raise UserError.
         """
         machines = self._machines or tuple(load_machine(name, self._folder) for name in self.files)
         if not self.feels_frame:
@@ -172,7 +173,7 @@ class Recipe(StrictModel):
 
     @property
     def feels_frame(self) -> bool:
-        """Whether some run's sensors may feel a machine's frame."""
+        """Whether the sensors of any run may feel the machine's frame."""
         return any(
             part.sensing.set.on_housing or getattr(table, "path_gain", None) is not None
             for part in (self._whole or self).parts.values()
@@ -181,13 +182,16 @@ class Recipe(StrictModel):
 
     @cached_property
     def sensing(self) -> Sensing:
-        """`[sensors]` with the set that it names."""
+        """The keys of `[sensors]`, with the loaded sensor set in place of its name."""
         rest, name = self.sensors.model_dump(exclude={"set"}), self.sensors.set
         return Sensing(set=self._sensor_sets.get(name) or load_sensor_set(name, self._folder), **rest)
 
     @cached_property
     def parts(self) -> "dict[str, Recipe]":
-        """The recipe of each split by its name: this one without splits, with what the split changes."""
+        """The recipe of each split, by the split's name: this recipe with the keys that the split changes.
+
+        Without `[splits]` there is one split, "train", and its recipe is this recipe.
+        """
         if not self.splits:
             return dict.fromkeys(ONE_SPLIT, self)
         plain = self._part({})
@@ -207,24 +211,27 @@ class Recipe(StrictModel):
 
     @cached_property
     def population(self) -> Population:
-        """The virtual machines of its runs."""
+        """The virtual machines of the recipe's runs."""
         files = tuple(base.machine for base in self.bases)
         return Population(self.machines or MachineTable(), files, self.seed, self._candidate_problem, self._known)
 
     def remember(self, number: int, candidate: int) -> None:
-        """Take candidate `candidate` for machine `number` as sane, as it was recorded, without checking it again."""
+        """Use the recorded candidate number `candidate` for virtual machine `number`, without checking it again."""
         self._known[number] = candidate
 
     def remember_choice(self, index: int, chosen: Chosen) -> None:
-        """Take the recorded candidate of run number `index` of a balance, without screening again."""
+        """Use the recorded candidate `chosen` of a balance for run number `index`, without simulating it again."""
         self._candidates[index] = chosen
 
     def machine_named(self) -> AbstractContextManager[None]:
-        """Name the machine's file in errors that the block raises about the machine; of several files none."""
+        """Name the machine's file in errors that the block raises about the machine.
+
+        With several files no file is named.
+        """
         return file_named(self.machine, self._folder) if isinstance(self.machine, str) else nullcontext()
 
     def distributions(self) -> Iterator[tuple[Parameter, Distribution]]:
-        """Yield the keys of the recipe with their distributions, in the order of PARAMETERS."""
+        """Yield the keys of `[vary]` that the recipe has, with their distributions, in the order of PARAMETERS."""
         for entry in DRAWN:
             distribution = getattr(self.vary, entry.key)
             if distribution is not None:
@@ -232,14 +239,19 @@ class Recipe(StrictModel):
 
     @property
     def sources(self) -> "tuple[tuple[int, Recipe], ...]":
-        """The recipes of its runs, each after the number of its first run: this one, and of a merged set several."""
+        """The recipes of a merged set, each after the number of its first run.
+
+        Any other recipe is its own only source.
+        """
         return ((0, self),)
 
     def scenario(self, index: int, *, screened: bool = True) -> Scenario:
-        """Draw run number `index` from 0, complete. It depends on no other run and not on the number of runs.
+        """Draw run number `index`, from 0, as a complete scenario.
 
-        With `[balance]` its candidates are screened, which takes seconds (`rubgen.balancing`). With `screened` False
-        its first candidate stands for the run, for checks.
+        It depends on no other run and not on the number of runs. With `[balance]` its candidates are simulated briefly
+        until one has the wanted class, which takes seconds (`rubgen.balancing`). With `screened` False nothing is
+        simulated: the first candidate is returned, for checks. Raises UserError for a number that is no run, and for
+        drawn values that make no machine.
         """
         if isinstance(index, bool) or not isinstance(index, int | np.integer) or not 0 <= index < MOST_RUNS:
             raise UserError(f"index = {index!r:.100}: give the number of a run, from 0 to below {MOST_RUNS:,}")
@@ -250,7 +262,10 @@ class Recipe(StrictModel):
         return paired(self.twins, self.twin_of(index), index, draw) if self.twins else draw(index)
 
     def candidate(self, index: int, attempt: int = 0) -> Scenario:
-        """Draw candidate `attempt` of run number `index`. Without `[balance]` candidate 0 is the run, if no twin."""
+        """Draw candidate number `attempt` of run number `index`.
+
+        Without `[balance]` candidate 0 is the run itself, if no twin.
+        """
         part = self.parts[self.split_of(index)]
         if part is not self:
             return part.candidate(index, attempt)
@@ -274,7 +289,7 @@ class Recipe(StrictModel):
         return chosen
 
     def twin_of(self, index: int) -> int | None:
-        """Return the number of the run whose twin run number `index` is; None for any other run."""
+        """Return the number of the partner of run number `index` if the run is a twin; None for any other run."""
         count = self.machines.runs_per_machine if self.machines else MOST_RUNS
         if not self.twins:
             return None
@@ -311,22 +326,25 @@ class Recipe(StrictModel):
 
     @property
     def fault_kinds(self) -> tuple[str, ...]:
-        """The kinds of fault that its runs may have, of the recipe or of its machines."""
+        """The kinds of fault that the runs may have, from the recipe, its machines and its twins."""
         own = [fault for base in self.bases for fault in base.machine.faults]
         return kinds_of((*own, *(self.faults or ()), *fault_of(self.twins)))
 
     @property
     def machine_keys(self) -> tuple[MachineKey, ...]:
-        """The keys of virtual machines that have columns of their own; none without `[machines]`."""
+        """The keys of `[machines.vary]` that have columns of their own; none without `[machines]`."""
         return own_keys(frame=self.base.machine.frame is not None) if self.machines else ()
 
     @property
     def split_names(self) -> tuple[str, ...]:
-        """The splits of its runs, in the order of the recipe."""
+        """The names of the splits, in the order of the recipe; "train" alone without `[splits]`."""
         return tuple(self.splits or ONE_SPLIT)
 
     def split_of(self, index: int) -> str:
-        """Return the split of run number `index`: that of its machine, whatever the number of runs."""
+        """Return the name of the split of run number `index`.
+
+        It follows from the run's machine, not from the number of runs.
+        """
         return split_of_machine(self.splits, self.seed, self.machine_number(index)) if self.splits else ONE_SPLIT[0]
 
     def machine_number(self, index: int) -> int:
@@ -335,11 +353,11 @@ class Recipe(StrictModel):
 
     @property
     def machine_count(self) -> int:
-        """The number of machines that its runs have."""
+        """The number of virtual machines of the recipe's runs; 1 without `[machines]`."""
         return self.machine_number(self.runs - 1) + 1
 
     def named_parts(self, source: str = "") -> "Iterator[tuple[str, Recipe]]":
-        """Yield each different recipe of its splits, after the name of it in messages, which begins with `source`."""
+        """Yield each different recipe of the splits, after its name in messages, which begins with `source`."""
         seen: list[Recipe] = []
         for name, part in self.parts.items():
             if all(part is not each for each in seen):
@@ -349,23 +367,24 @@ class Recipe(StrictModel):
                 yield f"{source}: splits.{name}".removeprefix(": ") if own else source, part
 
     def corners(self, source: str = "") -> Iterator[Scenario]:
-        """Yield scenarios at the extreme values of each key, the other keys at their first value. Checks use them.
+        """Yield the scenarios in which one key has an extreme value of its distribution. Checks of the recipe use them.
 
-        Virtual machines are those of the files with the largest number of blades. Each is followed by its twin where
-        the recipe has twins. Raises UserError, beginning with `source`, where an extreme value is not allowed.
+        Every other key has its first value. The machines are those of the files, with the largest number of blades of
+        `[machines]`. With `[twins]` each scenario is followed by its twin. Raises UserError, beginning with `source`,
+        where an extreme value is not allowed.
         """
         for where, part in self.named_parts(source):
             yield from part.own_corners(where)
 
     def own_corners(self, source: str = "") -> Iterator[Scenario]:
-        """Yield the `corners` of a recipe without its splits."""
+        """Yield the scenarios of `corners` for this recipe alone, without the changes of its splits."""
         for base in self.bases:
             machine = self.machines.largest(base.machine) if self.machines else base.machine
             for corner in self.corners_of(base, machine, source):
                 yield from with_twin(corner, self.twins, source)
 
     def corners_of(self, base: Scenario, machine: Machine, source: str = "") -> Iterator[Scenario]:
-        """Yield the `corners` with that machine in place of the one of `base`."""
+        """Yield the scenarios of `corners` for the scenario `base` with `machine` as its machine, without twins."""
         base = replace(base, machine=machine)
         ends = {entry.key: distribution.extremes() for entry, distribution in self.distributions()}
         first = vary(base, {key: values[0] for key, values in ends.items()}, source, ("vary",))

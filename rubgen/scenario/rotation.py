@@ -15,10 +15,10 @@ ANGLE_TOLERANCE = 1e-13
 
 @dataclass(frozen=True, kw_only=True)
 class Rotation:
-    """Omega(t) and theta(t), theta = 0 at t = 0; speeds in rad/s, times in s, both of any sign.
+    """Omega(t) and theta(t), theta = 0 at t = 0. Speeds are in rad/s, times in s; both have any sign.
 
-    Omega = start up to t = 0, then linear to `end` at t = `seconds`, and `end` from there on. To this is added, at all
-    times, the fluctuation swing sin(2 pi t / period). Omega must stay positive.
+    Omega is `start` up to t = 0, then linear to `end` at t = `seconds`, then constant. The fluctuation swing sin(2 pi t
+    / period) is added at all times. Omega must stay positive.
     """
 
     start: float
@@ -53,7 +53,10 @@ class Rotation:
         return np.asarray(ramp + self.swing * np.sin(self._phase(time)))
 
     def acceleration(self, time: npt.ArrayLike) -> FloatArray:
-        """Return Omega' in rad/s2 at `time` (any shape) in s. At the ramp's two corners it is the ramp's."""
+        """Return Omega' in rad/s2 at `time` (any shape) in s.
+
+        At t = 0 and t = `seconds` it is the acceleration of the ramp.
+        """
         time = np.asarray(time)
         ramp = np.where((time >= 0) & (time <= self.seconds), self.rate, 0.0)
         return np.asarray(ramp + self.swing * (2 * np.pi / self.period) * np.cos(self._phase(time)))
@@ -69,7 +72,7 @@ class Rotation:
         return np.asarray(ramp + wave)
 
     def time_of(self, angle: float) -> float:
-        """Return the time in s at which theta is `angle` (rad): a ramp in closed form, a fluctuation by Newton."""
+        """Return the time in s at which theta is `angle` (rad): exactly, or with a fluctuation by Newton's method."""
         time = self._ramp_time(angle)
         if self.swing == 0:
             return time

@@ -7,9 +7,9 @@ _FORM = re.compile(r"run-(?:(\d{6})|([a-z])([1-9]\d+))")
 
 
 def run_id_of(index: int) -> str:
-    """Return the name of run number `index` from 0: run-000000 to run-999999, then run-a1000000, run-b10000000.
+    """Return the name of run number `index`, from 0: run-000000 to run-999999, then run-a1000000, run-b10000000.
 
-    A letter for each digit beyond six keeps text in the order of numbers.
+    The letter grows with the number of digits beyond six, so that names sorted as text are in the order of the numbers.
     """
     digits = f"{index:0{_DIGITS}d}"
     longer = len(digits) - _DIGITS
@@ -17,7 +17,7 @@ def run_id_of(index: int) -> str:
 
 
 def index_of(run_id: str) -> int:
-    """Return the number of the run of that name. Raises ValueError for a text that names no run."""
+    """Return the number of the run with the name `run_id`. Raises ValueError for a text that is no name of a run."""
     found = _FORM.fullmatch(run_id)
     index = int(found[1] or found[3]) if found else -1
     if index < 0 or run_id_of(index) != run_id:

@@ -64,15 +64,16 @@ class Reduction:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Operation:
-    """Rotation: the clearance closes over `closing_turns`, transients decay, then the record begins.
+    """The speed over a run. The clearance closes over `closing_turns`, transients decay, then the record begins.
 
-    `settle_turns` counts from the start and includes the closing; "auto" follows from the slowest decay of the model.
-    `steps_per_turn` is the least number; it is doubled until the step is stable and short enough for the sensors.
+    `settle_turns` are the turns before the record, with the closing; "auto" follows from the slowest decay of the
+    model. `steps_per_turn` is the least number of steps; it is doubled until the step is stable and short enough for
+    the sensors.
 
-    `profile` "steady": the record has `record_turns`. "run-up" and "coast-down": the settling is at `speed_rpm`. In the
-    record the speed is linear to `end_speed_rpm` within `duration_s`, then constant to the end of that turn.
-    "fluctuating": speed_rpm + fluctuation_rpm sin(2 pi t / fluctuation_period_s) from the start of the settling on,
-    with t = 0 at the start of the record, which lasts `duration_s` and to the end of that turn. `profile_problem`
+    `profile` "steady": the record has `record_turns`. "run-up" and "coast-down": the speed before the record is
+    `speed_rpm`. In the record it is linear to `end_speed_rpm` within `duration_s`, then constant to the end of that
+    turn. "fluctuating": the speed is speed_rpm + fluctuation_rpm sin(2 pi t / fluctuation_period_s) in the whole run,
+    with t = 0 at the start of the record. The record lasts `duration_s`, and to the end of that turn. `profile_problem`
     checks the combination of keys. The speed must stay out of the bands `forbidden_speed_rpm`, each with a lower and an
     upper end.
     """
@@ -91,7 +92,7 @@ class Operation:
 
     @property
     def rotation(self) -> Rotation:
-        """Speed and angle over time, t = 0 at the start of the record."""
+        """Speed and angle as functions of time, with t = 0 at the start of the record."""
         return Rotation(
             start=rad_per_s(self.speed_rpm),
             end=rad_per_s(self.end_speed_rpm or self.speed_rpm),
@@ -110,14 +111,14 @@ class Operation:
 
     @property
     def title(self) -> str:
-        """The profile and its speeds, for people."""
+        """The profile with its speeds, for a heading, such as "run-up at 5,000 to 9,000 rev/min"."""
         end = f" to {self.end_speed_rpm:,.6g}" if self.end_speed_rpm else ""
         swing = f" ± {self.fluctuation_rpm:,.6g}" if self.fluctuation_rpm else ""
         return f"{self.profile} at {self.speed_rpm:,.6g}{end}{swing} rev/min"
 
     @property
     def speed_rad_per_s(self) -> float:
-        """Spin speed Omega in rad/s."""
+        """Spin speed Omega in rad/s, of a changing speed at the start of the record."""
         return rad_per_s(self.speed_rpm)
 
     @property
@@ -144,7 +145,7 @@ class Sensing:
 
     @property
     def fastest_hz(self) -> float:
-        """The highest frequency that steps must resolve: the sample rate, or that of a sensor's own dynamics."""
+        """The highest frequency in Hz that the steps must resolve: the sample rate, or that of a sensor's front end."""
         return max(self.sample_rate_hz, self.set.front_end_hz)
 
 
@@ -163,10 +164,10 @@ class Labelling:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class VirtualMachine:
-    """Which virtual machine of its recipe a run has.
+    """The virtual machine of a run, by its number in the recipe.
 
-    `candidate` is the number of the candidate that is used; those before it were refused. `problem` is the reason where
-    none can be used, and the run is then refused.
+    `candidate` is the number of the candidate that is used; the candidates before it were refused. `problem` is the
+    reason where no candidate can be used: the run is then refused. It is empty otherwise.
     """
 
     number: Seed
@@ -176,18 +177,19 @@ class VirtualMachine:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Pairing:
-    """Which run of a recipe with `[twins]` this is: the twin of the run with the index `twin_of`, or no twin."""
+    """The partner of a run of a recipe with `[twins]`: its index is `twin_of` if the run is a twin, else None."""
 
     twin_of: Annotated[Seed | None, about("Index of the run whose twin this is. Without it the run is no twin.")] = None
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Chosen:
-    """Which candidate of a recipe with `[balance]` a run is: number `tries` of its candidates, from 1.
+    """The candidate that a run of a recipe with `[balance]` is: number `tries` of its candidates, from 1.
 
-    `cell` is the class that was wanted. `seen` counts the candidates by their class: the cells of the balance in their
-    order, then candidates that rub in a class that was not asked, then candidates that are not possible. `problem` is
-    the reason where no candidate was in the cell, and the run is then refused.
+    `cell` is the name of the class that was wanted. `seen` counts the candidates by class: first the cells of the
+    balance in their order, then candidates with a rub in a class that no cell has, then candidates that are not
+    possible. `problem` is the reason where no candidate was in the cell: the run is then refused. It is empty
+    otherwise.
     """
 
     cell: str
@@ -198,7 +200,10 @@ class Chosen:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Merged:
-    """Where a run of a merged set comes from: the digits of its source, whose first run has the number `first` here."""
+    """The source of a run of a merged set: `source` are the digits of a digest that name it.
+
+    `first` is the number of the source's first run in the merged set.
+    """
 
     source: str
     first: Seed
@@ -208,10 +213,10 @@ class Merged:
 class Scenario:
     """One run, complete. The same scenario always makes the same bytes.
 
-    `fault_kinds` are the kinds of fault that runs of its recipe may have; those of this run are in its machine.
-    With `free_penetration_m` the clearance follows from the rub-free motion (`solver.linear.reach.with_clearance`);
-    until then the machine has another clearance. `virtual` is given where the recipe has virtual machines, `pairing`
-    where it has twins, `balance` where it has one, `merged` in a merged set.
+    `fault_kinds` are the kinds of fault that runs of its recipe may have; the run's own faults are in `machine`. With
+    `free_penetration_m` the clearance follows from the rub-free motion (`solver.linear.reach.with_clearance`); before
+    that the machine's clearance is not the run's. `virtual` is None without `[machines]` in the recipe, `pairing`
+    without `[twins]`, `balance` without `[balance]`, and `merged` outside a merged set.
     """
 
     machine: Machine
@@ -240,28 +245,28 @@ class Scenario:
 
     @property
     def frame(self) -> Frame | None:
-        """The machine's frame, where a sensor feels it; else None."""
+        """The machine's frame; None where the machine has none or no sensor feels it."""
         felt = self.sensing.set.on_housing or (self.surroundings and self.surroundings.path_gain)
         return self.machine.frame if felt else None
 
     @property
     def twin_of(self) -> int | None:
-        """Index of the run whose twin this is; None for any other run."""
+        """Index of the partner of a twin; None for a run that is no twin."""
         return self.pairing.twin_of if self.pairing else None
 
     @property
     def partner(self) -> str | None:
-        """Name of the run whose twin this is; None for any other run."""
+        """Name of the partner of a twin; None for a run that is no twin."""
         return None if self.twin_of is None else replace(self, index=self.twin_of).run_id
 
     @property
     def drawn_as(self) -> int:
-        """Index of the run whose random numbers this run has: a twin has those of its partner."""
+        """Index from which the run's random numbers follow: its own index, or the partner's index for a twin."""
         return self.index if self.twin_of is None else self.twin_of
 
     @property
     def number(self) -> int:
-        """Number of the run in its set: `index`, but in a merged set after the runs of the sources before its own."""
+        """Number of the run in its set: `index`, in a merged set plus the number of its source's first run."""
         return self.index + (self.merged.first if self.merged else 0)
 
     @property
@@ -271,11 +276,12 @@ class Scenario:
 
 
 def scenario_dict(scenario: Scenario) -> dict[str, object]:
-    """Return the scenario as nested plain values for JSON, keys as in the dataclasses, complete with its machine.
+    """Return the scenario with its machine as nested plain values for JSON.
 
-    `TypeAdapter(Scenario).validate_python(scenario_dict(s)) == s`: every float keeps all its bits in JSON. A run
-    without surroundings has no such key, and neither has one of a recipe without faults or twins. A run of the first
-    source of a merged set has the values that it has in its source: its name is the same, and so are its files.
+    Keys are the names of the dataclasses' fields. `TypeAdapter(Scenario).validate_python(scenario_dict(s)) == s`: every
+    float keeps all its bits in JSON. Keys of things that the run does not have, such as surroundings, faults or twins,
+    are left out. A run of the first source of a merged set has no key `merged`: its values, its name and its files are
+    those of the source.
     """
     values = cast("dict[str, object]", TypeAdapter(Scenario).dump_python(scenario, mode="json"))
     if scenario.surroundings is None:

@@ -59,18 +59,18 @@ class Tone:
         return self
 
     def order_at(self, rotation_frequency_hz: float) -> float:
-        """Return the tone's frequency over that of the rotation."""
+        """Return the tone's frequency as a multiple of the rotation frequency, given in Hz."""
         return self.order if self.order is not None else (self.frequency_hz or 0.0) / rotation_frequency_hz
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Surroundings:
-    """What the sensors of one run feel besides its motion (docs/surroundings.md); every level is 0 where not given.
+    """What the sensors of one run feel besides the motion (docs/surroundings.md). Every level is 0 by default.
 
-    The three levels of the casing are rms accelerations. The background and the blade passing have theirs at 10,000
-    rev/min and go as (speed / 10,000)^`speed_exponent`. The background's power spectral density falls as
-    1/f^`background_slope`. `path_gain` scales what the casing feels of the machine's frame. The frequency and the
-    modal mass of each of its modes are those of the machine times exp(`frame_spread` x), x normal and independent.
+    The levels of background, blade passing and tones are rms accelerations of the casing. Background and blade passing
+    are given at 10,000 rev/min and go as (speed / 10,000)^`speed_exponent`. The background's power spectral density
+    falls as 1/f^`background_slope`. `path_gain` is the share of the frame's motion that the casing feels. Each mode of
+    the frame has the machine's frequency and modal mass times exp(`frame_spread` x), with independent normal x.
     """
 
     background_m_per_s2: Annotated[
@@ -149,7 +149,7 @@ SURROUNDINGS = (
 
 
 def surroundings_values(around: Surroundings) -> dict[str, float | list[float]]:
-    """Return the values of a run by column: one for each key, and three lists with one value for each tone."""
+    """Return the values of a run by column name: a number for each key, and three lists with a value for each tone."""
     values: dict[str, float | list[float]] = {each.key: getattr(around, each.key) for each in SURROUNDINGS}
     values["tones_order"] = [tone.order or 0.0 for tone in around.tones]
     values["tones_frequency_hz"] = [tone.frequency_hz or 0.0 for tone in around.tones]
@@ -193,7 +193,10 @@ SurroundingsTable = create_model(
 
 
 def drawn(table: BaseModel, seed: int, index: int) -> Surroundings:
-    """Draw the values of run number `index`. Each key has random numbers of its own, whatever other keys there are."""
+    """Draw the surroundings of run number `index` from the table `[surroundings]` and the recipe's seed.
+
+    Each key has its own random numbers, which do not depend on the other keys.
+    """
 
     def value(key: str, distribution: Distribution) -> float:
         generator = np.random.default_rng([seed, index, zlib.crc32(key.encode())])
@@ -203,9 +206,9 @@ def drawn(table: BaseModel, seed: int, index: int) -> Surroundings:
 
 
 def extremes(table: BaseModel, source: str = "") -> tuple[Surroundings, Surroundings]:
-    """Return all least and all largest values that can be drawn.
+    """Return the surroundings with the least value of every key of the table, and those with the largest.
 
-    Raises UserError, beginning with `source`, where one of them is not allowed.
+    Raises UserError, beginning with `source`, where a value is not allowed.
     """
     least = _with(table, lambda _, distribution: min(distribution.extremes()), source)
     return least, _with(table, lambda _, distribution: max(distribution.extremes()), source)

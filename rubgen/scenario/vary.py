@@ -57,7 +57,7 @@ class Parameter:
 
     @property
     def about(self) -> str:
-        """Its description: that of its field in the scenario, or its meaning where it is two fields."""
+        """The description of the key for the recipe's schema: its field's, or its meaning if the key has two fields."""
         kind: Any = Scenario
         text = None
         for name in self.places[0].split("."):
@@ -70,7 +70,10 @@ class Parameter:
         return f"{text} Without it {DEFAULT_SPEED_RPM:,.0f}." if self.key == "speed_rpm" else text
 
     def read(self, scenario: Scenario) -> float:
-        """Return the value in that scenario. Without end speed or duration it is that of the record."""
+        """Return the key's value in `scenario`.
+
+        A steady run has its speed as end speed and its record's length as duration.
+        """
         value: float | None = attrgetter(self.places[0])(scenario)
         if value is not None:
             return value
@@ -80,7 +83,7 @@ class Parameter:
         return operation.record_turns / operation.rotation_frequency_hz
 
     def apply(self, scenario: Scenario, value: float) -> Scenario:
-        """Return the scenario with that value at all places of the key."""
+        """Return the scenario with `value` in all fields of the key."""
         for place in self.places:
             scenario = _changed(scenario, place.split("."), value)
         return scenario
@@ -195,7 +198,7 @@ _VALUES: TypeAdapter[Any] = TypeAdapter(create_model("Values", __config__=STRICT
 
 
 def vary(scenario: Scenario, values: Mapping[str, float], source: str = "", table: tuple[str, ...] = ()) -> Scenario:
-    """Return the scenario with these keys of `[vary]` changed.
+    """Return the scenario with the values of some keys of `[vary]` changed.
 
     - values: by key, in the key's unit.
     - source, table: file and table, for messages.
@@ -210,7 +213,7 @@ def vary(scenario: Scenario, values: Mapping[str, float], source: str = "", tabl
 
 
 def varied_values(scenario: Scenario) -> dict[str, float]:
-    """Return the value of every key of `[vary]` in this scenario, in the order of the keys."""
+    """Return the scenario's value of every key of `[vary]`, in the order of the keys and in their units."""
     return {entry.key: entry.read(scenario) for entry in PARAMETERS}
 
 
@@ -221,9 +224,10 @@ def _changed(record: Any, place: list[str], value: float) -> Any:
 
 
 def candidate_point(seed: int, index: int, attempt: int) -> dict[str, float]:
-    """Return one u in [0, 1) for each key of `[vary]`, of a candidate of run `index` of a recipe with `[balance]`.
+    """Return one u in [0, 1) for each key of `[vary]`, for candidate `attempt` of run `index` of a balanced recipe.
 
-    Candidate 0 is the point of the run without a balance (`sobol_point`); the others are independent.
+    Candidate 0 has the values of `sobol_point`, as the run without a balance. All other candidates are independent
+    draws.
     """
     if attempt == 0:
         return sobol_point(seed, index)
@@ -234,7 +238,7 @@ def candidate_point(seed: int, index: int, attempt: int) -> dict[str, float]:
 def sobol_point(seed: int, index: int) -> dict[str, float]:
     """Return one u in [0, 1) for each key of `[vary]`: point `index` of the Sobol sequence scrambled by `seed`.
 
-    Each key has a fixed dimension, whether it is drawn or fixed: fixing one key changes no other key.
+    Each key has a fixed dimension. Giving a key a fixed value in the recipe therefore changes no other key.
     """
     from scipy.stats import qmc  # slow to import, and only needed here
 

@@ -33,7 +33,7 @@ ORDER_TOLERANCE = 0.01
 
 
 def windows_fit(row: Row) -> bool:
-    """Return whether the impulse per turn is the mean over the record's windows, weighted by their turns."""
+    """Return whether the run's impulse per turn is the mean over the windows of its record, weighted by their turns."""
     turns, values = _window_turns(row), row["window_impulse_per_turn_n_s"]
     if len(values) != turns.size:
         return False
@@ -42,9 +42,9 @@ def windows_fit(row: Row) -> bool:
 
 
 def duty_fits(row: Row) -> bool:
-    """Return whether the duty is the mean over the windows of the record, weighted by their numbers of turns.
+    """Return whether the run's contact duty is the mean over the windows of its record, weighted by their turns.
 
-    At a changing speed turns have unequal length, nothing is compared, and it is True.
+    It is also True for a run with a changing speed: its turns have unequal length, and nothing is compared.
     """
     turns, values = _window_turns(row), row["window_contact_duty"]
     if row["change_times_s"] or len(values) != turns.size:
@@ -54,7 +54,7 @@ def duty_fits(row: Row) -> bool:
 
 
 def window_times_fit(row: Row) -> bool:
-    """Return whether the windows begin after whole turns and have the run's speed. True at a changing speed."""
+    """Return whether the windows begin after whole turns and have the run's speed. True for a changing speed."""
     if row["change_times_s"]:
         return True
     starts = np.arange(0, row["record_turns"], WINDOW_TURNS) * 60 / row["speed_rpm"]
@@ -66,7 +66,10 @@ def window_times_fit(row: Row) -> bool:
 
 
 def exponents_fit(row: Row) -> bool:
-    """Return whether the Lyapunov exponent in 1/s is that in 1/turn over a turn's time. True at a changing speed."""
+    """Return whether the Lyapunov exponents in 1/s and in 1/turn agree.
+
+    True for a changing speed, or without exponents.
+    """
     by_turn, by_second = row["lyapunov_per_turn"], row["lyapunov_per_second"]
     if row["change_times_s"] or (by_turn is None and by_second is None):
         return True
@@ -77,11 +80,11 @@ def exponents_fit(row: Row) -> bool:
 def impulse_problems(row: Row, force: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
     """Compare the impulse label of a period-1 run in contact with its force channel. Yields a sentence if they differ.
 
-    The impulse per turn from the channel is its mean over whole turns times the time of a turn. The allowed difference
-    is `resolved_impulse`. Nothing is compared where fewer than LEAST_TURNS turns are recorded, or the label contradicts
-    its windows.
+    The channel's impulse per turn is its mean over whole turns times the time of a turn. It may differ from the label
+    by `resolved_impulse`. Nothing is compared where fewer than LEAST_TURNS turns are recorded, or where the label
+    contradicts the run's windows.
 
-    - row: the run's labels.
+    - row: the run's labels, by column.
     - force (samples,): the channel in N.
     - noise_rms, step: noise and ADC step in N.
     """
@@ -100,11 +103,12 @@ def samples_per_turn(row: Row) -> float:
 
 
 def whole_turn_weights(samples: int, turn: float) -> FloatArray | None:
-    """Return weights (samples,) with which the samples' mean covers whole turns and has no part of any order k >= 1.
+    """Return weights (samples,) for a mean over whole turns that contains no part of any order k >= 1.
 
-    `turn` is the number of samples in one turn; the weights cover all m whole turns. They are a boxcar of one turn
-    convolved with one of m - 1 turns, which removes every order wherever the samples lie in the turn. A plain mean
-    would include up to half a sample at its edge, where a blade may touch. Returns None below LEAST_TURNS turns.
+    `turn` is the number of samples in one turn. The weights add up to 1 and cover all m whole turns. They are a boxcar
+    of one turn convolved with a boxcar of m - 1 turns, which removes every order wherever the samples lie in the turn.
+    A plain mean would include up to half a sample at its edge, where a blade may touch. Returns None below LEAST_TURNS
+    turns.
     """
     turns = math.floor(samples / turn)
     if turns < LEAST_TURNS:
@@ -172,12 +176,12 @@ def _window_turns(row: Row) -> FloatArray:
 
 
 def order_problems(row: Row, tap: str, values: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
-    """Compare the amplitudes of a true signal at orders 1 to 10 with those of its channel, at a steady speed.
+    """Compare the amplitudes of a true signal at orders 1 to 10 with the amplitudes of its channel, at a steady speed.
 
     Yields a sentence if they differ by more than noise, ADC and tolerance allow. Nothing is compared where the channel
     has fewer turns than the label.
 
-    - row: the run's labels.
+    - row: the run's labels, by column.
     - tap: name of the true signal.
     - values (samples,): the channel.
     - noise_rms, step: noise and ADC step, in the channel's unit.
@@ -200,9 +204,9 @@ def order_problems(row: Row, tap: str, values: Float32Array, noise_rms: float, s
 
 
 def order_amplitudes(values: Float32Array, turns_per_sample: float) -> FloatArray:
-    """Return peak amplitudes at k = 1..10 times the rotation frequency: 2/n |sum x exp(-2 pi i k turns)|.
+    """Return peak amplitudes (10,) at k = 1..10 times the rotation frequency: 2/n |sum x exp(-2 pi i k turns)|.
 
-    The mean is removed before. `turns_per_sample` is the rotation frequency over the sample rate.
+    The mean of `values` is removed before. `turns_per_sample` is the rotation frequency over the sample rate.
     """
     return np.asarray(2 / values.size * np.abs(_turned(values, turns_per_sample).sum(axis=1)))
 

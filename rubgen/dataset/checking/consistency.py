@@ -40,7 +40,7 @@ ENERGY_TOLERANCE = 1e-8
 def label_problems(row: Row) -> Iterator[str]:
     """Yield the contradictions among the labels of a run with status ok, such as contact time without a rub.
 
-    `row` has the columns of `runs.parquet` for that run.
+    `row` has the run's columns of `runs.parquet`.
     """
     rules = {
         "contact_duty outside [0, 1]": 0 <= row["contact_duty"] <= 1,
@@ -80,12 +80,12 @@ def label_problems(row: Row) -> Iterator[str]:
 def signal_problems(row: Row, signals: dict[str, Float32Array], sensing: Sensing) -> Iterator[str]:
     """Yield the contradictions between the labels of a run with status ok and its channels.
 
-    - row: the run's parameters and labels.
-    - signals: its channels by name.
-    - sensing: the sensors of the run.
+    - row: the run's parameters and labels, by column.
+    - signals: its channels, by name.
+    - sensing: the sensors of the run and how they are recorded.
 
-    A channel's values are compared with labels only where they stay within its range, and where its sensor has no error
-    but noise and feels no surroundings.
+    A channel is compared with labels only if its values stay within its range, its sensor has no error but noise, and
+    the sensor feels no surroundings.
     """
     lengths = {values.size for values in signals.values()}
     if len(lengths) > 1:

@@ -21,7 +21,10 @@ REPAIRING = ".repair"
 
 
 class Kind(Enum):
-    """What a finding concerns. The value is the remedy."""
+    """Which files a finding concerns: DATA, DERIVED (files that can be made again), or UNLISTED.
+
+    The value is the remedy.
+    """
 
     DATA = "make the set again"
     DERIVED = "rubgen repair"
@@ -41,9 +44,10 @@ class Finding:
 
 
 def file_findings(layout: Layout, manifest: Manifest, chosen: Callable[[str], bool]) -> Iterator[Finding]:
-    """Yield a finding for every file that the manifest lists and that is missing, unreadable or of other content.
+    """Yield a finding for every file of the manifest that is missing, unreadable, or has another size or content.
 
-    Compared are size and, for `chosen` paths, sha256; for derived files (.rrd) with those in derived.json.
+    The content is compared by sha256, only for paths for which `chosen` returns True. The sha256 of derived files
+    (.rrd) are in derived.json.
     """
     for entry in manifest.files:
         kind, read = _kind(layout, entry.path), chosen(entry.path)
@@ -71,9 +75,9 @@ def _kind(layout: Layout, path: str) -> Kind:
 
 
 def derived_digests(layout: Layout, manifest: Manifest) -> tuple[dict[str, FileEntry], list[Finding]]:
-    """Return size and sha256 of each derived file from derived.json, by path, and the problems of that file itself.
+    """Return size and sha256 of each derived file by path, as listed in derived.json, and the problems of derived.json.
 
-    Where it has problems there are no digests. Derived files are those that `repair` can make again.
+    If derived.json has problems, the dict is empty. Derived files are the files that `repair` can make again.
     """
     name = layout.derived.name
     if not manifest.derived:
@@ -125,11 +129,11 @@ def _reason(error: OSError | UserError) -> str:
 
 
 def unlisted_files(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
-    """Yield a finding for every file or folder in the set's directory that neither the manifest nor rubgen put there.
+    """Yield a finding for every file or folder in the set's directory that rubgen did not write.
 
-    Files of the operating system are ignored. So is what `generate` left where it was stopped at its very end,
-    `.staging` and its lock, and what `repair` left in `.repair`: the next call goes on there. So is a page of
-    `rubgen report`, known by its name and its mark.
+    Ignored are files of the operating system, and pages of `rubgen report`, known by their name and mark. Also ignored
+    are `.staging` and its lock, which a stop of `generate` at its very end leaves, and `.repair`, which a stop of
+    `repair` leaves: the next call continues there.
     """
     known = {entry.path for entry in manifest.files} | set(manifest.derived)
     known |= {layout.manifest.name, layout.digest.name}

@@ -26,7 +26,7 @@ RELATIVE, ABSOLUTE = 1e-9, 1e-12
 
 @dataclass(frozen=True)
 class Difference:
-    """A label of a run that differs: its value in `runs.parquet` (`stands`), and made again (`again`)."""
+    """A label of a run that differs: its value in `runs.parquet` (`stands`), and the newly computed value (`again`)."""
 
     run_id: str
     label: str
@@ -36,7 +36,7 @@ class Difference:
 
 @dataclass(frozen=True, kw_only=True)
 class Relabelled:
-    """The result of `relabel`: numbers of runs and labels that were made again, and the labels that differ."""
+    """The result of `relabel`: the numbers of runs and labels that were computed again, and the labels that differ."""
 
     runs: int
     labels: int
@@ -44,10 +44,11 @@ class Relabelled:
 
 
 def relabel(directory: Path) -> Relabelled:
-    """Make the labels of every good run again from its compact record, and compare them with `runs.parquet`.
+    """Compute the labels of every good run again from its compact record, and compare them with `runs.parquet`.
 
-    Labels of orders are left out: they need the signals at every step. The data set is only read. Raises UserError
-    where `directory` holds no finished data set, or one without sections.
+    Numbers are equal within rounding (`equal`). Labels of orders are left out: they need the signals at every step.
+    Nothing is simulated and no file is changed. Raises UserError where `directory` holds no finished data set, or a set
+    without `sections/`.
     """
     layout = Layout(directory)
     manifest = read_manifest(layout)
@@ -99,7 +100,7 @@ def _labels_of(table: pa.Table, row: int, path: Path) -> dict[str, object]:
 
 
 def equal(one: object, other: object) -> bool:
-    """Return whether two labels are equal. Numbers may differ by rounding, RELATIVE or ABSOLUTE; lists by element."""
+    """Return whether two labels are equal. Floats may differ by RELATIVE or ABSOLUTE; lists are compared by element."""
     if isinstance(one, list) and isinstance(other, list):
         return len(one) == len(other) and all(map(equal, one, other))
     if isinstance(one, float) and isinstance(other, float):

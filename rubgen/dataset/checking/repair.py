@@ -25,7 +25,7 @@ from rubgen.io.files import write_durably
 
 @dataclass(frozen=True, kw_only=True)
 class Repaired:
-    """The result of `repair`: what was wrong, paths of the files that were made again, and the findings that remain."""
+    """The result of `repair`: the findings before it, the paths of the files it made, and the remaining findings."""
 
     found: tuple[Finding, ...]
     made: tuple[str, ...]
@@ -35,13 +35,16 @@ class Repaired:
 
 
 def repair(directory: Path) -> Repaired:
-    """Make files of a set again where they are damaged or missing, so that each has the bytes that the manifest lists.
+    """Make damaged or missing files of a set again, so that each file has the bytes that the manifest lists.
 
-    The runs of a shard with a damaged Parquet or MCAP file are simulated again from the manifest, which needs the
-    versions that made the set; of a damaged `runs.parquet` those whose rows cannot be read. sensors.parquet, README.md
-    and croissant.json are written again. An .rrd file is made from its MCAP file where that is good, else its run is
-    simulated again. No other file is changed and none is deleted. Raises UserError where `directory` holds no finished
-    data set, its manifest is damaged, or it cannot be written.
+    - A damaged Parquet or MCAP file: all runs of its shard are simulated again from the manifest. This needs the
+      versions of the packages that made the set.
+    - A damaged `runs.parquet`: the runs of the shards whose rows cannot be read are simulated again.
+    - sensors.parquet, README.md and croissant.json are written again.
+    - An .rrd file is made from its MCAP file if that is good. Else its run is simulated again.
+
+    No other file is changed and none is deleted. Raises UserError where `directory` holds no finished data set, its
+    manifest is damaged, or it cannot be written.
     """
     layout = Layout(directory)
     manifest = read_manifest(layout)

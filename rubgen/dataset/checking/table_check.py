@@ -43,13 +43,13 @@ def table_problems(
 ) -> Iterator[str]:
     """Read the Parquet files of a data set, shard by shard, and yield their problems, one sentence each.
 
-    The files are `runs.parquet` and those of the tables. Labels are compared with each other and with the channels.
+    The files are `runs.parquet` and the files of the tables. Labels are compared with each other and with the channels.
     The rows of one shard are in memory.
 
     - layout: the paths of the set.
     - manifest: its manifest.
-    - closed: names of files that must not be opened; for them nothing is reported.
-    - chosen: tells the shards to look at.
+    - closed: paths of files that must not be opened; nothing is reported for them.
+    - chosen: returns whether the content of a shard is checked.
     """
     recorded = manifest.identity.recorded(str(layout.manifest))
     runs: RunTable | None = None

@@ -18,13 +18,15 @@ from rubgen.scenario.run_id import run_id_of
 def verify(directory: Path | str, *, sample: int | None = None) -> list[str]:
     """Check the data set in `directory` and return every problem, one line each. The list is empty for a good set.
 
-    Checked: format and digest of the manifest; presence, size and sha256 of every listed file, and of .rrd files by
-    derived.json; that there is nothing else and no link leads out; pages of every Parquet file, with the runs of a
-    damaged row group; CRCs of every MCAP file; that MCAP and .rrd files belong to the run in their name; schemas and
-    row counts; labels against each other; labels against the recorded channels. Only regular files are opened. With
-    `sample` the content of that many shards is checked, drawn anew at each call; of the others presence and size.
-    Memory does not grow with the number of runs. Raises UserError where `directory` holds no finished data set, or its
-    manifest is damaged.
+    Checked are: format and digest of the manifest; presence, size and sha256 of every listed file, for .rrd files by
+    derived.json; that there is no other file and no link out of the directory; pages of every Parquet file, with the
+    runs of a damaged row group; CRCs of every MCAP file; that MCAP and .rrd files belong to the run in their name;
+    schemas and row counts; labels against each other; labels against the recorded channels. Only regular files are
+    opened.
+
+    With `sample` the content of only that many shards is checked, drawn anew at each call. Presence and size are
+    checked for all. Memory does not grow with the number of runs. Raises UserError where `directory` holds no finished
+    data set, or its manifest is damaged.
     """
     return [finding.text for finding in findings(directory, sample=sample)]
 
@@ -32,8 +34,8 @@ def verify(directory: Path | str, *, sample: int | None = None) -> list[str]:
 def findings(directory: Path | str, *, sample: int | None = None) -> list[Finding]:
     """Check the data set in `directory` as `verify` does, and return each problem as a `Finding`.
 
-    A finding says beside its sentence whether data, a derived file or an unlisted file is concerned, so that `repair`
-    and `advice` can choose the remedy. Raises UserError as `verify` does.
+    The finding's `kind` is data, derived file or unlisted file. `repair` and `advice` choose the remedy by the kind.
+    Raises UserError as `verify` does.
     """
     layout = Layout(directory)
     if is_url(layout.root):
@@ -91,7 +93,10 @@ def _format_findings(
 
 
 def advice(directory: Path, found: list[Finding]) -> str:
-    """Name the remedy for these findings on the set in `directory`, in one sentence. It never deletes a good file."""
+    """Return one sentence with the remedy for these findings on the set in `directory`.
+
+    No remedy deletes a good file.
+    """
     kinds = {finding.kind for finding in found}
     sentences = {
         Kind.DATA: (

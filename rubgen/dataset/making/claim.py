@@ -25,9 +25,9 @@ _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EINVAL)
 
 
 def acquired(path: Path, wait_s: float = 0.0) -> BaseFileLock | None:
-    """Take the lock at `path`, waiting up to `wait_s` seconds. Returns it, or None where another process has it.
+    """Take the lock at `path`, waiting up to `wait_s` seconds. Return the lock, or None if another process has it.
 
-    Where the file system has no locks, a file that only one process can make is the lock, with a warning.
+    On a file system without locks, a file that only one process can create is the lock. A warning then says so.
     """
     try:
         return _acquired(FileLock(path, timeout=wait_s))
@@ -58,8 +58,8 @@ def _acquired(lock: BaseFileLock) -> BaseFileLock | None:
 def finished(layout: Layout, identity: Identity) -> bool:
     """Return whether the directory holds the finished data set with this identity.
 
-    A set with fewer runs of the same recipe is not finished: it grows. Raises UserError where the directory holds the
-    finished set of another recipe, or one with more runs.
+    A set with fewer runs of the same recipe is not finished: more runs can be added. Raises UserError where the
+    directory holds the finished set of another recipe, or a set of this recipe with more runs.
     """
     if not (is_there(layout.manifest) and is_there(layout.digest)):
         return False
@@ -77,11 +77,12 @@ def finished(layout: Layout, identity: Identity) -> bool:
 
 @contextmanager
 def claimed(layout: Layout, identity: Identity, *, wait_s: float = 0.0) -> Iterator[None]:
-    """Lock the output directory, which is made if needed, so that only this process writes there in the block.
+    """Lock the output directory, so that only this process writes there in the block. It is made if it does not exist.
 
-    What was checked before the block may be outdated. A directory that was made here is removed if it stays empty, its
-    parents are not. Sets of another recipe are refused by `finished` and `begun`, not here. Raises UserError where the
-    directory has content that is no data set, or another process has it; OSError where it cannot be made.
+    The state of the directory may have changed since a check before the block. A directory that was made here is
+    removed if it stays empty, its parents are not. Sets of other recipes are refused by `finished` and `begun`, not
+    here. Raises UserError where the directory has content that is no data set, or another process has the lock; OSError
+    where it cannot be made.
     """
     root = layout.root
     _check_place(layout)
@@ -108,11 +109,11 @@ def claimed(layout: Layout, identity: Identity, *, wait_s: float = 0.0) -> Itera
 
 @contextmanager
 def begun(layout: Layout, identity: Identity) -> Iterator[None]:
-    """Make the folders of an unfinished data set, for a block within `claimed` that fills them.
+    """Make the folders of an unfinished data set for the block, which fills them. Call it within `claimed`.
 
-    Incomplete files are removed. `.staging` appears in one step with the identity in it: whenever the work stops, the
-    same recipe can continue. Raises UserError where another recipe was begun. If the block raises a UserError before
-    the first run is finished, everything is removed.
+    Incomplete files are removed. `.staging` appears in one step with the identity in it, so that the same recipe can
+    continue after any stop. Raises UserError where the unfinished set of another recipe is there. If the block raises a
+    UserError before the first run is finished, everything is removed.
     """
     if not layout.identity.exists():
         _begin(layout, identity)
@@ -129,9 +130,9 @@ def begun(layout: Layout, identity: Identity) -> Iterator[None]:
 
 
 def has_remains(layout: Layout, identity: Identity) -> bool:
-    """Return whether a stop at the very end left `.staging` or a lock beside the finished set of this identity.
+    """Return whether `.staging` or a lock remains beside the finished set of this identity, after a late interruption.
 
-    What was kept of a set that is to grow is no such remain.
+    It is False where `.staging` belongs to another identity: then a set with more runs was begun.
     """
     with suppress(FileNotFoundError, UserError):
         if read_identity(layout) != identity:
@@ -140,7 +141,7 @@ def has_remains(layout: Layout, identity: Identity) -> bool:
 
 
 def remove_staging(layout: Layout) -> None:
-    """Delete the staged runs of a complete set, and the half-made folder for them that a kill may leave."""
+    """Delete the staging folder of a complete set, and a half-made staging folder that a kill may leave."""
     for folder in (layout.staging, _unborn(layout)):
         if folder.exists():
             shutil.rmtree(folder)
@@ -219,7 +220,7 @@ def _is_nothing(layout: Layout, path: Path) -> bool:
 
 
 def check_begun(layout: Layout, asked: Identity) -> None:
-    """Raise UserError where the unfinished set in the directory, if there is one, is of another recipe or versions."""
+    """Raise UserError if the directory holds an unfinished set of another recipe or of other package versions."""
     with suppress(FileNotFoundError):  # not begun yet, or just finished
         check_same(layout, read_identity(layout), asked, versions=True)
 

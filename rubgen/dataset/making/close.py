@@ -25,7 +25,7 @@ from rubgen.scenario.run_id import run_id_of
 
 
 class ClosedShard(StrictModel):
-    """The record of a closed shard: what the manifest needs of it."""
+    """The record of a closed shard: numbers of its runs, and the digests of its files for the manifest."""
 
     runs: NonNegativeInt
     status: dict[str, NonNegativeInt]
@@ -38,9 +38,12 @@ class ClosedShard(StrictModel):
 
 
 def close_shard(root: Path, shard: Shard) -> None:
-    """Write the files of a shard whose runs are all kept, then its record, and remove what was kept.
+    """Write the tables of a shard whose runs are all kept, then its record. Remove the kept rows.
 
-    Raises RubgenError where a run was kept and its rows are damaged since.
+    - root: directory of the set.
+    - shard: the shard. Nothing is done if it is closed already.
+
+    Raises RubgenError where the kept rows of a run are damaged.
     """
     layout = Layout(root)
     if layout.closed(shard.name).exists():  # by a worker that died before it could say so
@@ -57,7 +60,11 @@ def close_shard(root: Path, shard: Shard) -> None:
 
 
 def write_closed(layout: Layout, recipe: Recipe, shard: Shard, status: dict[str, int], good: list[str]) -> None:
-    """Hash the files of a shard and write its record. `good` are the names of its runs with status ok."""
+    """Hash the files of a shard and write its record.
+
+    - status: number of the shard's runs by status.
+    - good: names of its runs with status ok.
+    """
     formats = recipe.output.formats
     exports = {remake: _exports(layout, formats, good, remade=remake) for remake in (False, True)}
     record = ClosedShard(
@@ -71,7 +78,10 @@ def write_closed(layout: Layout, recipe: Recipe, shard: Shard, status: dict[str,
 
 
 def read_closed(layout: Layout, shard: str) -> ClosedShard:
-    """Read the record of a closed shard. Raises RubgenError where it is missing or damaged."""
+    """Read the record of a closed shard.
+
+    Raises RubgenError where it is missing or damaged; a damaged record is deleted.
+    """
     path = layout.closed(shard)
     try:
         return ClosedShard.model_validate(read_json(path.read_bytes()))

@@ -24,7 +24,7 @@ WAIT_S = 0.2
 
 
 class ClusterWorkers:
-    """The workers of a Dask cluster. The scheduler replaces those that die, and gives their work to others."""
+    """The workers of a Dask cluster. The scheduler replaces workers that die, and moves their work to other workers."""
 
     def __init__(self, client: Any) -> None:
         """Take a client that is connected."""
@@ -36,7 +36,7 @@ class ClusterWorkers:
 
     @property
     def number(self) -> int:
-        """Number of workers now."""
+        """Current number of workers, at least 1."""
         return max(1, len(self._client.nthreads()))
 
     def submit(self, work: Callable[..., R], job: tuple[object, ...]) -> Future[R]:
@@ -45,16 +45,16 @@ class ClusterWorkers:
         return future
 
     def replaced(self, running: dict[Future[R], tuple[object, ...]]) -> tuple[str, list[Future[R]]]:
-        """Say how a worker died, and return the jobs that must be done again: those of which the scheduler gave up."""
+        """Return how a worker died, and the jobs to be submitted again: those that the scheduler has given up."""
         lost = [future for future in running if future.done() and isinstance(future.exception(), self.died)]
         return "of the cluster died several times", lost
 
 
 def job_script() -> str:
-    """Return the script of a job of SLURM that is one worker, as `--scheduler slurm` gives it to sbatch.
+    """Return the batch script with which `--scheduler slurm` starts one worker as a job of SLURM.
 
     Queue, memory, time and more come from the settings of dask-jobqueue (jobqueue.slurm in ~/.config/dask). Without
-    them a job has 2 GB and 30 minutes. Raises UserError where dask-jobqueue is not installed.
+    settings a job has 2 GB and 30 minutes. Raises UserError where dask-jobqueue is not installed.
     """
     with _slurm() as jobs:
         return str(jobs.job_script())
@@ -72,9 +72,10 @@ def _slurm() -> Any:
 
 @contextmanager
 def slurm(jobs: int, root: Path) -> Iterator[ClusterWorkers]:
-    """Start that many jobs of SLURM, each a worker, for the block, which begins with the first that runs.
+    """Start `jobs` jobs of SLURM for the block, each one worker. The block begins when the first job runs.
 
-    Raises UserError where dask-jobqueue is not installed or this computer gives no jobs to SLURM, and as `cluster`.
+    `root` is the directory of the set, which every worker must see. Raises UserError where dask-jobqueue is not
+    installed, where this computer has no sbatch, and as `cluster` does.
     """
     if which("sbatch") is None:
         raise UserError(f"--scheduler {SLURM}: there is no sbatch here; give the command where SLURM takes jobs")
@@ -89,10 +90,11 @@ def slurm(jobs: int, root: Path) -> Iterator[ClusterWorkers]:
 
 @contextmanager
 def cluster(address: str, root: Path) -> Iterator[ClusterWorkers]:
-    """Connect to the Dask scheduler at `address` for the block.
+    """Connect to the Dask scheduler at `address` for the block. `root` is the directory of the set.
 
     Raises UserError where distributed is not installed, the scheduler does not answer, it has no worker, a worker has
-    several threads or other versions, or does not see the directory `root`; RubgenError where the scheduler is lost.
+    several threads or other package versions, or a worker does not see `root`. Raises RubgenError where the connection
+    to the scheduler is lost.
     """
     try:
         from distributed import Client

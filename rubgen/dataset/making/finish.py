@@ -28,13 +28,12 @@ ROWS_PER_GROUP = 4096
 
 
 def finish_set(recipe: Recipe, layout: Layout, identity: Identity, *, moved: bool = False) -> dict[str, int]:
-    """Write `runs.parquet`, move the files of all shards to their places, write card, manifest and digests.
+    """Complete a set whose shards are all closed. Return the number of runs by status.
 
-    With `moved` the files of shards are at their places already, in an object store.
-
-    Rows pass through memory ROWS_PER_GROUP at a time. A set that grows is as it was until its new files are complete.
-    Returns the number of runs by status. Where a file of a closed shard is lost, the shard is opened and RubgenError is
-    raised: the same command makes its runs anew.
+    It writes `runs.parquet`, moves the files of all shards to their final paths, and writes card, manifest and digests.
+    With `moved` the shards' files are already in an object store and are not moved. ROWS_PER_GROUP rows are in memory
+    at a time. A set to which runs are added stays as it was until its new files are complete. Raises RubgenError where
+    a file of a closed shard is lost: its record is deleted, and the same command makes the shard's runs again.
     """
     whole = layout.staging / layout.runs.name
     write_runs(layout, recipe, whole)
@@ -66,7 +65,7 @@ def write_runs(layout: Layout, recipe: Recipe, path: Path) -> None:
 
 
 def write_sensors(recipe: Recipe, path: Path) -> None:
-    """Write `sensors.parquet` of the recipe's set to `path`."""
+    """Write `sensors.parquet`, the table of the recipe's sensors, to `path`."""
     write_table([sensors_table(recipe.sensing)], SENSORS_SCHEMA, path)
 
 

@@ -73,19 +73,19 @@ def generate(
     """Make the data set of a recipe in a directory.
 
     - recipe: a recipe, its TOML values, its file, or None for the default recipe.
-    - out: the directory, or a URL such as s3://bucket/set: the set is made in the cache folder, closed shards go up as
-      they come, the manifest last.
-    - runs: overrides the recipe's number of runs. A larger number than before lets a finished set grow.
+    - out: the directory, or a URL such as s3://bucket/set. For a URL the set is made in the cache folder. Each closed
+      shard is uploaded, the manifest last.
+    - runs: number of runs in place of the recipe's. A larger number than before adds runs to a finished set.
     - workers: number of processes, by default one for each usable core; 1 works in this process.
     - scheduler: address of a Dask scheduler, whose workers make the runs; or "slurm" for jobs of SLURM, one a worker.
-    - shard: "17/200" makes only part 17 of 200 of the runs, beside other processes that make other parts.
+    - shard: "17/200" makes only part 17 of 200 of the runs. Other processes may make the other parts at the same time.
     - finish: make no run; complete the set from its parts.
     - progress: called with the numbers of finished and of all runs. True shows them on stderr, None only on a terminal
       or in a notebook.
 
     Each run is simulated alone and stored as soon as it is finished. The same call after an interruption makes the
-    missing runs, with the same bytes. Failed runs are listed with their reason. Of a finished set only the digest of
-    the manifest and the sizes of files are checked; nothing is changed.
+    missing runs, with the same bytes. Failed runs are listed with their reason. If the set is finished, only the digest
+    of the manifest and the sizes of its files are checked; nothing is changed.
 
     Works from a script without a main guard, a notebook, a pipe or a thread: workers do not import the main module.
     Raises UserError, one line, for bad input, a directory with other content or not writable, and a full disk;
@@ -108,7 +108,11 @@ def generate_as(
     finish: bool = False,
     progress: Report | bool | None = None,
 ) -> Generated:
-    """Make a data set as `generate` does. Its runs have the candidates of the rows in `decided`, a `runs.parquet`."""
+    """Make a data set as `generate` does, without choosing candidates of virtual machines and of balances again.
+
+    `decided` is a `runs.parquet` whose rows have the candidates that the runs take. None chooses them as `generate`
+    does.
+    """
     recipe = _recipe(recipe, runs)
     remote = RemoteMaking(str(out), shard or "") if is_url(out) else None
     task = _Task(
@@ -227,7 +231,10 @@ def _make_part(task: _Task) -> Generated | None:
 
 
 def nothing_to_do(layout: Layout, identity: Identity) -> Generated:
-    """Compare the sizes of the files of a finished set with its manifest. Raises UserError where one differs."""
+    """Compare the sizes of a finished set's files with its manifest, and return the set's `Generated`.
+
+    Remains of an interrupted call are deleted. Raises UserError where a size differs or a file is missing.
+    """
     manifest = read_manifest(layout)
     found = list(size_findings(layout, manifest))
     if found:

@@ -23,9 +23,9 @@ from rubgen.scenario.run_id import index_of
 
 
 def prepare_growth(layout: Layout, before: Manifest, recipe: Recipe) -> None:
-    """Fill the staging folder of `layout` with what the finished set there has. Its files stay as they are.
+    """Fill the staging folder of `layout` with the runs of the finished set there, so that more runs can be added.
 
-    - layout: paths of the set.
+    - layout: paths of the set. Its files stay as they are.
     - before: its manifest.
     - recipe: the recipe with more runs.
 

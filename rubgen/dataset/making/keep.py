@@ -25,7 +25,7 @@ _LENGTH = struct.Struct("<Q")
 
 @dataclass(frozen=True, kw_only=True)
 class Kept:
-    """Where the rows of a finished run are."""
+    """The position of a finished run's rows in a file of kept runs."""
 
     file: Path
     start: int
@@ -35,18 +35,21 @@ class Kept:
 
 
 class Keeper:
-    """Appends runs to a file of its own in the folder of an open shard. Two workers never share a file."""
+    """Appends runs to a file of its own in the folder of an open shard. Two workers never write to the same file."""
 
     def __init__(self, layout: Layout, shard: str, session: str) -> None:
         """Name the file after the session, the call of `generate` that the work belongs to. It is made on first use."""
         self._file = layout.kept(shard) / f"{session}-{uuid4().hex[:12]}.kept"
 
     def begin(self, index: int) -> None:
-        """Note that run number `index` begins."""
+        """Write a record that run number `index` begins."""
         self._append(index, good=False, content=b"")
 
     def keep(self, index: int, rows: Sequence[pa.Table | None]) -> None:
-        """Append the rows of a finished run, in `runs` and in each table; None where a failed run has no row."""
+        """Append the rows of finished run `index`: its row of `runs`, then its rows of each table.
+
+        A failed run has None in the place of each missing row.
+        """
         parts = [b"" if row is None else _message(row) for row in rows]
         content = b"".join(_LENGTH.pack(len(part)) + part for part in parts)
         self._append(index, good=all(row is not None for row in rows), content=content)
@@ -64,7 +67,7 @@ def _message(row: pa.Table) -> bytes:
 
 
 def kept_runs(layout: Layout, shard: str) -> dict[int, Kept]:
-    """Find the finished runs of an open shard by their numbers. Where a run was made twice the first file counts."""
+    """Return the finished runs of an open shard by their numbers. If a run was made twice, the first file is used."""
     found: dict[int, Kept] = {}
     for file in sorted(layout.kept(shard).glob("*.kept")):
         for index, kept in _records(file):
@@ -74,9 +77,9 @@ def kept_runs(layout: Layout, shard: str) -> dict[int, Kept]:
 
 
 def runs_of_session(layout: Layout, shard: str, session: str) -> tuple[set[int], set[int]]:
-    """Return the numbers of runs that this session kept, and of those that began and were not kept.
+    """Return the numbers of the runs that this session kept, and of the runs that it began and did not keep.
 
-    The worker of the latter died, or is at work.
+    A session is one call of `generate`. The worker of a run that was begun and not kept has died, or is still at work.
     """
     kept: set[int] = set()
     begun: set[int] = set()
@@ -101,7 +104,13 @@ def _records(file: Path) -> Iterator[tuple[int, Kept]]:
 def rows_of(
     kept: Iterable[Kept], table: SetTable, types: pa.Schema, formats: Sequence[str]
 ) -> Iterator[pa.RecordBatch]:
-    """Yield the row of each kept run in a table with the columns `types`. Runs without a row there are left out."""
+    """Yield the rows of kept runs in one table, as record batches. Runs without a row in the table are left out.
+
+    - kept: the runs, in the order of the rows.
+    - table: `runs` or one of the tables.
+    - types: the table's schema.
+    - formats: the formats of the set, which determine its tables.
+    """
     place = [RUNS.name, *(each.name for each in tables_of(formats))].index(table.name)
     for each in kept:
         with each.file.open("rb") as stream:
@@ -114,5 +123,5 @@ def rows_of(
 
 
 def remove_kept(layout: Layout, shard: str) -> None:
-    """Delete what was kept of a shard that is closed."""
+    """Delete the kept rows of a closed shard."""
     shutil.rmtree(layout.kept(shard), ignore_errors=True)

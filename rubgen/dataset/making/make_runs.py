@@ -29,7 +29,10 @@ ALONE = "from rubgen.dataset.making.make_runs import make_one; make_one({root!r}
 
 @lru_cache(maxsize=1)
 def recipe_of(root: Path, _begun: int) -> Recipe:
-    """Return the recipe of the unfinished set in `root`, read once by each worker; `_begun` tells sets apart."""
+    """Return the recipe of the unfinished set in `root`.
+
+    The result is cached; `_begun` distinguishes sets made there.
+    """
     return read_identity(Layout(root)).recorded()
 
 
@@ -39,15 +42,14 @@ def recipe_at(root: Path) -> Recipe:
 
 
 def make_runs(root: Path, shard: str, session: str, indexes: tuple[int, ...]) -> int:
-    """Make runs of an open shard and keep each as it finishes. Return their number. A worker process calls it.
+    """Make runs of an open shard and keep each run as it finishes. Return their number. A worker process calls it.
 
-    Runs that this session kept already are left alone: a job that is lost is given again. A run that was being made
-    when a worker of this session died is made in a process of its own; where that dies too, the run is recorded as
-    failed.
+    Runs that this session kept already are skipped: a lost job is submitted again. A run during which a worker of this
+    session died is made in a separate process. If this process dies too, the run is recorded as failed.
 
     - root: directory of the set.
     - shard: name of the shard.
-    - session: of the call of `generate` that asks for it.
+    - session: name of the call of `generate` for which the runs are made.
     - indexes: numbers of the runs.
     """
     layout, recipe = Layout(root), recipe_at(root)
@@ -67,7 +69,10 @@ def make_runs(root: Path, shard: str, session: str, indexes: tuple[int, ...]) ->
 
 
 def make_one(root: str, shard: str, session: str, index: int) -> None:
-    """Make one run in this process and keep it, as `make_runs` does. The process ends with its standard input."""
+    """Make one run in this process and keep it, as `make_runs` does.
+
+    The process ends when its standard input is closed.
+    """
     threading.Thread(target=_end_with_input, daemon=True).start()
     layout = Layout(root)
     _make(layout, recipe_at(layout.root), Keeper(layout, shard, session), index)
@@ -87,7 +92,7 @@ def _make(layout: Layout, recipe: Recipe, keeper: Keeper, index: int) -> None:
 
 
 def simulated(recipe: Recipe, index: int) -> Run:
-    """Simulate run number `index` of a recipe. A run that its values forbid has the status refused."""
+    """Simulate run number `index` of a recipe. A run whose drawn values are not possible has the status refused."""
     from rubgen.pipeline import refused, simulate
 
     scenario = recipe.scenario(index)

@@ -19,7 +19,7 @@ COLUMNS = ["run_id", "status", "reason", "rub", "motion"]
 
 @dataclass(frozen=True, kw_only=True)
 class Failure:
-    """The runs with one status of failure."""
+    """The runs with one of the statuses of failure."""
 
     status: str
     """The status."""
@@ -46,9 +46,9 @@ class Outcome:
 
 
 def outcome_of(layout: Layout) -> Outcome:
-    """Count the runs of a data set whose `runs.parquet` is written: rub, classes of motion, failures.
+    """Count the runs in `runs.parquet` of a data set: with and without rub, by class of motion, and failures by status.
 
-    A few thousand rows at a time are in memory.
+    A few thousand rows are in memory at a time.
     """
     rub: Counter[bool] = Counter()
     motion: Counter[str] = Counter()
@@ -83,7 +83,7 @@ class Unfinished:
 
 
 def finished_runs(out: Path | str) -> int:
-    """Count the finished runs of an unfinished data set in the directory `out`."""
+    """Return the number of finished runs of an unfinished data set in the directory `out`."""
     layout = Layout(out)
     closed = [path.stem for path in layout.closed("").parent.glob("*.json")]
     begun = {path.name for path in layout.kept("").glob("*")} - set(closed)
@@ -91,7 +91,7 @@ def finished_runs(out: Path | str) -> int:
 
 
 def unfinished(directory: Path) -> Unfinished | None:
-    """Return what an interrupted `generate` left in `directory`; None where there is no set or it is finished.
+    """Return name and numbers of runs of the unfinished set in `directory`; None without a set or for a finished set.
 
     Raises UserError where its identity cannot be read.
     """

@@ -24,7 +24,7 @@ Job = tuple[Path, str, Shard, tuple[int, ...]]
 
 @dataclass(frozen=True)
 class Part:
-    """Part `number` of `count` equal parts of a set, from 1: what one job of an array makes."""
+    """Part `number` of `count` equal parts of a set, from 1, for one job of an array of jobs."""
 
     number: int = 1
     count: int = 1
@@ -34,7 +34,7 @@ class Part:
 
 
 def part_of(text: str) -> Part:
-    """Return the part that a text such as 17/200 means. Raises UserError for any other text."""
+    """Return the part that a text such as "17/200" names. Raises UserError for any other text."""
     number, _, count = text.partition("/")
     if not (number.isdecimal() and count.isdecimal() and 1 <= int(number) <= int(count)):
         raise UserError(f"--shard {text}: give number/count, the number from 1 to the count, such as 17/200")
@@ -43,9 +43,9 @@ def part_of(text: str) -> Part:
 
 @dataclass
 class Plan:
-    """What is missing of a set, or of one part of it, and the jobs for it in order.
+    """The missing runs of a set, or of one part of it, and the jobs that make them, in order.
 
-    A closed shard costs no file access beyond the listing of the folder of closed shards.
+    Creating a plan reads no file of a closed shard: only the folder of closed shards is listed.
     """
 
     recipe: Recipe
@@ -84,16 +84,22 @@ class Plan:
         return self.total - self.done
 
     def kept_now(self) -> int:
-        """Return the number of runs that are kept of the shards at work."""
+        """Return the number of runs kept so far in the shards that are at work."""
         return sum(len(kept_runs(self.layout, name)) for name in self._left)
 
     def jobs(self, workers: int) -> Iterator[Job]:
-        """Yield the jobs for `do`. More follow from `ended`, so take the next job after each result."""
+        """Yield the jobs, as the arguments of `do`, for `workers` workers.
+
+        `ended` may add jobs: take one after each result.
+        """
         self._size = max(1, min(MOST_RUNS_A_JOB, ceil(self.missing / (JOBS_PER_WORKER * workers))))
         return _Queue(self._urgent, self._jobs())
 
     def ended(self, shard: Shard) -> None:
-        """Note that a job that made runs of this shard has ended. The last one is followed by a job that closes it."""
+        """Note that a job that made runs of this shard has ended.
+
+        After the shard's last job, a job that closes it is added.
+        """
         self._left[shard.name] -= 1
         if not self._left[shard.name]:
             del self._left[shard.name]
@@ -166,7 +172,13 @@ class _Queue(Iterator[Job]):
 
 
 def do(root: Path, session: str, shard: Shard, indexes: tuple[int, ...]) -> tuple[Shard, int]:
-    """Do one job: make these runs of a shard, or without runs close it. Return the shard and the number of runs."""
+    """Do one job: make these runs of a shard. Return the shard and the number of runs made.
+
+    - root: directory of the set.
+    - session: name of the call of `generate`.
+    - shard: the shard.
+    - indexes: numbers of the runs. If there are none, the shard is closed and the number is 0.
+    """
     if not indexes:
         close_shard(root, shard)
     return shard, make_runs(root, shard.name, session, indexes) if indexes else 0

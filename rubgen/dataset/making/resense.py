@@ -28,19 +28,21 @@ def resense(
 ) -> Generated:
     """Make the data set in `directory` again in the directory `out`, with another sensor set on the same motions.
 
-    Every run is simulated again from the recorded recipe and machine: a set keeps no true signals for new sensors. No
-    candidate of `[machines]` or `[balance]` is checked again: each run has the one that it has in `directory`. The
-    new set is complete, with its own manifest: it is the set that `generate` makes of the recipe with these sensors.
+    Every run is simulated again from the recorded recipe and machine, because a set contains no true signals for new
+    sensors. Virtual machines and candidates of a balance are those recorded in `directory`; they are not drawn again.
+    The new set is complete, with its own manifest. It has the recipe of `directory` with the new sensors.
 
-    - directory: a finished data set; it is only read.
+    - directory: a finished data set that was not merged; it is only read.
     - sensors: name of a sensor set, or the path of its TOML file.
-    - out, workers, progress: as in `generate`. The same call completes an interrupted set.
+    - out: directory of the new set.
+    - workers: number of processes, by default one for each usable core.
+    - progress: called with the numbers of finished and of all runs, as in `generate`.
 
-    Labels that need no sensor are equal to the bit where a run has the same steps a turn and the versions are the same.
-    Fast sensors need more steps: a warning says at which speeds. Amplitudes at orders belong to the sensors' signals. A
-    sensor on the housing adds the machine's frame, which changes `machine_id`. Raises UserError for a directory without
-    a finished set, an unknown sensor set, the sensors that the set has already, and sensors that the machine cannot
-    have.
+    The same call completes an interrupted set. Labels that need no sensor keep all bits where a run has the same steps
+    a turn and the package versions are the same. Fast sensors need more steps: a warning names the speeds at which the
+    steps change. Labels of amplitudes at orders are computed for the new sensors' signals. A sensor on the housing adds
+    the machine's frame, which changes `machine_id`. Raises UserError for a directory without a finished set, an unknown
+    sensor set, the sensors that the set has already, and sensors that the machine cannot have.
     """
     identity = read_manifest(Layout(directory)).identity
     if identity.sources:

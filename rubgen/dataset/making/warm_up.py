@@ -12,15 +12,15 @@ WARM_UP_TURNS = 40
 
 
 def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple[Scenario, ...]) -> list[str]:
-    """Find out before the first run whether a recipe is possible, compile the kernels and cache the reduced model.
+    """Check before the first run whether a recipe is possible, compile the kernels and cache the reduced model.
 
-    The machine is reduced at the extremes of `[vary]`, where an impossible recipe raises UserError, and so does a first
-    virtual machine that cannot be drawn. Then a few turns of `scenario` are run. Returns warnings: problems of a worker
-    with caches, and that none of the first runs can be made or can rub.
-
-    - scenario: its machine is reduced and run.
-    - corners: scenarios at the extremes of `[vary]`; none where each machine of a recipe is checked on its own.
+    - scenario: its machine is reduced, and a few turns of it are simulated.
+    - corners: scenarios at the extreme values of `[vary]`, whose machines are reduced. Empty if each machine of a
+      recipe is checked on its own.
     - first_runs: the first runs of the recipe.
+
+    Returns warnings: problems of a worker with the caches, and that none of the first runs can be made or can rub.
+    Raises UserError where a machine cannot be reduced or the first virtual machine cannot be drawn.
     """
     from rubgen.pipeline import simulate
     from rubgen.reduction import reduce
@@ -40,7 +40,7 @@ def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple
 
 
 def warming_up() -> AbstractContextManager[None]:
-    """Show the progress of `warm_up`, which runs here or in a worker, during the block."""
+    """Show the progress of `warm_up` during the block. `warm_up` may run in this process or in a worker."""
     from rubgen.jit import kernels_are_compiled
 
     compiled = kernels_are_compiled()

@@ -33,7 +33,7 @@ _ONE_START = threading.Lock()
 def usable_cores(root: Path = Path("/")) -> int:
     """Return the number of cores that this process may use: its affinity and its container's CPU quota, rounded up.
 
-    `root` is the root of the system's own files: /proc/self/cgroup and, of either version, /sys/fs/cgroup.
+    `root` is the folder that stands for "/": its proc/self/cgroup and sys/fs/cgroup are read.
     """
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return max(1, min([cores, *(math.ceil(quota) for quota in _cpu_quotas(root))]))
@@ -68,7 +68,7 @@ def _text(path: Path) -> str:
 
 
 class Workers:
-    """Some new processes, each with one BLAS thread. Where one dies, all are replaced."""
+    """New worker processes, each with one BLAS thread. If one process dies, all are replaced."""
 
     died: tuple[type[BaseException], ...] = (BrokenProcessPool,)
     """Errors that say that a process died."""
@@ -104,7 +104,10 @@ class Workers:
                 process.join()
 
     def replaced(self, running: dict[Future[R], tuple[object, ...]]) -> tuple[str, list[Future[R]]]:
-        """Say how the process ended that broke the pool. Return the jobs to be done again: all that are `running`."""
+        """End and start all processes.
+
+        Return how the dead process ended, and all `running` jobs, to be submitted again.
+        """
         self.end()
         how = _how_it_ended(self._context)
         self.start()
@@ -118,7 +121,7 @@ class Pool(Protocol):
 
     @property
     def number(self) -> int:
-        """Number of workers now."""
+        """Current number of workers."""
         ...
 
     def submit(self, work: Callable[..., R], job: tuple[object, ...]) -> Future[R]:
@@ -132,7 +135,7 @@ class Pool(Protocol):
 
 @contextmanager
 def worker_pool(workers: int) -> Iterator[Workers | None]:
-    """Yield `workers` new processes, each with one BLAS thread. They are ended at once with the block.
+    """Yield `workers` new processes, each with one BLAS thread. They are ended at once when the block ends.
 
     Yields None for one worker and, with a warning, where no process can be started: `unordered` then works in this
     process. Raises RubgenError where memory runs out.
@@ -162,13 +165,13 @@ def unordered(
 ) -> Iterator[R]:
     """Call `work(*job)` for every job and yield the results as they finish, in any order.
 
-    Only a few jobs are submitted at a time. Where a process dies, others do the jobs that are lost. Raises RubgenError
-    where processes die `tries` times without one result and without progress in between.
+    Only a few jobs are submitted at a time. If a process dies, the lost jobs are submitted again. Raises RubgenError
+    where processes die `tries` times without a result and without progress in between.
 
     - pool: from `worker_pool` or a cluster; None works in this process.
     - work: a function that can be pickled.
-    - jobs: the tuples of its arguments. After its end more may follow from results.
-    - progress: called after a death; returns another number where unfinished jobs went on since the death before.
+    - jobs: the tuples of its arguments. The iterator may yield further jobs after its end, when results have come.
+    - progress: called after a death. If its number differs from the number at the death before, there was progress.
     """
     if pool is None:
         yield from (work(*job) for job in jobs)
@@ -256,7 +259,10 @@ def _how_it_ended(context: _OwnMain) -> str:
 
 
 def how_ended(codes: Sequence[int]) -> str:
-    """Say how a process ended, from exit codes of which SIGTERM counts least."""
+    """Return how a process ended, from the exit codes of several processes.
+
+    SIGTERM is chosen only if all codes are SIGTERM.
+    """
     if not codes:
         return "ended, and the system does not say how"
     first = next((code for code in codes if code != -signal.SIGTERM), -signal.SIGTERM)

@@ -33,12 +33,12 @@ NAMES = ("run_id", "twin_of")
 
 
 def copy_shard(layout: Layout, recipe: MergedRecipe, source: SourceSet, own: Shard, shard: Shard) -> None:
-    """Write the files of `shard` in the unfinished set of `layout`, then the record that closes it.
+    """Write the files of `shard` into the unfinished set of `layout`, then the record that closes the shard.
 
     - layout: paths of the merged set.
     - recipe: its recipe.
-    - source: the set that the shard comes from.
-    - own: the shard there. Its runs have the same order.
+    - source: the source set of the shard.
+    - own: the shard in the source set. Its runs have the same order.
     - shard: the shard in the merged set.
 
     Raises UserError where a file of the source is damaged.

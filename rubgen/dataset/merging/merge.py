@@ -27,18 +27,20 @@ def merge(
 ) -> Generated:
     """Make one data set of several in the directory `out`. No run is simulated.
 
-    - directories: two or more finished data sets; they are only read. Runs are in this order.
-    - out: a new or empty directory, or one where the same call was interrupted, which is then completed.
+    - directories: two or more finished data sets; they are only read. Their runs follow each other in this order.
+    - out: a new or empty directory, or a directory in which the same call was interrupted: the call then completes the
+      set.
     - progress: as in `generate`.
 
-    Run number i of a set becomes number i plus the runs of the sets before it; `merged_from` in `runs.parquet` has its
-    source and its name there, and `twin_of` the new name of the partner. Splits stay. Files of the first set keep their
-    bytes, all others are written with the new names. A set that was merged before counts as its sources, so merging in
-    steps makes the same bytes as at once. Any run is made again from the manifest, which has the recipe of each source.
-    A shard at a time is copied, a few runs at a time are in memory. The result is finished or not there.
+    Run number i of a set becomes number i plus the number of runs of all sets before it. In `runs.parquet` the column
+    `merged_from` contains the run's source and its name there, and `twin_of` the new name of the partner. Splits stay
+    the same. Files of the first set keep their bytes; all other files are written with the new names. A set that was
+    merged before counts as its sources, so that merging in steps makes the same bytes as merging at once. The manifest
+    contains the recipe of each source, from which any run can be made again. One shard is copied at a time, with a few
+    runs in memory. An interrupted merge leaves no finished set.
 
     Raises UserError for fewer than two sets, sets of other versions, formats, sensors or columns, two sets with the
-    same seed, a machine that is in different splits, damaged files, and all that `generate` refuses of `out`.
+    same seed, a machine that is in different splits, damaged files, and an `out` that `generate` refuses.
     """
     sets = read_sources(directories)
     check_sources(sets)

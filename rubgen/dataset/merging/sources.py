@@ -22,7 +22,7 @@ ADVICE = "rubgen repair"
 
 @dataclass(frozen=True, kw_only=True)
 class SourceSet:
-    """A finished data set that is to be part of another."""
+    """A finished data set that is to be merged into another set."""
 
     layout: Layout
     manifest: Manifest
@@ -32,16 +32,16 @@ class SourceSet:
 
     @property
     def sources(self) -> tuple[Source, ...]:
-        """What it was made of: itself, or where it was merged the sets that it was merged from."""
+        """The sources of the set: the set itself, or the sets from which it was merged."""
         own = Source(sha256=sha256_of(self.layout.manifest), identity=self.manifest.identity)
         return self.manifest.identity.sources or (own,)
 
 
 def read_sources(directories: Sequence[Path | str]) -> list[SourceSet]:
-    """Read the manifests of the sets in these directories, in this order.
+    """Read the manifests of the data sets in these directories, in this order.
 
-    Raises UserError where one holds no finished set, a file of it is missing or has another size, and where the content
-    of its `runs.parquet` is not the listed one.
+    Raises UserError where a directory holds no finished set, a file is missing or has another size, or the content of
+    `runs.parquet` does not have the listed sha256.
     """
     sets: list[SourceSet] = []
     for directory in directories:
@@ -62,9 +62,10 @@ def read_sources(directories: Sequence[Path | str]) -> list[SourceSet]:
 
 
 def merged_identity(sets: Sequence[SourceSet]) -> Identity:
-    """Return the identity of the set that is merged from these sets, in this order. It depends on their sources alone.
+    """Return the identity of the merged set of these sets, in this order. It depends only on their sources.
 
-    A set that was merged before counts as its sources.
+    The sources of a set that was merged before take its place. The recipe is the recipe of the first source, with the
+    name and the number of runs of the merged set.
     """
     sources = tuple(source for each in sets for source in each.sources)
     first = sources[0].identity
@@ -74,7 +75,7 @@ def merged_identity(sets: Sequence[SourceSet]) -> Identity:
 
 
 def check_sources(sets: Sequence[SourceSet]) -> None:
-    """Check that these sets can be one. Raises UserError, one line with both sets, at the first difference."""
+    """Check that these sets can be merged. Raises UserError, one line with both sets, at the first difference."""
     if len(sets) < 2:
         raise UserError("merge: give two or more data sets")
     runs = sum(each.manifest.runs for each in sets)

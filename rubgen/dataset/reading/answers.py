@@ -29,7 +29,7 @@ SHOWN = 12
 
 
 class Answers:
-    """One target of a data set as numbers. `DataSet.arrays` says which numbers."""
+    """The values of one target (a label of runs or windows) as numbers. `DataSet.arrays` describes the numbers."""
 
     def __init__(self, data: DataSet, target: str) -> None:
         """Take the name of a column. Raises UserError for one that is no target, or has no single value a run."""
@@ -43,7 +43,10 @@ class Answers:
             raise UserError(f"{data.layout.root}: target {target!r} is {kind}; read it from data.runs[{target!r}]")
 
     def of_runs(self, runs: Sequence[str]) -> npt.NDArray[Any]:
-        """Return the answer of each run (runs,), or of `faults` (runs, kinds)."""
+        """Return the answer of each of the runs, by name: (runs,), or for the target `faults` (runs, kinds).
+
+        A flag is 0 or 1, a class its number or -1 where it is undefined, a number NaN where it is undefined.
+        """
         values = self._data.runs.loc[list(runs), self._column.name]
         if self._column.name == "faults":
             kinds = self._data.fault_kinds
@@ -55,7 +58,11 @@ class Answers:
         return values.to_numpy(dtype=np.int64)
 
     def of_windows(self, runs: Sequence[str], pieces: Sequence[FloatArray]) -> npt.NDArray[Any]:
-        """Return the answer of each window; `pieces` are start and end in s (windows, 2) of the windows of each run."""
+        """Return the answer of each window (windows,), run after run.
+
+        Targets without a value of the window have the run's. `pieces` are start and end of the windows of each run
+        (windows, 2), in s from the first sample.
+        """
         compute = _OF_STRETCH.get(self._column.name)
         if compute is None:
             return np.repeat(self.of_runs(runs), [len(edges) for edges in pieces], axis=0)
@@ -63,7 +70,10 @@ class Answers:
         return np.concatenate([compute(self._data.row(run_id), touches, edges) for (run_id, touches), edges in rows])
 
     def warn_of_missing(self, y: npt.NDArray[Any], split: str | None) -> None:
-        """Warn where all answers are the same, so that nothing can be learned from them or tested with them."""
+        """Warn if all answers `y` are the same class or flag: no model can learn from them or be tested with them.
+
+        `split` is the name of their split for the message, or None.
+        """
         if self._column.kind not in ("flag", "class") or np.unique(y).size > 1:
             return
         where = f"of split {split!r}" if split else "chosen"

@@ -23,16 +23,17 @@ def balance_table(runs: pd.DataFrame, recipe: Recipe) -> pd.DataFrame:
     - runs: the rows of `runs.parquet`, by name.
     - recipe: the recipe of the set.
 
-    Columns: `split`, `cell`, `wanted` (share that the recipe asks for), `natural` (share of a set without balance,
-    estimated), `runs` (good runs that were drawn for the class), `tries` (their candidates), `weight` of such a run.
-    Twins do not count. With s_c candidates seen in class c in the split and the band, the natural share is
+    Columns: `split`; `cell`, the class; `wanted`, its share in the recipe; `natural`, its estimated share in a set
+    without balance; `runs`, the good runs drawn for the class; `tries`, their candidates; `weight`, the importance
+    weight of such a run. Twins do not count. With s_c candidates seen in class c in the split and the band, the natural
+    share is
 
         p(no rub) = s_0 / s,   p(c) = (1 - p(no rub)) s_c / (sum of s over rubbing classes)
 
-    The second factor counts only candidates whose class was asked. Every candidate is an independent draw and a run
-    stops at the first in its class, so these ratios tend to the shares (Wald's equation). Candidates that are not
-    possible do not count. The weight is p(c) over the share of class c among the good runs of the split. In a merged
-    set each source has rows of its own, after the column `source` with the digits of `merged_from`. Raises UserError
+    The second factor counts only the classes of the recipe. Every candidate is an independent draw, and a run stops at
+    the first candidate in its class, so these ratios tend to the shares (Wald's equation). Candidates that are not
+    possible do not count. The weight is p(c) over the share of class c among the good runs of the split. A merged set
+    has separate rows for each source, and a first column `source` with the digits of `merged_from`. Raises UserError
     for a set without `[balance]`.
     """
     import pandas as pd
@@ -87,10 +88,10 @@ def _rows(split: str, balance: Balance, band: int, mine: pd.DataFrame, good: int
 
 
 def balance_weights(runs: pd.DataFrame, table: pd.DataFrame) -> pd.Series[float]:
-    """Return the importance weight of each run by its name, NaN where it failed; a twin has that of its run.
+    """Return the importance weight of each run by its name; NaN for a failed run. A twin has the weight of its partner.
 
-    A mean over the good runs of a split with these weights is that of a set drawn without balance, but for classes
-    that the balance leaves out. In a merged set it is that of the sources, each drawn without balance.
+    With these weights, a mean over the good runs of a split estimates the mean over a set drawn without balance, except
+    for classes that the balance leaves out. For a merged set it estimates the mean over sources drawn without balance.
     """
     import pandas as pd
 

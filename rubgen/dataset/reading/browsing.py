@@ -28,7 +28,7 @@ Values = dict[str, Any]
 
 @dataclass(frozen=True, kw_only=True)
 class Rows:
-    """What the table of a set shows, by the name of the run."""
+    """The table of a data set in Rerun's catalog: its columns, and the values of each run by name."""
 
     columns: tuple[tuple[str, str], ...]
     """Group and name of each column, in the order in which they are shown."""
@@ -37,10 +37,11 @@ class Rows:
 
 
 def rows_of(data: DataSet, run_ids: Sequence[str], predictions: Path | None = None) -> Rows:
-    """Return the rows of these runs: name, split and status, what differs between runs of the set, and the answers.
+    """Return the rows of these runs: name, split, status, headline, differing parameters, labels, and predictions.
 
-    A column of `predictions` (`read_predictions`) stands after the answer of the same name, with a flag `<name>_right`
-    that says whether both are equal, except where the answer is a number; other columns stand at the end.
+    `predictions` is the path of a file for `read_predictions`, or None. A predicted column with the name of a label
+    stands after the label. If the label is no number, a flag `<name>_right` follows, which is True where both are
+    equal. Predicted columns with other names stand at the end.
     """
     kinds = {column.name: column for column in data.run_columns if column.kind in COLUMN_TYPES}
     shown = _shown(data.runs, list(kinds.values()))
@@ -72,10 +73,10 @@ def rows_of(data: DataSet, run_ids: Sequence[str], predictions: Path | None = No
 
 
 def read_predictions(path: Path, data: DataSet) -> pd.DataFrame:
-    """Read the answers of a model, CSV or Parquet with a column `run_id` and one row a run, the index.
+    """Read the predictions of a model from a CSV or Parquet file, with one row a run. The column `run_id` is the index.
 
-    Raises UserError where it is no such file, has no `run_id` or no other column, names a run twice or none of the set,
-    or has lists.
+    Raises UserError where the file is missing or of another kind, has no `run_id` or no other column, names a run
+    twice, names no run of the set, or contains lists.
     """
     reader, named = READERS.get(path.suffix), f"--predictions {path}"
     if reader is None:

@@ -18,7 +18,7 @@ SAMPLES_PER_TURN = 256
 
 @dataclass(frozen=True)
 class Cut:
-    """Windows of `length` every `hop`, both in samples, or in turns where `turns` is set."""
+    """Windows of `length` that start every `hop`, both in samples, or both in turns where `turns` is True."""
 
     length: int
     hop: int
@@ -34,20 +34,25 @@ class Cut:
         return self.length * SAMPLES_PER_TURN if self.turns else self.length
 
     def pieces(self, pulses: FloatArray, count: int) -> FloatArray:
-        """Return start and end of each window in s from the first sample (windows, 2).
+        """Return start and end of each window (windows, 2), in s from the first sample. A rest at the end is left out.
 
-        `pulses` are the times of the pulses of the run, `count` its number of samples.
+        - pulses: times of the run's once_per_rev pulses in s.
+        - count: number of samples of the run.
         """
         places = pulses[pulses <= (count - 1) / self.rate] if self.turns else np.arange(count + 1) / self.rate
         first = np.arange(0, max(len(places) - self.length, 0), self.hop)
         return np.column_stack([places[first], places[first + self.length]])
 
     def cutter(self, signals: Float32Array, pulses: FloatArray) -> Callable[[float], Float32Array]:
-        """Return what cuts the window (channels, samples) that starts at a time in s out of the signals of a run.
+        """Return a function that cuts a window (channels, samples) out of a run's signals.
 
-        Signals are (channels, count); a start is one of `pieces`. Windows of turns have SAMPLES_PER_TURN values a turn
-        at equal angles, as in computed order tracking: a monotone cubic goes through the times of the pulses, and a
-        cubic spline through the samples.
+        Its argument is the start in s.
+
+        - signals (channels, count): the channels of the run.
+        - pulses: times of the run's once_per_rev pulses in s.
+
+        A start is one of `pieces`. Windows of turns have SAMPLES_PER_TURN values a turn at equal angles, as in computed
+        order tracking: a monotone cubic goes through the times of the pulses, and a cubic spline through the samples.
         """
         if not self.turns:
             return lambda start: signals[:, round(start * self.rate) : round(start * self.rate) + self.length]
@@ -59,17 +64,19 @@ class Cut:
         return lambda start: np.asarray(spline(time_of(np.searchsorted(pulses, start) + part)), dtype=np.float32)
 
     def advice(self, count: int) -> str:
-        """Say which lengths are possible for signals of `count` samples."""
+        """Return a clause for messages that says how long signals of `count` samples last."""
         return f"signals last {count / self.rate:g} s; give less"
 
 
 def cut_of(seconds: float | None, turns: int | None, hop: float | None, rate: float, *, tacho: bool) -> Cut:
-    """Return how to cut: windows of `seconds`, or of `turns`, every `hop` (in the same unit; by default their length).
+    """Return how to cut signals: into windows of `seconds`, or of `turns`, every `hop`.
 
+    - hop: distance of the starts, in the same unit; None is the length of a window.
     - rate: samples per second.
     - tacho: whether the set has a once_per_rev sensor.
 
-    Raises UserError where not exactly one length is given, one is not positive, or turns are asked for without a tacho.
+    Raises UserError where not exactly one length is given, a length or hop is not positive, or `turns` is given without
+    a tacho.
     """
     if (seconds is None) == (turns is None):
         raise UserError("windows: give their length either in seconds or in turns")

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Fold(NamedTuple):
-    """One way to divide runs."""
+    """The training runs and the test runs of one fold of a cross-validation."""
 
     train: tuple[str, ...]
     """Names of the runs to learn from, in the order of the set."""
@@ -23,7 +23,10 @@ class Fold(NamedTuple):
 
 
 def folds(data: DataSet, k: int, by: str, split: str | None) -> list[Fold]:
-    """Divide runs into folds. See `DataSet.folds`."""
+    """Divide the good runs of a split, or of the set for None, into `k` folds by the column `by`.
+
+    See `DataSet.folds`.
+    """
     runs = chosen_runs(data, split, None)
     groups = _groups(data, runs, by)
     sizes = groups.value_counts().sort_index(kind="stable").sort_values(ascending=False, kind="stable")
@@ -43,7 +46,7 @@ def folds(data: DataSet, k: int, by: str, split: str | None) -> list[Fold]:
 
 
 def base_runs(rows: pd.DataFrame) -> pd.Series[str]:
-    """Return the run that each run of a frame was made from: itself, or the one of which it is a twin."""
+    """Return the name of the partner of each twin in `rows`, and of each other run its own name."""
     names = rows.index.to_series().astype("string")
     return rows["twin_of"].fillna(names) if "twin_of" in rows else names
 

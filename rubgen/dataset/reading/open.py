@@ -47,10 +47,10 @@ MOST_SHOWN = 5
 
 
 class DataSet:
-    """The data set in a directory. Only what is asked for is read.
+    """The data set in a directory. Its files are read only when they are needed.
 
-    `len(data)` is the number of its runs, with failed ones. `data[run_id]` is one run, and iteration yields the names
-    of runs. The set consists of the files that its manifest lists; other files in the directory are ignored.
+    `len(data)` is the number of its runs, failed runs included. `data[run_id]` is one run, and iteration yields the
+    names of the runs. The set consists of the files that its manifest lists; other files in the directory are ignored.
     """
 
     def __init__(self, directory: Path | str) -> None:
@@ -72,12 +72,15 @@ class DataSet:
         return isinstance(run_id, str) and run_id in self._numbers
 
     def __getitem__(self, run_id: str) -> StoredRun:
-        """Return the run called `run_id`. Raises UserError where there is none."""
+        """Return the run called `run_id`. Raises UserError where the set has no such run."""
         return stored_run(self, self.row(run_id))
 
     @cached_property
     def runs(self) -> pd.DataFrame:
-        """Parameters and labels of all runs, one row a run, also failed ones. The index is `run_id`: `runs_frame`."""
+        """Parameters and labels of all runs, failed runs included, one row a run, with the index `run_id`.
+
+        `runs_frame` describes the types of the columns.
+        """
         return runs_frame(self._table, self._sensing.set)
 
     @property
@@ -87,13 +90,16 @@ class DataSet:
 
     @cached_property
     def units(self) -> dict[str, str]:
-        """Unit of each recorded channel by its name, with the channels without noise where the set has them."""
+        """Unit of each recorded channel by its name.
+
+        Clean channels (without noise) are included where the set has them.
+        """
         columns = signal_columns(self._sensing.set, clean=self._sensing.keep_clean)
         return {column.name: column.unit for column in columns if column.kind == "signal"}
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Names of the recorded channels, with the channels without noise where the set has them."""
+        """Names of the recorded channels. Clean channels (without noise) are included where the set has them."""
         return tuple(self.units)
 
     @property
@@ -103,7 +109,7 @@ class DataSet:
 
     @cached_property
     def balance(self) -> pd.DataFrame:
-        """The classes of `[balance]` with wanted and natural shares, candidates and weights: `balance_table`.
+        """The classes of `[balance]` with wanted and natural shares, candidates and weights: see `balance_table`.
 
         Each source of a merged set has its own rows. Raises UserError for a set without a balance.
         """
@@ -111,29 +117,32 @@ class DataSet:
 
     @property
     def weights(self) -> pd.Series[float]:
-        """The importance weight of each run of a balanced set, by name; NaN where it failed: `balance_weights`."""
+        """The importance weight of each run of a balanced set, by name; NaN for a failed run. See `balance_weights`.
+
+        Raises UserError for a set without a balance.
+        """
         return balance_weights(self.runs, self.balance)
 
     @property
     def sensors(self) -> SensorSet:
-        """The sensors of the machine."""
+        """The sensor set with which the runs were recorded."""
         return self._sensing.set
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Names of the channels that a model may see: what a sensor could record, without the true contact force."""
+        """Names of the channels that a model may see: signals of real sensors, without the true contact force."""
         columns = signal_columns(self._sensing.set, clean=False)
         return tuple(x.name for x in columns if x.kind == "signal" and x.role is Role.INPUT)
 
     @property
     def run_columns(self) -> tuple[Column, ...]:
-        """The columns of `runs`."""
+        """The columns of `runs`, each with name, unit, role, kind and meaning."""
         around = self._recipe.surroundings is not None
         return scalar_columns(self._sensing.set, surroundings=around, faults=self.fault_kinds)
 
     @property
     def fault_kinds(self) -> tuple[str, ...]:
-        """Kinds of fault that the runs may have, in the order of the answers of `faults`."""
+        """Kinds of fault that the runs may have. The columns of the target `faults` in `arrays` have this order."""
         return self._recipe.fault_kinds
 
     @property
@@ -147,15 +156,16 @@ class DataSet:
         return self._sensing.sample_rate_hz
 
     def row(self, run_id: str) -> dict[str, Any]:
-        """Return a run's parameters and labels by column, as plain values. Raises UserError for an unknown run."""
+        """Return a run's parameters and labels by column name, as plain values. Raises UserError for an unknown run."""
         row: dict[str, Any] = self._table.slice(self._number(run_id), 1).to_pylist()[0]
         return row
 
     def whole_row(self, run_id: str) -> dict[str, Any]:
-        """Return all that the set says of a good run but its channels, by column: `row`, events, and `truth`.
+        """Return everything that the set contains of a good run except its channels, by column name.
 
-        Of `truth` these are the touches in the signals, amplitudes by window, and the like. Raises UserError where
-        there is no such run or it failed, and where the set has no Parquet files with signals.
+        It is `row`, with the event times of the signals and, from the table `truth`, the touches in the signals,
+        amplitudes by window, and the like. Raises UserError where the run does not exist or failed, and where the set
+        has no Parquet files with signals.
         """
         self.check_has_signals(run_id)
         row = self.row(run_id)
@@ -166,11 +176,11 @@ class DataSet:
         return row
 
     def signals(self, run_id: str, channels: Sequence[str] | None = None) -> dict[str, Float32Array]:
-        """Read the recorded channels of a run, each (n_samples,) in its unit of `units`.
+        """Read the recorded channels of a run by name, each (n_samples,) in its unit of `units`.
 
-        Sample i is at i / sample_rate_hz. With `channels` only the named channels are decoded. Raises UserError where
-        there is no such run or channel, the run failed, a file is damaged, or the set has neither Parquet data nor MCAP
-        files.
+        Sample i is at i / sample_rate_hz. `channels` are the names of the channels to read; None reads all. Raises
+        UserError where the run or a channel does not exist, the run failed, a file is damaged, or the set has neither
+        Parquet data nor MCAP files.
         """
         names = self.known_channels(channels)
         self.check_has_signals(run_id)
@@ -178,9 +188,9 @@ class DataSet:
         return row_signals(table, 0)
 
     def touches(self, run_id: str) -> pd.DataFrame:
-        """Read the touches of blades within the whole record of a run, one row each, in order of their start.
+        """Read the touches of blades within the whole record of a run, one row a touch, in order of their start.
 
-        See `touches_frame` for the columns. Raises UserError where there is no such run, it failed, or the file is
+        `touches_frame` describes the columns. Raises UserError where the run does not exist or failed, or the file is
         damaged.
         """
         self.check_has_signals(run_id)
@@ -188,7 +198,7 @@ class DataSet:
         return touches
 
     def each_touches(self, run_ids: Sequence[str]) -> Iterator[tuple[str, pd.DataFrame]]:
-        """Yield name and touches of each of these good runs, in that order. See `touches`."""
+        """Yield the name and the touches of each of these good runs, in the order of `run_ids`. See `touches`."""
         for run_id, table in self._sections.each(run_ids, COLUMNS):
             with damage_named(self._sections.places[run_id].file):
                 yield run_id, touches_frame(table, self._sensing, self.signal_seconds)
@@ -204,15 +214,17 @@ class DataSet:
     ) -> Arrays:
         """Read whole runs for learning: `X, y, groups = data.arrays(["proximity_x"], "rub", "train")`.
 
-        X (runs, channels, time) is float32, one row a good run, each channel in its unit. y is the answer: a flag as 0
-        or 1; a class as its number, as in `rubgen.labels.MOTION_CLASSES`, -1 where it is undecided or undefined; a
-        number, NaN where it is undefined; `faults` as (runs, kinds), 1 where the run has that kind of `fault_kinds`.
-        groups is what must stay on one side of a split, as `groups_of` returns it.
+        X (runs, channels, time) is float32, one row a good run, each channel in its unit. y (runs,) are the answers,
+        the values of the target: a flag as 0 or 1; a class as its number, as in `rubgen.labels.MOTION_CLASSES`, -1
+        where it is undecided or undefined; a number, NaN where it is undefined. For the target `faults`, y is (runs,
+        kinds), 1 where the run has the kind of `fault_kinds`. groups (runs,) are names from `groups_of`: runs with the
+        same name must be on the same side of a split.
 
-        - channels: names; by default `inputs`, all that a sensor could record.
+        - channels: names; None takes `inputs`, all channels that a sensor could record.
         - target: a column with one value a run.
-        - split: name of a split; by default all runs. Or `runs`: names of runs, as from `folds`.
-        - out: path of a new .npy file that holds X, mapped into memory. So X may be larger than the memory.
+        - split: name of a split; None takes all runs.
+        - runs: names of runs, as from `folds`, in place of a split.
+        - out: path of a new .npy file for X, mapped into memory. So X may be larger than the memory.
 
         Raises UserError for an unknown channel, target, split or run, and where there is no run. Warns where all runs
         have the same class.
@@ -233,39 +245,44 @@ class DataSet:
     ) -> Windows:
         """Cut runs into windows for learning: `X, y, groups, start, run_ids = data.windows(seconds=0.25)`.
 
-        A window has `seconds`, or `turns` of the shaft between its recorded pulses, in 256 samples a turn. Windows
-        start every `hop`, in the same unit; by default they do not overlap. A rest that is shorter is left out.
+        A window has the length `seconds`, or `turns` of the shaft between its recorded pulses, with 256 samples a turn.
+        Windows start every `hop`, in the same unit; by default they do not overlap. A shorter rest at the end is left
+        out.
 
-        The answers of `rub`, `contact_duty`, `contact_impulse_per_turn_n_s` and `motion` are those of the window
-        itself: a rub that begins later in the run is none yet. Its motion is -1 where it changes within the window.
-        Every other answer is that of the run. All windows of a run, and of its machine, are one group: a score of
-        windows that were split in another way is worth nothing. The rest is as in `arrays`.
+        For the targets `rub`, `contact_duty`, `contact_impulse_per_turn_n_s` and `motion` the answer belongs to the
+        window: in a window before a rub begins, `rub` is 0. `motion` is -1 where the class changes within the window.
+        For every other target the answer is the run's. All windows of a run, and of its machine, are one group: put
+        them on one side of a split, else the score of a model is worth nothing. All other arguments are as in `arrays`.
 
-        Raises UserError also where no length or both are given, windows are longer than the signals, or turns are
-        asked for of a set without a once_per_rev sensor.
+        Raises UserError as `arrays` does, and where no length or both are given, windows are longer than the signals,
+        or the set has no once_per_rev sensor for `turns`.
         """
         cut = self.cut(seconds, turns, hop)
         return windows(window_index(self, channels, cut, target, split, runs), out)
 
     def cut(self, seconds: float | None, turns: int | None, hop: float | None) -> Cut:
-        """Return how to cut this set into windows. Raises UserError as `windows` does."""
+        """Return how to cut this set into windows; the arguments are those of `windows`.
+
+        Raises UserError as `windows` does.
+        """
         tacho = any(isinstance(sensor, OncePerRev) for sensor in self._sensing.set.sensors)
         return cut_of(seconds, turns, hop, self.sample_rate_hz, tacho=tacho)
 
     def folds(self, k: int, by: str = "machine_id", split: str | None = None) -> list[Fold]:
         """Divide the good runs into k folds: `for train, test in data.folds(5): data.arrays(runs=train)`.
 
-        Each group, the runs with one value of the column `by`, is on the test side of exactly one fold, and never on
-        both sides. Groups are dealt by size and then by name, so the folds are the same each time. Raises UserError
-        where there are fewer groups than folds, and where `by` would put runs of one machine, or a run and its twin,
-        on both sides.
+        The runs with one value of the column `by` are a group. Each group is on the test side of exactly one fold, and
+        never on both sides. The folds are the same each time: groups are assigned by size and then by name. `split` is
+        the name of a split; None takes all runs. Raises UserError where there are fewer groups than folds, and where
+        `by` would put runs of one machine, or a run and its twin, on both sides.
         """
         return folds(self, k, by, split)
 
     def groups_of(self, run_ids: Sequence[str]) -> npt.NDArray[np.str_]:
-        """Return for each run what must stay on one side of a split (runs,).
+        """Return the group of each run (runs,): runs of one group must be on the same side of a split.
 
-        It is the machine where the set has several, else the run, or the run that a twin was made from.
+        The group is the machine where the set has several machines. Else it is the name of the run, or of the partner
+        for a twin.
         """
         several = self.ok["machine_id"].nunique() > 1
         rows = self.runs.loc[list(run_ids)]
@@ -277,7 +294,7 @@ class DataSet:
     ) -> Iterator[tuple[str, dict[str, Float32Array], FloatArray]]:
         """Yield for each of these good runs its name, its channels by name and the arrival times of its pulses (s).
 
-        One run is in memory at a time. Channels are as in `signals`, which also names what raises UserError.
+        One run is in memory at a time. `channels` is as in `signals`, and UserError is raised as in `signals`.
         """
         names = self.known_channels(channels)
         for run_id, table in self._recorded(run_ids, names):
@@ -286,13 +303,13 @@ class DataSet:
     def each_channel(self, name: str) -> Iterator[tuple[str, Float32Array, FloatArray]]:
         """Yield for each good run its name, the samples of the channel `name` and the arrival times of its pulses (s).
 
-        Nothing else is read, one run at a time. Raises UserError where that channel was not recorded.
+        One run is in memory at a time. Raises UserError where the channel was not recorded.
         """
         for run_id, signals, pulses in self.recorded(list(self.ok.index), [name]):
             yield run_id, signals[name], pulses
 
     def check_has_signals(self, run_id: str) -> None:
-        """Check that the run exists and did not fail. Raises UserError where it has no signals."""
+        """Check that the run has signals. Raises UserError where it does not exist or failed."""
         status, reason = (self._table[name][self._number(run_id)].as_py() for name in ("status", "reason"))
         if status != "ok":
             failed = f"{run_id} failed ({status}: {reason}) and has no signals"
@@ -343,7 +360,7 @@ class DataSet:
         return exported_signals(self.layout, self.manifest, run_ids, names)
 
     def known_channels(self, channels: Sequence[str] | None) -> tuple[str, ...]:
-        """Return the names of these channels, each once; None is all. Raises UserError for an unknown one."""
+        """Return the names in `channels`, each once; for None all channels. Raises UserError for an unknown name."""
         if isinstance(channels, str):
             raise UserError(f"channels = {channels!r}: give a list of names, [{channels!r}]")
         try:

@@ -22,9 +22,12 @@ PULSES = "once_per_rev_s"
 def parquet_signals(
     signals: RunRows, truth: RunRows, run_ids: Sequence[str], names: Sequence[str]
 ) -> Iterator[tuple[str, pa.Table]]:
-    """Yield the name of each run and its columns `names` from two tables of a set.
+    """Yield the name of each run and a table of its columns `names`, read from two tables of a set.
 
-    A table without any of the columns is not opened. UserError where a file is damaged.
+    - signals, truth: the tables `signals` and `truth`. A table with none of the columns is not opened.
+    - run_ids: names of the runs, in the order of the results.
+
+    Raises UserError where a file is damaged.
     """
     seen = [name for name in names if name in signals.types.names]
     hidden = [name for name in names if name not in seen]
@@ -39,9 +42,9 @@ def parquet_signals(
 def exported_signals(
     layout: Layout, manifest: Manifest, run_ids: Sequence[str], names: Sequence[str]
 ) -> Iterator[tuple[str, pa.Table]]:
-    """Yield the name of each run, its channels `names` and its pulses from files of single runs, as MCAP.
+    """Yield the name of each run and a table of its channels `names` and pulses, read from files of single runs (MCAP).
 
-    UserError where no format of the set has signals, or a file holds another run.
+    Raises UserError where no format of the set has signals, or where a file contains another run.
     """
     readers = [(each.signals, each.name) for each in run_formats() if each.signals]
     listed = {name for _, folder in readers for name in manifest.listed(folder)}
@@ -58,7 +61,7 @@ def exported_signals(
 
 
 def is_signal(field: Any) -> bool:
-    """Return whether the column of this Arrow field holds a recorded channel: lists of float32."""
+    """Return whether the column of this Arrow field contains recorded channels: lists of float32."""
     a_list = pa.types.is_list(field.type) or pa.types.is_fixed_size_list(field.type)
     return bool(a_list and field.type.value_type == pa.float32())
 

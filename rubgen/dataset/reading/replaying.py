@@ -39,7 +39,7 @@ MOST_MEANT = 5
 
 @dataclass(frozen=True, kw_only=True)
 class FoundReplay:
-    """A replay, with remarks for the user on where it comes from and what is lost."""
+    """A replay, with remarks for the user: whether the run was simulated again, and what a damaged file has lost."""
 
     replay: Replay
     remarks: tuple[str, ...] = ()
@@ -48,16 +48,16 @@ class FoundReplay:
 def find_replay(source: Path, run_id: str | None = None, where: str | None = None) -> FoundReplay:
     """Find the run that the user wants to see. Return its replay, with remarks for the user.
 
-    - source: an MCAP file, which is one run, or the directory of a data set.
+    - source: an MCAP file, which contains one run, or the directory of a data set.
     - run_id: name of a good run (status ok) of the set.
-    - where: a condition in duckdb's SQL, without the word WHERE, on the columns of `runs.parquet`. Of the good runs
-      that meet it, the first by name is taken.
+    - where: a condition in duckdb's SQL, without the word WHERE, on the columns of `runs.parquet`. The first good run
+      by name that meets it is taken.
 
-    Give at most one of `run_id` and `where`, and neither with a file. Without both it is the first good run. A run of
-    the set without an MCAP file is simulated again. The remarks say so, and name what a damaged file has lost and how
-    many runs met the condition. Raises UserError where there is no such source or run, the run failed, a choice does
-    not fit, no good run meets the condition, the condition is not valid, or the file does not fit the set or this
-    version.
+    Give at most one of `run_id` and `where`, and none of them with a file. Without both the first good run is taken. A
+    run of the set without an MCAP file is simulated again. The remarks say whether it was, what a damaged file has
+    lost, and how many runs met the condition. Raises UserError where the source or the run does not exist, the run
+    failed, a choice does not fit, no good run meets the condition, the condition is not valid, or the file does not fit
+    the set or this version.
     """
     if source.is_dir():
         return _from_data_set(source, run_id, where)
@@ -69,7 +69,7 @@ def find_replay(source: Path, run_id: str | None = None, where: str | None = Non
 
 
 def replay_of_mcap(path: Path) -> FoundReplay:
-    """Make the replay of an MCAP file. What a damaged file has lost is left out and named in the remarks."""
+    """Make the replay of an MCAP file. The remarks name the content that a damaged file has lost."""
     from rubgen.io.mcap.read import salvage_mcap
 
     run, lost = salvage_mcap(path)
@@ -78,9 +78,9 @@ def replay_of_mcap(path: Path) -> FoundReplay:
 
 
 def replay_of_recorded(run: McapRun, *, source: str = "the file") -> Replay:
-    """Make the replay of a run that was read from an MCAP file, which messages call `source`.
+    """Make the replay of a run that was read from an MCAP file. `source` names the file in messages.
 
-    Raises UserError where this version of rubgen cannot read its scenario.
+    Raises UserError where this version of rubgen cannot read the run's scenario.
     """
     try:
         scenario = TypeAdapter(Scenario).validate_python(run.scenario)
@@ -107,9 +107,10 @@ def replay_of_recorded(run: McapRun, *, source: str = "the file") -> Replay:
 
 
 def find_runs(data: DataSet, where: str) -> list[str]:
-    """Return the names of the good runs that meet a condition in SQL on the columns of `runs.parquet`, in order.
+    """Return the names of the good runs that meet the condition `where`, in order of the names.
 
-    Raises UserError, with similar columns, for a condition that duckdb does not understand.
+    `where` is SQL on the columns of `runs.parquet`, without the word WHERE. Raises UserError, with similar columns, for
+    a condition that duckdb does not understand.
     """
     import duckdb
 
@@ -134,7 +135,7 @@ def _meant(where: str, columns: Iterable[str]) -> str:
 
 
 def scenario_of(data: DataSet, run_id: str) -> Scenario:
-    """Return the scenario of a run, drawn again from the recipe and machine in the manifest."""
+    """Return the scenario of a run, drawn from the recipe and machine in the manifest."""
     whole, row, number = data.recipe, data.row(run_id), index_of(run_id)
     first, recipe = max((each for each in whole.sources if each[0] <= number), key=lambda each: each[0])
     remember(recipe, number - first, row)

@@ -54,7 +54,7 @@ def arrays(
     runs: Sequence[str] | None,
     out: Path | str | None,
 ) -> Arrays:
-    """Read whole runs. See `DataSet.arrays`."""
+    """Read whole runs as arrays. The arguments are those of `DataSet.arrays`."""
     chosen, names = chosen_runs(data, split, runs), chosen_channels(data, channels)
     answers = Answers(data, target)
     y = answers.of_runs(chosen)
@@ -67,7 +67,7 @@ def arrays(
 
 @dataclass(frozen=True)
 class WindowIndex:
-    """Where the windows of a data set are, and their answers. It holds no samples."""
+    """The positions of the windows of a data set, and their answers. It contains no samples."""
 
     data: DataSet
     runs: tuple[str, ...]
@@ -84,9 +84,9 @@ class WindowIndex:
         return [each.size for each in self.starts]
 
     def cutters(self, numbers: Iterable[int]) -> Iterator[tuple[int, Callable[[float], Float32Array]]]:
-        """Yield for each run, by its place in `runs`, that place and what cuts its windows: `Cut.cutter`.
+        """Yield for each run its position in `runs`, and the function that cuts its windows (`Cut.cutter`).
 
-        One run is in memory at a time.
+        `numbers` are the positions of the wanted runs in `runs`. One run is in memory at a time.
         """
         numbers, count = list(numbers), _samples(self.data)
         chosen = [self.runs[number] for number in numbers]
@@ -97,7 +97,11 @@ class WindowIndex:
 def window_index(
     data: DataSet, channels: Sequence[str] | None, cut: Cut, target: str, split: str | None, runs: Sequence[str] | None
 ) -> WindowIndex:
-    """Find the windows of runs and their answers. See `DataSet.windows`."""
+    """Find the windows of runs and their answers.
+
+    The arguments are those of `DataSet.windows`; `cut` is the window length. Raises UserError as `DataSet.windows`
+    does.
+    """
     chosen, names = chosen_runs(data, split, runs), chosen_channels(data, channels)
     answers = Answers(data, target)
     count = _samples(data)
@@ -110,7 +114,10 @@ def window_index(
 
 
 def windows(index: WindowIndex, out: Path | str | None) -> Windows:
-    """Read all windows of an index. See `DataSet.windows`."""
+    """Read all windows of an index.
+
+    `out` is the path of a new .npy file for the samples, or None, as in `DataSet.windows`.
+    """
     samples = _space(out, (len(index.y), len(index.channels), index.cut.samples))
     row = 0
     for number, cutter in index.cutters(range(len(index.runs))):
@@ -127,7 +134,10 @@ def windows(index: WindowIndex, out: Path | str | None) -> Windows:
 
 
 def chosen_runs(data: DataSet, split: str | None, runs: Sequence[str] | None) -> list[str]:
-    """Return the good runs of a split, of a list, or of the set. Raises UserError where there is none."""
+    """Return the names of the good runs of `split`, or of the list `runs`, or for two None of the whole set.
+
+    Raises UserError where both are given, a split or run is unknown, a run of the list failed, or no run is left.
+    """
     good = data.ok
     if split is not None and runs is not None:
         raise UserError(f"split = {split!r} and runs: give one of the two")
@@ -149,7 +159,10 @@ def chosen_runs(data: DataSet, split: str | None, runs: Sequence[str] | None) ->
 
 
 def chosen_channels(data: DataSet, channels: Sequence[str] | None) -> tuple[str, ...]:
-    """Return the names of the channels, by default `data.inputs`. Raises UserError for an unknown one or none."""
+    """Return the names of the channels; for None all `data.inputs`.
+
+    Raises UserError for an unknown or an empty choice.
+    """
     names = data.known_channels(data.inputs if channels is None else channels)
     if not names:
         raise UserError(f"{data.layout.root}: no channel; give at least one of {', '.join(data.channels)}")

@@ -33,11 +33,11 @@ class StoredRun:
     data: DataSet = field(repr=False)
 
     def signals(self, channels: Sequence[str] | None = None) -> dict[str, Float32Array]:
-        """Read the recorded channels, or only the named ones, as arrays by name. See `DataSet.signals`."""
+        """Read the recorded channels as arrays by name; `channels` names the wanted ones. See `DataSet.signals`."""
         return self.data.signals(self.run_id, channels)
 
     def touches(self) -> pd.DataFrame:
-        """Read the touches of blades, one row each. See `DataSet.touches`."""
+        """Read the touches of blades, one row a touch. See `DataSet.touches`."""
         return self.data.touches(self.run_id)
 
     def __repr__(self) -> str:
@@ -54,7 +54,7 @@ class StoredRun:
 
 
 def stored_run(data: DataSet, row: dict[str, Any]) -> StoredRun:
-    """Make the StoredRun of one row of `runs.parquet`, given as values by column."""
+    """Return the run of one row of `runs.parquet`. `row` contains the values by column."""
     own = ("run_id", "status", "reason", *KEYS)
     return StoredRun(
         run_id=row["run_id"],

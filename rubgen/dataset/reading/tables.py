@@ -39,9 +39,9 @@ UNITS = {
 def runs_frame(table: pa.Table, sensors: SensorSet) -> pd.DataFrame:
     """Turn the table of `runs.parquet` into a DataFrame with `run_id` as the index. Failed runs are included.
 
-    Flags are pandas "boolean", integers "Int64", text "string"; a failed run has <NA> there, and a flag can still
-    select rows. Numbers are float64 with NaN. Lists are numpy arrays, or None where a run has none. `attrs["units"]`
-    and `attrs["meanings"]` map each column to its unit and its meaning.
+    Flags are pandas "boolean", integers "Int64", text "string", with <NA> for a failed run: a flag can still select
+    rows. Numbers are float64 with NaN. Lists are numpy arrays, or None where a run has no list. `attrs["units"]` and
+    `attrs["meanings"]` map each column to its unit and its meaning.
     """
     frame: pd.DataFrame = table.to_pandas(types_mapper=_nullable)
     frame = frame.set_index("run_id")
@@ -62,9 +62,12 @@ def _nullable(kind: pa.DataType) -> Any:
 
 
 def check_runs(table: pa.Table, manifest: Manifest, path: Path) -> None:
-    """Check the values of `runs.parquet` against the manifest: names, status counts, and the main labels of good runs.
+    """Check `runs.parquet` against the manifest: names, status counts, and the main labels of good runs.
 
-    `path` is the file that `table` was read from. Raises UserError, one line with file and run, where they do not fit.
+    - table: the content of the file at `path`.
+    - manifest: the manifest of the set.
+
+    Raises UserError, one line with file and run, where they do not fit.
     """
     names = table["run_id"].to_pylist()
     if names != [run_id_of(index) for index in range(manifest.runs)]:

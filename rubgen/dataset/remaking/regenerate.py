@@ -42,7 +42,7 @@ EXPONENTS = ("lyapunov_per_turn", "lyapunov_per_second")
 
 @dataclass(frozen=True, kw_only=True)
 class Regenerated:
-    """A run that was made again, and its differences from the stored one."""
+    """A run that was simulated again, and its differences from the stored run."""
 
     run: Run
     versions: dict[str, tuple[str, str]]
@@ -54,11 +54,11 @@ class Regenerated:
 
 
 def regenerate(directory: Path | str, run_id: str) -> Regenerated:
-    """Make the run called `run_id` of a data set again from its manifest, and compare it with the stored one.
+    """Simulate the run called `run_id` of a data set again from its manifest, and compare it with the stored run.
 
-    With the versions that made the set, on the same kind of processor, every bit is equal. Elsewhere a period-1 run has
-    the same labels within PERIODIC_TOLERANCE; any other run the same class of motion, and amplitudes at orders within
-    ORDER_TOLERANCE. Raises UserError where there is no such set or run.
+    With the versions that made the set, on the same kind of processor, every bit is equal. Otherwise a period-1 run has
+    the same labels within PERIODIC_TOLERANCE. Any other run has the same class of motion, and amplitudes at orders
+    within ORDER_TOLERANCE. Raises UserError where the set or the run does not exist.
     """
     from rubgen.dataset.making.make_runs import simulated
 
@@ -111,7 +111,7 @@ def _same(one: pa.Table, other: pa.Table, column: str) -> bool:
 
 
 def bytes_of(column: pa.ChunkedArray) -> object:
-    """Return the values of a column so that equal ones have equal bits, NaN too."""
+    """Return the values of a column in a form in which values are equal only if their bits are equal, also for NaN."""
     return [_bits(value) for value in column.to_pylist()]
 
 
@@ -122,11 +122,12 @@ def _bits(value: Any) -> object:
 
 
 def moved_labels(new: dict[str, Any], old: dict[str, Any]) -> list[str]:
-    """Return the labels of a run that differ by more than the tolerance for its motion; by name, classes as words.
+    """Return the names of a run's labels that differ by more than the tolerance for its class of motion.
 
-    Rounding decides about what is zero in exact arithmetic: a phase without amplitude, the floor between orders, a
-    diagnostic. Amplitudes are therefore compared over the largest order of their signal, phases as complex amplitudes,
-    shares by their difference, and the exponent within its standard error. Diagnostics are not compared.
+    `new` and `old` are the run's rows of `runs.parquet`, with classes as words. Rounding determines values that are
+    zero in exact arithmetic, such as a phase without amplitude or the floor between orders. Amplitudes are therefore
+    compared relative to the largest order of their signal, phases as complex amplitudes, shares by their difference,
+    and the Lyapunov exponent within its standard error. Diagnostics are not compared.
     """
     if new["status"] != old["status"] or new["motion"] != old["motion"] or new["rub"] != old["rub"]:
         return [name for name in ("status", "motion", "rub") if new[name] != old[name]]

@@ -28,13 +28,13 @@ from rubgen.scenario.run_id import run_id_of
 
 
 def other_versions(manifest: Manifest) -> dict[str, tuple[str, str]]:
-    """Return the packages of which another version is installed than made the set: by name, then and now."""
+    """Return the packages whose installed version is not the set's: by name, the set's and the installed version."""
     before, now = manifest.identity.packages, identity_of(manifest.identity.recorded()).packages
     return {name: (before.get(name, "none"), now.get(name, "none")) for name in now if before.get(name) != now[name]}
 
 
 def shards_with(recipe: Recipe, paths: Iterable[str]) -> set[str]:
-    """Return the names of the shards to which these files of the set belong. `runs.parquet` belongs to none."""
+    """Return the names of the shards to which the files at `paths` belong. `runs.parquet` belongs to no shard."""
     stems = {Path(path).stem for path in paths if "/" in path}
     return {
         shard.name
@@ -44,11 +44,12 @@ def shards_with(recipe: Recipe, paths: Iterable[str]) -> set[str]:
 
 
 def remake(layout: Layout, manifest: Manifest, wrong: set[str], *, trusting: bool = True) -> list[str]:
-    """Simulate the runs of the shards of the `wrong` files again, and replace these files. Return their paths.
+    """Simulate the runs of the damaged files `wrong` again, and replace these files.
 
-    For `runs.parquet` these are the runs whose rows cannot be read. Where the others are not as they were either, or
-    without `trusting`, these are all runs. A file is replaced only by the bytes that the manifest lists. The installed
-    versions must be those of the set.
+    Return the paths of the replaced files. The runs are those of the files' shards. For `runs.parquet` they are those
+    of the shards whose rows cannot be read. If this does not restore the listed bytes of `runs.parquet`, or without
+    `trusting`, all runs are simulated. A file is replaced only by the bytes that the manifest lists. The installed
+    package versions must be those of the set.
     """
     recipe = manifest.identity.recorded(str(layout.manifest))
     listed = {entry.path: entry.sha256 for entry in manifest.files}

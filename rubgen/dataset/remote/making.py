@@ -16,11 +16,11 @@ from rubgen.errors import UserError, warn
 
 
 class RemoteMaking:
-    """The local folder in which a set for a URL is made, and the store that its closed shards go to.
+    """The local folder in which a set for a URL is made, and the store to which its closed shards are uploaded.
 
-    The record and the rows of `runs` of each closed shard are in both places: `.staging` in the store tells another
-    computer, or this one after its folder is lost, which shards are done. Everything else of a shard is deleted here
-    when it is there.
+    The record and the rows of `runs` of each closed shard are kept in both places. From `.staging` in the store,
+    another computer, or this computer after its folder is lost, knows which shards are done. All other files of a shard
+    are deleted in the local folder after their upload.
     """
 
     def __init__(self, url: str, part: str = "") -> None:
@@ -34,9 +34,10 @@ class RemoteMaking:
 
     @contextmanager
     def folder(self) -> Iterator[None]:
-        """Make the local folder's parent; delete the folder after a block that ends well, and keep it after any other.
+        """Make the parent of the local folder.
 
-        A warning says where it is, since a large set needs room there.
+        Delete the local folder after the block, unless the block raises an error. A warning names the folder, since a
+        large set needs space there.
         """
         self.layout.root.parent.mkdir(parents=True, exist_ok=True)
         warn(f"{self.store.layout.root}: made in {self.layout.root}, from which finished shards go up and are deleted")
@@ -48,9 +49,14 @@ class RemoteMaking:
         shutil.rmtree(self.layout.root, ignore_errors=True)
 
     def begin(self, identity: Identity, formats: tuple[str, ...]) -> None:
-        """Claim the place, fetch the records of shards that are there, and put those that a stop left here.
+        """Reserve the place at the URL for this set, and complete the closed shards there and in the local folder.
 
-        Raises UserError where the place holds something else or a finished set with fewer runs, or cannot be used.
+        - identity: recipe, machine, sensors and versions of the set.
+        - formats: formats of its files.
+
+        Records of shards that were uploaded before are downloaded, so that these shards are not made again. Shards that
+        were closed in the local folder and not uploaded before an interruption are uploaded now. Raises UserError where
+        the place contains anything else, or a finished set with fewer runs, and where it cannot be used.
         """
         store = self.store
         there = store.begin(identity, grows=False)
@@ -67,7 +73,10 @@ class RemoteMaking:
             self._delete(name, formats, read_closed(self.layout, name))
 
     def put_shard(self, name: str, formats: tuple[str, ...]) -> None:
-        """Put the files of a closed shard, then its rows and, last, its record. Then delete its files here."""
+        """Upload the files of the closed shard `name`, then its rows of `runs` and last its record.
+
+        Then delete its local files.
+        """
         layout, record = self.layout, read_closed(self.layout, name)
         for table, entry in zip(tables_of(formats), record.tables, strict=True):
             self.store.put(layout.staged(table.name, name), entry.path)
@@ -78,7 +87,7 @@ class RemoteMaking:
         self._delete(name, formats, record)
 
     def finish(self) -> None:
-        """Put what belongs to the whole set, the manifest last."""
+        """Upload the files that belong to the whole set, the manifest and its digest last."""
         layout = self.layout
         for path in (layout.runs, layout.sensors, layout.card, layout.croissant):
             self.store.put(path, self._inner(path))

@@ -14,9 +14,10 @@ from rubgen.progress import count, step
 def push(directory: Path | str, url: str) -> int:
     """Copy the finished data set in `directory` to a URL such as s3://bucket/set. Return the number of files copied.
 
-    Files go up one by one, the manifest and its digest last: a set that is not complete cannot be opened. The same
-    call after a stop copies what is missing. A set there with fewer runs of the same recipe grows. Raises UserError
-    where the directory holds no finished set or a damaged file, the URL cannot be written, or something else is there.
+    Files are uploaded one by one, the manifest and its digest last: an incomplete set cannot be opened. The same call
+    after an interruption copies the missing files. If the URL has a set with fewer runs of the same recipe, the new
+    runs are added. Raises UserError where the directory holds no finished set or a damaged file, the URL cannot be
+    written, or it contains anything else.
     """
     source, store = Layout(directory), Store(url)
     manifest = read_manifest(source)

@@ -17,7 +17,10 @@ from rubgen.io.places import answered, is_there, is_url, url_problems
 
 
 class Store:
-    """The place of one set at a URL. While the set is not complete, `.staging/identity.json` says of which it is."""
+    """The files of one data set at a URL.
+
+    Until the set is complete, `.staging/identity.json` there contains its identity.
+    """
 
     def __init__(self, url: str) -> None:
         """Take the URL. Raises UserError where it cannot be used."""
@@ -29,17 +32,17 @@ class Store:
         self._marked = False
 
     def sizes(self) -> dict[str, int]:
-        """Return the size of each file there by its path in the set."""
+        """Return the size in bytes of each file at the URL, by its path in the set."""
         self._files.invalidate_cache()
         found = answered(self.layout.root, lambda: self._files.find(self._root, detail=True))
         start = len(self._root) + 1
         return {name[start:]: int(facts["size"] or 0) for name, facts in found.items()}
 
     def begin(self, identity: Identity, *, grows: bool = True) -> dict[str, int]:
-        """Claim the place for the set of this identity, before anything is made. Return `sizes`.
+        """Reserve the place for the set of this identity before anything is made. Return the files there, as `sizes`.
 
-        A set of other content that stands there unfinished is refused, and so is a place with other files. Raises
-        UserError for these, and where the place cannot be written.
+        With `grows` False, a finished set with fewer runs is refused. An unfinished set with another identity and a
+        place with other files are always refused. Raises UserError for these, and where the place cannot be written.
         """
         layout, there = self.layout, self.sizes()
         marker = self._name(layout.identity)
@@ -63,7 +66,7 @@ class Store:
         return there
 
     def abandon(self) -> None:
-        """Leave a place as it was where `begin` has marked it and nothing came."""
+        """Remove the identity that `begin` wrote, if the place has no other file."""
         marker = self._name(self.layout.identity)
         if self._marked:
             with suppress(UserError):
@@ -79,25 +82,30 @@ class Store:
         check_same(self.layout, before.with_runs(runs), identity, versions=True)
 
     def put(self, file: Path, name: str) -> None:
-        """Copy a file to the path `name` in the set. An object is there completely or not at all."""
+        """Upload `file` to the path `name` in the set. The object is there completely or not at all."""
         with url_problems(self.layout.root):
             self._files.put_file(str(file), f"{self._root}/{name}")
 
     def get(self, name: str, file: Path) -> None:
-        """Copy the object at the path `name` to a file, which appears completely or not at all."""
+        """Download the object at the path `name` in the set to `file`, which appears completely or not at all."""
         part = file.with_name(f"{file.name}.part")
         with url_problems(self.layout.root):
             self._files.get_file(f"{self._root}/{name}", str(part))
         part.replace(file)
 
     def remove(self, names: Iterable[str]) -> None:
-        """Delete objects. One that is not there is none to delete."""
+        """Delete the objects at these paths in the set. Missing objects are ignored."""
         for name in names:
             with url_problems(self.layout.root), suppress(FileNotFoundError):
                 self._files.rm_file(f"{self._root}/{name}")
 
     def complete(self, source: Layout, manifest: Manifest, there: dict[str, int]) -> None:
-        """Put the manifest of a set whose other files are `there`, and its digest last. Then clean up."""
+        """Upload the manifest and last its digest, then delete the files of the unfinished state.
+
+        - source: paths of the local set.
+        - manifest: its manifest.
+        - there: the other files at the URL, as from `sizes`.
+        """
         if manifest.derived:
             self.put(source.derived, source.derived.name)
         self.put(source.manifest, source.manifest.name)
@@ -105,13 +113,14 @@ class Store:
         self.remove([*self.staged(there), self._name(self.layout.identity)])
 
     def staged(self, there: Iterable[str]) -> list[str]:
-        """Return the paths of what is there only while the set is not complete."""
+        """Return the paths in `there` that exist only while the set is not complete."""
         return sorted(name for name in there if name.startswith(f"{self.layout.staging.name}/"))
 
     def open_again(self, entries: dict[str, FileEntry]) -> None:
-        """Take the digest of a finished set away, and what a set of these entries has with other content.
+        """Delete digest and manifest of a finished set at the URL, and its files whose content differs from `entries`.
 
-        The manifest goes last: until then the same call, repeated, knows the content.
+        `entries` are the files of the new set by path. The manifest is deleted last: after an interruption, the same
+        call still knows the content. Nothing is done where there is no manifest.
         """
         manifest, digest = (self.layout.root / name for name in (self.layout.manifest.name, self.layout.digest.name))
         if not is_there(manifest):

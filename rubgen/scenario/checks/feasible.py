@@ -20,7 +20,10 @@ example)."""
 
 
 def check_feasible(scenario: Scenario, source: str = "") -> None:
-    """Check that the scenario can be run. Raises UserError where not; keys are named as in a recipe, after `source`."""
+    """Check that the scenario can be run.
+
+    Raises UserError with the first problem, after `source`; keys are named as in a recipe.
+    """
     for problem in (*PROBLEMS, *SENSOR_PROBLEMS, _cost_problem):
         text = problem(scenario)
         if text:

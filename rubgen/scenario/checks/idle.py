@@ -23,9 +23,10 @@ SCALED_BY = {
 
 
 def idle_surroundings(scenario: Scenario) -> dict[str, str]:
-    """Return every key of the surroundings that changes no channel, with the words of a warning.
+    """Return the keys of the scenario's surroundings that change no recorded channel, each with the text of a warning.
 
-    A key that the sensors do not feel, and one with its default value, is as good as not given.
+    A key is returned if its value differs from its default and no sensor feels it. The keys are written as
+    `surroundings.KEY`. The result is empty if every key changes a channel. The scenario must have surroundings.
     """
     around, sensors = scenario.surroundings, scenario.sensing.set
     values, usual = vars(around), vars(Surroundings())
@@ -46,7 +47,11 @@ def idle_surroundings(scenario: Scenario) -> dict[str, str]:
 
 
 def idle(scenarios: Sequence[Scenario]) -> dict[str, str]:
-    """Return every key that changes no channel in any of the scenarios, with the words of a warning."""
+    """Return the keys that change no channel in any of the scenarios, each with the text of a warning.
+
+    The keys are those of the surroundings, and `faults.KIND` for a fault that only shakes a frame which no sensor
+    feels.
+    """
     around = [idle_surroundings(scenario) for scenario in scenarios if scenario.surroundings]
     useless = {key: text for texts in around for key, text in texts.items()}
     found = {key: text for key, text in useless.items() if all(key in texts for texts in around)}

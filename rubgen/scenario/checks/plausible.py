@@ -44,9 +44,10 @@ _QUARTERS = ("", "pi / 2", "pi", "3 pi / 2", "2 pi")
 
 
 def warn_of(scenarios: Iterable[Scenario], source: str = "") -> None:
-    """Warn of each implausible key once, with its value in the first of the scenarios where it is implausible.
+    """Warn once of each key with an implausible value. The warning begins with `source`.
 
-    A key that changes no channel is named where that is so in all of the scenarios.
+    It shows the value of the first scenario in which the key is implausible. A key that changes no channel is named
+    only if it changes no channel in all of the scenarios.
     """
     checked = list(scenarios)
     found: dict[str, str] = {}
@@ -59,7 +60,7 @@ def warn_of(scenarios: Iterable[Scenario], source: str = "") -> None:
 
 
 def implausible(scenario: Scenario) -> Iterator[str]:
-    """Yield a line for every value of a scenario that is hardly intended."""
+    """Yield a line "key = value: why" for every value of a scenario that is allowed but hardly intended."""
     for check in CHECKS:
         yield from check(scenario)
 
@@ -89,7 +90,10 @@ def _key(scenario: Scenario, place: Place) -> str:
 
 
 class Share(NamedTuple):
-    """A length that is part of another length `whole`: at most `most` of it is plausible, all of it is impossible."""
+    """A length `value` (m) that is a part of another length `whole` (m), which `of` names.
+
+    At most the share `most` of `whole` is plausible. A value of `whole` or more is impossible.
+    """
 
     key: str
     value: float
@@ -99,12 +103,12 @@ class Share(NamedTuple):
 
     @property
     def question(self) -> str:
-        """The question whether the value was given in another unit; empty where no unit fits."""
+        """The question whether the value was given in mm or um; empty where the value is plausible in neither unit."""
         return length_question(self.value, self.most * self.whole)
 
 
 def shares(scenario: Scenario) -> Iterator[Share]:
-    """Yield every length of a scenario that is part of another length, with its plausible share."""
+    """Yield a `Share` for every length of a scenario that is a part of another length."""
     machine, casing, film = scenario.machine, scenario.machine.casing, scenario.machine.disk_support.squeeze_film
     tip, tips = machine.tip_radius_m, "the radius of the blade tips"
     mean, ring = machine.casing_mean_radius_m, "the radius of the casing"
@@ -304,7 +308,7 @@ CHECKS = (
 
 
 def unbalances(machine: Machine) -> Iterator[tuple[str, float]]:
-    """Yield every unbalance of a machine in kg m, after its key."""
+    """Yield the key and the value (kg m) of every unbalance of a machine."""
     yield "unbalance_kg_m", machine.unbalance_kg_m
     for number, each in enumerate(machine.unbalances):
         yield f"unbalances.{number}.kg_m", each.kg_m
@@ -316,12 +320,12 @@ def eccentricity(machine: Machine, unbalance: float) -> float:
 
 
 def gram(unbalance: float) -> str:
-    """Return the question whether an unbalance was given in g mm; empty where it is too small for that."""
+    """Return the question whether an unbalance (kg m) was given in g mm; empty where it is below 10."""
     return f"; were g mm meant, {unbalance * 1e-6:g} kg m?" if unbalance >= LEAST_GRAM_MILLIMETRES else ""
 
 
 def length_question(value: float, most: float) -> str:
-    """Return the question whether a length was given in mm or um; empty where it would not fit.
+    """Return the question whether a length was given in mm or um; empty where `value` is plausible in neither unit.
 
     `most` is the largest plausible length in m.
     """

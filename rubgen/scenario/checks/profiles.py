@@ -26,11 +26,13 @@ LEAST_PERIOD_TURNS = 0.1
 
 
 def check_used(source: str, recipe: Mapping[str, Any], place: Callable[[Place], Place] = lambda path: path) -> None:
-    """Check that the profile of a recipe uses every key that is given. Raises UserError for a key that it would ignore.
+    """Check that the speed profile of a recipe uses every key that the recipe contains.
+
+    Raises UserError for an unused key.
 
     - source: beginning of messages.
     - recipe: the TOML values.
-    - place: turns a path in the recipe into the name that the user gave.
+    - place: turns a path in the recipe into the path of the key that the user wrote.
     """
     profile = recipe.get("operation", {}).get("profile", "steady")
     for table, keys in recipe.items():
@@ -41,7 +43,7 @@ def check_used(source: str, recipe: Mapping[str, Any], place: Callable[[Place], 
 
 
 def profile_problem(operation: Operation) -> str | None:
-    """Return the problem of an operation's profile: key, value, what is allowed and the remedy; None without one."""
+    """Return the problem of an operation's profile: key, value, what is allowed, the remedy; None without a problem."""
     return _key_problem(operation) or _value_problem(operation) or _band_problem(operation)
 
 

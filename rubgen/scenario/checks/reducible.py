@@ -23,9 +23,9 @@ def reduction_problem(machine: Machine, reduction: Reduction) -> str | None:
 
 
 def casing_problem(machine: Machine, modes: int) -> str | None:
-    """Return the problem of `modes` casing modes: more than DoFs, or too few for the order of the casing's lobes.
+    """Return why the casing cannot have `modes` modes; None where it can.
 
-    None without a problem.
+    They may not be more than the casing's degrees of freedom, and must carry the circumferential order of its lobes.
     """
     lobes, most = machine.casing.lobes, 3 * machine.casing.nodes
     if not 1 <= modes <= most:
@@ -42,9 +42,10 @@ def casing_problem(machine: Machine, modes: int) -> str | None:
 def carried_orders(machine: Machine, modes: int) -> tuple[int, ...]:
     """Return the circumferential orders that the first `modes` modes of the casing carry in full, ascending.
 
-    Ranked by the thin inextensible circular ring on an elastic foundation, omega_n^2 = [E I n^2 (n^2 - 1)^2 / R^4 + k_r
-    n^2 + k_t] / [rho A (n^2 + 1)], k_r and k_t per length: one mode of order 0, two of each other. With k_t <= k_r
-    these are 0 to (modes - 1) // 2; stiffer tangential springs raise the low orders.
+    Modes are ranked by the frequency of the thin inextensible circular ring on an elastic foundation, omega_n^2 = [E I
+    n^2 (n^2 - 1)^2 / R^4 + k_r n^2 + k_t] / [rho A (n^2 + 1)], with k_r and k_t per length. Order 0 has one mode, every
+    other order two. With k_t <= k_r the result is 0 to (modes - 1) // 2. Stiffer tangential springs raise the low
+    orders.
     """
     casing = machine.casing
     order = np.arange(max(modes, 1) + 2)

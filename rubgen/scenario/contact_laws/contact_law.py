@@ -76,7 +76,7 @@ class ContactLaw:
 
     @property
     def normal(self) -> NormalLaw:
-        """The law of the normal force: the one that is given, else rigid contact."""
+        """The law of the normal force: the law that the contact has a key for, or rigid contact without such a key."""
         laws: list[NormalLaw] = [*given(self, NormalLaw).values(), Rigid()]
         return laws[0]
 

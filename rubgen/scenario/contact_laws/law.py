@@ -22,14 +22,13 @@ class NormalLaw(ABC):
     @staticmethod
     @abstractmethod
     def respond(numbers: FloatArray, force: float, gap: float, compliance: float, before: float) -> float:
-        """Return the force of one contact in N, >= 0, while the forces of all others stay as they are.
+        """Return the force of one contact in N, >= 0, while the forces of all other contacts stay as they are.
 
-        `gap` (m, negative where the tip is in the casing) is the gap at the end of the step with the present `force`.
-        It grows by `compliance` (m/N, > 0) for each newton more: the law must hold between the force that is returned
-        and gap + compliance (returned - force). The force must not grow with the gap, and be 0 where the gap is
-        positive. `before` is the gap two steps earlier, where the law regards the rate. Without contact forces may not
-        act, so a law may not pull.
+        `gap` (m, negative where the tip is in the casing) is the gap at the end of the step with the present `force`
+        (N). The gap grows by `compliance` (m/N, > 0) for each newton more. The law must hold between the returned force
+        and gap + compliance (returned - force). The force must not grow with the gap, must be 0 where the gap is
+        positive, and may not pull. `before` is the gap two steps earlier, for laws with REGARDS_RATE.
 
-        The solver compiles this function and calls it in every sweep over the contacts of a step. It may use
-        arithmetic, `math` and constants of its own file. `numbers` are those of the method with that name.
+        The solver compiles this function and calls it in every sweep over the contacts of a step. The function may use
+        arithmetic, `math` and constants of its own file. `numbers` is what the method `numbers` returns.
         """

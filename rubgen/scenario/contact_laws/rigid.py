@@ -16,5 +16,5 @@ class Rigid(NormalLaw):
 
     @staticmethod
     def respond(_numbers: FloatArray, force: float, gap: float, compliance: float, _before: float) -> float:
-        """Return the force that closes the gap, or 0 where the gap is open without one."""
+        """Return the force that closes the gap, in N; 0 where the gap is open without a force."""
         return max(0.0, force - gap / compliance)

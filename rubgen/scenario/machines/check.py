@@ -29,7 +29,10 @@ CLEARANCES = {"clearance_m", "casing_radius_m", FREE_PENETRATION.key}
 
 
 def check_machines(recipe: Recipe, source: str) -> None:
-    """Check that the machines of a recipe can be drawn. Raises UserError, beginning with `source`, where not."""
+    """Check that the virtual machines of a recipe can be drawn.
+
+    Raises UserError, beginning with `source`, where they cannot.
+    """
     files = recipe.files
     if len(set(files)) != len(files):
         raise UserError(f"{source}: machine = {list(files)}: name each machine once")
@@ -83,7 +86,10 @@ def _check_count(recipe: Recipe, table: MachineTable, source: str) -> None:
 
 
 def check_splits(recipe: Recipe, source: str) -> None:
-    """Check that every split of a recipe has machines, and the columns of the others. Raises UserError where not."""
+    """Check that every split of a recipe has machines, and that all splits have the same columns.
+
+    Raises UserError, beginning with `source`, where they do not. A recipe without `[splits]` passes.
+    """
     splits, machines = recipe.splits, recipe.machine_count
     if not splits:
         return
@@ -129,7 +135,10 @@ def _columns(sensors: SensorSet) -> list[object]:
 
 
 def machine_extremes(recipe: Recipe) -> Iterator[Scenario]:
-    """Yield a scenario at each end of each range of `[machines.vary]` that makes a feasible machine, for warnings."""
+    """Yield a scenario at each end of each range of `[machines.vary]`, for warnings.
+
+    Ends without a feasible machine are left out.
+    """
     for _, part in recipe.named_parts():
         for entry, distribution in part.machines.distributions() if part.machines else ():
             for value in distribution.extremes():

@@ -23,10 +23,14 @@ Problem = Callable[[int, Machine], str | None]
 
 
 def candidate(table: MachineTable, files: tuple[Machine, ...], seed: int, number: int, tried: int) -> Machine:
-    """Draw candidate `tried` of machine `number`. It depends on no other machine.
+    """Draw candidate number `tried` of virtual machine number `number`. It depends on no other machine.
 
-    Machine m is of file m modulo their number. Its candidate 0 is the next point of that file's own scrambled Sobol
-    sequence. Candidate k > 0 has a random stream of its own. Raises UserError where the values make no machine.
+    - table: `[machines]` of the recipe.
+    - files: the machines of the recipe's files. Virtual machine m changes file m modulo their number.
+    - seed: seed of the recipe.
+
+    Candidate 0 is the next point of the file's own scrambled Sobol sequence. Every later candidate has its own random
+    stream. Raises UserError where the values make no machine.
     """
     of, place = number % len(files), number // len(files)
     point = _sobol(seed, of, place) if tried == 0 else _stream(seed, number, tried).random(DIMENSIONS)
@@ -38,7 +42,7 @@ def candidate(table: MachineTable, files: tuple[Machine, ...], seed: int, number
 
 
 class Population:
-    """The virtual machines of a recipe. Each is drawn and checked when it is first asked for."""
+    """The virtual machines of a recipe. Each machine is drawn and checked when it is first asked for."""
 
     def __init__(
         self, table: MachineTable, files: tuple[Machine, ...], seed: int, problem: Problem, known: Mapping[int, int]
@@ -51,9 +55,10 @@ class Population:
         self._recent: OrderedDict[int, tuple[Machine, VirtualMachine]] = OrderedDict()
 
     def machine(self, number: int) -> tuple[Machine, VirtualMachine]:
-        """Return the first sane candidate of machine `number`, and which one it is.
+        """Return virtual machine `number` and its record: the first of its candidates that passes the check.
 
-        Where none of `table.tries` is sane, it is the machine of the file, with the reason why it cannot be used.
+        If none of `table.tries` candidates passes, the machine is the file's, and the record has the reason as its
+        `problem`.
         """
         if number not in self._recent:
             self._recent[number] = self._chosen(number)

@@ -52,7 +52,7 @@ class MachineKey:
 
     @property
     def about(self) -> str:
-        """Its description."""
+        """The description of the key for the recipe's schema."""
         return f"{self.meaning[0].upper()}{self.meaning[1:]}. Without it the machine's own value."
 
     @property
@@ -243,20 +243,26 @@ MACHINE_KEYS = (
 
 
 def own_keys(*, frame: bool) -> tuple[MachineKey, ...]:
-    """Return the keys that `[vary]` does not have, which need columns of their own; with `frame` those of it too."""
+    """Return the keys of `[machines.vary]` that `[vary]` does not have: they need columns of their own.
+
+    Keys of the machine's frame are included only with `frame`.
+    """
     return tuple(entry for entry in MACHINE_KEYS if entry.key not in KEYS and (frame or not entry.of_frame))
 
 
 def machine_values(machine: Machine) -> dict[str, float]:
-    """Return the value of every key of `own_keys` in that machine; keys of the frame where it has one."""
+    """Return the machine's value of every key of `[machines.vary]` that `[vary]` does not have, in the key's unit.
+
+    Keys of the frame are included where the machine has a frame.
+    """
     return {entry.key: entry.read(machine) for entry in own_keys(frame=machine.frame is not None)}
 
 
 def with_values(machine: Machine, values: Mapping[str, float], pattern_seed: int = 0) -> Machine:
-    """Return the machine with these keys of `[machines.vary]` changed.
+    """Return the machine with the values of some keys of `[machines.vary]` changed.
 
-    - values: by key, in the key's unit; applied in the order of MACHINE_KEYS.
-    - pattern_seed: draws the pattern of the mistuning.
+    - values: by key, in the key's unit; applied in the order of MACHINE_KEYS. Other keys are ignored.
+    - pattern_seed: seed of the mistuning pattern of the blades, used where `values` has "mistuning".
 
     Raises UserError where the values make no machine, such as a bore larger than the rim.
     """

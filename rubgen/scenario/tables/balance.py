@@ -25,7 +25,11 @@ MOST_TRIES = 10_000
 
 @dataclass(frozen=True)
 class Cell:
-    """One class of runs: its share, and what a run in it is."""
+    """One class of runs of a balance: its name, its share of all runs, and what the runs in it have in common.
+
+    `rub` is whether they rub, `motion` their class of motion ("" for any), `severities` the band of their
+    contact_severity, without its upper end.
+    """
 
     name: str
     share: float
@@ -35,7 +39,7 @@ class Cell:
 
 
 class Balance(StrictModel):
-    """`[balance]`: which share of the runs rubs, and in which way."""
+    """`[balance]`: the share of the runs that rub, and the shares of their classes of motion and severities."""
 
     rub: Annotated[
         float,
@@ -86,12 +90,15 @@ class Balance(StrictModel):
 
     @property
     def needs_run(self) -> bool:
-        """Whether a short run decides the class of a candidate that rubs."""
+        """Whether the class of a candidate that rubs is known only after a short run."""
         return self.motion is not None or self.severity_bounds is not None
 
     @property
     def cells(self) -> tuple[Cell, ...]:
-        """All classes in fixed order, with their shares, which add up to 1. Every run is in one of them."""
+        """All classes of runs in fixed order, with their shares, which add up to 1.
+
+        Every possible run is in one class.
+        """
         motions: list[tuple[str, float]] = list((self.motion or {}).items()) or [(ANY_MOTION, 1.0)]
         rest = 1 - sum(share for _, share in motions)
         motions += [(OTHER_MOTION, max(0.0, rest))] if self.motion else []
@@ -106,10 +113,10 @@ class Balance(StrictModel):
         return tuple(cells)
 
     def place(self, seed: int, index: int) -> tuple[Cell, int]:
-        """Return the cell of run number `index` and its band of the speed, whatever other runs there are.
+        """Return the cell of run number `index` and its band of the speed, from 0.
 
-        Both follow from a Weyl sequence in two dimensions, whose start the seed draws: of n successive runs each cell
-        has its share to within some runs.
+        They do not depend on the number of runs. Both follow from a Weyl sequence in two dimensions, whose start the
+        seed draws. Of n successive runs each cell has its share to within some runs.
         """
         start = np.random.default_rng([seed, zlib.crc32(b"balance")]).random(2)
         u, v = (float(np.modf(begin + index * step)[0]) for begin, step in zip(start, WEYL, strict=True))
@@ -119,7 +126,7 @@ class Balance(StrictModel):
         return cell, int(v * self.speed_bands)
 
     def cell_of(self, *, rub: bool, motion: str = ANY_MOTION, severity: float = 0.0) -> int:
-        """Return the number of the cell of a run with these labels."""
+        """Return the number of the cell of a run with these labels. `severity` is the label contact_severity."""
         asked = {ANY_MOTION, motion if motion in (self.motion or {}) else OTHER_MOTION}
         return next(
             number
@@ -129,10 +136,10 @@ class Balance(StrictModel):
 
 
 def check_balance(balance: Balance, profile: str, drawn: set[str], source: str) -> None:
-    """Check that runs of a recipe can be in every class of its balance.
+    """Check that the runs of a recipe can be in every class of its balance.
 
     - balance: the table.
-    - profile: of the speed.
+    - profile: the speed profile of the recipe.
     - drawn: the keys of `[vary]`.
     - source: beginning of messages.
 
@@ -149,7 +156,7 @@ def check_balance(balance: Balance, profile: str, drawn: set[str], source: str) 
 
 
 def band_name(band: int, bands: int) -> str:
-    """Return the name of a band of the speed, from 0, for names of cells; empty where there is one."""
+    """Return the end of a cell's name for band `band`, from 0, of `bands` bands of the speed; empty for one band."""
     return f", speed {band + 1} of {bands}" if bands > 1 else ""
 
 

@@ -28,7 +28,7 @@ MachineVary = create_model(
 
 
 class MachineTable(StrictModel):
-    """`[machines]`: virtual machines, each with its own values and some runs that follow each other."""
+    """`[machines]`: virtual machines, each with its own values and with runs that follow each other."""
 
     count: Annotated[
         RunCount | None,
@@ -65,20 +65,20 @@ class MachineTable(StrictModel):
         return self
 
     def distributions(self) -> Iterator[tuple[MachineKey, Distribution]]:
-        """Yield the keys of `[machines.vary]` that are given, with their distributions, in their order."""
+        """Yield the keys of `[machines.vary]` in the recipe and their distributions, in the order of MACHINE_KEYS."""
         for entry in MACHINE_KEYS:
             distribution = getattr(self.vary, entry.key)
             if distribution is not None:
                 yield entry, distribution
 
     def largest(self, machine: Machine) -> Machine:
-        """Return the machine with the largest number of blades that may be drawn."""
+        """Return `machine` with the largest number of blades that may be drawn."""
         count = self.vary.blade_count  # type: ignore[attr-defined]
         return with_values(machine, {"blade_count": max(count.extremes())}) if count else machine
 
     @property
     def never_twice(self) -> bool:
-        """Whether no two machines are equal: some value is drawn from a range, or each has its own mistuning."""
+        """Whether no two machines are equal: a value is drawn from a range, or each machine has its own mistuning."""
         return any(
             max(each.extremes()) > (0.0 if entry.key == "mistuning" else min(each.extremes()))
             for entry, each in self.distributions()
@@ -87,16 +87,17 @@ class MachineTable(StrictModel):
 
 
 def merged(table: BaseModel, changes: BaseModel | None) -> Any:
-    """Return the table with the keys that `changes` gives in place of its own."""
+    """Return `table` with the keys that are set in `changes` replaced. Without `changes` it is an equal copy."""
     given = {key: getattr(table, key) for key in table.model_fields_set}
     given |= {key: getattr(changes, key) for key in changes.model_fields_set} if changes else {}
     return type(table)(**given)
 
 
 def with_runs(data: Any) -> Any:
-    """Return the TOML values of a recipe with `runs` from `machines.count`, which is left out then.
+    """Return the TOML values of a recipe with `runs` computed from `machines.count`, and without `machines.count`.
 
-    Raises ValueError where both are given and do not agree.
+    Values without a valid `machines.count` are returned as they are. Raises ValueError where `runs` is given and does
+    not agree, or where there are too many runs.
     """
     machines = data.get("machines") if isinstance(data, Mapping) else None
     if not isinstance(machines, Mapping):
@@ -119,7 +120,7 @@ def with_runs(data: Any) -> Any:
 
 
 def replaced_runs(data: dict[str, Any], runs: int) -> dict[str, Any]:
-    """Return the TOML values of a recipe with another number of runs, which decides the number of machines too."""
+    """Return the TOML values of a recipe with `runs` replaced, and without `machines.count`: `runs` determines it."""
     machines = data.get("machines")
     if isinstance(machines, Mapping):
         data = {**data, "machines": {key: value for key, value in machines.items() if key != "count"}}

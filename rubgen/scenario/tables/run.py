@@ -23,7 +23,7 @@ from rubgen.sensors.load import DEFAULT_SET
 
 
 class Simulation(StrictModel):
-    """`[simulation]`: turns and steps of every run, as in `Operation`."""
+    """`[simulation]`: turns and steps of every run. The keys are fields of `Operation`."""
 
     settle_turns: Annotated[
         TurnCount | Literal["auto"],
@@ -52,7 +52,7 @@ class Simulation(StrictModel):
 
 
 class Profile(StrictModel):
-    """`[operation]`: the profile of the speed, as in `Operation`; it starts at `speed_rpm` of `[vary]`."""
+    """`[operation]`: how the speed changes from `speed_rpm` of `[vary]`. The keys are fields of `Operation`."""
 
     profile: Annotated[
         ProfileName, about("How the speed changes: not at all, linearly up, linearly down, or as a sine.")
@@ -77,7 +77,7 @@ class Profile(StrictModel):
 
 
 class Output(StrictModel):
-    """`[output]`: the files to write, and the length of the signals: the end of the record."""
+    """`[output]`: the formats of the files, and the length of the recorded signals, which end with the record."""
 
     formats: Annotated[
         tuple[FormatName, ...],
@@ -101,7 +101,7 @@ class Output(StrictModel):
 
 
 class Sensors(StrictModel):
-    """`[sensors]`: a set of rubgen or the path of a TOML file, and the other keys of `Sensing`."""
+    """`[sensors]`: a sensor set by its name or the path of a TOML file, and how its signals are recorded."""
 
     set: Annotated[
         str, Field(min_length=1), about("A sensor set of rubgen by its name, or the path of a sensor set in TOML.")

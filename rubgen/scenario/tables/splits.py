@@ -22,7 +22,7 @@ GOLDEN = (5**0.5 - 1) / 2
 
 
 class SplitTable(StrictModel):
-    """`[splits.NAME]`: a split with its share, and with ranges of its own."""
+    """`[splits.NAME]`: a split with its share of the machines, and the keys in which it differs from the recipe."""
 
     share: Annotated[Share, Field(description="Share of the machines. All shares add up to 1.")]
     machines: Annotated[
@@ -51,7 +51,7 @@ class SplitTable(StrictModel):
 
     @property
     def changes(self) -> bool:
-        """Whether the split differs from the recipe in more than its share."""
+        """Whether the split has keys besides its share."""
         return bool(self.model_fields_set - {"share"})
 
 
@@ -78,15 +78,16 @@ Splits = Annotated[dict[SplitName, Split], AfterValidator(_checked)]
 
 
 def share_of(split: float | SplitTable) -> float:
-    """Return the share of a split, given as a number or as a table."""
+    """Return the share of a split, which the recipe gives as a number or as a table."""
     return split.share if isinstance(split, SplitTable) else split
 
 
 def split_of_machine(splits: Mapping[str, Any], seed: int, number: int) -> str:
-    """Return the split of machine `number`, whatever the number of machines.
+    """Return the name of the split of machine `number`. It does not depend on the number of machines.
 
-    u = frac(u0 + number (sqrt(5) - 1) / 2), u0 drawn by the seed, lies in the split's part of [0, 1). Of n successive
-    machines each split has its share to within some machines (three-distance theorem), of each of several files too.
+    u = frac(u0 + number (sqrt(5) - 1) / 2), with u0 drawn by the seed, lies in the split's interval of [0, 1). Of n
+    successive machines each split has its share to within some machines (three-distance theorem). The same holds for
+    the machines of each file where the recipe has several.
     """
     start = np.random.default_rng([seed, zlib.crc32(b"splits")]).random()
     place, end = (start + number * GOLDEN) % 1.0, 0.0
@@ -98,12 +99,12 @@ def split_of_machine(splits: Mapping[str, Any], seed: int, number: int) -> str:
 
 
 def enough_machines(splits: Mapping[str, Any], seed: int, name: str) -> int:
-    """Return the least number of machines with which the split `name` has one."""
+    """Return the least number of machines of which at least one is in the split `name`."""
     return next(number for number in range(MOST_RUNS) if split_of_machine(splits, seed, number) == name) + 1
 
 
 def changes_of(recipe: Any, split: SplitTable) -> dict[str, Any]:
-    """Return the fields of the recipe that differ in a split, by name."""
+    """Return the fields of the recipe that the split replaces, by field name, with their new values."""
     changes: dict[str, Any] = {key: getattr(split, key) for key in ("surroundings", "operation") if getattr(split, key)}
     if split.machines:
         table = recipe.machines or MachineTable()

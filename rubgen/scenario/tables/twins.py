@@ -75,12 +75,15 @@ Twins = create_model(
 
 
 def partner_of(index: int, share: float, seed: int, first: int, count: int) -> int | None:
-    """Return the run whose twin run number `index` is; None where it is no twin.
+    """Return the number of the partner of run number `index` if the run is a twin; None for any other run.
 
-    A machine's runs, `count` from number `first`, are slots of two neighbours. A slot is a pair with probability p, and
-    the first or the second of it is the twin. Seed and slot draw both, so that no place in the set tells of a twin.
-    With p = 2 share / (1 + share) that share of the runs that are no twins has one. An odd last run of a machine has no
-    twin: p makes up for it, up to one pair in each slot.
+    - share: share of the runs without twins among them that have a twin, 0 to 1.
+    - first, count: number of the first run of the run's machine, and the number of the machine's runs.
+
+    The machine's runs are divided into slots of two neighbours. A slot is a pair with probability p = 2 share / (1 +
+    share). The seed draws which slots are pairs, and whether the first or the second run is the twin, so that the
+    position in the set does not show which run is a twin. With an odd `count` the last run has no twin: p is raised for
+    it, to 1 at most.
     """
     slots, number = count // 2, index - first
     if number >= 2 * slots:
@@ -92,7 +95,7 @@ def partner_of(index: int, share: float, seed: int, first: int, count: int) -> i
 
 
 def twin(partner: Scenario, twins: BaseModel, source: str = "") -> Scenario:
-    """Return the scenario with the one change of `[twins]`.
+    """Return the twin of a run: the scenario `partner` with the one value of the table `[twins]` changed.
 
     Raises UserError, beginning with `source`, where the value is not allowed.
     """
@@ -109,7 +112,7 @@ def twin(partner: Scenario, twins: BaseModel, source: str = "") -> Scenario:
 
 
 def with_twin(scenario: Scenario, twins: BaseModel | None, source: str) -> Iterator[Scenario]:
-    """Yield the scenario, and its twin behind it where there is the table `[twins]`.
+    """Yield the scenario, then its twin. Without the table `[twins]` only the scenario is yielded.
 
     Raises UserError, beginning with `source`, where the twin's value is not allowed.
     """
@@ -119,12 +122,15 @@ def with_twin(scenario: Scenario, twins: BaseModel | None, source: str) -> Itera
 
 
 def paired(twins: BaseModel, partner: int | None, index: int, draw: Callable[[int], Scenario]) -> Scenario:
-    """Return run number `index` of a recipe with `[twins]`.
+    """Return the scenario of run number `index` of a recipe with `[twins]`: a twin, or a run as it is drawn.
 
-    - partner: number of the run whose twin it is, or None.
-    - draw: draws a run without twins by its number.
+    - twins: the table `[twins]`.
+    - partner: number of the partner if the run is a twin, else None.
+    - draw: returns the scenario of a run number, before twins are made.
 
-    A twin keeps the clearance of its partner, also where its change would give another one by a free penetration.
+    A twin is its partner with one value changed, its own index and the partner's random numbers. It also has the
+    partner's clearance, even if the recipe draws a free penetration and the changed value would lead to another
+    clearance.
     """
     run = draw(index if partner is None else partner)
     if partner is not None:
@@ -136,14 +142,15 @@ def paired(twins: BaseModel, partner: int | None, index: int, draw: Callable[[in
 
 
 def check_twins(twins: BaseModel, around: BaseModel | None, corners: Sequence[Scenario], source: str) -> None:
-    """Check that twins differ from their partners.
+    """Check that at least one twin differs from its partner.
 
-    - twins: the table.
-    - around: the recipe's surroundings.
-    - corners: runs at the extreme values of the recipe, each with its twin behind it.
+    - twins: the table `[twins]`.
+    - around: the recipe's table `[surroundings]`, or None.
+    - corners: scenarios at the extreme values of the recipe, each followed by its twin.
     - source: beginning of messages.
 
-    Raises UserError of one line where no twin differs, or where the tables of the set lack the columns of the change.
+    Raises UserError of one line where no twin differs, or where the twin changes the surroundings and the recipe has
+    none.
     """
     key = twins.changed  # type: ignore[attr-defined]
     if key in AROUND and around is None:
@@ -157,6 +164,6 @@ def check_twins(twins: BaseModel, around: BaseModel | None, corners: Sequence[Sc
 
 
 def fault_of(twins: BaseModel | None) -> tuple[Fault, ...]:
-    """Return the fault that twins have, in a tuple; it is empty where they have none."""
+    """Return the fault that the table adds to twins, as a tuple of one; an empty tuple without a table or a fault."""
     fault: Fault | None = getattr(twins, "fault", None)
     return (fault,) if fault else ()
