@@ -15,7 +15,10 @@ NEAREST_SHARE = 0.9
 
 @inlined_kernel
 def casing_displacement_bound(surface: Surface, q_casing: FloatArray) -> float:
-    """Return an upper bound of the casing's displacement anywhere on the ring, m: sum_j |q_j| mode_displacement_j."""
+    """Return an upper bound of the casing's displacement anywhere on the ring, m: sum_j |q_j| mode_displacement_j.
+
+    `q_casing` (n_casing,) are the casing's modal coordinates.
+    """
     displacement: float = 0.0
     for j in range(q_casing.shape[0]):
         displacement += abs(q_casing[j]) * surface.mode_displacement[j]
@@ -24,7 +27,10 @@ def casing_displacement_bound(surface: Surface, q_casing: FloatArray) -> float:
 
 @allocation_free_kernel
 def largest_nodal_displacement(surface: Surface, q_casing: FloatArray) -> float:
-    """Return the largest displacement of a casing node, m; NaN when any displacement is NaN."""
+    """Return the largest displacement of a casing node, m; NaN where any displacement is NaN.
+
+    `q_casing` (n_casing,) are the casing's modal coordinates.
+    """
     largest = 0.0
     for i in range(surface.table.shape[0]):
         x, y = 0.0, 0.0
@@ -39,9 +45,10 @@ def largest_nodal_displacement(surface: Surface, q_casing: FloatArray) -> float:
 
 @allocation_free_kernel
 def least_clearance(surface: Surface, tips: Tips, states: FloatArray, theta: FloatArray) -> float:
-    """Return the smallest r(angle of P) - |P| over all tips P and states (places, n) at angles `theta` (places,), m.
+    """Return the smallest clearance r(angle of P) - |P| over all tips P, m. It is negative where a tip is outside r.
 
-    r is the undeformed, unworn surface.
+    r is the radius of the undeformed, unworn surface. `states` (places, n) are coordinates of the blisk, each at the
+    angle in `theta` (places,), rad.
     """
     least = math.inf
     for place in range(theta.shape[0]):
@@ -58,7 +65,7 @@ def least_clearance(surface: Surface, tips: Tips, states: FloatArray, theta: Flo
 def tip_angle(tips: Tips, blade: int, displacement: FloatArray, theta: float) -> float:
     """Return the polar angle of a blade's tip in rad. Its error is at most `angle_error`.
 
-    The tip stands at the radius a, t aside of the blade's axis. t / radius replaces arctan(t / a).
+    The tip is at the radius a, with the distance t from the blade's axis. t / radius replaces arctan(t / a).
 
     - displacement (2 or more, any): radial and tangential displacement of each blade's tip, m.
     - theta: angle of the blisk, rad.
@@ -90,12 +97,12 @@ def clearance_bounds(
 ) -> None:
     """Write a lower bound of r(angle of P) + opening - |P| for every tip P, m, into `bounds_out`.
 
-    Chords lie inside the smooth curve by at most `surface.inset`. Wear is left out: a worn surface encloses the unworn
-    surface, so no point is nearer to it.
+    r is the radius of the undeformed surface. Chords lie inside the smooth curve by at most `surface.inset`. Wear is
+    left out: a worn surface encloses the unworn surface, so it is nowhere nearer.
 
-    Let a and t be the radial and tangential place of the tip, and x = t / a. Its polar angle differs from the blade's
-    by x, with an error of at most |x|^3 / 3. There r differs from r + r' x by at most |r''| x^2 / 2. |P| is at most
-    a + t x / 2.
+    Let a and t be the radial and tangential position of the tip, and x = t / a. Its polar angle differs from the
+    blade's by x, with an error of at most |x|^3 / 3. There r differs from r + r' x by at most |r''| x^2 / 2. |P| is at
+    most a + t x / 2.
 
     - displacement (2 or more, any): radial and tangential displacement of each blade's tip, m.
     - opening: added to the radius of the surface, m.
@@ -125,12 +132,15 @@ def clearance_bounds(
 def deformation_bounds(surface: Surface, q_casing: FloatArray, tip_shift: float) -> tuple[float, float]:
     """Return two bounds of the deformed surface on the whole ring, for `tighten`.
 
-    The first is in m: how far its radius at a polar angle may lie below r + opening + u_r. There u_r is interpolated
-    linearly between the nodes, at the angle of `tip_angle`. The second is the slope of r + opening + u_r by the angle,
-    over the smallest radius.
+    The first, in m, is how far the surface's radius at a polar angle may lie below r + opening + u_r, with u_r
+    interpolated linearly between the nodes at the angle of `tip_angle`. The second is the largest slope of r + opening
+    + u_r by the angle, over the smallest radius.
 
-    A surface point at psi stands at a polar angle that differs from psi by at most |u_t| / |X|. Its radius is therefore
-    less by at most that angle times the slope.
+    - q_casing (n_casing,): the casing's modal coordinates.
+    - tip_shift: bound of the tips' displacement, in tip radii; below LARGEST_TIP_SHIFT.
+
+    A surface point at psi is at a polar angle that differs from psi by at most |u_t| / |X|. Its radius is therefore
+    less by at most this angle times the slope.
     """
     displacement, moved, bend = 0.0, 0.0, 0.0
     for j in range(q_casing.shape[0]):
@@ -146,9 +156,9 @@ def deformation_bounds(surface: Surface, q_casing: FloatArray, tip_shift: float)
 
 @inlined_kernel
 def radial_displacement(surface: Surface, casing: FloatArray, angle: float) -> float:
-    """Return the radial displacement u_r of the casing at a polar angle, linear between the nodes, m.
+    """Return the radial displacement u_r of the casing at a polar angle (rad), linear between the nodes, m.
 
-    `casing` (a multiple of eight,) are the casing's coordinates and zeros.
+    `casing` (a multiple of eight,) are the casing's modal coordinates, then zeros.
     """
     nodes = surface.radial.shape[0]
     position = angle * (1.0 / surface.node_step)
@@ -179,13 +189,13 @@ def tighten(
     limits: tuple[float, float],
     bounds: FloatArray,
 ) -> bool:
-    """Replace every clearance bound of at most `far` by one to the deformed surface.
+    """Replace every clearance bound of at most `far` by a bound of the clearance to the deformed surface.
 
     Return True if all replaced bounds are positive. Then no tip touches, provided that `far` is at least the bound of
     the casing's displacement plus limits[0]. A tip whose new bound exceeds `radial_margin(margin, limits)`, for any
     margin in m, is inside the deformed surface and farther than the margin from it.
 
-    - casing (a multiple of eight,): the casing's coordinates, then zeros.
+    - casing (a multiple of eight,): the casing's modal coordinates, then zeros.
     - displacement (2 or more, any): radial and tangential displacement of each blade's tip, m.
     - theta: angle of the blisk, rad.
     - far: largest bound that is replaced, m.

@@ -80,15 +80,17 @@ def find_near(
     limits: tuple[float, float],
     work: ContactWork,
 ) -> tuple[int, bool]:
-    """Find the blades nearer to the surface than `margin`. Return their number and whether any has entered it.
+    """Find the blades nearer to the surface than `margin`. Return their number, and whether any tip has entered it.
 
-    Foot, gap, tangent and blade of each go into `work`. Only tips whose bound in `work.bounds` allows it are evaluated.
+    The foot, gap, tangent and number of each such blade are written into `work`. Only tips whose bound in `work.bounds`
+    allows it are evaluated.
 
     - worn (bins,): coefficients of the worn depth, m.
     - q (n,): q*; the displacements of the evaluated tips are written into it.
     - displacement (2, any): radial and tangential displacement of each tip, m.
     - casing_start: index of the first casing coordinate in q.
     - opening: added to the radius of the surface, m.
+    - cos_theta, sin_theta: of the blisk's angle.
     - margin: in m.
     - limits: the two `deformation_bounds`.
     """
@@ -131,7 +133,7 @@ def gap_at(
     - worn (bins,): coefficients of the worn depth, m.
     - casing_start: index of the first casing coordinate in q.
     - opening: added to the radius of the surface, m.
-    - cos_theta, sin_theta: of the blisk's angle.
+    - cos_theta, sin_theta: cosine and sine of the blisk's angle.
     - ends_work (8,): scratch.
     """
     x, y, _, _ = tip_position(tips, blade, q, cos_theta, sin_theta)
@@ -151,7 +153,10 @@ def slip_velocity(
 
 @allocation_free_kernel
 def friction_direction(along: float, axial: float) -> tuple[float, float]:
-    """Return the direction of Coulomb friction, -v_rel / |v_rel|, in the plane of tangent and e_z; 0 without slip."""
+    """Return the direction of Coulomb friction, -v_rel / |v_rel|, along tangent and e_z; zeros without slip.
+
+    `along` and `axial` are the parts of the relative velocity v_rel along tangent and e_z.
+    """
     speed = math.sqrt(along * along + axial * axial)
     if speed == 0.0:
         return 0.0, 0.0
@@ -196,15 +201,15 @@ def build_rows(
 ) -> None:
     """Write B_n and B of contact m, and the direction of its friction, into row m of `work`.
 
-    Needs `blade`, `psi` and `tangent` of `work`, as `find_near` leaves them. Writes `normal_tip`, `full_tip`,
-    `normal_casing`, `full_casing` and `slip`, a unit vector along tangent and axis that is 0 where nothing slips. With
-    friction or a liner it also writes `sliding`. Without both `slip` is 0.
+    Read are `blade`, `psi` and `tangent` of `work`, which `find_near` writes. Written are `normal_tip`, `full_tip`,
+    `normal_casing`, `full_casing` and `slip`, a unit vector along tangent and axis, or 0 without slip. With friction or
+    a liner `sliding` is written too. Without both `slip` is 0.
 
     - m: number of the contact, not of the blade.
     - q (n,), velocity (n,): free state q* and its velocity. Of the tips only coordinates of this blade are read.
     - speed: Omega, rad/s.
     - friction: coefficient of friction, 0 for none.
-    - cos_theta, sin_theta: of the blisk's angle at the new step.
+    - cos_theta, sin_theta: cosine and sine of the blisk's angle at the new step.
     """
     k = work.blade[m]
     _, _, cosine, sine = tip_position(tips, k, q, cos_theta, sin_theta)
@@ -230,7 +235,10 @@ def build_rows(
 
 @inlined_kernel
 def build_casing_response(m: int, compliance: FloatArray, work: ContactWork) -> None:
-    """Write A^-1 B of contact m on the casing; `compliance[j]` is column j of the casing's A^-1."""
+    """Write A^-1 B of contact m on the casing into row m of `work.casing_response`.
+
+    `compliance[j]` (n_casing,) is column j of the casing's part of A^-1.
+    """
     n_casing = work.rows.shape[1]
     for i in range(n_casing):
         work.casing_response[m, i] = 0.0
@@ -242,9 +250,9 @@ def build_casing_response(m: int, compliance: FloatArray, work: ContactWork) -> 
 
 @inlined_kernel
 def build_compliance(count: int, compliance: FloatArray, work: ContactWork) -> None:
-    """Write W = B_n^T A^-1 B of all `count` contacts into `work`, the gaps' change per unit of each normal force.
+    """Write W = B_n^T A^-1 B of all `count` contacts into `work.W`: the change of each gap per newton of each force.
 
-    `compliance[j]` is column j of A^-1 between tip coordinates.
+    `compliance[j]` (3 n_blades,) is column j of A^-1 between tip coordinates.
     """
     for row in range(count):
         base = 3 * work.blade[row]
@@ -268,10 +276,10 @@ def largest_approach(
     q_free: FloatArray,
     casing_start: int,
 ) -> float:
-    """Bound how much the contact forces may have closed any gap, m: movement of tip plus movement of casing.
+    """Return a bound of how much the contact forces may have closed any gap, m: movement of tip plus that of casing.
 
     - tips_new, tips_free (2, a multiple of eight): radial and tangential displacement with and without the forces, m.
-    - q_new, q_free (n,): coordinates with and without the forces; only the casing's are read.
+    - q_new, q_free (n,): coordinates with and without the forces; only those of the casing are read.
     - casing_start: index of the first casing coordinate.
     """
     tip = square_of_farthest(tips_new, tips_free)
@@ -283,18 +291,21 @@ def largest_approach(
 
 @inlined_kernel
 def wear_where_lined(count: int, liner: Liner, dt: float, work: ContactWork, wear: Wear) -> None:
-    """Wear the liner as `wear_liner` does, if there is one."""
+    """Wear the liner by the contacts of one step, as `wear_liner` does. Without a liner nothing is done."""
     if liner.bins > 0:
         wear_liner(count, liner, dt, work, wear)
 
 
 @allocation_free_kernel
 def wear_liner(count: int, liner: Liner, dt: float, work: ContactWork, wear: Wear) -> None:
-    """Wear the liner by the contacts of one step: volume = rate lam |v_rel| dt at each contact's foot.
+    """Wear the liner by the contacts of one step: volume = rate lam |v_rel| dt at each contact's foot. Changes `wear`.
 
-    Archard, J. Appl. Phys. 24 (1953): V = K F s / H; `liner.rate` is K / H. Before that the work of the forces on the
-    receding surface is added. The gaps of this step used the present depth. The gaps of two steps before used
-    `wear.earlier[0]`. Per step the surface has therefore receded by half the difference of the two depths.
+    Archard, J. Appl. Phys. 24 (1953): V = K F s / H; `liner.rate` is K / H. Before the wear, the work of the forces on
+    the receding surface is added to `wear.sums`. The gaps of this step used the present depth, the gaps of two steps
+    before `wear.earlier[0]`. In one step the surface has therefore receded by half the difference of the two depths.
+
+    - count: number of contacts in `work`.
+    - dt: time step, s.
     """
     for m in range(count):
         if work.lam[m] > 0.0:

@@ -15,7 +15,10 @@ CENTRE_LINE = ContactLaw()
 
 
 def periodic_derivative(values: FloatArray) -> FloatArray:
-    """Differentiate values (n, ...) at n equal steps of a full turn by the angle. Exact for orders below n / 2."""
+    """Differentiate values (n, ...) at n equal steps of a full turn by the angle (rad).
+
+    Exact for orders below n / 2.
+    """
     n = values.shape[0]
     order = 1j * np.fft.rfftfreq(n, 1 / n)
     if n % 2 == 0:
@@ -39,7 +42,7 @@ def hermite_bends(values: FloatArray, slopes: FloatArray, step: float) -> FloatA
 
 
 def with_zeros(numbers: FloatArray) -> FloatArray:
-    """Append zeros to the casing's coordinates (..., n_casing), up to a multiple of eight."""
+    """Append zeros to the casing's coordinates (..., n_casing) until their number is a multiple of eight."""
     missing = -numbers.shape[-1] % 8
     return np.ascontiguousarray(np.concatenate([numbers, np.zeros((*numbers.shape[:-1], missing))], axis=-1))
 
@@ -47,10 +50,10 @@ def with_zeros(numbers: FloatArray) -> FloatArray:
 def surface_modes(system: SpinningSystem, contact: ContactLaw) -> FloatArray:
     """Return X and Y displacement (nodes, 2, n_casing) of the contact surface at the nodes per unit of each mode.
 
-    It is u of the ring's centre line. With `contact.half_thickness` it is u - (h / 2) phi e_theta of the inner surface,
-    half a thickness inside the centre line, with phi the rotation of the cross-section. Force and velocity use the same
-    point. A force F there therefore also turns the cross-section by the moment (-(h / 2) e_r) x F, and no work is lost.
-    Raises UserError where the system has no rotations.
+    It is the displacement u of the ring's centre line. With `contact.half_thickness` it is u - (h / 2) phi e_theta of
+    the inner surface, half a thickness inside the centre line, with phi the rotation of the cross-section. Force and
+    velocity belong to the same point. A force F there therefore also turns the cross-section by the moment (-(h / 2)
+    e_r) x F, and no work is lost. Raises UserError where `half_thickness` is set and the system has no rotations.
     """
     modes = np.ascontiguousarray(system.casing_modes, dtype=float)
     if not contact.half_thickness:
@@ -65,10 +68,11 @@ def surface_modes(system: SpinningSystem, contact: ContactLaw) -> FloatArray:
 def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) -> Surface:
     """Make the surface r(psi) e_r + u(psi) of a system: smooth undeformed curve, Hermite-interpolated displacement.
 
-    Nodal slopes come from the Fourier series of the nodal displacements, so u is exact to fourth order in the node
-    distance, and continuous in slope. The displacement of each mode between nodes is at most the largest nodal value
-    plus a quarter of the node distance times the largest slope. `contact` may ask for the inner surface's displacement,
-    for chords between the nodes instead of the smooth curve, and for a liner. The arrays cannot be written.
+    `contact` may select the inner surface's displacement, chords between the nodes instead of the smooth curve, and a
+    liner. Nodal slopes come from the Fourier series of the nodal displacements, so u is exact to fourth order in the
+    node distance, and continuous in slope. The displacement of each mode between nodes is at most the largest nodal
+    value plus a quarter of the node distance times the largest slope. The arrays are read-only. Raises UserError as
+    `surface_modes`.
     """
     modes = surface_modes(system, contact)
     nodes = modes.shape[0]
@@ -106,7 +110,7 @@ def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) ->
 
 
 def blade_tips(system: SpinningSystem) -> Tips:
-    """Make the tips of a system: rest radius, steady displacement, angle on the disk. The arrays cannot be written."""
+    """Make the tips of a system: radius at rest, steady displacement, angle on the disk. The arrays are read-only."""
     angle = np.asarray(system.blade_angles, dtype=float)
     orders = np.multiply.outer(np.asarray(system.surface.order, dtype=float), angle)
     return frozen(
@@ -129,11 +133,11 @@ def node_radii(curve: CasingSurface, nodes: int) -> FloatArray:
 
 
 def chord_bounds(corners: FloatArray, bend: float) -> tuple[float, float]:
-    """Bound the distance of chords between nodes inside the smooth curve, m, and their largest |dr/dpsi|, m/rad.
+    """Return a bound of how far chords between nodes lie inside the smooth curve, m, and of their |dr/dpsi|, m/rad.
 
-    Both meet at the nodes. They differ by at most h^2 / 8 times the largest second derivative of the difference: `bend`
-    of the curve plus r + 2 r'^2 / r of a straight line, whose |r'| is largest at its ends. `corners` (nodes,) are the
-    radii of the nodes, m.
+    `corners` (nodes,) are the radii of the nodes, m; `bend` is a bound of the curve's |d2r/dpsi2|, m. Chords and curve
+    meet at the nodes. They differ by at most h^2 / 8 times the largest second derivative of the difference: `bend` plus
+    r + 2 r'^2 / r of a straight line, whose |r'| is largest at its ends.
     """
     step, next_values = 2 * np.pi / len(corners), np.roll(corners, -1)
     at_start = corners / np.tan(step) - corners**2 / (next_values * np.sin(step))
@@ -144,9 +148,9 @@ def chord_bounds(corners: FloatArray, bend: float) -> tuple[float, float]:
 
 
 def liner_of(spec: LinerSpec | None, radius: float) -> Liner:
-    """Make the constants of the liner that a recipe specifies. With None there is no liner: it has no bins.
+    """Make the constants of the liner that a recipe specifies. For None the liner has no bins: there is no liner.
 
-    `radius` (m) turns angles into lengths.
+    `radius` (m) of the surface turns angles into lengths.
     """
     if spec is None:
         return Liner(bins=0, thickness=0.0, rate=0.0, area=1.0)

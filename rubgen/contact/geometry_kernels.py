@@ -17,7 +17,7 @@ FOOT_ITERATIONS = 20
 
 
 class Surface(NamedTuple):
-    """The casing's inner surface as kernels take it; lengths in m, angles in rad. Wear is no part of it."""
+    """The casing's inner surface as kernels take it, without wear. Lengths are in m, angles in rad."""
 
     mean_radius: float
     """Mean radius of the smooth curve."""
@@ -74,10 +74,10 @@ class Tips(NamedTuple):
 
 @allocation_free_kernel
 def chord_radius(start: float, end: float, angle: float, step: float) -> tuple[float, float, float]:
-    """Return r, dr/dpsi and d2r/dpsi2 on the straight line between two nodes, `angle` after the first.
+    """Return r, dr/dpsi and d2r/dpsi2 on the straight line between two nodes, at `angle` (rad) after the first node.
 
-    On it 1 / r is a sinusoid of the angle. `start` and `end` are the radii of the nodes, m; `step` is the angle between
-    them, rad.
+    On the line 1 / r is a sinusoid of the angle. `start` and `end` are the radii of the nodes, m; `step` is the angle
+    between them, rad.
     """
     sine = math.sin(step)
     inverse = (math.sin(step - angle) / start + math.sin(angle) / end) / sine
@@ -89,7 +89,7 @@ def chord_radius(start: float, end: float, angle: float, step: float) -> tuple[f
 
 @inlined_kernel
 def undeformed_radius(surface: Surface, psi: float) -> tuple[float, float, float]:
-    """Return r, dr/dpsi and d2r/dpsi2 of the undeformed, unworn surface at the polar angle psi."""
+    """Return r, dr/dpsi and d2r/dpsi2 of the undeformed, unworn surface at the polar angle psi (rad), in m."""
     radius, slope, bend = smooth_radius(surface, psi)
     if surface.corners.shape[0] > 0:
         first, second, s = interval(psi, surface.node_step, surface.corners.shape[0])
@@ -100,7 +100,10 @@ def undeformed_radius(surface: Surface, psi: float) -> tuple[float, float, float
 
 @inlined_kernel
 def worn_radius(surface: Surface, worn: FloatArray, psi: float) -> tuple[float, float, float]:
-    """Return r, dr/dpsi and d2r/dpsi2 of the undeformed surface, worn by the depth of coefficients `worn` (bins,)."""
+    """Return r, dr/dpsi and d2r/dpsi2 of the undeformed surface with its wear, in m, at the polar angle psi (rad).
+
+    `worn` (bins,) are the coefficients of the worn depth, m; empty without a liner.
+    """
     radius, slope, bend = undeformed_radius(surface, psi)
     if worn.shape[0] > 0:
         depth, depth_slope, depth_bend = worn_depth(worn, psi)
@@ -124,7 +127,7 @@ def smooth_radius(surface: Surface, psi: float) -> tuple[float, float, float]:
 
 @allocation_free_kernel
 def interval(psi: float, node_step: float, nodes: int) -> tuple[int, int, float]:
-    """Return the numbers of the two nodes around the polar angle psi, and the share of the way between, in [0, 1]."""
+    """Return the numbers of the two nodes around the polar angle psi, and the share of the interval before psi."""
     position = psi / node_step
     first = math.floor(position)
     return int(first % nodes), int((first + 1) % nodes), position - first
@@ -134,7 +137,11 @@ def interval(psi: float, node_step: float, nodes: int) -> tuple[int, int, float]
 def load_interval(table: FloatArray, first: int, second: int, q_casing: FloatArray, ends_out: FloatArray) -> None:
     """Write displacement and slope (X, Y, X', Y') at the two nodes of an interval into `ends_out` (8,).
 
-    Written out, so that the four numbers of a node, which stand side by side, are summed side by side.
+    - table (nodes, n_casing, 4): these four values of each node and mode.
+    - first, second: numbers of the nodes.
+    - q_casing (n_casing,): the casing's modal coordinates.
+
+    The sums are written out, so that the compiler adds the four values of a node at the same time.
     """
     for side, node in enumerate((first, second)):
         x, y, dx, dy = 0.0, 0.0, 0.0, 0.0
@@ -151,7 +158,7 @@ def load_interval(table: FloatArray, first: int, second: int, q_casing: FloatArr
 def hermite(s: float, h: float) -> tuple[float, float, float, float]:
     """Return the cubic Hermite weights of first value, second value, first slope, second slope.
 
-    s is the share of the way along an interval of length h.
+    s, 0 to 1, is the position along an interval of length h.
     """
     return (1 + 2 * s) * (1 - s) * (1 - s), s * s * (3 - 2 * s), h * s * (1 - s) * (1 - s), h * s * s * (s - 1)
 
@@ -172,9 +179,10 @@ def hermite_bend(s: float, h: float) -> tuple[float, float, float, float]:
 
 @allocation_free_kernel
 def blend(weights: tuple[float, float, float, float], ends: FloatArray, c: int) -> float:
-    """Return component c (0: X, 1: Y) of the displacement at the weights' place, from the ends of its interval.
+    """Return component c (0: X, 1: Y) of the casing's displacement at a point of an interval between two nodes.
 
-    With weights of `hermite_slope` or `hermite_bend` it is that derivative. `ends` (8,) are from `load_interval`.
+    `weights` are from `hermite` at this point. With weights of `hermite_slope` or `hermite_bend` the first or second
+    derivative is returned. `ends` (8,) is from `load_interval`.
     """
     total: float = weights[0] * ends[c] + weights[1] * ends[4 + c]
     total += weights[2] * ends[2 + c] + weights[3] * ends[6 + c]
@@ -191,9 +199,9 @@ def foot_of(
     n = e_z x t, positive inside the casing. With chords the foot is on the chord at the polar angle of P.
 
     - worn (bins,): coefficients of the worn depth, m.
-    - q_casing (n_casing,): the casing's coordinates.
+    - q_casing (n_casing,): the casing's modal coordinates.
     - opening: added to the radius of the surface, m.
-    - x, y: the point, inertial, m.
+    - x, y: the point in the inertial frame, m.
     - ends_work (8,): scratch.
     """
     h, nodes = surface.node_step, surface.table.shape[0]

@@ -18,7 +18,10 @@ respond = switch([law.respond for law in NORMAL_LAWS])
 
 @allocation_free_kernel
 def is_positive_definite(W: FloatArray, m: int, work: FloatArray) -> bool:
-    """Return whether the symmetric part of the leading m x m block of W is positive definite, by Cholesky in `work`."""
+    """Return whether the symmetric part of the leading m x m block of W is positive definite, by Cholesky's method.
+
+    `work` (m or more, m or more) is scratch.
+    """
     for i in range(m):
         for j in range(i + 1):
             total = 0.5 * (W[i, j] + W[j, i])
@@ -37,9 +40,10 @@ def is_positive_definite(W: FloatArray, m: int, work: FloatArray) -> bool:
 def projected_gauss_seidel(
     law: FloatArray, W: FloatArray, b: FloatArray, before: FloatArray, m: int, lam_out: FloatArray
 ) -> int:
-    """Solve for the normal forces `lam_out` (m,) by projected Gauss-Seidel. Returns SOLVED or UNSOLVED.
+    """Solve for the normal forces `lam_out` (m,), N, by projected Gauss-Seidel. Returns SOLVED or UNSOLVED.
 
-    Sweeps begin at zero and end when no force moves by more than 1e-14 of the largest.
+    Sweeps begin with zero forces and end when no force changes by more than 1e-14 of the largest. After 400 sweeps the
+    problem is unsolved.
 
     - law: number of the law of the normal force in the registry, then its parameters.
     - W (m, m): change of each gap per unit of each force, m/N.
@@ -111,10 +115,11 @@ def _fill_tableau(W: FloatArray, b: FloatArray, m: int, scale: float, tableau: F
 
 @allocation_free_kernel
 def lemke(W: FloatArray, b: FloatArray, m: int, lam_out: FloatArray, tableau: FloatArray, basis: IntArray) -> int:
-    """Solve 0 <= lam _|_ b + W lam >= 0 by Lemke's complementary pivoting.
+    """Solve 0 <= lam _|_ b + W lam >= 0 for `lam_out` (m,), N, by Lemke's complementary pivoting.
 
-    Cottle, Pang, Stone, The Linear Complementarity Problem, 4.4. `tableau` (m, 2 m + 2) and `basis` (m,) are scratch.
-    Returns SOLVED, or UNSOLVED when it ends on a ray.
+    Cottle, Pang, Stone, The Linear Complementarity Problem, 4.4. W (m, m) and b (m,) are as in
+    `projected_gauss_seidel`; `tableau` (m, 2 m + 2) and `basis` (m,) are scratch. Returns SOLVED, or UNSOLVED when the
+    pivoting ends on a ray.
     """
     size = 0.0
     for i in range(m):
@@ -154,12 +159,12 @@ def solve_normal(
     tableau: FloatArray,
     basis: IntArray,
 ) -> int:
-    """Solve for the normal forces of the leading m contacts, into `lam_out`. Returns SOLVED or UNSOLVED.
+    """Solve for the normal forces of the first m contacts, N, into `lam_out`. Returns SOLVED or UNSOLVED.
 
-    Where W is positive definite (symmetric part) the solution is unique and projected Gauss-Seidel is tried first. In
-    every other case of rigid contact it is Lemke's pivoting. `law` is the number of the law in the registry and its
-    parameters; W and b are as in `projected_gauss_seidel`. The first row of the scratch `tableau` holds the gaps at
-    step n - 1 where the law regards the rate.
+    Where the symmetric part of W is positive definite the solution is unique, and projected Gauss-Seidel is tried
+    first. Where it is not, or fails, Lemke's pivoting is used for rigid contact; any other law is then unsolved. `law`
+    is the number of the law in the registry and its parameters; W and b are as in `projected_gauss_seidel`. For a law
+    with a rate, the first row of the scratch `tableau` contains the gaps at step n - 1.
     """
     if is_positive_definite(W, m, square) and projected_gauss_seidel(law, W, b, tableau[0], m, lam_out) == SOLVED:
         return SOLVED

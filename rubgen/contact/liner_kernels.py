@@ -10,7 +10,7 @@ REMOVED, WORK = range(2)
 
 
 class Liner(NamedTuple):
-    """The constants of an abradable liner."""
+    """The constants of an abradable liner on the casing."""
 
     bins: int
     """Number of coefficients of the worn depth; 0 where there is no liner."""
@@ -23,7 +23,7 @@ class Liner(NamedTuple):
 
 
 class Wear(NamedTuple):
-    """The state of a liner."""
+    """The state of a liner: worn depth and sums. `remove` changes the arrays."""
 
     depth: FloatArray
     """Coefficients (bins,) of the worn depth, 0 to `Liner.thickness`, m."""
@@ -35,9 +35,9 @@ class Wear(NamedTuple):
 
 @inlined_kernel
 def spline_weights(s: float) -> tuple[float, float, float, float]:
-    """Return the weights of four neighbouring coefficients of a uniform cubic B-spline.
+    """Return the weights of four neighbouring coefficients of a uniform cubic B-spline. They add up to 1.
 
-    The place is at share s between the second and the third of them.
+    The point lies between the second and the third coefficient, at the share s, 0 to 1, of their distance.
     """
     r = 1 - s
     return r * r * r / 6, (4 - 6 * s * s + 3 * s * s * s) / 6, (4 - 6 * r * r + 3 * r * r * r) / 6, s * s * s / 6
@@ -45,9 +45,9 @@ def spline_weights(s: float) -> tuple[float, float, float, float]:
 
 @allocation_free_kernel
 def worn_depth(coefficients: FloatArray, psi: float) -> tuple[float, float, float]:
-    """Return the worn depth at a polar angle in m, and its first and second derivative by the angle.
+    """Return the worn depth at the polar angle psi (rad) in m, and its first and second derivative by the angle.
 
-    `coefficients` (bins,) are those of the periodic spline.
+    `coefficients` (bins,) are the coefficients of the periodic spline, m, such as `Wear.depth`.
     """
     bins = coefficients.shape[0]
     per_angle = bins / (2 * math.pi)
@@ -65,10 +65,11 @@ def worn_depth(coefficients: FloatArray, psi: float) -> tuple[float, float, floa
 
 @allocation_free_kernel
 def remove(liner: Liner, psi: float, volume: float, wear: Wear) -> None:
-    """Remove a volume (m3) from the liner around the polar angle `psi` (rad). Changes `wear`.
+    """Remove a volume (m3, >= 0) from the liner around the polar angle `psi` (rad). Changes `wear`.
 
-    The splines sum to one, so all coefficients together grow by volume / area. No coefficient exceeds the thickness:
-    the volume below the liner is not removed.
+    The four splines at `psi` take shares of the volume by their weights, which add up to 1. A share increases the
+    spline's coefficient by share / `liner.area`. A coefficient stops at the liner's thickness, and the rest of its
+    share is not removed. The removed volume is added to `wear.sums`.
     """
     bins = liner.bins
     position = psi * (bins / (2 * math.pi))

@@ -19,7 +19,7 @@ MOTION_CLASSES: dict[str, int] = {
 
 
 def class_numbers(words: type[StrEnum]) -> dict[str, int]:
-    """Return the number of each word of a label: MOTION_CLASSES for motions, else the place in `words`."""
+    """Return the number of each word of a class label: MOTION_CLASSES for motions, else the position in `words`."""
     if words is Motion:
         return MOTION_CLASSES
     return {member.value: number for number, member in enumerate(words)}

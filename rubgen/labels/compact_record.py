@@ -35,19 +35,19 @@ ROTATION = ("start", "end", "seconds", "swing", "period")
 
 
 def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
-    """Return the arrays of a response from which `label` can be made again.
+    """Return the arrays of a response from which its labels can be computed again.
 
     They have about 0.27 MB for 500 turns and 36 blades, and 26 bytes a touch.
 
-    - `scalars` (9,): the numbers named by `SCALARS`; a tenth, 1, follows where a fault grows (`Response.grows`).
+    - `scalars` (9,): the numbers with the names SCALARS; where a fault grows (`Response.grows`), a tenth number, 1.
     - `section` (turns, 3 blades + 4 + 2 casing modes), once a turn: displacements of the tips, x, y, v_x, v_y of the
       disk centre, displacements and velocities of the casing modes.
-    - `fractions` (N, as many): the same for each of `Response.symmetry_states`.
+    - `fractions` (N, as many): the same values for each of `Response.symmetry_states`.
     - `growth`, `turn_impulse`, `contact_steps` (turns,): `companion_growth`, `impulse_per_turn` and
       `contact_steps_per_turn` of the response.
-    - `orbit` (turns, 5): as in `Response`.
+    - `orbit` (turns, 5): `Response.orbit`.
     - `rotation` (5,) and `turn_steps` (turns + 1,) of a changing speed; empty for a steady speed.
-    - the names of `TOUCHES` (touches,): as in `ContactEvents`.
+    - the names of `TOUCHES` (touches,): the fields of `ContactEvents`.
     """
     changing = response.changing_speed
     states = response.symmetry_states
@@ -70,7 +70,10 @@ def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
 
 
 def response_of(record: CompactRecord) -> Response:
-    """Make a response from a compact record. It has no taps and orders, energy, blisk modes and velocities of tips."""
+    """Make a response from a compact record.
+
+    It has no taps, orders, blisk modes and velocities of tips; energies are NaN.
+    """
     scalars = named_scalars(record["scalars"].tolist())
     blades, casing = int(scalars["n_blades"]), int(scalars["n_casing"])
     q, v = _wide(record["section"], blades, casing)
@@ -102,15 +105,18 @@ def response_of(record: CompactRecord) -> Response:
 
 
 def named_scalars(values: Sequence[float]) -> dict[str, float]:
-    """Return the numbers of a record by name, `grows` only where there is one. Raises ValueError for another number."""
+    """Return the numbers `scalars` of a compact record by name. Raises ValueError for a wrong number of values.
+
+    `grows` is among the names only where the record has a tenth number.
+    """
     names = (*SCALARS, "grows") if len(values) == len(SCALARS) + 1 else SCALARS
     return dict(zip(names, values, strict=True))
 
 
 def in_record_precision(response: Response) -> Response:
-    """Round a response to the precision of the compact record, with its taps and orders as they are.
+    """Round a response to the precision of the compact record. Its taps and orders are not rounded.
 
-    Labels of a run and labels made again from its compact record are therefore equal.
+    The labels of a run are then equal to labels computed from its compact record.
     """
     rounded = response_of(compact_record(response))
     return replace(

@@ -28,7 +28,7 @@ FLOOR = 0.1
 
 @dataclass(frozen=True, kw_only=True)
 class TapOrders:
-    """One tap's peak amplitudes in its unit, and phases in rad."""
+    """Peak amplitudes of one true signal at its orders, in the signal's unit, and phases in rad."""
 
     amplitudes: FloatArray
     """A (20,) at k f_r, k = 1 .. 20, in A cos(k theta + phase)."""
@@ -58,23 +58,26 @@ class TapOrders:
 
     @property
     def present(self) -> tuple[int, ...]:
-        """The orders k that stand out: amplitude above FLOOR and 20 dB above the median of the lines around k."""
+        """The orders k that stand out: amplitude above FLOOR, and 20 dB above the median of the lines around k."""
         stands = (self.amplitudes > FLOOR) & (self.amplitudes >= RATIO * self.floors)
         return tuple((np.flatnonzero(stands) + 1).tolist())
 
 
 def harmonics(response: Response) -> dict[str, TapOrders]:
-    """Compute the orders of every tap over exactly the last 100 turns (all turns of a shorter record).
+    """Compute the orders of every tap (true signal) over the last 100 turns, or over all turns of a shorter record.
 
-    The taps have the rate of the steps. `casing_even` and `casing_odd` are the parts of the casing's radial
-    acceleration at 0 degrees with even and with odd circumferential order, (a(0) +- a(pi)) / 2. They are present where
-    both accelerations were recorded.
+    The taps have a value at every time step. Also returned are `casing_even` and `casing_odd`, the parts of the
+    casing's radial acceleration at 0 degrees with even and with odd circumferential order, (a(0) +- a(pi)) / 2, if the
+    accelerations at 0 and 180 degrees were both recorded.
     """
     return {name: tap_orders(tap, response) for name, tap in with_casing_fields(response.taps).items()}
 
 
 def with_casing_fields(taps: dict[str, Array]) -> dict[str, Array]:
-    """Add the even and odd part of the casing's acceleration to `taps`, as in `harmonics`, where both are recorded."""
+    """Return `taps` with the even and the odd part of the casing's acceleration, (a(0) +- a(pi)) / 2.
+
+    Without an acceleration at 180 degrees `taps` is returned unchanged.
+    """
     if OPPOSITE_TAP not in taps:
         return taps
     first, second = taps[MARKED_TAP], taps[OPPOSITE_TAP]
@@ -82,7 +85,7 @@ def with_casing_fields(taps: dict[str, Array]) -> dict[str, Array]:
 
 
 def tap_orders(tap: FloatArray, response: Response) -> TapOrders:
-    """Compute the orders of one tap, given at every step of the record."""
+    """Compute the orders of one tap. `tap` (steps,) has a value at every time step of the record or of its end."""
     turns = spectrum_turns(response)
     looked_at = turns * (max(HIGHEST_ORDER, response.n_blades + SIDEBANDS) + 1)
     lines = order_lines(tap, response)[:looked_at]
@@ -99,17 +102,17 @@ def tap_orders(tap: FloatArray, response: Response) -> TapOrders:
 
 
 def spectrum_turns(response: Response) -> int:
-    """Return the number of turns that a spectrum covers: 100, or all of a shorter record."""
+    """Return the number of turns that a spectrum covers: 100, or all turns of a shorter record."""
     return min(SPECTRUM_TURNS, response.record_turns)
 
 
 def order_lines(tap: FloatArray, response: Response) -> ComplexArray:
     """Compute peak amplitudes and phases of a tap (steps,): complex A e^(i phase) of A cos(k theta + phase).
 
-    Line j (n // 2 + 1,) is at order j / turns: 2 X_j / n, with X the DFT of the last n = turns * steps_per_turn values
-    and turns from `spectrum_turns`. The unit is the tap's. Line 0 is twice the mean. The record ends with a turn, so
-    the first of these values is at theta = 0, at a constant speed. Raises ValueError where the tap has fewer than n
-    values.
+    Line j (n // 2 + 1,) is at order j / turns: 2 X_j / n, with X the DFT of the last n = turns * steps_per_turn values,
+    and `turns` from `spectrum_turns`. The unit is the tap's. Line 0 is twice the mean. The record ends with a complete
+    turn, so at a constant speed the first of the n values is at theta = 0. Raises ValueError where the tap has fewer
+    than n values.
     """
     count = spectrum_turns(response) * response.steps_per_turn
     if tap.size < count:
@@ -118,15 +121,15 @@ def order_lines(tap: FloatArray, response: Response) -> ComplexArray:
 
 
 def order_spectrum(tap: FloatArray, response: Response) -> FloatArray:
-    """Compute the amplitudes of `order_lines`."""
+    """Return the peak amplitudes (n // 2 + 1,) of the lines of `order_lines`, in the tap's unit."""
     return np.asarray(np.abs(order_lines(tap, response)), dtype=np.float64)
 
 
 def order_floors(spectrum: FloatArray, turns: int) -> FloatArray:
-    """Return the median amplitude of the lines around each order k = 1 .. 20; 0 where there is none.
+    """Return the median amplitude (20,) of the lines around each order k = 1 .. 20; 0 where there are no lines.
 
-    These are the lines within half an order of k, without the lines within 0.05 of k. `spectrum` has `turns` lines per
-    order.
+    The lines around k are within half an order of k, without the lines within 0.05 of k. `spectrum` has `turns` lines
+    per order.
     """
     near, half = turns // 20, turns // 2
     beside = np.concatenate([np.arange(-half, -near), np.arange(near + 1, half + 1)])
@@ -140,10 +143,10 @@ def order_floors(spectrum: FloatArray, turns: int) -> FloatArray:
 
 
 def fractional_amplitudes(tap: FloatArray, response: Response) -> FloatArray:
-    """Compute peak amplitudes at FRACTIONS of f_r over the last 96 turns (or the largest multiple of 12 below).
+    """Compute peak amplitudes (9,) at FRACTIONS of f_r over the last 96 turns (or the largest multiple of 12 below).
 
-    Twelve turns are a whole number of periods of each fraction. The tap is therefore averaged over all its stretches of
-    twelve turns, which removes other orders and noise. NaN in a record of fewer turns.
+    Twelve turns are a whole number of periods of each fraction. The tap is therefore averaged over its sections of
+    twelve turns, which removes other orders and noise. All values are NaN for a record of fewer than 12 turns.
     """
     folds = spectrum_turns(response) // FOLDED_TURNS
     length = FOLDED_TURNS * response.steps_per_turn

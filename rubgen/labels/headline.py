@@ -5,14 +5,14 @@ from typing import Any
 
 
 def headline(labels: Mapping[str, Any], profile: str) -> str:
-    """Return one line of labels, such as `partial rub, chaotic` or `run-up: rub from 7,410 rev/min`.
+    """Return one line about a run, such as `partial rub, chaotic` or `run-up: rub from 7,410 rev/min`.
 
-    While the speed changes there is no class of motion of the whole record; the speeds of first and last touch are
-    known, and the labels of changes and windows say what the motion is in between. A rub that is there at the start or
-    at the end of the record has no onset or no end within it.
+    - labels: the labels of one run with status ok, by their public names.
+    - profile: its speed profile: steady, run-up, coast-down or fluctuating.
 
-    - labels: of one good run by their public names.
-    - profile: of its speed: steady, run-up, coast-down or fluctuating.
+    If the speed changes, the line has no class of motion, because the class may change within the record. It has the
+    speeds of the first and the last touch instead. A rub at the start or at the end of the record is named as such,
+    without that speed.
     """
     if profile == "steady":
         rub = f"{labels['rub_extent']} rub" if labels["rub"] else "no rub"

@@ -17,13 +17,12 @@ from rubgen.solver.response import Response
 
 
 def label(response: Response) -> Labels:
-    """Make the labels of a run that ended with status OK. Every label is defined in docs/labels.md.
+    """Compute the labels of a run that ended with status OK. Every label is defined in docs/labels.md.
 
-    Labels describe the true response, before any sensor. Contact and motion come from the whole record. Orders come
-    from its last 100 turns. Only the number of windows with amplitudes depends on the length of the taps.
-
-    A record of 500 turns or more has a safe class of motion. Fewer than 32 turns raise UserError. For a changing speed
-    see `speed_history`. A response read from a compact record has no taps: its labels are the same without orders.
+    Labels describe the true response, before any sensor. Contact and motion are computed from the whole record, orders
+    from its last 100 turns. Only the number of windows with amplitudes depends on the length of the taps. The class of
+    motion is reliable for a record of 500 turns or more. Raises UserError below 32 turns. For a changing speed see
+    `speed_history`. A response made from a compact record has no taps: its labels are the same, without orders.
     """
     response = in_record_precision(response)
     contact_steps = int(response.contact_steps_per_turn.sum())

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Motion(StrEnum):
-    """Class of a steady motion, from the most regular to the least; undecided where its indicators contradict."""
+    """Class of a steady motion, from the most regular to the least. Undecided: its indicators contradict each other."""
 
     STATIC = "static"
     PERIOD_1 = "period-1"
@@ -31,9 +31,9 @@ class Motion(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Labels:
-    """What the dynamics really did, from the true response over the whole record.
+    """The labels of a run: its contact and motion, from the true response over the whole record.
 
-    `rubgen.labels.registry` has the public name of each value; docs/labels.md defines it.
+    `rubgen.labels.registry` lists the public name of each value; docs/labels.md defines it.
     """
 
     rub: bool
@@ -105,7 +105,7 @@ class Labels:
 
     @property
     def changes(self) -> tuple[Change, ...]:
-        """Changes of rub and motion over time; empty at a steady speed."""
+        """Changes of rub and motion over time; empty for a steady speed."""
         return self.history.changes if self.history else ()
 
     def __repr__(self) -> str:

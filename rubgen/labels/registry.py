@@ -24,7 +24,7 @@ from rubgen.units import rev_per_min
 
 @dataclass(frozen=True)
 class Label:
-    """One label of a run; null where a run failed or has no such value."""
+    """One label of a run. Its value is null where the run failed or the label is undefined."""
 
     name: str
     """Public name, with the unit as its end."""
@@ -44,7 +44,10 @@ class Label:
 
 @dataclass(frozen=True)
 class TapLabel:
-    """One label of each true signal (tap): `<tap>` and `ending` make its name; `{tap}` in its meaning is the name."""
+    """One label of each true signal (tap).
+
+    Its name is `<tap>_<ending>`; `{tap}` in its meaning stands for the tap's name.
+    """
 
     ending: str
     kind: str
@@ -56,7 +59,7 @@ class TapLabel:
 
 @dataclass(frozen=True)
 class WindowLabel:
-    """One label of each true signal in windows, a column of data files alone; the name is made as for a `TapLabel`."""
+    """One label of each true signal (tap) in windows, a column of data files only. Its name is `<tap>_<ending>`."""
 
     ending: str
     meaning: str
@@ -66,7 +69,7 @@ class WindowLabel:
 
 @dataclass(frozen=True)
 class EnergyLabel:
-    """One energy term of a run, a number in Parquet files alone; null where the run failed."""
+    """One energy term of a run, a column of Parquet files only; null where the run failed."""
 
     name: str
     unit: str

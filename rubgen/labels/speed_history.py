@@ -17,10 +17,10 @@ from rubgen.solver.response import WINDOW_TURNS, ChangingSpeed, ContactEvents, R
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """A change of rub or motion during a record.
+    """A change of rub or motion during a record, and the state after it.
 
-    A rub begins with its first touch. It ends with the end of its last touch, where no other follows within
-    WINDOW_TURNS turns. All other changes are at the start of a window.
+    A rub begins with its first touch. It ends with the end of its last touch, if no touch follows within WINDOW_TURNS
+    turns. All other changes are at the start of a window.
     """
 
     time: float
@@ -41,7 +41,7 @@ class Change:
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedHistory:
-    """How rub and motion changed with the speed."""
+    """The changes of rub and motion in a record whose speed changes."""
 
     changes: tuple[Change, ...]
     """Changes in order of time; the first is at the start of the record."""
@@ -52,7 +52,7 @@ class SpeedHistory:
 
 
 def speed_history(response: Response) -> SpeedHistory:
-    """Find the speeds at which a rub begins and ends, and every change of rub or motion, as the speed changes.
+    """Find every change of rub or motion of a run whose speed changes, and the speeds of its first and last touch.
 
     Raises ValueError for a response at a steady speed.
     """
@@ -69,19 +69,20 @@ def speed_history(response: Response) -> SpeedHistory:
 
 
 def changing_motion(response: Response, rub: bool) -> Motions:
-    """Return the motion of a record in which speed or machine change: the forced whirl if it is known and without rub.
+    """Return the motion of a whole record in which the speed or the machine changes: the forced whirl, or undecided.
 
-    It is undecided with rub, and where supports that are not linear leave the motion without rub unknown.
+    It is undecided with rub, and where the motion without rub is not known because a support is not linear. `rub` is
+    whether any blade touched.
     """
     blisk = UNDECIDED if rub or not response.knows_free_motion else FORCED
     return Motions(blisk=blisk, casing=UNDECIDED if rub else AT_REST, system=blisk)
 
 
 def changing_orders(windows: Windows) -> dict[str, TapOrders]:
-    """Average the orders of a record at a changing speed over its windows.
+    """Average the orders of a record at a changing speed over its windows. Returns the orders of each tap.
 
-    Amplitudes are root mean squares over the windows' amplitudes. Floors are root mean squares over their standard
-    errors. Phases, fractional orders and blade passing are unknown: NaN.
+    Amplitudes are root mean squares of the windows' amplitudes. Floors are root mean squares of their standard errors.
+    Phases, fractional orders and blade passing are unknown: NaN.
     """
     unknown = {
         "phases": np.full(HIGHEST_ORDER, np.nan),
@@ -99,9 +100,9 @@ def _rms(values: FloatArray) -> FloatArray:
 
 
 def by_angle(response: Response) -> ContactEvents:
-    """Return the touches counted in steps of equal angle, `steps_per_turn` a turn, instead of steps of equal time.
+    """Return the touches in steps of equal angle, `steps_per_turn` a turn, instead of steps of equal time.
 
-    At a steady speed both are the same.
+    At a steady speed the touches are returned unchanged.
     """
     changing, events = response.changing_speed, response.events
     if changing is None:

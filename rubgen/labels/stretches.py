@@ -17,19 +17,19 @@ NOT_KNOWN = (Motion.UNDECIDED, None)
 def window_motions(
     response: Response, whole: Motions, history: SpeedHistory | None
 ) -> tuple[tuple[Motion, float | None], ...]:
-    """Return class and confidence of the motion in each window of `Windows`.
+    """Return class and confidence of the motion in each window of 16 turns. The confidence is None where it is unknown.
 
-    - A motion that repeats or is quasi-periodic over the whole record has that class in every window.
-    - A motion that is chaotic or undecided as a whole has stretches. A window within a stretch that repeats is period-1
-      or period-k; how sure that is was not measured. A window within an irregular stretch of a chaotic motion is
-      chaotic. A window across the end of a stretch is undecided.
-    - While the speed changes, a window has the class of the changes of motion (`SpeedHistory`), where there is one
-      throughout. While a fault grows and blades rub, it has the class of `drifting_motion`. How sure these are was not
-      measured.
+    - response: the response of the whole record.
+    - whole: the motion of the whole record.
+    - history: its changes, where the speed changes; else None.
 
-    - response: of the whole record.
-    - whole: its motion.
-    - history: its changes, where the speed changes.
+    A motion that repeats or is quasi-periodic over the whole record has that class in every window. A motion that is
+    chaotic or undecided as a whole has stretches, regular and irregular. A window within a regular stretch is period-1
+    or period-k, with unknown confidence. A window within an irregular stretch has the class of the whole record. A
+    window across the end of a stretch is undecided.
+
+    While the speed changes, a window has the class from `history`, if it is the same throughout the window. While a
+    fault grows and blades rub, it has the class of `drifting_motion`. Both have unknown confidence.
     """
     edges = window_edges(response)
     windows = list(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True))

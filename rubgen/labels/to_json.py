@@ -15,10 +15,10 @@ MOTION_LABELS = ("motion", "motion_blisk", "motion_casing")
 
 
 def labels_to_json(labels: Labels) -> dict[str, object]:
-    """Return the labels of one run by their public names, as plain Python values.
+    """Return the labels of one run by their public names, as plain Python values for JSON.
 
-    The keys are in the order of `rubgen.labels.registry`, which lists names, units and meanings. The orders of each
-    true signal follow, `<tap>_orders` and so on. Undefined values (no period, a share of nothing) are None.
+    The keys are in the order of `rubgen.labels.registry`, which lists names, units and meanings. The labels of each
+    true signal follow, `<tap>_orders` and so on. Undefined values and NaN are None.
     """
     values = {each.name: _plain(each.kind, each.value(labels)) for each in LABELS}
     for tap, orders in labels.orders.items():
@@ -27,13 +27,13 @@ def labels_to_json(labels: Labels) -> dict[str, object]:
 
 
 def remade_labels(record: CompactRecord) -> dict[str, object]:
-    """Make labels from the compact record of a run, by their public names: all except labels of orders."""
+    """Compute labels from the compact record of a run, by their public names: all except labels of orders."""
     values = labels_to_json(label(response_of(record)))
     return {name: value for name, value in values.items() if name not in FROM_TAPS}
 
 
 def window_labels(labels: Labels) -> dict[str, object]:
-    """Return the labels of each true signal in windows by their public names, `<tap>_window_amplitudes`."""
+    """Return the labels of windows of each true signal (tap), by their public names, `<tap>_window_amplitudes`."""
     orders = labels.windows.orders
     return {f"{tap}_{each.ending}": each.value(values) for tap, values in orders.items() for each in WINDOW_LABELS}
 
@@ -60,8 +60,11 @@ def _plain(kind: str, value: Any) -> object:
 def motion_classes(labels: Labels, start: float, seconds: float) -> list[tuple[float, dict[str, str]]]:
     """Return the classes of motion in a part of the record, each with the time in s from which it is valid.
 
-    Times count from `start`, a time of the record in s; the part is `seconds` long. A class is a table of the labels in
-    MOTION_LABELS. A steady run has one entry, at time 0.
+    - labels: the labels of the run.
+    - start: start of the part in s from the start of the record. The returned times count from it.
+    - seconds: length of the part.
+
+    A class is a dict of the labels in MOTION_LABELS. A steady run has one entry, at time 0.
     """
     if labels.history is None:
         stretches = [(0.0, labels.motion, labels.motion_blisk, labels.motion_casing)]

@@ -13,7 +13,7 @@ from rubgen.solver.response import WINDOW_TURNS, ChangingSpeed, Response
 
 @dataclass(frozen=True, kw_only=True)
 class Windows:
-    """Windows of WINDOW_TURNS turns; the last one may be shorter."""
+    """Labels of the windows of a record. A window has WINDOW_TURNS turns; the last window may be shorter."""
 
     start: FloatArray
     """Start of each window (windows,), s."""
@@ -33,7 +33,7 @@ class Windows:
 
 
 def window_edges(response: Response) -> IntArray:
-    """Return the first turn of each window, then the number of turns (windows + 1,)."""
+    """Return the first turn of each window, and the number of turns at the end (windows + 1,)."""
     return np.append(np.arange(0, response.record_turns, WINDOW_TURNS), response.record_turns)
 
 
@@ -62,7 +62,10 @@ def windows(response: Response) -> Windows:
 
 
 def turn_times(response: Response, changing: ChangingSpeed | None) -> FloatArray:
-    """Return the start of each turn, and the end of the record (record_turns + 1,), s."""
+    """Return the start of each turn, and at the end the end of the record (record_turns + 1,), in s.
+
+    `changing` is the course of a changing speed; None is a steady speed.
+    """
     turns = range(response.record_turns + 1)
     if changing is None:
         return np.asarray(response.turn_seconds * np.array(turns))

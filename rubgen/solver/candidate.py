@@ -19,14 +19,14 @@ STABILITY_SPEEDS, ONSET_SPEEDS = 3, 9
 
 
 def candidate_problem(scenario: Scenario, bounds: MachineTable, slowest: float, fastest: float) -> str | None:
-    """Return why the machine of a scenario is not used, key and value first; None where it is sane.
+    """Return why the machine of a scenario cannot be used, key and value first; None where it can be used.
 
     - scenario: a run of the machine.
-    - bounds: the table with the bounds.
+    - bounds: the table `[machines]` of the recipe, with the bounds of critical speed and onset clearance.
     - slowest, fastest: the speeds of the recipe, rad/s.
 
-    Checked in this order: reduction, critical speed, stability at three speeds, and the clearance at which the blades
-    just reach the casing, at nine. That onset is clearance plus free penetration, whatever the clearance.
+    Checked in this order: reduction, critical speed, stability at three speeds, and at nine speeds the clearance at
+    which the blades just reach the casing. This onset clearance is the machine's clearance plus the free penetration.
     """
     try:
         with one_blas_thread():

@@ -17,7 +17,7 @@ BRIDGE_RANGE = np.sqrt(np.pi / 2)
 
 @dataclass(frozen=True, kw_only=True)
 class Exponent:
-    """The largest Lyapunov exponent."""
+    """The largest Lyapunov exponent of a motion, with its standard error."""
 
     per_turn: float
     """The exponent in 1/turn (or by the span of one growth)."""
@@ -56,8 +56,8 @@ def lyapunov(growth: FloatArray) -> Exponent | None:
 
     - growth (n,): ln of the growth of a companion's distance from one renormalisation to the next.
 
-    Returns None for fewer than 20 growths after the first tenth, and where a growth is NaN: the companion could not
-    follow.
+    Returns None for fewer than 20 growths after the first tenth, and where a growth is NaN: the companion then could
+    not follow the run.
     """
     counted = growth[int(ALIGNING * growth.size) :]
     if counted.size < 2 * BLOCKS or not np.isfinite(growth).all():
@@ -72,10 +72,10 @@ def lyapunov(growth: FloatArray) -> Exponent | None:
 
 
 def is_settled(growth: Sequence[float]) -> bool:
-    """Return whether the growths so far settle the exponent, so that more of them would not change its sign.
+    """Return whether the exponent of the growths so far is settled: more growths would not change its sign.
 
-    It is decided at 150, 200, ... growths. The exponent is settled where it is farther from zero than SETTLED_ERRORS
-    standard errors and than SETTLED_FROM. A last growth that is NaN settles it too: there will be no exponent.
+    It can be settled only at 150, 200, ... growths, if it is farther from zero than SETTLED_ERRORS standard errors and
+    than SETTLED_FROM. A last growth that is NaN settles it too: there is then no exponent.
     """
     n = len(growth)
     if not math.isfinite(growth[-1]):
@@ -87,12 +87,16 @@ def is_settled(growth: Sequence[float]) -> bool:
 
 
 def changed_after(impulse: FloatArray, turns: int, exponent: float) -> bool:
-    """Return whether a motion has become another one since its exponent was settled after `turns` turns.
+    """Return whether the class of a motion has changed since its exponent was settled after `turns` turns.
 
-    Chaos may be a transient, and a regular motion an episode. The impulses of the turns (n,) tell: after chaos some 50
-    turns repeat ten times more closely than the last 100 turns that the exponent knows, after a regular motion ten
-    times less closely. Of 86 rubs of three recipes one changed, and repeated to rounding; the chaotic others stayed
-    within factors of 0.34 and 2.2, the regular ones came closer and closer.
+    - impulse (n,): impulse of each turn, N s.
+    - turns: number of turns from which the exponent was computed, 100 at least.
+    - exponent: its value.
+
+    Chaos may be a transient, and a regular motion an episode. A motion with a positive exponent has changed if some 50
+    later turns repeat ten times more closely than the last 100 turns before. Any other motion has changed if they
+    repeat ten times less closely. Of 86 rubs of three recipes one changed, and repeated to rounding. The other chaotic
+    rubs stayed within factors of 0.34 and 2.2; the regular rubs repeated more and more closely.
     """
     before = _unlikeness(impulse[turns - CHANGE_TURNS : turns])
     starts = range(turns, len(impulse) - ASKED_EVERY + 1, ASKED_EVERY)
@@ -110,7 +114,7 @@ def _unlikeness(impulse: FloatArray) -> float:
 def standard_error(growth: FloatArray) -> float:
     """Return the standard error of the mean of growths (n,) that follow each other in time; n is at least ten.
 
-    It is the largest of three estimates. For each there is a motion that the other two underestimate:
+    It is the largest of three estimates. For each estimate there is a motion for which the two others are too small:
 
     - Chaos: the scatter of the means of ten blocks over sqrt(10). It allows for correlation from turn to turn.
     - Tori: range(S) / (n sqrt(pi / 2)), where S is the sum of the growths less its straight line from first to last. On

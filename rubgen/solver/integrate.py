@@ -49,22 +49,22 @@ def integrate(
     `step_kernels`. The run starts in the exact rub-free motion, with the surface opened so that nothing touches. The
     surface closes smoothly (continuous second derivative) over `operation.closing_turns`, at most the settle turns.
 
-    - model: makes the system at the speeds of the operation. A system alone is run at its own speed.
+    - model: makes the system at the speeds of the operation. A `SpinningSystem` is run at its own speed.
     - operation: speed over time, settle and record turns, steps.
     - contact: the contact law.
-    - wants: what else the response records.
+    - wants: taps, their duration, and other things that the response records.
 
     All taps of step n belong to one time: displacements q_n, velocities and accelerations from q_n-1, q_n, q_n+1, and
     the contact force lam_n. The last value belongs to the last step of the record. The companion trajectory
-    (`observers.companion`) stops once it has settled the exponent. If the motion becomes another after that, the run is
-    made again with a companion that does not stop. There is no companion where a fault grows within the record: its
-    exponent would mix the motions before and after. At a changing speed the time steps are equal and the Poincare
+    (`observers.companion`) stops once the Lyapunov exponent is settled. If the class of motion changes after that, the
+    run is made again with a companion that does not stop. There is no companion where a fault grows within the record:
+    its exponent would mix the motions before and after. At a changing speed the time steps are equal and the Poincare
     section lies between steps (`turn_kernels.record_section`). There are then no companion and no symmetry states.
 
-    A run that fails has the status and the reason. Nothing else in it is data. Raises UserError for a system that
-    `check_system` refuses, for a record too short for a wanted exponent, for a profile that lacks a key, and for a turn
-    of more than 4,194,304 steps; ValueError where anything but contact couples blisk and casing. Valid for small casing
-    displacements.
+    A run that fails has the status and the reason; its other fields are not valid. Raises UserError for a system that
+    `check_system` refuses, for a record too short for a wanted exponent, for a profile without a key that it needs, and
+    for a turn of more than 4,194,304 steps. Raises ValueError where M, C or K couple blisk and casing. Valid for small
+    casing displacements.
     """
     if wants.companion:
         check_turns(operation.record_turns)
@@ -130,7 +130,7 @@ def _changing(changing: ChangingSystem, operation: Operation, contact: ContactLa
 class Integration:
     """One run in progress: speed driver, observers and status.
 
-    `start` is the system at the first instant, `free_penetration` that of the response.
+    `start` is the system at the first instant; `free_penetration` is the value for the response, m.
     """
 
     def __init__(
@@ -181,7 +181,7 @@ class Integration:
         return True
 
     def response(self) -> Response:
-        """Run, and return the response."""
+        """Integrate the whole run, and return its response."""
         self.run()
         stepper, rotation, system = self.stepper, self.driver.rotation, self.stepper.system
         kept = {name: value for observer in self.observers for name, value in observer.result().items()}

@@ -41,9 +41,9 @@ def no_response(
     n_casing: int = 0,
     size: int = 0,
 ) -> Response:
-    """Make a response with a status and its reason. All its arrays are empty.
+    """Make a response of a run that was not integrated, with a status and its reason. All its arrays are empty.
 
-    - speed, dt, steps_per_turn, record_turns, n_blades, n_casing: as in `Response`.
+    - speed, dt, steps_per_turn, record_turns, n_blades, n_casing: the fields of `Response`; speed in rad/s, dt in s.
     - size: number of coordinates.
     """
     nothing = np.zeros((0, size))
@@ -87,7 +87,10 @@ def refused_response(system: SpinningSystem, operation: Operation, steps: int, r
 
 
 def film_refusal(system: SpinningSystem, steps: int) -> Refusal | None:
-    """Return the refusal where no rub-free motion fits the laws of the support at `steps` steps a turn; else None."""
+    """Return status FILM_CLOSED and a reason if no rub-free motion fits the laws of the support; else None.
+
+    `steps` is the number of steps in a turn.
+    """
     forces = system.starting.turning
     if forces is None or not forces.laws:
         return None
@@ -101,9 +104,9 @@ def film_refusal(system: SpinningSystem, steps: int) -> Refusal | None:
 
 
 def stability(system: SpinningSystem) -> tuple[Refusal | None, float]:
-    """Return the refusal of a system that grows by itself or has an undamped mode, else None; and its decay.
+    """Return a refusal, and the slowest decay of all modes in 1/s. The refusal is None for a stable system.
 
-    The decay is the slowest of all modes, in 1/s.
+    A refusal is status UNSTABLE and a reason. It is returned if the system grows by itself or has an undamped mode.
     """
     decay = slowest_decay(system)
     if decay > UNDYING_SHARE * system.speed:
@@ -114,7 +117,7 @@ def stability(system: SpinningSystem) -> tuple[Refusal | None, float]:
 
 
 def no_run_warning(scenarios: Sequence[Scenario]) -> str | None:
-    """Return one line where none of these runs can be integrated, with the reason of the first; None where one can."""
+    """Return a warning of one line if none of these runs can be integrated, with the first reason; None if one can."""
     reasons = []
     for scenario in scenarios:
         reason = _refusal(scenario)

@@ -70,10 +70,10 @@ class TipArrivals:
 
 @dataclass(frozen=True, kw_only=True)
 class EnergyBalance:
-    """Energies and works over the whole integration, in J, computed as the scheme does.
+    """Energies and works over the whole integration, in J, computed as the scheme computes them.
 
-    end - start is the sum of the works except for rounding. A work is positive where it adds energy. Works are those
-    of the turning frame.
+    end - start is the sum of the works except for rounding. A work is positive where it adds energy. Works are taken in
+    the turning frame.
     """
 
     start: float
@@ -116,7 +116,7 @@ class EnergyBalance:
 
 @dataclass(frozen=True, kw_only=True)
 class Track:
-    """The whole motion over the few turns about the hardest touch, and what places it in space."""
+    """The whole motion over the few turns about the hardest touch, with the data that a replay needs to draw it."""
 
     step: IntArray
     """Steps of the frames (frames,), counted from the first step of the record."""
@@ -148,7 +148,10 @@ class WornLiner:
 
 @dataclass(frozen=True, kw_only=True)
 class ChangingSpeed:
-    """How the speed of a run went. Turn k of the record begins at the step nearest to theta = 2 pi k."""
+    """Speed, turns and orders of a run at a changing speed.
+
+    Turn k of the record begins at the step nearest theta = 2 pi k.
+    """
 
     rotation: Rotation
     """Speed (rad/s) and angle (rad) over time in s; t = 0 at the first step of the record."""
@@ -164,10 +167,10 @@ class ChangingSpeed:
 
 @dataclass(frozen=True, kw_only=True)
 class Response:
-    """The true response of one run. It never holds the history of the state.
+    """The true response of one run. It does not contain the history of the state.
 
     Where `status` is not OK, no array may be used as data. States are q and v as in `SpinningSystem`: n coordinates,
-    the blisk in its turning frame. That frame coincides with the inertial frame where theta = 0 mod 2 pi.
+    the blisk in its turning frame. The turning frame coincides with the inertial frame where theta = 0 mod 2 pi.
     """
 
     status: Status
@@ -244,7 +247,10 @@ class Response:
 
     @property
     def knows_free_motion(self) -> bool:
-        """Whether the motion without rub is known (see `free_penetration`), not of many periods or chaotic."""
+        """Whether the motion without rub is known.
+
+        It is not where `free_penetration` is infinite: it may then be chaotic.
+        """
         return self.free_penetration != math.inf
 
     @property

@@ -8,7 +8,7 @@ from rubgen.taps import DEFAULT_TAPS, Tap
 
 
 class SpeedModel(Protocol):
-    """Makes the system at any speed, as `reduction.ReducedModel` does."""
+    """Makes the spinning system at any speed. `reduction.ReducedModel` is such a model."""
 
     def at_speed(self, speed: float, acceleration: float = 0.0) -> SpinningSystem:
         """Return the system at a speed in rad/s and an acceleration in rad/s2."""
@@ -17,7 +17,7 @@ class SpeedModel(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Wants:
-    """What a response records in addition. Nothing here changes the motion."""
+    """What a response records, and for how long. No field changes the motion."""
 
     tail_seconds: float = 0.0
     """Seconds that the taps cover, 100 turns at least; they may reach back before the record, not before the start."""

@@ -25,7 +25,7 @@ class RubExtent(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class ContactAmounts:
-    """Counts and works over the record."""
+    """Counts and works of contact over the record."""
 
     touches: int
     """Number of touches of all blades."""
@@ -47,12 +47,14 @@ class ContactAmounts:
 def contact_amounts(response: Response, zones: ContactZones, *, record_steps: int) -> ContactAmounts:
     """Compute the amounts of contact of a record.
 
-    severity = impulse of all blades / (m g T), with T the time of the record. It is the mean force on the casing in
-    weights of the blisk.
+    severity = sum of the normal impulses of all blades / (m g T), with m the mass of the blisk, g = 9.80665 m/s2 and T
+    the duration of the record. It is the mean normal force on the casing over the weight of the blisk.
 
     - response: the response of the run.
-    - zones: its contact zones.
-    - record_steps: number of steps of the record.
+    - zones: the arcs of the casing that blades touch.
+    - record_steps: number of time steps of the record, above 0.
+
+    Without contact the counts, impulses and severity are 0. A severity or free penetration that is not known is None.
     """
     events, turns, blades = response.events, response.record_turns, response.n_blades
     weight_time = response.blisk_mass * STANDARD_GRAVITY * record_steps * response.dt
@@ -72,8 +74,8 @@ def contact_amounts(response: Response, zones: ContactZones, *, record_steps: in
 def rub_extent(duty: float, zones: ContactZones) -> RubExtent:
     """Classify how far around the casing a rub extends: none, partial or full annular.
 
-    Full annular is contact in at least LASTING of the time, all the way round the casing (Muszynska 2005,
-    Rotordynamics, ch. 5). `duty` is the share of the time with contact.
+    `duty` is the share of the time with contact, 0 to 1. A rub is full annular if `duty` is at least LASTING and the
+    contact zone is the whole circle (Muszynska 2005, Rotordynamics, ch. 5).
     """
     if duty == 0:
         return RubExtent.NONE

@@ -23,7 +23,7 @@ PHASES = 64
 
 @dataclass(frozen=True, kw_only=True)
 class ContactZones:
-    """Arcs of the casing with contact, by rising centre."""
+    """Arcs of the casing with contact, sorted by their centre. Without contact there are none."""
 
     centres: tuple[float, ...]
     """Mean angle by impulse of each zone, rad."""
@@ -41,11 +41,11 @@ def contact_zones(events: ContactEvents, *, steps_per_turn: int) -> ContactZones
     """Find the contact zones of a record: arcs of the casing with impulse, and whether they are symmetric.
 
     A zone is a connected arc of the impulse histogram. Gaps of more than 10 deg separate zones. The lightest bins, 2 %
-    of the impulse in all, and then zones with less than 2 % are left out; `imbalance` counts them. A zone's centre is
-    its mean angle by impulse. Its width is the arc from its first to its last bin. A circle without such a gap is one
-    zone of width 2 pi. Zones are symmetric where their widths and spacings are equal within 3 deg and their impulses in
-    each turn within 5 % (rms). A single zone is symmetric only as the whole circle. Over many turns even a chaotic rub
-    has equal mean impulses.
+    of the impulse in all, are left out first, then zones with less than 2 %. `imbalance` counts both. A zone's centre
+    is its mean angle weighted by impulse. Its width is the arc from its first to its last bin. A circle without a gap
+    above 10 deg is one zone of width 2 pi. Zones are symmetric if their widths and spacings are equal within 3 deg and
+    their impulses in each turn within 5 % (rms): over many turns even a chaotic rub has equal mean impulses. A single
+    zone is symmetric only as the whole circle.
 
     - events: touches, in steps of equal angle.
     - steps_per_turn: number of such steps in a turn.
@@ -68,10 +68,10 @@ def contact_zones(events: ContactEvents, *, steps_per_turn: int) -> ContactZones
 
 
 def impulse_histogram(events: ContactEvents, steps_per_turn: int) -> FloatArray:
-    """Distribute the impulse of all touches over BINS bins of casing angle from 0, in N s.
+    """Distribute the impulse of all touches over BINS bins of casing angle from 0.
 
-    The sum is the impulse of all events. The impulse of an event is distributed evenly over the angle that the blade
-    swept during contact, steps dt Omega, around its mean angle.
+    Returns the impulse of each bin, N s. The bins add up to the impulse of all touches. The impulse of a touch is
+    distributed evenly over the angle that the blade swept during contact, steps dt Omega, around its mean angle.
     """
     sweep = np.minimum(events.steps * (2 * np.pi / steps_per_turn), 2 * np.pi)
     start = np.mod(events.angle - sweep / 2, 2 * np.pi) / (2 * np.pi) * BINS
@@ -104,9 +104,9 @@ def _without_lightest(density: FloatArray) -> FloatArray:
 
 
 def touched_arcs(touched: np.typing.NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Return the first bin and the number of bins of each arc of `touched` bins around a circle.
+    """Return the first bin and the number of bins of each arc of True bins in `touched`, on a circle.
 
-    Gaps up to GAP are closed. A circle without a larger gap is the one arc (0, number of bins).
+    At least one bin must be True. Gaps up to GAP are closed. If no gap is larger, the one arc is (0, number of bins).
     """
     bins = np.flatnonzero(touched)
     to_next = np.diff(bins, append=bins[0] + touched.size)
@@ -127,11 +127,12 @@ def _zone(share: FloatArray, first: int, count: int) -> tuple[float, float, floa
 
 
 def turn_imbalance(events: ContactEvents, centres: FloatArray, steps_per_turn: int) -> float:
-    """Compute how unequal the zones are: the standard deviation of their impulses in all turns, over the mean.
+    """Compute how unequal the zones are: the standard deviation of their impulses in all turns over the mean impulse.
 
-    Symmetric motion, q(t + T/N) = q(t), has equal impulses of all zones in each turn: 0. An event belongs to the zone
-    with the nearest centre. Turns are cut where there is least contact, so that no touch of a periodic rub changes from
-    one turn to the next. The incomplete first and last turn are left out where there are more than two turns.
+    It is 0 for symmetric motion, q(t + T/N) = q(t), where all zones have equal impulses in each turn. An event belongs
+    to the zone with the nearest centre. A turn begins at the angle with the least contact, so that no touch of a
+    periodic rub changes from one turn to the next. The incomplete first and last turn are left out if there are more
+    than two turns.
 
     - events: the touches of the record, at least one.
     - centres (zones,): centres of the zones, rad.

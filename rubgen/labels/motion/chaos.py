@@ -24,12 +24,12 @@ DAMPED_FROM = 200
 
 
 def chaos_indicator(points: FloatArray) -> float:
-    """Return the largest K of the 0-1 test among the groups of points (turns, groups, values).
+    """Return the largest K of the 0-1 test among two groups of points (turns, groups, values): near 1 for chaos.
 
-    For a blisk the first group is the disk centre, the others are the tips. Each K is the median of the 0-1 test over
-    the leading principal components of the points without their periodic part. Where the first half of the record is
-    more than twice as far from the clusters as the second half, the motion is still settling, and only the second half
-    is tested. A group whose distance is below ROUNDING has K = 0.
+    For a blisk, group 0 of `points` is the disk centre and is tested alone; the tips are tested together. Each K is the
+    median of the 0-1 test over the leading principal components of the points without their periodic part. If the first
+    half of the record is more than twice as far from the clusters as the second half, the motion still settles, and
+    only the second half is tested. K is 0 for a group whose distance from its clusters is below ROUNDING.
     """
     half = points.shape[0] // 2
     first, second = (rms(without_periodic_part(part)) for part in (points[:half], points[half:]))
@@ -45,9 +45,9 @@ def _group_indicator(points: FloatArray) -> float:
 
 
 def principal_components(points: FloatArray) -> FloatArray:
-    """Return the leading principal components (1 .. OBSERVABLES, turns) of the section, each without its mean.
+    """Return the leading principal components (1 .. OBSERVABLES, turns) of the section `points`, each without its mean.
 
-    Components below 1 % of the leading one's variance are left out: they may be rounding.
+    Components with less than 1 % of the largest variance are left out: they may be rounding.
     """
     flat = points.reshape(points.shape[0], -1)
     flat = flat - flat.mean(axis=0)

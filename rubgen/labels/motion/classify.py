@@ -27,7 +27,7 @@ and nearly twice as many.
 
 @dataclass(frozen=True, kw_only=True)
 class Motions:
-    """Classes of the blisk, of the casing, and of both together, with the reasons."""
+    """Classes of motion of the blisk, of the casing, and of the whole system, with the indicators that led to them."""
 
     blisk: MotionClass
     """Class of the blisk."""
@@ -51,7 +51,10 @@ class Motions:
 
     @property
     def segments(self) -> tuple[Segment, ...]:
-        """The stretches of an intermittent motion, which switches between regular and irregular; else empty."""
+        """The segments of an intermittent motion, which switches between regular and irregular.
+
+        Empty for any other motion.
+        """
         return self.stretches if self.stretches and is_intermittent(list(self.stretches)) else ()
 
     @property
@@ -61,13 +64,14 @@ class Motions:
 
 
 def motion(response: Response, exponent: Exponent | None = None) -> Motions:
-    """Classify the motion of a run from its Poincare section and its exponent. Raises UserError below 32 turns.
+    """Classify the motion of a run from its Poincare section and its Lyapunov exponent.
 
-    Each part is periodic or not by its own clusters. The 0-1 test uses the disk centre, the tips and the casing. The
-    largest K counts for all parts: contact couples them into one system, which is chaotic as a whole. A lightly damped
-    blade with random excitation looks regular for longer than the record; the disk centre does not. Without contact the
-    motion is the forced one, which repeats every turn, where that motion is known (`Response.knows_free_motion`). Else,
-    with a support that is not linear, the section decides as with contact, and the casing is at rest.
+    Raises UserError below 32 turns. `exponent` is None if it was not computed. Blisk and casing are each periodic or
+    not by their own clusters. The 0-1 test uses the disk centre, the tips and the casing. Its largest K counts for all
+    of them: contact couples them into one system, which is chaotic as a whole. A lightly damped blade with random
+    excitation looks regular for longer than the record; the disk centre does not. Without contact the motion is the
+    forced motion, which repeats every turn, if this motion is known (`Response.knows_free_motion`). If it is not known,
+    because a support is not linear, the section is classified as with contact, and the casing is at rest.
     """
     turns = response.section_q.shape[0]
     if turns < LEAST_TURNS:
@@ -95,7 +99,10 @@ def motion(response: Response, exponent: Exponent | None = None) -> Motions:
 def indicators(parts: list[FloatArray], exponent: Exponent | None, *, resolved: bool = True) -> tuple[Indicators, ...]:
     """Compute the indicators of each part: period of its clusters, K of the 0-1 test, exponent, settling.
 
-    `parts` are points (turns, groups, any) of the section, as `blisk_points` returns them.
+    - parts: points (turns, groups, any) of the section of the blisk and, if it moves, of the casing, as from
+      `blisk_points`.
+    - exponent: Lyapunov exponent of the system, or None.
+    - resolved: whether the time step resolves the touches.
     """
     periods = [cluster_period(part) for part in parts]
     strays = [stray(part, period) for part, period in zip(parts, periods, strict=True)]

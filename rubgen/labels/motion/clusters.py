@@ -18,7 +18,7 @@ def cluster_period(points: FloatArray) -> int | None:
 
     Only the second half of the record is used, where transients have decayed. A point's distance to the mean of its
     cluster is the distance of its farthest group, so that one chattering tip counts. The distances must be at most
-    CLUSTER_RADIUS (rms over turns), at most EXCURSION in each turn, and must not grow.
+    CLUSTER_RADIUS (rms over turns) and at most EXCURSION in each turn, and must not grow.
     """
     late = _late(points)
     for period in range(1, _longest(late) + 1):
@@ -29,10 +29,11 @@ def cluster_period(points: FloatArray) -> int | None:
 
 
 def stray(points: FloatArray, period: int | None) -> float:
-    """Return the rms distance of the second half's points from their k clusters, over the size of the motion.
+    """Return the rms distance of the points of the record's second half from their k clusters.
 
-    k is `period`, or with None the best k <= 16. The means of k clusters of n points lie nearer to the points than the
-    true ones. Division by n - k in the mean square corrects this.
+    k is `period`, or for None the k <= 16 with the smallest distance. `points` (turns, groups, values) are divided by
+    the size of the motion. The means of k clusters of n points lie nearer to the points than the true means: dividing
+    the mean square by 1 - k / n corrects this.
     """
     late = _late(points)
     periods = range(1, _longest(late) + 1) if period is None else (period,)
@@ -42,7 +43,7 @@ def stray(points: FloatArray, period: int | None) -> float:
 def cluster_distances(points: FloatArray, period: int) -> FloatArray:
     """Return the distance (turns,) of each point (turns, groups, values) to the mean of its cluster.
 
-    It is that of the farthest group. A cluster is every period-th point.
+    It is the distance of the farthest group. A cluster consists of every `period`-th point.
     """
     return farthest(off_cluster(points, period))
 
@@ -61,11 +62,11 @@ def farthest(points: FloatArray) -> FloatArray:
 
 
 def without_periodic_part(points: FloatArray) -> FloatArray:
-    """Subtract from the points (turns, groups, values) the means of their k clusters.
+    """Subtract from the points (turns, groups, values) the means of their k clusters, and return the rest.
 
-    k <= 16 is the number with the least remaining variance. A motion that wanders within bands, and visits the bands in
-    turn, would otherwise look regular, because the bands are larger. The variance is divided by turns - k, so that more
-    clusters alone are no gain.
+    k <= 16 is the number with the least remaining variance. Without this, a motion that wanders within bands and visits
+    the bands in turn would look regular, because the bands are larger. The variance is divided by turns - k, so that
+    more clusters alone do not reduce it.
     """
     turns = points.shape[0]
     left = [off_cluster(points, k) for k in range(1, min(LONGEST_PERIOD, turns // 8) + 1)]
@@ -74,7 +75,7 @@ def without_periodic_part(points: FloatArray) -> FloatArray:
 
 
 def off_cluster(points: FloatArray, period: int) -> FloatArray:
-    """Subtract from each point the mean of its cluster, which is every period-th point."""
+    """Subtract from each point the mean of its cluster, and return the rest. A cluster is every `period`-th point."""
     turns = len(points)
     whole = turns - turns % period
     # Summed turn after turn, as a mean of every period-th point would be: the same bits.
@@ -92,8 +93,8 @@ def off_cluster(points: FloatArray, period: int) -> FloatArray:
 def settles(points: FloatArray) -> bool:
     """Return whether the points (turns, groups, values) still approach a steady motion.
 
-    In the second half of the record, the rms distance from the clusters falls by more than half from the first quarter
-    to the last, from above CLUSTER_RADIUS. The clusters are those of the k <= 16 with the smallest distance.
+    In the second half of the record, the rms distance from the clusters then falls by more than half from the first
+    quarter to the last, from above CLUSTER_RADIUS. The number of clusters is the k <= 16 with the smallest distance.
     """
     late = _late(points)
     distances = [cluster_distances(late, k) / math.sqrt(1 - k / len(late)) for k in range(1, _longest(late) + 1)]

@@ -33,7 +33,7 @@ _REGULARITY = list(Motion)
 
 @dataclass(frozen=True, kw_only=True)
 class Indicators:
-    """The indicators of one part."""
+    """The indicators of the motion of one part: blisk or casing."""
 
     period: int | None
     """Period by clusters in turns; None without clusters."""
@@ -66,14 +66,14 @@ FORCED = MotionClass(motion=Motion.PERIOD_1, period=1)
 
 
 def decide(seen: Indicators) -> MotionClass:
-    """Return the class of motion on which the indicators agree, else undecided.
+    """Return the class of motion on which the indicators agree. If they contradict, the class is undecided.
 
-    - Clusters: periodic at the scale of the motion. The rest may be chaotic at a far smaller scale. Where it is not far
-      smaller (CLOSE) and both other indicators find chaos, the part is undecided.
+    - Clusters: periodic at the scale of the motion. The rest may be chaotic at a far smaller scale. If the rest is not
+      far smaller (CLOSE) and the two other indicators find chaos, the part is undecided.
     - No clusters, K above its bound, exponent positive: chaotic. K below its bound, exponent zero within its error:
       quasi-periodic. Anything else is undecided: a negative exponent belongs to a periodic motion that is still
       settling, or that repeats after more than 16 turns.
-    - Without an exponent clusters decide, then K.
+    - Without an exponent: clusters, then K determine the class.
     - A motion that still settles is never quasi-periodic.
     """
     motion = _class_of(seen)
@@ -152,11 +152,11 @@ def _normal(deviate: float) -> float:
 
 
 def combined(blisk: MotionClass, casing: MotionClass) -> MotionClass:
-    """Combine the classes of blisk and casing into that of both: the less regular of the two.
+    """Combine the classes of blisk and casing into the class of the system: the less regular of the two classes.
 
-    It is undecided where either is undecided and neither is chaotic. The period is the least common multiple of both
-    periods; a part at rest counts as 1. The confidence is taken from the part which decides. For two equal classes it
-    is the larger one where the motion does not repeat, and the smaller one where it does.
+    It is undecided if one class is undecided and none is chaotic. The period is the least common multiple of both
+    periods; a part at rest counts as 1. The confidence belongs to the part with the less regular class. For two equal
+    classes it is the larger confidence where the motion does not repeat, and the smaller where it does.
     """
     worst = max(blisk, casing, key=lambda part: _REGULARITY.index(part.motion))
     alike = [part.confidence for part in (blisk, casing) if part.motion is worst.motion]

@@ -41,14 +41,14 @@ UNDECIDED = MotionClass(motion=Motion.UNDECIDED, period=None, confidence=0.0)
 def drifting_motion(response: Response, first: int, last: int, *, rub: bool) -> Motions:
     """Return the classes of motion of the turns first .. last - 1 of a record, whose speed or machine may drift.
 
-    Without rub it is the forced motion where that is known (`Response.knows_free_motion`). Else, on the turns about the
-    middle:
+    `rub` is whether blades touch in these turns. Without a rub the motion is the forced motion, if this is known
+    (`Response.knows_free_motion`). Otherwise, on the turns about the middle:
 
     - periodic after k <= 4 turns where the points lie on k branches, within CLUSTER_RADIUS rms and EXCURSION each. A
-      branch is every kth point, a quadratic in time; the rms is corrected for its coefficients.
-    - chaotic where the part does not repeat, and some group (disk centre, tips, casing) lies farther than SCATTER from
-      one branch and cannot be predicted (`prediction_error`) over PREDICTED_TURNS. Contact couples the parts.
-    - undecided otherwise: on a torus, while it settles, across a change. A class needs 32 turns, chaos 64.
+      branch is every kth point, fitted by a quadratic in time; the rms is corrected for its coefficients.
+    - chaotic where the part does not repeat, and a group (disk centre, tips, casing) lies farther than SCATTER from one
+      branch and cannot be predicted (`prediction_error`) over PREDICTED_TURNS. Contact couples the parts.
+    - undecided otherwise: on a torus, while the motion settles, across a change. A class needs 32 turns, chaos 64.
 
     A beat that takes more than some hundred turns counts as drift.
     """
@@ -72,7 +72,10 @@ def drifting_motion(response: Response, first: int, last: int, *, rub: bool) -> 
 
 
 def off_branches(points: FloatArray, branches: int) -> FloatArray:
-    """Subtract from the points (turns, groups, values) their branch: a quadratic in time through every kth point."""
+    """Subtract from the points (turns, groups, values) their branch, and return the rest.
+
+    A branch is a quadratic in time through every `branches`-th point.
+    """
     time = np.linspace(-1.0, 1.0, len(points))
     rest = np.empty_like(points)
     for start in range(branches):
@@ -84,11 +87,11 @@ def off_branches(points: FloatArray, branches: int) -> FloatArray:
 
 
 def prediction_error(values: FloatArray) -> float:
-    """Return the error with which the EARLIER values before predict each of the values (n,), over their deviation.
+    """Return the rms error of a prediction of each of the values (n,) from the EARLIER values before it.
 
-    The prediction is linear, with the coefficients that make its error least; the rms error is corrected for their
-    number. A motion of m frequencies obeys such a recurrence of order 2 m exactly, also while it settles. Chaos does
-    not.
+    The error is divided by the standard deviation of the values; it is 0 where this is 0. The prediction is linear,
+    with the coefficients of the least error; the rms error is corrected for their number. A motion of m frequencies
+    obeys such a recurrence of order 2 m exactly, also while it settles. Chaos does not.
     """
     centred = values - values.mean()
     size = centred.std()
@@ -101,7 +104,7 @@ def prediction_error(values: FloatArray) -> float:
 
 
 def cut(response: Response, first: int, last: int) -> Response:
-    """Return a response of the turns first .. last - 1, with what their class of motion needs."""
+    """Return the part of a response in the turns first .. last - 1. Only what the class of motion needs is cut."""
     turns = slice(first, last)
     return replace(
         response, record_turns=last - first, section_q=response.section_q[turns], section_v=response.section_v[turns]

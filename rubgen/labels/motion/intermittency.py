@@ -25,11 +25,11 @@ class Segment:
 def segments(parts: list[FloatArray]) -> list[Segment]:
     """Cut the record where its motion becomes regular or irregular, and return the segments in order.
 
-    - parts: the points (turns, groups, values) of blisk and casing, each over its motion.
+    - parts: the points (turns, groups, values) of blisk and casing, each divided by the size of its motion.
 
-    A stretch is regular with period k <= 16 where each point returns after k turns within EXCURSION, in every part and
-    group, for at least 10 + k turns and 3 k. A turn has the smallest such k. Shorter irregular stretches join the
-    segment before them.
+    A segment is regular with period k <= 16 if each point returns after k turns within EXCURSION, in every part and
+    group, for at least 10 + k turns and 3 k turns. Each turn has the smallest such k. An irregular segment below 10
+    turns joins the segment before it.
     """
     turns = len(parts[0])
     period = np.zeros(turns, dtype=np.int64)
@@ -42,9 +42,9 @@ def segments(parts: list[FloatArray]) -> list[Segment]:
 
 
 def is_intermittent(found: list[Segment]) -> bool:
-    """Return whether a motion with these segments switches: regular, irregular and regular again.
+    """Return whether a motion with the segments `found` switches: it is regular, irregular and regular again.
 
-    Each kind must have at least a tenth of the turns.
+    The regular and the irregular segments must each have at least a tenth of the turns.
     """
     regular = [segment.period > 0 for segment in found]
     turns = found[-1].end - found[0].start

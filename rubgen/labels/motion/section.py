@@ -14,16 +14,16 @@ REST_ENERGY = 5e-12
 
 
 def blisk_points(response: Response) -> FloatArray:
-    """Return the section of the blisk (turns, groups, 4), divided by the size of its motion, the orbital speed of O_d.
+    """Return the section of the blisk (turns, groups, 4), divided by the rms orbital speed of O_d.
 
-    Group 0 is O_d: Omega x, Omega y, v_x, v_y; groups 1 .. are the tips: Omega times their three displacements. The
-    absolute velocity of O_d, v + Omega e_z x u, has the orbit's size even where it rests in the turning frame.
+    Group 0 is O_d: Omega x, Omega y, v_x, v_y. Groups 1 .. are the tips: Omega times their three displacements, then 0.
+    The absolute velocity of O_d, v + Omega e_z x u, has the orbit's size even where O_d rests in the turning frame.
     """
     return blisk_states(response, response.section_q, response.section_v)
 
 
 def blisk_states(response: Response, q: FloatArray, v: FloatArray) -> FloatArray:
-    """Return states q, v (states, n) of the run as points of the blisk, scaled as in `blisk_points`."""
+    """Return states q, v (states, n) as points of the blisk (states, groups, 4), scaled as in `blisk_points`."""
     speed, centre = response.speed, 3 * response.n_blades
     points = np.zeros((len(q), response.n_blades + 1, 4))
     points[:, 0] = np.stack([speed * q[:, centre], speed * q[:, centre + 1], v[:, centre], v[:, centre + 1]], axis=1)
@@ -40,15 +40,15 @@ def _orbital_speed(response: Response) -> float:
 def casing_points(response: Response) -> FloatArray:
     """Return the section of the casing (turns, 1, 2 modes), divided by its rms norm.
 
-    It has Omega times the modal displacements, and the modal velocities. Between two touches the casing swings freely
-    about its rest shape, so its displacement there is motion. Touches that end do not offset the section. Only a touch
-    that never ends would.
+    Each point has Omega times the modal displacements, then the modal velocities. Between two touches the casing swings
+    freely about its shape at rest, so its displacement from this shape is motion. Touches that end do not offset the
+    section; only a touch that never ends would.
     """
     return casing_states(response, response.section_q, response.section_v)
 
 
 def casing_states(response: Response, q: FloatArray, v: FloatArray) -> FloatArray:
-    """Return states q, v (states, n) of the run as points of the casing, scaled as in `casing_points`."""
+    """Return states q, v (states, n) as points of the casing (states, 1, 2 modes), scaled as in `casing_points`."""
     size = np.sqrt(np.mean(np.sum(_casing(response, response.section_q, response.section_v) ** 2, axis=1)))
     return np.asarray(_casing(response, q, v)[:, None, :] / size, dtype=np.float64)
 
@@ -66,11 +66,11 @@ def casing_rests(response: Response) -> bool:
 
 
 def asymmetry(response: Response) -> float | None:
-    """Return the largest distance between the states after each Nth of the last turn, N the number of lobes.
+    """Return how far the motion is from the symmetry of the N lobes: 0 for symmetric motion. None without lobes.
 
-    It is a share of the size of the motion, and 0 for motion with the symmetry of the lobes. For the blisk it is the
-    largest distance of disk centre and tips, as in the clusters. The casing is turned back by the angle that the blisk
-    turned. None without lobes.
+    It is the largest distance between the states after each Nth of the last turn, divided by the size of the motion.
+    For the blisk it is the largest distance of disk centre and tips, as in the clusters. The casing is turned back by
+    the angle by which the blisk has turned.
     """
     q, v = response.symmetry_states[:, 0], response.symmetry_states[:, 1]
     if len(q) < 2:
@@ -82,6 +82,6 @@ def asymmetry(response: Response) -> float | None:
 
 
 def is_symmetric(response: Response) -> bool | None:
-    """Return whether the motion has the symmetry of the lobes: `asymmetry` at most 3 %. None without lobes."""
+    """Return whether the motion has the symmetry of the lobes: `asymmetry` is at most 3 %. None without lobes."""
     found = asymmetry(response)
     return None if found is None else found <= EXCURSION

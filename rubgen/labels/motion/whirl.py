@@ -21,19 +21,20 @@ class WhirlDirection(StrEnum):
 
 @dataclass(frozen=True)
 class Whirl:
-    """Direction of the whirl and its `index` in [-1, 1]."""
+    """Direction of the whirl of the disk centre, and its `index`: 1 for a forward circle, -1 for a backward circle."""
 
     direction: WhirlDirection
     index: float
 
 
 def whirl(orbit: FloatArray) -> Whirl | None:
-    """Return the whirl of an orbit from its means over turns (turns, 5), as in `Response.orbit`; None where it rests.
+    """Return the whirl of the disk centre; None where it rests or `orbit` is empty.
 
-    index = mean(r x v) / (rms(r) rms(v)), r = (X, Y) less its mean: the areal velocity of the orbit over the largest
-    possible one for its size and speed (Cauchy-Schwarz). A forward circle has 1, a backward circle -1, a line 0. The
-    orbit r = p e^(i w t) + n e^(-i w t) has (|p|^2 - |n|^2) / (|p|^2 + |n|^2), with the sign of the shape and
-    directivity index (|p| - |n|) / (|p| + |n|) of Lee and Han (1998, J. Sound Vib. 211, 4).
+    `orbit` (turns, 5) are means over each turn, as in `Response.orbit`. index = mean(r x v) / (rms(r) rms(v)), with r =
+    (X, Y) less its mean: the areal velocity of the orbit over the largest possible one for its size and speed
+    (Cauchy-Schwarz). A forward circle has 1, a backward circle -1, a line 0. Below |index| = 0.1 the direction is
+    mixed. The orbit r = p e^(i w t) + n e^(-i w t) has (|p|^2 - |n|^2) / (|p|^2 + |n|^2). Its sign is that of the shape
+    and directivity index (|p| - |n|) / (|p| + |n|) of Lee and Han (1998, J. Sound Vib. 211, 4).
     """
     if not len(orbit):
         return None

@@ -18,8 +18,7 @@ def check_system(system: SpinningSystem) -> None:
 
     It must turn and have blades, finite matrices, and positive definite masses of blisk and casing. At rest the tips
     must be inside the casing's narrowest radius. At speed the tips, with their centrifugal growth, must be inside its
-    widest radius. Blades that grow into the narrow places rub there, as in any run. Blades that have room nowhere
-    cannot turn.
+    widest radius: between the two radii the blades rub, beyond the widest they cannot turn.
     """
     for problem in (_speed_problem, _blade_problem, _number_problem, _mass_problem, _rest_problem, _growth_problem):
         text = problem(system)
@@ -28,7 +27,7 @@ def check_system(system: SpinningSystem) -> None:
 
 
 def check_step(system: SpinningSystem, steps: int) -> None:
-    """Check that `steps` a turn are enough: dt < 2 / omega_max. Raises UserError where the step is not stable."""
+    """Check that `steps` steps a turn are stable: dt < 2 / omega_max. Raises UserError where they are not."""
     turn, longest = 2 * math.pi / system.speed, stable_step(system)
     if turn / steps >= longest:
         raise UserError(

@@ -19,7 +19,8 @@ from rubgen.solver.supports.turning_forces import force_derivatives
 def linearised(system: SpinningSystem) -> SpinningSystem:
     """Return the system with the laws of its support linearised at its rub-free motion, which must be static.
 
-    C += -d f / d v and K += -d f / d u on O_d. The result has no turning forces.
+    C += -d f / d v and K += -d f / d u on O_d, with f the force of the laws. The result has no turning forces. A system
+    without turning forces is returned unchanged.
     """
     forces = system.turning
     if forces is None:
@@ -34,12 +35,12 @@ def linearised(system: SpinningSystem) -> SpinningSystem:
 
 
 def floquet_exponents(system: SpinningSystem, steps: int) -> ComplexArray:
-    """Return exponents ln(mu) / T in 1/s of the coordinates that O_d moves, and eigenvalues of all others.
+    """Return exponents ln(mu) / T in 1/s of the coordinates that O_d moves, and eigenvalues of all other coordinates.
 
     mu are the eigenvalues of the transition over one period T: M q'' + C q' + K q = E (f_u u + f_v v), with the
     derivatives of the turning forces along the rub-free motion. T is half a turn, or a whole turn with laws of the
     support. The transition uses the scheme's own steps, `steps` a turn (even). Imaginary parts are known up to a
-    multiple of 2 pi / T.
+    multiple of 2 pi / T. Raises ValueError for a system without turning forces.
     """
     forces = system.turning
     if forces is None:
@@ -58,7 +59,7 @@ def floquet_exponents(system: SpinningSystem, steps: int) -> ComplexArray:
 
 
 def quadratic_eigenvalues(M: FloatArray, C: FloatArray, K: FloatArray) -> ComplexArray:
-    """Return all 2 n eigenvalues s of s^2 M + s C + K, from the first-order form."""
+    """Return all 2 n eigenvalues s (1/s) of s^2 M + s C + K, matrices (n, n), from the first-order form."""
     n = len(M)
     first_order = np.block([[np.zeros((n, n)), np.eye(n)], [-la.solve(M, K), -la.solve(M, C)]])
     values: ComplexArray = la.eigvals(first_order).astype(np.complex128)

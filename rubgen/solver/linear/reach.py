@@ -22,11 +22,11 @@ SPEEDS = 9
 
 
 def no_rub_warning(scenarios: Sequence[Scenario]) -> str | None:
-    """Return one line where no blade reaches the casing in the rub-free motion of any of these runs, else None.
+    """Return a warning of one line if no blade reaches the casing in the rub-free motion of any run, else None.
 
-    A run starts from that motion and keeps it where nothing touches. The search ends at the first run that rubs.
-    Refused runs are left out, because they report themselves; None where all are refused. A single run without rub may
-    be intended: it is reported only where its speed in rad/s would rub.
+    A run starts from its rub-free motion and keeps it where nothing touches. Runs that are refused are left out; None
+    if all are refused. For a single run the warning is returned only if the run would rub with its speed's number in
+    rad/s, because a run without rub may be intended.
     """
     largest, at, looked_at = -math.inf, 0.0, 0
     for scenario in scenarios:
@@ -52,12 +52,12 @@ def no_rub_warning(scenarios: Sequence[Scenario]) -> str | None:
 
 
 def with_clearance(scenario: Scenario) -> Scenario:
-    """Return the scenario with the clearance that gives its `free_penetration_m`; the same scenario where it has none.
+    """Return the scenario with the clearance that follows from its `free_penetration_m`. Without one it is unchanged.
 
     A larger clearance moves the undeformed surface outward and leaves the rub-free motion as it is. One correction is
-    therefore exact but for rounding, at the speed of the run and at the beginning of its record. A changing speed has
-    the penetration of the steady speed that reaches farthest, of the nine of `deepest`. Raises UserError where there is
-    no such clearance.
+    therefore exact except for rounding, at the speed of the run and at the beginning of its record. For a changing
+    speed, the penetration is that of the steady speed that reaches farthest among nine speeds (`deepest`). Raises
+    UserError where the clearance would be below the least allowed.
     """
     wanted, casing = scenario.free_penetration_m, scenario.machine.casing
     if wanted is None:
@@ -84,7 +84,7 @@ def deepest(scenario: Scenario) -> tuple[float, float]:
     """Return the largest free penetration of a run in m, and its speed in rev/min. A negative penetration is a gap.
 
     A changing speed is checked at nine speeds from the slowest to the fastest, each as a steady speed. The amplitude of
-    a run through a critical speed is smaller. Raises UserError where a speed makes no run.
+    a run through a critical speed is smaller. Raises UserError where the system cannot be integrated at a speed.
     """
     scenario = with_clearance(scenario)
     model = reduce(scenario.machine, scenario.reduction)
@@ -92,10 +92,10 @@ def deepest(scenario: Scenario) -> tuple[float, float]:
 
 
 def penetration_at(model: ReducedModel, scenario: Scenario, speed: float) -> float:
-    """Return the free penetration at a speed in rad/s, in m.
+    """Return the free penetration at a speed in rad/s: how deep tips enter the undeformed casing without contact, in m.
 
-    It is infinite where laws of the support leave the motion without rub unknown. Raises UserError for a speed that
-    makes no run.
+    It is infinite where the motion without rub is not known because of laws of the support. Raises UserError where the
+    system cannot be integrated at this speed.
     """
     system = model.at_speed(speed)
     check_system(system)

@@ -35,7 +35,7 @@ miss 1 um; the motion itself is exact but for rounding."""
 
 @dataclass(frozen=True, kw_only=True)
 class RubFreeMotion:
-    """A motion q(theta) = Re sum_m harmonics[m] e^(i m theta) with the casing at rest."""
+    """A motion without rub, q(theta) = Re sum_m harmonics[m] e^(i m theta), with the casing at rest."""
 
     harmonics: ComplexArray
     """Complex amplitudes (H + 1, n)."""
@@ -52,7 +52,7 @@ class RubFreeMotion:
         return q
 
     def over_turn(self) -> FloatArray:
-        """Return states q (places, n) at equal steps of one turn; one place where the motion is static."""
+        """Return states q (places, n) at 64 equal steps of one turn; one state where the motion is static."""
         places = 1 if len(self.harmonics) == 1 else TURN_PLACES
         return np.stack([self.at(2 * np.pi * i / places) for i in range(places)])
 
@@ -60,8 +60,8 @@ class RubFreeMotion:
 def free_penetration(motion: RubFreeMotion, surface: Surface, tips: Tips) -> float:
     """Return how deep the tips would enter the casing at rest in this motion, m; negative is a clearance.
 
-    It is the maximum over blades and angles of |P_k| - r(angle of P_k), with r the undeformed `surface`, its chords or
-    liner included.
+    It is the maximum over blades and angles of |P_k| - r(angle of P_k), with P_k the tip of blade k and r the radius of
+    the undeformed, unworn `surface`.
     """
     theta = 2 * np.pi * np.arange(CLEARANCE_PLACES) / CLEARANCE_PLACES
     turn = np.exp(1j * np.multiply.outer(theta, np.arange(len(motion.harmonics))))
@@ -72,9 +72,9 @@ def free_penetration(motion: RubFreeMotion, surface: Surface, tips: Tips) -> flo
 def never_touches(system: SpinningSystem, surface: Surface, penetration: float) -> bool:
     """Return whether a run at steady speed that starts in its rub-free motion provably never touches.
 
-    The supports must be linear, so that the motion is the only one, and the surface unlined. Uneven supports, gravity,
-    mistuned blades, steady loads and a breathing crack are linear; other laws of the support are not. Nothing may grow
-    within the record.
+    It is False if a law of the support is not linear, so that other motions are possible, if the surface has a liner,
+    or if anything grows within the record. Uneven supports, gravity, mistuned blades, steady loads and a breathing
+    crack are linear.
 
     - system, surface: of the run.
     - penetration: free penetration of the motion in m; negative, with its gap as the size, where it does not touch.
@@ -89,7 +89,7 @@ def never_touches(system: SpinningSystem, surface: Surface, penetration: float) 
 
 
 def steady_state(system: SpinningSystem) -> FloatArray:
-    """Return the exact motion q (n,) without rub and turning forces: K q = force, with the casing at rest."""
+    """Return the exact static motion q (n,) without rub and turning forces: K q = force, with the casing at rest."""
     q = np.zeros(system.M.shape[0])
     start = system.casing_start
     q[:start] = la.solve(system.K[:start, :start], system.force[:start])
@@ -99,14 +99,17 @@ def steady_state(system: SpinningSystem) -> FloatArray:
 def rub_free_motion(system: SpinningSystem, steps: float = 0) -> RubFreeMotion:
     """Compute the periodic motion without rub, by harmonic balance.
 
-    With `steps` a turn it is the motion of the scheme itself, else of the differential equation. M q'' + C q' + K q =
-    force + weight(theta) + E f(theta, u, v). Each harmonic of f on O_d moves the blisk by the receptance of that
-    harmonic. This leaves a small system for u alone, solved at equal places of a turn by Newton's method (one step
-    where it is linear). For the scheme's motion 2 (cos m phi - 1) / dt^2 replaces -(m Omega)^2 and i sin(m phi) / dt
-    replaces i m Omega, phi = 2 pi / steps: a run that starts from it keeps it. With laws of the support there may be
-    more than one motion. The iteration starts from the motion without f, shortened to within the range of the laws.
-    Where it finds none, nothing is raised: `residual` is large. Laws whose motion settles are left out
-    (`SpinningSystem.starting`): the motion is the one from which a run starts, not the one at which it arrives.
+    `steps` is the number of steps in a turn: the result is then the motion of the time-stepping scheme. With 0 it is
+    the motion of the differential equation M q'' + C q' + K q = force + weight(theta) + E f(theta, u, v). Each harmonic
+    of f on O_d moves the blisk by the receptance of that harmonic. This leaves a small system for u alone, solved at
+    equal angles of a turn by Newton's method (one step where it is linear). For the scheme's motion 2 (cos m phi - 1) /
+    dt^2 replaces -(m Omega)^2 and i sin(m phi) / dt replaces i m Omega, phi = 2 pi / steps: a run that starts from it
+    keeps it.
+
+    With laws of the support there may be more than one motion. The iteration starts from the motion without f,
+    shortened to within the range of the laws. If it finds no motion, nothing is raised: `residual` is large. Laws with
+    a motion that must settle are left out (`SpinningSystem.starting`): the result is then the motion at the start of a
+    run.
     """
     system = system.starting
     forces = system.turning

@@ -25,11 +25,11 @@ FLOQUET_STEPS = 1024
 
 
 def eigenvalues(system: SpinningSystem) -> ComplexArray:
-    """Return all 2 n eigenvalues s in 1/s of M q'' + C q' + K q = 0, blisk and casing apart.
+    """Return all 2 n eigenvalues s in 1/s of M q'' + C q' + K q = 0. Blisk and casing are computed separately.
 
-    Laws of the support are linearised at the rub-free motion. With uneven supports, which turn against the blisk, these
-    are Floquet exponents, whose imaginary parts are known up to a multiple of 2 Omega (Omega with laws). Laws whose
-    motion settles are left out.
+    Laws of the support are linearised at the rub-free motion. With uneven supports, which turn relative to the blisk,
+    the result are Floquet exponents, whose imaginary parts are known up to a multiple of 2 Omega (Omega with laws).
+    Laws with a motion that must settle are left out.
     """
     system = system.starting
     forces = system.turning
@@ -51,9 +51,9 @@ def slowest_decay(system: SpinningSystem) -> float:
 
 
 def stable_step(system: SpinningSystem) -> float:
-    """Return the largest stable step 2 / omega_max in s, omega_max of (K, M) without gyroscopic terms.
+    """Return the largest stable time step 2 / omega_max in s. omega_max belongs to (K, M) without gyroscopic terms.
 
-    Uneven supports count with their stiffer direction on both axes, laws with the most by which they stiffen.
+    Uneven supports count with their stiffer direction on both axes, laws of the support with their largest stiffness.
     """
     start, largest = system.casing_start, 0.0
     stiffness = system.K
@@ -70,8 +70,8 @@ def stable_step(system: SpinningSystem) -> float:
 def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0.0) -> int:
     """Double `least` until the step is stable and the step rate is at least 2.56 `sample_rate_hz`. Return the steps.
 
-    Stable is dt < 0.95 * 2 / omega_max. A turn is a whole number of steps, so the Poincare section lies on steps
-    exactly. Raises UserError for a system that would need more than 4,194,304 steps.
+    A step is stable if dt < 0.95 * 2 / omega_max. A turn is a whole number of steps, so the Poincare section lies on
+    steps exactly. Raises UserError for a system that would need more than 4,194,304 steps.
     """
     turn = 2 * math.pi / system.speed
     sampled = 1 / (STEPS_PER_SAMPLE * sample_rate_hz) if sample_rate_hz else turn
@@ -90,9 +90,9 @@ def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0
 def automatic_settle_turns(system: SpinningSystem, closing_turns: int, decay: float | None = None) -> int:
     """Return the number of turns until the clearance is closed and transients have decayed to a hundredth.
 
-    It is closing_turns + ln(100) f_r / (2 pi min(zeta f)) with the eigenvalues at speed, rounded up; three times as
-    many turns beside the closing where a law's motion must settle (`SupportLaw.SETTLES`). `decay` is the slowest decay
-    in 1/s where it is known already. Raises ValueError for an unstable system.
+    It is closing_turns + ln(100) f_r / (2 pi min(zeta f)) with the eigenvalues at speed, rounded up. If the motion of a
+    law must settle (`SupportLaw.SETTLES`), the second term is multiplied by three. `decay` is the slowest decay in 1/s;
+    None computes it. Raises ValueError for an unstable system.
     """
     decay = slowest_decay(system) if decay is None else decay
     if decay <= 0:
@@ -102,7 +102,10 @@ def automatic_settle_turns(system: SpinningSystem, closing_turns: int, decay: fl
 
 
 def settle_turns(system: SpinningSystem, operation: Operation, decay: float | None = None) -> int:
-    """Return the settle turns of the operation, or `automatic_settle_turns` where it has none."""
+    """Return the settle turns of the operation; for "auto" they are `automatic_settle_turns`.
+
+    `decay` is the slowest decay in 1/s; None computes it.
+    """
     if operation.settle_turns == "auto":
         return automatic_settle_turns(system, operation.closing_turns, decay)
     return operation.settle_turns

@@ -7,7 +7,10 @@ from rubgen.reduction.model import SpinningSystem
 
 
 def system_blocks(*systems: SpinningSystem) -> Blocks:
-    """Find the blocks that all systems share. Raises ValueError when anything but contact couples blisk and casing."""
+    """Find the blocks that the matrices of all systems share.
+
+    Raises ValueError where M, C or K couple blisk and casing.
+    """
     start = systems[0].casing_start
     matrices = [matrix for system in systems for matrix in (system.M, system.C, system.K)]
     for matrix in matrices:

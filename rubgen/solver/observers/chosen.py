@@ -20,7 +20,10 @@ LEAST_TAIL_TURNS = 100
 
 
 def chosen_observers(driver: SpeedDriver, record: int, wants: Wants) -> list[Observer]:
-    """Return the observers of a record of `record` turns, and set the snapshots that they need on the stepper."""
+    """Return the observers of a record of `record` turns.
+
+    The snapshots that they need are requested from the stepper.
+    """
     stepper, steady = driver.stepper, driver.rotation.is_steady
     observers: list[Observer] = [
         Tail(wants.taps, tail_turns(driver, record, wants)),
@@ -43,7 +46,10 @@ def chosen_observers(driver: SpeedDriver, record: int, wants: Wants) -> list[Obs
 
 
 def tail_turns(driver: SpeedDriver, record: int, wants: Wants) -> int:
-    """Return the number of turns that the taps cover: as many as `wants.tail_seconds` takes, 100 at least."""
+    """Return the number of turns that the taps cover: those of `wants.tail_seconds`, at least 100.
+
+    They are at most all turns of the run. `record` is the number of turns of the record.
+    """
     asked = math.ceil(wants.tail_seconds * driver.rotation.fastest / (2 * math.pi))
     return min(max(LEAST_TAIL_TURNS, asked), driver.settle + record)
 

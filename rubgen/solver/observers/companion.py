@@ -36,13 +36,16 @@ def check_turns(record_turns: int) -> None:
 
 
 def piece_ends(steps: int) -> list[int]:
-    """Return the steps of a turn that end its pieces, as even as whole steps can be."""
+    """Return the numbers of the steps at which the 16 pieces of a turn of `steps` steps end, as equal as possible."""
     pieces = min(PIECES, steps)
     return [round(steps * piece / pieces) for piece in range(1, pieces + 1)]
 
 
 class CompanionGrowth(Observer):
-    """Measures the growth of a companion's distance in each turn of a record; with `stops` until it is settled."""
+    """Measures the growth of a companion's distance in each turn of a record.
+
+    With `stops` it ends with a settled exponent.
+    """
 
     def __init__(self, stepper: Stepper, *, stops: bool) -> None:
         self.stepper, self.stops, self.growth = stepper, stops, list[float]()
@@ -54,9 +57,9 @@ class CompanionGrowth(Observer):
         self.companion, self.removed = Companion(self.stepper), self.stepper.state.wear.sums[REMOVED]
 
     def turn(self, turn: Turn) -> None:
-        """Run the companion's turn.
+        """Run the companion through the turn, and keep the growth of its distance.
 
-        NaN where the surface has worn in it: then no trajectory of the same surface is near.
+        The growth is NaN if the surface has worn in the turn: the companion's surface then differs from the run's.
         """
         before, self.removed = self.removed, self.stepper.state.wear.sums[REMOVED]
         if self.companion is None:
@@ -67,12 +70,15 @@ class CompanionGrowth(Observer):
             self.companion = None
 
     def result(self) -> dict[str, Any]:
-        """Return the field `companion_growth` (turns that the companion ran,)."""
+        """Return the field `companion_growth` (turns,), ln of the growth in each turn of the companion."""
         return {"companion_growth": np.array(self.growth)}
 
 
 class DecayGrowth(Observer):
-    """States the growth beside a motion that never touches: every turn the distance shrinks by the slowest decay."""
+    """The growth of a companion's distance for a motion that never touches.
+
+    Every turn it shrinks by the slowest decay.
+    """
 
     def __init__(self, decay_per_turn: float, record: int) -> None:
         growth = np.full(record, -decay_per_turn)
@@ -80,16 +86,16 @@ class DecayGrowth(Observer):
         self.growth = growth[:ASKED_FROM] if settled else growth
 
     def result(self) -> dict[str, Any]:
-        """Return the field `companion_growth`, of as many turns as a companion would have run."""
+        """Return the field `companion_growth` (turns,), for as many turns as a companion would have run."""
         return {"companion_growth": self.growth}
 
 
 class Companion:
-    """A trajectory that starts beside the present state of `stepper`, all coordinates moved.
+    """A second trajectory of the same model, which starts near the present state of `stepper`.
 
-    It is a second state of the same model. Call `run_turn` after each turn of the stepper, which must leave snapshots.
-    The stepper's own bits do not change. The distance is the energy norm sqrt(d_v^T M d_v + Omega^2 d_q^T M d_q),
-    independent of the choice of coordinates. Any other norm has the same exponent in the long run.
+    All its coordinates are displaced a little. Call `run_turn` after each turn of the stepper, which must take
+    snapshots. The stepper's own bits do not change. The distance is the energy norm sqrt(d_v^T M d_v + Omega^2 d_q^T M
+    d_q), independent of the choice of coordinates. Any other norm has the same exponent in the long run.
     """
 
     def __init__(self, stepper: Stepper) -> None:
@@ -105,9 +111,10 @@ class Companion:
             recover(stepper.model.harmonics, motion, self.state.scratch.share)
 
     def run_turn(self, opening: FloatArray) -> FloatArray:
-        """Run the companion's turn. Return ln of the growth of the distance between the snapshots of the last turn.
+        """Run the companion through the last turn.
 
-        NaN where the companion failed. `opening` (steps + 2,) is added to the radius of the surface, m.
+        Return ln of the growth of the distance in each piece between snapshots. All values are NaN where the companion
+        failed. `opening` (steps + 2,) is added to the radius of the surface, m.
         """
         stepper, growth = self.stepper, np.full(len(self.stepper.snapshots.steps), np.nan)
         self.state.wear.depth[:] = stepper.state.wear.depth

@@ -18,7 +18,7 @@ from rubgen.solver.scheme.step_kernels import OK, advance, shift_gaps
 def bring_back(main: FloatArray, scale: float, companion: FloatArray) -> None:
     """Scale the companion's distance from the run: companion = main + scale (companion - main).
 
-    Where that is not finite, set companion = main.
+    An element whose distance is not finite becomes the element of `main`. `main` and `companion` are (any,).
     """
     for i in range(companion.shape[0]):
         away = companion[i] - main[i]
@@ -27,9 +27,10 @@ def bring_back(main: FloatArray, scale: float, companion: FloatArray) -> None:
 
 @allocation_free_kernel
 def distance(laws: Laws, mass: Product, main: FloatArray, companion: tuple[Motion, Motion], scratch: Scratch) -> float:
-    """Return sqrt(d_v^T M d_v + Omega^2 d_q^T M d_q), d the difference between the run and its companion.
+    """Return sqrt(d_v^T M d_v + Omega^2 d_q^T M d_q), with d the difference between the run and its companion.
 
-    `main` (2, any) is z of the run at two steps, `companion` its motions at these steps. `mass` is M in blocks.
+    `main` (2, any) is z of the run at two successive steps, `companion` its motions at these steps. `mass` is M in
+    blocks.
     """
     speed, dt = laws.speed, laws.dt
     for i in range(scratch.z_change.shape[0]):
@@ -43,16 +44,16 @@ def distance(laws: Laws, mass: Product, main: FloatArray, companion: tuple[Motio
 def renormalise(
     model: Model, snapshots: Snapshots, number: int, closeness: float, companion: tuple[Motion, Motion], state: State
 ) -> float:
-    """Bring the companion back to the distance `closeness` from the run, in the direction in which it is now.
+    """Bring the companion back to the distance `closeness` from the run, without changing the direction.
 
-    Returns ln(distance / closeness), the growth since the last renormalisation. Where the distance is 0 or NaN, returns
-    NaN and leaves the companion as it is.
+    Returns ln(distance / closeness), the growth since the last renormalisation. If the distance is 0 or NaN, NaN is
+    returned and the companion is not changed.
 
     - snapshots: of the run's turn.
     - number: the snapshot that the companion has reached.
     - closeness: distance to leave, in the energy norm of `distance`, sqrt(J).
-    - companion: the companion's motions at the step before the snapshot and at it; changed.
-    - state: the companion's own, not the run's; its `contact.step_gaps` are scaled alike.
+    - companion: the companion's motions at the step before the snapshot and at the snapshot; changed.
+    - state: state of the companion, not of the run; its `contact.step_gaps` are scaled in the same way.
     """
     size = distance(model.laws, model.energy.M, snapshots.z[number], companion, state.scratch)
     if not size > 0.0:
@@ -68,13 +69,13 @@ def renormalise(
 def run_companion(
     model: Model, opening: FloatArray, snapshots: Snapshots, closeness: float, state: State, growth_out: FloatArray
 ) -> int:
-    """Run the companion's turn after the run's turn. Return a code of `step_kernels`.
+    """Run the companion through the run's last turn. Return a code of `step_kernels`.
 
     - opening (steps + 2,): added to the radius of the surface, m.
     - snapshots: of the run's turn.
-    - closeness: distance after each renormalisation.
-    - state: the companion's; changed.
-    - growth_out (snapshots,): ln of the distance's growth between snapshots.
+    - closeness: distance after each renormalisation, sqrt(J).
+    - state: state of the companion; changed.
+    - growth_out (snapshots,): written: ln of the distance's growth between snapshots.
     """
     before, now, after = state.motions
     step = 0

@@ -29,10 +29,10 @@ ADVICE = {
 
 
 class Growth:
-    """Keeps the amplitudes of casing and blade tips, turn by turn, over the last turns of a stepper.
+    """Keeps the amplitudes of casing and blade tips over the last turns of a stepper, for the reason of a divergence.
 
     The casing's amplitude is the largest bound of its displacement within the turn. The blades' amplitude is the
-    largest tip coordinate in the frames of the turn. The frames are evaluated only at the end.
+    largest tip coordinate in the frames of the turn. It is evaluated only at the end.
     """
 
     def __init__(self, stepper: Stepper) -> None:
@@ -40,13 +40,13 @@ class Growth:
         self.turns: deque[tuple[float, FloatArray]] = deque(maxlen=GROWTH_TURNS + 1)
 
     def add(self, steps: int) -> None:
-        """Add the turn that was just run; it made `steps` steps."""
+        """Add the turn that was just run. `steps` is the number of steps that it made."""
         result = self.stepper.result
         count = math.ceil(steps * len(result.frames) / self.stepper.steps)
         self.turns.append((float(result.summary[2]), result.frames[:count]))
 
     def sentence(self) -> str:
-        """Say how both have grown over the last turns, with the rates per turn and per second."""
+        """Return a clause on how blades and casing have grown over the last turns, with rates per turn and second."""
         amplitudes = {"blades": self._blades(), "casing": [casing for casing, _ in self.turns]}
         trends = {name: found for name, sizes in amplitudes.items() if (found := trend(np.array(sizes)))}
         if not trends:
@@ -70,7 +70,7 @@ class Growth:
 
 
 def what_diverged(stepper: Stepper) -> tuple[str, str]:
-    """Return which of the two branches has left its range, "blade" or "casing", and how far it was."""
+    """Return what has left the valid range, "blade" or "casing", and a clause with its limit."""
     system, laws = stepper.system, stepper.model.laws
     tips = np.abs(stepper.coordinates.after[: 3 * system.n_blades])
     if not np.all(tips <= laws.tip_limit):
@@ -93,9 +93,9 @@ class Trend:
 
 
 def trend(amplitudes: FloatArray) -> Trend | None:
-    """Fit the growth of amplitudes (turns,) by least squares on their logarithms; None for fewer than two.
+    """Fit the growth of amplitudes (turns,), m, by least squares on their logarithms; None for fewer than two values.
 
-    Amplitudes that are zero or NaN are left out.
+    Amplitudes that are zero or NaN are left out and do not count.
     """
     known = np.isfinite(amplitudes) & (amplitudes > 0)
     if known.sum() < 2:

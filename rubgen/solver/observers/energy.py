@@ -24,7 +24,7 @@ ROUNDING_SHARE = 1e-6
 
 
 class EnergyIdentity:
-    """Measures how well a stepper satisfies the energy identity, from its present state on."""
+    """Measures how well a stepper satisfies the energy identity, from the creation of this object on."""
 
     def __init__(self, stepper: Stepper) -> None:
         self.stepper, self.start_energy = stepper, stepper.energy()
@@ -32,10 +32,11 @@ class EnergyIdentity:
         self.rounding_energy = ROUNDING_SHARE * gross_energy(stepper)
 
     def residual(self) -> float:
-        """Return |E - E_start - works| over the summed absolute works, or over the largest |E| where no work is done.
+        """Return |E - E_start - works| over the sum of the absolute works.
 
-        At a critical speed the rub-free motion has no energy in the turning frame. There the rounding error of its
-        energy terms is the scale.
+        If this sum is smaller than the largest |E| or the rounding error of the energy, the larger of the two is the
+        divisor. At a critical speed the rub-free motion has no energy in the turning frame: there the rounding error is
+        the scale.
         """
         works, energy = self.stepper.end.works, float(self.stepper.end.energy)
         self.largest_energy = max(self.largest_energy, abs(energy))
@@ -45,7 +46,10 @@ class EnergyIdentity:
         return abs(energy - self.start_energy - float(done)) / scale if scale > 0 else 0.0
 
     def result(self, times: float = 1.0) -> dict[str, Any]:
-        """Return the field `energy`, the `EnergyBalance` of a run that repeats the stepper's turns `times` times."""
+        """Return the field `energy`, the `EnergyBalance` of a run. Works are multiplied by `times`.
+
+        `times` is the number of the run's turns for each turn of the stepper, above 1 if one turn is repeated.
+        """
         works = [times * float(work) for work in self.stepper.state.works]
         support = [times * float(work) for work in self.stepper.state.support.works]
         wear = 0.0 - float(self.stepper.state.wear.sums[WORK])

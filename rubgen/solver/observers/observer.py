@@ -7,17 +7,17 @@ from rubgen.solver.speed.turn import Turn
 
 
 class Observer(ABC):
-    """Records something of a run. It never changes the motion, and its memory does not grow with the steps.
+    """Records a part of a response.
 
-    A new observer is a file here and a line in `observers.chosen`.
+    It never changes the motion, and its memory does not grow with the number of steps.
     """
 
     def start(self) -> None:  # noqa: B027
         """Prepare for the record, which begins with the next turn. Does nothing by default."""
 
     def turn(self, turn: Turn) -> None:  # noqa: B027
-        """Take in a turn that was just run, of the settling (`number` < 0) or the record. Does nothing by default."""
+        """Read the turn that was just run: of the settling (`number` < 0) or of the record. Does nothing by default."""
 
     @abstractmethod
     def result(self) -> dict[str, Any]:
-        """Return the fields of `Response` that this observer makes, by name."""
+        """Return fields of `Response` by name: the values that this observer has recorded."""

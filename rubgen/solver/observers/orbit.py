@@ -11,7 +11,7 @@ from rubgen.solver.speed.turn import Turn
 
 
 class Orbit(Observer):
-    """Keeps the means of the orbit over each of the last `turns` turns of the record; over all turns with None."""
+    """Keeps the means of the disk centre's orbit over each of the last `turns` turns of the record; None is all."""
 
     def __init__(self, turns: int | None) -> None:
         self.means: deque[FloatArray] = deque(maxlen=turns)

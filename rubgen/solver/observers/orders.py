@@ -12,7 +12,7 @@ from rubgen.solver.speed.turn import Turn
 
 
 class WindowOrders(Observer):
-    """Computes complex amplitudes of a steady run's taps, window by window.
+    """Computes complex amplitudes of a steady run's taps at its orders, window by window.
 
     A window's amplitude is the amplitude of the mean of its turns. The first step of a turn is at theta = 0. Turns
     before the first whole window are left out; the last window may be shorter.
@@ -60,7 +60,7 @@ class ChangingOrders(Observer):
             self.orders.append(turn_orders(turn.result.taps, self.driver.rotation.angle(time)))
 
     def result(self) -> dict[str, Any]:
-        """Return the fields `changing_speed`, and `window_orders` without windows."""
+        """Return the field `changing_speed` with the orders of each turn, and an empty field `window_orders`."""
         changing = ChangingSpeed(
             rotation=self.driver.rotation,
             turn_steps=np.array([self.driver.first_step(number) for number in range(self.record + 1)]),
@@ -75,9 +75,9 @@ class ChangingOrders(Observer):
 def turn_orders(taps: FloatArray, theta: FloatArray) -> ComplexArray:
     """Compute complex amplitudes (taps, 20) at k = 1 .. 20 of `taps` (taps, steps) over the angle of one turn.
 
-    The steps are at angles `theta` (steps + 1,). 2 / (2 pi) sum x exp(-i k theta) dtheta by the trapezoidal rule on the
-    steps' own angles, from the first to the last as if they were exactly one turn. Each end is off by at most half a
-    step, an error of a share 1 / steps.
+    2 / (2 pi) sum x exp(-i k theta) dtheta by the trapezoidal rule at the angles `theta` (steps + 1,) of the steps,
+    rad. The mean is removed before. The steps are treated as exactly one turn. Each end is off by at most half a step,
+    an error of a share 1 / steps.
     """
     weight = np.zeros(taps.shape[1])
     weight += 0.5 * np.diff(theta)

@@ -9,7 +9,10 @@ from rubgen.solver.speed.turn import Turn
 
 
 class Sections(Observer):
-    """Keeps the Poincare section, and the sums of each turn, of a record of `record` turns with `size` coordinates."""
+    """Keeps the Poincare section, impulse and contact steps of each turn of a record.
+
+    `record` is the number of turns, `size` the number of coordinates.
+    """
 
     def __init__(self, record: int, size: int) -> None:
         self.section = np.zeros((record, 2, size))

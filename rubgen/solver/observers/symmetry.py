@@ -12,7 +12,7 @@ from rubgen.solver.scheme.stepper import Stepper
 
 
 def lobes_of(system: SpinningSystem) -> int:
-    """Return the number N of lobes: the casing looks alike after each Nth of a turn. 1 where its nodes do not."""
+    """Return the number N of lobes: the casing is unchanged by a rotation of 1/N turn. 1 if its nodes are not."""
     orders = [round(order) for order, a in zip(system.surface.order, system.surface.amplitude, strict=True) if a]
     lobes = math.gcd(*orders)
     return lobes if lobes and len(system.casing_modes) % lobes == 0 else 1
@@ -21,8 +21,8 @@ def lobes_of(system: SpinningSystem) -> int:
 def turned_back(modes: FloatArray, share: float) -> FloatArray:
     """Return the matrix (n_casing, n_casing) that turns the casing's displacement back by a share of a turn.
 
-    With u(theta) the displacement in X and Y: R(-a) u(theta + a) on the casing's own modes (nodes, 2, n_casing), by
-    least squares over the nodes. Exact where the modes of each order come in pairs.
+    The result is R(-a) u(theta + a), with u(theta) the displacement in X and Y, expressed in the casing's own `modes`
+    (nodes, 2, n_casing) by least squares over the nodes. Exact where the modes of each order come in pairs.
     """
     angle, nodes = 2 * np.pi * share, len(modes)
     R = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
@@ -32,7 +32,7 @@ def turned_back(modes: FloatArray, share: float) -> FloatArray:
 
 
 class Symmetry(Observer):
-    """Takes the states after 1/N, 2/N, ... 1 of the last turn. A turn must leave snapshots at `steps`."""
+    """Takes the states after 1/N, 2/N, ... 1 of the last turn, N lobes. A turn must take snapshots at `steps`."""
 
     def __init__(self, stepper: Stepper) -> None:
         self.stepper, steps = stepper, stepper.steps
@@ -42,7 +42,7 @@ class Symmetry(Observer):
         self.steps = sorted({min(math.ceil(place), steps) for place in self.places})
 
     def result(self) -> dict[str, Any]:
-        """Return the field `symmetry_states` (N, 2, n): q and v, linear between two steps; v is their slope."""
+        """Return the field `symmetry_states` (N, 2, n): q and v, interpolated between two steps; v is q's slope."""
         stepper, states = self.stepper, []
         for share, place in zip(self.shares, self.places, strict=True):
             step = min(math.ceil(place), stepper.steps)

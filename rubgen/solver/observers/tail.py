@@ -22,7 +22,7 @@ class Tail(Observer):
         self.arrivals: deque[FloatArray] = deque(maxlen=turns)
 
     def turn(self, turn: Turn) -> None:
-        """Add the taps of a turn that recorded them."""
+        """Add the taps and passages of a turn. A turn without recording is left out."""
         if turn.recording:
             self.taps.append(turn.result.taps.copy())
             self.arrivals.append(turn.arrivals)
@@ -38,10 +38,10 @@ class Tail(Observer):
 
 
 def tip_arrivals(arrivals: list[FloatArray], names: list[str]) -> dict[str, TipArrivals]:
-    """Sort arrivals by probe and then by time, and name the probes.
+    """Sort arrivals by probe and then by time. Return those of each probe by its name.
 
-    Each array of `arrivals` is (any, 4): number of the probe, blade, step, displacement. `names` are those of the
-    probes.
+    Each array of `arrivals` is (any, 4): number of the probe, blade, time in steps, displacement in m. `names` are the
+    names of the probes, in the order of their numbers.
     """
     rows = np.concatenate([np.zeros((0, 4)), *arrivals])
     seen = {}

@@ -16,9 +16,10 @@ TRACK_TURNS = 8
 
 
 class TrackKeeper(Observer):
-    """Keeps the frames of the eight turns around the hardest touch. The memory does not grow with the turns.
+    """Keeps the frames of the eight turns around the hardest touch, the touch with the largest impulse.
 
-    Turns of the record before `first_turn` are left out. Without any touch the first eight turns are recorded.
+    Turns of the record before `first_turn` are left out. Without a touch the first eight turns are kept. The memory
+    does not grow with the number of turns.
     """
 
     def __init__(self, driver: SpeedDriver, record: int, first_turn: int) -> None:

@@ -7,7 +7,7 @@ from rubgen.solver.response import WornLiner
 
 
 def worn_liner(liner: Liner, wear: Wear) -> WornLiner | None:
-    """Return the worn profile of a liner at its bins, and the volume removed; None without a liner."""
+    """Return the worn profile of a liner, and the volume removed; None without a liner."""
     if liner.bins == 0:
         return None
     angle = 2 * np.pi * np.arange(liner.bins) / liner.bins

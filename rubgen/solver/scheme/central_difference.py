@@ -33,7 +33,10 @@ def scheme(M: FloatArray, C: FloatArray, K: FloatArray, force: FloatArray, dt: f
 
 
 def compliances(system: SpinningSystem, dt: float) -> tuple[FloatArray, FloatArray]:
-    """Return A^-1, transposed, between tip coordinates (3 blades, 3 blades), of casing modes (n_casing, n_casing)."""
+    """Return A^-1 between tip coordinates (3 blades, 3 blades), and of casing modes (n_casing, n_casing), transposed.
+
+    A = M / dt^2 + C / (2 dt), with `dt` in s.
+    """
     A = system.M / dt**2 + system.C / (2 * dt)
     inverse = la.inv(A)
     tips, start = 3 * system.n_blades, system.casing_start
@@ -42,7 +45,7 @@ def compliances(system: SpinningSystem, dt: float) -> tuple[FloatArray, FloatArr
 
 
 def energy_terms(system: SpinningSystem, blocks: Blocks, *, zeros: bool = False) -> EnergyTerms:
-    """Build the matrices of the energy terms in blocks; with `zeros` entries that are zero remain."""
+    """Build the matrices of the energy terms in blocks. With `zeros` entries that are zero are stored too."""
     force = blocks.to_z(system.force)
     places = np.arange(force.size) if zeros else np.flatnonzero(force)
     circulatory = (system.K - system.K.T) / 2

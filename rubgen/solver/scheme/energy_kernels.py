@@ -19,16 +19,19 @@ WORKS = 8
 
 @allocation_free_kernel
 def stored_energy(terms: EnergyTerms, before: FloatArray, now: FloatArray, difference: FloatArray, dt: float) -> float:
-    """Return the stored energy v^T M v / 2 + now^T K_sym before / 2, J, all in z. `difference` is now - before."""
+    """Return the stored energy v^T M v / 2 + now^T K_sym before / 2, J, with v = difference / dt.
+
+    `before` and `now` are z at two successive steps, `difference` is now - before, `dt` in s.
+    """
     kinetic = quadratic(terms.M, difference, difference) / (dt * dt)
     return 0.5 * (kinetic + quadratic(terms.K, now, before))
 
 
 @inlined_kernel
 def add_linear_works(terms: EnergyTerms, now: FloatArray, change: FloatArray, dt: float, works: FloatArray) -> None:
-    """Add the works of unbalance, dampers and circulatory stiffness in one step to `works`.
+    """Add the works of unbalance, dampers and circulatory stiffness in one step to `works` (8,), J.
 
-    `change` is d, in z as `now`.
+    `now` is z at step n, `change` is d = (z_n+1 - z_n-1) / 2, `dt` in s.
     """
     unbalance = 0.0
     for i in range(terms.force.shape[0]):
@@ -48,8 +51,8 @@ def add_contact_works(
     """Add the works at contact m in one step. Return its normal and friction loss, J, and torque on the blisk, N m.
 
     The normal loss is lam (g_n+1 - g_n-1) / 2. The gaps are the scheme's: linearised where the blade was near, else
-    geometric. The friction loss is lam mu tau.v_rel dt, with tau the direction that the step used and v_rel its central
-    relative velocity. It is -mu lam |v_rel| dt except that the contact itself changes the direction of v_rel.
+    geometric. The friction loss is lam mu tau.v_rel dt, with tau the direction of friction in the step and v_rel the
+    central relative velocity. It is -mu lam |v_rel| dt, except that the contact changes the direction of v_rel.
     """
     surface, tips, laws, angles = model.surface, model.tips, model.laws, model.angles
     work, works = state.contact, state.works

@@ -24,5 +24,8 @@ class Scheme(NamedTuple):
 
 @inlined_kernel
 def free_step(scheme: Scheme, before: FloatArray, now: FloatArray, after: FloatArray) -> None:
-    """Write q* in z, the next coordinates without contact, into `after`. `before` and `now` are z at n - 1 and n."""
+    """Write q*, the coordinates at step n + 1 without contact, in z into `after`.
+
+    `before` and `now` are z at n - 1 and n.
+    """
     set_two_lines(scheme.lines, scheme.now, scheme.before, now, before, scheme.constant, after)

@@ -33,9 +33,9 @@ clearance; the tips of a linear beam do not."""
 
 
 def relative_tip_shift(tips: Tips, tip_limit: float) -> float:
-    """Return the largest distance of a tip from its place at rest along either axis, in tip radii.
+    """Return the largest distance of a tip from its position at rest along either axis, in tip radii.
 
-    It is the steady displacement plus `tip_limit` (m), beyond which a run has diverged.
+    It is the steady displacement plus `tip_limit` (m), the displacement beyond which a run has diverged.
     """
     return (tip_limit + float(np.abs(tips.static[:2]).max(initial=0.0))) / tips.radius
 
@@ -43,9 +43,9 @@ def relative_tip_shift(tips: Tips, tip_limit: float) -> float:
 def bounds_hold(surface: Surface, tip_shift: float, casing_limit: float) -> bool:
     """Return whether the bounds of `clearance_kernels` are valid in every state of a run that has not diverged.
 
-    They are valid where a tip is less than a quarter of its radius from its place at rest, and where the radius of the
+    They are valid if a tip is less than a quarter of its radius from its position at rest, and the radius of the
     deformed surface is nowhere below 0.9 of its mean. Bladed machines are far inside these limits. A Jeffcott rotor,
-    whose one "tip" stands on the axis, is not. Tests: tests/solver/scheme/test_screening.py.
+    whose one "tip" is on the axis, is not. Tests: tests/solver/scheme/test_screening.py.
 
     - tip_shift: from `relative_tip_shift`.
     - casing_limit: largest displacement of the casing, m.
@@ -66,9 +66,10 @@ def build_model(
     """Build the constants of a run of `steps` equal steps a turn.
 
     - system, contact: the system at its speed, and the contact law.
-    - blocks: of the system's matrices.
+    - blocks: blocks of the system's matrices.
     - start_angle: theta at the beginning of each turn, rad.
-    - screen: False evaluates every blade's gap in every step, as where `bounds_hold` is false. The result is the same.
+    - screen: True skips blades that bounds show to be far from the casing. False evaluates every blade's gap in every
+      step. The result is the same. Where `bounds_hold` is False, every gap is evaluated.
     """
     dt = 2 * np.pi / system.speed / steps
     surface, tips = casing_surface(system, contact), blade_tips(system)
@@ -108,7 +109,7 @@ def build_model(
 
 
 def speed_part(system: SpinningSystem, blocks: Blocks, dt: float) -> SpeedPart:
-    """Build the fields of a model that follow the speed, for the same system at another speed; `dt` in s."""
+    """Build the fields of a model that depend on the speed. `system` is the same system at another speed; `dt` in s."""
     return frozen(
         SpeedPart(
             blade_tips(system),
@@ -135,16 +136,17 @@ def at_speed(model: Model, part: SpeedPart, speed: float, angles: Angles, *, scr
 
 
 def angle_tables(system: SpinningSystem, theta: FloatArray, section: float = 0.0) -> Angles:
-    """Tabulate sine and cosine of what depends on the blisk's angle, for the steps of a turn or part of one.
+    """Tabulate cosine and sine of the blisk's angle and of its orders, for the steps of a turn or of a part of a turn.
 
-    `theta` (steps + 2,) are the angles of steps 0, ..., steps and -1 in rad. `section` is as in `Angles`.
+    `theta` (steps + 2,) are the angles of steps 0, ..., steps and -1 in rad. `section` is the time from step 0 to theta
+    = 0 mod 2 pi, in steps.
     """
     orders = np.multiply.outer(theta, system.surface.order) - system.surface.order * system.surface.phase
     return frozen(Angles(theta, np.cos(theta), np.sin(theta), np.cos(orders), np.sin(orders), section))
 
 
 def new_state(model: Model) -> State:
-    """Return a state at rest, undeformed and unworn, its works zero."""
+    """Return a state at rest: undeformed and unworn, with all works zero."""
     return State(
         motions=(new_motion(model), new_motion(model), new_motion(model)),
         contact=new_contact_work(len(model.tip_compliance), len(model.casing_compliance)),
@@ -156,7 +158,7 @@ def new_state(model: Model) -> State:
 
 
 def turned(state: State, steps: int) -> State:
-    """Return the state after `steps` steps: in each step the three motions have changed places."""
+    """Return the state after `steps` steps. The three motions of the state rotate by one place in each step."""
     first = steps % 3
     order = state.motions[first:] + state.motions[:first]
     return state._replace(motions=(order[0], order[1], order[2]))

@@ -74,7 +74,7 @@ class EnergyTerms(NamedTuple):
 
 
 class Model(NamedTuple):
-    """All that does not change from step to step; its arrays cannot be written."""
+    """All constants of the steps. The arrays are read-only."""
 
     surface: Surface
     """The casing's inner surface."""

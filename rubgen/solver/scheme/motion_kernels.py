@@ -8,7 +8,7 @@ from rubgen.linalg.harmonic_kernels import Harmonics, recover_rest, recover_tips
 
 
 class Motion(NamedTuple):
-    """The coordinates at one step."""
+    """The coordinates at one step: z in blocks, and the physical coordinates that contact needs."""
 
     z: FloatArray
     """All coordinates in blocks."""
@@ -20,14 +20,17 @@ class Motion(NamedTuple):
 
 @inlined_kernel
 def recover(harmonics: Harmonics, motion: Motion, share_work: FloatArray) -> None:
-    """Write `tips` and the coordinates after the tips in `q` of a motion, from its z."""
+    """Compute `tips` of a motion, and the coordinates behind the tips in its `q`, from its z.
+
+    `share_work` is scratch.
+    """
     recover_tips(harmonics, motion.z, share_work, motion.tips)
     recover_rest(harmonics, motion.z, motion.q)
 
 
 @inlined_kernel
 def recover_blade(harmonics: Harmonics, motion: Motion, blade: int) -> None:
-    """Write the three coordinates of one tip into q."""
+    """Compute the three coordinates of the tip of one blade in `q` of a motion, from its z and `tips`."""
     axial = 0.0
     for j in range(harmonics.basis.shape[0]):
         axial += harmonics.basis[blade, j] * motion.z[harmonics.places[2, j]]

@@ -10,7 +10,7 @@ from rubgen.solver.supports.support_kernels import Support
 
 
 class SpeedPart(NamedTuple):
-    """The fields of a `Model` that follow the speed, each as in `Model`."""
+    """The fields of a `Model` that depend on the speed, each as in `Model`."""
 
     tips: Tips
     scheme: Scheme

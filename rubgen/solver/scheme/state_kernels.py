@@ -24,7 +24,7 @@ class Coordinates(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Arrays that no step reads before it has written them."""
+    """Arrays that every step writes before it reads them."""
 
     free: Motion
     """The free motion q*, to go back to."""
@@ -41,7 +41,7 @@ class Scratch(NamedTuple):
 
 
 class State(NamedTuple):
-    """All that changes from step to step, and scratch. One model may have several states."""
+    """Everything that changes from step to step, and scratch arrays. One model may have several states."""
 
     motions: tuple[Motion, Motion, Motion]
     """The motions at steps n - 1 and n, and one to write."""
@@ -69,7 +69,7 @@ class Snapshots(NamedTuple):
 
 @inlined_kernel
 def keep_snapshot(snapshots: Snapshots, number: int, before: Motion, now: Motion, work: ContactWork) -> int:
-    """Copy the state at a step and the step before into snapshot `number`. Return the next number."""
+    """Copy the motions `before` and `now`, and the gaps, into snapshot `number`. Return the next number."""
     for i in range(now.z.shape[0]):
         snapshots.z[number, 0, i] = before.z[i]
         snapshots.z[number, 1, i] = now.z[i]

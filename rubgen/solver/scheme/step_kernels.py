@@ -57,11 +57,11 @@ def previous_gap(
     sine: float,
     work: ContactWork,
 ) -> float:
-    """Return the gap of a blade at step n - 1, m: the scheme's where it was near, else from the geometry.
+    """Return the gap of a blade at step n - 1, m: the scheme's gap if it is known, else the gap from the geometry.
 
     - worn (bins,): coefficients of the worn depth, m.
     - opening: added to the radius of the surface at step n - 1, m.
-    - cosine, sine: of the blisk's angle at step n - 1.
+    - cosine, sine: cosine and sine of the blisk's angle at step n - 1.
     """
     gap: float = work.step_gaps[0, blade]
     if math.isnan(gap):
@@ -73,9 +73,9 @@ def previous_gap(
 
 @inlined_kernel
 def starting_margin(laws: Laws, step_gaps: FloatArray) -> float:
-    """Return the smallest margin within which blades are solved together, m.
+    """Return the smallest margin within which blades are solved together, m: `laws.margin`, more with restitution.
 
-    It is larger by restitution times the deepest penetration at step n - 1.
+    Restitution adds its coefficient times the deepest penetration in `step_gaps` at step n - 1.
     """
     deepest = 0.0
     if laws.restitution > 0.0:
@@ -87,7 +87,7 @@ def starting_margin(laws: Laws, step_gaps: FloatArray) -> float:
 
 @inlined_kernel
 def recover_contacts(count: int, model: Model, motion: Motion, work: ContactWork) -> None:
-    """Write the tip coordinates of the contacts' blades into q of a motion."""
+    """Compute the tip coordinates of the `count` contacts' blades in `motion.q`."""
     for m in range(count):
         recover_blade(model.harmonics, motion, work.blade[m])
 
@@ -165,12 +165,13 @@ def bound_clearances(
     limits: tuple[float, float],
     work: ContactWork,
 ) -> bool:
-    """Write into `work.bounds` how far each tip is inside the deformed surface at least, m; -inf without screening.
+    """Write a lower bound of each tip's clearance to the deformed surface, m, into `work.bounds`.
 
-    Returns True if no tip can touch the surface.
+    The bounds are -inf without screening. Returns True if no tip can touch the surface.
 
     - inside: row of `model.angles` of the step.
     - opening: added to the radius of the surface, m.
+    - after: the motion at the step.
     - margin: tips nearer than this need a bound to the deformed surface, m.
     - casing_bound: bound of the casing's displacement, m.
     - limits: the two `deformation_bounds`.
@@ -273,9 +274,9 @@ def has_diverged(surface: Surface, laws: Laws, q: FloatArray, casing_start: int,
 
 @inlined_kernel
 def leaves_range(model: Model, motion: Motion, casing_bound: float, scratch: Scratch) -> bool:
-    """Return whether a motion has diverged, as `has_diverged` does, by bounds where they suffice.
+    """Return whether a motion has diverged, as `has_diverged` does. Bounds are checked first, which are faster.
 
-    No tip coordinate is beyond the norm of z. `casing_bound` is a bound of the casing's displacement, m.
+    No tip coordinate is larger than the norm of z. `casing_bound` is a bound of the casing's displacement, m.
     """
     norm = dot_rows(motion.z, motion.z, motion.z.shape[0] // LANES)
     if norm <= model.laws.tip_limit**2 and casing_bound <= model.laws.casing_limit:
@@ -317,7 +318,7 @@ def advance(
 
 @inlined_kernel
 def shift_gaps(work: ContactWork) -> None:
-    """Move the gaps at steps n and n + 1 to n - 1 and n, for the next step."""
+    """Move the gaps at steps n and n + 1 in `work.step_gaps` to n - 1 and n, for the next step."""
     for k in range(work.step_gaps.shape[1]):
         work.step_gaps[0, k] = work.step_gaps[1, k]
         work.step_gaps[1, k] = work.step_gaps[2, k]

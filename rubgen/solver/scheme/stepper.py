@@ -30,16 +30,17 @@ FRAMES = 32
 
 
 class Stepper:
-    """A system's `model`, its `state`, and the output of a turn: `result`, `touches`, `snapshots`.
+    """Advances one system turn by turn: its `model`, its `state`, and the outputs `result`, `touches`, `snapshots`.
 
     The state begins at rest, undeformed; see `speed.start`. Raises UserError for a step above the stability limit.
 
     - system: the system at one speed.
     - contact: the contact law.
     - steps: steps of a turn of `system`. At a changing speed they become `turn_steps`, and `steps` are the steps of the
-      present part.
-    - start_angle, screen: as in `build_model`.
-    - taps: the rows of `result.taps`, without timing probes. They change no motion.
+      present part of a turn.
+    - start_angle: theta at the beginning of a turn, rad.
+    - screen: False evaluates every blade's gap in every step; the result is the same, only slower.
+    - taps: the true signals that are the rows of `result.taps`, and timing probes. They change no motion.
     - alike: the same system at other speeds. Its matrices must have the same blocks; see `follow`.
     """
 
@@ -74,7 +75,7 @@ class Stepper:
 
     @property
     def steps(self) -> int:
-        """Number of steps of a turn, or of the present part of one."""
+        """Number of steps of a turn; at a changing speed of the present part of a turn."""
         return len(self.model.angles.theta) - 2
 
     @property
@@ -84,9 +85,9 @@ class Stepper:
 
     @property
     def coordinates(self) -> Coordinates:
-        """Copies of q at the step before the next turn's first step, at its first step, and at the last step written.
+        """Read-only copies of q at the step before the next turn, at its first step, and at the last step written.
 
-        Change them by `set_coordinates`. `change` is d of the first two and the step before; it is not valid at a
+        Use `set_coordinates` to change them. `change` is half the difference of the first two; it is not valid at a
         start.
         """
         before, now, after = (self.blocks.to_q(motion.z) for motion in self.state.motions)
@@ -95,7 +96,7 @@ class Stepper:
         return Coordinates(before, now, after, (now - before) / 2)
 
     def set_coordinates(self, before: FloatArray, now: FloatArray) -> None:
-        """Set q at the step before the turn's first and at its first, each (n,)."""
+        """Set q (n,) at the step before the next turn (`before`) and at its first step (`now`)."""
         motions = self.state.motions
         for motion, q in zip(motions[:2], (before, now), strict=True):
             motion.z[:] = self.blocks.to_z(q)
@@ -106,12 +107,13 @@ class Stepper:
     def follow(self, part: SpeedPart, speed: float, theta: FloatArray, section: float) -> None:
         """Continue at another speed. The next turn has as many steps as `theta` has angles, less two.
 
-        The state carries over: M and dt are the same. The change of stored energy with K is added to the works.
+        The state stays the same, because M and dt are the same. The change of stored energy with K is added to the
+        works.
 
-        - part: made by `speed_part` at that speed.
+        - part: made by `speed_part` at this speed.
         - speed: in rad/s.
         - theta (steps + 2,): angles of steps 0, ..., steps and -1, rad.
-        - section: time from step 0 to the Poincare section in steps, where there is one.
+        - section: time from step 0 to the Poincare section in steps, if this part of a turn contains it.
         """
         old, angles = self.model.energy.K, angle_tables(self.system, theta, section)
         self.model = at_speed(self.model, part, speed, angles, screen=self.screen)
@@ -124,9 +126,9 @@ class Stepper:
         self.state.works[ABSOLUTE] += abs(change)
 
     def grow_loads(self, start: float, end: float) -> None:
-        """Set the loads of faults that grow for the next turn: linear from `start` to `end`, times in s of the record.
+        """Set the growing loads of faults for the next turn, from `start` to `end` in s from the start of the record.
 
-        They are linear within a turn, so a step takes place over the steps of one turn.
+        The loads are linear in time within a turn: a sudden load therefore grows over one turn.
         """
         forces = self.system.turning
         if forces is None or not forces.growing:
@@ -147,7 +149,7 @@ class Stepper:
     ) -> tuple[int, int, int]:
         """Integrate one turn. Its outputs are in `result`, `touches`, `snapshots` and `end`.
 
-        - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., steps, m; none by default.
+        - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., steps, m; None is 0.
         - clock: number of the first step, for touches.
         - recording: False leaves out taps, orbit and arrivals. The motion is the same.
 
@@ -159,11 +161,11 @@ class Stepper:
     def run_turns(
         self, opening: FloatArray, clock: int = 0, *, recording: bool = True
     ) -> Iterator[tuple[int, int, int]]:
-        """Integrate turns in one call of the kernel. Yields what `run_turn` returns, of each turn.
+        """Integrate several turns in one call of the kernel. Yields the result of `run_turn` for each turn.
 
-        `result`, `touches`, `snapshots` and `end` are those of the turn that was yielded last, and its frames are new
-        arrays. The state is that after the last turn, and the arrivals of timing probes are the last turn's. A turn
-        that fails is the last.
+        `result`, `touches`, `snapshots` and `end` belong to the turn that was yielded last; its frames are new arrays.
+        `state` is the state after the last turn, and the arrivals of timing probes belong to the last turn. The turns
+        end after a turn that fails.
 
         - opening (turns, steps + 2): as in `run_turn`, a row for each turn.
         - clock, recording: as in `run_turn`.
@@ -199,13 +201,13 @@ class Stepper:
         return self.touches._replace(ended=ended), Snapshots(self.snapshots.steps, z, step_gaps), results, ends
 
     def begin_record(self) -> None:
-        """Begin the record: a touch that is present counts its steps from here on."""
+        """Begin the record: the steps of a touch that is present are counted from here on."""
         self.touches.open[:, STEPS] = 0.0
 
     def end_record(self, clock: int) -> FloatArray:
-        """End the record at the step `clock` of the run: end the touches that are present, and return them (any, 8).
+        """End the record at the step `clock` of the run: end the present touches, and return them (touches, 8).
 
-        The columns are those of `turn_kernels`: blade, first step, number of steps and so on.
+        The columns are blade, first step, number of steps and so on, as in `turn_kernels`.
         """
         return self.touches.ended[: close_touches(self.touches, clock, 0)].copy()
 
@@ -214,14 +216,14 @@ class Stepper:
         self.state.works[:] = 0.0
 
     def take_frames(self, frames: int) -> None:
-        """Let every turn or part of a turn leave `frames` frames of the motion at equal steps, in `result.frames`."""
+        """Store `frames` frames of the motion, at equal steps of every turn or part of a turn, in `result.frames`."""
         if len(self.result.frames) != frames:
             self.result = self.result._replace(frames=np.zeros((frames, self.result.frames.shape[1])))
 
     def take_snapshots(self, steps: list[int]) -> None:
-        """Let every turn leave snapshots of the state at these rising steps, in `snapshots`.
+        """Store snapshots of the state at these rising steps of every turn, in `snapshots`.
 
-        The last step is the end of the turn, or is never reached.
+        The last step must be the end of the turn, or a step that is never reached.
         """
         numbers, blades = self.blocks.rows * LANES, self.system.n_blades
         self.snapshots = Snapshots(
@@ -229,10 +231,10 @@ class Stepper:
         )
 
     def step(self, index: int, opening: FloatArray | None = None) -> tuple[int, int]:
-        """Make one step from the turn's step `index`, without works, taps and touches.
+        """Make one step from step `index` of the turn, without works, taps and touches.
 
-        Returns a code of `step_kernels` and the number of solved contacts, whose `lam`, `blade` and so on are in
-        `state.contact`.
+        Returns a code of `step_kernels` and the number of solved contacts. Their forces `lam`, numbers `blade` and so
+        on are in `state.contact`. `opening` (steps + 2,) is added to the radius of the surface, m; None is 0.
         """
         width, state = np.zeros(self.steps + 2) if opening is None else opening, self.state
         code, count = advance(self.model, index, width, *state.motions, state)
@@ -242,7 +244,7 @@ class Stepper:
         return code, count
 
     def energy(self) -> float:
-        """Return the stored energy E half a step before now, J."""
+        """Return the stored energy E, J, half a step before the present step."""
         before, now, _ = self.state.motions
         change = self.state.scratch.z_change
         np.subtract(now.z, before.z, out=change)

@@ -109,8 +109,11 @@ def tip_radius_on_ray(tips: Tips, rays: Rays, displacement: FloatArray, step: in
 def casing_radius_on_ray(rays: Rays, sums: FloatArray, opening: float, ray: int) -> float:
     """Return the radius at which a ray from the axis meets the deformed surface, m.
 
-    The point that comes to the ray stood u_t / r before it: r + u_r - (r' + u_r') u_t / r + u_t^2 / (2 r), right to
-    second order in the displacements on a circle, where r' = r'' = 0.
+    The surface point on the ray was at the angle u_t / r before the ray, undeformed. The radius is r + u_r - (r' +
+    u_r') u_t / r + u_t^2 / (2 r), exact to second order in the displacements on a circle, where r' = r'' = 0.
+
+    - sums: values of the linear functionals, with u_r, u_t and u_r' of the ray.
+    - opening: added to the radius of the surface, m.
     """
     first = rays.sum[ray]
     radial, tangential, slope = sums[first], sums[first + 1], sums[first + 2]
@@ -121,7 +124,7 @@ def casing_radius_on_ray(rays: Rays, sums: FloatArray, opening: float, ray: int)
 
 @inlined_kernel
 def read_shaft(model: Model, taps: Taps, coordinates: Coordinates, support: SupportState, step: int) -> None:
-    """Write displacement and velocity of O_d and force on its support, in the inertial frame, into `taps.signals`."""
+    """Write displacement, velocity and support force of O_d, in the inertial frame, into `taps.signals`."""
     speed, dt = model.laws.speed, model.laws.dt
     cosine, sine = model.angles.cosine[step], model.angles.sine[step]
     x, y = coordinates.now[taps.centre], coordinates.now[taps.centre + 1]
@@ -143,7 +146,10 @@ def read_shaft(model: Model, taps: Taps, coordinates: Coordinates, support: Supp
 
 @inlined_kernel
 def sum_functionals(taps: Taps, coordinates: Coordinates, z: FloatArray, z_change: FloatArray, dt: float) -> None:
-    """Write all linear functionals into `taps.sums`. Accelerations are central differences."""
+    """Compute all linear functionals of the taps, into `taps.sums`. Accelerations are central differences.
+
+    `z` and `z_change` are the motion and its change d in blocks, `dt` in s.
+    """
     start = coordinates.now.shape[0] - taps.bend.shape[0]
     for j in range(start, coordinates.now.shape[0]):
         taps.bend[j - start] = (coordinates.after[j] - 2 * coordinates.now[j] + coordinates.before[j]) / (dt * dt)
@@ -171,7 +177,7 @@ def record_taps(
     """Write all taps at step n into column `step` of `out` (taps, steps). q is `coordinates.now`.
 
     Velocity and acceleration are central differences. `opening` (m) is added to the radius of the surface. `force` (N)
-    and `torque` (N m) are the contact's at that time.
+    and `torque` (N m) are the sums over the contacts at step n.
     """
     read_shaft(model, taps, coordinates, state.support, step)
     taps.signals[CONTACT_FORCE], taps.signals[CONTACT_TORQUE] = force, torque
@@ -189,10 +195,10 @@ def record_taps(
 
 @inlined_kernel
 def chord_displacement(tips: Tips, timing: Timing, blade: int, q: FloatArray) -> float:
-    """Return how far the chord of a blade's tip has moved along the rotation from its place at rest, m.
+    """Return how far the chord of a blade's tip has moved along the rotation from its position at rest, m.
 
     An axial displacement counts too: the chord is slanted by `timing.chord_slope`. The result is the same at any axial
-    place, since the chord is straight and does not turn.
+    position, since the chord is straight and does not turn. `q` (n,) are the coordinates.
     """
     axial = tips.static[2, blade] + q[3 * blade + 2]
     moved: float = tips.static[1, blade] + q[3 * blade + 1] - timing.chord_slope * axial
@@ -203,9 +209,9 @@ def chord_displacement(tips: Tips, timing: Timing, blade: int, q: FloatArray) ->
 def angle_beyond(
     tips: Tips, theta: FloatArray, timing: Timing, probe: int, blade: int, step: int, more: float
 ) -> float:
-    """Return by which angle a blade has passed a probe, rad in [-pi, pi]; negative before it.
+    """Return by which angle a blade has passed a probe, rad in [-pi, pi]; negative before the passage.
 
-    The blade stands `more` rad farther along the rotation than its place on the disk. `theta[step]` is the blisk's
+    The blade is `more` rad farther along the rotation than its position on the disk. `theta[step]` is the blisk's
     angle.
     """
     angle = theta[step] + tips.angle[blade] - timing.angle[probe] + more
@@ -230,10 +236,10 @@ def is_near(
 def beyond_probe(
     tips: Tips, theta: FloatArray, timing: Timing, probe: int, blade: int, step: int, q: FloatArray
 ) -> float:
-    """Return by which angle a blade's chord, at the probe's axial place, has passed the probe, rad in [-pi, pi].
+    """Return by which angle a blade's chord, at the probe's axial position, has passed the probe, rad in [-pi, pi].
 
     The value is negative before the passage and 0 under the probe. `q` (n,) are the coordinates at step `step`, with
-    this blade's tip recovered.
+    the coordinates of this blade's tip.
     """
     along = chord_displacement(tips, timing, blade, q) + timing.chord_slope * timing.axial[probe]
     radial = tips.radius + tips.static[0, blade] + q[3 * blade]

@@ -44,10 +44,10 @@ SOURCES = ("shaft", "acceleration", "displacement", "position", "change")
 
 @dataclass
 class TapLayout:
-    """Collects linear functionals: for each source, places in the sums and the rows that belong to them.
+    """Collects the linear functionals of taps: for each source, positions in the sums and the rows there.
 
-    A functional is (source, row). The value of a tap is the sum of its functionals. Each source begins a new row of
-    eight.
+    A functional is (source, row): the product of the row with the source's vector. The value of a tap is the sum of its
+    functionals. Each source begins a new row of eight.
     """
 
     system: SpinningSystem
@@ -61,7 +61,10 @@ class TapLayout:
 
     @property
     def recovery(self) -> Recovery:
-        """What sensors need of the system. Raises ValueError where it was not reduced from a machine."""
+        """The data of the machine from which strains and drive follow.
+
+        Raises ValueError for a system without a machine.
+        """
         if self.system.recovery is None:
             raise ValueError("this system was not reduced from a machine: it has no strain and no drive")
         return self.system.recovery
@@ -84,7 +87,10 @@ class TapLayout:
         return place
 
     def product(self, source: str) -> Product:
-        """Return the functionals of one source: a line for each row of eight places with a functional."""
+        """Return the functionals of one source in the form of the kernels.
+
+        It has a line for each row of eight that is used.
+        """
         placed = self.rows[source]
         lines, parts, first = [], [np.zeros((0, LANES))], 0
         for number in sorted({place // LANES for place, _ in placed}):
@@ -99,7 +105,7 @@ class TapLayout:
 
 
 def direction(angle_deg: float) -> tuple[float, float]:
-    """Return cosine and sine of an angle, exact at right angles."""
+    """Return cosine and sine of an angle in degrees, exact at multiples of 90."""
     quarter, rest = divmod(angle_deg, 90.0)
     if rest == 0:
         return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[int(quarter) % 4]
@@ -107,9 +113,9 @@ def direction(angle_deg: float) -> tuple[float, float]:
 
 
 def along(angle_deg: float, first: int, second: int) -> FloatArray:
-    """Return the row of a linear functional: the part of a vector along a direction, from two of the shaft's signals.
+    """Return the row of a linear functional on the shaft's signals: the part of a vector along a direction (deg).
 
-    `first` and `second` are the numbers of its X and Y part in the signals.
+    `first` and `second` are the numbers of the vector's X and Y part in the signals.
     """
     row = np.zeros(LANES)
     row[first], row[second] = direction(angle_deg)
@@ -117,7 +123,7 @@ def along(angle_deg: float, first: int, second: int) -> FloatArray:
 
 
 def only(signal: int) -> FloatArray:
-    """Return the row of a linear functional: one of the shaft's signals itself."""
+    """Return the row of a linear functional on the shaft's signals: the value of the signal with this number."""
     return np.asarray(np.eye(LANES)[signal])
 
 
@@ -138,9 +144,9 @@ def polar_rows(surface: Surface, angle: float) -> list[FloatArray]:
 def ring_strain_row(system: SpinningSystem, recovery: Recovery, angle: float) -> FloatArray:
     """Return the row of the hoop strain at the casing's outer face: (u_t' + u_r) / R + (h / 2) (u_t' - u_r'') / R^2.
 
-    It is per unit of each mode, at polar angle `angle` in rad. The first term is the stretch of the centre line. The
-    second is the bending, from the rotation (u_t - u_r') / R of the cross-section; a thin ring (Love 1888). Derivatives
-    are taken of the trigonometric polynomial through the nodes.
+    It has a value for each casing mode, at the polar angle `angle` in rad. The first term is the stretch of the centre
+    line. The second is the bending of a thin ring, from the rotation (u_t - u_r') / R of the cross-section (Love 1888).
+    Derivatives are taken of the trigonometric polynomial through the nodes.
     """
     modes = system.casing_modes
     nodes = len(modes)
@@ -208,12 +214,12 @@ def build_taps(
 ) -> Taps:
     """Build the constants and scratch of the kernels for these taps of a system.
 
-    - surface: of the casing.
-    - blocks: of the system's matrices.
-    - laws: dt and the limit of the tips are used.
+    - surface: inner surface of the casing.
+    - blocks: blocks of the system's matrices.
+    - laws: its dt and the limit of the tips are used.
     - theta (steps,): angles of a turn's steps, rad.
 
-    Raises ValueError for a blade that does not exist, and for strain or drive of a system without recovery.
+    Raises ValueError for a blade that does not exist, and for strain or drive of a system without a machine.
     """
     layout = TapLayout(system, surface, blocks, laws.dt)
     for output, tap in enumerate(sampled_taps(taps)):
@@ -259,7 +265,7 @@ def _timing(system: SpinningSystem, probes: list[TipTiming], theta: FloatArray, 
 
 
 def turned_taps(taps: Taps, system: SpinningSystem, theta: FloatArray) -> Taps:
-    """Return the same taps for steps at other angles `theta` (steps,), rad."""
+    """Return the same taps for steps at other angles `theta` (steps,) of the blisk, rad."""
     blade, share = _blades_around_rays(system, taps.rays.angle, theta)
     passing, _ = _blades_around_rays(system, taps.timing.angle, theta)
     return taps._replace(rays=taps.rays._replace(blade=blade, share=share), timing=taps.timing._replace(blade=passing))

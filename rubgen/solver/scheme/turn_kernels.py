@@ -47,7 +47,10 @@ class TurnResult(NamedTuple):
 
 @allocation_free_kernel
 def close_touch(touches: Touches, blade: int, ended: int) -> int:
-    """Move a blade's present touch to the ended ones. Return their new number; `ended` is the number before."""
+    """Move a blade's present touch to `touches.ended`.
+
+    Return the new number of ended touches; `ended` is the old number.
+    """
     for c in range(touches.open.shape[1]):
         touches.ended[ended, c] = touches.open[blade, c]
     touches.open[blade, STEPS] = 0.0
@@ -58,10 +61,10 @@ def close_touch(touches: Touches, blade: int, ended: int) -> int:
 def add_touch(
     touches: Touches, blade: int, now: int, psi: float, impulse: float, friction: float, normal: float, ended: int
 ) -> int:
-    """Add one step of contact to the blade's touch; an older touch that was interrupted ends first.
+    """Add one step of contact to the blade's present touch. A touch that was interrupted before is ended.
 
-    `now` is the number of the step, `psi` the polar angle of the contact. `impulse` (N s), `friction` and `normal`
-    (losses, J) belong to the step. Returns the number of ended touches; `ended` is the number before.
+    `now` is the number of the step, `psi` the polar angle of the contact (rad). `impulse` (N s), `friction` and
+    `normal` (losses, J) belong to the step. Returns the new number of ended touches; `ended` is the old number.
     """
     row = touches.open[blade]
     if row[STEPS] > 0.0 and touches.last[blade] != now - 1:
@@ -81,7 +84,10 @@ def add_touch(
 
 @allocation_free_kernel
 def close_touches(touches: Touches, now: int, ended: int) -> int:
-    """End all touches without force at step `now`. Return the number of ended touches."""
+    """End all touches without a force at step `now`.
+
+    Return the new number of ended touches; `ended` is the old number.
+    """
     for k in range(touches.last.shape[0]):
         if touches.open[k, STEPS] > 0.0 and touches.last[k] < now:
             ended = close_touch(touches, k, ended)
@@ -131,9 +137,9 @@ def add_orbit(signals: FloatArray, out: FloatArray) -> None:
 
 @inlined_kernel
 def record_frame(frames: FloatArray, frame: int, step: int, steps: int, z: FloatArray) -> int:
-    """Copy z into `frames` where the next frame is due. Return the number of frames so far; `frame` is it before.
+    """Copy z into `frames` if a frame is due at `step`. Return the new number of frames; `frame` is the old number.
 
-    Frames are due at equal steps: frame i at step ceil(i steps / frames).
+    Frames are due at equal steps of the `steps` steps: frame i at step ceil(i steps / frames).
     """
     if step * frames.shape[0] < frame * steps:
         return frame
@@ -158,9 +164,10 @@ def add_contacts(
     """Add the contacts of one step to works, touches and `summary`. Return force, N, torque, N m, and ended touches.
 
     - count: number of contacts in `state.contact`.
-    - step, clock: number of the step in the turn, and of the turn's first step in the run.
+    - step: number of the step in the turn.
+    - clock: number of the turn's first step in the run.
     - opening (steps + 2,): added to the radius of the surface, m.
-    - ended: number of ended touches so far.
+    - ended: number of ended touches before.
     """
     work, force, torque, dt = state.contact, 0.0, 0.0, model.laws.dt
     for m in range(count):
@@ -189,7 +196,7 @@ def run_turn(
 ) -> tuple[int, int, int]:
     """Integrate one turn or part of a turn. Return a code, the step where it ended, and the number of ended touches.
 
-    Taps of step n contain the contact force lam_n of that time.
+    Taps of step n contain the contact force lam_n of the same time.
 
     - model: constants; its `angles` have the steps.
     - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., steps, m.
@@ -250,7 +257,7 @@ def run_turn(
 
 
 class TurnEnds(NamedTuple):
-    """What else some turns leave, a row for each."""
+    """Touches, works and energy of some turns, a row for each turn."""
 
     touches: IntArray
     """Number of touches that ended in the turn (turns,)."""
@@ -264,7 +271,7 @@ class TurnEnds(NamedTuple):
 
 @inlined_kernel
 def moved_on(state: State, steps: int) -> State:
-    """Return the state after `steps` steps: in each step the three motions have changed places."""
+    """Return the state after `steps` steps. The three motions of the state rotate by one place in each step."""
     a, b, c = state.motions
     motions = (a, b, c)
     if steps % 3 == 1:
@@ -287,12 +294,12 @@ def run_turns(
     results: TurnResult,
     ends: TurnEnds,
 ) -> tuple[int, int, int]:
-    """Integrate turns, or parts of turns, one after another. A call costs 300 words, whatever it does.
+    """Integrate turns, or parts of turns, one after another: one call is faster than a call for each turn.
 
     Return a code, the number of whole turns, and the step where the last turn ended.
 
-    - opening (turns, steps + 2): as in `run_turn`, a row for each turn. So are ended touches, `snapshots` but for their
-      steps, `results` and `ends`.
+    - opening (turns, steps + 2): as in `run_turn`, a row for each turn. `touches.ended`, `results`, `ends` and the
+      arrays of `snapshots` except `steps` also have a row for each turn.
     - model, clock, recording, state, taps: as in `run_turn`. Arrivals are those of the last turn.
     """
     code, step, steps = OK, 0, model.angles.cosine.shape[0] - 2

@@ -17,7 +17,7 @@ from rubgen.taps import DEFAULT_TAPS, Tap
 
 
 class ChangingSystem:
-    """A system at all speeds of an operation: `systems` at Chebyshev speeds, `start` at the first instant."""
+    """A system at the speeds of an operation: `systems` at Chebyshev speeds, `start` at the first instant."""
 
     def __init__(self, model: SpeedModel, operation: Operation) -> None:
         self.model, self.operation, self.rotation = model, operation, operation.rotation
@@ -30,7 +30,10 @@ class ChangingSystem:
         return min(self.systems, key=slowest_decay)
 
     def steps(self, sample_rate_hz: float) -> int:
-        """Return the steps in a turn at the highest speed: `steps_per_turn`, doubled until all speeds are stable."""
+        """Return the steps in a turn at the highest speed: `steps_per_turn`, doubled until all speeds are stable.
+
+        They are also enough for `sample_rate_hz`, the sensors' rate.
+        """
         steps = steps_per_turn(self.systems[-1], self.operation.steps_per_turn, sample_rate_hz)
         longest = STEP_SAFETY * min(stable_step(system) for system in self.systems)
         while 2 * np.pi / self.systems[-1].speed / steps > longest:
@@ -38,7 +41,10 @@ class ChangingSystem:
         return steps
 
     def driver(self, contact: ContactLaw, steps: int, taps: tuple[Tap, ...] = DEFAULT_TAPS) -> ChangingDriver:
-        """Return a driver in the rub-free motion of the first instant, with `steps` a turn at the highest speed."""
+        """Return a driver in the rub-free motion at the first instant.
+
+        `steps` is the number in a turn at the highest speed.
+        """
         push = largest_acceleration(self.rotation)
         pushed = [self.model.at_speed(speed, push) for speed in (self.rotation.slowest, self.rotation.fastest)]
         stepper = Stepper(self.systems[-1], contact, steps, taps=taps, alike=[*self.systems, *pushed])

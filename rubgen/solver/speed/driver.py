@@ -44,17 +44,17 @@ class SpeedDriver(Protocol):
         ...
 
     def run_turns(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
-        """Run turns one after another. The stepper's outputs are those of the turn that was yielded last.
+        """Run turns one after another. The stepper's outputs belong to the turn that was yielded last.
 
-        - numbers: of the turns; negative in the settling.
-        - opening: of the surface.
+        - numbers: numbers of the turns; negative before the record.
+        - opening: opening of the surface, m, as a function of the turns from the start.
         - recording: whether taps, orbit and arrivals are recorded.
         """
         ...
 
 
 class SteadyDriver:
-    """A constant speed: every turn is one part with the same steps; the record begins after `settle` turns."""
+    """A constant speed: every turn has the same steps. The record begins after `settle` turns."""
 
     def __init__(self, stepper: Stepper, settle: int) -> None:
         self.stepper, self.settle = stepper, settle
@@ -66,7 +66,7 @@ class SteadyDriver:
         return number * self.stepper.steps
 
     def run_turns(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
-        """Run turns, several in a call of the kernel; see `SpeedDriver.run_turns`."""
+        """Run turns, several in one call of the kernel; see `SpeedDriver.run_turns`."""
         at_once = self._at_once(recording=recording)
         for start in range(0, len(numbers), at_once):
             yield from self._run_together(numbers[start : start + at_once], opening, recording=recording)
@@ -107,7 +107,7 @@ class SteadyDriver:
 
 
 class ChangingDriver:
-    """A speed that follows a rotation, theta = 0 at t = 0, where the record begins after `settle` turns.
+    """A speed that follows a rotation. At t = 0 theta is 0 and the record begins, after `settle` turns.
 
     Time steps are equal. A turn begins at the step that is nearest to theta = 0 mod 2 pi. Each turn is cut into equal
     parts in which the speed changes by at most SPEED_SHARE. The matrices of a part belong to the speed in its middle,

@@ -41,9 +41,10 @@ def lagrange_weights(nodes: FloatArray, at: FloatArray) -> FloatArray:
 
 
 class SpeedInterpolation:
-    """The speed parts of a model between `speeds` (NODES,), rad/s, made by `part_at(speed, acceleration)`.
+    """Interpolates the speed parts of a model between `speeds` (NODES,), rad/s.
 
-    `acceleration` is the largest |Omega'|, rad/s2. Only numbers that differ between parts are interpolated.
+    `part_at(speed, acceleration)` makes them. `acceleration` is the largest |Omega'|, rad/s2. Only numbers that differ
+    between the parts are interpolated.
     """
 
     def __init__(self, part_at: Callable[[float, float], SpeedPart], speeds: FloatArray, acceleration: float) -> None:

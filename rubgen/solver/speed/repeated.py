@@ -12,10 +12,10 @@ from rubgen.solver.speed.turn import Turn, TurnFrames
 
 
 class RepeatedDriver(SteadyDriver):
-    """A constant speed at which a stepper in its rub-free motion never touches: it makes one turn, and repeats it.
+    """A constant speed at which a stepper in its rub-free motion never touches: it integrates one turn, and repeats it.
 
     A turn that is recorded while the clearance still closes is integrated. `decay` in 1/s is the slowest decay of the
-    system, by which every trajectory beside this one comes nearer.
+    system, the rate at which a companion trajectory approaches the run.
     """
 
     def __init__(self, stepper: Stepper, settle: int, decay: float) -> None:
@@ -26,7 +26,7 @@ class RepeatedDriver(SteadyDriver):
 
     @property
     def times(self) -> float:
-        """Turns of the run over those that were integrated: the works of the stepper count so many times."""
+        """Turns of the run for each turn that was integrated. The stepper's works must be multiplied by it."""
         return (self.integrated + self.repeated) / self.integrated
 
     def run_turns(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:

@@ -24,9 +24,11 @@ def rub_free_stepper(
     screen: bool = True,
     taps: tuple[Tap, ...] = DEFAULT_TAPS,
 ) -> Stepper:
-    """Make a stepper at the beginning of a turn of the scheme's own rub-free motion.
+    """Make a stepper in the rub-free motion of the time-stepping scheme, at the beginning of a turn.
 
-    Parameters and errors as for `Stepper`; `start_angle` is theta at the beginning of the turn, rad.
+    `steps` is the number in a turn, `start_angle` theta at its beginning, rad. `taps` are the true signals to record.
+    `screen` False evaluates every blade's gap in every step, with the same result. The surface is not opened here.
+    Raises UserError for a step above the stability limit.
     """
     stepper = Stepper(system, contact, steps, start_angle=start_angle, screen=screen, taps=taps)
     set_motion(stepper, rub_free_motion(system, steps), start_angle)
@@ -34,14 +36,14 @@ def rub_free_stepper(
 
 
 def set_motion(stepper: Stepper, motion: RubFreeMotion, start_angle: float = 0.0) -> None:
-    """Put a stepper of equal steps into a rub-free motion, at the angle of its turn's first step in rad."""
+    """Put a stepper of equal steps into a rub-free motion. `start_angle` is theta at its turn's first step, rad."""
     stepper.set_coordinates(*(motion.at(start_angle + 2 * np.pi * s / stepper.steps) for s in (-1, 0)))
 
 
 def start_opening(system: SpinningSystem, inset: float = 0.0) -> float:
-    """Return the opening of the surface, m, that leaves the start clearance to every tip of the rub-free motion.
+    """Return the opening of the surface, m, with which every tip of the rub-free motion has the start clearance.
 
-    `inset` (m) is how far the surface may lie inside the smooth curve.
+    It is 0 where the clearance is large enough. `inset` (m) is how far the surface may lie inside the smooth curve.
     """
     motion = rub_free_motion(system)
     tips = motion.over_turn()[:, : 3 * system.n_blades].reshape(-1, system.n_blades, 3) + system.tip_static
@@ -60,13 +62,13 @@ def closing_ramp(share: FloatArray) -> FloatArray:
 
 
 def narrowed(system: SpinningSystem, time: FloatArray) -> FloatArray:
-    """Return how far the clearance has closed within the record, in m, at times (any,) in s from its start."""
+    """Return how far faults have closed the clearance within the record, m, at times (any,) in s from its start."""
     return np.asarray(sum(each.amount_m * each.ramp.share(time) for each in system.narrowings))
 
 
 @dataclass(frozen=True)
 class Closing:
-    """The closing of the surface that is opened at the start of a run."""
+    """The closing of the surface at the start of a run. It is opened first, so that nothing touches."""
 
     opening: float
     """Opening at the start, m."""
@@ -74,7 +76,7 @@ class Closing:
     """Turns after which it is closed."""
 
     def after(self, turns: FloatArray) -> FloatArray:
-        """Return the opening in m after `turns` turns from the start; they must rise."""
+        """Return the opening in m after `turns` (any,) turns from the start; the turns must rise."""
         if turns[0] >= self.turns:
             return np.zeros(len(turns))
         return self.opening * closing_ramp(turns / self.turns)

@@ -18,7 +18,7 @@ class TurnFrames(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Turn:
-    """One turn that was run. Arrays of `result` are overwritten by the next turn."""
+    """The outputs of one turn. Arrays of `result` are overwritten by the next turn."""
 
     number: int
     """Its number in the record; negative in the settling."""

@@ -12,7 +12,10 @@ from rubgen.solver.supports.support_kernels import Support
 
 
 def support_of(system: SpinningSystem, blocks: Blocks, dt: float) -> Support:
-    """Build the kernels' constants of a system's turning forces for a step of dt (s); not active where it has none."""
+    """Build the kernels' constants of a system's turning forces, for a step of `dt` s.
+
+    The result is not active for a system without such forces.
+    """
     forces = system.turning
     if forces is None:
         return _support(TurningForces(), active=False)
@@ -65,7 +68,7 @@ def _support(
 
 
 def load_tables(forces: TurningForces) -> dict[str, FloatArray]:
-    """Return the tables `Support.loads`, `slopes` and `growing` by name; the slopes are still zero."""
+    """Return the tables `loads`, `slopes` and `growing` of `Support` by name. The slopes are zero."""
     parts = [each.loads for each in forces.growing]
     steady = np.zeros((0, 2), dtype=np.complex128) if forces.loads is None else forces.loads
     orders = max(map(len, [steady, *parts]))
@@ -84,7 +87,7 @@ def _row_of_parts(loads: ComplexArray, orders: int) -> FloatArray:
 
 
 def law_rows(laws: tuple[SupportLaw, ...]) -> FloatArray:
-    """Return a row for each law: its place in the registry, its constants, and zeros behind."""
+    """Return a row for each law: its number in the registry, its constants, and zeros up to the longest row."""
     rows = [(float(LAWS.index(type(law))), *law.numbers) for law in laws]
     width = max((len(row) for row in rows), default=1)
     return np.array([[*row, *[0.0] * (width - len(row))] for row in rows]).reshape(len(rows), width)

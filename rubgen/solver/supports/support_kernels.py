@@ -27,7 +27,7 @@ law_terms = switch([law.terms for law in ALL_LAWS])
 
 
 class Support(NamedTuple):
-    """Constants of the forces, and their products with A^-1."""
+    """Constants of the forces on O_d, and their products with A^-1."""
 
     active: bool
     """False where a system has none of these forces; then nothing else is read."""
@@ -80,14 +80,20 @@ class SupportState(NamedTuple):
 
 @inlined_kernel
 def turned(cosine: float, sine: float, x: float, y: float) -> tuple[float, float]:
-    """Return Q(theta) (x, y) from cos theta and sin theta."""
+    """Return Q(theta) (x, y): the vector (x, y) times the matrix of uneven supports.
+
+    `cosine` and `sine` are of theta.
+    """
     double_cosine, double_sine = cosine * cosine - sine * sine, 2.0 * cosine * sine
     return double_cosine * x - double_sine * y, -double_sine * x - double_cosine * y
 
 
 @inlined_kernel
 def load_at(support: Support, step: int, cosine: float, sine: float, out: FloatArray) -> None:
-    """Write p = Re sum_m p_m e^(i m theta) at a step into `out` (2,), by Horner's rule."""
+    """Write the loads of faults p = Re sum_m p_m e^(i m theta) at a step into `out` (2,), N, by Horner's rule.
+
+    `cosine` and `sine` are of theta at the step.
+    """
     x, y, x_imaginary, y_imaginary = 0.0, 0.0, 0.0, 0.0
     for m in range(support.loads.shape[0] - 1, -1, -1):
         row, slope = support.loads[m], support.slopes[m]
@@ -104,9 +110,10 @@ def load_at(support: Support, step: int, cosine: float, sine: float, out: FloatA
 
 @allocation_free_kernel
 def add_laws(laws: FloatArray, cosine: float, sine: float, x: float, y: float, D: FloatArray) -> tuple[float, float]:
-    """Add the damping of all laws at u = (x, y) to D (2, 2), N s/m. Return the force of their springs, N.
+    """Add the damping of all laws at u = (x, y), m, to D (2, 2), N s/m. Return the force of their springs, N.
 
-    A call, not inlined: a machine without laws then does not step slower.
+    `laws` has a row for each law: its number in the registry and its constants. `cosine` and `sine` are of theta. It is
+    a call, not inlined: a machine without laws then does not step slower.
     """
     spring_x, spring_y = 0.0, 0.0
     for law in range(laws.shape[0]):
@@ -124,7 +131,7 @@ def add_laws(laws: FloatArray, cosine: float, sine: float, x: float, y: float, D
 def build_drag(
     support: Support, cosine: float, sine: float, x: float, y: float, dt: float, state: SupportState
 ) -> tuple[float, float]:
-    """Write the damping D at u = (x, y) into `state.drag`, and `state.yielding`. Return the laws' spring force s(u).
+    """Write the damping D at u = (x, y) into `state.drag`, and `state.yielding`. Return the laws' spring force s(u), N.
 
     D = c_a Q(theta) + D(u) of the laws; `yielding` is (1 + D Y / 2 dt)^-1 D / 2 dt. `cosine` and `sine` are of theta.
     """
@@ -160,8 +167,10 @@ def push_supports(
 ) -> bool:
     """Add the effect of f and gravity at step n to q* in `after`. Return False where O_d is beyond a law's limit.
 
-    `before`, `now` and `after` are z at steps n - 1, n and n + 1. `cosine` and `sine` are of theta at step n, which is
-    number `step` of what is run.
+    - step: number of step n in the turn or part of a turn.
+    - cosine, sine: cosine and sine of theta at step n.
+    - before, now, after: z at steps n - 1, n and n + 1.
+    - state: the forces of the step; written.
     """
     i, j = support.centre[0], support.centre[1]
     x, y = now[i], now[j]
@@ -202,9 +211,10 @@ def push_supports(
 
 @inlined_kernel
 def yield_to_contacts(count: int, support: Support, state: SupportState, work: ContactWork) -> None:
-    """Change W of the contact problem for the damping D of the support, as if A were A + E D E^T / 2 dt.
+    """Correct the compliance matrix `work.W` of `count` contacts for the damping D of the support.
 
-    Subtracts (B_n^T A^-1 E) (1 + D Y / 2 dt)^-1 D / 2 dt (E^T A^-1 B) from `work.W` of `count` contacts.
+    W = B_n^T A^-1 B is changed as if A were A + E D E^T / 2 dt, where E selects x and y of O_d: subtracted is (B_n^T
+    A^-1 E) S (E^T A^-1 B), with S = (1 + D Y / 2 dt)^-1 D / 2 dt = `state.yielding`.
     """
     S = state.yielding
     for column in range(count):
@@ -223,7 +233,10 @@ def yield_to_contacts(count: int, support: Support, state: SupportState, work: C
 
 @inlined_kernel
 def resist_contacts(support: Support, state: SupportState, force: FloatArray) -> None:
-    """Add to a contact `force` in z the change of f that the contact's jump of velocity causes."""
+    """Add to a contact `force` in z the change of the support force f that the contact causes. Changes `state.force`.
+
+    The contact changes the velocity of O_d, and thereby the force of the dampers in f.
+    """
     x = dot_rows(support.rows[0], force, force.shape[0] // LANES)
     y = dot_rows(support.rows[1], force, force.shape[0] // LANES)
     S = state.yielding
@@ -244,10 +257,13 @@ def add_support_works(
     change: FloatArray,
     state: SupportState,
 ) -> float:
-    """Add the works of one step to `state.works`. Return the sum of their absolute values, J.
+    """Add the works of one step to `state.works`, J. Return the sum of their absolute values, J.
 
     Works of uneven springs and dampers, of the laws, of gravity, and of the loads of faults are each force times d.
-    LAWS_LOSS is the force of the laws times dt v_abs. `now` and `change` (d) are in z. `cosine`, `sine`: of theta at n.
+    LAWS_LOSS is the force of the laws times dt v_abs.
+
+    - cosine, sine: cosine and sine of theta at step n.
+    - now, change: z at step n, and d = (z_n+1 - z_n-1) / 2.
     """
     x, y = now[support.centre[0]], now[support.centre[1]]
     dx, dy = change[support.centre[0]], change[support.centre[1]]

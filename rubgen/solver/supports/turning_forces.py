@@ -12,7 +12,7 @@ from rubgen.reduction.model import TurningForces
 def turning_force(forces: TurningForces, speed: float, theta: AnyArray, u: AnyArray, v: AnyArray) -> AnyArray:
     """Return the force (..., 2) in N on O_d in the turning frame: -k_a Q u - c_a Q v_abs and the laws of the support.
 
-    Complex steps differentiate it: it is analytic in pieces.
+    It is piecewise analytic, so that complex steps differentiate it.
 
     - forces: constants of the forces.
     - speed: Omega, rad/s.
@@ -29,7 +29,10 @@ def turning_force(forces: TurningForces, speed: float, theta: AnyArray, u: AnyAr
 def force_derivatives(
     forces: TurningForces, speed: float, theta: FloatArray, u: FloatArray, v: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the derivatives by u and by v (..., 2, 2) of `turning_force`, by a complex step; parameters as there."""
+    """Return the derivatives by u and by v (..., 2, 2) of `turning_force`, by a complex step.
+
+    The parameters are those of `turning_force`.
+    """
     by_u, by_v = [], []
     for i in range(2):
         step = 1e-30j * np.eye(2)[i]
@@ -39,12 +42,15 @@ def force_derivatives(
 
 
 def gravity_force(forces: TurningForces, theta: float) -> FloatArray | float:
-    """Return the weight (n,) in N in the turning frame, along -Y: -g M T (sin theta, cos theta); 0 without gravity."""
+    """Return the weight (n,) in N in the turning frame, along -Y: -g M T (sin theta, cos theta); 0 without gravity.
+
+    `theta` is the angle of the blisk, rad.
+    """
     return 0.0 if forces.weight is None else -forces.weight @ np.array([np.sin(theta), np.cos(theta)])
 
 
 def fault_force(forces: TurningForces, theta: float) -> FloatArray | float:
-    """Return the steady loads of faults on O_d (2,) in N, in the turning frame; 0 without any."""
+    """Return the steady loads of faults on O_d (2,) in N, in the turning frame; 0 without loads. `theta` is in rad."""
     if forces.loads is None:
         return 0.0
     return np.asarray((np.exp(1j * theta * np.arange(len(forces.loads))) @ forces.loads).real)
