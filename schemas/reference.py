@@ -131,7 +131,7 @@ def columns_page() -> str:
     rest = [each for each in signal_columns(default, clean=False) if each.kind != "signal"]
     return _page(
         "Labels and channels",
-        "Columns of the tables of a data set. [Labels](../labels.md) defines each label and states its limits.",
+        "Columns of the tables of a data set. [Labels](../labels.md) says what labels mean and how they are computed.",
         "## Identity, parameters and energies of a run\n\n" + column_table(first),
         "## Labels of a run\n\n" + column_table(label_columns()),
         "## Orders of each true signal\n\nEach name begins with that of the signal; here `contact_force`.\n\n"

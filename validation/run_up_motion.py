@@ -110,7 +110,7 @@ def page(every: Sequence[Pair], courses: dict[tuple[str, float], str]) -> str:
     return f"""# Motion in run-ups, beside steady runs
 
 `{COMMAND}` makes this page. It compares the label of motion of a window of a run-up
-([labels over time](labels.md#over-time)) with the label of a steady run of 500 turns at the speed of the window.
+([labels over time](labels/over-time.md)) with the label of a steady run of 500 turns at the speed of the window.
 
 Of {len(every)} pairs {verdicts.count("agree")} agree on a class. In {verdicts.count("undecided")} one or both are
 `undecided`. {verdicts.count("contradict")} contradict each other. Blades touch in {sum(each.rub for each in every)} of

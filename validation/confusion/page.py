@@ -30,7 +30,7 @@ def _introduction(cases: Sequence[Case]) -> str:
 
 {series}
 
-[The labels](labels.md#motion) use three indicators: clusters of the Poincare section, the 0-1 test, and the Lyapunov
+[The labels](labels/motion.md) use three indicators: clusters of the Poincare section, the 0-1 test, and the Lyapunov
 exponent. They agree in {agree} runs. Each of the other {len(cases) - agree} was examined: which part strays most (disk
 centre, tips, casing), by how much, and whether the motion still settles, repeats after 17 to 64 turns, is intermittent,
 or is one spectral line.

@@ -47,9 +47,9 @@ FOLLOWS = """
   labels and the same period-1 impulses within 0.02 %. `auto` uses the slowest decay of the linear system, and contact
   adds damping. `auto` stays the default, because a run that hardly rubs has only the decay of the linear system.
 - **Period-1 means within 1 % of the motion.** This is the radius within which points of the section count as equal
-  (`docs/labels.md`). The casing of the light rub strays by half of it. From this bound on, 0-1 test and exponent may
-  contradict the class, and they do. With other steps or nodes the casing strays a little more, and the run is
-  `undecided`; with friction 0.01 and 8,192 steps it is `period-3`. Impulses and orders hardly change.
+  ([labels](labels/motion.md#clusters)). The casing of the light rub strays by half of it. From this bound on, 0-1
+  test and exponent may contradict the class, and they do. With other steps or nodes the casing strays a little more,
+  and the run is `undecided`; with friction 0.01 and 8,192 steps it is `period-3`. Impulses and orders hardly change.
 - The mean impulses of the chaotic runs vary by up to about 8 % in all studies, without a trend (except with other
   casing modes and with 256 steps). Records of 500 turns cannot resolve smaller differences.
 """
@@ -58,7 +58,7 @@ REMARKS = {
 The runs are the sweep of the paper, 2,460 to 14,940 rev/min in steps of 120, with 1,024 and with 2,048 steps a turn.
 `K` is the indicator of the 0-1 test (chaotic from 0.7). `stray` is the rms distance of the points of the section from
 their mean, divided by the size of the motion (period-1 up to 0.01). The exponent is the largest Lyapunov exponent with
-its standard error. `docs/labels.md` defines all three.
+its standard error. [Labels](labels/motion.md) defines all three.
 """,
     "steps": """
 Reference: 8,192. Gap and normal are taken at step n+1, and the force acts from step n. So the scheme is of first order

@@ -27,7 +27,7 @@ from validation.zeng2019.size import Size
 from validation.zeng2019.statement import EXPERIMENT, Statement, by_share, counted, yes_or_no
 
 CLASS_BOUND = 0.01
-"""Points that stray less than this share of the motion (rms) are a cluster: `docs/labels.md`."""
+"""Points that stray less than this share of the motion (rms) are a cluster: `docs/labels/motion.md`."""
 FREE = 0.05
 """What the two equations may miss of the machine's own unbalance and clearance: they are linear in the unbalance."""
 

@@ -123,7 +123,7 @@ def outcome(response: Response) -> Outcome:
 
 
 def _motion_of_the_centre(response: Response, labels: Labels) -> str:
-    """Class of the disk centre by the rules of `docs/labels.md`, as if the blisk had no tips.
+    """Class of the disk centre by the rules of `docs/labels/motion.md`, as if the blisk had no tips.
 
     K of the 0-1 test is the larger of the disk centre and the casing.
     """
