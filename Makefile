@@ -35,7 +35,7 @@ tutorial: $(VENV)/.installed-dev
 SIZES ?= 100 1000 10000
 MACHINES ?= 200
 scale: $(VENV)/.installed-dev
-	$(BIN)/python -m benchmarks.bench_scale $(SIZES)
+	$(BIN)/python -m benchmarks.scale $(SIZES)
 
 cluster: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.cluster --machines $(MACHINES)

@@ -1,9 +1,11 @@
 """The page of computing times: figures stand where the text names them, and a missing one is named."""
 
+import importlib
 import re
 
 import pytest
 
+from benchmarks.__main__ import NAMES
 from benchmarks.page import FIGURE, TEXT, page, row_of
 
 ROWS = [
@@ -39,3 +41,8 @@ def test_every_figure_of_the_page_has_a_name_of_a_row_and_a_format():
             continue
         format(0.5, how)
         assert re.split(r"[:,] ", name)[-1] in sources, name
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_benchmark_of_the_table_has_rows_to_measure(name):
+    assert callable(importlib.import_module(f"benchmarks.bench_{name}").measure)

@@ -28,7 +28,7 @@ from validation.markdown import table
 ROOT = Path(__file__).parents[1]
 PAGE, TEXT, KEPT = ROOT / "docs" / "scale.md", Path(__file__).parent / "scale.md", ROOT / "out" / "scale"
 PROJECTED = (100_000, 1_000_000)
-PAIRS, RUNS_A_PAIR = 7, 24
+PAIRS, RUNS_A_PAIR = 7, 240
 RECIPE = {
     "name": "scale",
     "machine": "zeng2019",
@@ -158,7 +158,7 @@ def rate(workers: int) -> dict[str, float]:
 
 def _kernel_rate(processes: int) -> float:
     """Return calls a second of a loop of pure arithmetic, in that many processes."""
-    from benchmarks.bench_scale import arithmetic  # by its module, which workers know
+    from benchmarks.scale import arithmetic  # by its module, which workers know
     from rubgen.dataset.making.workers import unordered, worker_pool
 
     calls = 12
@@ -190,7 +190,7 @@ def _peak_of_children_mb() -> float:
 
 
 def _in_new_process(name: str, *arguments: object) -> dict[str, float]:
-    call = [sys.executable, "-m", "benchmarks.bench_scale", name, *map(str, arguments)]
+    call = [sys.executable, "-m", "benchmarks.scale", name, *map(str, arguments)]
     done = subprocess.run(call, check=True, stdout=subprocess.PIPE, text=True, cwd=ROOT)
     costs: dict[str, float] = loads(done.stdout.splitlines()[-1])
     return costs
