@@ -21,6 +21,10 @@ class UserError(RubgenError):
     """
 
 
+class NoPictureError(UserError, ValueError):
+    """A run, a set or a choice that a picture cannot show. It is a ValueError too, as of any wrong argument."""
+
+
 class RubgenWarning(UserWarning):
     """A value that is allowed but hardly intended, or work done in another way than asked. The work continues.
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from rubgen.brief import counted
 from rubgen.dataset.reading.open import DataSet
 from rubgen.dataset.reading.replaying import find_replay
-from rubgen.errors import UserError
+from rubgen.errors import NoPictureError, UserError
 from rubgen.machine import load_machine
 from rubgen.machine.load import file_named
 from rubgen.machine.problems import nearest
@@ -75,7 +75,7 @@ def make_figure(name: str, source: Path | None, choice: Choice) -> Figure:
         raise UserError(f"figure {name!r}: {nearest(name, list(FIGURES))}")
     try:
         return FIGURES[name](source, choice)
-    except ValueError as error:
+    except NoPictureError as error:
         raise UserError(f"figure {name}: {error}") from None
 
 
@@ -196,7 +196,7 @@ def _cascade(data: DataSet, choice: Choice) -> Figure:
             spectra.append(found.amplitude.mean(axis=0))
             orders = found.order
     if len({spectrum.size for spectrum in spectra}) != 1:
-        raise ValueError("signals of 17 turns or more are needed; raise signal_seconds")
+        raise NoPictureError("signals of 17 turns or more are needed; raise signal_seconds")
     unit = data.units.get(name, "").replace("m/s2", "m/s²")
     figure = figures.spectrum_cascade(np.array(values), orders, np.array(spectra), y=axis_text(key), unit=unit)
     return _headed(figure, data, key, f"; {name}")
@@ -207,7 +207,7 @@ def _exponent(data: DataSet, choice: Choice) -> Figure:
     key, good = _parameter(data, choice), data.ok
     known = good[good["lyapunov_per_turn"].notna()]
     if known.empty:
-        raise ValueError("no run has an exponent; generate with lyapunov = true under [labels]")
+        raise NoPictureError("no run has an exponent; generate with lyapunov = true under [labels]")
     figure = figures.exponent_sweep(
         known[key].to_numpy(dtype=float) * scale_of(key),
         known["lyapunov_per_turn"].to_numpy(dtype=float),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.errors import NoPictureError
 from rubgen.labels.headline import headline
 from rubgen.labels.to_json import MOTION_LABELS, labels_to_json, motion_classes
 from rubgen.measurement.channel import Recording
@@ -78,7 +79,7 @@ class Replay:
 def replay_of(run: Run) -> Replay:
     """Make the replay of a run in memory. Raises ValueError for a run without a recording."""
     if run.recording is None or run.labels is None:
-        raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to show")
+        raise NoPictureError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to show")
     touches, recording = contact_intervals(run.response, run.recording), run.recording
     seconds = recording.samples / recording.sample_rate_hz
     classes = motion_classes(run.labels, recording.start_seconds, seconds)

@@ -243,3 +243,13 @@ def test_a_parameter_to_draw_over_is_named(made_set, tmp_path, name, message):
 def test_an_option_that_a_figure_would_ignore_is_refused(name, choice, option, tmp_path):
     with pytest.raises(UserError, match=f"^{option}: this figure has no such option; leave it out"):
         make_figure(name, tmp_path, choice)
+
+
+def test_a_bug_in_a_figure_is_not_called_a_mistake_of_the_user(monkeypatch):
+    def draw(_source, _choice):
+        raise ValueError("x and y must have the same first dimension")
+
+    monkeypatch.setitem(FIGURES, "modes", draw)
+    with pytest.raises(ValueError, match="same first dimension") as caught:
+        make_figure("modes", None, Choice())
+    assert not isinstance(caught.value, UserError)

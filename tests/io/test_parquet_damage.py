@@ -1,5 +1,6 @@
 """Damaged, foreign and hostile Parquet files: a correct table, or one line that names the file."""
 
+import errno
 import os
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from mutations import mutated
 
 from rubgen.errors import UserError
-from rubgen.io.parquet.read import ParquetSource, read_table, row_groups
+from rubgen.io.parquet.read import ParquetSource, damage_named, read_table, row_groups
 from rubgen.io.parquet.write import run_table, write_table
 
 WORD, MANY = "x" * 1_000_000, 40_000_000
@@ -67,7 +68,7 @@ def test_every_way_of_reading_names_the_file(file, tmp_path):
         assert source.read_row_group(1, ["run_id"]).num_rows == 1
         with pytest.raises(UserError, match=r"bad\.parquet: damaged"):
             source.read_row_group(1, [name])
-        with pytest.raises(UserError, match=r"bad\.parquet: damaged"):
+        with pytest.raises(IndexError):  # a mistake of ours is not called damage
             source.read_row_group(2)
 
 
@@ -140,3 +141,30 @@ def test_pipes_folders_and_devices_are_not_opened(tmp_path):
     with pytest.raises(UserError, match="cannot be read"):
         read_table(tmp_path / "a\0b")
     assert "No such file" in refusal(tmp_path / "none.parquet")
+
+
+@pytest.mark.parametrize("wrong", [TypeError, ValueError, LookupError, OverflowError, AttributeError])
+def test_a_bug_is_not_called_damage(wrong):
+    with pytest.raises(wrong), damage_named("run.parquet"):
+        raise wrong
+
+
+@pytest.mark.parametrize(
+    ("error", "message"),
+    [
+        (OSError(errno.EMFILE, "of pyarrow"), "run.parquet: cannot be read (Too many open files)"),
+        (pa.ArrowMemoryError("malloc of size 8 failed"), "run.parquet: cannot be read (malloc of size 8 failed)"),
+        (OSError("Couldn't deserialize"), "run.parquet: damaged or no Parquet file of rubgen (Couldn't deserialize)"),
+    ],
+)
+def test_what_the_system_refuses_is_not_called_damage(error, message):
+    with pytest.raises(UserError) as caught, damage_named("run.parquet"):
+        raise error
+    assert str(caught.value).startswith(message)
+
+
+def test_a_name_of_a_column_that_is_no_utf_8_is_damage(tmp_path):
+    path = tmp_path / "names.parquet"
+    pq.write_table(pa.table({"run_id": ["a"]}), path, store_schema=False)
+    path.write_bytes(path.read_bytes().replace(b"run_id", b"run\xff\xfed"))
+    assert "damaged or no Parquet file" in refusal(path)

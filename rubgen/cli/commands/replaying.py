@@ -97,10 +97,7 @@ def _write_pictures(replay: Replay, showing: Showing) -> None:
     from rubgen.viz.figures.style import save_png
 
     def attempt(option: str, path: Path, make: Callable[[Path], None]) -> None:
-        try:
-            write_file(option, path, make)
-        except ValueError as error:
-            raise UserError(str(error)) from None
+        write_file(option, path, make)
         say(str(path))
 
     if showing.png:

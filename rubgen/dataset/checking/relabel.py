@@ -86,17 +86,7 @@ def _remade(path: Path, asked: float) -> Iterator[tuple[str, dict[str, object]]]
         if not table.schema.equals(SCHEMA):
             raise UserError(f"{path}: its columns are not those of this rubgen; generate the set again")
         for row, run_id in enumerate(table["run_id"].to_pylist()):
-            yield run_id, _labels_of(table, row, path)
-
-
-def _labels_of(table: pa.Table, row: int, path: Path) -> dict[str, object]:
-    record = read_record(table, row, path)
-    try:
-        return remade_labels(record)
-    except (ValueError, LookupError, ArithmeticError) as error:
-        reason = " ".join(f"{type(error).__name__} {error}".split())[:200]
-        run_id = table["run_id"][row].as_py()
-        raise UserError(f"{path}: {run_id}: labels cannot be made ({reason}); generate the set again") from None
+            yield run_id, remade_labels(read_record(table, row, path))
 
 
 def equal(one: object, other: object) -> bool:

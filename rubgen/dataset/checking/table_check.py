@@ -17,13 +17,12 @@ from rubgen.dataset.shards import Shard, shards_of
 from rubgen.dataset.tables import RUNS, SIGNALS, TABLES, TRUTH, WINDOWS, SetTable, tables_of
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
-from rubgen.io.parquet.read import ParquetSource
+from rubgen.io.parquet.read import NO_PARQUET, ParquetSource
 from rubgen.io.parquet.words import with_words
 from rubgen.labels import MOTION_CLASSES
 from rubgen.scenario import Recipe, Sensing
 from rubgen.scenario.run_id import run_id_of
 
-NO_PARQUET = "damaged or no Parquet file of rubgen"
 MOST_NAMED = 4
 """Number of runs or columns that a line lists one by one."""
 OF_WINDOW = {
@@ -219,9 +218,11 @@ def _groups(
                     names = _runs_of(file, group) or [name_of(row) for row in rows]
                     columns = [column for column in types.names if not _reads(file, group, column)]
                     where = f"row group {group} with {_few(names)}, column {_few(columns)}"
-                    yield None, [f"{name}: damaged: {where} ({_reason(error, path)})"]
+                    what, reason = _what_and_why(error, path)
+                    yield None, [f"{name}: {what}: {where} ({reason})"]
     except UserError as error:
-        yield None, [f"{name}: damaged ({_reason(error, path)})"]
+        what, reason = _what_and_why(error, path)
+        yield None, [f"{name}: {what} ({reason})"]
 
 
 def _namer(runs: list[str]) -> Callable[[int], str]:
@@ -250,7 +251,9 @@ def _reads(file: ParquetSource, group: int, column: str) -> bool:
     return True
 
 
-def _reason(error: UserError, path: object) -> str:
-    """Return why a file cannot be read, without its name and without advice."""
+def _what_and_why(error: UserError, path: object) -> tuple[str, str]:
+    """Return whether a file is damaged or was not read, and why, without its name and without advice."""
     text = str(error).removeprefix(f"{path}: ").removesuffix("; generate it again")
-    return text.removeprefix(f"{NO_PARQUET} (").removesuffix(")") if text.startswith(f"{NO_PARQUET} (") else text
+    if text.startswith(f"{NO_PARQUET} ("):
+        return "damaged", text.removeprefix(f"{NO_PARQUET} (").removesuffix(")")
+    return "not read", text

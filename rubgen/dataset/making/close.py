@@ -85,7 +85,7 @@ def read_closed(layout: Layout, shard: str) -> ClosedShard:
     path = layout.closed(shard)
     try:
         return ClosedShard.model_validate(read_json(path.read_bytes()))
-    except (OSError, ValueError):
+    except (FileNotFoundError, ValueError):  # a ValidationError is a ValueError
         path.unlink(missing_ok=True)
         raise RubgenError(f"{path}: damaged: give the same command again, it makes this shard anew") from None
 

@@ -121,6 +121,6 @@ def _rows(layout: Layout, shard: str, types: pa.Schema) -> tuple[IntArray, pa.Ta
     path = layout.staged(RUNS.name, shard)
     try:
         table = read_table(path, types.names).cast(types)
-        return np.array([index_of(name) for name in table["run_id"].to_pylist()]), table
-    except (UserError, ValueError, pa.ArrowException):
+    except (UserError, pa.ArrowException):
         raise _lost(layout, shard, path) from None
+    return np.array([index_of(name) for name in table["run_id"].to_pylist()]), table

@@ -100,6 +100,10 @@ def unfinished(directory: Path) -> Unfinished | None:
         return None
     try:
         recipe = read_json(layout.identity.read_bytes())["recipe"]
-        return Unfinished(name=str(recipe["name"]), runs=int(recipe["runs"]), kept=finished_runs(directory))
-    except (OSError, ValueError, TypeError, LookupError):
-        raise UserError(f"{layout.identity}: cannot be read; give the directory of another data set") from None
+        name, runs = str(recipe["name"]), int(recipe["runs"])
+    except (OSError, ValueError, TypeError, LookupError) as error:
+        reason = f"{type(error).__name__}: {error}"
+        raise UserError(
+            f"{layout.identity}: cannot be read ({reason}); give the directory of another data set"
+        ) from None
+    return Unfinished(name=name, runs=runs, kept=finished_runs(directory))

@@ -24,11 +24,12 @@ from rubgen.dataset.reading.folds import Fold, base_runs, folds
 from rubgen.dataset.reading.recorded import PULSES, exported_signals, is_signal, parquet_signals, row_signals
 from rubgen.dataset.reading.samples import Arrays, Windows, arrays, window_index, windows
 from rubgen.dataset.reading.stored_run import StoredRun, stored_run
-from rubgen.dataset.reading.tables import COLUMNS, check_runs, runs_frame, touches_frame
+from rubgen.dataset.reading.tables import check_runs, runs_frame, touches_frame
 from rubgen.dataset.rows import RunRows, asked_bytes
 from rubgen.dataset.tables import SECTIONS, SIGNALS, TRUTH, SetTable
 from rubgen.errors import UserError
 from rubgen.io.columns import Column, Role, scalar_columns, signal_columns
+from rubgen.io.parquet.compact_records import TOUCH_COLUMNS, read_touches
 from rubgen.io.parquet.read import damage_named, read_table
 from rubgen.io.parquet.words import with_words
 from rubgen.io.parquet.write import recipe_schema
@@ -199,9 +200,9 @@ class DataSet:
 
     def each_touches(self, run_ids: Sequence[str]) -> Iterator[tuple[str, pd.DataFrame]]:
         """Yield the name and the touches of each of these good runs, in the order of `run_ids`. See `touches`."""
-        for run_id, table in self._sections.each(run_ids, COLUMNS):
-            with damage_named(self._sections.places[run_id].file):
-                yield run_id, touches_frame(table, self._sensing, self.signal_seconds)
+        for run_id, table in self._sections.each(run_ids, ["run_id", *TOUCH_COLUMNS]):
+            record = read_touches(table, 0, self._sections.places[run_id].file)
+            yield run_id, touches_frame(record, self._sensing, self.signal_seconds)
 
     def arrays(
         self,

@@ -14,7 +14,7 @@ from rubgen.arrays import FloatArray
 from rubgen.dataset.manifest import Manifest
 from rubgen.errors import UserError
 from rubgen.io.columns import every_scalar
-from rubgen.labels.compact_record import TOUCHES, named_scalars
+from rubgen.labels.compact_record import CompactRecord, named_scalars
 from rubgen.labels.labels import Motion
 from rubgen.scenario import Sensing
 from rubgen.scenario.run_id import run_id_of
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 FLAGS_AND_COUNTS = ("rub", "blades_touched", "contact_touches")
 NUMBERS = ("contact_duty", "contact_impulse_per_turn_n_s", "speed_rpm", "sample_rate_hz")
 MOTIONS = ("motion", "motion_blisk", "motion_casing")
-COLUMNS = ("scalars", "turn_steps", *TOUCHES)
-"""The columns of the files in `sections/` that are read here."""
 FIRST_SAMPLE = "first_sample_s"
 """Attribute of a frame of touches: the time of the first sample from the record's start, in s."""
 UNITS = {
@@ -87,10 +85,10 @@ def check_runs(table: pa.Table, manifest: Manifest, path: Path) -> None:
             raise UserError(f"{path}: {run_id}: {name} = {value!r:.60} of a good run; generate the set again")
 
 
-def touches_frame(table: pa.Table, sensing: Sensing, seconds: float) -> pd.DataFrame:
+def touches_frame(record: CompactRecord, sensing: Sensing, seconds: float) -> pd.DataFrame:
     """Make a DataFrame of the touches of a run, one row a touch of a blade, in order of its start.
 
-    - table: the row of the run in `sections/`.
+    - record: the touches of the run, from `read_touches`.
     - sensing: the sensors of the run, from which the first sample follows.
     - seconds: length of the signals.
 
@@ -102,7 +100,6 @@ def touches_frame(table: pa.Table, sensing: Sensing, seconds: float) -> pd.DataF
 
     from rubgen.measurement.chain import start_seconds
 
-    record = {name: np.asarray(table[name][0].values) for name in COLUMNS}
     scalars = named_scalars(record["scalars"].tolist())
     dt, turns = scalars["dt"], record["turn_steps"]
     steps = int(turns[-1]) if turns.size else int(scalars["record_turns"] * scalars["steps_per_turn"])

@@ -3,6 +3,9 @@
 One row a run. Arrays are stored as flat lists, row after row.
 """
 
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +47,12 @@ SCHEMA = pa.schema(
     ]
 )
 
+TOUCH_COLUMNS = ("scalars", "turn_steps", *TOUCHES)
+"""The columns that tell of the touches."""
+COUNTS = ("steps_per_turn", "settle_turns", "record_turns", "n_blades", "n_casing")
+MOST_COUNTED = 2**31
+"""No number of COUNTS is as large."""
+
 
 def record_table(run_id: str, response: Response) -> pa.Table:
     """Make the row with the compact record of run `run_id`. The run must have ended well (status OK)."""
@@ -57,44 +66,83 @@ def write_record(run_id: str, response: Response, path: Path) -> None:
     write_table([record_table(run_id, response)], SCHEMA, path)
 
 
+class _MisfitError(Exception):
+    """Lists of a row that do not fit each other, or a number that cannot be there."""
+
+
 def read_record(table: pa.Table, row: int, path: Path) -> CompactRecord:
     """Read the compact record in row `row` of `table`, which was read from `path`. Returns its arrays by name.
 
     Raises UserError where the lengths of its lists do not fit each other or a number is not valid.
     """
-    record: dict[str, np.ndarray[Any, Any]] = {}
-    try:
-        for name in RECORD_COLUMNS:
-            record[name] = _listed(table, name, row)
-        scalars = named_scalars(record["scalars"].tolist())
-        width = 3 * int(scalars["n_blades"]) + 4 + 2 * int(scalars["n_casing"])
+    with _misfits_named(table, row, path):
+        record = {name: _listed(table, name, row) for name in RECORD_COLUMNS}
+        scalars = _scalars(record["scalars"])
+        width = 3 * scalars["n_blades"] + 4 + 2 * scalars["n_casing"]
         for name, columns in (("section", width), ("fractions", width), ("orbit", 5)):
+            if record[name].size % columns:
+                raise _MisfitError(f"{name} has {record[name].size} numbers, in rows of {columns}")
             record[name] = record[name].reshape(-1, columns)
-        _check_lengths(record, int(scalars["record_turns"]), int(scalars["n_blades"]))
-    except (ValueError, OverflowError) as error:
-        run_id = table["run_id"][row].as_py()
-        raise UserError(f"{path}: {run_id}: {' '.join(str(error).split())[:200]}; generate the set again") from None
+        _check_turns(record, scalars["record_turns"])
+        _check_touches(record, scalars["n_blades"])
     return record
+
+
+def read_touches(table: pa.Table, row: int, path: Path) -> CompactRecord:
+    """Read the columns TOUCH_COLUMNS of a compact record. The rest is as in `read_record`."""
+    with _misfits_named(table, row, path):
+        record = {name: _listed(table, name, row) for name in TOUCH_COLUMNS}
+        _check_touches(record, _scalars(record["scalars"])["n_blades"])
+    return record
+
+
+@contextmanager
+def _misfits_named(table: pa.Table, row: int, path: Path) -> Iterator[None]:
+    try:
+        yield
+    except _MisfitError as misfit:
+        raise UserError(f"{path}: {table['run_id'][row].as_py()}: {misfit}; generate the set again") from None
 
 
 def _listed(table: pa.Table, name: str, row: int) -> np.ndarray[Any, Any]:
     values = table[name][row].values
     if values is None:
-        raise ValueError(f"{name} is null")
+        raise _MisfitError(f"{name} is null")
     return np.asarray(values)
 
 
-def _check_lengths(record: CompactRecord, turns: int, blades: int) -> None:
-    """Raise ValueError where lists of turns or of touches differ in length, or a number is not valid."""
-    for name in (*TOUCHES, "turn_impulse", "contact_steps"):
+def _scalars(values: np.ndarray[Any, Any]) -> dict[str, int]:
+    """Return the counts among the scalars by name."""
+    if values.size not in (len(SCALARS), len(SCALARS) + 1):
+        raise _MisfitError(f"scalars has {values.size} of {len(SCALARS)} numbers")
+    named = named_scalars(values.tolist())
+    for name in ("speed", "dt"):
+        if not math.isfinite(named[name]):
+            raise _MisfitError(f"{name} is {named[name]}")
+    for name in COUNTS:
+        if not (0 <= named[name] <= MOST_COUNTED and named[name].is_integer()):
+            raise _MisfitError(f"{name} is {named[name]}, no count")
+    return {name: int(named[name]) for name in COUNTS}
+
+
+def _check_turns(record: CompactRecord, turns: int) -> None:
+    """Raise _MisfitError where lists of turns differ in length or hold what is no number."""
+    for name in ("turn_impulse", "contact_steps", "section", "orbit"):
         if not np.isfinite(record[name]).all():
-            raise ValueError(f"{name} is not finite")
+            raise _MisfitError(f"{name} is not finite")
     for name in ("section", "turn_impulse", "contact_steps"):
         if len(record[name]) != turns:
-            raise ValueError(f"{name} has {len(record[name])} of {turns} turns")
-    if len({record[name].size for name in TOUCHES}) > 1:
-        raise ValueError("lists of touches differ in length")
-    if record["blade"].size and not 0 <= record["blade"].min() <= record["blade"].max() < blades:
-        raise ValueError(f"a touch is of a blade that is none of {blades}")
+            raise _MisfitError(f"{name} has {len(record[name])} of {turns} turns")
     if record["rotation"].size not in (0, 5) or (record["rotation"].size and record["turn_steps"].size != turns + 1):
-        raise ValueError("rotation and turn_steps do not fit the number of turns")
+        raise _MisfitError("rotation and turn_steps do not fit the number of turns")
+
+
+def _check_touches(record: CompactRecord, blades: int) -> None:
+    """Raise _MisfitError where lists of touches differ in length, hold what is no number, or name no blade."""
+    for name in TOUCHES:
+        if not np.isfinite(record[name]).all():
+            raise _MisfitError(f"{name} is not finite")
+    if len({record[name].size for name in TOUCHES}) > 1:
+        raise _MisfitError("lists of touches differ in length")
+    if record["blade"].size and not 0 <= record["blade"].min() <= record["blade"].max() < blades:
+        raise _MisfitError(f"a touch is of a blade that is none of {blades}")

@@ -22,6 +22,8 @@ MOST_TIMES = 1000
 """Largest ratio of the unpacked size of a larger row group to its size in the file. The size that its recipe asks for
 is allowed too: signals without noise that repeat every turn have a ratio of 5,000, constant ones of 20,000."""
 
+NO_PARQUET = "damaged or no Parquet file of rubgen"
+
 
 class ParquetSource:
     """An open Parquet file of rubgen. Any damage raises a UserError that names the file.
@@ -145,13 +147,21 @@ def _opened(path: Path) -> pa.NativeFile:
 
 @contextmanager
 def damage_named(path: Path) -> Iterator[None]:
-    """Turn any error of pyarrow in the block into a UserError of one line that names the file `path`."""
+    """Turn an error of pyarrow in the block into a UserError of one line that names the file `path`.
+
+    pyarrow tells of damage by its own exceptions, by an OSError without a number, and for names of columns by a
+    UnicodeDecodeError. An OSError with a number is of the system. Any other error passes: it is a bug.
+    """
     with url_problems(path) if is_url(path) else nullcontext():
         try:
             yield
-        except (pa.ArrowException, OSError, ValueError, LookupError, MemoryError, OverflowError) as error:
+        except (pa.ArrowException, OSError, UnicodeDecodeError, MemoryError) as error:
             reason = " ".join(str(error).split())[:200]
-            raise UserError(f"{path}: damaged or no Parquet file of rubgen ({reason}); generate it again") from None
+            if isinstance(error, OSError) and error.errno:
+                raise UserError(f"{path}: cannot be read ({os.strerror(error.errno)})") from None
+            if isinstance(error, MemoryError):
+                raise UserError(f"{path}: cannot be read ({reason or 'memory ran out'})") from None
+            raise UserError(f"{path}: {NO_PARQUET} ({reason}); generate it again") from None
 
 
 def _text_columns(path: Path, types: pa.Schema) -> dict[str, str]:

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rubgen.arrays import FloatArray
+from rubgen.errors import NoPictureError
 from rubgen.reduction import ReducedModel
 from rubgen.reduction.modes import blisk_modes, casing_diameters
 from rubgen.viz.colors import BLUE, GREY, VERMILION
@@ -99,7 +100,7 @@ def _chosen(blisk: list[_Shape], casing: list[_Shape], text: str) -> list[_Shape
         met = _matching(blisk, casing, choice)
         if not met:
             families = ", ".join(dict.fromkeys(shape.family for shape in blisk + casing))
-            raise ValueError(
+            raise NoPictureError(
                 f"--modes {choice.strip()!r}: no such mode; give a number from 1 to {len(blisk)}, "
                 f"a family ({families}), 'ND 2', or a family with its diameters such as 'blade 1 ND 2'"
             )

@@ -11,6 +11,7 @@ from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
 from rubgen.arrays import FloatArray
+from rubgen.errors import NoPictureError
 from rubgen.labels.harmonics import order_spectrum, spectrum_turns
 from rubgen.labels.headline import headline
 from rubgen.labels.to_json import labels_to_json
@@ -37,7 +38,7 @@ def overview(run: Run) -> Figure:
     without a recording.
     """
     if run.recording is None:
-        raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to show")
+        raise NoPictureError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to show")
     figure = new_figure(10.0, 7.2)
     grid = figure.add_gridspec(2, 2, width_ratios=[1, 1.25])
     _true_orbit(figure.add_subplot(grid[0, 0]), run)
@@ -131,7 +132,7 @@ def orbit_section(replay: Replay) -> Figure:
     """
     orbit, once = shaft_orbit(replay), poincare_section(replay)
     if orbit is None or once is None:
-        raise ValueError("no pair of proximity probes was recorded; choose sensors with two")
+        raise NoPictureError("no pair of proximity probes was recorded; choose sensors with two")
     x, y = orbit
     time = np.arange(replay.recording.samples) / replay.recording.sample_rate_hz
     figure = new_figure(9.0, 4.4)
@@ -198,7 +199,7 @@ def channel_of(replay: Replay, name: str) -> Channel:
     """Return the recorded channel called `name`. Raises ValueError, with similar names, where there is none."""
     channels = replay.recording.channels
     if name not in channels:
-        raise ValueError(f"no channel {name!r}; {nearest(name, list(channels))}")
+        raise NoPictureError(f"no channel {name!r}; {nearest(name, list(channels))}")
     return channels[name]
 
 

@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rubgen.arrays import ComplexArray, FloatArray
+from rubgen.errors import NoPictureError
 from rubgen.units import rev_per_min
 from rubgen.viz.colors import BLUE, VERMILION
 from rubgen.viz.derived import shaft_orbit
@@ -84,13 +85,13 @@ def whirl_by_turn(replay: Replay) -> tuple[FloatArray, ComplexArray]:
     Raises ValueError where no pair of proximity probes was recorded, or the speed is steady.
     """
     if replay.scenario.operation.profile == "steady":
-        raise ValueError("the speed of this run is steady; choose a run-up or a coast-down")
+        raise NoPictureError("the speed of this run is steady; choose a run-up or a coast-down")
     orbit = shaft_orbit(replay)
     if orbit is None:
-        raise ValueError("no pair of proximity probes was recorded; choose sensors with two")
+        raise NoPictureError("no pair of proximity probes was recorded; choose sensors with two")
     pulses = replay.pulse_times
     if pulses.size <= BLOCK_TURNS:
-        raise ValueError(f"signals of more than {BLOCK_TURNS} turns are needed; raise signal_seconds")
+        raise NoPictureError(f"signals of more than {BLOCK_TURNS} turns are needed; raise signal_seconds")
     share = np.arange(SAMPLES_PER_TURN) / SAMPLES_PER_TURN
     at = pulses[:-1, None] + share * np.diff(pulses)[:, None]
     time = np.arange(replay.recording.samples) / replay.recording.sample_rate_hz

@@ -13,6 +13,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from rubgen.arrays import FloatArray
+from rubgen.errors import NoPictureError
 from rubgen.labels.labels import Motion
 from rubgen.machine import Unbalance
 from rubgen.measurement.motion import MotionFrames
@@ -103,14 +104,14 @@ def _pixels(scene: _Scene, chosen: np.ndarray) -> Iterator[np.ndarray]:
 def _scene(replay: Replay) -> _Scene:
     frames = replay.frames
     if frames is None or not frames.time.size:
-        raise ValueError(f"{replay.scenario.run_id} holds no motion, only signals; simulate it again")
+        raise NoPictureError(f"{replay.scenario.run_id} holds no motion, only signals; simulate it again")
     return _Scene(replay, frames, drawing_factor(replay.scenario.machine, frames))
 
 
 def _nearest(scene: _Scene, time: float) -> int:
     seconds = scene.replay.seconds
     if not 0 <= time <= seconds:
-        raise ValueError(f"time {time:g} s lies outside the recording; give 0 to {seconds:g}")
+        raise NoPictureError(f"time {time:g} s lies outside the recording; give 0 to {seconds:g}")
     return int(np.argmin(np.abs(scene.frames.time - time)))
 
 

@@ -85,9 +85,12 @@ def test_a_condition_sees_the_runs_and_no_file(small_set, tmp_path):
 @pytest.mark.parametrize(
     ("column", "value", "message"),
     [
-        ("scalars", [1.0], "run-000001: zip"),
-        ("scalars", lambda old: [*old[:5], 1e300, *old[6:]], "run-000001: "),
-        ("section", lambda old: old[:-1], "run-000001: cannot reshape"),
+        ("scalars", [1.0], "run-000001: scalars has 1 of 9 numbers"),
+        ("scalars", lambda old: [*old[:5], 1e300, *old[6:]], "run-000001: n_blades is 1e\\+300, no count"),
+        ("scalars", lambda old: [*old[:4], 109.5, *old[5:]], "run-000001: record_turns is 109.5, no count"),
+        ("scalars", lambda old: [old[0], float("nan"), *old[2:]], "run-000001: dt is nan"),
+        ("section", lambda old: old[:-1], "run-000001: section has [0-9]+ numbers, in rows of [0-9]+"),
+        ("section", lambda old: [float("inf"), *old[1:]], "run-000001: section is not finite"),
         ("turn_impulse", lambda old: old[1:], "run-000001: turn_impulse has 109 of 110 turns"),
         ("turn_impulse", lambda old: [float("nan"), *old[1:]], "run-000001: turn_impulse is not finite"),
         ("blade", lambda old: [*old, 1], "run-000001: lists of touches differ"),
