@@ -16,7 +16,7 @@ Record = TypeVar("Record", bound=tuple[Any, ...])
 
 
 def frozen(record: Record) -> Record:
-    """Copy a named tuple so that its arrays, at any depth, cannot be written.
+    """Copy a named tuple so that its arrays are read-only, also arrays in named tuples within it.
 
     The copy shares their memory; the arrays of `record` itself stay writable. A kernel that writes into an array of the
     copy does not compile.

@@ -13,7 +13,7 @@ FEW, LONGEST, MOST = 3, 60, 780
 
 
 def brief(value: object) -> str:
-    """Write a dataclass as `Name(field=..., ...)`, in one line of at most about MOST characters.
+    """Return a dataclass as text, `Name(field=..., ...)`, in one line of at most about MOST characters.
 
     Arrays are shown by their shape, tables and long lists by their size. Fields with their default value are left out.
     Classes with large fields use it as their `__repr__`.
@@ -25,24 +25,24 @@ def brief(value: object) -> str:
 
 
 def counted(count: int, noun: str) -> str:
-    """Write a count with its noun, in the plural unless it is one: "1 run", "2 runs"."""
+    """Return a count with its noun, in the plural unless the count is 1: "1 run", "2 runs"."""
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def table(title: str, rows: Mapping[str, str]) -> str:
-    """Write a title line, then one line for each name and its value."""
+    """Return a title line and one line for each name and its value, as text."""
     width = max(map(len, rows), default=0)
     return "\n".join([title, *(f"  {name:<{width}}  {value}" for name, value in rows.items())])
 
 
 def html_table(title: str, rows: Mapping[str, str]) -> str:
-    """Write the content of `table` in HTML, for a notebook."""
+    """Return a title and rows of names and values as an HTML table, for a notebook."""
     cells = "".join(f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows.items())
     return f"<table><caption>{escape(title)}</caption>{cells}</table>"
 
 
 def number(value: object) -> str:
-    """Write a label or parameter in a few characters: a float with 4 digits, None as "-", anything else as it is."""
+    """Return a label or parameter as a short text: a float with 4 digits, None as "-", any other value in full."""
     if value is None:
         return "-"
     return f"{value:.4g}" if isinstance(value, float) else str(value)

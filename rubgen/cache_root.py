@@ -50,10 +50,10 @@ def cache_folder(name: str) -> Path | None:
 
 
 def problem_of(root: Path) -> str:
-    """Try to write caches below `root`. Return why that fails, or an empty text if it works.
+    """Try to write caches below the folder `root`. Return the reason if that fails, or an empty text if it works.
 
-    Missing folders are made. A folder of another user, or one that all users may write to, is refused: anyone could put
-    code there.
+    Missing folders are made. A folder that belongs to another user, or that all users may write to, is refused: anyone
+    could put code there.
     """
     if str(root).startswith("~"):
         return "there is no home folder"
@@ -86,10 +86,10 @@ def write_cached(path: Path, content: bytes) -> None:
 
 
 def read_cached(path: Path) -> bytes | None:
-    """Read the content that `write_cached` wrote to `path`; None where it must be made anew. Raises no OSError.
+    """Return the content that `write_cached` wrote to `path`, or None if it must be made again. Raises no OSError.
 
-    That is where there is no such file. It is also, with a warning that is given once, where the file cannot be read,
-    is damaged, belongs to another user, or may be written by every user.
+    None is returned if there is no file. It is also returned, with one warning, if the file cannot be read, is damaged,
+    belongs to another user, or may be written by every user.
     """
     try:
         with open(path, "rb", opener=_at_once) as file:

@@ -15,7 +15,7 @@ class RubgenError(Exception):
 
 
 class UserError(RubgenError):
-    """A mistake in the user's input, in one line: where, what, what is allowed and the remedy.
+    """A mistake in the user's input. Its message is one line: where, what, what is allowed and the remedy.
 
     The command line prints only the message and exits with 2.
     """
@@ -41,10 +41,10 @@ def warn(message: str) -> None:
 def write_problems(
     output: Path, *, named: str = "", advice: str = "choose another place", kept: str = ""
 ) -> Iterator[None]:
-    """Name the file in errors of a block that writes `output`.
+    """Turn errors of a block that writes `output` into errors that name the file.
 
     An OSError at `output`, or a full disk, becomes a UserError, since the user can mend it. An OSError elsewhere
-    becomes a RubgenError with the file that the system names. A closed pipe passes unchanged.
+    becomes a RubgenError with the file that the system names. A closed pipe (BrokenPipeError) is raised unchanged.
 
     - `output`: file or directory that the block writes
     - `named`: its name in messages; the path if empty

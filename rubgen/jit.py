@@ -87,10 +87,10 @@ def inlined_kernel(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def switch(functions: Sequence[Callable[P, R]]) -> Callable[Concatenate[int, P], R]:
-    """Make an `inlined_kernel` that calls one of `functions`: the number that is its first argument says which.
+    """Make an `inlined_kernel` that calls one of `functions`. Its first argument is the number of the function.
 
-    The functions are plain Python in files of a room `*_laws`; they get the other arguments. A call costs a comparison
-    of integers for each function before the one that is called; a number behind the last calls the last.
+    The functions are plain Python in files of a room `*_laws`; they take the other arguments. A call costs a comparison
+    of integers for each function before the called one. A number beyond the last function calls the last function.
     """
     first: Any = inlined_kernel(functions[0])
     others: Any = switch(functions[1:]) if len(functions) > 1 else None

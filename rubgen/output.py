@@ -19,10 +19,10 @@ Write = Callable[["Run", Path], None]
 
 
 def save(run: Run, path: Path, *, named: str = "") -> None:
-    """Write a run to a file in the format that the ending of `path` names. A Parquet file has one row.
+    """Write a run to a file in the format of its ending: .parquet, .mcap or .rrd. A Parquet file has one row.
 
-    The file is complete or not written at all. Messages call it `named`. Raises UserError for a failed run, an unknown
-    ending, a folder that does not exist, and a file that cannot be written.
+    The file is complete or not written at all. `named` is its name in messages; the path if empty. Raises UserError for
+    a failed run, an unknown ending, a folder that does not exist, and a file that cannot be written.
     """
     named = named or str(path)
     write = writer_of(path, named)
@@ -34,7 +34,7 @@ def save(run: Run, path: Path, *, named: str = "") -> None:
 def writer_of(path: Path, named: str) -> Write:
     """Return the function that writes one run to a file with the ending of `path`. Nothing is written here.
 
-    Messages call the file `named`. Raises UserError where the ending is unknown or the folder does not exist.
+    `named` is the file's name in messages. Raises UserError where the ending is unknown or the folder does not exist.
     """
     if not path.parent.is_dir():
         raise UserError(f"{named}: there is no directory {path.parent}; make it first")

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """One simulated run; `recording` and `labels` are None when the response's status is not OK."""
+    """One simulated run. `recording` and `labels` are None where `response.status` is not OK."""
 
     scenario: Scenario
     response: Response
@@ -77,7 +77,10 @@ class Run:
         return plot(self)
 
     def replay(self, *, web: bool = False) -> None:
-        """Show the run in Rerun's viewer until it is closed; with `web`, in the browser. See `rubgen.output.replay`."""
+        """Show the run in Rerun's viewer until the viewer is closed; with `web` in the browser.
+
+        See `rubgen.output.replay`.
+        """
         from rubgen.output import replay
 
         replay(self, web=web)
@@ -86,9 +89,10 @@ class Run:
 def simulate(scenario: Scenario) -> Run:
     """Simulate the run that `scenario` describes: reduce the machine, integrate with contact, measure, label.
 
-    On one computer the same scenario always gives the same bits, whatever the number of BLAS threads (one is used
-    here), and with or without the cache of reduced models. A run that fails is returned with its status, without
-    recording and labels. Raises UserError for a machine that cannot be modelled, reduced or run as asked.
+    On one computer the same scenario always has the same bits, with any number of BLAS threads (one is used here), and
+    with or without the cache of reduced models. A run that fails is returned with its status, without recording and
+    labels. Raises UserError for a machine that cannot be modelled or reduced, and for values with which no run is
+    possible.
     """
     if not isinstance(scenario, Scenario):
         raise UserError(f"{scenario!r:.200}: is no scenario; give rubgen.make_scenario(...) or recipe.scenario(0)")
@@ -130,9 +134,9 @@ def _shown_step() -> AbstractContextManager[None]:
 
 
 def refused(scenario: Scenario, reason: str, status: Status = Status.REFUSED) -> Run:
-    """Make the run of a scenario for which `simulate` returned nothing, so that it has a row in its data set.
+    """Make the run of a scenario for which `simulate` raised an error, so that it has a row in its data set.
 
-    Its status is `status` and its reason `reason`. The response is empty; recording and labels are None.
+    The run has the status `status` and the reason `reason`. The response is empty; recording and labels are None.
     """
     operation = scenario.operation
     turn = 1 / operation.rotation_frequency_hz

@@ -60,7 +60,10 @@ def step(text: str, unit: str = "", *, long: bool = False) -> Iterator[None]:
 
 
 def count(done: int, total: int) -> None:
-    """Report that `done` of `total` parts of the surrounding `step` are finished. It does nothing in no `step`."""
+    """Report that `done` of `total` parts of the surrounding `step` are finished.
+
+    Outside of a `step` nothing is done.
+    """
     _counting.get()(done, total)
 
 

@@ -14,14 +14,14 @@ MOST_FAILED = 64
 
 
 def stream(recipe: Recipe | Mapping[str, object] | Path | str | None = None) -> Iterator[Run]:
-    """Simulate the runs of a recipe without end and yield each in memory, for training without files.
+    """Simulate the runs of a recipe without end and yield each run in memory, for training without files.
 
     - recipe: a recipe, its TOML values, its file, or None for the default recipe. Its number of runs is ignored.
 
-    They are the runs of the data set that `generate` makes of the recipe, in the order of their numbers: run i has the
-    same recording and labels. Failed runs are left out. This process makes them, one at a time; what a caller drops is
-    freed. Raises UserError for a recipe that is not allowed, before the first run; RubgenError where 64 runs fail
-    one after the other, with the reason of the last one.
+    The runs are those of the data set that `generate` makes of the recipe, in the order of their numbers: run i has the
+    same recording and labels. Failed runs are left out. This process makes the runs, one at a time; memory of a run is
+    freed when the caller drops it. Raises UserError for a recipe that is not allowed, before the first run; RubgenError
+    where 64 runs fail one after the other, with the reason of the last run.
     """
     if isinstance(recipe, Recipe):
         check_recipe(recipe)

@@ -14,7 +14,7 @@ from rubgen.machine.sentences import CHANNEL_NAME
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Tap:
-    """A named signal of the true response, in `UNIT`. A sensor names the taps that it measures."""
+    """A named signal of the true response, in `UNIT`. Each sensor measures one tap."""
 
     UNIT: ClassVar[str] = ""
 
@@ -23,7 +23,7 @@ class Tap:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class CentreDisplacement(Tap):
-    """Displacement of O_d along a direction of the inertial frame, in m."""
+    """Displacement of O_d along a direction of the inertial frame (deg from +X), in m."""
 
     UNIT: ClassVar[str] = "m"
     angle_deg: Direction
@@ -31,7 +31,7 @@ class CentreDisplacement(Tap):
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class CasingAcceleration(Tap):
-    """Radial acceleration of the casing at an angle, outward, in m/s2."""
+    """Radial acceleration of the casing at a polar angle (deg from +X), outward, in m/s2."""
 
     UNIT: ClassVar[str] = "m/s2"
     angle_deg: Direction
@@ -39,7 +39,7 @@ class CasingAcceleration(Tap):
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class RingStrain(Tap):
-    """Hoop strain at the outer face of the casing at an angle, positive in tension."""
+    """Hoop strain at the outer face of the casing at a polar angle (deg from +X), positive in tension."""
 
     UNIT: ClassVar[str] = "1"
     angle_deg: Direction
@@ -47,7 +47,7 @@ class RingStrain(Tap):
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class SupportForce(Tap):
-    """Force of the disk on its lateral support along a direction of the inertial frame, in N."""
+    """Force of the disk on its lateral support along a direction of the inertial frame (deg from +X), in N."""
 
     UNIT: ClassVar[str] = "N"
     angle_deg: Direction
@@ -55,9 +55,9 @@ class SupportForce(Tap):
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class HousingAcceleration(Tap):
-    """Acceleration of the bearing housing along a direction, in m/s2: of the frame, from the force on the support.
+    """Acceleration of the bearing housing along a direction (deg from +X), in m/s2. It belongs to the machine's frame.
 
-    It is no tap of the solver. `rubgen.measurement.frame` makes it from the taps of the force.
+    The solver does not record it: `rubgen.measurement.frame` computes it from the taps of the support force.
     """
 
     UNIT: ClassVar[str] = "m/s2"
@@ -66,14 +66,14 @@ class HousingAcceleration(Tap):
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class ContactForce(Tap):
-    """Sum of the normal contact forces, in N; peaks go as 1/dt."""
+    """Sum of the normal contact forces, in N. Peaks depend on the time step dt as 1/dt."""
 
     UNIT: ClassVar[str] = "N"
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class ContactTorque(Tap):
-    """Torque of the contact forces on the blisk about Z, in N m, negative where contact brakes; peaks go as 1/dt."""
+    """Torque of the contact forces on the blisk about Z, in N m, negative where contact brakes. Peaks go as 1/dt."""
 
     UNIT: ClassVar[str] = "N m"
 
@@ -87,7 +87,10 @@ class DriveTorque(Tap):
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class TipClearance(Tap):
-    """Gap on the ray at an angle between the tips, interpolated between two blades, and the deformed casing, in m."""
+    """Gap on the ray at a polar angle (deg from +X) between the tips and the deformed casing, in m.
+
+    The radius of the tips is interpolated between two blades.
+    """
 
     UNIT: ClassVar[str] = "m"
     angle_deg: Direction
@@ -133,5 +136,5 @@ def name_of(value: float) -> str:
 
 
 def name_of_direction(angle_deg: float) -> str:
-    """Write a direction of the inertial frame as part of a tap's name: 0 deg is x, 90 deg y, others as `name_of`."""
+    """Write a direction of the inertial frame as part of a tap's name: 0 deg is x, 90 deg y, others as in `name_of`."""
     return {0.0: "x", 90.0: "y"}.get(angle_deg, name_of(angle_deg))

@@ -22,10 +22,11 @@ except ImportError:
 class Windows(Dataset):  # type: ignore[misc]
     """Windows of a data set by number, each with its answer: `DataLoader(Windows(data, seconds=0.25), batch_size=32)`.
 
-    `windows[i]` is the window number i of `DataSet.windows` with the same arguments: a float32 tensor (channels, time),
-    and its answer as a tensor without dimension, an integer or float32; of `faults` (kinds,). `y` has the answers of
-    all windows, for weights and samplers. Signals are read when a window is asked for; the last run that was read stays
-    in memory. A shuffled order reads a row group of four runs for each window: `Stream` shuffles at less cost.
+    `windows[i]` is the window number i of `DataSet.windows` with the same arguments, and its answer, the value of the
+    target. The window is a float32 tensor (channels, time). The answer is a tensor without dimension, an integer or
+    float32, and for the target `faults` a tensor (kinds,). `y` are the answers of all windows, for weights and
+    samplers. Signals are read when a window is asked for; the last run that was read stays in memory. A shuffled order
+    reads a row group of four runs for each window: `Stream` shuffles at less cost.
 
     Raises UserError as `DataSet.windows` does.
     """
@@ -65,7 +66,7 @@ class Windows(Dataset):  # type: ignore[misc]
         return self.__dict__ | {"_last": None}
 
     def each(self, runs: Sequence[int]) -> Iterator[tuple[torch.Tensor, torch.Tensor]]:
-        """Yield all windows of these runs, by their places in the set, one run in memory at a time."""
+        """Yield all windows of the runs with these positions in the index, one run in memory at a time."""
         for run, cutter in self._index.cutters(runs):
             for number, start in enumerate(self._index.starts[run], start=int(self._firsts[run])):
                 yield self._sample(number, cutter(start))
@@ -79,8 +80,9 @@ class Stream(IterableDataset):  # type: ignore[misc]
     """All windows of a data set in a random order, each once an epoch: `DataLoader(Stream(Windows(data, turns=16)))`.
 
     Row groups of runs are shuffled, and the windows of `block` runs at a time are in memory and shuffled. Each run is
-    read once an epoch. The workers of a DataLoader share the row groups, so that no window comes twice. The order
-    follows `torch.manual_seed` and differs from epoch to epoch. Processes of distributed training do not share them.
+    read once an epoch. The workers of a DataLoader divide the row groups among them, so that no window comes twice. The
+    order follows `torch.manual_seed` and differs from epoch to epoch. Processes of distributed training do not divide
+    them.
     """
 
     def __init__(self, windows: Windows, block: int = 32) -> None:

@@ -13,7 +13,7 @@ STDERR = 2
 
 
 def main(arguments: list[str] | None = None) -> NoReturn:
-    """Run the command line. A Ctrl-C during the imports also ends it in one line."""
+    """Run the command line with `arguments`, for None those of the process, and exit. Ctrl-C ends it in one line."""
     try:
         _open_streams()
         from rubgen.cli.interrupts import terminable

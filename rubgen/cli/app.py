@@ -58,7 +58,7 @@ fi
 def completion(
     shell: Annotated[Literal["bash", "zsh", "fish", "powershell"], option("The shell that is to complete.")], /
 ) -> int:
-    """Print what makes a shell complete commands and options: eval "$(rubgen completion bash)" in ~/.bashrc."""
+    """Print a script by which a shell completes commands: eval "$(rubgen completion bash)" in ~/.bashrc."""
     sys.stdout.write(app.generate_completion(shell=shell))
     if shell == "zsh":  # what is printed so far works only from a file in $fpath
         sys.stdout.write(_ZSH_END)

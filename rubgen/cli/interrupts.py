@@ -11,11 +11,11 @@ from typing import Any
 
 @contextmanager
 def terminable() -> Iterator[None]:
-    """Raise KeyboardInterrupt in the block for SIGTERM, and for Ctrl-C also where the shell has switched it off.
+    """Raise KeyboardInterrupt in the block for SIGTERM and SIGINT (Ctrl-C), also where the shell ignores SIGINT.
 
-    Compiled code of other libraries may swallow the exception or print it, and fail later with another one. After a
-    signal nothing of that is printed, and KeyboardInterrupt is raised instead. Signals can be handled only in the main
-    thread; elsewhere nothing changes.
+    Compiled code of other libraries may swallow or print this exception, and fail later with another exception. After a
+    signal their messages are not printed, and KeyboardInterrupt is raised in place of the other exception. The former
+    handlers are restored after the block. Outside the main thread, which cannot handle signals, nothing is changed.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -24,7 +24,10 @@ TYPE_NAMES = {float: "a number", int: "a whole number", bool: "true or false", P
 
 
 def mistake(error: CycloptsError, app: App) -> str:
-    """Return the line for an error of cyclopts, whose own messages have many lines. `app` knows the commands."""
+    """Return a message of one line for an error of cyclopts in the command line.
+
+    `app` has the names of the commands.
+    """
     command = " ".join(["rubgen", *(error.command_chain or ())])
     see = f"see {command} --help"
     match error:

@@ -10,22 +10,25 @@ from rubgen.errors import UserError
 
 
 def option(text: str) -> Parameter:
-    """Describe an option or argument."""
+    """Return the declaration of an option or argument with the help text `text`."""
     return Parameter(help=text)
 
 
 def whole_number(text: str) -> Parameter:
-    """Describe a whole number."""
+    """Return the declaration of an option that takes a whole number, with the help text `text`."""
     return Parameter(help=text, converter=whole)
 
 
 def whole(_type: Any, tokens: Sequence[Token]) -> int:
-    """Return the integer as written. Without this converter cyclopts would truncate 2.5 to 2."""
+    """Return the integer in the text of an option. Without this converter cyclopts would truncate 2.5 to 2.
+
+    Raises ValueError for any other text.
+    """
     return int(tokens[0].value)
 
 
 def place(text: str) -> Parameter:
-    """Describe a path or URL."""
+    """Return the declaration of an option that takes a path or URL, with the help text `text`."""
     return Parameter(help=text, converter=_as_written)
 
 
@@ -43,9 +46,9 @@ def _as_written(_type: Any, tokens: Sequence[Token]) -> Path | str:
 
 
 def names_in(option: str, text: str | None) -> list[str] | None:
-    """Return the names in `text`, which have commas between them; None for None.
+    """Return the names in `text`, which has commas between them; None for None.
 
-    Raises UserError, which names `option`, where a name is empty.
+    Raises UserError, which names the option `option`, where a name is empty.
     """
     if text is None:
         return None

@@ -13,12 +13,12 @@ REPORT = "report.html"
 
 
 def say(text: str) -> None:
-    """Print one or more lines on stdout, with control characters escaped."""
+    """Print `text` and a line end on stdout, with control characters and line breaks escaped."""
     sys.stdout.write(f"{printable(text)}\n")
 
 
 def printable(text: str) -> str:
-    """Return the text with control characters, which a terminal would obey, and line breaks as escapes."""
+    """Return the text with control characters and line breaks as escapes: a terminal would obey them."""
     return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
 
 
@@ -28,7 +28,7 @@ def print_json(values: dict[str, object]) -> None:
 
 
 def print_pairs(values: dict[str, object]) -> None:
-    """Print names and values in two columns, for people: yes or no for flags, 6 digits, - for None."""
+    """Print names and values in two columns: yes or no for flags, 6 digits for floats, - for None."""
     width = max(map(len, values), default=0)
     for name, value in values.items():
         say(f"{name:<{width}}  {_text(value)}")
@@ -59,9 +59,12 @@ def _plain(value: object) -> object:
 def check_new_file(option: str, path: Path, endings: tuple[str, ...], *, force: bool = False) -> None:
     """Check, before any work, that a command can write the file at `path` that the user named with `option`.
 
-    Raises UserError where its ending is none of `endings`, its folder does not exist, it would lie in a data set,
-    `path` is no file, or a file exists already and `force` (the option --force) is False. Only the report may lie in a
-    data set: `rubgen verify` would find a file that the manifest does not list. Nothing is written.
+    - endings: allowed endings of the name, such as ".png".
+    - force: whether an existing file may be replaced (the option --force).
+
+    Raises UserError where the ending is not allowed, the folder does not exist, the file would lie in a data set,
+    `path` is no file, or the file exists and `force` is False. Only the report may lie in a data set: `rubgen verify`
+    would find a file that the manifest does not list. Nothing is written.
     """
     if path.suffix not in endings:
         allowed = endings[0] if len(endings) == 1 else f"{', '.join(endings[:-1])} or {endings[-1]}"
@@ -82,9 +85,9 @@ def _is_data_set(folder: Path) -> bool:
 
 
 def write_file(option: str, path: Path, write: Callable[[Path], object]) -> None:
-    """Call `write` with a temporary name, then rename that file to `path`, so that an old file stays whole until then.
+    """Call `write` with a temporary path, then rename the file to `path`: an old file stays whole until then.
 
-    `option` is how messages call the file. Raises UserError where it cannot be written.
+    `option` names the file in messages. Raises UserError where it cannot be written.
     """
     from rubgen.io.files import write_durably
 

@@ -26,7 +26,10 @@ class ShownMode:
 
 
 def nodes_of(model: ReducedModel) -> tuple[IntArray, FloatArray]:
-    """Return numbers and places (nodes, 3) in m: the casing's mean line, the tips at rest, the disk centre."""
+    """Return numbers (nodes,) and positions (nodes, 3) in m of the nodes that represent a machine.
+
+    They are nodes of the casing's mean line, of the tips at rest, and the disk centre.
+    """
     casing, blades = len(model.casing.modes_xy), model.machine.blades.count
     numbers = [*range(FIRST_OF_CASING, FIRST_OF_CASING + casing), *range(FIRST_OF_TIPS, FIRST_OF_TIPS + blades), CENTRE]
     places = np.zeros((len(numbers), 3))
@@ -36,10 +39,10 @@ def nodes_of(model: ReducedModel) -> tuple[IntArray, FloatArray]:
 
 
 def modes_of(model: ReducedModel, highest_hz: float) -> list[ShownMode]:
-    """Return the modes of casing and blisk up to a frequency, the casing's first.
+    """Return the modes of casing and blisk up to `highest_hz`, first those of the casing.
 
-    The blisk's solve K phi = omega^2 M phi of the reduced model at rest: without damping, rotation and contact. A tip's
-    radial, tangential and axial displacement is turned into x, y, z at the angle of its blade.
+    The modes of the blisk solve K phi = omega^2 M phi of the reduced model at rest: without damping, rotation and
+    contact. A tip's radial, tangential and axial displacement is turned into x, y, z at the angle of its blade.
     """
     found = []
     casing = model.casing

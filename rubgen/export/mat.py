@@ -14,9 +14,10 @@ LONGEST_NAME = 63
 
 
 def write_mat(runs: Iterator[ExportedRun], path: Path) -> None:
-    """Write one run: a struct a channel (`values`, `unit`, `sample_rate_hz`, the sensor), `once_per_rev_s` and `run`.
+    """Write one run to a MAT file: a struct for each channel, `once_per_rev_s`, and the struct `run`.
 
-    `run` has parameters and labels; an undefined one is an empty array.
+    A channel has `values`, `unit`, `sample_rate_hz` and the description of its sensor. `run` has parameters and labels;
+    an undefined label is an empty array.
     """
     from scipy.io import savemat
 

@@ -27,7 +27,7 @@ class ExportedChannel:
 
     @property
     def facts(self) -> dict[str, str | float]:
-        """What the sensor says of itself: kind, quantity, axis, location, angle, range."""
+        """The description of its sensor: kind, quantity, axis, location, angle, range."""
         if self.sensor is None:
             return {"kind": "once_per_rev", "quantity": "pulse", "axis": "", "location": "shaft"}
         about, (low, high) = self.sensor.description, self.sensor.full_range
@@ -45,7 +45,7 @@ class ExportedChannel:
 
 @dataclass(frozen=True)
 class ExportedRun:
-    """One run of a data set."""
+    """One run of a data set, with everything that export formats may write."""
 
     run_id: str
     split: str
@@ -65,7 +65,7 @@ class ExportedRun:
 
 
 def exported_runs(data: DataSet, run_ids: Sequence[str], channels: Sequence[str]) -> Iterator[ExportedRun]:
-    """Read these good runs one after the other."""
+    """Read the good runs `run_ids` one after the other, each with the named channels."""
     sensors = {sensor.name: sensor for sensor in data.sensors.sampled}
     for run_id, signals, pulses in data.recorded(run_ids, channels):
         row = data.row(run_id)

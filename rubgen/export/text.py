@@ -14,7 +14,10 @@ from rubgen.export.run import ExportedRun
 
 
 def write_csv(runs: Iterator[ExportedRun], path: Path) -> None:
-    """Write one run: `time_s`, then a column a channel with its unit in the header. Every digit of a value is kept."""
+    """Write one run: `time_s`, then a column for each channel with its unit in the header.
+
+    Values keep all their digits.
+    """
     (run,) = runs
     columns: dict[str, Any] = {"time_s": np.arange(run.samples) / run.sample_rate_hz}
     columns |= {f"{channel.name} [{channel.unit}]": channel.values for channel in run.channels}
@@ -22,9 +25,9 @@ def write_csv(runs: Iterator[ExportedRun], path: Path) -> None:
 
 
 def write_ts(runs: Iterator[ExportedRun], path: Path) -> None:
-    """Write runs as cases of equal length, a dimension a channel, with the class `rub` (`true` or `false`).
+    """Write runs as cases of equal length, one dimension a channel, with the class `rub` (`true` or `false`).
 
-    The head names channels, units and sample rate in comments.
+    The head of the file names channels, units and sample rate in comments.
     """
     with path.open("w", encoding="utf-8", newline="\n") as stream:
         for number, run in enumerate(runs):

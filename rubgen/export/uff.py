@@ -26,12 +26,12 @@ NEVER = "01-Jan-70"
 
 
 def write_uff(runs: Iterator[ExportedRun], path: Path) -> None:
-    """Write one run as a file of type 58, binary in double precision: no value changes.
+    """Write one run as a universal file. Channels are sets of type 58, binary in double precision: no value changes.
 
-    Set 164 says SI units. A channel in another unit has the data type "unknown" and its unit as the axis label. The
+    Set 164 declares SI units. A channel in another unit has the data type "unknown" and its unit as the axis label. The
     geometry (sets 15, 82) has nodes for each sensor, the casing, the tips and the disk centre. Sets 55 are the modes of
-    the machine of this run: `machine_modes.modes_of`. Arrival times of pulses have no place in the format; the channel
-    of the pulse has one.
+    the run's machine: `machine_modes.modes_of`. The format cannot contain arrival times of pulses; the channel of the
+    pulse is written.
     """
     import pyuff
 

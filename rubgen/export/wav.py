@@ -11,7 +11,10 @@ from rubgen.export.run import ExportedRun
 
 
 def write_wav(runs: Iterator[ExportedRun], path: Path) -> None:
-    """Write one run in the order of `channels.csv`, in the units named there: a player clips what is beyond 1."""
+    """Write one run as a WAV file, with the tracks in the order of `channels.csv`.
+
+    Values are in the units of the channels, so a player clips values beyond 1.
+    """
     from scipy.io import wavfile
 
     (run,) = runs

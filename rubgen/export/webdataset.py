@@ -14,7 +14,10 @@ from rubgen.export.run import ExportedRun
 
 
 def write_webdataset(runs: Iterator[ExportedRun], path: Path) -> None:
-    """Write runs: the array has a row a channel; the JSON has names, units and sensors, parameters and labels."""
+    """Write runs to a tar file: an array (channels, samples) and a JSON document for each run.
+
+    The JSON has names, units and sensors of the channels, pulses, parameters and labels.
+    """
     with tarfile.open(path, "w") as tar:
         for run in runs:
             array = io.BytesIO()

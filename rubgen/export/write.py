@@ -41,13 +41,14 @@ def export(
 ) -> Exported:
     """Write the good runs of the set in `directory` to the folder `out` in the format `name`.
 
-    - split: only this split; all when None.
-    - channels: names of the channels; all recorded ones when None, without clean ones.
+    - name: uff58, mat, hdf5, csv, wav, ts, webdataset or parquet.
+    - split: name of a split; None takes all runs.
+    - channels: names of the channels; None takes all recorded channels, without clean ones.
 
-    The folder has the files of runs, `channels.csv` and `runs.csv` (parameters and labels), which the format parquet
-    leaves out: it has no answers. A file is complete or not
-    there, and the same call completes an export that was stopped. Raises UserError for an unknown format, split or
-    channel, for a package that is missing, for what the format cannot hold, and where `out` has other content.
+    The folder has the files of the runs, `channels.csv`, and `runs.csv` with parameters and labels. The format parquet
+    has no labels and parameters and no `runs.csv`. A file is complete or does not exist, and the same call completes an
+    interrupted export. Raises UserError for an unknown format, split or channel, for a missing package, for content
+    that the format cannot contain, and where `out` has other content.
     """
     data = DataSet(directory)
     kind = _format(name)

@@ -46,17 +46,16 @@ Limits = Mapping[str, tuple[str, float, float, float]]
 def condition(data: DataSet, limits: Limits | None = None, *, runs: Sequence[str] | None = None) -> pd.DataFrame:
     """Compute QUANTITIES of each channel of good runs: a DataFrame with one row a run and channel.
 
-    They come from the recorded channels and the recorded pulses alone: orders are averaged over whole turns between two
-    pulses (order tracking). What a channel does not have is NaN, such as orders without a once_per_rev sensor. The
-    column `unit` is the unit of the channel. `attrs["meanings"]` has the definitions.
-
     - data: the data set.
-    - limits: by channel a quantity and its upper limits of the zones A, B and C, in the unit of that quantity, such as
-      {"proximity_x": ("overall_peak_to_peak", 80e-6, 120e-6, 180e-6)}. The column `zone` is then A to D; it is null
-      for other channels. rubgen has no limits of its own: those of ISO 20816 depend on the machine.
-    - runs: names of runs; by default all good ones. Names of failed runs raise UserError.
+    - limits: for a channel a quantity and the upper limits of the zones A, B and C, in the unit of the quantity, such
+      as {"proximity_x": ("overall_peak_to_peak", 80e-6, 120e-6, 180e-6)}. The column `zone` is then A to D, and null
+      for other channels. rubgen has no limits of its own: the limits of ISO 20816 depend on the machine.
+    - runs: names of good runs; None takes all good runs.
 
-    Raises UserError also for an unknown channel or quantity in `limits`, and for limits that do not rise.
+    The quantities come only from the recorded channels and the recorded pulses: orders are averaged over whole turns
+    between two pulses (order tracking). Quantities that a channel cannot have are NaN, such as orders without a
+    once_per_rev sensor. The column `unit` is the unit of the channel. `attrs["meanings"]` has the definitions. Raises
+    UserError for a failed or unknown run, an unknown channel or quantity in `limits`, and limits that do not rise.
     """
     import pandas as pd
 

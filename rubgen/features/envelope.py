@@ -24,7 +24,8 @@ stays below 0.22 of the maximum."""
 def envelope_features(signals: FloatArray, rate_hz: float, pulses: FloatArray) -> FloatArray:
     """Compute the features `vocabulary.envelope` of signals (channels, samples), as (channels, features).
 
-    The envelope is the magnitude of the analytic signal in the band. Pulses are as in `by_turn`.
+    The envelope is the magnitude of the analytic signal in a band of frequency. `pulses` are the times of the
+    once_per_rev pulses in s from the first sample.
     """
     samples = signals.shape[1]
     faded = signals - signals.mean(axis=1, keepdims=True)

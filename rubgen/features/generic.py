@@ -17,8 +17,8 @@ DOMAINS = ("statistical", "temporal", "spectral")
 def generic_features(signal: FloatArray, rate_hz: float) -> dict[str, float]:
     """Compute the features of tsfel of a signal (samples,), by their names in lower case with `_` for other signs.
 
-    Its lists whose length follows from the signal (spectra, histograms) are left out: windows could not share columns.
-    Raises UserError where tsfel is not installed.
+    Features with a length that depends on the signal (spectra, histograms) are left out: windows could not share
+    columns. A value that is not finite becomes NaN. Raises UserError where tsfel is not installed.
     """
     tsfel = _tsfel()
     with warnings.catch_warnings():

@@ -25,9 +25,9 @@ def run_features(
 ) -> pa.Table:
     """Compute the rows of a run, one a window, with the columns of `plan.schema()`. NaN becomes null.
 
-    - ids: run, machine and split.
+    - ids: names of run, machine and split.
     - signals: at least the channels of the plan, each (samples,) in its unit.
-    - pulses: times of the recorded pulses (any,) in s from the first sample on.
+    - pulses: times of the recorded pulses (any,) in s from the first sample.
 
     Raises UserError where the window is longer than the signals.
     """
@@ -53,8 +53,8 @@ def run_features(
 def window_features(plan: Plan, signals: FloatArray, pulses: FloatArray) -> FloatArray:
     """Compute the features (any,) of one window in the order of the plan's columns, without the ids.
 
-    - signals: of the plan's channels (channels, samples).
-    - pulses: in s from the first sample of the window on.
+    - signals (channels, samples): the plan's channels.
+    - pulses: times of the pulses in s from the first sample of the window.
     """
     rate, parts = plan.rate_hz, []
     turned = by_turn(signals, rate, pulses) if {"order", "orbit"} & set(plan.sets) else None

@@ -10,9 +10,9 @@ from rubgen.features.vocabulary import FRACTIONS, ORDERS, SIDES
 
 
 def order_features(turned: FloatArray) -> FloatArray:
-    """Compute the features `vocabulary.ORDER` of signals by turn (channels, turns, points): (channels, features).
+    """Compute the features `vocabulary.ORDER`, as (channels, features), of signals (channels, turns, points a turn).
 
-    What needs more turns than there are is NaN.
+    `turned` is from `by_turn`. A feature that needs more turns is NaN.
     """
     count, turns, _ = turned.shape
     whole = circles(turned, ORDERS)
@@ -30,8 +30,9 @@ def order_features(turned: FloatArray) -> FloatArray:
 
 
 def orbit_features(turned: FloatArray, angles_deg: tuple[float, float]) -> FloatArray:
-    """Compute the features `vocabulary.ORBIT` (features,) of two shaft probes by turn (2, turns, points).
+    """Compute the features `vocabulary.ORBIT` (features,) of two shaft probes (2, turns, points a turn).
 
+    - turned: the signals of the probes, from `by_turn`.
     - angles_deg: directions of the probes. They must not be parallel.
 
     The full spectrum is the Fourier series of x + iy over the angle of the shaft. Source: API 670; Bently and Hatch,

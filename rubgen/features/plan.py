@@ -33,7 +33,7 @@ IDS = (
 
 @dataclass(frozen=True)
 class Plan:
-    """What to compute, the same for every run of a set."""
+    """What is computed for every run of a set: channels, sets of features, windows."""
 
     channels: tuple[str, ...]
     sets: tuple[str, ...]
@@ -53,7 +53,7 @@ class Plan:
         return of_channel(self.sets, self.rate_hz)
 
     def schema(self) -> pa.Schema:
-        """Return the schema of the table. Fields name unit and meaning."""
+        """Return the Arrow schema of the table. The metadata of a field has its unit and meaning."""
         fields = [_field(name, kind, unit, meaning) for name, kind, unit, meaning in IDS]
         for channel, unit in zip(self.channels, self.units, strict=True):
             fields += [_feature(channel, each, unit) for each in self.each]
@@ -65,10 +65,14 @@ class Plan:
 
 
 def make_plan(data: DataSet, window: str | None, channels: Sequence[str] | None, sets: Sequence[str] | None) -> Plan:
-    """Check what is asked for and choose what is not: all channels, all sets of rubgen's own that the set allows.
+    """Make the plan for a data set, and check it.
+
+    - window: length such as "0.25s" or "16turns"; None is the whole signal.
+    - channels: names; None takes all channels that a sensor could record.
+    - sets: time, order, envelope, orbit or tsfel; None takes all but tsfel that are possible.
 
     Raises UserError for an unknown channel, set or window, for features that need a pulse or a pair of shaft probes
-    that the data set has not, and for the set tsfel without that package.
+    that the data set does not have, and for tsfel if it is not installed.
     """
     root, sensors, rate = data.layout.root, data.sensors, data.sample_rate_hz
     names = _channels(data, channels)
@@ -107,7 +111,10 @@ def _sets(sets: Sequence[str]) -> list[str]:
 
 
 def shaft_pairs(sensors: SensorSet, channels: Sequence[str]) -> tuple[tuple[str, str, float, float], ...]:
-    """Return the first two shaft probes that are not parallel and have one unit; nothing without them."""
+    """Return the first two shaft probes that are not parallel and have the same unit, with their angles in degrees.
+
+    The result is empty if there is no such pair among the `channels`.
+    """
     probes = [each for each in sensors.sampled if isinstance(each, Proximity) and each.name in channels]
     for a, b in combinations(probes, 2):
         if a.unit == b.unit and abs(sin(radians(b.angle_deg - a.angle_deg))) > NEVER_PARALLEL:

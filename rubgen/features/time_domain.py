@@ -13,7 +13,7 @@ ROUNDING = 1e-12
 def time_features(signals: FloatArray) -> FloatArray:
     """Compute the features `vocabulary.TIME` of signals (channels, samples), as (channels, features).
 
-    A ratio of a constant signal is NaN.
+    Ratios are NaN for a constant signal.
     """
     return np.array([_of_one(signal) for signal in signals])  # one after the other: it stays in the processor's cache
 

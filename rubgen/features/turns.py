@@ -25,11 +25,11 @@ def by_turn(signals: FloatArray, rate_hz: float, pulses: FloatArray) -> FloatArr
     """Resample signals (channels, samples) at equal angles, as (channels, turns, points a turn).
 
     - rate_hz: samples a second.
-    - pulses: times in s of the pulses from the first sample on; only whole turns between two of them are used.
+    - pulses: times of the pulses in s from the first sample. Only whole turns between two pulses are used.
 
     The angle is linear in time between two pulses. Values between samples come from Lagrange's polynomial through the
     six nearest samples: the error of an amplitude is below 1 % up to a sixth of the sample rate. A turn has as many
-    points as the longest one has samples. Without two pulses there are no turns.
+    points as the longest turn has samples. Without two pulses there are no turns.
     """
     count, samples = signals.shape
     inside = within(pulses, samples, rate_hz)
@@ -44,17 +44,21 @@ def by_turn(signals: FloatArray, rate_hz: float, pulses: FloatArray) -> FloatArr
 
 
 def within(pulses: FloatArray, samples: int, rate_hz: float) -> FloatArray:
-    """Return the pulses (any,) in s that lie between the first and the last of `samples` samples."""
+    """Return the pulses (any,) in s that lie between the first and the last of `samples` samples.
+
+    Times count from the first sample.
+    """
     return pulses[(pulses >= 0) & (pulses <= (samples - 1) / rate_hz)]
 
 
 def circles(turned: FloatArray | ComplexArray, orders: Sequence[int], turns: int = 1) -> ComplexArray:
     """Compute the complex amplitudes at `orders` / `turns` of the speed of each signal, as (orders, signals).
 
-    - turned: from `by_turn`, real or complex, (signals, turns, points).
-    - turns: of one period; only whole periods are used. Without one the amplitudes are NaN.
+    - turned (signals, turns, points a turn): from `by_turn`, real or complex.
+    - orders: whole numbers; negative orders turn backward.
+    - turns: number of turns of one period. Only whole periods are used; without one the amplitudes are NaN.
 
-    A real signal A cos(k theta - phi) has (A / 2) exp(-i phi) at order k. Negative orders turn backward.
+    A real signal A cos(k theta - phi) has (A / 2) exp(-i phi) at order k.
     """
     count, whole, points = len(turned), turned.shape[1] // turns * turns, turned.shape[2]
     if not whole:

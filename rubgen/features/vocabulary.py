@@ -75,12 +75,12 @@ ORBIT = (
 
 
 def envelope(sample_rate_hz: float) -> tuple[Feature, ...]:
-    """Return the features of the envelope in each band that a set of this sample rate has."""
+    """Return the features of the envelope, for each band that is possible at this sample rate."""
     return tuple(feature for low, high in bands(sample_rate_hz) for feature in _in_band(low, high))
 
 
 def bands(sample_rate_hz: float) -> tuple[tuple[int, int], ...]:
-    """Return the bands, in Hz, that end below the sample rate / 2.56."""
+    """Return the envelope's bands, in Hz, that end below the sample rate / 2.56."""
     return tuple(band for band in BANDS_HZ if band[1] <= sample_rate_hz / 2.56)
 
 

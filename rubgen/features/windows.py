@@ -17,7 +17,7 @@ LEAST_SAMPLES = 64
 
 @dataclass(frozen=True)
 class Window:
-    """The length of a window; windows follow each other without a gap, and the rest of a signal is left out."""
+    """The length of a window, in s or in turns. Windows follow each other without a gap; a shorter rest is left out."""
 
     length: float
     unit: Literal["s", "turns"]
@@ -26,10 +26,10 @@ class Window:
         return f"{self.length:g}{self.unit}"
 
     def cuts(self, samples: int, rate_hz: float, pulses: FloatArray) -> list[tuple[int, int]]:
-        """Return first sample and number of samples of each window of a signal.
+        """Return first sample and number of samples of each window of a signal with `samples` samples.
 
-        A window of turns has all samples from its first to its last pulse. The list is empty where a signal has no
-        whole window.
+        `pulses` are the times of the pulses in s from the first sample. A window of turns has all samples from its
+        first to its last pulse. The list is empty if the signal has no whole window.
         """
         if self.unit == "s":
             size = round(self.length * rate_hz)
@@ -40,7 +40,7 @@ class Window:
         return [(int(a), int(b - a + 1)) for a, b in zip(first[:-1], last[1:], strict=True)]
 
     def longest(self, samples: int, rate_hz: float, pulses: FloatArray) -> str:
-        """Say how long the longest window of such a signal may be, in the unit of this one."""
+        """Return the length of the longest possible window of a signal, in this window's unit: "1s" or "100turns"."""
         if self.unit == "s":
             return f"{samples / rate_hz:g}s"
         inside = pulses[(pulses >= 0) & (pulses <= (samples - 1) / rate_hz)]

@@ -49,8 +49,11 @@ def write_features(
 ) -> Written:
     """Write the features of every good run of the set in `directory` to the Parquet file `out`, one row a window.
 
-    The bytes depend on the data set, the choices and the versions of the packages, not on `workers`. The file is
-    complete or not written at all. Options are as in `make_plan`, which also names the mistakes that raise UserError.
+    - window, channels, sets: as in `make_plan`; None takes the whole signal, all channels and all sets but tsfel.
+    - workers: number of processes.
+
+    The bytes depend on the data set, the parameters and the versions of the packages, not on `workers`. The file is
+    complete or not written at all. Raises UserError as `make_plan` does, and for a set without good runs.
     """
     directory, out = Path(directory), Path(out)
     data = DataSet(directory)
@@ -80,7 +83,7 @@ def write_features(
 
 
 def features_of(data: DataSet, plan: Plan, run_ids: Sequence[str]) -> pa.Table:
-    """Compute the rows of these runs in their order, as `run_features` does."""
+    """Compute the rows of the runs `run_ids`, in this order, as `run_features` does."""
     tables = []
     for run_id, signals, pulses in data.recorded(run_ids, plan.channels):
         row = data.row(run_id)

@@ -12,7 +12,10 @@ from rubgen.linalg.lanes_kernels import add_lines, dot_lines
 
 
 class Product(NamedTuple):
-    """A matrix in blocks: `lines` (any, 5), one for each row of eight results (`lanes_kernels`), `entries` (any, 8)."""
+    """A matrix in blocks, for products with z: `lines` (any, 5) and `entries` (any, 8).
+
+    Each line describes up to six rows of eight results: see `lanes_kernels`.
+    """
 
     lines: IntArray
     entries: FloatArray
@@ -20,18 +23,21 @@ class Product(NamedTuple):
 
 @inlined_kernel
 def multiply(product: Product, z: FloatArray, out: FloatArray) -> None:
-    """Add matrix times z to `out`: out += matrix z."""
+    """Add matrix times z to `out`: out += matrix z.
+
+    `z` and `out` are in the order of blocks, padded to rows of eight.
+    """
     add_lines(product.lines, product.entries, z, out)
 
 
 @inlined_kernel
 def quadratic(product: Product, left: FloatArray, right: FloatArray) -> float:
-    """Return left^T matrix right."""
+    """Return left^T matrix right, with `left` and `right` in the order of blocks as z."""
     total: float = dot_lines(product.lines, product.entries, right, left)
     return total
 
 
 @allocation_free_kernel
 def bilinear(product: Product, left: FloatArray, right: FloatArray) -> float:
-    """Return left^T matrix right as `quadratic` does, for callers outside of kernels."""
+    """Return left^T matrix right. It is `quadratic` for callers outside of kernels."""
     return quadratic(product, left, right)

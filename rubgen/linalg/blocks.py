@@ -27,7 +27,10 @@ ROUNDING = 1e-14
 
 
 def aligned(array: FloatArray) -> FloatArray:
-    """Copy an array into memory that begins at a cache line: rows of eight across two lines load half as fast."""
+    """Return a copy of an array that begins at a cache line.
+
+    Rows of eight across two cache lines would load half as fast.
+    """
     buffer = np.zeros(array.size + LANES)
     start = (-buffer.ctypes.data // 8) % LANES
     out = buffer[start : start + array.size].reshape(array.shape)
@@ -41,9 +44,9 @@ def padded(size: int) -> int:
 
 
 def blade_harmonics(blades: int) -> FloatArray:
-    """Return orthonormal real harmonics (blades, blades) over the number k of the blade, one in each column.
+    """Return orthonormal real harmonics (blades, blades) over the blade number k, one harmonic in each column.
 
-    The columns are 1, cos, sin, cos 2, sin 2, ..., and for an even number of blades (-1)^k.
+    The columns are 1, cos, sin, cos 2, sin 2, ..., and for an even number of blades (-1)^k, each normalised.
     """
     k = np.arange(blades)
     columns = [np.ones(blades) / np.sqrt(blades)]
@@ -55,17 +58,17 @@ def blade_harmonics(blades: int) -> FloatArray:
 
 
 def coupled(matrix: FloatArray) -> BoolArray:
-    """Return which entries of a matrix couple two coordinates. Smaller entries are rounding.
+    """Return which entries (n, n) of a matrix couple two coordinates.
 
-    They exceed COUPLING_TOLERANCE times `scale_of`.
+    An entry couples if it exceeds COUPLING_TOLERANCE times `scale_of`. Smaller entries are rounding.
     """
     return np.asarray(np.abs(matrix) > COUPLING_TOLERANCE * scale_of(matrix))
 
 
 def scale_of(matrix: FloatArray) -> FloatArray:
-    """Return a scale for each entry of a matrix, against which it is small or not.
+    """Return the scale (n, n) relative to which an entry of a matrix is small.
 
-    It is the geometric mean of the largest entries of its row and of its column.
+    It is the geometric mean of the largest entries of the entry's row and column.
     """
     size = np.abs(matrix)
     scale = np.sqrt(np.maximum(size.max(axis=0), size.max(axis=1)))
@@ -74,7 +77,7 @@ def scale_of(matrix: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Blocks:
-    """The blocks of a system, and the place of each coordinate in z."""
+    """The blocks of a system, and the index of each coordinate in z."""
 
     transform: FloatArray
     """T (n, n), orthonormal, q = T y."""
@@ -89,13 +92,16 @@ class Blocks:
     """Number of rows of eight in z."""
 
     def product(self, matrix: FloatArray) -> Product:
-        """Store a physical matrix (n, n) in blocks, for products in kernels. Entries between blocks are dropped."""
+        """Store a matrix (n, n) of the coordinates q in blocks, for products in kernels.
+
+        Entries between blocks are dropped.
+        """
         return self._packed(self.transform.T @ matrix @ self.transform, triangle=False)
 
     def without_zeros(self, matrix: FloatArray, like: FloatArray) -> Product:
-        """Store a matrix as `product` does, without lines of zeros.
+        """Store a matrix as `product` does, but without lines of zeros.
 
-        Entries count as zero where they are rounding (ROUNDING) relative to the matrix `like` (n, n).
+        An entry counts as zero if it is rounding: below ROUNDING times the scale of the matrix `like` (n, n).
         """
         Y = self.transform.T @ matrix @ self.transform
         size = ROUNDING * scale_of(self.transform.T @ like @ self.transform)
@@ -106,11 +112,11 @@ class Blocks:
         return Product(np.ascontiguousarray(product.lines[kept]), product.entries)
 
     def damping(self, matrix: FloatArray, *, whole: bool = False) -> Product:
-        """Store a damping matrix C so that a kernel gets d^T C d as 2 d^T (triangle d).
+        """Store a damping matrix C (n, n) as a triangle, so that a kernel computes d^T C d as 2 d^T (triangle d).
 
-        The triangle is the lower one of the symmetric part with half its diagonal. Within a block, Coriolis forces
+        The triangle is the lower triangle of the symmetric part with half its diagonal. Within a block, Coriolis forces
         couple more coordinates than dampers. Entries that the symmetric part does not couple are left out, unless
-        `whole`.
+        `whole` is set.
         """
         Y = self.transform.T @ matrix @ self.transform
         Y = (Y + Y.T) / 2
@@ -127,7 +133,7 @@ class Blocks:
         return np.sort(np.concatenate(found))
 
     def vector(self, y: FloatArray) -> FloatArray:
-        """Return y (n,) in the order of z, with zeros as padding."""
+        """Return y (n,) as z: in the order of the blocks, with zeros as padding."""
         z = np.zeros(self.rows * LANES)
         z[self.place] = y
         return aligned(z)
@@ -173,7 +179,10 @@ class Blocks:
 
 
 def parts_of(rows: int) -> list[slice]:
-    """Divide rows of results into parts of nearly equal size, none larger than MOST_ROWS, which one line allows."""
+    """Divide `rows` rows of results into parts of nearly equal size, none larger than MOST_ROWS.
+
+    Return the parts as slices.
+    """
     count = -(-rows // MOST_ROWS)
     ends = [part * (rows // count) + min(part, rows % count) for part in range(count + 1)]
     return [slice(start, end) for start, end in pairwise(ends)]
@@ -216,11 +225,12 @@ def _append(
 
 
 def find_blocks(matrices: list[FloatArray], blades: int) -> Blocks:
-    """Find the blocks of coordinates that no entry of any of the `matrices` (n, n) couples with each other.
+    """Find the blocks of coordinates of a system. No entry of any of the `matrices` (n, n) couples two blocks.
 
-    The first 3 `blades` coordinates are tips, three to a blade. They are changed to harmonics over the blades first:
-    equal blades then couple only within one nodal diameter. Blocks are the connected components of the entries that
-    `coupled` finds. Blocks of one size are laid side by side in lanes of eight where that saves work.
+    The first 3 `blades` coordinates are the tips, three for each blade. They are first changed to harmonics over the
+    blades: equal blades then couple only within one nodal diameter. Blocks are the connected components of the entries
+    that `coupled` finds. Up to eight blocks of equal size are stored side by side, so that a kernel computes them at
+    once, if that saves work. Mistuned blades make one large block.
     """
     n = len(matrices[0])
     T = np.eye(n)
@@ -261,7 +271,7 @@ def _arranged(parts: list[IntArray]) -> tuple[list[IntArray], list[IntArray]]:
 
 
 def half_turn(blades: int) -> int:
-    """Return the number of blades whose tips determine all: half of an even number, else all.
+    """Return the number of blades whose sums over the harmonics determine all tips: half of an even number, else all.
 
     Harmonics of an even number of blades keep or change their sign after half a turn.
     """
@@ -269,13 +279,16 @@ def half_turn(blades: int) -> int:
 
 
 def share_width(blades: int) -> int:
-    """Return how many scratch numbers `recover_tips` needs for each tip coordinate: sums over harmonics by halves."""
+    """Return the number of scratch values that `recover_tips` needs for each tip coordinate."""
     half = half_turn(blades)
     return blades // half * padded(half)
 
 
 def system_harmonics(blocks: Blocks, blades: int) -> Harmonics:
-    """Make the constants by which kernels recover blade tips from z, for a system with `blades` equal places."""
+    """Make the constants with which kernels compute blade tips from z.
+
+    `blades` is the number of blades, equally spaced.
+    """
     width, n, half = padded(blades), len(blocks.place), half_turn(blades)
     order = np.arange(blades)
     if half < blades:  # those of even nodal diameters first

@@ -9,10 +9,10 @@ from rubgen.linalg.vector_kernels import LANES
 
 
 class Harmonics(NamedTuple):
-    """Where the coordinates stand in z, and the harmonics over the blades.
+    """The indices of the coordinates in z, and the harmonics over the blades.
 
-    With an even number of blades, half of the harmonics keep their sign after half a turn, and the others change it.
-    The sums of both halves over half of the blades therefore determine all tips.
+    With an even number of blades, half of the harmonics keep their sign after half a turn, and the other half change
+    it. The sums of both halves over half of the blades therefore determine all tips.
     """
 
     basis: FloatArray
@@ -29,9 +29,9 @@ class Harmonics(NamedTuple):
 
 @inlined_kernel
 def recover_tips(harmonics: Harmonics, z: FloatArray, share_work: FloatArray, tips_out: FloatArray) -> None:
-    """Write the radial, tangential and, with three rows, axial coordinate of all tips into `tips_out` (2 or 3, width).
+    """Compute the coordinates of all tips from z, into `tips_out` (2 or 3, width): radial, tangential and axial.
 
-    `share_work` (3, any) is scratch for the sums over the harmonics.
+    The axial coordinate is computed if `tips_out` has three rows. `share_work` (3, any) is scratch.
     """
     blades, many, sums = harmonics.basis.shape[0], tips_out.shape[0], share_work
     half = blades // 2 if blades % 2 == 0 else blades
@@ -51,7 +51,7 @@ def recover_tips(harmonics: Harmonics, z: FloatArray, share_work: FloatArray, ti
 
 @inlined_kernel
 def recover_rest(harmonics: Harmonics, z: FloatArray, q_out: FloatArray) -> None:
-    """Write the coordinates after the tips into `q_out` (n,)."""
+    """Write the coordinates behind the tips from z into `q_out` (n,)."""
     start = 3 * harmonics.basis.shape[0]
     for i in range(harmonics.rest.shape[0]):
         q_out[start + i] = z[harmonics.rest[i]]
@@ -61,7 +61,7 @@ def recover_rest(harmonics: Harmonics, z: FloatArray, q_out: FloatArray) -> None
 def recover_all(
     harmonics: Harmonics, z: FloatArray, share_work: FloatArray, tips_work: FloatArray, q: FloatArray
 ) -> None:
-    """Write all of q (n,) from z; `share_work` (3, any) and `tips_work` (3, width) are scratch."""
+    """Compute all coordinates q (n,) from z. `share_work` (3, any) and `tips_work` (3, width) are scratch."""
     recover_tips(harmonics, z, share_work, tips_work)
     for k in range(harmonics.basis.shape[0]):
         for a in range(3):
@@ -71,7 +71,10 @@ def recover_all(
 
 @inlined_kernel
 def spread_tip_force(harmonics: Harmonics, blade: int, force: FloatArray, scale: float, z_force: FloatArray) -> None:
-    """Add a force (3,) on the tip of one blade, times `scale`, to the force `z_force` in z."""
+    """Add `scale` times a force (3,) on the tip of one blade to the force `z_force` in z.
+
+    The force is radial, tangential, axial.
+    """
     for a in range(3):
         size = scale * force[a]
         for j in range(harmonics.basis.shape[0]):

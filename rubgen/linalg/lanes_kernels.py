@@ -34,9 +34,10 @@ def line_kind(rows: int, *, scaled: bool) -> int:
 
 
 def line_sum(line: IntArray, a: FloatArray, x: FloatArray) -> FloatArray:
-    """Return the rows of results (rows, 8) of one line.
+    """Return the rows of results (rows, 8) of one line, with the entries `a` (any, 8) and the vector `x`.
 
-    Row r is the sum over j < COUNT of a[FIRST + j rows + r] times row or number START + j of x.
+    Row r is the sum over j < COUNT of a[FIRST + j rows + r] times row of eight, or for a scaled line number, START + j
+    of x.
     """
     rows, scaled = line[KIND] // 2 + 1, line[KIND] % 2
     entries = a.reshape(-1, LANES)[line[FIRST] : line[FIRST] + rows * line[COUNT]].reshape(-1, rows, LANES)
@@ -50,7 +51,10 @@ def _results(line: IntArray) -> slice:
 
 
 def add_lines(lines: IntArray, a: FloatArray, x: FloatArray, out: FloatArray) -> None:
-    """Add the sums of each line to its rows of `out`. `lines` is (any, 5), `a` (any, 8) the entries."""
+    """Add the sums of each line to its rows of `out`.
+
+    `lines` is (any, 5), `a` (any, 8) are the entries, `x` the vector.
+    """
     for line in lines:
         out.reshape(-1, LANES)[_results(line)] += line_sum(line, a, x)
 
@@ -58,7 +62,10 @@ def add_lines(lines: IntArray, a: FloatArray, x: FloatArray, out: FloatArray) ->
 def set_two_lines(
     lines: IntArray, a: FloatArray, b: FloatArray, x: FloatArray, y: FloatArray, base: FloatArray, out: FloatArray
 ) -> None:
-    """Set each row of `out` to the same row of `base` plus the sums of a, x and of b, y. Lines have each row once."""
+    """Set each row of `out` to the same row of `base` plus the sums of a with x and of b with y.
+
+    `lines` (any, 5) contain each row of results once; `a` and `b` (any, 8) are entries.
+    """
     for line in lines:
         row = _results(line)
         out.reshape(-1, LANES)[row] = base.reshape(-1, LANES)[row] + (line_sum(line, a, x) + line_sum(line, b, y))
@@ -78,7 +85,7 @@ def gather_lines(
 
 
 def dot_lines(lines: IntArray, a: FloatArray, x: FloatArray, left: FloatArray) -> float:
-    """Multiply the sums of each line with its rows of `left` and return the sum of all products: left^T (matrix x)."""
+    """Return left^T (matrix x): the sum of the products of each line's sums with its rows of `left`."""
     return sum(float((line_sum(line, a, x) * left.reshape(-1, LANES)[_results(line)]).sum()) for line in lines)
 
 

@@ -8,7 +8,10 @@ from threadpoolctl import ThreadpoolController
 
 
 def one_blas_thread() -> AbstractContextManager[object]:
-    """Let the BLAS libraries of numpy and scipy use one thread in the block. Irregular motion magnifies last bits."""
+    """Let the BLAS libraries of numpy and scipy use one thread in the block, so that sums always have the same bits.
+
+    Irregular motion magnifies differences in the last bits.
+    """
     limit: AbstractContextManager[object] = _controller().limit(limits=1, user_api="blas")
     return limit
 

@@ -44,18 +44,18 @@ class Emitter:
         return self.builder.gep(array.data, [self.builder.mul(number, self.shape(array, 1))])
 
     def at_row(self, data: Any, row: Any) -> Any:
-        """Return the address at which row of eight number `row` begins, from `data`."""
+        """Return the address at which the row of eight with number `row` begins, counted from `data`."""
         place = self.builder.gep(data, [self.builder.mul(row, self.index(LANES))])
         return self.builder.bitcast(place, self.vector.as_pointer())
 
     def load(self, data: Any, row: Any) -> Any:
-        """Load row of eight number `row` into a register."""
+        """Load the row of eight with number `row` into a register."""
         value = self.builder.load(self.at_row(data, row))
         value.align = 8
         return value
 
     def store(self, value: Any, data: Any, row: Any) -> None:
-        """Write a register to row of eight number `row`."""
+        """Write the register `value` to the row of eight with number `row`."""
         self.builder.store(value, self.at_row(data, row)).align = 8
 
     def broadcast(self, data: Any, place: Any) -> Any:
@@ -78,18 +78,18 @@ class Emitter:
         return lanes[0]
 
     def row_count(self, numbers: Any) -> Any:
-        """Return how many rows of eight so many numbers fill."""
+        """Return the number of rows of eight that `numbers` numbers fill."""
         return self.builder.udiv(numbers, self.index(LANES))
 
     def call(self, name: str, result: Any, body: Callable[..., Any], *arguments: Any) -> Any:
-        """Call a function of LLVM that `body` writes, once in a module. Returns its value.
+        """Call a function of LLVM whose code `body` writes once in a module. Returns the function's value.
 
-        Code is thus not written again at each call. With addresses and numbers for arguments a call costs next to
+        The code is thus not repeated at each call. If the arguments are addresses and numbers, a call costs next to
         nothing.
 
-        - name: of the function; one name has one body.
+        - name: name of the function; one name has one body.
         - result: LLVM's type of the value.
-        - body: takes an emitter and the arguments, and returns the value; None for no value.
+        - body: takes an emitter and the arguments, and returns the value, or None for a function without a value.
         """
         module, symbol = self.builder.module, f"rubgen.{name}"
         if symbol not in module.globals:
@@ -118,15 +118,15 @@ def compile_as(plain: Callable[..., Any], result: Any, vector_code: Callable[...
 
 
 def blended_product(a: FloatArray, first: int, second: int, share: float, x: FloatArray) -> float:
-    """Return x.(a_first + share (a_second - a_first)): x times a line interpolated between two lines of a.
+    """Return x.(a_first + share (a_second - a_first)): x times a row interpolated between two rows of a.
 
-    a is (any, a multiple of eight), x has the length of its lines.
+    a is (any, a multiple of eight), x has the length of a row.
     """
     return float((a[first] + share * (a[second] - a[first])) @ x)
 
 
 def not_above(x: FloatArray, row: int, limit: float) -> int:
-    """Return which of the eight numbers in row `row` of x are not above the limit: bit i for number i.
+    """Return which of the eight numbers in row `row` of x are not above the limit, as bits: bit i for number i.
 
     x is (a multiple of eight,).
     """
@@ -134,12 +134,12 @@ def not_above(x: FloatArray, row: int, limit: float) -> int:
 
 
 def lowest_bit(bits: int) -> int:
-    """Return the place of the lowest bit that is set. `bits` is not zero."""
+    """Return the number, from 0, of the lowest bit of `bits` that is set. `bits` is not zero."""
     return (bits & -bits).bit_length() - 1
 
 
 def square_of_farthest(a: FloatArray, b: FloatArray) -> float:
-    """Return the largest squared distance of two points in one column of a and b, both (2, a multiple of eight)."""
+    """Return the largest squared distance between the same columns of a and b, both (2, a multiple of eight)."""
     return float(np.square(a[:2] - b[:2]).sum(axis=0).max(initial=0.0))
 
 

@@ -38,7 +38,7 @@ UNITS = (
 
 
 def unit_of(key: str) -> str:
-    """Return the unit of a key by its ending; empty where it has none."""
+    """Return the unit of a key by its ending, such as "m" for `clearance_m`; empty where the key has no unit."""
     return next((unit for ending, unit in UNITS if f"_{key}".endswith(f"_{ending}")), "")
 
 
@@ -64,21 +64,25 @@ class Key:
 def keys_of(table: Node, root: Node) -> list[Key]:
     """Return the keys of a table in the order of the schema.
 
-    - table: the schema of the table.
-    - root: the whole schema, whose `$defs` it refers to.
+    - table: the JSON schema of the table.
+    - root: the whole schema, to whose `$defs` `table` refers.
     """
     needed = table.get("required", ())
     return [_key(name, node, root, required=name in needed) for name, node in table.get("properties", {}).items()]
 
 
 def complete(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema with unit, allowed values and default in the description of each property."""
+    """Return the JSON schema with unit, allowed values and default added to the description of each property."""
     completed: dict[str, Any] = _completed(schema, schema)
     return completed
 
 
 def draws(quantity: Any, default: object = None) -> Callable[[dict[str, Any]], None]:
-    """Return what adds to the schema of a drawn key the range and the default of the quantity that is drawn."""
+    """Return a function that adds range and default of the drawn quantity to the JSON schema of a distribution.
+
+    - quantity: the annotated type of the drawn value.
+    - default: the value without the key.
+    """
 
     def add(schema: dict[str, Any]) -> None:
         root = TypeAdapter(quantity).json_schema()

@@ -61,7 +61,7 @@ class FrameMode:
 class Frame:
     """The modes through which forces of the disk's support reach housing and casing.
 
-    One way: the frame moves sensors, and not the disk or the ring. Modes are uncoupled, as of a linear structure whose
+    One way: the frame moves sensors, but not the disk or the ring. Modes are uncoupled, as of a linear structure whose
     damping is small (Ewins, Modal Testing, 2000, chapter 2).
     """
 
@@ -73,5 +73,5 @@ class Frame:
 
     @property
     def memory_seconds(self) -> float:
-        """Time in s after which the start of the slowest mode has decayed to 1e-4."""
+        """Time in s after which the free motion of the slowest mode has decayed to 1e-4."""
         return FORGOTTEN / (2 * math.pi * min(mode.damping * mode.frequency_hz for mode in self.modes))

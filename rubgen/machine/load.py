@@ -26,9 +26,9 @@ def preset_names() -> list[str]:
 
 
 def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
-    """Load the preset with that name, or the machine in that TOML file; relative paths start from `folder`.
+    """Load the preset with the given name, or the machine in a TOML file. A relative path starts from `folder`.
 
-    Raises UserError with file, key, value and what is allowed where there is none or it is not a valid machine.
+    Raises UserError with file, key, value and what is allowed where the machine does not exist or is not valid.
     """
     if name_or_path in preset_names():
         return _machine_from(PRESETS / f"{name_or_path}.toml")
@@ -42,7 +42,7 @@ def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
 def file_named(name_or_path: str, folder: Path | None = None) -> Iterator[None]:
     """Add the machine's file to a UserError that the block raises about a machine, "machine <name>: its ...".
 
-    The code that builds the model of a machine knows only its name. A preset has no file, and nothing is added.
+    The code that builds the model of a machine knows only the machine's name. For a preset nothing is added.
     """
     try:
         yield
@@ -54,9 +54,9 @@ def file_named(name_or_path: str, folder: Path | None = None) -> Iterator[None]:
 
 
 def machine_id(machine: Machine) -> str:
-    """Return twelve hexadecimal digits from all values of the machine: sha256 of its sorted JSON.
+    """Return twelve hexadecimal digits that identify the values of the machine: from the sha256 of its sorted JSON.
 
-    Default values are left out, so a key that a later version adds changes no machine's digits.
+    Default values are left out, so that a key added by a later version changes no existing `machine_id`.
     """
     values = TypeAdapter(Machine).dump_python(machine, mode="json", exclude_defaults=True)
     return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()[:12]

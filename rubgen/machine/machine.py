@@ -94,7 +94,7 @@ class Disk:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Mistuning:
-    """Relative deviation of each blade's elastic stiffness: `pattern`, or one drawn by `relative_std` and `seed`.
+    """Relative deviation of each blade's elastic stiffness: `pattern`, or values drawn with `relative_std` and `seed`.
 
     Blade k has Young's modulus E (1 + deviation_k), and its shear modulus accordingly. All blades have the same mass
     and shape. A pattern begins with blade 0 on x, where the unbalance is, and continues counter-clockwise. Draws are
@@ -125,7 +125,10 @@ class Mistuning:
         return self
 
     def deviations(self, count: int) -> tuple[float, ...]:
-        """Return the pattern itself, or `count` values drawn by numpy's default generator, the same for one seed."""
+        """Return the relative deviations of `count` blades: the pattern, or values drawn by numpy's default generator.
+
+        The same seed draws the same values.
+        """
         if self.pattern is not None:
             return self.pattern
         drawn = np.random.default_rng(self.seed).standard_normal(count)
@@ -134,10 +137,10 @@ class Mistuning:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class BladeRow:
-    """Blades on the rim, equal except for their mistuning: chord, thickness and stagger are linear from root to tip.
+    """Blades on the rim, equal except for their mistuning: chord, thickness and angle are linear from root to tip.
 
-    The angle is the one between the thickness normal and the axis of rotation Z, in degrees. Without `mistuning` all
-    blades have the material's stiffness.
+    The angle in degrees is between the thickness normal and the axis of rotation Z. Without `mistuning` all blades have
+    the material's stiffness.
     """
 
     material: Annotated[Material, about("Material of the blades.")]
@@ -256,9 +259,9 @@ class Casing:
 class Damping:
     """Damping ratios at rest, each with its own mechanism.
 
-    lateral, tilt, axial, torsion: dampers beside the support springs, in the inertial frame, c = 2 zeta sqrt(k m). With
-    them the blisk has the ratio as a rigid body on that spring. Its elastic modes have somewhat less
-    (docs/preset-zeng2019.md). blade: elastic (internal) damping beta K_e with that ratio at the first mode of a blade
+    lateral, tilt, axial, torsion: dampers parallel to the support springs, in the inertial frame, c = 2 zeta sqrt(k m).
+    The blisk as a rigid body on this spring has the ratio. Its elastic modes have somewhat less
+    (docs/preset-zeng2019.md). blade: elastic (internal) damping beta K_e with the ratio at the first mode of a blade
     clamped at its root. casing: the same ratio for every casing mode.
     """
 
@@ -287,7 +290,7 @@ class Damping:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Unbalance:
-    """One more unbalance, mass times radius: on the disk at an angle, or at the tip of a blade.
+    """A further unbalance, mass times radius: on the disk at an angle, or at the tip of a blade.
 
     The angle is counted from blade 0 in the sense of rotation. An unbalance at a tip also pulls the blade outward and,
     where the speed changes, bends it. An unbalance on the disk acts only on O_d.
@@ -320,10 +323,10 @@ class Unbalance:
 class Machine:
     """A blisk on its supports, with its unbalance and damping, in its casing.
 
-    `unbalance_kg_m` is on the disk at `unbalance_angle_deg` from blade 0, in the sense of rotation. `unbalances` are
-    further ones. Gravity acts along -Y, only on the blisk; the casing's own sag is part of its shape. 0 is a vertical
-    axis. The `frame` takes forces of the disk's support to sensors; without one they feel no such forces. Of each kind
-    of fault a machine has at most one (docs/faults.md).
+    `unbalance_kg_m` is on the disk at `unbalance_angle_deg` from blade 0, in the sense of rotation. `unbalances` are in
+    addition. Gravity acts along -Y, only on the blisk; the casing's own sag is part of its shape. 0 is a vertical axis.
+    The `frame` carries forces of the disk's support to sensors; without a frame sensors feel no such forces. A machine
+    has at most one fault of each kind (docs/faults.md).
     """
 
     name: Annotated[str, Field(min_length=1), about("Name of the machine in tables, figures and messages.")]
@@ -391,7 +394,7 @@ class Machine:
 
     @property
     def lost_blades(self) -> tuple[int, ...]:
-        """Numbers of the blades that its faults have taken away, ascending."""
+        """Numbers of the blades that the machine's faults have taken away, ascending."""
         return tuple(sorted({blade for fault in self.faults for blade in fault.lost_blades(self)}))
 
     @property

@@ -8,14 +8,17 @@ from rubgen.machine.machine import BladeRow, Casing, Disk
 
 
 def disk_nodes(disk: Disk) -> int:
-    """Return the number of nodes of the disk: rings of corner nodes have two an element, the rings between them one."""
+    """Return the number of nodes of the disk's mesh.
+
+    Each ring of corner nodes has two nodes an element, each ring between them one.
+    """
     return disk.circumferential_elements * (3 * disk.radial_elements + 2)
 
 
 def pitch_problem(disk: Disk, blades: BladeRow) -> str | None:
-    """Return the problem where blades do not meet corner nodes of the rim, or a single blade's pull is not balanced.
+    """Return a problem if the blades do not meet corner nodes of the rim, or there is only one; else None.
 
-    None without a problem.
+    The pull of a single blade would not be balanced.
     """
     elements, count = disk.circumferential_elements, blades.count
     if count < 2:
@@ -29,7 +32,7 @@ def pitch_problem(disk: Disk, blades: BladeRow) -> str | None:
 
 
 def node_problem(casing: Casing) -> str | None:
-    """Return the problem where the casing's nodes break the symmetry of its quarters or lobes; None without one."""
+    """Return a problem if the number of casing nodes is not divisible by 4 and by the lobes; None without a problem."""
     step = math.lcm(4, casing.lobes)
     if casing.nodes % step == 0:
         return None

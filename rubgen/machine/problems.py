@@ -53,7 +53,7 @@ def validated(
 
     - source: file or name of the data, for messages.
     - data: the TOML values.
-    - adapter: of the type.
+    - adapter: pydantic's adapter of the type.
     - place: turns the path of a value in `data` into its path in the file.
 
     Raises UserError of one line: the first problem in the order of the file, and the number of problems.
@@ -75,10 +75,10 @@ def first_problem(
     """Make the UserError of the first problem, in the order of the file, of data that does not fit its type.
 
     - source: file or name of the data.
-    - error: pydantic's.
+    - error: the error of pydantic.
     - data: the TOML values.
-    - adapter: of the type; without it no similar keys are suggested.
-    - place: as in `validated`.
+    - adapter: pydantic's adapter of the type; without it no similar keys are suggested.
+    - place: turns the path of a value in `data` into its path in the file.
     """
     problems = _problems(error, data)
     first = min(problems, key=lambda each: _order(data, each.path))
@@ -95,9 +95,10 @@ def first_problem(
 
 
 def check_plain(source: object, value: object, path: Path = ()) -> None:
-    """Check that data is not nested too deeply, and that its integers fit in 64 bits. Raises UserError where not.
+    """Check that data is nested at most 16 levels deep, and that its integers fit in 64 bits with sign.
 
-    `source` is the file or name of the data, `path` the place of `value` in it.
+    `source` is the file or name of the data, `path` the keys and numbers that lead to `value` in it. Raises UserError
+    where the check fails.
     """
     if len(path) > DEEPEST:
         raise UserError(_of(source, f"{key_name(path[:3])}: tables or lists in one another without end; write it flat"))
@@ -117,7 +118,10 @@ def _of(source: object, text: str) -> str:
 
 
 def nearest(name: str, known: list[str]) -> str:
-    """Say what to write for an unknown `name`: "did you mean ...?" with the nearest known name; the allowed names."""
+    """Return a hint for an unknown `name`: "did you mean ...?" with the nearest known name, and the allowed names.
+
+    Without known names the hint is "remove it".
+    """
     close = _closest(name, known)
     hint = f"did you mean {close}? " if close else ""
     more = f" and {len(known) - MOST_LISTED} more" if len(known) > MOST_LISTED else ""
@@ -125,7 +129,7 @@ def nearest(name: str, known: list[str]) -> str:
 
 
 def key_name(path: Path) -> str:
-    """Write a path as in TOML, `blades.material`; a part that is no bare key is quoted."""
+    """Write a path of keys and numbers as in TOML, `blades.material`. A part that is no bare key is quoted."""
     return ".".join(_cut(key_text(part)) for part in path)
 
 

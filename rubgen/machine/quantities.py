@@ -17,7 +17,7 @@ from pydantic_core import PydanticCustomError
 
 @dataclass(frozen=True)
 class Usual:
-    """The usual range of a value, its reason, and the units that people use by mistake."""
+    """The usual range `low` to `high` of a value, the reason (`fact`), and the units that people use by mistake."""
 
     low: float
     high: float
@@ -27,7 +27,7 @@ class Usual:
     ours: str = ""
 
     def doubt(self, value: float) -> str | None:
-        """Say why a value is unusual, with the first unit in which it would be usual; None where it is usual."""
+        """Return why a value is unusual, with the first unit in which it would be usual; None for a usual value."""
         if self.low <= value <= self.high:
             return None
         for unit, size in self.units:
@@ -41,7 +41,7 @@ Place = tuple[int | str, ...]
 
 
 def usual_values(record: Any, place: Place = ()) -> Iterator[tuple[Place, float, Usual]]:
-    """Yield every number of a record, and of records in it, that has a usual range: place, value, that range."""
+    """Yield every number of a record, and of records in it, that has a usual range: its path, value and usual range."""
     for name, usual in _usual_ranges(record.__class__).items():
         yield from _values(getattr(record, name), usual, (*place, name))
 
@@ -85,20 +85,24 @@ def _whole(*, usual: Usual | None = None, **bounds: Any) -> Any:
 
 
 def real(**bounds: Any) -> Any:
-    """Return bounds of a finite number (`ge`, `gt`, `le`, `lt`), for which no text may stand, and its usual range."""
+    """Return the bounds (`ge`, `gt`, `le`, `lt`) and the `usual` range of a finite number, for its annotated type.
+
+    A text in place of the number is refused.
+    """
     return _whole(allow_inf_nan=False, **bounds)
 
 
 class StrictModel(BaseModel):
-    """A model that refuses unknown keys and whose values do not change."""
+    """A pydantic model that refuses unknown keys and whose values cannot be changed."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 def about(text: str) -> Any:
-    """Return the description of a field, for schemas, reference pages and help texts: what it is, when to change it.
+    """Return the description of a field, for schemas, reference pages and help texts.
 
-    Unit, default and allowed range are left out of the text: `rubgen.machine.descriptions` adds them from the field.
+    `text` says what the field is and when to change it. Unit, default and allowed range are left out:
+    `rubgen.machine.descriptions` adds them from the field.
     """
     return Field(description=text)
 

@@ -4,7 +4,7 @@ from typing import Any, get_args, get_type_hints
 
 
 def registered(record: Any, law: Any) -> dict[str, Any]:
-    """Return the fields of the class `record` that may have a `law` as their value, each with the class of its law."""
+    """Return the fields of the class `record` whose type is a subclass of `law` or None, each with this subclass."""
     return {
         key: kind
         for key, hint in get_type_hints(record).items()
@@ -14,6 +14,6 @@ def registered(record: Any, law: Any) -> dict[str, Any]:
 
 
 def given(record: Any, law: Any) -> dict[str, Any]:
-    """Return the laws that a record has, by the names of their fields. Fields that are None are left out."""
+    """Return the values of the fields of `record` that are laws, by field name. Fields that are None are left out."""
     values = {key: getattr(record, key) for key in registered(type(record), law)}
     return {key: value for key, value in values.items() if value is not None}

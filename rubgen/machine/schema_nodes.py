@@ -62,7 +62,7 @@ class SchemaNodes:
 
 
 def bounds_in_words(nodes: list[Node]) -> str:
-    """Return the allowed range of a number in words, "at least 0 and below 1"; empty where there is none."""
+    """Return the allowed range of a number in words, "at least 0 and below 1"; empty without bounds."""
     for node in nodes:
         if any(key in node for key in BOUNDS):
             return " and ".join(f"{words} {limit(node[key])}" for key, words in BOUNDS.items() if key in node)
@@ -70,17 +70,17 @@ def bounds_in_words(nodes: list[Node]) -> str:
 
 
 def limit(value: float) -> str:
-    """Write a bound as people do, with commas between thousands."""
+    """Write a number with commas between thousands, such as "1,000,000"."""
     return f"{value:,}" if isinstance(value, int) else f"{value:,.12g}"
 
 
 def digits(value: float) -> str:
-    """Write the first three digits of a value, without an exponent where people write none."""
+    """Write a number with three significant digits and commas between thousands, without an exponent."""
     return limit(float(f"{value:.3g}"))
 
 
 def below(value: float) -> str:
-    """Write three digits of a value, rounded down so that they are not above it, to be copied into a file."""
+    """Write a number rounded down to three significant digits, for a value that may not exceed it."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 2)
     return f"{math.floor(value / unit) * unit:.12g}"
 

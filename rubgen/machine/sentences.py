@@ -55,11 +55,11 @@ LEVELS = 6
 
 
 def sentence(error: Mapping[str, Any], bounds: str, nodes: list[Mapping[str, Any]]) -> str:
-    """Say what a value must be, for one error of validation.
+    """Return what a value must be, as a clause, for one error of validation.
 
     - error: one error of pydantic.
-    - bounds: allowed range in words.
-    - nodes: schema of the value.
+    - bounds: allowed range in words, or empty.
+    - nodes: JSON schema nodes of the value.
     """
     kind, context = str(error["type"]), error.get("ctx", {})
     if kind in OWN:
@@ -128,6 +128,6 @@ def toml_text(value: object, levels: int = LEVELS) -> str:
 
 
 def key_text(key: object) -> str:
-    """Write a key in TOML: bare where that is allowed, else in quotes with control characters escaped."""
+    """Write a key as in TOML: bare where this is allowed, else in quotes with control characters escaped."""
     text = str(key)
     return text if re.fullmatch(r"[A-Za-z0-9_-]+", text) else repr(text)

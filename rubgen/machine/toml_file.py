@@ -41,14 +41,14 @@ UNCLOSED = {
 
 
 def names_toml(name: str) -> bool:
-    """Return whether a text is the path of a TOML file rather than the name of a preset: it ends with .toml."""
+    """Return whether a text is the path of a TOML file and not the name of a preset: whether it ends with .toml."""
     return name.lower().endswith(".toml")
 
 
 def toml_path(name: str | Path, folder: Path | None = None) -> Path:
-    """Return the path that a user gave, with `~` as the home directory; a relative path starts from `folder`.
+    """Return the path `name` of a user, with `~` as the home directory. A relative path starts from `folder`.
 
-    The file need not exist. Raises UserError for a text that cannot be a path.
+    The file need not exist. Raises UserError for a text with control characters.
     """
     text = str(name)
     if any(ord(letter) < 32 for letter in text):
@@ -62,9 +62,9 @@ def toml_path(name: str | Path, folder: Path | None = None) -> Path:
 
 
 def named_toml(key: str, name: str, folder: Path | None = None) -> Path:
-    """Return the path of the TOML file `name`, the value of `key`; a relative path starts from `folder`.
+    """Return the path of the TOML file `name`. A relative path starts from `folder`.
 
-    Raises UserError with the key where there is no such file.
+    Raises UserError with `key`, the key whose value `name` is, where the file does not exist.
     """
     path = toml_path(name, folder)
     if os.path.lexists(path):
@@ -76,7 +76,7 @@ def named_toml(key: str, name: str, folder: Path | None = None) -> Path:
 def check_kind(path: Path | str, data: dict[str, object], wanted: str) -> None:
     """Check that the content of a TOML file is of the kind `wanted`: "recipe", "machine" or "sensor set".
 
-    - path: of the file, for the message.
+    - path: path of the file, for the message.
     - data: its content.
 
     Raises UserError where the content is clearly of another kind. A file without any known key passes.
@@ -92,8 +92,8 @@ def check_kind(path: Path | str, data: dict[str, object], wanted: str) -> None:
 def read_toml(path: Path) -> dict[str, object]:
     """Read a TOML file and return its values.
 
-    Raises UserError of one line where it is missing, not text, too large or not TOML. A byte order mark of UTF-8 is
-    skipped. Lines may end as on any system.
+    A byte order mark of UTF-8 is skipped. Lines may end as on any system. Raises UserError of one line where the file
+    is missing, not text, too large or not TOML.
     """
     path = toml_path(path)
     text = _text(path, _content(path)).replace("\r\n", "\n").replace("\r", "\n")
@@ -150,7 +150,7 @@ def _not_toml(text: str, error: str) -> str:
 
 
 def remedy(line: str, error: str) -> str:
-    """Say what to write instead of a line that is not TOML; `error` is the message of the parser."""
+    """Return what to write instead of a line that is not TOML. `error` is the message of the parser."""
     value = line.partition("=")[2].strip()
     return _of_whole_line(line.strip(), value, error) or _of_value(value) or "write key = value, texts in quotes"
 

@@ -13,7 +13,7 @@ from rubgen.solver.response import TipArrivals
 
 @dataclass(frozen=True, kw_only=True)
 class TipTimes:
-    """The record of one probe in order of time; all arrays (n_arrivals,)."""
+    """The passages that one probe recorded, in order of time; all arrays (n_arrivals,)."""
 
     time: FloatArray
     """Times as recorded by the probe, s from the first sample."""
@@ -24,15 +24,15 @@ class TipTimes:
 
 
 def tick(time: FloatArray, clock_hz: float) -> FloatArray:
-    """Round times down to the resolution of a counter of `clock_hz`; with 0 they stay exact."""
+    """Round times (s) down to the resolution of a counter of `clock_hz`. For 0 they are returned unchanged."""
     return np.asarray(np.floor(time * clock_hz) / clock_hz) if clock_hz else time
 
 
 def blurred(sensor: TimingProbe | OncePerRev, time: FloatArray, noise: float, rng: np.random.Generator) -> FloatArray:
-    """Return times with the jitter and the counter of a sensor.
+    """Return times (any,) in s with the jitter and the counter of a sensor.
 
-    - time: exact times, s.
-    - noise: factor of the jitter.
+    - time (any,): exact times, s.
+    - noise: factor of the sensor's jitter.
     - rng: random numbers.
     """
     jitter = noise * sensor.jitter_s
@@ -51,7 +51,7 @@ def tip_times(
     rng: np.random.Generator,
     lost: Sequence[int] = (),
 ) -> TipTimes:
-    """Record the passages of a probe within a recording, with jitter, counter and clock offset.
+    """Record the passages of blades at a probe within a recording, with jitter, counter and clock offset.
 
     Missed passages and lost blades are left out.
 
@@ -59,8 +59,8 @@ def tip_times(
     - arrivals: the true passages in steps.
     - dt: time step, s.
     - start: time of the first sample from the start of the record, s.
-    - seconds: length of the recording.
-    - noise: factor of the jitter.
+    - seconds: length of the recording, s.
+    - noise: factor of the probe's jitter.
     - rng: random numbers.
     - lost: numbers of the lost blades.
     """
@@ -80,11 +80,12 @@ def tip_times(
 def tip_deflections(times: TipTimes, once_per_rev: FloatArray, tip_radius: float) -> FloatArray:
     """Compute tip deflections (n_arrivals,) in m along the rotation from arrival times alone.
 
-    Each blade's mean is lost. The angle of arrival is AoA = Omega (t - t_0) from the last pulse t_0, Omega = 2 pi over
-    the turn's time. The deflection is x = R (mean AoA of that blade - AoA): early is positive (S. Heath, M. Imregun,
-    Int. J. Mech. Sci. 38, 1996). Arrivals before the first pulse or after the last are NaN.
+    The mean deflection of each blade cannot be known and is 0. The angle of arrival is AoA = Omega (t - t_0) from the
+    last pulse t_0, with Omega = 2 pi over the turn's time. The deflection is x = R (mean AoA of the blade - AoA): early
+    is positive (S. Heath, M. Imregun, Int. J. Mech. Sci. 38, 1996). It is NaN for arrivals before the first pulse or
+    after the last.
 
-    - times: the probe's record.
+    - times: the passages that the probe recorded.
     - once_per_rev (pulses,): times of the pulses, s.
     - tip_radius: R, m.
     """

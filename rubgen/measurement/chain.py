@@ -30,9 +30,9 @@ def half_width_seconds(sample_rate_hz: float) -> float:
 
 
 def late_seconds(sensing: Sensing, seconds: float, *, sign: int = 1) -> float:
-    """Return how late, in s, the latest clock of the set takes a sample within `seconds`.
+    """Return how late, in s, the latest sensor clock of the set takes a sample within `seconds`; at least 0.
 
-    With `sign` = -1, how early the earliest clock takes one.
+    With `sign` = -1 it is how early the earliest clock takes a sample.
     """
     clocks = [(each.clock_offset_s, 1e-6 * each.clock_ppm * seconds) for each in sensing.set.sampled]
     return max([0.0, *(sign * (offset + share * slow) for offset, slow in clocks for share in (0, 1))])
@@ -52,11 +52,11 @@ def start_seconds(sensing: Sensing, seconds: float, *, steps: int, dt: float) ->
 
 
 def margin_seconds(sensing: Sensing, seconds: float = 0.0, frame: Frame | None = None) -> float:
-    """Return the length of signal in s that a recording of `seconds` needs beyond itself.
+    """Return the length of signal in s that a recording of `seconds` needs in addition to `seconds`.
 
-    It is half the filter's length on either side. Early or late clocks need more. The filters of sensors with dynamics
-    and the modes of the `frame` that sensors feel need their memory. Two sample periods are added, so that rounding to
-    whole steps and samples is always covered.
+    It is half the filter's length on either side, the memory of the filters of sensors with dynamics and of the modes
+    of `frame` (None without a frame), and the error of early or late clocks. Two sample periods are added for rounding
+    to whole steps and samples.
     """
     margin = 2 * half_width_seconds(sensing.sample_rate_hz) + 2 / sensing.sample_rate_hz
     margin += max((memory_seconds(each) for each in sensing.set.sampled), default=0.0)
@@ -79,7 +79,7 @@ def impulse_response(time: FloatArray, sample_rate_hz: float) -> FloatArray:
 
 @lru_cache(maxsize=4)
 def filter_bank(dt: float, sample_rate_hz: float) -> FloatArray:
-    """Tabulate the filter's weights (PHASES + 1, 2 half) for places between two steps of length dt. Rows sum to 1."""
+    """Tabulate the filter's weights (PHASES + 1, 2 half) for positions between two steps of `dt` s. Rows sum to 1."""
     half = int(np.ceil(half_width_seconds(sample_rate_hz) / dt))
     phase = np.linspace(0.0, 1.0, PHASES + 1)[:, None]
     steps = np.arange(-half + 1, half + 1)[None, :]
@@ -95,12 +95,12 @@ def band_limit(signals: FloatArray, positions: FloatArray, *, dt: float, sample_
 
     Filter and interpolation in one: y(t) = sum_j h(t - j dt) x_j dt, with the weights' sum set to 1. The gain is 1
     within 1e-4 up to sample_rate / 2.56 and below 1e-4 from sample_rate / 2 on. There is no delay. The step rate must
-    be at least 2.56 sample rates, and all positions at least half a filter length inside.
+    be at least 2.56 sample rates, and all positions at least half a filter length from the ends of the signals.
 
-    - signals (steps, channels): at every step.
-    - positions (samples,): in steps.
+    - signals (steps, channels): values at every step.
+    - positions (samples,): times of the samples, in steps.
     - dt: time step, s.
-    - sample_rate_hz: of the samples.
+    - sample_rate_hz: sample rate.
     """
     from rubgen.measurement.resampling_kernels import (  # compiled: those who read data need no numba
         ABREAST,

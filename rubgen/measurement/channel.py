@@ -16,7 +16,11 @@ PREVIEW_RATE_HZ = 1024.0
 
 @dataclass(frozen=True, kw_only=True)
 class Channel:
-    """One recorded signal with its description; `values` (n_samples,) at the recording's sample rate, in `unit`."""
+    """One recorded signal with its description. `values` (n_samples,) are in `unit`, at the recording's sample rate.
+
+    `clean` is the signal of an ideal sensor, or None. `range_min`, `range_max`, `resolution` (one ADC step) and
+    `noise_rms` are in `unit` too.
+    """
 
     name: str
     unit: str
@@ -38,13 +42,13 @@ TEXTS, NUMBERS = ("unit", "quantity", "axis", "location"), ("range_min", "range_
 
 
 def quantity_key(quantity: str) -> str:
-    """Return a quantity as it stands in topics and entity paths, which allow no blanks."""
+    """Return a quantity as it is written in topics and entity paths: with "_" in place of blanks."""
     return quantity.replace(" ", "_")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Recording:
-    """All channels of one run over the last `signal_seconds` of its record. Sample i is at time i / sample_rate_hz."""
+    """All channels of one run, over the end of its record. Sample i is at time i / sample_rate_hz."""
 
     sample_rate_hz: float
     """Sample rate of all channels."""
@@ -68,7 +72,10 @@ class Recording:
         return next(iter(self.channels.values())).values.size
 
     def by_quantity(self) -> dict[str, list[Channel]]:
-        """Group the channels by the key of their quantity, in one unit each, both in the order of the recording."""
+        """Group the channels by quantity and unit. Groups and channels are in the order of the recording.
+
+        The key is the quantity with "_" for blanks. A group in another unit has the unit in its key.
+        """
         groups: dict[str, list[Channel]] = {}
         for channel in self.channels.values():
             key = quantity_key(channel.quantity)
@@ -80,9 +87,9 @@ class Recording:
 
 @dataclass(frozen=True, kw_only=True)
 class Preview:
-    """Channels in equal bins: `values` (bins, columns) in their unit, bin i from sample `first[i]` on.
+    """Minimum and maximum of channels in equal bins: `values` (bins, columns) in their unit.
 
-    Each channel has two columns, `<channel>.min` and `<channel>.max`, as `names` says.
+    Bin i begins at sample `first[i]`. Each channel has two columns, `<channel>.min` and `<channel>.max`, as in `names`.
     """
 
     names: tuple[str, ...]
@@ -91,11 +98,11 @@ class Preview:
 
 
 def preview(channels: Sequence[Channel], sample_rate_hz: float, rate_hz: float = PREVIEW_RATE_HZ) -> Preview:
-    """Compute minimum and maximum of channels of the same length, at least one, in equal bins.
+    """Compute minimum and maximum of channels in equal bins.
 
-    - channels: in the order of the columns.
-    - sample_rate_hz: of the channels.
-    - rate_hz: about so many bins a second.
+    - channels: at least one, all of the same length, in the order of the columns.
+    - sample_rate_hz: sample rate of the channels.
+    - rate_hz: approximate number of bins a second.
     """
     samples_per_bin = max(1, round(sample_rate_hz / rate_hz))
     ends = [end for channel in channels for end in min_max(channel.values, samples_per_bin)]
@@ -109,7 +116,7 @@ def preview(channels: Sequence[Channel], sample_rate_hz: float, rate_hz: float =
 def min_max(values: Float32Array, samples_per_bin: int) -> tuple[Float32Array, Float32Array]:
     """Compute minima and maxima of `values` (n,) in bins of `samples_per_bin`, each (ceil(n / samples_per_bin),).
 
-    The last bin may have fewer samples. An empty signal has empty arrays.
+    The last bin may have fewer samples. For empty `values` both are empty.
     """
     if values.size == 0:
         return values.copy(), values.copy()

@@ -12,9 +12,10 @@ from rubgen.machine.quantities import FRAME_HZ, MODAL_KG
 
 @dataclass(frozen=True, kw_only=True)
 class FrameMotion:
-    """Accelerations of a frame under forces that are linear between the steps.
+    """Accelerations of a machine's frame under the forces of the disk on its support.
 
-    A mode with fewer than two steps a period is left out: the steps do not show it.
+    The forces are linear between the steps. A mode with fewer than two steps a period is left out: the steps cannot
+    resolve it.
     """
 
     frame: Frame
@@ -24,7 +25,7 @@ class FrameMotion:
     """Time step, s."""
 
     def of_housing(self, angle_deg: float) -> FloatArray:
-        """Return the acceleration (steps,) of the bearing housing in m/s2, along the direction `angle_deg` from +X."""
+        """Return the acceleration (steps,) of the bearing housing in m/s2 along `angle_deg`, measured from +X."""
         return self._sum([_cosine(angle_deg - mode.direction_deg) for mode in self.frame.modes])
 
     def of_casing(self, angle_deg: float) -> FloatArray:
@@ -58,7 +59,7 @@ def accelerations(mode: FrameMode, force: FloatArray, dt: float) -> FloatArray:
     invariant; ISO 18431-4): with E = exp(-d w dt) and K = w dt sqrt(1 - d^2), H(z) = E sin(K) / K (1 - 1/z)^2 / (1 - 2
     E cos(K) / z + E^2 / z^2). The mode starts at rest under the first force.
 
-    - mode: w, d and m.
+    - mode: its frequency w, damping ratio d and modal mass m.
     - force (steps,): F, N.
     - dt: time step, s.
     """
@@ -76,10 +77,10 @@ def _cosine(angle_deg: float) -> float:
 
 
 def spread(frame: Frame, deviation: float, rng: np.random.Generator) -> Frame:
-    """Draw the frame of another machine of the same kind.
+    """Draw the frame of another machine of the same kind. With `deviation` 0 the frame is returned unchanged.
 
-    Each frequency and each mass is multiplied by exp(`deviation` x), x standard normal. Values outside of their bounds
-    are set to the bound.
+    Each frequency and each mass is multiplied by exp(`deviation` x), x standard normal. Values outside of the allowed
+    range are set to its nearest end.
     """
     if deviation == 0:
         return frame

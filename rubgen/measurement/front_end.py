@@ -15,8 +15,8 @@ def resonance(frequency_hz: float, damping: float, dt: float) -> tuple[FloatArra
     It is exact at its resonance. Below the resonance the gain rises as 1 / (1 - (f / f_r)^2), as in data sheets (ISO
     5348, mounted resonance). Bilinear with the frequency prewarped; needs at least 2.56 steps a period.
 
-    - frequency_hz: of the resonance.
-    - damping: ratio d.
+    - frequency_hz: frequency of the resonance.
+    - damping: damping ratio d.
     - dt: time step, s.
     """
     from scipy.signal import bilinear  # slow to import, and only needed where a sensor has dynamics
@@ -27,9 +27,10 @@ def resonance(frequency_hz: float, damping: float, dt: float) -> tuple[FloatArra
 
 
 def front_end(sensor: SampledSensor, signal: FloatArray, dt: float) -> FloatArray:
-    """Return the signal (steps,) after bandwidth, resonance and saturation of a sensor.
+    """Return the signal (steps,) after bandwidth, resonance and saturation of a sensor, in the sensor's unit.
 
-    The filters start at rest on its first value. `dt` is the time step in s.
+    The filters start at rest at its first value. A sensor without these properties returns it unchanged. `dt` is the
+    time step in s.
     """
     if sensor.bandwidth_hz is not None or sensor.resonance_hz is not None:
         signal = _behind_filters(sensor, signal, dt)
@@ -52,7 +53,10 @@ def _behind_filters(sensor: SampledSensor, signal: FloatArray, dt: float) -> Flo
 
 
 def memory_seconds(sensor: SampledSensor) -> float:
-    """Return the memory of the sensor's filters in s: the signal that is needed before the first sample."""
+    """Return the memory of the sensor's filters in s: the length of signal needed before the first sample.
+
+    It is 0 for a sensor without filters.
+    """
     seconds = 0.0
     if sensor.bandwidth_hz is not None:
         seconds += float(FORGOTTEN / (2 * np.pi * sensor.bandwidth_hz * np.sqrt(0.5)))
@@ -64,10 +68,10 @@ def memory_seconds(sensor: SampledSensor) -> float:
 def miscalibrate(sensor: SampledSensor, signal: FloatArray, *, zero: float, sample_rate_hz: float) -> FloatArray:
     """Return zero + (1 + gain error) (x - zero) + offset + drift t, in the sensor's unit.
 
-    - sensor: with its errors.
+    - sensor: the sensor with its errors.
     - signal (samples,): x.
-    - zero: value of the sensor at rest.
-    - sample_rate_hz: of the samples.
+    - zero: reading of the sensor for the value 0 of the measured quantity.
+    - sample_rate_hz: sample rate.
     """
     if not (sensor.gain_error or sensor.offset or sensor.drift_per_s):
         return signal
@@ -84,9 +88,9 @@ def noise(
     D is `noise_density` per sqrt(Hz), f_c `noise_corner_hz`. The second noise is white noise shaped in the frequency
     domain. Its mean is zero, and it repeats after the recording's length.
 
-    - sensor: with its noise, in its unit.
-    - samples: their number.
-    - sample_rate_hz: of the samples.
+    - sensor: the sensor; its noise is in its unit.
+    - samples: number of samples.
+    - sample_rate_hz: sample rate.
     - scale: factor of the noise.
     - rng: random numbers.
     """
@@ -116,13 +120,13 @@ def _shape(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> FloatA
 
 
 def drop_out(sensor: SampledSensor, values: FloatArray, sample_rate_hz: float, rng: np.random.Generator) -> FloatArray:
-    """Put gaps at random times into the samples. In a gap the last good value repeats.
+    """Replace samples in gaps at random times by the last sample before the gap. Return the samples (n,).
 
-    The starts of the gaps are a Poisson process of rate `dropouts_per_s` of the sensor; each lasts `dropout_s`.
+    The starts of the gaps are a Poisson process of the sensor's rate `dropouts_per_s`; each gap lasts `dropout_s`.
 
-    - sensor: with its dropouts.
+    - sensor: the sensor.
     - values (n,): samples.
-    - sample_rate_hz: of the samples.
+    - sample_rate_hz: sample rate.
     - rng: random numbers.
     """
     if sensor.dropouts_per_s == 0:

@@ -47,22 +47,20 @@ def measure(
 ) -> Recording:
     """Record the channels and events of a run with the sensors of `sensing.set`.
 
-    The last sample is half a filter length before the end of the tail, so that no sample is affected by its edge. The
-    step after the tail's last one has theta = 0 mod 2 pi. Each sensor has its own child of `rng`, by its place in the
-    set: its noise depends only on the state of `rng` and its own length. The surroundings have another child: they do
-    not depend on the set.
-
     - response: true response with the taps of all sensors.
     - sensing: sensors, sample rate, noise and ADC.
     - seconds: length of the recording, > 0, at the end of the record.
     - rng: random numbers.
-    - surroundings: what sensors feel beside the motion; nothing with None.
-    - frame: of the machine, which takes the force of the disk's support to sensors.
-    - faults: of the machine; only their blows on the frame count here.
-    - lost: numbers of blades that pass no probe.
+    - surroundings: what sensors feel in addition to the motion, or None.
+    - frame: frame of the machine, which carries the force of the disk's support to sensors, or None.
+    - faults: faults of the machine; only their blows on the frame are used here.
+    - lost: numbers of lost blades, which pass no probe.
 
-    Raises UserError where the tail is too short for `seconds` and the filter, where the step rate is below 2.56 sample
-    rates, and where a sensor or the surroundings need a frame and there is none.
+    The last sample is half a filter length before the end of the tail, so that no sample is affected by its edge. The
+    step after the tail has theta = 0 mod 2 pi. Each sensor has its own child of `rng`, by its place in the set: its
+    noise depends only on the state of `rng` and the number of samples. The surroundings have another child, which does
+    not depend on the set. Raises UserError where the tail is too short for `seconds` and the filter, where the step
+    rate is below 2.56 sample rates, and where a sensor or the surroundings need a frame and there is none.
     """
     rate, sensors = sensing.sample_rate_hz, sensing.set.sensors
     positions = sample_positions(response, sensing, seconds)
@@ -97,13 +95,13 @@ def measure(
 
 
 def sample_positions(response: Response, sensing: Sensing, seconds: float) -> FloatArray:
-    """Return the times of the samples (samples,) in steps from the start of the tail; round(seconds * rate) of them.
+    """Return the times of the samples (samples,) in steps from the start of the tail. There are round(seconds * rate).
 
-    - response: with the tail.
-    - sensing: sample rate and filter.
-    - seconds: length of the recording.
+    - response: the response with its tail.
+    - sensing: sample rate and clocks of the sensors.
+    - seconds: length of the recording, s.
 
-    Raises UserError as `measure` does.
+    Raises UserError where the tail is too short for `seconds`, or the step rate below 2.56 sample rates.
     """
     dt, rate = response.dt, sensing.sample_rate_hz
     if dt * rate * STEPS_PER_SAMPLE > 1 + 1e-9:

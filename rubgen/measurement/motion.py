@@ -34,9 +34,9 @@ class MotionFrames:
 
 
 def motion_frames(response: Response, recording: Recording) -> MotionFrames | None:
-    """Return the frames of a run within its recording: its replay track, and Poincare sections once a turn or rarer.
+    """Return the frames of a run within its recording: its replay track, and Poincare sections of other turns.
 
-    None where the response has no track.
+    At most 48 sections, at equal distances, are taken. The result is None where the response has no track.
     """
     track, starts = response.track, _turn_steps(response)
     if track is None:
@@ -114,7 +114,7 @@ class ContactIntervals:
 
 
 def contact_intervals(response: Response, recording: Recording) -> ContactIntervals:
-    """Return the touches of `response` that overlap `recording`, in the time of its samples."""
+    """Return the touches of `response` that overlap `recording`, with times from its first sample."""
     events, rate = response.events, recording.sample_rate_hz
     start = np.asarray(events.start_step * response.dt - recording.start_seconds, dtype=np.float64)
     duration = np.asarray(events.steps * response.dt, dtype=np.float64)

@@ -18,9 +18,9 @@ and a channel's bits must not hang on how many others there are."""
 def interpolate_rows(signals: Array, bank: Array, positions: Array, out: Array) -> None:
     """Filter `signals` (steps, channels) at fractional step `positions` (samples,) into `out` (samples, channels).
 
-    Row m of `bank` (phases + 1, 2 half) holds the weights for a position m / phases beyond a step; between two rows
-    they are interpolated linearly. Tap j belongs to step floor(position) - half + 1 + j; every such step must exist.
-    There must be ABREAST channels, and `out` must hold zeros.
+    Row m of `bank` (phases + 1, 2 half) contains the weights for a position m / phases after a step. Weights between
+    two rows are interpolated linearly. Weight j belongs to step floor(position) - half + 1 + j; every such step must
+    exist. There must be ABREAST channels, and `out` must contain zeros.
     """
     phases = bank.shape[0] - 1
     taps = bank.shape[1]

@@ -21,7 +21,7 @@ from rubgen.taps import HousingAcceleration, Tap
 
 @dataclass(frozen=True)
 class Source:
-    """What the sensors of a run may feel."""
+    """Everything that the sensors of a run may feel: the response, the frame and the surroundings."""
 
     response: Response
     angle: FloatArray
@@ -59,18 +59,20 @@ class Feed:
 
 @dataclass(frozen=True)
 class Samples:
-    """Band-limited samples (n,): of an ideal sensor (None where not asked for), and of the sensor itself."""
+    """Band-limited samples (n,): `real` of the sensor, and `ideal` of an ideal sensor or None."""
 
     ideal: FloatArray | None
     real: FloatArray
 
 
 def feed_of(sensor: SampledSensor, source: Source, sensors: SensorSet) -> Feed:
-    """Make the input of the filter from one sensor. The real signal includes the surroundings, the ideal one does not.
+    """Make the input of the anti-alias filter from one sensor: the ideal and the real signal.
+
+    Only the real signal includes the surroundings and the sensor's dynamics.
 
     - sensor: the sensor.
-    - source: true response with the sensor's tap, and all else that the sensor feels.
-    - sensors: the set, with the shaft's profile.
+    - source: the response with the sensor's tap, the frame and the surroundings.
+    - sensors: the sensor set, with the profile of the shaft.
     """
     true = source.truth(sensor.tap)
     added = source.disturbances.by(sensor.tap) if source.disturbances else None
@@ -88,12 +90,12 @@ def filtered(feeds: Sequence[Feed], positions: FloatArray, *, dt: float, sensing
     """Filter and resample every feed. Returns the samples by the sensor's name.
 
     Sample i of a sensor whose clock is late by o and slow by p ppm is taken at o + (1 + 1e-6 p) i / rate. Sensors with
-    one clock share one pass.
+    the same clock are filtered together.
 
     - feeds: inputs at every step.
     - positions (samples,): times of the samples without clock errors, in steps.
     - dt: time step, s.
-    - sensing: sample rate, and whether channels without noise are recorded too.
+    - sensing: sample rate, and whether clean channels are recorded too.
     """
     rate = sensing.sample_rate_hz
     time = np.arange(positions.size) / rate
@@ -114,12 +116,12 @@ def filtered(feeds: Sequence[Feed], positions: FloatArray, *, dt: float, sensing
 
 
 def recorded(sensor: SampledSensor, samples: Samples, sensing: Sensing, rng: np.random.Generator) -> Channel:
-    """Make the channel of a sensor: calibration errors, noise, range, ADC and dropouts on its samples.
+    """Make the channel of a sensor: add calibration errors, noise, range, ADC and dropouts to its samples.
 
     - sensor: the sensor.
     - samples: its band-limited samples.
     - sensing: sample rate, noise and ADC.
-    - rng: the sensor's random numbers.
+    - rng: random numbers of the sensor.
     """
     about, rate = sensor.description, sensing.sample_rate_hz
     low, high = sensor.full_range

@@ -15,9 +15,10 @@ NOTCH_ANGLE = np.pi / 6
 
 
 def pulse_channel(angle: FloatArray, name: str = "once_per_rev", *, keep_clean: bool = False) -> Channel:
-    """Make the channel of the pulse: 1 from theta = 0 to NOTCH_ANGLE, else 0. It is logic, without noise.
+    """Make the channel of the once_per_rev pulse: 1 from theta = 0 to NOTCH_ANGLE, else 0, without noise.
 
-    `angle` (samples,) is that of the blisk at the samples, rad.
+    `angle` (samples,) is the angle theta of the blisk at the samples, rad. With `keep_clean` the channel has a clean
+    copy.
     """
     values = (np.mod(angle, 2 * np.pi) < NOTCH_ANGLE).astype(np.float32)
     return Channel(
@@ -36,7 +37,10 @@ def pulse_channel(angle: FloatArray, name: str = "once_per_rev", *, keep_clean: 
 
 
 def arrival_times(first_angle: float, speed: float, seconds: float) -> FloatArray:
-    """Return the exact times in [0, seconds) at which theta = first_angle + speed t passes 0 mod 2 pi, in s."""
+    """Return the exact times in [0, seconds) at which theta = first_angle + speed t passes 0 mod 2 pi, in s.
+
+    `first_angle` is in rad, `speed` in rad/s.
+    """
     first = np.mod(-first_angle, 2 * np.pi) / speed
     count = int(np.ceil((seconds - first) * speed / (2 * np.pi)))
     times = first + np.arange(max(count, 0)) * 2 * np.pi / speed
@@ -44,7 +48,10 @@ def arrival_times(first_angle: float, speed: float, seconds: float) -> FloatArra
 
 
 def shaft_angle(response: Response, positions: npt.NDArray[np.floating] | npt.NDArray[np.integer]) -> FloatArray:
-    """Return theta in [0, 2 pi) at positions in steps from the start of the tail; exact at a changing speed too."""
+    """Return theta in [0, 2 pi) at `positions`, in steps from the start of the tail.
+
+    It is exact at a changing speed too.
+    """
     back = positions - response.tail_steps
     if response.changing_speed is None:
         return in_turn(back * (2 * np.pi / response.steps_per_turn))
@@ -52,7 +59,7 @@ def shaft_angle(response: Response, positions: npt.NDArray[np.floating] | npt.ND
 
 
 def shaft_speed(response: Response, positions: npt.NDArray[np.floating] | npt.NDArray[np.integer]) -> FloatArray:
-    """Return the spin speed in rad/s at positions, counted in steps from the start of the tail."""
+    """Return the spin speed in rad/s at `positions`, in steps from the start of the tail."""
     if response.changing_speed is None:
         return np.full(positions.size, response.speed)
     time = (response.record_steps + positions - response.tail_steps) * response.dt
@@ -62,10 +69,10 @@ def shaft_speed(response: Response, positions: npt.NDArray[np.floating] | npt.ND
 def pulse_times(response: Response, first_angle: float, start: float, seconds: float) -> FloatArray:
     """Return the exact times (any,) in [0, seconds) at which theta passes 0 mod 2 pi, in s.
 
-    - response: of the run.
+    - response: response of the run.
     - first_angle: theta at time 0, rad.
-    - start: time 0 from the start of the record, s.
-    - seconds: length of the recording.
+    - start: time 0, in s from the start of the record.
+    - seconds: length of the recording, s.
     """
     if response.changing_speed is None:
         return arrival_times(first_angle, 2 * np.pi / response.turn_seconds, seconds)
@@ -77,6 +84,6 @@ def pulse_times(response: Response, first_angle: float, start: float, seconds: f
 
 
 def in_turn(angle: npt.NDArray[np.floating[Any]]) -> FloatArray:
-    """Reduce an angle to [0, 2 pi)."""
+    """Reduce angles in rad to [0, 2 pi)."""
     turned = np.mod(angle, 2 * np.pi)
     return np.asarray(np.where(turned < 2 * np.pi, turned, 0.0))

@@ -12,8 +12,8 @@ def force_of(strikes: Strikes, turned: FloatArray, dt: float) -> tuple[FloatArra
     The forces are linear between the steps and keep the impulse and the time of each blow. A blow of impulse J at the
     time (n + s) dt is the force (1 - s) J / dt at step n and s J / dt at step n + 1.
 
-    - strikes: the blows; those outside of the steps are left out.
-    - turned (steps,): angle of the shaft at the steps, rad, rising, on the scale of `strikes.turned`.
+    - strikes: the blows; blows outside of the steps are left out.
+    - turned (steps,): angle of the shaft at the steps, rad, rising, counted as `strikes.turned`.
     - dt: time step, s.
     """
     inside = (strikes.turned >= turned[0]) & (strikes.turned < turned[-1])

@@ -29,9 +29,10 @@ RUNOUT_ORDERS = 3
 
 
 class Disturbances:
-    """What one run's surroundings add to each tap; each part, and each tone, has random numbers of its own.
+    """The signals that one run's surroundings add to taps.
 
-    Acceleration at the polar angle phi of the casing, x_n and y_n independent with equal power:
+    Each kind of signal, and each tone, has its own random numbers. Acceleration at the polar angle phi of the casing,
+    x_n and y_n independent with equal power:
 
     - background and tones: sum over n = 0..6 of x_n cos(n phi) + y_n sin(n phi), so that near sensors agree
     - blade passing: sum over k = 1..3 of cos(k N_b (theta - phi) + psi_k) / k, a pattern that turns with the blades
@@ -57,7 +58,7 @@ class Disturbances:
         self._background = background
 
     def by(self, tap: Tap) -> FloatArray | None:
-        """Return the signal (steps,) that is added to a tap, in its unit; None where nothing is added."""
+        """Return the signal (steps,) that is added to a tap, in the tap's unit; None where nothing is added."""
         if isinstance(tap, CasingAcceleration):
             return self._on_the_casing(np.deg2rad(tap.angle_deg), tap.angle_deg)
         if isinstance(tap, HousingAcceleration):

@@ -16,7 +16,7 @@ BLOCK = 1024
 
 @dataclass(frozen=True, kw_only=True)
 class Tail:
-    """The steps that are measured: their number, their length in s, theta (steps,) and speed (steps,) in rad/s.
+    """The steps that are measured: step length `dt` in s, theta `angle` (steps,) in rad and `speed` (steps,) in rad/s.
 
     The step after the last one has theta = 0.
     """
@@ -32,18 +32,27 @@ class Tail:
 
     @property
     def time(self) -> FloatArray:
-        """Time (steps,) in s before the step after the last one. It does not depend on how long the tail is."""
+        """Time (steps,) in s, negative, counted from the step after the last one.
+
+        It does not depend on the tail's length.
+        """
         return np.asarray(self.dt * np.arange(-self.angle.size, 0), dtype=np.float64)
 
     @cached_property
     def once(self) -> Tail:
-        """The last turn where every turn is like it, else the whole tail: what follows the angle needs no more."""
+        """The last turn if all turns are equal, else the whole tail.
+
+        Signals that follow the angle are computed only there.
+        """
         if self.turn is None or self.turn >= self.angle.size:
             return self
         return replace(self, angle=self.angle[-self.turn :], speed=self.speed[-self.turn :])
 
     def everywhere(self, signal: FloatArray) -> FloatArray:
-        """Return a signal over the steps of `once` at all steps of the tail."""
+        """Return `signal`, which has a value for each step of `once`, at all steps of the tail.
+
+        It is repeated turn by turn.
+        """
         if signal.size == self.angle.size:
             return signal
         turns = -(-self.angle.size // signal.size)
@@ -51,14 +60,14 @@ class Tail:
 
     @cached_property
     def turned(self) -> FloatArray:
-        """Angle (steps,) in rad before the step after the last one, at which theta is 0; without jumps."""
+        """Angle (steps,) in rad without jumps, counted from the step after the last one, where it is 0 mod 2 pi."""
         if self.turn is not None:
             return np.asarray(2 * np.pi / self.turn * np.arange(-self.angle.size, 0))
         angle = np.unwrap(self.angle)
         return np.asarray(angle - angle[-1] + self.angle[-1] - 2 * np.pi)
 
     def wave(self, order: float) -> ComplexArray:
-        """Return exp(i order theta) (steps,), theta without jumps. A whole order is a product of lower whole orders."""
+        """Return exp(i order theta) (steps,), with theta without jumps. `order` may be fractional."""
         if not float(order).is_integer():
             return np.asarray(np.exp(1j * order * self.turned))
         if order not in self._waves:
@@ -71,15 +80,15 @@ class Tail:
         return {0: np.ones(self.angle.size, dtype=np.complex128), 1: np.asarray(np.exp(1j * self.angle))}
 
     def resolved(self, order: float) -> npt.NDArray[np.bool_]:
-        """Return whether an order of the rotation has two steps a period (steps,). With fewer it is left out."""
+        """Return whether an order of the rotation has two or more steps a period, at each step (steps,)."""
         return np.asarray(order * self.speed * self.dt < np.pi)
 
     def sinusoids(self, amplitudes: ComplexArray, advances: FloatArray) -> FloatArray:
-        """Return sum_j Re(a_j exp(i w_j n)) (steps,), n counted from the step after the last one.
+        """Return sum_j Re(a_j exp(i w_j n)) (steps,), with n counted from the step after the last one.
 
         The exponential of n = BLOCK k + m is the product of those of BLOCK k and of m, so few are computed.
 
-        - amplitudes (sinusoids,): a.
+        - amplitudes (sinusoids,): complex amplitudes a.
         - advances (sinusoids,): w, rad a step.
         """
         blocks = -(-self.angle.size // BLOCK)

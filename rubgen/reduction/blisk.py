@@ -27,9 +27,9 @@ DUST = 1e-9
 class ReducedBlisk:
     """The reduced blisk with n DoFs, without supports.
 
-    The DoFs are the tips' translations along the blades' axes, x and y of the disk centre O_d, and modes. The tip of a
-    blade that is missing keeps its DoFs, so that blades keep their numbers. They have a hardly noticeable mass, are
-    coupled with nothing, and no load reaches them.
+    The DoFs are the tips' translations along the blades' axes, x and y of the disk centre O_d, and modes. A missing
+    blade keeps the DoFs of its tip, so that all blades keep their numbers. These DoFs have a negligible mass, are not
+    coupled, and no load acts on them.
     """
 
     M: FloatArray
@@ -86,15 +86,15 @@ def reduce_blisk(
     Step 1: each blade keeps root, tip and `blade_modes` fixed-interface modes. The disk keeps O_d, the rim nodes with
     blades and `disk_modes`. Penalties join blades and rim. Step 2, on the axial, tilt and torsion springs: the tips'
     translations and O_d x, y remain, with `blisk_modes`. Coriolis and centrifugal matrices are projected on this basis
-    of rest, which is more accurate than a basis of the spinning blisk. A number of disk modes that divides a pair, as 4
-    does in the preset, splits frequency pairs by up to 1e-5. The lateral stiffness has no influence: it acts on
-    masters.
+    at rest, which is more accurate than a basis of the spinning blisk. A number of disk modes that splits a pair of
+    equal frequencies, as 4 does in the preset, changes frequency pairs by up to 1e-5. The lateral stiffness has no
+    influence: it acts on masters.
 
-    - disk, blades, support: the machine's.
+    - disk, blades, support: parts of the machine.
     - reduction: numbers of modes.
-    - missing: numbers of blades that are not there.
-    - cyclic: use one sector of the disk for all. False uses the sparse matrices of the whole disk, in twice the time
-      and with the same result to 1e-9. A disk of which blades are missing is never cyclic.
+    - missing: numbers of the blades that are missing.
+    - cyclic: use one sector of the disk for all sectors. False uses the sparse matrices of the whole disk, in twice the
+      time and with the same result to 1e-9. A disk with missing blades is never cyclic.
     """
     model = assemble_blisk(disk, blades, support, missing)
     joined = _join_components(model, reduction, _turning(disk, blades) if cyclic and not missing else None)
@@ -118,9 +118,9 @@ def reduce_blisk(
 
 
 def with_places(blisk: ReducedBlisk, present: IntArray, count: int) -> ReducedBlisk:
-    """Return the blisk with DoFs for the tips of all `count` blades, where only those of `present` have any.
+    """Return the blisk with DoFs for the tips of all `count` blades. Before, only the blades `present` have DoFs.
 
-    A tip without a blade has the mass DUST of the heaviest coordinate. Its frequency is the highest one of the blisk.
+    A tip without a blade has the mass DUST times the largest mass of a DoF, and the highest frequency of the blisk.
     """
     size = len(blisk.M) + 3 * (count - present.size)
     own = np.concatenate([(3 * present[:, None] + np.arange(3)).ravel(), np.arange(3 * count, size)])

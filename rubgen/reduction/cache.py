@@ -36,8 +36,9 @@ def cached_blisk(
 ) -> ReducedBlisk:
     """Return the reduced blisk from the cache, or make it with `reduce_blisk` and store it. The bits are the same.
 
-    Lateral stiffness and the number of casing modes are no inputs, so runs that vary them share one file. A damaged
-    file is made again. Where nothing can be stored, each process makes the blisk. Several processes make it once.
+    The parameters are those of `reduce_blisk`. Lateral stiffness and the number of casing modes do not affect the
+    result, so runs that vary them share one file. A damaged file is made again. If nothing can be stored, each process
+    makes the blisk itself. If several processes need the same blisk, only one makes it.
     """
     folder = cache_folder("reduction")
     if folder is None:

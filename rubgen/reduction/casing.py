@@ -38,7 +38,7 @@ def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
     """Compute the first `modes` modes of the casing, mass-normalised, and its undeformed inner surface.
 
     Solves K phi = omega^2 M phi. Signs are fixed: radial plus tangential displacement is positive at the node nearest
-    to the lobe axis, where a symmetric mode is radial and an antisymmetric one tangential. Of two modes of the same
+    to the lobe axis, where a symmetric mode is radial and an antisymmetric mode tangential. Of two modes of the same
     frequency the second has no radial displacement there.
 
     Raises UserError for more modes than DoFs, for modes that do not include the order of the casing's lobes in full
@@ -54,7 +54,7 @@ def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
 
 
 def with_harmonics(casing: ReducedCasing, harmonics: Sequence[SurfaceHarmonic]) -> ReducedCasing:
-    """Return the casing with further harmonics of its inner surface. The modes stay those of the ring without them."""
+    """Return the casing with further harmonics of its inner surface. The modes are not changed."""
     surface = casing.surface
     added = CasingSurface(
         mean_radius=surface.mean_radius,

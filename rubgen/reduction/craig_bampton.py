@@ -23,7 +23,7 @@ FIRST = 12
 
 @dataclass(frozen=True, kw_only=True)
 class Turning:
-    """Turns of the disk by whole blade pitches. The disk's DoFs are O_d first, then six a node."""
+    """Rotations of the disk by whole blade pitches. The disk's DoFs are O_d first, then six a node."""
 
     place: IntArray
     """(blades, nodes + 1): after a turn by k pitches, node i is where node place[k, i] was."""
@@ -31,9 +31,9 @@ class Turning:
     """R_k (blades, 6, 6)."""
 
     def copy_columns(self, V: FloatArray) -> None:
-        """Fill the columns of the rim nodes 1, 2, ... of V with turned copies of node 0's columns.
+        """Fill the columns of the rim nodes 1, 2, ... of V with rotated copies of the columns of rim node 0.
 
-        V is (n, 6 + 6 blades + any).
+        V is (n, 6 + 6 blades + any), with the columns of O_d first, then six for each rim node.
         """
         first = V[:, 6:FIRST].reshape(-1, 6, 6)
         for k in range(1, len(self.place)):
@@ -61,7 +61,10 @@ class Turning:
 
 
 def disk_turning(rings: IntArray, blades: int) -> Turning:
-    """Make the turns of a disk whose rings have `rings` (any,) nodes each, multiples of the number of blades."""
+    """Make the rotations of a disk by whole blade pitches. `rings` (any,) are the numbers of nodes of its rings.
+
+    Each number is a multiple of `blades`.
+    """
     starts = 1 + np.concatenate([[0], np.cumsum(rings)[:-1]])
     place = np.zeros((blades, 1 + int(rings.sum())), dtype=np.int64)
     for start, count in zip(starts, rings, strict=True):
@@ -83,11 +86,12 @@ def craig_bampton(
     entry of a mode with the largest size is positive.
 
     - M, K (n, n): mass and stiffness.
-    - masters: their DoFs.
+    - masters: numbers of the DoFs that are kept.
     - modes: number of fixed-interface modes.
-    - turning: solve only for the first twelve masters, and turn copies of their shapes.
+    - turning: rotations of the disk; the first twelve masters are solved for, and their shapes rotated. None solves for
+      all.
 
-    Raises UserError where more modes are asked for than carry mass. Tests: tests/reduction/test_craig_bampton.py.
+    Raises UserError where there are fewer modes with mass than `modes`. Tests: tests/reduction/test_craig_bampton.py.
     """
     slaves = np.setdiff1d(np.arange(K.shape[0]), masters)
     K_ss, M_ss = K[slaves][:, slaves], M[slaves][:, slaves]

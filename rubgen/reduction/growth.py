@@ -18,10 +18,10 @@ MISTUNED_BASIS_SIZE = 20
 
 @dataclass(frozen=True, kw_only=True)
 class CentrifugalGrowth:
-    """The steady displacement in a small basis of m vectors: (K + Omega^2 A) y = Omega^2 f gives the coefficients y.
+    """The steady displacement in a small basis of m vectors, with the coefficients y: (K + Omega^2 A) y = Omega^2 f.
 
     K and A are (m, m), f (m,). `tips` (blades, 3, m) are the vectors at the tips. `moment` (2, m) in kg is each
-    vector's int rho (u_x, u_y) dV, by which it shifts the centre of mass. A tip that is missing does not grow.
+    vector's int rho (u_x, u_y) dV, by which it shifts the centre of mass. The tip of a missing blade does not grow.
     """
 
     K: FloatArray
@@ -38,7 +38,7 @@ class CentrifugalGrowth:
         return displacement
 
     def unbalance(self, speed: float) -> FloatArray:
-        """Return the unbalance (2,) in kg m along x and y by uneven growth at `speed` in rad/s; 0 for equal blades."""
+        """Return the unbalance (2,) in kg m along x, y from uneven growth, at `speed` in rad/s; 0 for equal blades."""
         U: FloatArray = self.moment @ self._solve(speed)
         return U
 
@@ -50,9 +50,9 @@ def centrifugal_growth(model: BliskModel) -> CentrifugalGrowth:
     """Solve (K + Omega^2 (K_sigma - S)) u = Omega^2 f_c for the steady displacement at any speed, in a small basis.
 
     Galerkin's method in the Krylov space of K^-1 A and K^-1 f_c. K is on its axial, tilt and torsion springs with O_d
-    fixed laterally, where a symmetric load leaves it. Where blades are missing, O_d also bears the net load. Equal to
-    the direct solution to 1e-9 of its size at the preset's top speed: tests/reduction/test_reduced_model.py. Blades
-    that differ grow unevenly, and O_d then bears Omega^2 `unbalance`: the reduced model takes it over as a load.
+    fixed laterally, because a symmetric load does not move O_d. With missing blades, O_d also bears the net load. Equal
+    to the direct solution to 1e-9 of its size at the preset's top speed: tests/reduction/test_reduced_model.py.
+    Mistuned blades grow unevenly, and O_d then bears Omega^2 `unbalance`, which the reduced model applies as a load.
     """
     count = model.count
     whole = model.present.size == count

@@ -14,7 +14,7 @@ CROSS = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 
 
 def without_masses(blisk: ReducedBlisk, lost: Sequence[LostMass], tip_radius: float) -> ReducedBlisk:
-    """Return the blisk without point masses at its tips, whose translations are coordinates.
+    """Return the blisk without some point masses at its tips.
 
     It is exact, except for the tension. M, G and A = K_sigma - S lose m, m e_z x and -m diag(1, 1, 0) on a tip, and the
     load of an angular acceleration loses m r along its tangent. The steady tension that the mass put into its blade

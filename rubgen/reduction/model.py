@@ -27,7 +27,7 @@ class CasingSurface:
 
 @dataclass(frozen=True, kw_only=True)
 class Recovery:
-    """What sensors measure beside the coordinates: linear functionals of the blisk's n coordinates, and geometry."""
+    """Data for sensors beside the coordinates: linear functionals of the blisk's n coordinates, and geometry."""
 
     root_strain: Callable[[int], FloatArray]
     """For a blade's number, the row (n,) of the spanwise strain at its root."""
@@ -61,12 +61,12 @@ class GrowingLoad:
 
 @dataclass(frozen=True, kw_only=True)
 class TurningForces:
-    """Forces on the blisk that turn against it or depend on its state: no constant matrix contains them.
+    """Forces on the blisk that depend on its angle or motion, so that no constant matrix contains them.
 
-    On O_d, with u its displacement and v_abs = v + Omega e_z x u its absolute velocity in the turning frame:
-    -k_a Q u - c_a Q v_abs, Q = [[cos 2 theta, -sin 2 theta], [-sin 2 theta, -cos 2 theta]], and the laws of the
-    support, and Re sum_m loads[m] e^(i m theta), the loads of faults. On all of the blisk: -g M T (sin theta, cos
-    theta), with T the rigid motions along x and y.
+    On O_d, with u its displacement and v_abs = v + Omega e_z x u its absolute velocity in the turning frame: -k_a Q u -
+    c_a Q v_abs, Q = [[cos 2 theta, -sin 2 theta], [-sin 2 theta, -cos 2 theta]], and the laws of the support, and Re
+    sum_m loads[m] e^(i m theta), the loads of faults. On all of the blisk: -g M T (sin theta, cos theta), with T the
+    rigid motions along x and y.
     """
 
     stiffness: float = 0.0
@@ -84,7 +84,7 @@ class TurningForces:
 
     @property
     def is_periodic(self) -> bool:
-        """Whether a force depends on the angle alone, so that O_d moves in the turning frame without rub."""
+        """Whether a force depends only on the angle theta, so that O_d moves in the turning frame without rub."""
         return self.weight is not None or self.loads is not None
 
     @property
@@ -154,9 +154,9 @@ class SpinningSystem:
 
     @property
     def starting(self) -> "SpinningSystem":
-        """The system without the laws whose motion must settle; itself where it has none.
+        """The system without the laws whose motion must settle; the system itself if it has no such law.
 
-        Its motion without rub is known before the run, so a run starts from it.
+        Its motion without rub is known before the run, so a run starts from this motion.
         """
         forces = self.turning
         if forces is None or not any(law.SETTLES for law in forces.laws):
@@ -166,7 +166,7 @@ class SpinningSystem:
 
     @property
     def ramps(self) -> tuple[Ramp, ...]:
-        """How each fault grows that grows within the record; empty where the machine stays as it is."""
+        """The growth of each fault that grows within the record; empty if no fault grows."""
         growing = tuple(load.ramp for load in self.turning.growing) if self.turning else ()
         return (*growing, *(narrowing.ramp for narrowing in self.narrowings))
 

@@ -19,7 +19,7 @@ LEAST_SHARE = 0.4
 
 @dataclass(frozen=True, kw_only=True)
 class Mode:
-    """A natural mode of the blisk, as a wave around it. All values are those of the damped system without contact."""
+    """A natural mode of the damped blisk without contact, described as a wave around the blisk."""
 
     turning_hz: float
     """Frequency in the turning frame, Hz. Negative where the wave goes against the rotation."""
@@ -37,12 +37,12 @@ class Mode:
 
 
 def blisk_modes(model: ReducedModel, speed: float) -> list[Mode]:
-    """Compute the modes of the damped blisk at `speed` in rad/s, by frequency in the turning frame.
+    """Compute the modes of the damped blisk at `speed` in rad/s, sorted by frequency in the turning frame.
 
     The quadratic problem M s^2 + C s + K = 0 of the turning frame is solved. In a mode with n nodal diameters blade k
     has the phase -n phi_k, so the wave turns with the frequency of the turning frame over n. In the inertial frame it
-    has the frequency omega + n Omega. A mistuned blisk mixes waves: n is that of the largest. A family counts the modes
-    of one n and direction. Springs and laws of the support that are uneven or not linear are left out.
+    has the frequency omega + n Omega. The modes of a mistuned blisk mix waves: n belongs to the largest wave. A family
+    counts the modes of one n and direction. Springs and laws of the support that are uneven or not linear are left out.
     """
     system = model.at_speed(max(speed, REST))
     roots, shapes = _shapes(model, system.C, system.K)
@@ -113,10 +113,10 @@ def _support_kinds(model: ReducedModel, shapes: ComplexArray) -> list[str | None
 def synchronous_speeds(model: ReducedModel, stiffness: FloatArray) -> FloatArray:
     """Compute the speeds (stiffnesses, any) in rev/min at which forward whirl of the inertial frame meets 1X.
 
-    Each row is for one lateral stiffness of the disk support in N/m, ascending, filled with NaN. There the undamped
-    K_e + K_s + Omega^2 (K_sigma - S) of the turning frame is singular. Of these speeds the ones whose mode has one
-    nodal diameter are returned, because an unbalance excites no other. Uneven springs count with their mean, and laws
-    of the support are left out.
+    Each row belongs to one value of `stiffness` (any,), the lateral stiffness of the disk support in N/m. It is
+    ascending and filled up with NaN. At these speeds the undamped K_e + K_s + Omega^2 (K_sigma - S) of the turning
+    frame is singular. Only speeds whose mode has one nodal diameter are returned, because an unbalance excites no other
+    mode. Uneven springs count with their mean, and laws of the support are left out.
     """
     blades, rows = model.machine.blades.count, []
     for each in stiffness:
@@ -134,7 +134,7 @@ def synchronous_speeds(model: ReducedModel, stiffness: FloatArray) -> FloatArray
 
 
 def casing_diameters(model: ReducedModel) -> list[int]:
-    """Return the number of waves around the casing of each of its modes, that of the largest radial component."""
+    """Return the number of waves around the casing of each of its modes: the order of the largest radial component."""
     shapes = model.casing.modes_xy
     angle = 2 * np.pi * np.arange(len(shapes)) / len(shapes)
     radial = np.cos(angle)[:, None] * shapes[:, 0] + np.sin(angle)[:, None] * shapes[:, 1]

@@ -36,7 +36,8 @@ S6 = np.kron(np.eye(2), np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 
 class ReducedModel:
     """A machine reduced to n DoFs: the blisk in its turning frame, then the casing's modes.
 
-    `springs` and `dampers` (6,) act on O_d in the inertial frame. `beta` (s) is the blisk's elastic damping.
+    `springs` (N/m, N m/rad) and `dampers` (N s/m, N m s/rad), both (6,), act on O_d in the inertial frame. `beta` (s)
+    is the factor of the blisk's elastic damping beta K_e.
     """
 
     machine: Machine
@@ -132,15 +133,15 @@ class ReducedModel:
 
     @property
     def own_dofs(self) -> IntArray:
-        """Numbers of the blisk's coordinates, without the places of lost blades' tips."""
+        """Numbers of the blisk's coordinates, without the tips of lost blades."""
         lost = 3 * np.array(self.machine.lost_blades, dtype=np.int64)[:, None] + np.arange(3)
         return np.setdiff1d(np.arange(len(self.blisk.M)), lost)
 
     def root_strain(self, blade: int, speed: float) -> FloatArray:
-        """Return the row (blisk DoFs,) that gives the spanwise strain at a blade's root from the blisk's DoFs.
+        """Return the row (blisk DoFs,) that multiplies the blisk's DoFs to the spanwise strain at a blade's root.
 
         Tip and root come from the reduced basis. The blade between them has its static shape at `speed` in rad/s
-        (`static_root_strain`). The basis of rest alone underestimates the strain by 37 % at 8,500 rev/min in the
+        (`static_root_strain`). The basis at rest alone underestimates the strain by 37 % at 8,500 rev/min in the
         preset. Bending by inertia between tip and root is left out.
         """
         blades, rim = self.machine.blades, self.machine.disk.rim_radius_m
@@ -220,10 +221,9 @@ class ReducedModel:
     def blisk_frequencies_hz(self, speed: float = 0.0) -> FloatArray:
         """Compute the undamped natural frequencies (blisk DoFs,) in Hz of the turning frame, ascending.
 
-        A lost blade has none.
-        `speed` is in rad/s. An inertial-frame whirl at omega appears at omega - Omega (forward) or omega + Omega
-        (backward), without sign. Above a critical speed the stiffness is indefinite, so the quadratic problem is solved
-        directly.
+        `speed` is in rad/s. Lost blades have no frequencies. An inertial-frame whirl at omega appears at omega - Omega
+        (forward) or omega + Omega (backward), without sign. Above a critical speed the stiffness is indefinite, so the
+        quadratic problem is solved directly.
         """
         own = self.own_dofs
         M, G, K = (X[np.ix_(own, own)] for X in (self.blisk.M, self.blisk.G, self.stiffness(speed)))
@@ -238,7 +238,7 @@ class ReducedModel:
     def modes_at_rest(self) -> tuple[FloatArray, FloatArray]:
         """Compute the blisk's undamped modes at rest: omega^2 (modes,) ascending, and shapes (blisk DoFs, modes).
 
-        The modal masses are 1 kg. A lost blade has no modes, and its tip has zeros.
+        The modal masses are 1 kg. A lost blade adds no modes, and the shapes are zero at its tip.
         """
         own = self.own_dofs
         part = np.ix_(own, own)
@@ -255,10 +255,10 @@ class ReducedModel:
 
     @property
     def critical_speed_rpm(self) -> float:
-        """Speed in rev/min at which forward lateral whirl is synchronous with the rotation, undamped.
+        """Speed in rev/min at which undamped forward lateral whirl is synchronous with the rotation.
 
-        There K_e + K_s + Omega^2 (K_sigma - S) is singular: an unbalance, static in the turning frame, acts against no
-        stiffness. Of all such speeds it is the one with the largest share of energy in the lateral springs.
+        At this speed K_e + K_s + Omega^2 (K_sigma - S) is singular: an unbalance, static in the turning frame, acts
+        against no stiffness. Of all such speeds it is the one with the largest share of energy in the lateral springs.
         """
         with one_blas_thread():
             inverse_squares, modes = eigh(-self.blisk.A, self.stiffness(0.0))
@@ -271,8 +271,8 @@ class ReducedModel:
 def rigid_shifts(blades: int, size: int) -> FloatArray:
     """Return the coordinates (size, 2) of the reduced blisk moved as a rigid body by 1 m along x and along y.
 
-    Exact: constraint modes represent every rigid motion that does not strain the springs of the basis. Lateral shifts
-    strain none, so the modes are zero.
+    Exact: constraint modes represent every rigid motion that does not strain the springs of the basis. Lateral motions
+    strain no such spring, so the modes are zero.
     """
     angle = 2 * np.pi * np.arange(blades) / blades
     shifts = np.zeros((size, 2))
@@ -285,9 +285,9 @@ def rigid_shifts(blades: int, size: int) -> FloatArray:
 def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:
     """Reduce a machine: two-step Craig-Bampton for the blisk, modes for the casing.
 
-    The blisk comes from the cache where possible. The result has the same bits then, and with any number of BLAS
-    threads. Raises UserError for meshes, mode numbers or lobes that do not fit, for more memory than a reduction may
-    take, and for matrices that cannot be factorised.
+    `reduction` has the numbers of modes. The blisk comes from the cache where possible. The result has the same bits
+    with and without the cache, and with any number of BLAS threads. Raises UserError for meshes, mode numbers or lobes
+    that do not fit, for a reduction that needs too much memory, and for matrices that cannot be factorised.
     """
     for fault in machine.faults:
         machine = fault.altered(machine)
@@ -337,9 +337,9 @@ def support_damping(damping: Damping, stiffness: FloatArray, inertia: FloatArray
     """Return the constants (6,) of the dampers beside the springs of O_d, in N s/m and N m s/rad: c = 2 zeta sqrt(k m).
 
     `stiffness` (6,) are the springs and `inertia` (6,) m, m, m, I_d, I_d, I_p, so zeta is the ratio of the blisk moving
-    as a rigid body on that spring. The elastic mode that bears the motion has nearly the same ratio where it stands
-    clear of the blades' modes. It is not used to size c because near a veering with a blade mode its modal mass
-    doubles: c would double too, an artefact within the range of stiffness that data sets vary.
+    as a rigid body on one spring. The elastic mode with this motion has nearly the same ratio if it is not near a mode
+    of the blades. It is not used to compute c: near a veering with a blade mode its modal mass doubles. c would double
+    too, an artefact within the range of stiffness that data sets vary.
     """
     ratio = np.array([damping.lateral, damping.lateral, damping.axial, damping.tilt, damping.tilt, damping.torsion])
     constants: FloatArray = 2 * ratio * np.sqrt(stiffness * inertia)
@@ -347,18 +347,18 @@ def support_damping(damping: Damping, stiffness: FloatArray, inertia: FloatArray
 
 
 def elastic_damping(damping: Damping, blade_frequency: float) -> float:
-    """Return beta of the internal damping beta K_e, in s, for the ratio `damping.blade` at `blade_frequency` (rad/s).
+    """Return beta of the internal damping beta K_e, in s, for the damping ratio `damping.blade`.
 
-    That frequency is the first of a clamped blade.
+    `blade_frequency` is the first frequency of a clamped blade, rad/s.
     """
     return 2 * damping.blade / blade_frequency
 
 
 def linearised(M: FloatArray, C: FloatArray, K: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return A and B (2 n, 2 n) whose eigenvalues A z = s B z are the roots of (M s^2 + C s + K) q = 0.
+    """Return A and B (2 n, 2 n): the eigenvalues of A z = s B z are the roots s of (M s^2 + C s + K) q = 0.
 
     z = (q, s q / c) with c^2 = |K| / |M|. Without c the blocks of A differ by ten orders of magnitude, and rounding
-    moved a frequency of a mistuned blisk by 1.5e-8 of its value.
+    changed a frequency of a mistuned blisk by 1.5e-8 of its value.
     """
     size, c = len(M), np.sqrt(np.linalg.norm(K) / np.linalg.norm(M))
     return np.block([[np.zeros((size, size)), c * np.eye(size)], [-K / c, -C]]), block_diag(np.eye(size), M)

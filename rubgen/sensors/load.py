@@ -27,15 +27,15 @@ def sensor_set_names() -> list[str]:
 
 @cache
 def default_sensor_set() -> SensorSet:
-    """Return the set of a recipe that names none."""
+    """Return the sensor set of a recipe that names no set."""
     return load_sensor_set(DEFAULT_SET)
 
 
 def load_sensor_set(name_or_path: str, folder: Path | None = None) -> SensorSet:
-    """Load the set with that name, or the set in that TOML file; relative paths start from `folder`.
+    """Load the sensor set of rubgen with the given name, or the set in a TOML file.
 
-    A table `[kinds.<kind>]` has default values for all sensors of a kind. Raises UserError with file, key, value and
-    what is allowed where there is none or it is not a valid set.
+    A relative path starts from `folder`. A table `[kinds.<kind>]` in the file has default values for all sensors of a
+    kind. Raises UserError with file, key, value and what is allowed where the set does not exist or is not valid.
     """
     if name_or_path in sensor_set_names():
         return parse_sensor_set(SETS / f"{name_or_path}.toml")

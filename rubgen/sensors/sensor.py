@@ -58,7 +58,7 @@ def runout(angle: FloatArray, shaft: tuple[RunoutOrder, ...]) -> FloatArray:
 
 @plain_dataclass(frozen=True, kw_only=True)
 class Description:
-    """Quantity, axis and location of a channel."""
+    """Quantity, axis and location of a channel, as texts."""
 
     quantity: str
     axis: str
@@ -67,7 +67,10 @@ class Description:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Sensor:
-    """A sensor. Its channel or topic has its name. Its random numbers depend on its place in the set."""
+    """A sensor. Its channel or topic has the sensor's name.
+
+    Its random numbers depend on its place in the sensor set.
+    """
 
     name: Annotated[
         str,
@@ -78,7 +81,7 @@ class Sensor:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class SampledSensor(Sensor, ABC):
-    """A sensor with a measuring chain. Every value is in the sensor's `unit`; the defaults are without fault.
+    """A sensor with a measuring chain. Every value is in the sensor's `unit`; the defaults are a sensor without errors.
 
     In the order of the chain (docs/sensors.md): `bandwidth_hz` of a second-order Butterworth low-pass, `resonance_hz`
     with `resonance_damping`, `saturation` before the anti-alias filter; `gain_error` as a share, `offset`,
@@ -168,7 +171,7 @@ class SampledSensor(Sensor, ABC):
 
     @property
     def front_end_hz(self) -> float:
-        """The highest frequency of the sensor's own dynamics; 0 without any."""
+        """The largest of `bandwidth_hz` and `resonance_hz`; 0 if both are None."""
         return max(self.bandwidth_hz or 0.0, self.resonance_hz or 0.0)
 
     @property
@@ -179,28 +182,28 @@ class SampledSensor(Sensor, ABC):
     @property
     @abstractmethod
     def description(self) -> Description:
-        """Quantity, axis and location of its channel."""
+        """Quantity, axis and location of the sensor's channel."""
 
     @property
     def scale(self) -> tuple[float, float]:
-        """Factor and zero from the SI unit to the sensor's: value = zero + factor x."""
+        """Factor and zero from the SI unit to the sensor's unit: value = zero + factor x."""
         return self.UNITS[self.unit], 0.0
 
     def disturbed(self, signal: FloatArray, _angle: FloatArray, _shaft: tuple[RunoutOrder, ...]) -> FloatArray:
-        """Return the input of the sensor for the true `signal` (steps,), in the SI unit: the signal itself, by default.
+        """Return the sensor's input for the true `signal` (steps,), in the SI unit. By default it is the signal itself.
 
-        `angle` (steps,) is the shaft's angle theta in rad, `shaft` its profile.
+        `angle` (steps,) is the shaft's angle theta in rad, `shaft` the orders of the shaft's profile.
         """
         return signal
 
     @property
     def full_range(self) -> tuple[float, float]:
-        """The range in the sensor's unit: its own, or the range of its kind."""
+        """Lower and upper end of the range in the sensor's unit: its own range, or that of its kind."""
         factor, zero = self.scale
         low, high = self.RANGE
         return self.range or (zero + factor * low, zero + factor * high)
 
 
 def axis_of(angle_deg: float) -> str:
-    """Name a direction as an axis: "X", "Y" or the angle in degrees."""
+    """Return the name of a direction: "X" for 0, "Y" for 90, else the angle, such as "22.5 deg"."""
     return {0.0: "X", 90.0: "Y"}.get(angle_deg, f"{angle_deg:g} deg")

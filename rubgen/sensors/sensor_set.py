@@ -50,17 +50,17 @@ class SensorSet:
 
     @property
     def on_housing(self) -> tuple[SampledSensor, ...]:
-        """The sensors that feel the machine's frame alone."""
+        """The sensors that feel only the machine's frame: accelerometers on the bearing housing."""
         return tuple(sensor for sensor in self.sampled if isinstance(sensor.tap, HousingAcceleration))
 
     @property
     def front_end_hz(self) -> float:
-        """The highest frequency of any sensor's own dynamics; 0 without any."""
+        """The highest bandwidth or resonance of the set's sensors, Hz; 0 if no sensor has one."""
         return max((sensor.front_end_hz for sensor in self.sampled), default=0.0)
 
     @property
     def taps(self) -> tuple[Tap, ...]:
-        """The true signals of the solver, each once: first the default taps, then the taps of further sensors."""
+        """The true signals that the solver must record, each once: the default taps, then those of other sensors."""
         solved = (sensor.tap for sensor in self.sampled if sensor not in self.on_housing)
         sampled = dict.fromkeys([*DEFAULT_TAPS, *solved])
         return (*sampled, *(sensor.tap for sensor in self.sensors if isinstance(sensor, TimingProbe)))

@@ -20,14 +20,14 @@ from rubgen.viz.views import previews
 def browse_command(directory: Path, where: str | None, predictions: Path | None, *, web: bool, serve: bool) -> int:
     """Serve the runs of a set from a catalog and open the viewer on its table, until it is closed or Ctrl-C.
 
-    - where: only the good runs that meet this condition.
-    - predictions: answers of a model, as CSV or Parquet.
-    - web: in the browser.
-    - serve: without a viewer.
+    - where: SQL condition on the columns of runs.parquet: only the good runs that meet it; None takes all runs.
+    - predictions: predictions of a model, as CSV or Parquet with a column run_id, or None.
+    - web: open the viewer in the browser.
+    - serve: open no viewer.
 
-    Recordings that the set does not have are made while the viewer is open, in the order of the table, in a temporary
-    folder. The viewer keeps what it once saw of a recording, so rows have previews only when all recordings are there.
-    Returns the exit code 0.
+    Missing recordings are made while the viewer is open, in the order of the table, in a temporary folder. The viewer
+    does not read a recording again, so rows have previews only when all recordings exist. Returns the exit code 0.
+    Raises UserError for `web` with `serve`, without a screen, and if no run meets the condition.
     """
     if web and serve:
         raise UserError("--web and --serve: one opens a viewer and the other none; give one of them")

@@ -12,7 +12,7 @@ ENDINGS = (".png", ".svg", ".pdf")
 def figure_command(name: str, source: Path | None, out: Path, choice: Choice, *, force: bool) -> int:
     """Draw the figure called `name` and write it to `out`. Returns the exit code 0.
 
-    `source` and `choice` are as in `make_figure`; `force` replaces a file that is there.
+    `source` and `choice` are as in `make_figure`. With `force` an existing file is replaced.
     """
     from rubgen.viz.figures import save_figure
 
@@ -25,7 +25,10 @@ def figure_command(name: str, source: Path | None, out: Path, choice: Choice, *,
 
 
 def report_command(directory: Path, out: Path | None, *, force: bool) -> int:
-    """Write the page of the data set in `directory` to `out`, by default its report.html. Returns the exit code 0."""
+    """Write the page of the data set in `directory` to `out`, for None to its report.html. Returns the exit code 0.
+
+    With `force` an existing file is replaced.
+    """
     from rubgen.report.page import write_report
 
     path = out or directory / REPORT

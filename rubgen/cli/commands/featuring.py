@@ -27,7 +27,8 @@ def features_command(
 ) -> int:
     """Write the table of features to `out` and print what it contains. Returns the exit code 0.
 
-    `channels` and `sets` are lists with commas. The other parameters are those of `write_features`.
+    `channels` and `sets` are names with commas between them, or None. `workers` None is one process for each core. The
+    other parameters are those of `write_features`.
     """
     check_new_file("--out", out, (".parquet",), force=force)
     if workers is not None and workers < 1:

@@ -25,7 +25,7 @@ from rubgen.progress import shown
 
 @dataclass(frozen=True, kw_only=True)
 class Work:
-    """Who makes the runs, and which; the keys are parameters of `rubgen.generate`."""
+    """Which runs are made and by which workers; the fields are parameters of `rubgen.generate`."""
 
     workers: int | None
     scheduler: str | None
@@ -34,9 +34,10 @@ class Work:
 
 
 def generate_command(recipe: Path | None, out: Path, runs: int | None, work: Work, *, as_json: bool) -> int:
-    """Generate a data set and print a summary. The parameters are those of `rubgen.generate`.
+    """Generate a data set and print a summary. `recipe`, `out`, `runs` and `work` are as in `rubgen.generate`.
 
-    Returns the exit code 1 where no run of the set is ok, else 0; after Ctrl-C 130, and says how to continue.
+    Returns the exit code 1 where no run of the set is ok, else 0. After Ctrl-C it prints how to continue and returns
+    130.
     """
     made = partial(generate, recipe, out, runs=runs, progress=not as_json, **dataclasses.asdict(work))
     kept_in = RemoteMaking(str(out), work.shard or "").layout.root if is_url(out) else out
@@ -46,7 +47,8 @@ def generate_command(recipe: Path | None, out: Path, runs: int | None, work: Wor
 def resense_command(directory: Path, sensors: str, out: Path, workers: int | None, *, as_json: bool) -> int:
     """Make a data set again with other sensors and print a summary. The parameters are those of `resense`.
 
-    Returns the exit code 1 where no run of the set is ok, else 0; after Ctrl-C 130, and says how to continue.
+    Returns the exit code 1 where no run of the set is ok, else 0. After Ctrl-C it prints how to continue and returns
+    130.
     """
     made = partial(resense, directory, sensors, out, workers=workers, progress=not as_json)
     return _made_in(out, made, out, as_json=as_json)
@@ -55,7 +57,8 @@ def resense_command(directory: Path, sensors: str, out: Path, workers: int | Non
 def merge_command(directories: Sequence[Path], out: Path, *, as_json: bool) -> int:
     """Merge data sets and print a summary. The parameters are those of `rubgen.merge`.
 
-    Returns the exit code 1 where no run of the set is ok, else 0; after Ctrl-C 130, and says how to continue.
+    Returns the exit code 1 where no run of the set is ok, else 0. After Ctrl-C it prints how to continue and returns
+    130.
     """
     return _made_in(out, partial(merge, directories, out, progress=not as_json), out, as_json=as_json)
 

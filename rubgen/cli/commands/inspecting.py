@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
 
 def info_command(directory: Path, *, as_json: bool) -> int:
-    """Print what the data set in `directory` contains: runs by status, rub and motion, and reasons of failed runs.
+    """Print the content of the data set in `directory`: runs by status, rub and motion, and reasons of failed runs.
 
-    For an unfinished set, which an interrupted `generate` left, print how many of its runs are finished and how to
-    continue. Returns the exit code 0. Raises UserError where the directory holds neither.
+    For an unfinished set, after an interrupted `generate`, the number of finished runs and how to continue are printed.
+    Returns the exit code 0. Raises UserError where the directory holds no data set.
     """
     begun = unfinished(directory)
     if begun is not None:
@@ -60,8 +60,10 @@ def _tell_unfinished(directory: Path, begun: Unfinished, *, as_json: bool) -> in
 def verify_command(directory: Path, sample: int | None, *, repair: bool = False, as_json: bool) -> int:
     """Check the data set in `directory` and print its problems with their remedy.
 
-    With `sample` the content of that many shards is read. With `repair` files are then made again as `repair_command`
-    does. Returns the exit code 1 if there is a problem in the end, else 0.
+    - sample: number of shards whose content is read; None reads all.
+    - repair: then make files again, as `repair_command` does.
+
+    Returns the exit code 1 if a problem remains, else 0. Raises UserError for `sample` with `repair`.
     """
     if repair:
         if sample is not None:
@@ -75,7 +77,7 @@ def verify_command(directory: Path, sample: int | None, *, repair: bool = False,
 def repair_command(directory: Path, *, as_json: bool, told: bool = False) -> int:
     """Make damaged or missing files again and print them, then the problems that remain.
 
-    With `told` what was wrong is printed first. Returns the exit code 1 if a problem remains, else 0.
+    With `told` the problems before the repair are printed first. Returns the exit code 1 if a problem remains, else 0.
     """
     from rubgen.dataset.checking.repair import repair
 
@@ -108,9 +110,10 @@ def _tell(directory: Path, found: list[Finding], more: dict[str, object], *, as_
 
 
 def label_command(directory: Path, *, as_json: bool) -> int:
-    """Make the labels of a data set again and print where they differ from the stored ones.
+    """Compute the labels of a data set again from its compact records, and print those that differ from `runs.parquet`.
 
-    Returns the exit code 1 if one differs, else 0.
+    No file is changed. Numbers that differ only by rounding are equal. Labels of orders are left out. Returns the exit
+    code 1 if a label differs, else 0. Raises UserError where `directory` holds no finished data set.
     """
     with step("make labels again"):
         done = relabel(directory)

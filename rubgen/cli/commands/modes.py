@@ -18,10 +18,10 @@ HIGHEST_RPM = 60_000.0
 
 
 def modes_command(machine: str, speed_rpm: float, *, as_json: bool) -> int:
-    """Reduce the machine, a preset's name or a TOML, and print its size, critical speed and modes at `speed_rpm`.
+    """Reduce a machine and print its size, critical speed and modes at `speed_rpm`. Returns the exit code 0.
 
-    At rest the preset zeng2019 is compared with the published frequencies. Returns the exit code 0. Raises UserError
-    for a speed that no machine has.
+    `machine` is the name of a preset or the path of a TOML file. At rest the preset zeng2019 is compared with the
+    published frequencies. Raises UserError for a speed outside 0 to 60,000 rev/min.
     """
     if not 0 <= speed_rpm <= HIGHEST_RPM:
         raise UserError(f"--speed-rpm {speed_rpm:g}: must be from 0 to {HIGHEST_RPM:,.0f}")

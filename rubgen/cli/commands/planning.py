@@ -31,14 +31,15 @@ def plan_command(
     as_json: bool,
     slurm: bool = False,
 ) -> int:
-    """Print what a recipe will do and cost, and draw it where asked for.
+    """Print what a recipe draws and what its data set costs, and draw a picture of it.
 
-    - recipe, runs: as in `rubgen generate`.
+    - recipe: path or name of the recipe; None is the default recipe.
+    - runs: number of runs in place of the recipe's; None keeps it.
     - tries: number of runs to simulate.
-    - out: picture to write.
+    - out: picture to write, or None.
     - slurm: also print the script of a job of SLURM.
 
-    Returns the exit code 1 where runs or extremes are refused, else 0.
+    Returns the exit code 1 where runs, or scenarios at extreme values of the recipe, are refused; else 0.
     """
     if tries < 0:
         raise UserError(f"--try {tries}: must be at least 0; give a number of runs")
@@ -64,7 +65,7 @@ def plan_command(
 
 
 def plan_lines(made: Plan) -> Iterator[str]:
-    """Yield the plan in lines, for people."""
+    """Yield the lines of a plan as text."""
     machines = f"{made.machines:,} machines from {made.machine}" if made.machines > 1 else made.machine
     yield f"{made.name}: {made.runs:,} {'run' if made.runs == 1 else 'runs'} of {machines}"
     if len(made.splits) > 1:

@@ -17,7 +17,8 @@ from rubgen.viz.viewer import has_screen, open_viewer
 class Showing:
     """The user's options for showing a replay.
 
-    It is written to files where any is named, else shown in the viewer or, with `web`, in the browser.
+    If a file is named (`save`, `gif`, `png`, `foxglove`), the replay is written. Else it is shown in the viewer or,
+    with `web`, in the browser.
     """
 
     save: Path | None = None
@@ -37,7 +38,7 @@ class Showing:
     def check(self) -> None:
         """Check the options before any work.
 
-        Raises UserError where a file exists or is not possible, options exclude each other, or there is no screen.
+        Raises UserError where a file exists or cannot be written, options exclude each other, or there is no screen.
         """
         for option, path, ending in (
             ("--save", self.save, ".rrd"),
@@ -60,7 +61,7 @@ class Showing:
 
 
 def replay_command(source: Path, run_id: str | None, where: str | None, showing: Showing) -> int:
-    """Find a run as `find_replay` does, print the remarks about it on stderr, and show it. Returns the exit code 0."""
+    """Find a run as `find_replay` does, print the remarks on it to stderr, and show it. Returns the exit code 0."""
     showing.check()
     from rubgen.dataset.reading.replaying import find_replay
 

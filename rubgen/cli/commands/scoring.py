@@ -16,10 +16,10 @@ from rubgen.progress import step
 
 
 def baseline_command(directory: Path, task: str | None, out: Path | None, *, force: bool, as_json: bool) -> int:
-    """Score the baselines, print a table, and write it as JSON to `out` if given.
+    """Score simple models on a data set, print a table, and write it as JSON to `out` if given.
 
-    `task` is a list with commas. Returns the exit code 1 where a task is marked: one threshold solves it, or nothing
-    learns it; else 0.
+    `task` are names of tasks with commas between them; None takes all. Returns the exit code 1 where a task is marked
+    because one threshold or no model solves it; else 0.
     """
     if out:
         check_new_file("--out", out, (".json",), force=force)

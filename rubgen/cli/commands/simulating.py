@@ -40,12 +40,12 @@ MOST_ZONES = 4
 def simulate_command(
     options: dict[str, Any], out: Path | None, *, replay: bool = False, force: bool = False, as_json: bool
 ) -> int:
-    """Simulate one run, print its labels, and write or show it as asked.
+    """Simulate one run and print its labels. Write it to a file or show it if asked.
 
     - options: the parameters of `make_scenario` by name, from the command line.
-    - out: file to write, in the format of its ending.
+    - out: file to write, in the format of its ending, or None.
     - replay: show the run in the viewer at the end.
-    - force: replace a file that is there.
+    - force: replace an existing file.
     - as_json: print every label as JSON instead of a summary.
 
     Returns the exit code 1 where the run failed, else 0.
@@ -115,7 +115,7 @@ def _fault_keys(given: dict[str, str], options: dict[str, Any]) -> dict[str, Any
 
 
 def run_summary(run: Run) -> Iterator[tuple[str, str]]:
-    """Yield the main facts of a run as names and values, for people: machine, speeds, contact, motion, orders."""
+    """Yield the main facts of a run as pairs of name and text: machine, speeds, contact, motion, orders."""
     yield "run", _course_of_run(run)
     if run.response.status is not Status.OK:
         yield "failed", f"{run.response.status.value}; {run.response.reason}"

@@ -11,7 +11,10 @@ TITLES = {"recipe": "recipes", "machine": "machines", "sensors": "sensor sets"}
 
 
 def list_command(*, as_json: bool) -> int:
-    """Print what comes with rubgen, each name with one sentence. Returns the exit code 0."""
+    """Print the recipes, machines, sensor sets and faults that come with rubgen, each with one sentence.
+
+    Returns the exit code 0.
+    """
     found = {TITLES[kind]: offered(kind) for kind in TITLES} | {"faults": offered_faults()}
     if as_json:
         print_json({title.replace(" ", "_"): names for title, names in found.items()})
@@ -25,10 +28,13 @@ def list_command(*, as_json: bool) -> int:
 
 
 def init_command(kind: str, origin: str | None, path: Path | None) -> int:
-    """Write a commented file of that kind and print what to do with it. Returns the exit code 0.
+    """Write a commented file of the given kind and print how to use it. Returns the exit code 0.
 
-    - origin: name of the file of rubgen to begin from.
-    - path: file to write; by default the kind with the ending .toml, in the current directory.
+    - kind: recipe, machine or sensors.
+    - origin: name of the file of rubgen to begin from; None is the default of the kind.
+    - path: file to write; None is the kind with the ending .toml, in the current directory.
+
+    Raises UserError where the file exists.
     """
     path = path or Path(f"{kind}.toml")
     if path.exists():

@@ -45,9 +45,9 @@ def plan(
     force: Force = False,
     json: Json = False,
 ) -> int:
-    """Say what a recipe draws, which runs can rub, what is refused, minutes and MB, before its data set is made.
+    """Print what a recipe draws, which runs can rub, which values are refused, and minutes and MB of its data set.
 
-    Exit 1 where a run or an extreme is refused.
+    The data set is not made. Exit 1 where a run, or a scenario at an extreme value of the recipe, is refused.
     """
     from rubgen.cli.commands.planning import plan_command
 

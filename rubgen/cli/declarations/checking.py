@@ -15,7 +15,7 @@ def info(directory: Place, /, *, json: Json = False) -> int:
 
 
 def label(directory: Place, /, *, json: Json = False) -> int:
-    """Make the labels again from what is kept of each run, and compare; exit 1 where one differs.
+    """Compute the labels again from the compact record of each run, and compare; exit 1 where a label differs.
 
     The data set is not changed. Labels of orders are left out: they need the signals at every step of the integration.
     """
@@ -34,17 +34,17 @@ def verify(
     repair: Annotated[bool, Parameter(negative=(), help="Then do what rubgen repair does.")] = False,
     json: Json = False,
 ) -> int:
-    """Check hashes, checksums, schemas, and labels against signals; exit 1 where something is wrong."""
+    """Check hashes, checksums, schemas, and labels against signals; exit 1 where there is a problem."""
     from rubgen.cli.commands.inspecting import verify_command
 
     return verify_command(directory, sample, repair=repair, as_json=json)
 
 
 def repair(directory: Directory, /, *, json: Json = False) -> int:
-    """Make lost or damaged files again; exit 1 if something is still wrong.
+    """Make lost or damaged files again; exit 1 if a problem remains.
 
-    Damaged shards are simulated again from the manifest, which needs the versions that made the set. A file gets the
-    bytes that the manifest lists or stays as it is; nothing is deleted.
+    Damaged shards are simulated again from the manifest, which needs the versions that made the set. A file is replaced
+    only by the bytes that the manifest lists; nothing is deleted.
     """
     from rubgen.cli.commands.inspecting import repair_command
 
@@ -52,7 +52,7 @@ def repair(directory: Directory, /, *, json: Json = False) -> int:
 
 
 def doctor(*, json: Json = False) -> int:
-    """Print versions, caches, cores and Vulkan of this machine; exit 1 where a package that is needed is missing."""
+    """Print versions, caches, cores and Vulkan of this computer; exit 1 where a required package is missing."""
     from rubgen.cli.commands.doctor import doctor_command
 
     return doctor_command(as_json=json)

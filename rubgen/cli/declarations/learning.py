@@ -23,7 +23,7 @@ def features(
     force: Force = False,
     json: Json = False,
 ) -> int:
-    """Compute features of the recorded channels, one row a window: from channels and pulses alone, without labels."""
+    """Compute features of the recorded channels and pulses, one row a window; the table has no labels."""
     from rubgen.cli.commands.featuring import features_command
 
     return features_command(directory, out, window, channels, set_, workers, force=force, as_json=json)

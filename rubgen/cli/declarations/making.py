@@ -29,10 +29,10 @@ def generate(
     ] = False,
     json: Json = False,
 ) -> int:
-    """Make the data set of a recipe, or complete it where it was interrupted.
+    """Make the data set of a recipe, or complete it after an interruption.
 
-    Exit 1 where no run of the set is ok. One job of an array makes one part with --shard; after the last, --finish
-    completes the set. All write to the same directory.
+    Exit 1 where no run of the set is ok. For an array of jobs, each job makes one part with --shard, in the same
+    directory. After the last job, --finish completes the set.
     """
     if dry_run:
         from rubgen.cli.commands.planning import plan_command
@@ -67,7 +67,7 @@ def merge(
     out: Annotated[Path, option("New or empty directory, or the one of the same command, which is then completed.")],
     json: Json = False,
 ) -> int:
-    """Make one data set of several with other seeds; runs get new names, splits stay, nothing is simulated.
+    """Make one data set of several that have different seeds; runs get new names, splits stay, nothing is simulated.
 
     Exit 1 where no run of the set is ok.
     """
@@ -83,7 +83,7 @@ def push(
     *,
     json: Json = False,
 ) -> int:
-    """Copy a finished data set to an object store, the manifest last; the same command completes it after a stop."""
+    """Copy a finished data set to an object store, the manifest last; the same command continues after a stop."""
     from rubgen.cli.commands.generating import push_command
 
     return push_command(directory, url, as_json=json)

@@ -72,7 +72,7 @@ def browse(
     web: Annotated[bool, Parameter(negative=(), help="Open it in the browser, on this machine alone.")] = False,
     serve: Annotated[bool, Parameter(negative=(), help="Open no viewer; print the address and serve it.")] = False,
 ) -> int:
-    """Show a whole data set in Rerun: a table of its runs with parameters and labels, each run a click away."""
+    """Show a whole data set in Rerun: a table of its runs with parameters and labels, from which each run opens."""
     from rubgen.cli.commands.browsing import browse_command
 
     return browse_command(directory, where, predictions, web=web, serve=serve)

@@ -41,11 +41,11 @@ class BearingDefect(Fault):
 
     The distances of blows differ by `slip` of their mean, normal and independent (Antoni and Randall 2003). A blow has
     the impulse m V 2 w / d: a ball of mass m and speed V along the race tilts into a spall of width w and out again,
-    its direction turns by w / d twice. It neither bounces nor is pressed, so real blows are harder. In the load zone a
-    blow has the share (1 - (1 - cos psi) / (2 e))^(3/2), e = 0.5, at the angle psi from the load at `load_deg`
+    its direction turns by w / d twice. The ball neither bounces nor is pressed, so real blows are harder. In the load
+    zone a blow has the share (1 - (1 - cos psi) / (2 e))^(3/2), e = 0.5, at the angle psi from the load at `load_deg`
     (Stribeck; McFadden and Smith 1984). The cage strikes with its ball's impulse at any angle.
 
-    The default bearing is plausible for the preset, and no certain type.
+    The default bearing is plausible for the preset. It is not a certain type of bearing.
     """
 
     STRIKES: ClassVar = True
@@ -91,7 +91,7 @@ class BearingDefect(Fault):
 
     @property
     def severity(self) -> float:
-        """The width in m."""
+        """The width of the defect in m."""
         return self.width_m
 
     @property
@@ -101,9 +101,9 @@ class BearingDefect(Fault):
 
     @property
     def orders(self) -> dict[str, float]:
-        """Defect frequency of each place over that of the shaft.
+        """Defect frequency over the frequency of the shaft, for each `place` of the defect: outer, inner, ball, cage.
 
-        `ball` is the spin of a ball (BSF), half of its blows.
+        `ball` is the spin frequency of a ball (BSF), half the frequency of its blows.
         """
         ratio = self.ball_diameter_m / self.pitch_diameter_m * math.cos(math.radians(self.contact_angle_deg))
         spin = self.pitch_diameter_m / self.ball_diameter_m * (1 - ratio**2) / 2
@@ -122,9 +122,14 @@ class BearingDefect(Fault):
         return np.asarray(2 * mass * speed * along[self.place] * self.width_m / self.ball_diameter_m)
 
     def strikes(self, turned: FloatArray, speed: FloatArray, rng: np.random.Generator) -> Strikes:
-        """Draw the blows of the defect, as described at `Fault.strikes`.
+        """Draw the blows of the defect on the bearing housing.
 
-        They are drawn back from the last angle, so that the last blows do not depend on how long the record is.
+        - turned (steps,): angle of the shaft at the steps, rad, rising; at least one.
+        - speed (steps,): speed of the shaft at the steps, rad/s.
+        - rng: random numbers.
+
+        Returns the blows in order of time: angle of the shaft, impulse (N s) and direction (rad) of each. They are
+        drawn backward from the last angle, so that the last blows do not depend on the length of the record.
         """
         mean = 2 * math.pi / self.order
         start, cage, defect = rng.uniform(0, 1, 3)
@@ -146,5 +151,8 @@ class BearingDefect(Fault):
 
 
 def load_share(angle: FloatArray) -> FloatArray:
-    """Return the load of a ball over the largest one at angles (any,) in rad from the load's direction (Stribeck)."""
+    """Return the load of a ball over the largest ball load at angles (any,) in rad from the load's direction.
+
+    The distribution is Stribeck's.
+    """
     return np.asarray(np.maximum(1 - (1 - np.cos(angle)) / (2 * LOAD_ZONE), 0.0) ** LOAD_EXPONENT)

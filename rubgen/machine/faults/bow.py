@@ -23,12 +23,12 @@ BowSize = Annotated[
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Bow(Fault):
-    """A residual bow of the shaft: without any load the disk centre stands `bow_m` off the axis, and turns with it.
+    """A residual bow of the shaft: without any load the disk centre is `bow_m` off the axis, and turns with the shaft.
 
-    The lateral springs k act on what the shaft is bent beyond its bow, k (u - b e^(i theta)). The bow is therefore a
-    force k b that is constant in the turning frame, at `angle_deg` from blade 0 in the sense of rotation (Nicholas,
-    Gunter, Allaire 1976). k is the mean lateral stiffness of the disk support. At slow roll the disk centre moves on a
-    circle of radius b. At the critical speed a bow of U / m against the unbalance U of a mass m cancels it.
+    The lateral springs k act on the displacement beyond the bow, k (u - b e^(i theta)). The bow is therefore a force k
+    b that is constant in the turning frame, at `angle_deg` from blade 0 in the sense of rotation (Nicholas, Gunter,
+    Allaire 1976). k is the mean lateral stiffness of the disk support. At slow roll the disk centre moves on a circle
+    of radius b. At the critical speed a bow of U / m against the unbalance U of a mass m cancels it.
 
     With `growth_s` the bow is thermal: it grows linearly from 0, from `start_s` of the record on. The growth is
     prescribed; it does not follow from the heat of a rub.

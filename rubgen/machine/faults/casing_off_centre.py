@@ -18,10 +18,11 @@ Offset = Annotated[float, real(ge=0, le=0.1)]
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class CasingOffCentre(Fault):
-    """The casing stands `offset_m` off the axis of rotation, towards `direction_deg` from +X.
+    """The casing is `offset_m` off the axis of rotation, towards `direction_deg` from +X.
 
-    Its inner surface gets the order r += e cos(theta - direction), exact to e^2 / (2 r). The gap is narrowest on the
-    opposite side, so the blades rub on one side. `clearance_m` is the smallest gap of the centred casing.
+    The radius of its inner surface changes by e cos(theta - direction), exact to e^2 / (2 r), with the offset e. The
+    gap is narrowest on the opposite side, so the blades rub on one side. `clearance_m` is the smallest gap of the
+    centred casing.
     """
 
     SEVERITY: ClassVar = Severity(

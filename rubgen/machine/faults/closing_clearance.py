@@ -22,7 +22,7 @@ class ClosingClearance(Fault):
 
     Blades and casing warm up, or a hard landing closes the gap at once (a short `growth_s`). The speed may be constant.
     The rub then begins at a time, `rub_onset_s`, and not at a speed. `clearance_m` is the gap before. The casing's
-    radius follows alike at all angles; its stiffness and the blades stay as they are.
+    radius changes equally at all angles; its stiffness and the blades do not change.
     """
 
     SEVERITY: ClassVar = Severity(

@@ -49,13 +49,16 @@ class Crack(Fault):
         return self.crack_loss
 
     def problem(self, machine: Machine) -> str | None:
-        """Return the problem of a machine without gravity: nothing opens and closes the crack."""
+        """Return a problem for a machine without gravity, where nothing opens and closes the crack; else None."""
         if machine.gravity_m_per_s2 > 0:
             return None
         return "gravity_m_per_s2 = 0, and a crack breathes under the weight; give the machine gravity_m_per_s2 = 9.81"
 
     def doubt(self, machine: Machine, speed: float) -> str | None:
-        """Return a doubt where the unbalance moves the disk by more than the weight does."""
+        """Return a doubt where the unbalance moves the disk by more than its weight does; else None.
+
+        A real crack then does not breathe with the weight. `speed` is in rad/s.
+        """
         mass, stiffness = blisk_mass(machine), machine.disk_support.lateral_stiffness_n_per_m
         drag = 2 * machine.damping.lateral * math.sqrt(stiffness * mass)
         sag = mass * machine.gravity_m_per_s2 / stiffness
@@ -68,6 +71,6 @@ class Crack(Fault):
         )
 
     def support_laws(self, machine: Machine, speed: float) -> tuple[SupportLaw, ...]:
-        """Return the stiffness that the crack takes, as a spring that pushes."""
+        """Return the stiffness lost by the crack, as a spring law with a force along the displacement."""
         stiffness = machine.disk_support.lateral_stiffness_n_per_m
         return (BreathingSpring(lost_n_per_m=self.crack_loss * stiffness, direction_rad=math.radians(self.angle_deg)),)

@@ -18,11 +18,11 @@ StiffnessLoss = Annotated[float, real(ge=0, le=0.9)]
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class CrackedBlade(Fault):
-    """Blade number `blade` has lost the share `stiffness_loss` of its elastic stiffness, alike along its length.
+    """Blade number `blade` has lost the share `stiffness_loss` of its elastic stiffness, equally along its length.
 
-    The crack stays open: in a turning blade the centrifugal pull holds it open. Its frequencies at rest fall by about
-    sqrt(1 - loss), out of the family of the other blades, and its tip grows more. Its mass is the same. A run with a
-    new loss needs a reduction of its own, about a second.
+    The crack stays open: in a turning blade the centrifugal pull holds it open. The frequencies of the blade at rest
+    fall by about sqrt(1 - loss), below those of the other blades, and its tip grows more. Its mass is the same. A run
+    with a new loss needs a new reduction of the machine, which takes about a second.
     """
 
     SEVERITY: ClassVar = Severity(
@@ -43,11 +43,11 @@ class CrackedBlade(Fault):
         return self.stiffness_loss
 
     def problem(self, machine: Machine) -> str | None:
-        """Return the problem of a blade that the machine does not have."""
+        """Return a problem where the machine does not have the cracked blade; else None."""
         return missing_blade(self.blade, machine)
 
     def altered(self, machine: Machine) -> Machine:
-        """Return the machine with one softer blade."""
+        """Return the machine with the stiffness of the cracked blade reduced."""
         from rubgen.machine.machine import Mistuning  # the machine imports the registry of faults
 
         deviations = list(machine.blades.stiffness_deviations)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Ramp:
-    """Growth from 0 to 1 within the record, linear over `duration_s` from `start_s`; a step where that is 0.
+    """Growth from 0 to 1 within the record, linear over `duration_s` from `start_s`; sudden for a duration of 0.
 
     Times count from the start of the record.
     """
@@ -27,7 +27,7 @@ class Ramp:
     duration_s: float
 
     def share(self, time: FloatArray) -> FloatArray:
-        """Return the share (any,) that has grown at times (any,) in s from the start of the record, 0 to 1."""
+        """Return the grown share (any,), 0 to 1, at times (any,) in s from the start of the record."""
         if self.duration_s == 0:
             return np.where(time >= self.start_s, 1.0, 0.0)
         return np.asarray(np.clip((time - self.start_s) / self.duration_s, 0.0, 1.0))
@@ -47,16 +47,16 @@ class HarmonicLoad:
 
     @classmethod
     def rotating(cls, force: complex, ramp: Ramp | None = None, *, of_springs: bool = False) -> Self:
-        """Make the load that is the constant force `force` = f_x + i f_y (N) in the turning frame: order 1, forward.
+        """Make the load of a force f_x + i f_y (N) that is constant in the turning frame: order 1, forward.
 
-        `ramp` and `of_springs` are the fields of that name.
+        `ramp` and `of_springs` are the fields of the same name.
         """
         return cls(order=1, x=force, y=-1j * force, ramp=ramp, of_springs=of_springs)
 
 
 @dataclass(frozen=True, kw_only=True)
 class SurfaceHarmonic:
-    """A part of the casing's inner surface: amplitude_m cos(order (theta - phase_rad))."""
+    """A change of the radius of the casing's inner surface: amplitude_m cos(order (theta - phase_rad))."""
 
     order: int
     amplitude_m: float
@@ -65,7 +65,7 @@ class SurfaceHarmonic:
 
 @dataclass(frozen=True, kw_only=True)
 class Narrowing:
-    """A closing of the clearance within the record: by `amount_m` when it is over."""
+    """A closing of the clearance within the record, by `amount_m` in all. `ramp` is its course in time."""
 
     amount_m: float
     ramp: Ramp
@@ -73,7 +73,7 @@ class Narrowing:
 
 @dataclass(frozen=True, kw_only=True)
 class LostMass:
-    """A mass that a blade has lost at its tip."""
+    """A mass `kg` that blade number `blade` has lost at its tip."""
 
     blade: int
     kg: float
@@ -81,7 +81,7 @@ class LostMass:
 
 @dataclass(frozen=True, kw_only=True)
 class Severity:
-    """The column of a fault's severity: name, unit and meaning."""
+    """The column of a data set with a fault's severity: name, unit and meaning."""
 
     column: str
     unit: str
@@ -91,7 +91,7 @@ class Severity:
 class Fault(ABC):
     """A fault of a machine. A kind of fault overrides only the functions through which it acts.
 
-    The fields of a kind are its keys in a machine or a recipe, the first is `kind`. `speed` is in rad/s.
+    The fields of a kind are its keys in a machine or a recipe; the first field is `kind`. `speed` is in rad/s.
     """
 
     SEVERITY: ClassVar[Severity]
@@ -101,21 +101,21 @@ class Fault(ABC):
     @property
     @abstractmethod
     def severity(self) -> float:
-        """How severe the fault is, in the unit of `SEVERITY`."""
+        """The severity of the fault, in the unit of `SEVERITY`."""
 
     def problem(self, machine: Machine) -> str | None:
-        """Return why this machine cannot have the fault, with the remedy; None where it can."""
+        """Return why this machine cannot have the fault, with the remedy; None where it can have it."""
         return None
 
     def doubt(self, machine: Machine, speed: float) -> str | None:
-        """Return why the fault is hardly intended at this speed; None without doubt.
+        """Return why the fault is hardly intended at this speed (rad/s); None without doubt.
 
         The text begins with a key and its value.
         """
         return None
 
     def altered(self, machine: Machine) -> Machine:
-        """Return the machine that the fault makes of this one. Faults of shape or material override it."""
+        """Return the machine with the fault. Faults of shape or material override it; by default nothing is changed."""
         return machine
 
     def surface_harmonics(self, machine: Machine) -> tuple[SurfaceHarmonic, ...]:
@@ -131,29 +131,33 @@ class Fault(ABC):
         return ()
 
     def narrowings(self, machine: Machine) -> tuple[Narrowing, ...]:
-        """Return how the fault closes the clearance within the record."""
+        """Return the closings of the clearance within the record that the fault causes."""
         return ()
 
     def loads(self, machine: Machine, speed: float) -> tuple[HarmonicLoad, ...]:
-        """Return the forces of the fault on the disk centre that do not depend on the motion."""
+        """Return the forces of the fault on the disk centre that do not depend on the motion, at `speed` in rad/s."""
         return ()
 
     def support_laws(self, machine: Machine, speed: float) -> tuple[SupportLaw, ...]:
-        """Return the laws of the fault's forces on the disk centre that depend on its motion."""
+        """Return the laws of the fault's forces on the disk centre that depend on its motion, at `speed` in rad/s."""
         return ()
 
     def strikes(self, turned: FloatArray, speed: FloatArray, rng: np.random.Generator) -> Strikes | None:
-        """Draw the blows of the fault on the machine's frame, which move sensors and not the disk; None without any.
+        """Draw the blows of the fault on the machine's frame; None for a fault without blows.
 
-        - turned (steps,): angle of the shaft at the steps, rad, rising. Blows are drawn back from the last one.
-        - speed (steps,): of the shaft there, rad/s.
+        They do not move the disk.
+
+        - turned (steps,): angle of the shaft at the steps, rad, rising. Blows are drawn backward from the last angle.
+        - speed (steps,): speed of the shaft at the steps, rad/s.
         - rng: random numbers.
+
+        The result has the angle of the shaft, impulse (N s) and direction (rad) of each blow.
         """
         return None
 
 
 def missing_blade(blade: int, machine: Machine) -> str | None:
-    """Return the problem of a blade number that the machine does not have; None where it has that blade."""
+    """Return a problem if the machine has no blade of this number, or has lost it; else None."""
     last = machine.blades.count - 1
     if blade > last:
         return f"blade = {blade}: there is no such blade; give 0 to {last}"

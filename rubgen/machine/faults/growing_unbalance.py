@@ -39,10 +39,10 @@ class GrowingUnbalance(Fault):
 
     @property
     def severity(self) -> float:
-        """The unbalance when it has grown, in kg m."""
+        """The unbalance after its growth, in kg m."""
         return self.kg_m
 
     def loads(self, machine: Machine, speed: float) -> tuple[HarmonicLoad, ...]:
-        """Return the force U Omega^2, constant in the turning frame, with its growth."""
+        """Return the force U Omega^2 with its growth. It is constant in the turning frame."""
         force = cmath.rect(self.kg_m * speed**2, math.radians(self.angle_deg))
         return (HarmonicLoad.rotating(force, Ramp(start_s=self.start_s, duration_s=self.growth_s)),)

@@ -46,7 +46,7 @@ class LooseSupport(Fault):
         return self.lost_stiffness
 
     def support_laws(self, machine: Machine, speed: float) -> tuple[SupportLaw, ...]:
-        """Return the stiffness that is lost beyond the gap, as a spring that pushes."""
+        """Return the stiffness that is lost beyond the gap, as a spring law with a force along the displacement."""
         stiffness = machine.disk_support.lateral_stiffness_n_per_m
         return (
             LooseSpring(

@@ -15,12 +15,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class LostBlade(Fault):
-    """Blade number `blade` is gone from its root, and with `lost_count` above 1 the blades after it too.
+    """Blade number `blade` is gone from its root, and with `lost_count` above 1 the next blades too.
 
-    What is lost has no mass, no stiffness, no pull on the rim and no contact. So the disk has the unbalance of the
-    missing blades opposite to them, its stress is uneven, and the lines of the other blades change. The disk itself and
-    the dampers of its support stay as they are. The blades are gone from the beginning: their way through the casing is
-    not modelled. Each choice of blades needs a reduction of its own, about two seconds.
+    The lost blades have no mass, no stiffness, no pull on the rim and no contact. So the disk has the unbalance of the
+    missing blades opposite to them, its stress is uneven, and the frequencies of the other blades change. The disk
+    itself and the dampers of its support do not change. The blades are gone from the beginning: their passage through
+    the casing is not modelled. Each choice of blades needs a new reduction of the machine, which takes about two
+    seconds.
     """
 
     SEVERITY: ClassVar = Severity(column="lost_blades", unit="1", meaning="number of blades that are lost as a whole")
@@ -36,7 +37,10 @@ class LostBlade(Fault):
         return float(self.lost_count)
 
     def problem(self, machine: Machine) -> str | None:
-        """Return the problem of blades that the machine does not have, or cannot spare."""
+        """Return a problem where the machine does not have the blades or loses too many of them; else None.
+
+        An unbalance of the machine on a lost blade is a problem too.
+        """
         count = machine.blades.count
         if self.blade >= count:
             return f"blade = {self.blade}: there is no such blade; give 0 to {count - 1}"

@@ -20,10 +20,10 @@ LostPiece = Annotated[float, real(ge=0, le=1e4)]
 class LostTip(Fault):
     """Blade number `blade` has lost the mass `lost_kg` at its tip: damage by a foreign object.
 
-    The mass is taken from the tip as from a point: from the inertia, from the Coriolis and centrifugal terms, and from
-    the pull, so that the disk has the unbalance m r opposite to the blade. Frequencies of the blade rise out of the
-    family. What stays as it was: the stiffness, the tension that the lost mass put into the blade, the length of the
-    blade. Half of the effective mass of the tip, 1/8 of the blade, is the most that can be lost.
+    The mass is taken from the tip as a point mass: from the inertia, from the Coriolis and centrifugal terms, and from
+    the pull, so that the disk has the unbalance m r opposite to the blade. Frequencies of the blade rise above those of
+    the other blades. Not changed are the stiffness, the tension that the lost mass put into the blade, and the length
+    of the blade. At most half of the effective mass of the tip, 1/8 of the blade, can be lost.
     """
 
     SEVERITY: ClassVar = Severity(column="lost_tip_kg", unit="kg", meaning="mass that a blade has lost at its tip")
@@ -37,7 +37,7 @@ class LostTip(Fault):
         return self.lost_kg
 
     def problem(self, machine: Machine) -> str | None:
-        """Return the problem of a blade that the machine does not have, or of more lost mass than its tip can spare."""
+        """Return a problem where the machine does not have the blade, or loses more than 1/8 of it; else None."""
         most = blade_mass(machine.blades) / 8
         if self.lost_kg > most:
             return f"lost_kg = {self.lost_kg:g}: an eighth of a blade, {most:.3g} kg, is the most; lower it"

@@ -50,17 +50,17 @@ class OilWhirl(Fault):
 
     @property
     def severity(self) -> float:
-        """The swirl ratio: mean speed of the oil in the centred film over that of the rotor."""
+        """The swirl ratio: mean speed of the oil in the centred film over the speed of the rotor."""
         return self.swirl_ratio
 
     def problem(self, machine: Machine) -> str | None:
-        """Return the problem of a machine without lateral damping: the oil acts through that damper."""
+        """Return a problem for a machine without lateral damping, through which the oil acts; else None."""
         if machine.damping.lateral > 0:
             return None
         return "damping.lateral = 0, and the oil acts through that damper; give it a ratio above 0"
 
     def support_laws(self, machine: Machine, speed: float) -> tuple[SupportLaw, ...]:
-        """Return the law of the oil film beside springs and dampers of the support, c = 2 zeta sqrt(k m)."""
+        """Return the law of the oil film, in addition to springs and dampers of the support, c = 2 zeta sqrt(k m)."""
         stiffness = machine.disk_support.lateral_stiffness_n_per_m
         damper = 2 * machine.damping.lateral * math.sqrt(stiffness * blisk_mass(machine))
         return (

@@ -7,7 +7,7 @@ from rubgen.arrays import FloatArray
 
 @dataclass(frozen=True, kw_only=True)
 class Strikes:
-    """Blows on the bearing housing, each so short that its impulse alone counts."""
+    """Blows on the bearing housing. Each blow is so short that only its impulse counts."""
 
     turned: FloatArray
     """Angle of the shaft at each (any,), in rad, on the scale of the angles that were asked for."""

@@ -11,10 +11,10 @@ from rubgen.machine.support_laws.law import SupportLaw, Terms
 
 @dataclass(frozen=True, kw_only=True)
 class BreathingSpring(SupportLaw):
-    """Along a direction of the turning frame the lateral spring loses stiffness while that direction points down.
+    """Along a direction of the turning frame the lateral spring loses stiffness while the direction points down.
 
-    F = lost f(theta) s e, with s = u . e, e the direction at the angle gamma in the turning frame, and
-    f = (1 - sin(theta + gamma)) / 2: 1 where e points along gravity (-Y), 0 where it points up (Mayes, Davies 1984).
+    F = lost f(theta) s e, with s = u . e, e the direction at the angle gamma in the turning frame, and f = (1 -
+    sin(theta + gamma)) / 2: 1 where e points along gravity (-Y), 0 where it points up (Mayes, Davies 1984).
     """
 
     LINEAR = True
@@ -26,7 +26,7 @@ class BreathingSpring(SupportLaw):
     """Angle gamma of the direction in the turning frame, rad."""
 
     def force(self, theta: AnyArray, u: AnyArray, _v: AnyArray) -> AnyArray:
-        """Return the force lost f(theta) s e that cancels stiffness of the support along e."""
+        """Return the force lost f(theta) s e (..., 2), N, which cancels stiffness of the support along e."""
         e = np.array([math.cos(self.direction_rad), math.sin(self.direction_rad)])
         opening = (1 - np.sin(theta + self.direction_rad)) / 2
         return np.asarray(self.lost_n_per_m * opening[..., None] * np.sum(u * e, axis=-1, keepdims=True) * e)

@@ -48,7 +48,7 @@ class DiskSupport:
 
     @property
     def laws(self) -> tuple[SupportLaw, ...]:
-        """The laws that the machine file gives, in the order of the keys."""
+        """The laws of the support in the machine file, in the order of the keys."""
         return tuple(given(self, SupportLaw).values())
 
 

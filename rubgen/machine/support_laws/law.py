@@ -11,12 +11,12 @@ Terms = tuple[float, float, float, float, float, float]
 
 
 class SupportLaw(ABC):
-    """A force s(u) - D(u) v on the disk centre, beside its linear springs and dampers.
+    """A force s(u) - D(u) v on the disk centre, in addition to its linear springs and dampers.
 
-    u is the place of the disk centre in m and v its absolute velocity in m/s, both along the axes of the turning frame,
-    which has turned by theta in rad. The law stands twice in its file: `force` for whole arrays, `terms` for the
-    compiled step. The fields of a law that is a key of `DiskSupport` are its keys in a machine file. Faults make other
-    laws.
+    u is the displacement of the disk centre in m and v its absolute velocity in m/s, both along the axes of the turning
+    frame, which has turned by theta in rad. The law is written twice in its file: `force` for whole arrays, `terms` for
+    the compiled step. The fields of a law that is a key of `DiskSupport` are its keys in a machine file. Faults make
+    other laws.
     """
 
     LINEAR: ClassVar[bool] = False
@@ -30,10 +30,10 @@ class SupportLaw(ABC):
 
     @abstractmethod
     def force(self, theta: AnyArray, u: AnyArray, v: AnyArray) -> AnyArray:
-        """Return the force (..., 2) in N at the angles theta (...), places u and absolute velocities v (..., 2).
+        """Return the force (..., 2) in N at the angles theta (...), displacements u and absolute velocities v (..., 2).
 
-        u and v are real or complex, since derivatives are taken by complex steps. The function is analytic, or analytic
-        in pieces that the real part of u chooses.
+        u and v are real or complex, since derivatives are taken by complex steps. The function is analytic, or
+        piecewise analytic; the real part of u then selects the piece.
         """
 
     @property
@@ -46,8 +46,8 @@ class SupportLaw(ABC):
     def terms(numbers: FloatArray, cosine: float, sine: float, x: float, y: float) -> Terms:
         """Return the spring force s_x, s_y (N) and the damping D_xx, D_xy, D_yx, D_yy (N s/m) at u = (x, y) in m.
 
-        - numbers: the property `numbers`.
-        - cosine, sine: of theta.
+        - numbers: what the property `numbers` returns.
+        - cosine, sine: cosine and sine of theta.
 
         The solver compiles this function and calls it in every step. It may use arithmetic, `math` and constants of its
         own file. The scheme takes D implicitly, so a D that is not negative never adds energy.
@@ -55,7 +55,10 @@ class SupportLaw(ABC):
 
     @property
     def limit_m(self) -> float:
-        """Eccentricity in m at which the law ends, and a run with it as `film-closed`; infinite by default."""
+        """Eccentricity in m up to which the law is valid. A run that reaches it ends as `film-closed`.
+
+        Infinite by default.
+        """
         return math.inf
 
     @property

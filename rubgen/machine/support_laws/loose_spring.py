@@ -11,10 +11,10 @@ from rubgen.machine.support_laws.law import SupportLaw, Terms
 
 @dataclass(frozen=True, kw_only=True)
 class LooseSpring(SupportLaw):
-    """Beyond a gap along a direction at rest, the lateral spring loses a part of its stiffness.
+    """Beyond a gap along a direction of the inertial frame, the lateral spring loses a part of its stiffness.
 
-    F = lost (s - gap) e for s > gap, else 0, with s = u . e and e the direction. Beside the lateral spring k the
-    support has the stiffness k below the gap and k - lost beyond it: a bilinear spring.
+    F = lost (s - gap) e for s > gap, else 0, with s = u . e and e the direction. With the lateral spring k the support
+    has the stiffness k below the gap and k - lost beyond it: a bilinear spring.
     """
 
     TURNS = True

@@ -53,9 +53,9 @@ class SqueezeFilm(SupportLaw):
 
     @staticmethod
     def terms(numbers: FloatArray, _cosine: float, _sine: float, x: float, y: float) -> Terms:
-        """Return the spring force, which is zero, and the damping matrix C(u) of `force`: an oil film only damps.
+        """Return zero spring force and the damping matrix C(u) of `force`: an oil film only damps.
 
-        The result is (0, 0, C_xx, C_xy, C_yx, C_yy) at u = (x, y), in N s/m.
+        The result is (0, 0, C_xx, C_xy, C_yx, C_yy) at u = (x, y) in m, in N s/m.
         """
         centred, clearance = numbers[0], numbers[1]
         rest = 1.0 - (x * x + y * y) / (clearance * clearance)

@@ -11,13 +11,13 @@ from rubgen.machine.support_laws.law import SupportLaw, Terms
 
 @dataclass(frozen=True, kw_only=True)
 class WhirlingFilm(SupportLaw):
-    """An oil film in which the dampers of the support turn, and which is softer than the support around its centre.
+    """A turning oil film, against which the dampers of the support act. At its centre it is softer than the support.
 
-    F = q (swirl e_z x u + soft u),   q = 1 / (1 + |u|^2 / scale^2)
+    F = q (swirl e_z x u + soft u), q = 1 / (1 + |u|^2 / scale^2)
 
     The dampers c of the support act against the mean oil, F_d = -c (v - lambda q Omega e_z x u): with swirl = c lambda
-    Omega the cross-coupled stiffness of Muszynska (1986). The film has the stiffness k - soft at its centre and k far
-    from it. Both non-linear parts are bounded, so the whirl is.
+    Omega this is the cross-coupled stiffness of Muszynska (1986). The film has the stiffness k - soft at its centre and
+    k far from it. Both non-linear terms are bounded, so the whirl is bounded too.
     """
 
     SETTLES = True

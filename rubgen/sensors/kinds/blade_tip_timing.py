@@ -11,7 +11,7 @@ from rubgen.taps import TipTiming
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class TimingProbe(Sensor):
-    """Arrival times of the blades at a place on the casing, `axial_m` from the middle of the tips' chords.
+    """Arrival times of the blades at an angle on the casing, `axial_m` from the middle of the tips' chords.
 
     `jitter_s` (rms) and a counter of `clock_hz` (0 is exact) blur each time. `clock_offset_s` shifts all times.
     `missed` is the share of passages that the probe misses.

@@ -11,7 +11,7 @@ from rubgen.taps import ContactForce
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class ContactForceSensor(SampledSensor):
-    """The sum of the normal contact forces: no probe measures it."""
+    """The sum of the normal contact forces, which no real probe measures."""
 
     UNITS: ClassVar[dict[str, float]] = {"N": 1.0, "kN": 1e-3}
     RANGE: ClassVar[tuple[float, float]] = (-1e5, 1e5)

@@ -14,7 +14,7 @@ from rubgen.units import STANDARD_GRAVITY
 class HousingAccelerometer(SampledSensor):
     """Acceleration of the bearing housing along a direction across the axis. The machine must have a frame.
 
-    There is none along the axis: the frame's modes have no axial motion.
+    The axial direction cannot be measured: the frame's modes have no axial motion.
     """
 
     UNITS: ClassVar[dict[str, float]] = {"m/s2": 1.0, "g": 1 / STANDARD_GRAVITY}

@@ -13,7 +13,7 @@ from rubgen.taps import CentreDisplacement, name_of_direction
 
 @dataclass(frozen=True, kw_only=True, config=STRICT)
 class Proximity(SampledSensor):
-    """Displacement of the disk centre along a direction; in V the gap voltage, `bias_v` at rest, rising with it."""
+    """Displacement of the disk centre along a direction. In V it is the gap voltage, `bias_v` at rest."""
 
     UNITS: ClassVar[dict[str, float]] = {"m": 1.0, "mm": 1e3, "um": 1e6, "V": 0.0}
     RANGE: ClassVar[tuple[float, float]] = (-2e-3, 2e-3)
@@ -39,12 +39,15 @@ class Proximity(SampledSensor):
 
     @property
     def scale(self) -> tuple[float, float]:
-        """Factor and zero of the reading; in V those of the gap voltage, bias + sensitivity x.
+        """Factor and zero of the reading: reading = zero + factor x. In V it is the gap voltage, bias + sensitivity x.
 
         The voltage is negative and rises as the shaft comes nearer.
         """
         return (self.sensitivity_v_per_m, self.bias_v) if self.unit == "V" else super().scale
 
     def disturbed(self, signal: FloatArray, angle: FloatArray, shaft: tuple[RunoutOrder, ...]) -> FloatArray:
-        """Add the shaft's profile: a probe at angle phi sees it at phi - theta, and high spots come nearer."""
+        """Add the shaft's profile to `signal`, m.
+
+        A probe at angle phi sees the profile at phi - theta; high spots are nearer.
+        """
         return signal + runout(np.deg2rad(self.angle_deg) - angle, shaft) if shaft else signal
