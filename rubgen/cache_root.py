@@ -1,7 +1,7 @@
 """The caches: compiled kernels and reduced blisks, which would otherwise be made again by each process.
 
-rubgen works without them. If the folder of the caches cannot be used, a private temporary folder takes its place. A
-damaged file is made again. If no file can be written at all, each process makes everything. One warning says which.
+rubgen works without caches. If their folder cannot be used, a private temporary folder takes its place. A damaged file
+is made again. If no file can be written at all, each process makes everything. One warning says what is done.
 """
 
 import atexit

@@ -11,10 +11,11 @@ UNCLASSED, IMPOSSIBLE = "rub, class not asked", "not possible"
 
 
 def choose(recipe: Recipe, balance: Balance, index: int) -> Scenario:
-    """Return run number `index`: the first of its candidates 0, 1, 2, ... that screening finds in its cell.
+    """Return run number `index` of a balanced recipe: its first candidate that is in the run's cell (wanted class).
 
-    Cell and candidates follow from the seed and the number alone, so runs stay independent of each other. Where none
-    of `balance.tries` candidates is in the cell, the last is returned with the problem, and `simulate` refuses it.
+    Cell and candidates follow only from the seed and the number of the run, so runs are independent of each other. If
+    none of `balance.tries` candidates is in the cell, the last candidate is returned with the problem, and `simulate`
+    refuses it.
     """
     cell, cells = balance.place(recipe.seed, index)[0], balance.cells
     seen = [0] * (len(cells) + 2)

@@ -21,7 +21,7 @@ SCREEN_TURNS = 64
 
 @dataclass(frozen=True)
 class Verdict:
-    """The class of a candidate. `motion` is empty where only statics were asked."""
+    """The class of a candidate. `motion` is "" and `severity` 0 where only statics were used."""
 
     rub: bool
     motion: str = ""
@@ -29,11 +29,11 @@ class Verdict:
 
 
 def reaches(scenario: Scenario) -> bool | None:
-    """Return whether the run rubs, from its rub-free motion alone; None where that motion does not decide.
+    """Return whether the run rubs, from its rub-free motion alone; None where this motion is not enough to know.
 
-    A run starts in that motion, so it rubs where and only where its tips would pass through the casing. At a changing
-    speed nine steady speeds stand for the run. Faults that grow and supports with laws leave it open. Raises UserError
-    for a run that is not possible.
+    A run starts in its rub-free motion, so it rubs if and only if its tips would pass through the casing. For a
+    changing speed nine steady speeds are used. It is not known for faults that grow and for supports with laws. Raises
+    UserError for a run that is not possible.
     """
     with one_blas_thread():
         depth = deepest(scenario)[0]
@@ -48,8 +48,8 @@ def short_run(scenario: Scenario) -> Verdict | None:
     """Return the class of the run from its first 64 turns after settling; None for a run that fails.
 
     The short run is the beginning of the run itself, without the companion trajectory. Its steps are the same unless
-    the sensors need more: no sensor decides, so other sensors get the same motions. A run with faults that grow is made
-    to its end. Raises UserError for a run that is not possible.
+    the sensors need more: the class does not depend on the sensors, so that other sensors have the same motions. A run
+    with faults that grow is simulated to its end. Raises UserError for a run that is not possible.
     """
     with one_blas_thread():
         scenario = with_clearance(scenario)
@@ -67,7 +67,8 @@ def short_run(scenario: Scenario) -> Verdict | None:
 def screen(scenario: Scenario, *, motion: bool) -> Verdict | None:
     """Return the class of a candidate; None for a candidate that is not possible or fails.
 
-    With `motion` a rubbing candidate also has its class of motion and its severity, which take a short run.
+    With `motion` the class of a rubbing candidate includes its class of motion and severity, from a short run. Without
+    it a short run is only made if the rub-free motion is not enough to know whether the candidate rubs.
     """
     try:
         rub = reaches(scenario)

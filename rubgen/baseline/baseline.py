@@ -31,7 +31,7 @@ ModelScores = dict[str, dict[str, Scores]]
 
 @dataclass(frozen=True)
 class Baseline:
-    """Scores of one task."""
+    """Scores of the simple models on one task."""
 
     task: str
     windows: int
@@ -47,15 +47,14 @@ def baselines(
 ) -> tuple[list[Baseline], dict[str, str]]:
     """Score simple models on the tasks of the data set in `directory`.
 
-    Models see the input channels of WINDOWS windows of each run: as the features of `rubgen features`, or as random
-    convolutions. By group means by machine where the set has several, else by run, with a twin beside its run. Models
-    learn from the split "train" where there is one, and are scored on each other split too.
-
-    - tasks: names in TASKS; all that the set allows when None.
+    - tasks: names in TASKS; None takes all that are possible with the set.
     - workers: number of processes for the inputs.
 
-    Returns the scores, and the reason for each task that the set does not allow. Raises UserError for an unknown task,
-    one that was asked for and is not possible, and without scikit-learn.
+    Models see the input channels of WINDOWS windows of each run: as the features of `rubgen features`, or as random
+    convolutions. The score "by group" keeps a machine on one side of a split where the set has several machines, else a
+    run with its twin. Models learn from the split "train", if the set has one, and are also scored on each other split.
+    Returns the scores, and the reason for each task that is not possible with the set. Raises UserError for an unknown
+    task, a task in `tasks` that is not possible, a set without good runs, and without scikit-learn.
     """
     _check_sklearn()
     for name in tasks or ():
@@ -81,11 +80,11 @@ def baselines(
 
 
 def mark_of(scores: ModelScores, task: Task) -> str:
-    """Say whether one threshold solves the task, or no model learns it. Empty for a good task.
+    """Return a clause that says whether one threshold solves the task, or no model learns it. Empty for a good task.
 
-    The first metric counts, by group. Where it is defined on another split alone, as the onset where training has
-    steady speeds, that split counts. A task is learned where a model takes away at least `LEAST_GAIN` of what the
-    majority lacks: of its error, or of 1 less its score.
+    The first metric is used, with the score by group. If it is undefined there and defined on another split, such as
+    the onset where training has steady speeds, the score on that split is used. A task is learned if a model removes at
+    least `LEAST_GAIN` of what the majority lacks: of its error, or of 1 less its score.
     """
     metric = next(iter(task.metrics))
     way = next((way for way, each in scores["majority"].items() if metric in each), None)

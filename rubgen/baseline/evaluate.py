@@ -18,7 +18,7 @@ FOLDS, SEEDS = 5, 3
 
 @dataclass(frozen=True)
 class Samples:
-    """Windows with what models learn from, answers, and what they belong to. All arrays have a row a window."""
+    """Windows with their inputs, answers, groups and runs. All arrays have a row a window."""
 
     inputs: Mapping[str, FloatArray]
     answers: npt.NDArray[Any]
@@ -37,7 +37,7 @@ class Samples:
 
 
 class Outcome(NamedTuple):
-    """What a model says of windows."""
+    """The predictions of a model for windows."""
 
     answers: npt.NDArray[Any]
     ranks: FloatArray
@@ -50,10 +50,10 @@ Scores = dict[str, tuple[float, float]]
 
 
 def cross_validated(samples: Samples, model: Model, metrics: Metrics, *, by_group: bool) -> Scores:
-    """Score a model on windows that it did not learn from, SEEDS times with other folds.
+    """Score a model on windows that it did not learn from, SEEDS times with different folds.
 
-    The predictions of all folds are scored together. With `by_group` a group is never on both sides; without, windows
-    are dealt at random, which leaks.
+    The predictions of all folds are scored together. With `by_group` a group is never on both sides. Without it windows
+    are assigned to folds at random, so that windows of one run are on both sides, which leaks.
     """
 
     def outcome(seed: int) -> Outcome:
@@ -73,9 +73,10 @@ def transferred(train: Samples, test: Samples, model: Model, metrics: Metrics) -
 
 
 def folds(groups: npt.NDArray[Any], answers: npt.NDArray[Any], seed: int) -> Iterator[npt.NDArray[np.bool_]]:
-    """Yield which samples (samples,) each fold tests: groups are shuffled, sorted by answer and dealt to FOLDS folds.
+    """Yield for each fold which samples (samples,) it tests: groups are shuffled, sorted by answer and dealt in turn.
 
-    So each class is spread over the folds. The answer of a group is that of its first sample; labels are not sorted by.
+    So each class is spread over the FOLDS folds. The answer of a group is that of its first sample. Groups are not
+    sorted if the answers are labels (samples, labels).
     """
     names, first, numbers = np.unique(groups, return_index=True, return_inverse=True)
     shuffled = np.random.default_rng(seed).permutation(names.size)

@@ -22,10 +22,10 @@ BOOSTING = {"max_iter": 50, "max_leaf_nodes": 8}
 
 
 class Majority:
-    """Answers the most frequent class, or the median of numbers."""
+    """Predicts the most frequent class, or the median of numbers."""
 
     def fit(self, _features: FloatArray, answers: Answer) -> Self:
-        """Learn from answers."""
+        """Learn from the answers (samples,)."""
         if answers.dtype.kind == "f":
             self.answer: Any = float(np.median(answers))
         else:
@@ -34,19 +34,22 @@ class Majority:
         return self
 
     def predict(self, features: FloatArray) -> Answer:
-        """Answer for each sample."""
+        """Return the same answer for each sample."""
         return np.full(len(features), self.answer)
 
     def rank(self, features: FloatArray) -> FloatArray:
-        """Rank all samples alike."""
+        """Return rank 0 for each sample."""
         return np.zeros(len(features))
 
 
 class OneFeature:
-    """The best single feature: a threshold for two classes, the ranks for numbers. NaN counts as the smallest value."""
+    """The best single feature: a threshold for two classes, its values as ranks for numbers.
+
+    NaN is the smallest value.
+    """
 
     def fit(self, features: FloatArray, answers: Answer) -> Self:
-        """Choose feature, threshold and sense."""
+        """Choose the feature, its threshold, and the sense in which it grows with the answers."""
         finite = _finite(features)
         if answers.dtype.kind == "f":
             scores = [rank_correlation(values, answers) for values in finite.T]
@@ -60,21 +63,21 @@ class OneFeature:
         return self
 
     def predict(self, features: FloatArray) -> Answer:
-        """Answer for each sample."""
+        """Return the class of each sample by the threshold; for numbers its rank."""
         if self.threshold is None:
             return self.rank(features)
         above = _finite(features)[:, self.feature] > self.threshold
         return np.asarray(np.where(above == (self.sense > 0), self.classes[-1], self.classes[0]))
 
     def rank(self, features: FloatArray) -> FloatArray:
-        """Rank by the feature."""
+        """Return the value of the feature of each sample, with the sign of its sense."""
         return np.asarray(self.sense * _finite(features)[:, self.feature])
 
 
 class Classifier:
-    """A classifier of scikit-learn whose classes count the same.
+    """A classifier of scikit-learn in which all classes count the same.
 
-    The class with the largest ratio of its probability to its share among the learned ones is the answer. Weights of
+    The answer is the class with the largest ratio of its probability to its share among the learned classes. Weights of
     classes would do the same, but with them scikit-learn 1.9 takes 12 s to bin 320 samples of 348 features.
     """
 
@@ -82,44 +85,47 @@ class Classifier:
         self.model = model
 
     def fit(self, features: FloatArray, answers: Answer) -> Self:
-        """Learn."""
+        """Learn from features (samples, features) and the classes (samples,)."""
         self.model.fit(features, answers)
         self.shares = np.array([np.mean(answers == each) for each in self.model.classes_])
         return self
 
     def predict(self, features: FloatArray) -> Answer:
-        """Answer for each sample."""
+        """Return the class of each sample."""
         return np.asarray(self.model.classes_[np.argmax(self.model.predict_proba(features) / self.shares, axis=1)])
 
     def rank(self, features: FloatArray) -> FloatArray:
-        """Rank by the probability of the last class."""
+        """Return the probability of the last class of each sample."""
         return np.asarray(self.model.predict_proba(features)[:, -1])
 
 
 class Plain:
-    """A model of scikit-learn as it is."""
+    """A model of scikit-learn without any change."""
 
     def __init__(self, model: Any) -> None:
         self.model = model
 
     def fit(self, numbers: FloatArray, answers: Answer) -> Self:
-        """Learn."""
+        """Learn from `numbers` (samples, numbers) and the answers (samples,)."""
         self.model.fit(numbers, answers)
         return self
 
     def predict(self, numbers: FloatArray) -> Answer:
-        """Answer for each sample."""
+        """Return the answer of each sample."""
         return np.asarray(self.model.predict(numbers))
 
     def rank(self, numbers: FloatArray) -> FloatArray:
-        """Rank by the distance from the plane between two classes, where the model has one."""
+        """Return the distance of each sample from the plane between two classes; 0 for a model without such a plane."""
         decide = getattr(self.model, "decision_function", None)
         found = np.asarray(decide(numbers)) if decide else np.zeros(len(numbers))
         return found if found.ndim == 1 else np.zeros(len(numbers))
 
 
 class EachLabel:
-    """A model of two classes for each label. A label that was always the same when learning stays so."""
+    """One model of two classes for each label.
+
+    A label that was the same in all learned samples is always predicted so.
+    """
 
     def __init__(self, make: Callable[[], Any]) -> None:
         self.make = make
@@ -130,24 +136,24 @@ class EachLabel:
         return self
 
     def predict(self, features: FloatArray) -> Answer:
-        """Answer for each sample (samples, labels)."""
+        """Return the labels of each sample (samples, labels)."""
         return np.column_stack([each.predict(features) for each in self.models])
 
     def rank(self, features: FloatArray) -> FloatArray:
-        """Rank all samples alike."""
+        """Return rank 0 for each sample."""
         return np.zeros(len(features))
 
 
 @dataclass(frozen=True)
 class Model:
-    """A model by the seed: how it is made, and the name of what it learns from."""
+    """A kind of model: a function that makes it, and the name of its inputs, both by the seed."""
 
     make: Callable[[int], Any]
     inputs: Callable[[int], str] = lambda _seed: "features"
 
 
 def models(answers: Answer) -> dict[str, Model]:
-    """Return the models for answers of this kind, by name."""
+    """Return the models by name for answers of this kind: classes, numbers, or labels (samples, labels)."""
     if answers.ndim == 2:
         return {name: _each_label(model) for name, model in models(np.array([0, 1])).items()}
     numbers = answers.dtype.kind == "f"

@@ -32,17 +32,17 @@ KERNELS = _kernels()
 
 @dataclass(frozen=True)
 class Rocket:
-    """Biases of some seeds."""
+    """Random convolutions with their biases, chosen once for each seed."""
 
     spacings: tuple[int, ...]
     biases: Float32Array
     """(channels, spacings, kernels, seeds)"""
 
     def transform(self, window: Float32Array) -> FloatArray:
-        """Return the numbers of a window (channels, samples), each seed's own: (seeds, numbers).
+        """Return the numbers of a window (channels, samples) for each seed: (seeds, numbers).
 
-        They are the share of samples at which each convolution is above its bias, and mean and logarithm of the
-        standard deviation of each channel, which the convolutions do not see: they have zero mean, and each channel is
+        They are the share of samples at which each convolution is above its bias, and the mean and the logarithm of the
+        standard deviation of each channel. Convolutions cannot see these two: they have zero mean, and each channel is
         scaled to a standard deviation of 1.
         """
         shares = []
@@ -56,9 +56,10 @@ class Rocket:
 
 
 def fitted(examples: Float32Array, seeds: int) -> Rocket:
-    """Choose biases: each is a quantile of the convolution of one of the windows `examples` (any, channels, samples).
+    """Choose the biases: each is a quantile of the convolution of a window of `examples` (any, channels, samples).
 
-    The quantiles are a Weyl sequence of the golden ratio, as in the paper. A seed draws its start and the windows.
+    The quantiles are a Weyl sequence of the golden ratio, as in the paper. For each of the `seeds` seeds, random
+    numbers choose the start of the sequence and the windows.
     """
     _, channels, samples = examples.shape
     spacings = tuple(each for each in SPACINGS if (TAPS - 1) * each < samples)

@@ -14,7 +14,7 @@ FALSE_ALARMS = 0.01
 
 
 class Threshold(NamedTuple):
-    """A threshold on one feature."""
+    """A threshold on one feature, and its score."""
 
     score: float
     """The balanced accuracy on the values that it was chosen on."""
@@ -24,9 +24,10 @@ class Threshold(NamedTuple):
 
 
 def best_threshold(values: FloatArray, flags: BoolArray) -> Threshold:
-    """Choose the threshold on `values` (any,) with the best balanced accuracy for `flags` (any,), either way round.
+    """Choose the threshold on `values` (any,) with the best balanced accuracy for `flags` (any,).
 
-    It lies midway between two neighbouring values. Both flags must occur.
+    Values above it, or values below it, are then True. The threshold lies midway between two neighbouring values. Both
+    flags must occur.
     """
     order = np.argsort(values, kind="stable")
     ranked, sorted_flags = values[order], flags[order]
@@ -40,7 +41,10 @@ def best_threshold(values: FloatArray, flags: BoolArray) -> Threshold:
 
 
 def balanced_accuracy(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:
-    """Compute the mean over the classes in `truth` (any,) of the share that is called so; NaN with less than two."""
+    """Compute the mean over the classes in `truth` (any,) of the share of their samples that is predicted right.
+
+    It is NaN for fewer than two classes.
+    """
     classes = np.unique(truth)
     return (
         float(np.mean([np.mean(predicted[truth == each] == each) for each in classes])) if classes.size > 1 else np.nan
@@ -48,10 +52,13 @@ def balanced_accuracy(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> f
 
 
 def detection_rate(ranks: FloatArray, truth: npt.NDArray[Any]) -> float:
-    """Compute the share of the true ones (any,) that rank above all but FALSE_ALARMS of the false ones.
+    """Compute the share of the true samples that rank above all but the share FALSE_ALARMS of the false samples.
 
-    `ranks` (any,) grow with the chance of a true one. It is one point of the ROC curve of these ranks, so its threshold
-    is chosen on what is scored. NaN where one class is missing.
+    - ranks (any,): numbers that grow with the chance that a sample is true.
+    - truth (any,): 1 for true, 0 for false.
+
+    It is one point of the ROC curve of these ranks, so its threshold is chosen on the scored samples. NaN where one
+    class is missing.
     """
     false, true = np.sort(ranks[truth == 0])[::-1], ranks[truth == 1]
     if not false.size or not true.size:
@@ -60,7 +67,10 @@ def detection_rate(ranks: FloatArray, truth: npt.NDArray[Any]) -> float:
 
 
 def label_f1(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:
-    """Compute the mean of 2 hits / (times called + times true) over the labels that occur in `truth` (any, labels)."""
+    """Compute the mean over labels of 2 hits / (times predicted + times true). `truth` is (any, labels), of 0 and 1.
+
+    Only labels that occur in `truth` count; NaN if there are none.
+    """
     here = truth.any(axis=0)
     if not here.any():
         return np.nan
@@ -69,7 +79,7 @@ def label_f1(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:
 
 
 def macro_f1(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:
-    """Compute the mean over the classes in `truth` (any,) of 2 hits / (times called + times true)."""
+    """Compute the mean over the classes in `truth` (any,) of 2 hits / (times predicted + times true)."""
     classes = np.unique(truth)
     hits = np.array([np.sum((predicted == each) & (truth == each)) for each in classes])
     sizes = np.array([np.sum(predicted == each) + np.sum(truth == each) for each in classes])
@@ -77,7 +87,7 @@ def macro_f1(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:
 
 
 def rank_correlation(predicted: FloatArray, truth: FloatArray) -> float:
-    """Compute Spearman's rank correlation; 0 where all values of one side are equal."""
+    """Compute Spearman's rank correlation; 0 where all predicted or all true values are equal."""
     from scipy.stats import spearmanr
 
     if np.ptp(predicted) == 0 or np.ptp(truth) == 0:

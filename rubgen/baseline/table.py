@@ -13,7 +13,7 @@ from rubgen.baseline.tasks import TASKS
 
 
 def table(found: Sequence[Baseline]) -> str:
-    """Write a table of all scores: a row a task, metric and model, a column a way of scoring."""
+    """Return a table of all scores as Markdown: a row a task, metric and model, a column a way of scoring."""
     ways = list(dict.fromkeys(way for each in found for scores in each.scores.values() for way in scores))
     head = ["task", "metric", "model", *ways]
     rows = [
@@ -29,7 +29,12 @@ def table(found: Sequence[Baseline]) -> str:
 
 
 def document(name: str, manifest_sha256: str, found: Sequence[Baseline], reasons: dict[str, str]) -> dict[str, Any]:
-    """Make the content of baselines.json. `reasons` are those of tasks that the set does not allow."""
+    """Return the content of baselines.json.
+
+    - name, manifest_sha256: of the data set.
+    - found: the scores.
+    - reasons: why the other tasks are not possible, by task.
+    """
     return {
         "data_set": name,
         "manifest_sha256": manifest_sha256,

@@ -26,7 +26,7 @@ Values = npt.NDArray[Any]
 
 @dataclass(frozen=True)
 class Task:
-    """One task."""
+    """One task: the answer of each window, and the metrics of its predictions."""
 
     answers: Callable[[DataSet, SetWindows], Values]
     """The answer of each window (windows,), or labels of 0 and 1 (windows, labels). -1 or NaN where it has none."""
@@ -39,7 +39,7 @@ class Task:
 
 
 def known(answers: Values) -> BoolArray:
-    """Return which windows have an answer (windows,)."""
+    """Return which windows (windows,) have an answer: a finite number that is not -1. Labels always have one."""
     if answers.ndim == 2:
         return np.ones(len(answers), dtype=bool)
     return np.asarray(np.isfinite(answers) & (answers != -1))
@@ -81,7 +81,10 @@ def _sectors(data: DataSet, windows: SetWindows) -> Values:
 
 
 def sectors_of(centres: FloatArray | None, widths: FloatArray | None) -> Values:
-    """Return which sectors (SECTORS,) zones with these centres and widths in rad (zones,) reach into, as 0 and 1."""
+    """Return which sectors of the casing (SECTORS,) the zones of contact overlap, as 0 and 1.
+
+    `centres` and `widths` (zones,) are in rad; None is no contact.
+    """
     if centres is None or widths is None or not len(centres):
         return np.zeros(SECTORS, dtype=np.int64)
     size = 2 * np.pi / SECTORS
@@ -93,8 +96,8 @@ def sectors_of(centres: FloatArray | None, widths: FloatArray | None) -> Values:
 def onset_error(outcome: Outcome, samples: Samples) -> float:
     """Compute the median absolute error of the time at which a rub begins, in s.
 
-    Runs count whose rub begins within their signals at a changing speed. The time is the middle of the first window
-    that is called a rub, or the end of the last one. NaN without such runs.
+    Only runs whose rub begins within their signals at a changing speed count. The predicted time is the middle of the
+    first window that is predicted as a rub, or the end of the last window without such a window. NaN without such runs.
     """
     errors = []
     for run in np.unique(samples.runs[np.isfinite(samples.onset)]):
@@ -106,9 +109,10 @@ def onset_error(outcome: Outcome, samples: Samples) -> float:
 
 
 def onsets(data: DataSet, windows: SetWindows) -> FloatArray:
-    """Return when the rub of each window's run begins, in s from its first sample; NaN where it is not in the signals.
+    """Return when the rub of each window's run begins (windows,), in s from the run's first sample.
 
-    Only runs whose speed changes count: in others a rub begins while the run settles.
+    It is NaN if the rub does not begin within the signals. Only runs whose speed changes have an onset: in other runs a
+    rub begins before the record.
     """
     changing = data.ok.index[data.ok["onset_speed_rpm"].notna()]
     first = {run: float(touches["start_s"].min()) for run, touches in data.each_touches(list(changing))}

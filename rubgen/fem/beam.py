@@ -33,7 +33,7 @@ class BeamMatrices:
     M is mass, K elastic stiffness, G Coriolis (skew), S spin softening, K_sigma stiffness from centrifugal stress, f_c
     centrifugal load at 1 rad/s. The blade's share of the equation of motion in the turning frame at spin speed Omega is
     M q'' + 2 Omega G q' + (K + Omega^2 (K_sigma - S)) q = Omega^2 f_c. `root_pull` is the axial force at the root at 1
-    rad/s, in N s^2. The rest of the machine carries it and has its geometric stiffness.
+    rad/s, in N s^2. The rest of the machine carries this force, and its geometric stiffness belongs there.
     """
 
     M: FloatArray
@@ -170,12 +170,12 @@ def skew(matrix: FloatArray) -> FloatArray:
 
 
 def root_strain_row(blades: BladeRow, root_radius: float, beam: BeamMatrices) -> FloatArray:
-    """Return the row (12,) that gives a blade's strain at its root from the displacements of its first two nodes.
+    """Return the row (12,) that multiplies the displacements of a blade's first two nodes to the strain at its root.
 
     It is the spanwise strain of the mid-chord fibre on the face to which the thickness normal n = (-sin a, cos a) in
     (y, z) points, half the thickness h from the centre line: eps + (h / 2) (n_z th_y' - n_y th_z'). The generalised
     strains are D^-1 F. The internal forces F at the root are minus the nodal forces of the first element, which is
-    exact for loads at the nodes. A blade with another stiffness has the same row. Test:
+    exact for loads at the nodes. The row is the same for a mistuned blade. `root_radius` is in m. Test:
     tests/reduction/test_root_strain.py.
     """
     sections = cross_sections(blades, root_radius, np.zeros(1))

@@ -76,13 +76,14 @@ class BliskModel:
 def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, missing: Sequence[int] = ()) -> BliskModel:
     """Assemble the full model of the blisk, 14,478 DoFs in the preset.
 
-    The blades `missing` have no DoFs: their mass, their stiffness and their pull on the rim are not there.
+    - disk, blades, support: parts of the machine. The supports only affect the centrifugal stress.
+    - missing: numbers of missing blades. They have no DoFs, no mass, no stiffness and no pull on the rim.
 
-    The supports only affect the centrifugal stress. In the steady state at 1 rad/s the blades pull at the rim and the
-    rigid link fixes the bore. That state determines the disk's plane stress, the forces in the link and the link's
-    geometric term. K_sigma - S on rigid-body motions is then -m, -m, 0, I_p - I_d, I_p - I_d, 0:
-    tests/fem/test_blisk_assembly.py. A mistuned blade differs only by (1 + deviation) K: E scales every term of K, the
-    shape functions depend only on ratios of stiffness, and its pull on the rim follows from its mass.
+    In the steady state at 1 rad/s the blades pull at the rim and the rigid link fixes the bore. This state determines
+    the disk's plane stress, the forces in the link and the link's geometric term. K_sigma - S on rigid-body motions is
+    then -m, -m, 0, I_p - I_d, I_p - I_d, 0: tests/fem/test_blisk_assembly.py. A mistuned blade differs only by (1 +
+    deviation) K: E scales every term of K, the shape functions depend only on ratios of stiffness, and its pull on the
+    rim follows from its mass.
 
     Raises UserError where blades do not meet corner nodes of the rim, for a single blade, whose pull is not a symmetric
     load, and for a bore outside the rim.
@@ -142,7 +143,10 @@ def rigid_motions(model: BliskModel) -> FloatArray:
 
 
 def blade_motions(model: BliskModel, angle: float) -> FloatArray:
-    """Return the displacements (DoFs of a blade, 6) of a blade at a polar angle (rad), as `rigid_motions`."""
+    """Return the displacements (DoFs of a blade, 6) of a blade in the motions of `rigid_motions`.
+
+    `angle` is the polar angle of the blade, rad.
+    """
     radius = model.blade_radius
     in_disk_axes = _rigid_nodes(radius * np.cos(angle), radius * np.sin(angle)).reshape(-1, 6, 6)
     return np.asarray((blade_rotation(angle).T @ in_disk_axes).reshape(-1, 6))

@@ -12,7 +12,7 @@ from rubgen.machine import DiskSupport
 
 
 def rigid_rows(arm: FloatArray) -> FloatArray:
-    """Return rows (n, 6, 12) of the constraint T [q_O, q_i] = 0 that ties nodes at `arm` (n, 2) rigidly to O_d.
+    """Return rows (n, 6, 12) of the constraint T [q_O, q_i] = 0 that ties nodes at `arm` (n, 2), m, rigidly to O_d.
 
     u_i - u_O + Y th_Z = 0, v_i - v_O - X th_Z = 0, w_i - w_O - Y th_X + X th_Y = 0, rotations equal (Zeng et al. 2019,
     Eq. 1).
@@ -42,10 +42,12 @@ def rigid_link(arm: FloatArray, node_dof: IntArray, centre_dof: IntArray, size: 
 def link_stress_stiffness(arm: FloatArray, force: FloatArray) -> FloatArray:
     """Return the geometric stiffness (6, 6) of O_d from the steady forces in a rigid link.
 
-    It is the second order of the link's rotation. The link pushes node i with F_i (`force` (n, 3) in N) at the arm r_i
-    (`arm` (n, 2) in m). A rotation th moves the arm's end by th x r + th x (th x r) / 2. The second-order energy is E2
-    = sum F_i . th x (th x r_i) / 2, and K = sum [(F r^T + r F^T) / 2 - (F . r) I] on the rotations. Without it the
-    gyroscopic terms of the whole blisk are wrong.
+    - arm (n, 2): positions r_i of the nodes from O_d, m.
+    - force (n, 3): forces F_i of the link on the nodes, N.
+
+    It is the second order of the link's rotation: a rotation th moves the end of an arm by th x r + th x (th x r) / 2.
+    The second-order energy is E2 = sum F_i . th x (th x r_i) / 2, and K = sum [(F r^T + r F^T) / 2 - (F . r) I] on the
+    rotations. Without it the gyroscopic terms of the whole blisk are wrong.
     """
     r = np.column_stack([arm, np.zeros(len(arm))])
     product = force.T @ r
@@ -103,10 +105,10 @@ def on_springs(K: SparseMatrix, stiffness: FloatArray) -> SparseMatrix:
 
 
 class FixedCentreStiffness:
-    """The blisk's K on its axial, tilt and torsion springs, with x and y of O_d fixed at zero; factorised once.
+    """The blisk's K on its axial, tilt and torsion springs, with x and y of O_d fixed at zero. It is factorised once.
 
-    It solves static problems. By symmetry the centrifugal load of two or more equal blades does not push O_d sideways.
-    The steady state is therefore the same for any lateral stiffness.
+    By symmetry the centrifugal load of two or more equal blades does not push O_d sideways. The steady state is
+    therefore the same for any lateral stiffness.
     """
 
     def __init__(self, K: SparseMatrix, support: DiskSupport) -> None:

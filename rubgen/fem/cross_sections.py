@@ -78,7 +78,10 @@ def _linear(root: float, tip: float, length: float) -> Polynomial:
 
 
 def cross_section_stiffness(blades: BladeRow, s: CrossSections) -> FloatArray:
-    """Return D, internal forces (N, V_y, V_z, M_x, M_y, M_z) by strain (eps, gamma_y, gamma_z, th_x', th_y', th_z')."""
+    """Return D (..., 6, 6): internal forces by strains.
+
+    The forces are (N, V_y, V_z, M_x, M_y, M_z), the strains (eps, gamma_y, gamma_z, th_x', th_y', th_z').
+    """
     E, G = blades.material.youngs_modulus_pa, blades.material.shear_modulus_pa
     shear = cowper_shear_coefficient(blades.material.poisson_ratio) * G * s.area
     D = _bending(E * s.yy, E * s.zz, E * s.yz)

@@ -19,8 +19,8 @@ BUBBLE_DOFS = np.array([51, 52])
 class ShellMesh:
     """A mesh of eight-node shells: nodes (n, 2) in m, elements (e, 8) in the order of serendipity nodes.
 
-    `thickness` returns the thickness in m at points (..., 2). In every group of `around` elements, the others are the
-    first one turned about the origin by 2 pi / around, 4 pi / around, ...
+    `thickness` returns the thickness in m at points (..., 2). Elements are in groups of `around`. The elements of a
+    group are its first element turned about the origin by 0, 2 pi / around, 4 pi / around, ...
     """
 
     nodes: FloatArray
@@ -34,9 +34,9 @@ class ShellMesh:
         return ShellMesh(self.nodes, self.elements[:: self.around], self.thickness)
 
     def turned(self, firsts: FloatArray) -> FloatArray:
-        """Return the matrices (e, 6 a, 6 b) of all elements from those of the first ones: Z_j X Z_j^T.
+        """Return the matrices (e, 6 a, 6 b) of all elements from those of the first elements: Z_j X Z_j^T.
 
-        Z_j turns each node's DoFs to the place of element j of the group.
+        Z_j turns each node's DoFs to the position of element j of the group.
         """
         if self.around == 1:
             return firsts
@@ -100,7 +100,7 @@ def quadrature(mesh: ShellMesh, order: int) -> Quadrature:
 
 
 def in_plane_strain(points: Quadrature) -> FloatArray:
-    """Return the rows (e, q, 3, 54) that give u_x, v_y, u_y + v_x from an element's DoFs."""
+    """Return the rows (e, q, 3, 54) that multiply an element's DoFs to u_x, v_y, u_y + v_x."""
     B, g = _strain_rows(points, 3), points.gradient[:, :, :8]
     B[:, :, 0, :8, 0] = B[:, :, 2, :8, 1] = g[..., 0]
     B[:, :, 1, :8, 1] = B[:, :, 2, :8, 0] = g[..., 1]
@@ -108,7 +108,7 @@ def in_plane_strain(points: Quadrature) -> FloatArray:
 
 
 def curvature(points: Quadrature) -> FloatArray:
-    """Return the rows (e, q, 3, 54) that give th_y,x, -th_x,y, th_y,y - th_x,x from an element's DoFs."""
+    """Return the rows (e, q, 3, 54) that multiply an element's DoFs to th_y,x, -th_x,y, th_y,y - th_x,x."""
     B, g = _strain_rows(points, 3), points.gradient
     B[:, :, 0, :, 4] = g[..., 0]
     B[:, :, 1, :, 3] = -g[..., 1]
@@ -118,7 +118,7 @@ def curvature(points: Quadrature) -> FloatArray:
 
 
 def shear_strain(points: Quadrature) -> FloatArray:
-    """Return the rows (e, q, 2, 54) that give w_x + th_y, w_y - th_x from an element's DoFs."""
+    """Return the rows (e, q, 2, 54) that multiply an element's DoFs to w_x + th_y, w_y - th_x."""
     B, g = _strain_rows(points, 2), points.gradient[:, :, :8]
     B[:, :, :, :8, 2] = g.swapaxes(2, 3)
     B[:, :, 0, :, 4] = points.N
@@ -127,7 +127,7 @@ def shear_strain(points: Quadrature) -> FloatArray:
 
 
 def drilling(points: Quadrature) -> FloatArray:
-    """Return the row (e, q, 1, 54) that gives th_z - (v_x - u_y) / 2 from an element's DoFs."""
+    """Return the row (e, q, 1, 54) that multiplies an element's DoFs to th_z - (v_x - u_y) / 2."""
     B, g = _strain_rows(points, 1), points.gradient[:, :, :8]
     B[:, :, 0, :8, 5] = points.N[:, :8]
     B[:, :, 0, :8, 1] = -g[..., 0] / 2

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class RunSignals:
-    """The signals in a file of one run: number of the run, samples by column name, arrival times of pulses in s."""
+    """The signals in a file of one run: number of the run, samples by column name, arrival times of the pulses in s."""
 
     number: int
     channels: dict[str, npt.NDArray[np.float32]]
@@ -36,7 +36,7 @@ def _no_problem(_path: Path, _run_id: str, _proven: bool) -> Sequence[str]:
 class Format:
     """One file format of runs: how a file is written, checked, read and described to users.
 
-    Its module imports libraries inside its functions, so that commands that do not need them stay fast.
+    Its module imports libraries only inside functions, so that commands that do not need them stay fast.
     """
 
     name: str
@@ -75,7 +75,7 @@ def format_of(name: str) -> Format:
 
 
 def run_formats(names: Iterable[str] = FORMAT_NAMES) -> list[Format]:
-    """Return those of the named formats that have one file for each run, in the order of FORMAT_NAMES."""
+    """Return the named formats that have one file for each run, in the order of FORMAT_NAMES."""
     chosen = set(names)
     found = [format_of(name) for name in FORMAT_NAMES if name in chosen]
     return [each for each in found if each.one_file_a_run]

@@ -30,7 +30,7 @@ FACTS: dict[str, tuple[str, str]] = {
 
 
 def channel_facts(sensing: Sensing) -> list[dict[str, Any]]:
-    """Return the FACTS of each sensor, in the order of the set. What a sensor does not have is None."""
+    """Return the FACTS of each sensor, in the order of the sensor set. A fact that a sensor does not have is None."""
     return [dict.fromkeys(FACTS) | _facts(sensor, sensing) for sensor in sensing.set.sensors]
 
 

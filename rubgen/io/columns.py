@@ -110,7 +110,7 @@ def _operation() -> list[Column]:
 
 
 def label_columns(labels: Iterable[Label] = LABELS) -> list[Column]:
-    """Return one column for each of the labels `labels`."""
+    """Return one column for each of the labels."""
     return [
         Column(
             x.name,
@@ -252,11 +252,14 @@ def scalar_columns(
 ) -> tuple[Column, ...]:
     """Return the columns of `runs.parquet` for runs with the sensor set `sensors`.
 
-    They are identity, parameters, operation, labels, the orders of each tap of a sensor, and energies. With
-    `surroundings`, as for a recipe that has this table, the levels of the disturbances follow. The labels of `faults`
-    follow, for the kinds of fault that the runs may have, and the values `machines` of virtual machines. `drawing` are
-    names of tables of the recipe: "twins" adds the partner of a twin, "balance" the class that a run was drawn for,
-    "merged" where a run of a merged set comes from.
+    They are identity, parameters, operation, labels, the orders of each tap of a sensor, and energies. Further columns
+    are
+
+    - surroundings: the levels of the table `[surroundings]`.
+    - faults: labels of the kinds of fault that the runs may have.
+    - machines: values of these keys of virtual machines.
+    - drawing: names of tables of the recipe: "twins" adds the partner of a twin, "balance" the class for which a run
+      was drawn, "merged" the source of a run of a merged set.
     """
     orders = [column for tap in _ordered_taps(sensors) for column in tap_columns(tap.name, tap.UNIT)]
     around = _surroundings() if surroundings else []
@@ -277,15 +280,15 @@ def scalar_columns(
 
 
 def every_scalar(sensors: SensorSet) -> tuple[Column, ...]:
-    """Return the columns of `runs.parquet` of a recipe with every table."""
+    """Return all columns that `runs.parquet` may have, for a recipe with every table."""
     return scalar_columns(sensors, surroundings=True, faults=FAULTS, machines=own_keys(frame=True), drawing=DRAWING)
 
 
 def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
     """Return the columns that data files have in addition to `runs.parquet`: channels, touches, windows, arrivals.
 
-    With `clean` each channel's signal without noise is included. Raises UserError where a sensor has the name of
-    another column.
+    With `clean` the clean channel (without noise) of each channel is included. Raises UserError where a sensor has the
+    name of another column.
     """
     channels = [_channel(each) for each in sensors.sensors if isinstance(each, SampledSensor | OncePerRev)]
     seen = Role.INPUT if any(isinstance(each, OncePerRev) for each in sensors.sensors) else Role.TRUTH

@@ -20,10 +20,10 @@ _NO_SYNC = (errno.EBADF, errno.EINVAL, errno.ENOSYS, errno.ENOTSUP)
 
 
 def write_durably(path: Path, write: Callable[[Path], object]) -> None:
-    """Call `write` with a temporary name, flush the file it makes to the disk, then rename it to `path`.
+    """Call `write` with a temporary path, flush the file that it writes to the disk, then rename the file to `path`.
 
-    After an error of `write`, which passes on, there is no file at `path`, or the old one. An OSError of the file
-    itself names `path`: an error at the temporary file, or one without a file name that only writing can cause.
+    If `write` raises an error, it is raised again, and `path` is unchanged. An OSError at the temporary file, or an
+    OSError without a file name that only writing can cause, names `path`.
     """
     part = path.with_name(f"{path.stem}{PART}{path.suffix}")
     try:
@@ -43,7 +43,7 @@ def write_durably(path: Path, write: Callable[[Path], object]) -> None:
 
 
 def sync_directory(directory: Path) -> None:
-    """Flush the names in a directory to the disk, where the system can. Raises an OSError that names the directory."""
+    """Flush the names in a directory to the disk, if the system can. Raises an OSError that names the directory."""
     try:
         descriptor = os.open(directory, os.O_RDONLY)
     except PermissionError:  # Windows opens no directory
@@ -60,8 +60,8 @@ def sync_directory(directory: Path) -> None:
 def check_regular(path: Path) -> int:
     """Check that `path` is a regular file and return its size in bytes.
 
-    Raises UserError where there is no file, or a folder, a pipe or a device: opening a pipe waits for a writer, and a
-    device may have no end.
+    Raises UserError where it does not exist, or is a folder, a pipe or a device: opening a pipe waits for a writer, and
+    a device may have no end.
     """
     try:
         found = path.stat()
@@ -75,7 +75,7 @@ def check_regular(path: Path) -> int:
 
 
 def read_json(content: bytes) -> Any:
-    """Parse a JSON text. Raises ValueError for anything else, also for JSON nested too deeply for the parser."""
+    """Parse a JSON text. Raises ValueError for any other text, and for JSON nested too deeply for the parser."""
     try:
         return json.loads(content)
     except RecursionError:

@@ -25,11 +25,11 @@ def is_url(place: object) -> bool:
 
 
 def place_of(text: str | Path) -> Path:
-    """Return the path of a directory, or of a URL, which has the methods of a Path that reading needs (UPath).
+    """Return the path of a directory, or of a URL as a UPath, which has the methods of a Path that reading needs.
 
-    Keys, endpoints and regions come from where the library of the URL's scheme looks for them: environment, its files
-    of settings, the configuration of fsspec. Raises UserError where the scheme is unknown, its library is not
-    installed, or the URL holds a password.
+    Keys, endpoints and regions come from the settings of the library for the URL's scheme: environment, files of
+    settings, configuration of fsspec. Raises UserError where the scheme is unknown, its library is not installed, or
+    the URL contains a name or a password.
     """
     found = _URL.match(text) if isinstance(text, str) else None
     if not isinstance(text, str) or not found:
@@ -53,7 +53,10 @@ def place_of(text: str | Path) -> Path:
 
 
 def is_there(path: Path) -> bool:
-    """Return whether there is such a file. At a URL raises UserError where the server does not answer or refuses."""
+    """Return whether the file at `path` exists.
+
+    For a URL raises UserError where the server does not answer or refuses.
+    """
     if not is_url(path):
         return path.exists()
     files: Any = path
@@ -70,9 +73,10 @@ def is_there(path: Path) -> bool:
 
 
 def answered(path: Path, work: Callable[[], R]) -> R:
-    """Call `work`, which asks the server of a URL something small. Raises UserError where it does not answer in time.
+    """Call `work`, a short request to the server of the URL `path`, and return its result.
 
-    Without this bound the libraries try again for many minutes.
+    Raises UserError where the server does not answer within 30 s. Without this bound the libraries try again for many
+    minutes.
     """
     results: list[R] = []
     errors: list[BaseException] = []

@@ -20,7 +20,10 @@ USES = {
 
 
 def commented(kind: str, name: str) -> str:
-    """Return the file `name` of a kind with a comment for each key. It has the same meaning as the file of rubgen."""
+    """Return the text of rubgen's file `name` with a comment for each key. Its values are those of rubgen's file.
+
+    `kind` is recipe, machine or sensors.
+    """
     head = (
         f"#:schema {FILE_NAMES[kind]}\n# Begun from {name} by `rubgen init {kind}`. Lines without # are in force.\n\n"
     )
@@ -28,7 +31,10 @@ def commented(kind: str, name: str) -> str:
 
 
 def begin(kind: str, name: str, path: Path) -> list[Path]:
-    """Write that file to `path`, and beside it the schema for editors where there is none. Return what was written."""
+    """Write the text of `commented` to `path`, and its schema for editors beside it. Return the written files.
+
+    An existing schema is kept. Raises UserError where a file cannot be written.
+    """
     text = commented(kind, name)
     schema = path.with_name(FILE_NAMES[kind])
     with write_problems(path, named=f"FILE {path}"):

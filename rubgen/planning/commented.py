@@ -16,10 +16,10 @@ Path = tuple[str, ...]
 
 
 class Commented:
-    """Writes tables of one kind of file.
+    """Writes a TOML file of one kind with a comment for each key. Use a new object for each file.
 
-    Keys that are not given are written as comments, with their default. In a list of tables the first of each kind has
-    comments, and further keys are only named. A file is written by one object.
+    Keys without a value are written as comments, with their default. In a list of tables the first table of each kind
+    has comments; further keys are only named.
     """
 
     def __init__(self, schema: Node) -> None:
@@ -27,7 +27,7 @@ class Commented:
         self._seen: set[str] = set()
 
     def text(self, values: Mapping[str, Any]) -> str:
-        """Return the file with these values, as TOML."""
+        """Return the file with these values as TOML, with comments."""
         return "\n".join(self._table((), values, self._schema)).strip() + "\n"
 
     def _table(self, path: Path, values: Mapping[str, Any], node: Node) -> Iterator[str]:
@@ -85,7 +85,7 @@ class Commented:
 
 
 def toml_value(value: Any) -> str:
-    """Return a value in TOML, with all bits of its numbers."""
+    """Return a value as TOML, with all bits of its numbers."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):

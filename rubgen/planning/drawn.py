@@ -28,7 +28,7 @@ class Drawn:
 
 
 def drawn_keys(recipe: Recipe, scenarios: Sequence[Scenario]) -> list[Drawn]:
-    """Return every key that draws or fixes a value, with its values in these runs."""
+    """Return every key of the recipe that draws or fixes a value, with its values in the runs `scenarios`."""
     parts = (_machines, _varied, _around, _faults)
     return [each for part in parts for each in part(recipe, scenarios)]
 

@@ -18,7 +18,10 @@ DEFAULTS = {"recipe": DEFAULT_RECIPE.stem, "machine": "zeng2019", "sensors": "de
 
 
 def offered(kind: str) -> dict[str, str]:
-    """Return the files of a kind that come with rubgen: their names, each with the first sentence of its comment."""
+    """Return the names of the files of a kind that come with rubgen, each with the first sentence of its comment.
+
+    `kind` is recipe, machine or sensors.
+    """
     return {path.stem: _first_sentence(path) for path in sorted(FOLDERS[kind].glob("*.toml"))}
 
 
@@ -28,7 +31,10 @@ def offered_faults() -> dict[str, str]:
 
 
 def file_of(kind: str, name: str) -> Path:
-    """Return the file of that kind and name. Raises UserError with the nearest name where there is none."""
+    """Return the path of rubgen's file of the given kind and name.
+
+    Raises UserError, with the nearest name, if none exists.
+    """
     if name not in offered(kind):
         raise UserError(f"--from {name!r:.200}: no such {kind} comes with rubgen; {nearest(name, list(offered(kind)))}")
     return FOLDERS[kind] / f"{name}.toml"

@@ -23,7 +23,7 @@ COUNTED = 10_000
 
 @dataclass(frozen=True, kw_only=True)
 class Reach:
-    """How deep the tips of one run would be without contact, or why the run is refused."""
+    """How deep the tips of one run would enter the casing without contact, or why the run is refused."""
 
     depth_m: float
     """Largest free penetration; a gap is negative, NaN in a refused run, infinite where only the run shows it."""
@@ -31,13 +31,13 @@ class Reach:
 
     @property
     def can_rub(self) -> bool:
-        """Whether a blade reaches the casing in the motion without contact, or nothing is known before the run."""
+        """Whether a blade reaches the casing in the motion without contact. True where this motion is not known."""
         return not self.refused and self.depth_m >= 0
 
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """What a recipe will do. Shares are of the runs looked at, which are spread evenly over all runs."""
+    """What a recipe draws and what its data set costs. Shares refer to some runs, spread evenly over all runs."""
 
     name: str
     runs: int
@@ -62,16 +62,20 @@ class Plan:
 
     @property
     def share_that_can_rub(self) -> float:
-        """Share of the runs looked at, refused ones left out, in which a blade can reach the casing."""
+        """Share of the examined runs in which a blade can reach the casing. Refused runs are left out.
+
+        It is 0 if all are refused.
+        """
         possible = [each for each in self.reach if not each.refused]
         return sum(each.can_rub for each in possible) / len(possible) if possible else 0.0
 
 
 def plan(recipe: Recipe, *, tries: int = 0) -> Plan:
-    """Look at a recipe before its data set is made, without any time stepping unless `tries` runs are asked for.
+    """Examine a recipe before its data set is made. Nothing is integrated in time unless `tries` is above 0.
 
-    The recipe is checked already (`load_recipe`). Looked at are up to 64 runs, 16 where machines are drawn. With
-    `[balance]` the first candidate of each run is looked at, which its quota may refuse.
+    The recipe must be checked already (`load_recipe`). Up to 64 runs are examined, 16 where virtual machines are drawn.
+    With `[balance]` the first candidate of each run is examined, which may not be chosen later. `tries` is the number
+    of runs to simulate.
     """
     scenarios = list(_looked_at(recipe))
     with recipe.machine_named(), step("look at the runs", "runs", long=True):

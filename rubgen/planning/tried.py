@@ -18,7 +18,7 @@ from rubgen.scenario import Recipe
 
 @dataclass(frozen=True, kw_only=True)
 class Tried:
-    """What the runs gave, which are spread evenly over those of the recipe."""
+    """Classes, time and file sizes of some simulated runs, spread evenly over the runs of the recipe."""
 
     runs: int
     classes: dict[str, int]
@@ -30,9 +30,9 @@ class Tried:
 
 
 def try_runs(recipe: Recipe, tries: int) -> Tried:
-    """Simulate `tries` runs, or all where there are fewer, and write their files to a folder that is then removed.
+    """Simulate `tries` runs, or all if there are fewer, and write their files to a temporary folder.
 
-    The first run is simulated twice, so that its time holds no compilation.
+    The first run is simulated twice, so that its time does not contain the compilation.
     """
     places = sorted({round(place) for place in np.linspace(0, recipe.runs - 1, min(tries, recipe.runs))})
     classes: Counter[str] = Counter()

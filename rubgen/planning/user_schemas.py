@@ -19,7 +19,10 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def user_schema(kind: str) -> dict[str, Any]:
-    """Return the schema of a kind of file, as pydantic makes it: the texts lack unit, allowed values and default."""
+    """Return the JSON schema of a kind of file (recipe, machine or sensors), as pydantic makes it.
+
+    The descriptions lack unit, allowed values and default.
+    """
     if kind == "recipe":
         return Recipe.model_json_schema()
     return TypeAdapter(Machine).json_schema() if kind == "machine" else _sensor_set_schema()

@@ -44,7 +44,8 @@ class Turning:
     def project(self, X: SparseMatrix, V: FloatArray, *, skew: bool = False) -> FloatArray:
         """Return V^T X V of a symmetric or `skew` X (n, n), with V (n, 6 + 6 blades + modes) from `copy_columns`.
 
-        Only the columns of O_d, node 0 and the modes are multiplied; the others follow by symmetry.
+        Only the columns of O_d, node 0 and the modes are multiplied; the products of all other columns follow by
+        symmetry.
         """
         blades, size = len(self.place), V.shape[1]
         modes = slice(6 + 6 * blades, size)

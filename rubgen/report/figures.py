@@ -36,7 +36,7 @@ SHOWN_UNIT = {"m": (1e6, "µm"), "m/s2": (1.0, "m/s²")}
 class Choice:
     """The user's choice of what a figure shows: run, parameter of a sweep, channel, ranges, modes.
 
-    Ranges are LOW:HIGH, of the speed in rev/min and of the frequency in Hz. None means a default.
+    Ranges are texts LOW:HIGH, of the speed in rev/min and of the frequency in Hz. None is the default of the figure.
     """
 
     run_id: str | None = None
@@ -65,11 +65,11 @@ Make = Callable[[Path | None, Choice], Figure]
 def make_figure(name: str, source: Path | None, choice: Choice) -> Figure:
     """Draw the figure called `name`, one of FIGURES.
 
-    - source: name or TOML of a machine, directory of a data set, or an MCAP file; what is needed depends on the figure.
-    - choice: what is drawn of it.
+    - source: name or TOML of a machine, directory of a data set, or an MCAP file, as the figure needs.
+    - choice: what the figure shows of the source.
 
-    Raises UserError for an unknown figure, a source that does not fit, an option that the figure does not use, or
-    signals that it needs and that are missing.
+    Raises UserError for an unknown figure, a source that does not fit, an option that the figure does not use, and
+    missing signals.
     """
     if name not in FIGURES:
         raise UserError(f"figure {name!r}: {nearest(name, list(FIGURES))}")

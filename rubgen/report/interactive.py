@@ -33,8 +33,8 @@ Values = dict[str, Any]
 def interactive_figures(replays: list[Replay]) -> list[Values]:
     """Return the figures of the page: Campbell diagram of the first run's machine, orbits and waterfalls of all runs.
 
-    Each has `name`, `text`, and the `data` and `layout` of plotly.js. Orbits are left out where no pair of proximity
-    probes was recorded, waterfalls where the recording has less than two blocks of turns.
+    Each figure has `name`, `text`, and the `data` and `layout` of plotly.js. Orbits are left out where no pair of
+    proximity probes was recorded, waterfalls where the recording has fewer than two blocks of turns.
     """
     first = replays[0].scenario
     found = [_campbell(first.machine, first.reduction), _orbits(replays), _waterfalls(replays)]
@@ -43,7 +43,7 @@ def interactive_figures(replays: list[Replay]) -> list[Values]:
 
 @lru_cache(maxsize=1)
 def packed_library() -> str:
-    """Return plotly.js, compressed by gzip, in base64. It is the same text each time."""
+    """Return the text of plotly.js, compressed by gzip, in base64. It is always the same."""
     from plotly.offline import get_plotlyjs
 
     return base64.b64encode(gzip.compress(get_plotlyjs().encode(), mtime=0)).decode("ascii")

@@ -103,9 +103,10 @@ def _replays(directory: Path, examples: list[str]) -> dict[str, Replay]:
 
 
 def example_runs(good: pd.DataFrame) -> list[str]:
-    """Choose up to six runs to show: the hardest rub of each class, then one without contact, then the hardest others.
+    """Choose up to six runs to show. Returns their names. `good` is the table of the runs with status ok.
 
-    `good` is the table of the runs with status ok. Returns their names.
+    They are the run with the largest impulse of each class of motion, then a run without contact, then others by
+    impulse.
     """
     by_impulse = good.sort_index().sort_values("contact_impulse_per_turn_n_s", ascending=False, kind="stable")
     hardest = [by_impulse.index[by_impulse["motion"] == motion.value][:1] for motion in Motion]
@@ -115,7 +116,7 @@ def example_runs(good: pd.DataFrame) -> list[str]:
 
 
 def as_data_url(figure: Figure) -> str:
-    """Encode a figure as PNG in a data URL."""
+    """Return a figure as PNG in a data URL."""
     picture = io.BytesIO()
     figure.savefig(picture, dpi=DPI, format="png", metadata={"Software": None})
     return f"data:image/png;base64,{base64.b64encode(picture.getvalue()).decode('ascii')}"
@@ -171,10 +172,10 @@ def _example(row: dict[str, Any], replay: Replay) -> dict[str, str]:
 
 
 def loading(data: DataSet, replay: Replay) -> dict[str, str]:
-    """Return snippets of Python that load the set, by the name of the library: rubgen's own, and those of its formats.
+    """Return Python code that loads the set, by the name of the library: rubgen and the libraries of the set's formats.
 
-    RUN and CHANNEL in them become the run of `replay` and its first channel. DIR stays: the reader replaces it by the
-    directory of the set.
+    In the code, RUN and CHANNEL are replaced by the run of `replay` and its first channel. DIR stays: the reader
+    replaces it by the directory of the set.
     """
     formats = data.manifest.identity.recipe["output"]["formats"]
     ways = {"rubgen": RUBGEN}

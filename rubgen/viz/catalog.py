@@ -46,7 +46,10 @@ class _Cell:
 
 
 class Catalog:
-    """A catalog on this computer alone, as a context. At its end the server ends and `folder` goes with its files."""
+    """A catalog on this computer only, as a context.
+
+    At its end the server stops and `folder` is deleted with its files.
+    """
 
     def __init__(self, name: str) -> None:
         """Begin a catalog with one dataset called `name`. Raises UserError where Rerun's catalog cannot be used."""
@@ -75,12 +78,15 @@ class Catalog:
         return f"{self._server.url()}/entry/{self.dataset.id}"
 
     def add_recordings(self, paths: Sequence[Path]) -> None:
-        """Add the recordings in these files."""
+        """Add the recordings in the files at `paths`. Nothing is done without paths."""
         if paths:
             self.dataset.register([path.absolute().as_uri() for path in paths], layer_name=RECORDING).wait()
 
     def add_columns(self, group: str, rows: Mapping[str, Values]) -> None:
-        """Add a layer of columns `property:<group>:<name>`: for each run, by the id of its recording, its values."""
+        """Add columns `property:<group>:<name>` to the table.
+
+        `rows` are the values of each run, by its recording's id.
+        """
         import rerun as rr
 
         places = []
@@ -99,9 +105,10 @@ class Catalog:
             self.dataset.register(places, layer_name=group).wait()
 
     def arrange(self, columns: Sequence[tuple[str, str]], previews: Sequence[View] = ()) -> None:
-        """Show these columns of the table first, each a group and a name, in this order, under their names.
+        """Show some columns of the table first, in this order, under their names.
 
-        - previews: views that each row shows of its recording.
+        - columns: the group and the name of each column.
+        - previews: views of its recording that each row shows.
         """
         from rerun.blueprint.table import Column, PreviewCell, PreviewsConfig, TableBlueprint, TableLayout
 

@@ -28,7 +28,7 @@ IMPULSE_COLORS = np.array([0xFFE8A0FF, 0xFFD166FF, 0xF4A340FF, 0xE6752BFF, 0xD55
 
 
 def impulse_color(share: FloatArray) -> UInt32Array:
-    """Return colours 0xrrggbbff of touches from light to hard.
+    """Return colours (any,) of touches as numbers 0xrrggbbff, from light to hard.
 
     `share` (any,) is the square root of a touch's impulse over the largest impulse, in [0, 1].
     """

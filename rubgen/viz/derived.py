@@ -36,9 +36,10 @@ def order_map(
 
     - values (samples,): the channel; blocks with NaN are left out.
     - sample_rate_hz: samples per second.
-    - pulses (any,): times in s at which turns begin; the last ends the last turn. Fewer than two make an empty map.
+    - pulses (any,): times in s at which turns begin; the last pulse ends the last turn. The map is empty below two
+      pulses.
     - turns: turns of a block; fewer in a shorter recording.
-    - most_blocks: of more blocks, every second, third, ... is taken.
+    - most_blocks: largest number of blocks. If there are more, only every second, third, ... is taken.
     """
     length = min(turns, pulses.size - 1)
     if length < 1:
@@ -62,8 +63,8 @@ def order_map(
 def shaft_orbit(replay: Replay) -> FloatArray | None:
     """Compute X and Y of the disk centre (2, samples) in um from the first pair of proximity probes.
 
-    Returns None without two probes at least 30 degrees apart. A probe at angle phi reads u = x cos(phi) + y sin(phi).
-    Two readings are solved for x and y. For readings in V the bias is subtracted and the rest divided by the
+    Returns None without two probes at least 30 degrees apart. A probe at angle phi reads u = x cos(phi) + y sin(phi),
+    so the two readings determine x and y. From readings in V the bias is subtracted, and the rest is divided by the
     sensitivity.
     """
     channels = replay.recording.channels
@@ -99,7 +100,7 @@ def _micrometres(probe: Proximity, values: Float32Array) -> FloatArray:
 
 
 def sector_of(angle: FloatArray, sectors: int) -> IntArray:
-    """Return the number of the sector that each polar angle (rad) lies in, of `sectors` equal ones around the casing.
+    """Return the number of the sector of each polar angle (rad), of `sectors` equal sectors around the casing.
 
     Sector 0 is centred at angle 0.
     """

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Replay:
-    """One run for display, in plain values: the true response is not needed."""
+    """One run for display, in plain values, without the true response."""
 
     scenario: Scenario
     labels: dict[str, object]
@@ -38,7 +38,7 @@ class Replay:
 
     @property
     def title(self) -> str:
-        """Name of the run, machine, and its speed or first and last speed."""
+        """Name of the run and of the machine, and its speed, or its first and last speed, in rev/min."""
         rotation = self.scenario.operation.rotation
         start, end = (f"{rev_per_min(speed):,.0f}" for speed in (rotation.start, rotation.end))
         speed = start if start == end else f"{start} to {end}"
@@ -48,7 +48,7 @@ class Replay:
 
     @property
     def headline(self) -> str:
-        """Whether and from which speed it rubs, and how it moves: `rubgen.labels.headline`."""
+        """One line on whether, and from which speed, the run rubs, and how it moves: `rubgen.labels.headline`."""
         return headline(self.labels, self.scenario.operation.profile)
 
     @property
@@ -94,6 +94,6 @@ def replay_of(run: Run) -> Replay:
 
 
 def sorted_touches(touches: ContactIntervals) -> ContactIntervals:
-    """Return the touches in order of their beginning."""
+    """Return the touches sorted by their start."""
     order = np.argsort(touches.start, kind="stable")
     return ContactIntervals(**{name: getattr(touches, name)[order] for name in ContactIntervals.__dataclass_fields__})

@@ -36,9 +36,9 @@ def write_replay(replay: Replay, path: Path, *, full: bool = False, named: str =
     It has the machine in 3D with its contact points; every channel as minimum and maximum (`/preview/<quantity>`) and
     at full rate over 20 turns around the hardest touch (`/detail/<quantity>`; the middle without contact); touches,
     orbit, order spectra, motion classes, labels and scenario as text and as properties. It takes about a megabyte for
-    any length; `full` writes every sample and every touch. The id of the recording is `named`, else `recording_id`.
-    Times are ns from the first sample. Two writings differ in their bytes, not in their content. Raises OSError when
-    the file cannot be written.
+    any length; with `full` every sample and every touch are written. The id of the recording is `named`, or
+    `recording_id` if `named` is empty. Times are ns from the first sample. Two recordings of the same replay differ in
+    their bytes, not in their content. Raises OSError where the file cannot be written.
     """
     from rerun_bindings import flush_and_cleanup_orphaned_recordings
 
@@ -106,7 +106,7 @@ def _send_blueprint(stream: RecordingStream, blueprint: Blueprint) -> None:
 def check_rrd(path: Path, run_id: str | None = None) -> list[str]:
     """Check the recording at `path` with `rerun rrd verify`, then as `content_problems` does. Returns its problems.
 
-    With `run_id` it is a problem too if the recording is of another run.
+    `run_id` is the name of the run that the recording must contain; None does not check it.
     """
     if not path.is_file():
         return ["there is no such file"]
@@ -119,9 +119,10 @@ def check_rrd(path: Path, run_id: str | None = None) -> list[str]:
 
 
 def content_problems(path: Path, run_id: str | None = None) -> list[str]:
-    """Return what the recording at `path` lacks that `write_rrd` writes, and whether it is of another run.
+    """Return the problems of the recording at `path`: missing content of `write_rrd`, or another run than `run_id`.
 
-    The file is decoded in this process: only for files whose bytes are proven to be as written.
+    `run_id` None does not check the run. The file is decoded in this process: use it only for files whose bytes are
+    proven to be as written.
     """
     from rerun.chunk import RrdReader
 
@@ -137,7 +138,7 @@ def content_problems(path: Path, run_id: str | None = None) -> list[str]:
 
 
 def id_in(path: Path) -> str | None:
-    """Return the id of the recording in a file; None where there is no readable file of one recording."""
+    """Return the id of the recording in a file; None if the file does not exist or is not readable, or has several."""
     from rerun.chunk import RrdReader
 
     try:
@@ -148,6 +149,9 @@ def id_in(path: Path) -> str | None:
 
 
 def recording_id(scenario: Scenario) -> str:
-    """Return the name of the run and a hash of its scenario: the same run has the same id, no two runs share one."""
+    """Return the id of a run's recording: the name of the run and a hash of its scenario.
+
+    The same run always has the same id, and no two runs have the same.
+    """
     digest = hashlib.sha256(json.dumps(scenario_dict(scenario), sort_keys=True).encode()).hexdigest()
     return f"{scenario.run_id}-{digest[:12]}"

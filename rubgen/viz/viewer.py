@@ -21,9 +21,9 @@ SCREENS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
 def open_viewer(replay: Replay, *, web: bool = False, full: bool = False) -> None:
-    """Show a replay in Rerun's viewer, and return when it is closed.
+    """Show a replay in Rerun's viewer, and return when the viewer is closed.
 
-    - web: in the browser, served to this computer alone.
+    - web: show it in the browser, served to this computer only.
     - full: with every sample and every touch.
 
     Raises UserError where the viewer ends with an error, OSError where its file cannot be written.
@@ -37,7 +37,7 @@ def open_viewer(replay: Replay, *, web: bool = False, full: bool = False) -> Non
 
 
 def has_screen() -> bool:
-    """Return whether a window can be opened. Only Linux can tell; elsewhere it is True."""
+    """Return whether a window can be opened. It is known only on Linux; on other systems it is True."""
     return not sys.platform.startswith("linux") or any(os.environ.get(name) for name in SCREENS)
 
 
@@ -66,7 +66,10 @@ def _open(path: Path, moment: float, *, web: bool) -> None:
 
 
 def start_viewer(source: str, *, web: bool) -> subprocess.Popen[bytes]:
-    """Start Rerun's viewer, or its web viewer for this machine only, on an address. Raises UserError as `_started`."""
+    """Start Rerun's viewer, or with `web` its web viewer for this computer only, on the address `source`.
+
+    Raises UserError where it cannot be started.
+    """
     return _started(_command(source, web=web)[0])
 
 

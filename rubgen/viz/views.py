@@ -29,7 +29,7 @@ PLAYBACK = 0.02
 def arrangement(replay: Replay, *, full: bool = False) -> rrb.Blueprint:
     """Arrange the views: machine and motion on the left, signals in the middle, orbit, orders and labels right.
 
-    `full` says that every sample is there.
+    `full` is whether the recording has every sample.
     """
     parts = [
         rrb.Vertical(*_machine(replay), _motion(), row_shares=[4, 1]) if _has_frames(replay) else _motion(),
@@ -48,7 +48,7 @@ def arrangement(replay: Replay, *, full: bool = False) -> rrb.Blueprint:
 def previews(sensors: Sequence[SampledSensor]) -> tuple[rrb.View, ...]:
     """Return small views of a run for a table: the orbit of all drawn turns, and the acceleration or first quantity.
 
-    There is no orbit without two proximity probes. Recordings of these sensors have what the views show.
+    Without two proximity probes there is no orbit. The views fit recordings of the sensors `sensors`.
     """
     hidden = rrb.PlotLegend(visible=False)
     keys = [quantity_key(sensor.description.quantity) for sensor in sensors]

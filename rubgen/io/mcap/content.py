@@ -62,7 +62,7 @@ class McapContent:
         return [topic for topic in self.channels if topic.startswith(prefix)]
 
     def document(self, name: str) -> dict[str, Any]:
-        """Parse the attachment `name` as a JSON object. Raises DamageError where it is missing or anything else."""
+        """Parse the attachment `name` as a JSON object. Raises DamageError where it is missing or is no JSON object."""
         if name not in self.attachments:
             raise DamageError(f"attachment {name} is missing: this is no run of rubgen")
         with damage_found(f"attachment {name}"):
@@ -73,9 +73,11 @@ class McapContent:
 
 
 def read_content(path: Path, lost: list[str] | None = None) -> McapContent:
-    """Read every record of the file at `path`. `lost` is as in `read_records`.
+    """Read every record of the file at `path`.
 
-    Raises DamageError where two channels or attachments share a name, or a message has no described channel.
+    If a list `lost` is given, damaged parts are left out, and a text about each part is appended to the list. Raises
+    DamageError for damage without `lost`, where two channels or attachments share a name, or a message has no described
+    channel.
     """
     content = McapContent()
     topics: dict[int, str] = {}
@@ -124,9 +126,9 @@ def message_name(topic: str) -> str | None:
 
 
 def decoded(content: McapContent, topic: str) -> list[Any]:
-    """Decode the messages of a topic. The list is empty where the topic is missing.
+    """Decode the messages of a topic. The list is empty where the topic is missing or unknown.
 
-    Raises DamageError where the topic carries another message or the bytes cannot be decoded.
+    Raises DamageError where the topic has messages of another type or the bytes cannot be decoded.
     """
     name = message_name(topic)
     if name is None or topic not in content.channels:
@@ -138,14 +140,14 @@ def decoded(content: McapContent, topic: str) -> list[Any]:
 
 
 def check_kind(content: McapContent, topic: str, name: str) -> None:
-    """Check that the topic carries messages of type rubgen.v1.`name`. Raises DamageError where it does not."""
+    """Check that the topic has messages of the type rubgen.v1.`name`. Raises DamageError where it does not."""
     _check_schema(content, content.channels[topic], f"{PACKAGE}.{name}", "protobuf")
 
 
 def check_other(content: McapContent, topic: str) -> None:
     """Check a topic that is written for other programs: `/tf` and previews. Every message is decoded.
 
-    Raises DamageError where the bytes do not fit, values are not finite, or the topic is unknown.
+    Raises DamageError where the bytes cannot be decoded, values are not finite, or the topic is unknown.
     """
     channel = content.channels[topic]
     if topic == "/tf":
@@ -175,8 +177,8 @@ def _check_schema(content: McapContent, channel: Channel, name: str, encoding: s
 def event_columns(content: McapContent, topic: str, scenario: Scenario) -> dict[str, FloatArray]:
     """Decode the events of a topic, such as contacts, into one array (n_events,) for each field of their message.
 
-    `scenario` tells how many blades there are and how long the recording is. Raises DamageError where a value is not
-    finite, a blade does not exist, or events are outside of the recording or not in order.
+    `scenario` has the number of blades and the length of the recording. Raises DamageError where a value is not finite,
+    a blade does not exist, or events are outside of the recording or not in order.
     """
     found = decoded(content, topic)
     names = [each.name for each in message_class(message_name(topic) or "").DESCRIPTOR.fields]
@@ -219,7 +221,7 @@ class RequiredLabels(BaseModel):
 
 
 class ChannelFacts(BaseModel):
-    """The metadata of a channel of samples, with their types. MCAP stores them as text."""
+    """The metadata of a channel of samples, with its types. MCAP stores the values as text."""
 
     model_config = ConfigDict(extra="ignore")
     unit: str
@@ -233,9 +235,9 @@ class ChannelFacts(BaseModel):
 
 
 def checked_scenario(content: McapContent) -> tuple[dict[str, Any], Scenario]:
-    """Return the scenario as the file has it, and as a `Scenario`.
+    """Return the scenario in the file, as plain values and as a `Scenario`.
 
-    Raises DamageError where this version of rubgen cannot read it, or it asks for more samples than rubgen makes.
+    Raises DamageError where this version of rubgen cannot read it, or it has more samples than rubgen makes.
     """
     plain = content.document("scenario.json")
     scenario: Scenario = _validated(_adapter(Scenario), plain, "its scenario is of another rubgen")
@@ -246,7 +248,7 @@ def checked_scenario(content: McapContent) -> tuple[dict[str, Any], Scenario]:
 
 
 def run_number(scenario: dict[str, Any]) -> int | None:
-    """Return the number of the run in its set from a checked scenario; None where it has none."""
+    """Return the number of the run in its set from a checked scenario; None where the scenario has no `index`."""
     index = scenario.get("index")
     return index + (scenario.get("merged") or {}).get("first", 0) if isinstance(index, int) else None
 
@@ -254,7 +256,7 @@ def run_number(scenario: dict[str, Any]) -> int | None:
 def checked_labels(content: McapContent) -> dict[str, Any]:
     """Return the labels by name, each a value or a list of values.
 
-    Raises DamageError where one of `RequiredLabels` is missing, or names or values are not of the kind that rubgen
+    Raises DamageError where a label of `RequiredLabels` is missing, or a name or value is not of a kind that rubgen
     writes.
     """
     labels = content.document("labels.json")
@@ -264,7 +266,10 @@ def checked_labels(content: McapContent) -> dict[str, Any]:
 
 
 def check_facts(channel: Channel) -> None:
-    """Check unit, place and range in the metadata of a channel. Raises DamageError where one is missing or wrong."""
+    """Check unit, place and range in the metadata of a channel.
+
+    Raises DamageError where a value is missing or wrong.
+    """
     facts: ChannelFacts = _validated(_adapter(ChannelFacts), channel.metadata, f"metadata of {channel.topic}")
     if not math.isfinite(facts.range_max - facts.range_min) or facts.range_max < facts.range_min:
         raise DamageError(f"metadata of {channel.topic}: the range is empty")

@@ -48,7 +48,7 @@ _ENCAPSULATION = b"\x00\x01\x00\x00"  # plain CDR, little endian; alignment coun
 
 @cache
 def transform_descriptor_set() -> bytes:
-    """Serialise the descriptors of FrameTransform and its parts, as MCAP embeds them in a schema."""
+    """Serialise the protobuf descriptors of FrameTransform and of its parts, as an MCAP schema contains them."""
     return descriptor_set(_FILES)
 
 
@@ -72,7 +72,7 @@ def transform(time_ns: int, angle: float, centre: list[float]) -> bytes:
 
 
 def read_transform(data: bytes) -> Any:
-    """Parse a serialised FrameTransform. Raises protobuf's DecodeError where `data` is anything else."""
+    """Parse a serialised FrameTransform. Raises protobuf's DecodeError for other bytes."""
     return _message_class().FromString(data)
 
 
@@ -84,8 +84,8 @@ def _message_class() -> Any:
 def multi_arrays(names: Sequence[str], values: FloatArray) -> list[bytes]:
     """Serialise each row of `values` (n, len(names)) as a Float64MultiArray in CDR.
 
-    The label of the array's one dimension lists the names. All messages have the same header, so one template is filled
-    for all of them at once.
+    The label of the array's only dimension contains the names, with commas between them. All messages have the same
+    header, so that all are filled at once.
     """
     count = len(names)
     label = ", ".join(names).encode() + b"\0"
@@ -102,7 +102,7 @@ def multi_arrays(names: Sequence[str], values: FloatArray) -> list[bytes]:
 def read_multi_array(data: bytes) -> tuple[list[str], FloatArray]:
     """Parse a message of `multi_arrays` into names and values (len(names),).
 
-    Raises ValueError or struct.error where `data` is anything else.
+    Raises ValueError or struct.error for other bytes.
     """
     if data[: len(_ENCAPSULATION)] != _ENCAPSULATION:
         raise ValueError("no little-endian CDR")

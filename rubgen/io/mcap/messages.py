@@ -24,7 +24,7 @@ TYPES = {
 
 @dataclass(frozen=True)
 class Field:
-    """One field. Its number is its position in the message."""
+    """One field of a message. Its number is its position in the message."""
 
     type: str
     name: str
@@ -135,7 +135,7 @@ def proto_file(path: str, package: str, messages: dict[str, list[Field]]) -> des
 
 
 def descriptor_set(files: list[descriptor_pb2.FileDescriptorProto]) -> bytes:
-    """Serialise the descriptors of `files`, after that of Timestamp, as MCAP embeds them in a schema."""
+    """Serialise the descriptors of `files`, after the descriptor of Timestamp, as an MCAP schema contains them."""
     return descriptor_pb2.FileDescriptorSet(file=_with_timestamp(files)).SerializeToString(deterministic=True)
 
 
@@ -155,7 +155,7 @@ def _with_timestamp(files: list[descriptor_pb2.FileDescriptorProto]) -> list[des
 
 @cache
 def file_descriptor_set() -> bytes:
-    """Serialise the descriptors of all messages of rubgen and of their imports, as MCAP embeds them in a schema."""
+    """Serialise the descriptors of all messages of rubgen and of their imports, as an MCAP schema contains them."""
     return descriptor_set([_own_file()])
 
 
@@ -173,12 +173,12 @@ def timestamp(time_ns: int) -> dict[str, int]:
 def sample_block(values: Float32Array, sample_rate_hz: float, first_index: int, time_ns: int) -> bytes:
     """Serialise a SampleBlock message with samples `values` (n,).
 
-    The message has the packed floats as one bytes field of the same number. Its wire bytes are the same (a test
-    compares them), without a Python object for each sample.
-
     - sample_rate_hz: samples per second of the channel.
     - first_index: index of the first sample in the channel.
-    - time_ns: time of the first sample after the first of the file.
+    - time_ns: time of the first sample, in ns from the first sample of the file.
+
+    The packed floats are serialised as one bytes field of the same number. The bytes in the file are the same (a test
+    compares them), without a Python object for each sample.
     """
     block = _bytes_block()(
         timestamp=timestamp(time_ns),

@@ -34,9 +34,10 @@ FRAMES, MODES = "/motion/frames", "/motion/casing_modes"
 
 
 def read_frames(content: McapContent, scenario: Scenario) -> MotionFrames | None:
-    """Decode the frames of motion: positions of disk, tips and casing at single moments. None where the file has none.
+    """Decode the frames of motion: positions of disk, tips and casing at single moments. None if the file has none.
 
-    Raises DamageError where their sizes do not fit each other or the machine, or times do not ascend in the recording.
+    Raises DamageError where the sizes of the frames contradict each other or the machine, or times do not ascend within
+    the recording.
     """
     found, shapes = decoded(content, FRAMES), decoded(content, MODES)
     if not found or not shapes:
@@ -102,10 +103,11 @@ class McapRun:
 
 
 def read_mcap(path: Path, *, channels: Collection[str] | None = None) -> McapRun:
-    """Read the run in the MCAP file at `path`, with CRCs of chunks, data and summary, and the content, checked.
+    """Read the run in the MCAP file at `path`. CRCs of chunks, data and summary, and the content, are checked.
 
-    With `channels` (`<name>_clean` for the channel without noise) only these channels and the pulses are decoded.
-    Raises UserError, one line, where there is no such file, it is damaged, or it has no run of rubgen.
+    `channels` are names of channels (`<name>_clean` for the channel without noise): only these channels and the pulses
+    are decoded. None decodes everything. Raises UserError, one line, where the file does not exist, is damaged, or has
+    no run of rubgen.
     """
     try:
         return run_of(read_content(path), channels=channels)
@@ -116,9 +118,9 @@ def read_mcap(path: Path, *, channels: Collection[str] | None = None) -> McapRun
 
 
 def run_of(content: McapContent, *, gaps: bool = False, channels: Collection[str] | None = None) -> McapRun:
-    """Make the run from the records of its file. Raises DamageError where they are no run of rubgen.
+    """Make the run from the records of its file. Raises DamageError where they are not a run of rubgen.
 
-    - gaps: samples may be missing and are then NaN; else a missing block is damage.
+    - gaps: True sets missing samples to NaN; False raises DamageError for a missing block.
     - channels: names of the channels to decode, with the pulses and nothing else; None decodes everything.
     """
     plain, scenario = checked_scenario(content)
@@ -210,11 +212,11 @@ def _motion_classes(content: McapContent) -> dict[str, list[tuple[float, str]]]:
 
 
 def salvage_mcap(path: Path) -> tuple[McapRun, list[str]]:
-    """Read what can be read of the run in the MCAP file at `path`. Returns it with its losses, one sentence each.
+    """Read the undamaged parts of the run in the MCAP file at `path`. Return the run and its losses, one sentence each.
 
-    There is no loss in a good file. Chunks that fail their CRC are left out, and everything after the place where the
-    records can no longer be followed. Lost samples are NaN. Raises UserError where scenario or labels are lost, the
-    rest contradicts itself, or it is no file of rubgen.
+    The list is empty for a good file. Chunks with a wrong CRC are left out, and everything after the position from
+    which the records cannot be followed. Lost samples are NaN. Raises UserError where scenario or labels are lost, the
+    rest contradicts itself, or the file was not written by rubgen.
     """
     try:
         return read_mcap(path), []

@@ -46,7 +46,7 @@ _PARSERS_RAISE = (
 
 
 class DamageError(RubgenError):
-    """Damage of an MCAP file. The message is to be put after the name of the file."""
+    """Damage of an MCAP file. The message does not contain the name of the file."""
 
 
 @contextmanager
@@ -63,8 +63,8 @@ def read_records(path: Path, lost: list[str] | None = None) -> Iterator[McapReco
     """Yield schemas, channels, messages, metadata and attachments in file order, including records within chunks.
 
     Raises DamageError where a record, a size or a CRC is wrong. If a list `lost` is given, damaged parts are left out
-    instead, one text about each is appended to `lost`, and the CRCs of the whole file are not checked. Raises UserError
-    or OSError where the file cannot be read at all.
+    instead, a text about each part is appended to `lost`, and the CRCs of the whole file are not checked. Raises
+    UserError or OSError where the file cannot be read at all.
     """
     size = check_regular(path)
     with path.open("rb") as stream:

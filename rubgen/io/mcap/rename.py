@@ -13,10 +13,10 @@ from rubgen.io.mcap.write import new_writer, write_records
 
 
 def copy_with(source: Path, path: Path, changes: dict[str, Any]) -> None:
-    """Write the file at `source` to `path` with these keys of the scenario changed, complete or not at all.
+    """Write the MCAP file at `source` to `path` with some keys of its scenario changed, complete or not at all.
 
-    The bytes are those that `write_mcap` writes of the run with that scenario. Raises UserError where `source` is
-    damaged.
+    `changes` are the keys with their new values. The bytes are the same as those from `write_mcap` for the run with the
+    changed scenario. Raises UserError where `source` is damaged.
     """
 
     def write(part: Path) -> None:

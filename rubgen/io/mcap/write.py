@@ -46,7 +46,7 @@ def write_mcap(run: Run, path: Path) -> None:
     `/blade_tip_timing/<probe>` and `/labels/motion`. A run with a motion track has `/motion/frames`,
     `/motion/casing_modes` and `/tf`. Times are integer ns from the first sample. Scenario and labels are metadata
     records (`rubgen.scenario`, `rubgen.labels`; each value JSON) and attachments. Raises ValueError for a run without a
-    recording, OSError when the file cannot be written.
+    recording, OSError where the file cannot be written.
     """
     if run.recording is None or run.labels is None:
         raise ValueError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to record")
@@ -69,14 +69,14 @@ def _write_file(path: Path, run: Run, recording: Recording, labels: Labels) -> N
 
 
 def new_writer(stream: IO[bytes]) -> Writer:
-    """Begin an MCAP file of rubgen."""
+    """Begin an MCAP file of rubgen on `stream`, and return its writer."""
     writer = Writer(stream, chunk_size=CHUNK_BYTES, enable_data_crcs=True)
     writer.start(profile="", library=LIBRARY)
     return writer
 
 
 def write_records(writer: Writer, name: str, values: dict[str, object]) -> None:
-    """Write a document of a run as a metadata record and as an attachment."""
+    """Write a document of a run, called `name`, as a metadata record and as a JSON attachment."""
     writer.add_metadata(f"rubgen.{name}", {key: json.dumps(value) for key, value in values.items()})
     content = json.dumps(values, indent=2).encode()
     writer.add_attachment(0, 0, f"{name}.json", "application/json", content)

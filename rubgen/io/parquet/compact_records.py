@@ -55,7 +55,7 @@ MOST_COUNTED = 2**31
 
 
 def record_table(run_id: str, response: Response) -> pa.Table:
-    """Make the row with the compact record of run `run_id`. The run must have ended well (status OK)."""
+    """Make the table row with the compact record of run `run_id`, which must have the status OK."""
     record = compact_record(response)
     columns = {name: pa.array([record[name].ravel()], pa.list_(kind)) for name, (kind, _) in RECORD_COLUMNS.items()}
     return pa.table({"run_id": pa.array([run_id])} | columns, schema=SCHEMA)
@@ -71,9 +71,10 @@ class _MisfitError(Exception):
 
 
 def read_record(table: pa.Table, row: int, path: Path) -> CompactRecord:
-    """Read the compact record in row `row` of `table`, which was read from `path`. Returns its arrays by name.
+    """Read the compact record in row `row` of `table`. Returns its arrays by name.
 
-    Raises UserError where the lengths of its lists do not fit each other or a number is not valid.
+    `path` is the file of the table, for messages. Raises UserError where the lengths of its lists contradict each other
+    or a number is not valid.
     """
     with _misfits_named(table, row, path):
         record = {name: _listed(table, name, row) for name in RECORD_COLUMNS}

@@ -18,7 +18,10 @@ DTYPES = {"double": "float64", "float": "float32"}
 
 
 def features_json(columns: Iterable[Column], fields: Iterable[pa.Field]) -> str:
-    """Return the value of the key `huggingface`: the features of `columns`, whose Arrow fields are `fields`."""
+    """Return the value of the metadata key `huggingface`, as JSON: the features of `columns`.
+
+    `fields` are the Arrow fields of the columns, in the same order.
+    """
     features = {column.name: _feature(column, field.type) for column, field in zip(columns, fields, strict=True)}
     return json.dumps({"info": {"features": features}})
 

@@ -28,8 +28,8 @@ NO_PARQUET = "damaged or no Parquet file of rubgen"
 class ParquetSource:
     """An open Parquet file of rubgen. Any damage raises a UserError that names the file.
 
-    Page checksums, UTF-8 and offsets are checked. Sizes are checked before anything is unpacked, so that a small file
-    cannot fill the memory.
+    Page checksums, UTF-8 and offsets are checked. Sizes are checked before unpacking, so that a small file cannot fill
+    the memory.
     """
 
     def __init__(self, path: Path, asked_bytes: float = 0.0) -> None:
@@ -66,7 +66,7 @@ class ParquetSource:
         return int(self._file.metadata.row_group(group).num_rows)
 
     def read_row_group(self, group: int, columns: Sequence[str] | None = None) -> pa.Table:
-        """Read the rows of row group `group`, with the named columns or all.
+        """Read the rows of row group `group`. `columns` are the names of the columns to read; None reads all.
 
         Raises UserError where a page is damaged or a column is missing.
         """
@@ -76,7 +76,10 @@ class ParquetSource:
             return self._plain(self._file.read_row_group(group, columns=names), names)
 
     def read(self, columns: Sequence[str] | None = None) -> pa.Table:
-        """Read all rows, with the named columns or all. Raises UserError as `read_row_group` does."""
+        """Read all rows. `columns` are the names of the columns to read; None reads all.
+
+        Raises UserError where a page is damaged or a column is missing.
+        """
         groups = [self.read_row_group(group, columns) for group in range(self.num_row_groups)]
         types = pa.schema([self.schema_arrow.field(name) for name in self._names(columns)])
         return pa.concat_tables([types.empty_table(), *groups])
@@ -117,9 +120,9 @@ def read_table(path: Path, columns: Sequence[str] | None = None, asked_bytes: fl
     """Read all rows of the Parquet file at `path`, with every page checked.
 
     - columns: names of the columns to read; None reads all.
-    - asked_bytes: as in `ParquetSource`.
+    - asked_bytes: expected unpacked size of a row group, allowed beyond the general bound of 256 MiB.
 
-    Raises UserError where the file is missing, damaged or lacks a column.
+    Raises UserError where the file is missing or damaged, or a column is missing.
     """
     with ParquetSource(path, asked_bytes) as file:
         return file.read(columns)
@@ -128,7 +131,9 @@ def read_table(path: Path, columns: Sequence[str] | None = None, asked_bytes: fl
 def row_groups(path: Path, asked_bytes: float = 0.0, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
     """Yield the row groups of the Parquet file at `path` one by one, with every page checked. Only one is in memory.
 
-    With `columns` only these are read. `asked_bytes` is as in `ParquetSource`.
+    - asked_bytes: expected unpacked size of a row group, allowed beyond the general bound of 256 MiB.
+    - columns: names of the columns to read; None reads all.
+
     Raises UserError where the file is missing or damaged.
     """
     with ParquetSource(path, asked_bytes) as file:

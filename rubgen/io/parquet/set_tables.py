@@ -52,7 +52,10 @@ WINDOWS_SCHEMA = table_schema(WINDOW_COLUMNS)
 
 
 def signals_schema(recipe: Recipe) -> pa.Schema:
-    """Return the columns of `signals`: names, time, inputs, answers. Channels have one length and name their sensor."""
+    """Return the schema of the table `signals`: names, time, inputs, targets.
+
+    The metadata of a channel names its sensor. All channels are lists of the same length.
+    """
     facts = {each["channel"]: each for each in channel_facts(recipe.sensing)}
     every = recipe_schema(recipe, signals=True)
     fields = []
@@ -63,19 +66,19 @@ def signals_schema(recipe: Recipe) -> pa.Schema:
 
 
 def signals_row(run: Run, split: str) -> pa.Table:
-    """Return the row of a good run with the columns of `signals`."""
+    """Return the row of a run with status ok in the table `signals`. `split` is the name of its split."""
     whole = run_table(run, split=split)
     return _with_fixed(whole.select(_seen(whole.schema)), run)
 
 
 def truth_schema(recipe: Recipe) -> pa.Schema:
-    """Return the columns of `truth`: touches, orders by window, channels that no sensor could record, and the like."""
+    """Return the schema of the table `truth`: touches, orders by window, channels that no sensor could record."""
     every = recipe_schema(recipe, signals=True)
     return pa.schema(_fixed((every.field(name) for name in _hidden(every)), _length(recipe)), metadata=every.metadata)
 
 
 def truth_row(run: Run, split: str) -> pa.Table:
-    """Return the row of a good run with the columns of `truth`."""
+    """Return the row of a run with status ok in the table `truth`. `split` is the name of its split."""
     whole = run_table(run, split=split)
     return _with_fixed(whole.select(_hidden(whole.schema)), run)
 
@@ -91,14 +94,15 @@ def _hidden(types: pa.Schema) -> list[str]:
 
 
 def windows_schema(_recipe: Recipe) -> pa.Schema:
-    """Return the columns of `windows`."""
+    """Return the schema of the table `windows`."""
     return WINDOWS_SCHEMA
 
 
 def window_rows(run: Run, split: str) -> pa.Table:
-    """Return the rows of a good run in `windows`: one for each window of labels that its signals hold whole.
+    """Return the rows of a run with status ok in the table `windows`: one row a window of labels.
 
-    A sample belongs to a window when its time is not before the window's start and before its end.
+    Only windows that lie completely within the run's signals have a row. A sample belongs to a window if its time is
+    not before the window's start, and before its end. Raises ValueError for a failed run.
     """
     if run.labels is None or run.recording is None:
         raise ValueError(f"{run.scenario.run_id} failed: it has no windows")

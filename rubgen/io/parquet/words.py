@@ -13,7 +13,7 @@ NUMBERS = {label.name: class_numbers(label.words) for label in LABELS if label.w
 
 
 def with_numbers(row: Mapping[str, object]) -> dict[str, object]:
-    """Return a row of labels with the numbers of their words, as files have them. None stays None."""
+    """Return a row of labels with numbers in place of the words of classes, as in files. None stays None."""
     return {
         name: NUMBERS[name][str(value)] if name in NUMBERS and value is not None else value
         for name, value in row.items()
@@ -21,7 +21,7 @@ def with_numbers(row: Mapping[str, object]) -> dict[str, object]:
 
 
 def with_words(table: pa.Table) -> pa.Table:
-    """Return a table with texts in place of the numbers of classes, for columns with the name and type of a class.
+    """Return a table with words in place of the numbers of classes, in columns with the name and type of a class.
 
     A number that is no class of the column becomes the text "class" and the number.
     """

@@ -1,9 +1,10 @@
-"""Runs as Parquet: one row a run, scalars and labels as columns, each recorded channel one list<float32> column.
+"""Runs as Parquet: one row for each run, scalars and labels as columns, each recorded channel one list<float32> column.
 
-zstd, a checksum on every page, an index of pages. Text and recorded channels have dictionaries: an ADC has few values,
-so `signals/` is 14 to 27 % smaller than with BYTE_STREAM_SPLIT, which some readers lack. Only `truth/` and `sections/`
-have that encoding, on all other floating leaves. Pages end where the content says (content-defined chunking), so stores
-that know pages send only what changed. The bytes depend on the rows alone.
+zstd, a checksum on every page, an index of pages. Columns of texts and of recorded channels have dictionaries: an ADC
+has few values, so `signals/` is 14 to 27 % smaller than with BYTE_STREAM_SPLIT, which some readers lack. Only files in
+`truth/` and `sections/` use BYTE_STREAM_SPLIT, for their floating-point columns without a dictionary. Page ends depend
+on the content (content-defined chunking), so that stores which compare pages upload only changed pages. The bytes
+depend only on the rows.
 """
 
 from __future__ import annotations
@@ -67,12 +68,12 @@ def schema(
     """Return the Arrow schema of `runs.parquet`, or with `signals` of the data files. Fields have metadata.
 
     - signals: include the recorded channels, touches and windows of each run.
-    - clean: include the channels without noise.
+    - clean: include the clean channels (without noise).
     - sensors: the sensor set of the runs; None is the default set.
     - surroundings: include the levels of the disturbances from the surroundings.
     - faults: kinds of fault whose labels are included.
     - machines: keys of virtual machines whose values are included.
-    - drawing: tables of the recipe whose columns are included, of DRAWING.
+    - drawing: names in DRAWING of the tables of the recipe whose columns are included.
     """
     return _schema(signals, clean, sensors or default_sensor_set(), surroundings, faults, machines, tuple(drawing))
 
@@ -93,7 +94,7 @@ def _schema(
 
 
 def recipe_schema(recipe: Recipe, *, signals: bool) -> pa.Schema:
-    """Return the Arrow schema of the files of the data set that a recipe makes, as `schema` does.
+    """Return the Arrow schema of the files of the data set that `recipe` makes.
 
     With `signals` it is the schema of the data files, else of `runs.parquet`.
     """
@@ -110,15 +111,18 @@ def recipe_schema(recipe: Recipe, *, signals: bool) -> pa.Schema:
 
 
 def drawing_of(recipe: Recipe, *, signals: bool = False) -> list[str]:
-    """Return those of DRAWING whose columns the files of a recipe's set have, with `signals` its data files."""
+    """Return the names in DRAWING whose columns the files of the recipe's set have.
+
+    The files are `runs.parquet`, or with `signals` the data files.
+    """
     has = {"twins": recipe.twins is not None, "balance": recipe.balance is not None, "merged": len(recipe.sources) > 1}
     return [name for name in DRAWING if has[name] and not (signals and name in IN_RUNS_ALONE)]
 
 
 def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Table:
-    """Make the row of one run: its identity, parameters and labels, and with `signals` its channels and touches.
+    """Make the row of one run: identity, parameters, labels and energies, and with `signals` its channels and touches.
 
-    `split` is the name of the run's part of the data set. A failed run has null labels, energies and signals. Raises
+    `split` is the name of the split of the run. A failed run has null labels, energies, channels and touches. Raises
     ValueError where a label has no column.
     """
     around = run.scenario.surroundings
@@ -162,7 +166,10 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
 
 
 def merged_from(source: str, index: int) -> str:
-    """Return what `merged_from` says of run number `index` of the source with these digits."""
+    """Return the value of the column `merged_from` for run number `index` of a source.
+
+    `source` are the source's digits.
+    """
     return f"{source}/{run_id_of(index)}"
 
 
@@ -191,7 +198,10 @@ def write_parquet(run: Run, path: Path) -> None:
 
 
 def table_schema(columns: Iterable[Column]) -> pa.Schema:
-    """Return the Arrow schema of a table with these columns. It also describes them to Hugging Face's `datasets`."""
+    """Return the Arrow schema of a table with these columns.
+
+    Its metadata also describes them to Hugging Face's `datasets`.
+    """
     columns = list(columns)
     fields = [_field(column) for column in columns]
     return pa.schema(fields, metadata={"huggingface": features_json(columns, fields)})

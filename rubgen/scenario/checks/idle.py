@@ -1,4 +1,4 @@
-"""Find keys of the surroundings, and faults, that change no channel."""
+"""Find keys of the surroundings, and faults, that change no recorded channel of a scenario."""
 
 from collections.abc import Sequence
 

@@ -38,7 +38,7 @@ class Tail(Observer):
 
 
 def tip_arrivals(arrivals: list[FloatArray], names: list[str]) -> dict[str, TipArrivals]:
-    """Sort arrivals by probe and then by time. Return those of each probe by its name.
+    """Sort arrivals by probe and then by time. Return the arrivals of each probe by the probe's name.
 
     Each array of `arrivals` is (any, 4): number of the probe, blade, time in steps, displacement in m. `names` are the
     names of the probes, in the order of their numbers.

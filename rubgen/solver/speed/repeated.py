@@ -30,7 +30,7 @@ class RepeatedDriver(SteadyDriver):
         return (self.integrated + self.repeated) / self.integrated
 
     def run_turns(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
-        """Yield the turns of these numbers: one is integrated, the others repeat it with their own numbers."""
+        """Yield the turns with these numbers. One turn is integrated; it is repeated with the numbers of all others."""
         for number in numbers:
             yield self._run_turn(number, opening, recording=recording)
 

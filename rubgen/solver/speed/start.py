@@ -1,4 +1,4 @@
-"""Start a run: in the rub-free motion, with the surface opened so that nothing touches."""
+"""Start a run: in the rub-free motion, with the casing's surface opened so that nothing touches."""
 
 from dataclasses import dataclass
 

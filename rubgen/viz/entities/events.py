@@ -17,7 +17,10 @@ MOST_PASSAGES = 4000
 
 
 def shown_touches(replay: Replay, *, full: bool) -> IntArray:
-    """Return the numbers of the touches that are drawn one by one: all (`full`), or the 2,000 of largest impulse."""
+    """Return the numbers of the touches that are drawn one by one.
+
+    They are all touches with `full`, else the 2,000 with the largest impulse.
+    """
     impulse = replay.touches.impulse
     if full or impulse.size <= MOST_TOUCHES:
         return np.arange(impulse.size)
@@ -27,7 +30,7 @@ def shown_touches(replay: Replay, *, full: bool) -> IntArray:
 def send_touches(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
     """Send angle, impulse and blade of touches at their start, and their map. Nothing is sent without contact.
 
-    With `full` all touches are sent, else as many as `shown_touches` chooses.
+    The touches are those of `shown_touches`.
     """
     touches, shown = replay.touches, shown_touches(replay, full=full)
     if not shown.size:
@@ -57,7 +60,8 @@ def contact_map(replay: Replay) -> FloatArray:
 def send_tip_timing(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
     """Send the tip deflections from each probe's arrival times, in um, as points at these times.
 
-    All are sent with `full`. Else, where they are many, the ones around the hardest touch and every few of the others.
+    With `full` all points are sent. Else, if there are many, all points around the hardest touch and some of the others
+    are sent.
     """
     recording, radius = replay.recording, replay.scenario.machine.tip_radius_m
     most = MOST_PASSAGES // max(len(recording.tip_timing), 1)

@@ -62,10 +62,10 @@ def casing_radius(machine: Machine, angle: FloatArray) -> FloatArray:
 
 
 def casing_curve(machine: Machine, frames: MotionFrames, angle: FloatArray, factor: float) -> FloatArray:
-    """Return drawn points (frames, stations, 2) of the casing's deformed inner surface. Nodes are joined linearly.
+    """Return drawn points (frames, stations, 2) of the casing's deformed inner surface, m. Nodes are joined linearly.
 
     - angle (stations,): polar angles, rad.
-    - factor: enlarges deviations from the tip circle.
+    - factor: factor by which deviations from the tip circle are enlarged.
     """
     nodes = frames.casing_modes.shape[0]
     place = np.mod(angle, 2 * np.pi) * nodes / (2 * np.pi)
@@ -77,16 +77,19 @@ def casing_curve(machine: Machine, frames: MotionFrames, angle: FloatArray, fact
 
 
 def undeformed_curve(machine: Machine, angle: FloatArray, factor: float) -> FloatArray:
-    """Return drawn points (stations, 2) of the casing at rest, at polar angles `angle` (rad).
+    """Return drawn points (stations, 2) of the casing at rest, m, at polar angles `angle` (rad).
 
-    `factor` enlarges deviations from the tip circle.
+    Deviations from the tip circle are enlarged by `factor`.
     """
     radius = machine.tip_radius_m + factor * (casing_radius(machine, angle) - machine.tip_radius_m)
     return np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
 
 
 def plate_mesh() -> Mesh:
-    """Make a box of side 1 on x = 0: x outward, y along the casing, z along its width. Its copies draw the casing."""
+    """Make a box of side 1 that begins at x = 0: x outward, y along the casing, z along its width.
+
+    Copies of it, stretched and turned, draw the casing.
+    """
     faces = []
     for axis in range(3):
         for side in (-0.5, 0.5):
@@ -196,7 +199,7 @@ def joined(parts: list[Mesh]) -> Mesh:
 
 
 def unbalances(machine: Machine) -> list[Unbalance]:
-    """Return all unbalances of the machine that are not zero, its own first."""
+    """Return all unbalances of the machine that are not zero; `unbalance_kg_m` is the first."""
     own = Unbalance(kg_m=machine.unbalance_kg_m, angle_deg=machine.unbalance_angle_deg)
     return [each for each in (own, *machine.unbalances) if each.kg_m > 0]
 
@@ -212,7 +215,7 @@ def blade_angles(blades: BladeRow) -> FloatArray:
 
 
 def blade_placements(machine: Machine) -> FloatArray:
-    """Return the place of each blade's root in the blisk's turning frame, (n_blades, 3) in m."""
+    """Return the position of each blade's root in the blisk's turning frame, (n_blades, 3) in m."""
     angle = blade_angles(machine.blades)
     rim = machine.disk.rim_radius_m
     return np.column_stack([rim * np.cos(angle), rim * np.sin(angle), np.zeros_like(angle)])
@@ -221,10 +224,10 @@ def blade_placements(machine: Machine) -> FloatArray:
 def blade_leanings(machine: Machine, frames: MotionFrames, factor: float) -> FloatArray:
     """Return matrices (frames, n_blades, 3, 3) that turn `blade_mesh` to each blade's direction and lean it to its tip.
 
-    They hold in the blisk's turning frame, about the root: `blade_placements` adds the place of the root. The matrix of
-    blade k is R_k (I + s d e_x^T / L), with R_k the rotation about Z by its angle on the disk, s the factor of the
-    drawing, L the blade's length and d the tip's displacement relative to the disk centre (radial, tangential, axial).
-    A lost blade shrinks to its root.
+    They apply in the blisk's turning frame, about the root: `blade_placements` adds the position of the root. The
+    matrix of blade k is R_k (I + s d e_x^T / L), with R_k the rotation about Z by its angle on the disk, s the factor
+    of the drawing, L the blade's length and d the tip's displacement relative to the disk centre (radial, tangential,
+    axial). A lost blade shrinks to its root.
     """
     angle = blade_angles(machine.blades)
     cosine, sine = np.cos(angle), np.sin(angle)
@@ -242,9 +245,9 @@ def blade_leanings(machine: Machine, frames: MotionFrames, factor: float) -> Flo
 
 
 def drawn_tips(machine: Machine, frames: MotionFrames, factor: float) -> FloatArray:
-    """Return the drawn places (frames, n_blades, 2) of the tips in the inertial frame, m.
+    """Return the drawn positions (frames, n_blades, 2) of the tips in the inertial frame, m.
 
-    `factor` enlarges deviations from the tip circle. A lost blade has its tip at the rim.
+    Deviations from the tip circle are enlarged by `factor`. A lost blade has its tip at the rim.
     """
     angle = frames.angle[:, None] + blade_angles(machine.blades)
     radial = machine.tip_radius_m + factor * frames.tips[..., 0]

@@ -16,9 +16,9 @@ COARSE_TURNS = 100
 
 
 def send_orbit(stream: rr.RecordingStream, replay: Replay) -> None:
-    """Send the recorded path turn by turn, and the first point of every turn, in um.
+    """Send the recorded orbit turn by turn, and its first point of every turn, in um.
 
-    All turns near the hardest touch are sent, else up to 100. Nothing is sent without a pair of probes.
+    All turns near the hardest touch are sent, and up to 100 other turns. Nothing is sent without a pair of probes.
     """
     orbit, turns = shaft_orbit(replay), replay.pulse_times
     if orbit is None or turns.size < 2:
@@ -53,7 +53,7 @@ class Bounds:
 
 
 def orbit_bounds(replay: Replay) -> Bounds:
-    """Return the square that shows the whole recorded path."""
+    """Return the square that shows the whole recorded orbit."""
     return _bounds(shaft_orbit(replay), least=1.0)
 
 

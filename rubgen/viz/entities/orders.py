@@ -19,7 +19,10 @@ FLOOR = 1e-5
 
 
 def spectrum_channels(replay: Replay) -> dict[str, Channel]:
-    """Return the recorded channels that have spectra, by name: those in `FIRST`, or the first that is no pulse."""
+    """Return the recorded channels that have spectra, by name: the channels of `FIRST`.
+
+    If none of them was recorded, it is the first channel that is not the pulse.
+    """
     channels = replay.recording.channels
     names = [name for name in FIRST if name in channels]
     names = names or [name for name, channel in channels.items() if channel.quantity != UNSHOWN][:1]
@@ -27,7 +30,7 @@ def spectrum_channels(replay: Replay) -> dict[str, Channel]:
 
 
 def send_orders(stream: rr.RecordingStream, replay: Replay) -> None:
-    """Send `/spectrum/<channel>` at the start of each block of turns, `/waterfall/<channel>` of all of them in dB."""
+    """Send `/spectrum/<channel>` for each block of turns, and `/waterfall/<channel>` of all blocks in dB."""
     for name, channel in spectrum_channels(replay).items():
         found = order_map(channel.values, replay.recording.sample_rate_hz, replay.pulse_times, most_blocks=MOST_BLOCKS)
         if not found.amplitude.size or not found.amplitude.any():
@@ -60,11 +63,11 @@ def send_bars(
 ) -> None:
     """Send bars of equal width whose heights change over time.
 
-    - stream, entity: where they are sent.
+    - stream, entity: recording, and path of the bars in it.
     - index: times of the rows.
     - values (rows, n): heights at each time.
     - left (n,): left edges, at equal steps.
-    - color: one colour for all.
+    - color: colour of all bars.
     """
     width = np.full(left.size, left[1] - left[0] if left.size > 1 else 1.0)
     whole = rr.BarChart(values[0], abscissa=left, widths=width, color=color).as_component_batches()

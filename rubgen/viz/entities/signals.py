@@ -21,14 +21,14 @@ Nanoseconds = npt.NDArray[np.timedelta64]
 
 
 def shown_channels(replay: Replay) -> int:
-    """Count the channels whose signals are sent where not everything is wanted: all but the pulses."""
+    """Return the number of channels whose signals are sent without `full`: all but the pulses."""
     return sum(channel.quantity != UNSHOWN for channel in replay.recording.channels.values())
 
 
 def detail_window(replay: Replay) -> slice:
     """Return the range of samples that are sent at full rate: 20 turns around the hardest touch.
 
-    It has fewer turns where turns are long. Without contact it is the middle of the recording.
+    If turns are long, the range has fewer turns. Without contact it is the middle of the recording.
     """
     recording, samples = replay.recording, replay.recording.samples
     length = round(DETAIL_TURNS * replay.turn_seconds * recording.sample_rate_hz)
@@ -44,12 +44,12 @@ def times_ns(seconds: FloatArray) -> Nanoseconds:
 
 
 def time_column(seconds: FloatArray) -> list[rr.TimeColumn]:
-    """Return Rerun's index of rows at these times, s."""
+    """Return Rerun's index for rows at these times, s."""
     return [rr.TimeColumn(TIMELINE, duration=times_ns(seconds))]
 
 
 def preview_rate(replay: Replay) -> float:
-    """Return how many bins per second the preview has: as many as PREVIEW_VALUES allows, at most PREVIEW_RATE_HZ."""
+    """Return the number of bins per second of the preview: limited by PREVIEW_VALUES, at most PREVIEW_RATE_HZ."""
     columns = 2 * shown_channels(replay)
     return min(PREVIEW_RATE_HZ, PREVIEW_VALUES / (columns * replay.seconds))
 
@@ -57,7 +57,8 @@ def preview_rate(replay: Replay) -> float:
 def send_signals(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
     """Send every channel as preview and at full rate over the detail window, one entity a quantity.
 
-    With `full` the whole recording is sent at full rate. Minimum and maximum of a bin have the colour of their channel.
+    With `full` the whole recording is sent at full rate, with the pulses. Minimum and maximum of a bin have the colour
+    of their channel.
     """
     recording, rate = replay.recording, replay.recording.sample_rate_hz
     window = slice(0, recording.samples) if full else detail_window(replay)

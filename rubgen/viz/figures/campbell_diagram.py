@@ -33,12 +33,12 @@ def campbell(
 ) -> Figure:
     """Draw Campbell diagrams: the whirl of the disk and the waves of the blades, and the casing.
 
-    Left, in the inertial frame: modes of one nodal diameter, which alone move the disk centre sideways. A critical
-    speed is where a forward one meets 1X. Middle, in the turning frame: modes of all nodal diameters n. Forces that
-    stand still excite n waves at order n; each crossing of the backward wave is marked. Right: modes of the casing in
-    the inertial frame, and where the blisk, which turns under N lobes, excites them at orders k N. All modes are
-    damped and without contact. The ranges of speed (rev/min) and frequency (Hz) are chosen for each panel where they
-    are not given.
+    Left, in the inertial frame: modes of one nodal diameter, the only modes that move the disk centre sideways. A
+    critical speed is where a forward mode meets 1X. Middle, in the turning frame: modes of all nodal diameters n.
+    Stationary forces excite n waves at order n; each crossing of the backward wave is marked. Right: modes of the
+    casing in the inertial frame, and where the blisk, which turns under N lobes, excites them at orders k N. All modes
+    are damped and without contact. `speeds_rpm` is the range of speed in rev/min, `frequencies_hz` the range of
+    frequency in Hz; for None the ranges are chosen for each panel.
     """
     low, high = speeds_rpm or (0.0, max(HIGHEST_RPM, ABOVE_CRITICAL * model.critical_speed_rpm))
     speeds = np.linspace(low, high, SPEEDS)
@@ -53,11 +53,11 @@ def campbell(
 
 
 def branches(modes: Sequence[Sequence[Mode]], waves: int) -> FloatArray:
-    """Return the modes of that many nodal diameters at each speed (speeds, branches, 3).
+    """Return the modes of `waves` nodal diameters at each speed (speeds, branches, 3).
 
     Values are the frequencies in the turning and in the inertial frame, Hz, with signs, and the damping ratio. Modes of
-    one nodal diameter veer and do not cross in the turning frame, so their order there makes the branches. Where a
-    mistuned blisk has more of them at one speed, the highest are left out.
+    one nodal diameter veer and do not cross in the turning frame, so their order there makes the branches. A mistuned
+    blisk may have more modes at some speeds: the highest modes are then left out.
     """
     rows = []
     for each in modes:
@@ -68,7 +68,7 @@ def branches(modes: Sequence[Sequence[Mode]], waves: int) -> FloatArray:
 
 
 def crossings(speeds: FloatArray, hertz: FloatArray, order: float) -> FloatArray:
-    """Return the speeds in rev/min at which the frequencies `hertz` (speeds,) meet the order `order`."""
+    """Return the speeds in rev/min at which the frequencies `hertz` (speeds,), in Hz, meet the order `order`."""
     above = hertz - order * speeds / 60
     at = np.flatnonzero(above[:-1] * above[1:] < 0)
     share = above[at] / (above[at] - above[at + 1])

@@ -44,7 +44,7 @@ def dataset_overview(runs: pd.DataFrame) -> Figure:
 def varied_keys(runs: pd.DataFrame) -> list[str]:
     """Return the keys of `[vary]` with more than one value among the runs, the keys of `FIRST` first.
 
-    At steady speed the duration and the end speed follow from the speed and are left out.
+    At steady speed the duration and the end speed are determined by the speed and are left out.
     """
     follow = FOLLOWING if _is_steady(runs) else ()
     known = [entry.key for entry in PARAMETERS if entry.key in runs and entry.key not in follow]
@@ -82,7 +82,7 @@ def parameter_plane(axes: Axes, runs: pd.DataFrame, x: str, y: str) -> None:
 
 
 def scale_of(key: str) -> float:
-    """Return the factor from a column's unit to the displayed one: lengths in m are shown in mm."""
+    """Return the factor from a column's unit to the displayed unit: lengths in m are shown in mm."""
     return 1e3 if key.endswith("_m") and not key.endswith(("per_m", "kg_m")) else 1.0
 
 

@@ -27,9 +27,9 @@ SEEN = 1e-6
 def unbalance_response(model: ReducedModel, speeds_rpm: tuple[float, float] | None = None) -> Figure:
     """Draw amplitude and phase of the disk centre's 1X whirl over the speed, each speed steady and without contact.
 
-    The response is exact for the linear system: no time is stepped. The phase is that of the forward whirl behind the
-    mark of the blisk, in degrees. Uneven supports and laws of the support add a backward whirl.
-    `speeds_rpm` is the range in rev/min, by default up to twice the critical speed.
+    The response is exact for the linear system: nothing is integrated in time. The phase is the angle of the forward
+    whirl behind the mark of the blisk, in degrees. Uneven supports and laws of the support add a backward whirl.
+    `speeds_rpm` is the range in rev/min; None is up to twice the critical speed.
     """
     critical = model.critical_speed_rpm
     low, high = speeds_rpm or (0.0, TIMES_CRITICAL * critical)
@@ -76,9 +76,9 @@ def whirl_of_unbalance(model: ReducedModel, speeds_rpm: FloatArray) -> ComplexAr
 def critical_map(model: ReducedModel, speeds_rpm: tuple[float, float] | None = None) -> Figure:
     """Draw the critical speeds over the lateral stiffness of the disk support, on logarithmic axes.
 
-    A critical speed is one at which a forward whirl of the inertial frame meets 1X. Modes are undamped and without
-    contact. The machine's own stiffness is marked, with its critical speeds. `speeds_rpm` is the range of the speeds
-    that are drawn, in rev/min.
+    A critical speed is a speed at which a forward whirl of the inertial frame meets 1X. Modes are undamped and without
+    contact. The machine's own stiffness is marked, with its critical speeds. `speeds_rpm` is the drawn range of speeds
+    in rev/min; None chooses it.
     """
     own = float(model.springs[0])
     stiffness = own * np.logspace(-DECADES, DECADES, STIFFNESSES)

@@ -21,11 +21,11 @@ HIGHEST_ORDER = 6
 
 
 def waterfall(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> Figure:
-    """Draw full spectra of the orbit over the speed: forward orders to the right, backward ones to the left.
+    """Draw full spectra of the orbit over the speed: forward orders to the right, backward orders to the left.
 
-    Each line is of 16 turns at equal angles. A circle that turns with the rotation is order 1, against it order -1. The
-    first touch is marked, or a line of text says where it is. `speeds_rpm` is the range that is shown, in rev/min.
-    Raises ValueError where no pair of proximity probes was recorded, or the speed is steady.
+    Each line belongs to 16 turns at equal angles. A circle in the sense of rotation is order 1, a circle against it
+    order -1. The first touch is marked, or a line of text says where it is. `speeds_rpm` is the shown range, in
+    rev/min. Raises ValueError where no pair of proximity probes was recorded, or the speed is steady.
     """
     speeds, turns = whirl_by_turn(replay)
     count = len(turns) // BLOCK_TURNS
@@ -57,9 +57,9 @@ def waterfall(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> 
 def bode(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> Figure:
     """Draw amplitude and phase of the forward 1X whirl over the speed, turn by turn.
 
-    The first touch is marked, or a line of text says where it is. The phase is that of the whirl behind the mark of the
-    once-per-turn pulse, in degrees. `speeds_rpm` is the range that is shown, in rev/min. Raises ValueError where no
-    pair of proximity probes was recorded, or the speed is steady.
+    The first touch is marked, or a line of text says where it is. The phase is the angle of the whirl behind the mark
+    of the once-per-turn pulse, in degrees. `speeds_rpm` is the shown range, in rev/min. Raises ValueError where no pair
+    of proximity probes was recorded, or the speed is steady.
     """
     speeds, turns = whirl_by_turn(replay)
     whirl = forward_1x(turns)

@@ -56,8 +56,8 @@ class _Scene:
 def picture(replay: Replay, time: float | None = None) -> Figure:
     """Draw the machine seen along its axis, the orbit and the contact force at one moment.
 
-    `time` is in s, by default that of the hardest touch. The machine is drawn in the frame nearest to it; the picture
-    shows the time of that frame. Raises ValueError for a replay without frames, or a time outside the recording.
+    `time` is in s; None is the time of the hardest touch. The machine is drawn in the nearest frame, and the picture
+    shows the time of this frame. Raises ValueError for a replay without frames, or a time outside the recording.
     """
     scene = _scene(replay)
     return _drawn(scene, _nearest(scene, replay.hardest_touch if time is None else time))
@@ -134,7 +134,10 @@ def _motion_at(replay: Replay, time: float) -> Motion:
 
 
 def machine_along_axis(axes: Axes, replay: Replay, row: int, factor: float) -> None:
-    """Draw frame number `row` of a replay along the axis of rotation. `factor` enlarges deviations from the circle."""
+    """Draw frame number `row` of a replay along the axis of rotation.
+
+    Deviations from the circle of the tips are enlarged by `factor`. The replay must have frames.
+    """
     machine, frames = replay.scenario.machine, replay.frames
     assert frames is not None  # noqa: S101 - the caller has looked
     time, angle = float(frames.time[row]), float(frames.angle[row])

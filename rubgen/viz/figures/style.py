@@ -33,7 +33,7 @@ class ShownFigure(Figure):
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Make an empty figure of that size in inches. No state of pyplot is touched."""
+    """Make an empty figure of `width` x `height` inches, without any state of pyplot."""
     figure = ShownFigure(figsize=(width, height), layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
     return figure
@@ -49,7 +49,7 @@ def label_axes(axes: Axes, x: str, y: str) -> None:
 
 
 def head(figure: Figure, text: str, warning: str = "") -> None:
-    """Write above a figure what it shows, and below it in another colour what a reader must know."""
+    """Write the title `text` above a figure, and `warning` in another colour above its first panel."""
     figure.suptitle(text, fontsize=11, color=INK)
     if warning:
         figure.axes[0].set_title(warning, fontsize=9, color=VERMILION, loc="left")
@@ -63,7 +63,8 @@ def note(axes: Axes, text: str) -> None:
 def motion_legend(motions: Iterable[str], marker: str | None = None, *, hollow: bool = False) -> list[Line2D]:
     """Make legend entries for the classes of motion in `motions`, in the order of `Motion`.
 
-    They have the class's marker, or `marker` if given. With `hollow` an entry says that hollow marks have no contact.
+    Each entry has the marker of its class, or `marker` if given. With `hollow` a further entry says that hollow marks
+    have no contact.
     """
     present = [motion for motion in Motion if motion.value in set(motions)]
     marks = [(each.value, MOTION_COLORS[each], marker or MOTION_MARKERS[each], MOTION_COLORS[each]) for each in present]

@@ -26,10 +26,10 @@ def bifurcation(
 
     - values (runs,): the swept parameter.
     - sections: for each run, one coordinate of its motion once a turn (any,).
-    - motions: class of each run, which decides its colour.
+    - motions: class of motion of each run, which determines its colour.
     - x, y: labels of the axes, with units.
-    - noise: rms of the sensor's noise in the unit of the sections. Where it is above 0, a grey band shows NOISE_RMS
-      times as much about zero. Points of period-1 motion scatter within it by noise alone.
+    - noise: rms of the sensor's noise in the unit of the sections. Above 0, a grey band of +-NOISE_RMS times the noise
+      is drawn about zero: noise alone scatters the points of period-1 motion within it.
     """
     figure = new_figure(9.0, 4.8)
     axes = figure.subplots()
@@ -52,11 +52,11 @@ def exponent_sweep(
 ) -> Figure:
     """Draw the largest Lyapunov exponent of each run, in 1/turn, with its standard error, over the swept parameter.
 
-    Above zero neighbouring trajectories separate: chaos. A forced system has no exponent that must be zero.
+    Above zero neighbouring trajectories separate: chaos. A forced system has no exponent that is always zero.
 
     - values (runs,): the swept parameter.
     - exponents, errors (runs,): exponent and its standard error, 1/turn.
-    - motions: class of each run.
+    - motions: class of motion of each run.
     - x: label of the parameter, with its unit.
     """
     figure = new_figure(9.0, 4.2)
@@ -78,10 +78,10 @@ def spectrum_cascade(values: FloatArray, orders: FloatArray, amplitudes: FloatAr
     """Draw order spectra of several runs as a map: order to the right, parameter upward, amplitude as shade in dB.
 
     - values (runs,): the swept parameter.
-    - orders (orders,): at equal steps.
-    - amplitudes (runs, orders): 0 dB is the largest.
+    - orders (orders,): orders at equal steps.
+    - amplitudes (runs, orders): amplitudes; 0 dB is the largest amplitude.
     - y: label of the parameter.
-    - unit: of the amplitudes.
+    - unit: unit of the amplitudes.
     """
     figure = new_figure(9.0, 5.0)
     axes = figure.subplots()
