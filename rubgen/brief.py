@@ -30,7 +30,7 @@ def counted(count: int, noun: str) -> str:
 
 
 def table(title: str, rows: Mapping[str, str]) -> str:
-    """Return a title line and one line for each name and its value, as text."""
+    """Return a text: the line `title`, then a line for each name in `rows` with its value."""
     width = max(map(len, rows), default=0)
     return "\n".join([title, *(f"  {name:<{width}}  {value}" for name, value in rows.items())])
 

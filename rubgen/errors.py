@@ -26,7 +26,7 @@ class NoPictureError(UserError, ValueError):
 
 
 class RubgenWarning(UserWarning):
-    """A value that is allowed but hardly intended, or work done in another way than asked. The work continues.
+    """A value that is allowed but hardly intended, or work that is not done as requested. The work continues.
 
     The command line prints only the message on stderr, in one line.
     """

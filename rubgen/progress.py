@@ -25,7 +25,7 @@ _NOTEBOOK = "ipykernel"
 
 
 class Show(Protocol):
-    """A way to show steps, one at a time."""
+    """The interface of functions that show a step to the user, one step at a time."""
 
     def __call__(self, text: str, unit: str, *, long: bool) -> AbstractContextManager[Report]:
         """Show `text` while the block runs; yield a function that takes the progress. A `long` step shows at once."""

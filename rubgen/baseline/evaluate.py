@@ -52,8 +52,8 @@ Scores = dict[str, tuple[float, float]]
 def cross_validated(samples: Samples, model: Model, metrics: Metrics, *, by_group: bool) -> Scores:
     """Score a model on windows that it did not learn from, SEEDS times with different folds.
 
-    The predictions of all folds are scored together. With `by_group` a group is never on both sides. Without it windows
-    are assigned to folds at random, so that windows of one run are on both sides, which leaks.
+    The predictions of all folds are scored together by `metrics`. With `by_group` a group is never on both sides.
+    Without it windows are assigned to folds at random, so that windows of one run are on both sides, which leaks.
     """
 
     def outcome(seed: int) -> Outcome:
@@ -68,15 +68,16 @@ def cross_validated(samples: Samples, model: Model, metrics: Metrics, *, by_grou
 
 
 def transferred(train: Samples, test: Samples, model: Model, metrics: Metrics) -> Scores:
-    """Learn from `train` and score on `test`, with SEEDS seeds of the model."""
+    """Learn from `train` and score on `test` by `metrics`, with SEEDS seeds of the model."""
     return _scores(lambda seed: _said(train, test, model, seed), test, metrics)
 
 
 def folds(groups: npt.NDArray[Any], answers: npt.NDArray[Any], seed: int) -> Iterator[npt.NDArray[np.bool_]]:
     """Yield for each fold which samples (samples,) it tests: groups are shuffled, sorted by answer and dealt in turn.
 
-    So each class is spread over the FOLDS folds. The answer of a group is that of its first sample. Groups are not
-    sorted if the answers are labels (samples, labels).
+    So each class is spread over the FOLDS folds. `groups` and `answers` have a value for each sample; a group has the
+    answer of its first sample. Groups are not sorted if the answers are labels (samples, labels). `seed` is for the
+    shuffle.
     """
     names, first, numbers = np.unique(groups, return_index=True, return_inverse=True)
     shuffled = np.random.default_rng(seed).permutation(names.size)

@@ -25,7 +25,7 @@ class Majority:
     """Predicts the most frequent class, or the median of numbers."""
 
     def fit(self, _features: FloatArray, answers: Answer) -> Self:
-        """Learn from the answers (samples,)."""
+        """Store the most frequent class of `answers` (samples,), or the median of numbers."""
         if answers.dtype.kind == "f":
             self.answer: Any = float(np.median(answers))
         else:
@@ -34,7 +34,7 @@ class Majority:
         return self
 
     def predict(self, features: FloatArray) -> Answer:
-        """Return the same answer for each sample."""
+        """Return the stored answer for each row of `features`."""
         return np.full(len(features), self.answer)
 
     def rank(self, features: FloatArray) -> FloatArray:
@@ -49,7 +49,10 @@ class OneFeature:
     """
 
     def fit(self, features: FloatArray, answers: Answer) -> Self:
-        """Choose the feature, its threshold, and the sense in which it grows with the answers."""
+        """Choose the feature, its threshold, and its sense: 1 if the feature grows with the answers, -1 if it falls.
+
+        `features` are (samples, features), `answers` (samples,).
+        """
         finite = _finite(features)
         if answers.dtype.kind == "f":
             scores = [rank_correlation(values, answers) for values in finite.T]
@@ -63,14 +66,14 @@ class OneFeature:
         return self
 
     def predict(self, features: FloatArray) -> Answer:
-        """Return the class of each sample by the threshold; for numbers its rank."""
+        """Return the class of each row of `features`, by the threshold. For numbers return the row's rank."""
         if self.threshold is None:
             return self.rank(features)
         above = _finite(features)[:, self.feature] > self.threshold
         return np.asarray(np.where(above == (self.sense > 0), self.classes[-1], self.classes[0]))
 
     def rank(self, features: FloatArray) -> FloatArray:
-        """Return the value of the feature of each sample, with the sign of its sense."""
+        """Return for each row of `features` the value of the chosen feature, times its sense (1 or -1)."""
         return np.asarray(self.sense * _finite(features)[:, self.feature])
 
 
@@ -115,7 +118,7 @@ class Plain:
         return np.asarray(self.model.predict(numbers))
 
     def rank(self, numbers: FloatArray) -> FloatArray:
-        """Return the distance of each sample from the plane between two classes; 0 for a model without such a plane."""
+        """Return the distance of each sample from the plane between two classes, or 0 for a model that has no plane."""
         decide = getattr(self.model, "decision_function", None)
         found = np.asarray(decide(numbers)) if decide else np.zeros(len(numbers))
         return found if found.ndim == 1 else np.zeros(len(numbers))
@@ -131,12 +134,12 @@ class EachLabel:
         self.make = make
 
     def fit(self, features: FloatArray, answers: Answer) -> Self:
-        """Learn from labels (samples, labels)."""
+        """Learn one model for each column of `answers` (samples, labels), from `features` (samples, features)."""
         self.models = [(self.make() if np.ptp(labels) else Majority()).fit(features, labels) for labels in answers.T]
         return self
 
     def predict(self, features: FloatArray) -> Answer:
-        """Return the labels of each sample (samples, labels)."""
+        """Return the labels, 0 or 1, of each row of `features`, as (samples, labels)."""
         return np.column_stack([each.predict(features) for each in self.models])
 
     def rank(self, features: FloatArray) -> FloatArray:

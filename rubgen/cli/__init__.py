@@ -13,7 +13,10 @@ STDERR = 2
 
 
 def main(arguments: list[str] | None = None) -> NoReturn:
-    """Run the command line with `arguments`, for None those of the process, and exit. Ctrl-C ends it in one line."""
+    """Run the command line with the words `arguments` and exit. None stands for the words after the program's name.
+
+    Ctrl-C ends the program with one line.
+    """
     try:
         _open_streams()
         from rubgen.cli.interrupts import terminable

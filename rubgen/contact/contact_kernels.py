@@ -276,10 +276,10 @@ def largest_approach(
     q_free: FloatArray,
     casing_start: int,
 ) -> float:
-    """Return a bound of how much the contact forces may have closed any gap, m: movement of tip plus that of casing.
+    """Return a bound of how much the contact forces may have closed any gap, m: movement of tip plus casing.
 
     - tips_new, tips_free (2, a multiple of eight): radial and tangential displacement with and without the forces, m.
-    - q_new, q_free (n,): coordinates with and without the forces; only those of the casing are read.
+    - q_new, q_free (n,): coordinates with and without the forces; only the casing's coordinates are read.
     - casing_start: index of the first casing coordinate.
     """
     tip = square_of_farthest(tips_new, tips_free)

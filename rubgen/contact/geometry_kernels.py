@@ -127,7 +127,10 @@ def smooth_radius(surface: Surface, psi: float) -> tuple[float, float, float]:
 
 @allocation_free_kernel
 def interval(psi: float, node_step: float, nodes: int) -> tuple[int, int, float]:
-    """Return the numbers of the two nodes around the polar angle psi, and the share of the interval before psi."""
+    """Return the numbers of the two nodes around the polar angle psi, and the share of the interval before psi.
+
+    psi is in rad. The `nodes` nodes are `node_step` rad apart, and node 0 is at the angle 0.
+    """
     position = psi / node_step
     first = math.floor(position)
     return int(first % nodes), int((first + 1) % nodes), position - first

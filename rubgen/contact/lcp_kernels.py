@@ -163,8 +163,9 @@ def solve_normal(
 
     Where the symmetric part of W is positive definite the solution is unique, and projected Gauss-Seidel is tried
     first. Where it is not, or fails, Lemke's pivoting is used for rigid contact; any other law is then unsolved. `law`
-    is the number of the law in the registry and its parameters; W and b are as in `projected_gauss_seidel`. For a law
-    with a rate, the first row of the scratch `tableau` contains the gaps at step n - 1.
+    is the number of the law in the registry and its parameters; W and b are as in `projected_gauss_seidel`. `square`,
+    `tableau` and `basis` are scratch. For a law with a rate, the first row of `tableau` contains the gaps at step n -
+    1.
     """
     if is_positive_definite(W, m, square) and projected_gauss_seidel(law, W, b, tableau[0], m, lam_out) == SOLVED:
         return SOLVED

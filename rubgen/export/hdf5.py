@@ -12,7 +12,8 @@ from rubgen.export.run import ExportedRun, without_nulls
 def write_hdf5(runs: Iterator[ExportedRun], path: Path) -> None:
     """Write one run to an HDF5 file: `channels/<name>` with attributes, and `once_per_rev_s`.
 
-    Parameters and labels are attributes of `/`; an undefined label has no attribute.
+    `runs` must yield exactly one run, else ValueError is raised. Parameters and labels are attributes of `/`; an
+    undefined label has no attribute.
     """
     import h5py
 

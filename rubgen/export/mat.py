@@ -16,8 +16,8 @@ LONGEST_NAME = 63
 def write_mat(runs: Iterator[ExportedRun], path: Path) -> None:
     """Write one run to a MAT file: a struct for each channel, `once_per_rev_s`, and the struct `run`.
 
-    A channel has `values`, `unit`, `sample_rate_hz` and the description of its sensor. `run` has parameters and labels;
-    an undefined label is an empty array.
+    `runs` must yield exactly one run, else ValueError is raised. A channel has `values`, `unit`, `sample_rate_hz` and
+    the description of its sensor. `run` has parameters and labels; an undefined label is an empty array.
     """
     from scipy.io import savemat
 

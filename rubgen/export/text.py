@@ -14,9 +14,9 @@ from rubgen.export.run import ExportedRun
 
 
 def write_csv(runs: Iterator[ExportedRun], path: Path) -> None:
-    """Write one run: `time_s`, then a column for each channel with its unit in the header.
+    """Write one run as CSV: `time_s`, then a column for each channel with its unit in the header.
 
-    Values keep all their digits.
+    `runs` must yield exactly one run, else ValueError is raised. Values keep all their digits.
     """
     (run,) = runs
     columns: dict[str, Any] = {"time_s": np.arange(run.samples) / run.sample_rate_hz}

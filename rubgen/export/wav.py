@@ -13,7 +13,8 @@ from rubgen.export.run import ExportedRun
 def write_wav(runs: Iterator[ExportedRun], path: Path) -> None:
     """Write one run as a WAV file, with the tracks in the order of `channels.csv`.
 
-    Values are in the units of the channels, so a player clips values beyond 1.
+    `runs` must yield exactly one run, else ValueError is raised. Values are in the units of the channels, so a player
+    clips values beyond 1.
     """
     from scipy.io import wavfile
 

@@ -17,8 +17,9 @@ DOMAINS = ("statistical", "temporal", "spectral")
 def generic_features(signal: FloatArray, rate_hz: float) -> dict[str, float]:
     """Compute the features of tsfel of a signal (samples,), by their names in lower case with `_` for other signs.
 
-    Features with a length that depends on the signal (spectra, histograms) are left out: windows could not share
-    columns. A value that is not finite becomes NaN. Raises UserError where tsfel is not installed.
+    `rate_hz` is the sample rate. Features with a length that depends on the signal (spectra, histograms) are left out:
+    windows could not share columns. A value that is not finite becomes NaN. Raises UserError where tsfel is not
+    installed.
     """
     tsfel = _tsfel()
     with warnings.catch_warnings():

@@ -46,7 +46,7 @@ def by_turn(signals: FloatArray, rate_hz: float, pulses: FloatArray) -> FloatArr
 def within(pulses: FloatArray, samples: int, rate_hz: float) -> FloatArray:
     """Return the pulses (any,) in s that lie between the first and the last of `samples` samples.
 
-    Times count from the first sample.
+    Times count from the first sample. `rate_hz` is the sample rate.
     """
     return pulses[(pulses >= 0) & (pulses <= (samples - 1) / rate_hz)]
 

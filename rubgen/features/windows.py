@@ -28,8 +28,8 @@ class Window:
     def cuts(self, samples: int, rate_hz: float, pulses: FloatArray) -> list[tuple[int, int]]:
         """Return first sample and number of samples of each window of a signal with `samples` samples.
 
-        `pulses` are the times of the pulses in s from the first sample. A window of turns has all samples from its
-        first to its last pulse. The list is empty if the signal has no whole window.
+        `rate_hz` is the sample rate. `pulses` are the times of the pulses in s from the first sample. A window of turns
+        has all samples from its first to its last pulse. The list is empty if the signal has no whole window.
         """
         if self.unit == "s":
             size = round(self.length * rate_hz)
@@ -40,7 +40,10 @@ class Window:
         return [(int(a), int(b - a + 1)) for a, b in zip(first[:-1], last[1:], strict=True)]
 
     def longest(self, samples: int, rate_hz: float, pulses: FloatArray) -> str:
-        """Return the length of the longest possible window of a signal, in this window's unit: "1s" or "100turns"."""
+        """Return the length of the longest possible window of a signal, in this window's unit: "1s" or "100turns".
+
+        The signal has `samples` samples at `rate_hz`. `pulses` are the times of the pulses in s from the first sample.
+        """
         if self.unit == "s":
             return f"{samples / rate_hz:g}s"
         inside = pulses[(pulses >= 0) & (pulses <= (samples - 1) / rate_hz)]
@@ -48,7 +51,10 @@ class Window:
 
 
 def parse_window(text: str, rate_hz: float) -> Window:
-    """Read a length such as "0.25s" or "16turns". Raises UserError for any other text and for too short a window."""
+    """Read a length such as "0.25s" or "16turns". Raises UserError for any other text and for too short a window.
+
+    A window has at least one turn, or at least LEAST_SAMPLES samples at the sample rate `rate_hz`.
+    """
     found = re.fullmatch(r"(\d+\.?\d*|\.\d+) ?(s|turns?)", text.strip())
     if not found:
         raise UserError(f"--window {text:.40}: unknown length; give seconds such as 0.25s, or turns such as 16turns")

@@ -61,8 +61,8 @@ class FrameMode:
 class Frame:
     """The modes through which forces of the disk's support reach housing and casing.
 
-    One way: the frame moves sensors, but not the disk or the ring. Modes are uncoupled, as of a linear structure whose
-    damping is small (Ewins, Modal Testing, 2000, chapter 2).
+    The frame moves sensors, but not the disk or the ring. Modes are uncoupled, as of a linear structure whose damping
+    is small (Ewins, Modal Testing, 2000, chapter 2).
     """
 
     __repr__ = brief

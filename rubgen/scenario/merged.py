@@ -37,7 +37,10 @@ class MergedRecipe(Recipe):
         return number, index - self._sources[number][0]
 
     def scenario(self, index: int, *, screened: bool = True) -> Scenario:
-        """Draw run number `index` as its source draws it. The scenario has the run's name in the merged set."""
+        """Draw run number `index` as its source draws it. The scenario has the run's name in the merged set.
+
+        `screened` is as in `Recipe.scenario`: with False no candidates of a balance are simulated.
+        """
         number, own = self.own(index)
         return replace(self._sources[number][1].scenario(own, screened=screened), merged=self.origin(index))
 

@@ -145,7 +145,10 @@ class Sensing:
 
     @property
     def fastest_hz(self) -> float:
-        """The highest frequency in Hz that the steps must resolve: the sample rate, or that of a sensor's front end."""
+        """The highest frequency in Hz that the steps must resolve.
+
+        It is the sample rate, or a higher bandwidth or resonance of a sensor.
+        """
         return max(self.sample_rate_hz, self.set.front_end_hz)
 
 

@@ -226,8 +226,8 @@ def _changed(record: Any, place: list[str], value: float) -> Any:
 def candidate_point(seed: int, index: int, attempt: int) -> dict[str, float]:
     """Return one u in [0, 1) for each key of `[vary]`, for candidate `attempt` of run `index` of a balanced recipe.
 
-    Candidate 0 has the values of `sobol_point`, as the run without a balance. All other candidates are independent
-    draws.
+    `seed` is the recipe's seed. Candidate 0 has the values of `sobol_point`, as the run without a balance. All other
+    candidates are independent draws.
     """
     if attempt == 0:
         return sobol_point(seed, index)

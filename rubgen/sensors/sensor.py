@@ -198,7 +198,7 @@ class SampledSensor(Sensor, ABC):
 
     @property
     def full_range(self) -> tuple[float, float]:
-        """Lower and upper end of the range in the sensor's unit: its own range, or that of its kind."""
+        """Lower and upper end of the range in the sensor's unit: the sensor's `range`, else the range of its kind."""
         factor, zero = self.scale
         low, high = self.RANGE
         return self.range or (zero + factor * low, zero + factor * high)

@@ -117,7 +117,10 @@ def stability(system: SpinningSystem) -> tuple[Refusal | None, float]:
 
 
 def no_run_warning(scenarios: Sequence[Scenario]) -> str | None:
-    """Return a warning of one line if none of these runs can be integrated, with the first reason; None if one can."""
+    """Return a warning of one line if none of these runs can be integrated, with the first reason; None if one can.
+
+    `scenarios` are the runs, at least one.
+    """
     reasons = []
     for scenario in scenarios:
         reason = _refusal(scenario)

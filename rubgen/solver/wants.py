@@ -8,7 +8,7 @@ from rubgen.taps import DEFAULT_TAPS, Tap
 
 
 class SpeedModel(Protocol):
-    """Makes the spinning system at any speed. `reduction.ReducedModel` is such a model."""
+    """The interface of a model that makes the spinning system at any speed, such as `reduction.ReducedModel`."""
 
     def at_speed(self, speed: float, acceleration: float = 0.0) -> SpinningSystem:
         """Return the system at a speed in rad/s and an acceleration in rad/s2."""

@@ -33,7 +33,10 @@ ORDER_TOLERANCE = 0.01
 
 
 def windows_fit(row: Row) -> bool:
-    """Return whether the run's impulse per turn is the mean over the windows of its record, weighted by their turns."""
+    """Return whether the run's impulse per turn is the mean over the windows of its record, weighted by their turns.
+
+    `row` has the values of the run by column name.
+    """
     turns, values = _window_turns(row), row["window_impulse_per_turn_n_s"]
     if len(values) != turns.size:
         return False
@@ -44,7 +47,8 @@ def windows_fit(row: Row) -> bool:
 def duty_fits(row: Row) -> bool:
     """Return whether the run's contact duty is the mean over the windows of its record, weighted by their turns.
 
-    It is also True for a run with a changing speed: its turns have unequal length, and nothing is compared.
+    `row` has the values of the run by column name. The result is True for a run with a changing speed: its turns have
+    unequal length, and nothing is compared.
     """
     turns, values = _window_turns(row), row["window_contact_duty"]
     if row["change_times_s"] or len(values) != turns.size:
@@ -54,7 +58,10 @@ def duty_fits(row: Row) -> bool:
 
 
 def window_times_fit(row: Row) -> bool:
-    """Return whether the windows begin after whole turns and have the run's speed. True for a changing speed."""
+    """Return whether the windows begin after whole turns and have the run's speed.
+
+    `row` has the values of the run by column name. The result is True for a changing speed.
+    """
     if row["change_times_s"]:
         return True
     starts = np.arange(0, row["record_turns"], WINDOW_TURNS) * 60 / row["speed_rpm"]
@@ -68,7 +75,7 @@ def window_times_fit(row: Row) -> bool:
 def exponents_fit(row: Row) -> bool:
     """Return whether the Lyapunov exponents in 1/s and in 1/turn agree.
 
-    True for a changing speed, or without exponents.
+    `row` has the values of the run by column name. The result is True for a changing speed, or without exponents.
     """
     by_turn, by_second = row["lyapunov_per_turn"], row["lyapunov_per_second"]
     if row["change_times_s"] or (by_turn is None and by_second is None):
@@ -98,7 +105,7 @@ def impulse_problems(row: Row, force: Float32Array, noise_rms: float, step: floa
 
 
 def samples_per_turn(row: Row) -> float:
-    """Return the number of samples in one turn, which is rarely whole."""
+    """Return the number of samples in one turn, which is rarely whole. `row` has sample rate and speed of the run."""
     return float(row["sample_rate_hz"] * 60 / row["speed_rpm"])
 
 

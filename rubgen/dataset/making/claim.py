@@ -79,10 +79,11 @@ def finished(layout: Layout, identity: Identity) -> bool:
 def claimed(layout: Layout, identity: Identity, *, wait_s: float = 0.0) -> Iterator[None]:
     """Lock the output directory, so that only this process writes there in the block. It is made if it does not exist.
 
-    The state of the directory may have changed since a check before the block. A directory that was made here is
-    removed if it stays empty, its parents are not. Sets of other recipes are refused by `finished` and `begun`, not
-    here. Raises UserError where the directory has content that is no data set, or another process has the lock; OSError
-    where it cannot be made.
+    If another process has the lock, this process waits for at most `wait_s` seconds. The state of the directory may
+    have changed since a check before the block. A directory that was made here is removed if it stays empty, its
+    parents are not. Sets of other recipes are refused by `finished` and `begun`, not here. Raises UserError where the
+    directory has content that is no data set, or another process keeps the lock; OSError where the directory cannot be
+    made.
     """
     root = layout.root
     _check_place(layout)
@@ -220,7 +221,10 @@ def _is_nothing(layout: Layout, path: Path) -> bool:
 
 
 def check_begun(layout: Layout, asked: Identity) -> None:
-    """Raise UserError if the directory holds an unfinished set of another recipe or of other package versions."""
+    """Raise UserError if the directory has an unfinished set of another recipe or of other package versions.
+
+    `asked` is the identity of the set that is to be made. Nothing is raised for a directory without an unfinished set.
+    """
     with suppress(FileNotFoundError):  # not begun yet, or just finished
         check_same(layout, read_identity(layout), asked, versions=True)
 

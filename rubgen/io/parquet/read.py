@@ -154,8 +154,8 @@ def _opened(path: Path) -> pa.NativeFile:
 def damage_named(path: Path) -> Iterator[None]:
     """Turn an error of pyarrow in the block into a UserError of one line that names the file `path`.
 
-    pyarrow tells of damage by its own exceptions, by an OSError without a number, and for names of columns by a
-    UnicodeDecodeError. An OSError with a number is of the system. Any other error passes: it is a bug.
+    pyarrow reports damage by its own exceptions, by an OSError without a number, and for names of columns by a
+    UnicodeDecodeError. An OSError with a number comes from the system. Any other error passes: it is a bug.
     """
     with url_problems(path) if is_url(path) else nullcontext():
         try:

@@ -49,7 +49,7 @@ def idle_surroundings(scenario: Scenario) -> dict[str, str]:
 def idle(scenarios: Sequence[Scenario]) -> dict[str, str]:
     """Return the keys that change no channel in any of the scenarios, each with the text of a warning.
 
-    The keys are those of the surroundings, and `faults.KIND` for a fault that only shakes a frame which no sensor
+    Such a key is a key of the surroundings, or `faults.KIND` for a fault that only shakes a frame which no sensor
     feels.
     """
     around = [idle_surroundings(scenario) for scenario in scenarios if scenario.surroundings]

@@ -8,7 +8,7 @@ from rubgen.scenario.contact_laws.law import NormalLaw
 
 @dataclass(frozen=True)
 class Rigid(NormalLaw):
-    """No tip enters the casing: 0 <= force, 0 <= gap, one of them 0 (Signorini)."""
+    """No tip enters the casing: force and gap are at least 0, and one of the two is 0 (Signorini)."""
 
     def numbers(self, _dt: float) -> tuple[float, ...]:
         """Return no constants: the law has none."""

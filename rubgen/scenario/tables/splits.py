@@ -78,7 +78,7 @@ Splits = Annotated[dict[SplitName, Split], AfterValidator(_checked)]
 
 
 def share_of(split: float | SplitTable) -> float:
-    """Return the share of a split, which the recipe gives as a number or as a table."""
+    """Return the share of a split, in [0, 1]. In a recipe a split is its share, or a table with the key `share`."""
     return split.share if isinstance(split, SplitTable) else split
 
 
@@ -99,7 +99,10 @@ def split_of_machine(splits: Mapping[str, Any], seed: int, number: int) -> str:
 
 
 def enough_machines(splits: Mapping[str, Any], seed: int, name: str) -> int:
-    """Return the least number of machines of which at least one is in the split `name`."""
+    """Return the least number of machines of which at least one is in the split `name`.
+
+    `splits` is the recipe's table `[splits]` and `seed` the recipe's seed.
+    """
     return next(number for number in range(MOST_RUNS) if split_of_machine(splits, seed, number) == name) + 1
 
 

@@ -27,7 +27,7 @@ LEAST_TURNS = 32
 
 
 def check_turns(record_turns: int) -> None:
-    """Check that a record is long enough for an exponent. Raises UserError where it is too short."""
+    """Raise UserError if a record of `record_turns` turns is too short for a Lyapunov exponent."""
     if record_turns < LEAST_TURNS:
         raise UserError(
             f"record_turns = {record_turns}: a Lyapunov exponent needs at least {LEAST_TURNS} turns, reliably 500; "

@@ -262,7 +262,10 @@ def contact_step(
 
 @allocation_free_kernel
 def has_diverged(surface: Surface, laws: Laws, q: FloatArray, casing_start: int, n_blades: int) -> bool:
-    """Return whether a casing node or a blade tip has moved beyond its limit or is NaN. `q` is (n,)."""
+    """Return whether a casing node or a blade tip has moved beyond its limit or is NaN.
+
+    `q` (n,) are the coordinates; the casing's begin at index `casing_start`. The limits are in `laws`.
+    """
     for k in range(3 * n_blades):
         if not abs(q[k]) <= laws.tip_limit:
             return True

@@ -94,7 +94,10 @@ class Taps(NamedTuple):
 
 @inlined_kernel
 def tip_radius_on_ray(tips: Tips, rays: Rays, displacement: FloatArray, step: int, ray: int) -> float:
-    """Return the radius of the tips on a ray, m: linear in angle between the two blades around it."""
+    """Return the radius of the tips on a ray, m: linear in angle between the two blades around it.
+
+    `displacement` (2, any) is the radial and tangential displacement of the tips at step number `step` of the turn, m.
+    """
     radius = 0.0
     for side in range(2):
         k = rays.blade[step, ray, side]
@@ -212,7 +215,7 @@ def angle_beyond(
     """Return by which angle a blade has passed a probe, rad in [-pi, pi]; negative before the passage.
 
     The blade is `more` rad farther along the rotation than its position on the disk. `theta[step]` is the blisk's
-    angle.
+    angle. `timing` describes the probes.
     """
     angle = theta[step] + tips.angle[blade] - timing.angle[probe] + more
     turned: float = angle - 2 * math.pi * math.floor(angle / (2 * math.pi) + 0.5)
@@ -238,8 +241,8 @@ def beyond_probe(
 ) -> float:
     """Return by which angle a blade's chord, at the probe's axial position, has passed the probe, rad in [-pi, pi].
 
-    The value is negative before the passage and 0 under the probe. `q` (n,) are the coordinates at step `step`, with
-    the coordinates of this blade's tip.
+    The value is negative before the passage and 0 under the probe. `timing` describes the probes. `q` (n,) are the
+    coordinates at step `step`, with the coordinates of this blade's tip.
     """
     along = chord_displacement(tips, timing, blade, q) + timing.chord_slope * timing.axial[probe]
     radial = tips.radius + tips.static[0, blade] + q[3 * blade]
@@ -258,15 +261,16 @@ def record_arrivals(
     clock: int,
     count: int,
 ) -> int:
-    """Write blades that pass a probe between steps n and n + 1 into `arrivals`. Return the number of arrivals so far.
+    """Write blades that pass a probe between steps n and n + 1 into `timing.arrivals`.
 
-    A blade passes where `beyond_probe` changes from negative to positive. Between the steps the displacement is a
-    parabola: d_n + s (d_n+1 - d_n) - s (1 - s) c / 2, with c the second difference.
+    Return the number of arrivals so far. A blade passes where `beyond_probe` changes from negative to positive. Between
+    the steps the displacement is a parabola: d_n + s (d_n+1 - d_n) - s (1 - s) c / 2, with c the second difference.
 
     - motions: at steps n - 1, n, n + 1; tips in their q are recovered.
     - theta (steps + 2,): angle of the blisk, rad.
+    - step: number of step n in the turn.
     - clock: number of the turn's first step.
-    - count: number of arrivals so far.
+    - count: number of arrivals before this step.
     """
     before, now, after = motions
     for probe in range(timing.angle.shape[0]):

@@ -108,7 +108,9 @@ def record_section(
     """Write q and v at the Poincare section into `section_out` (2, n), from the parabola through steps -1, 0 and 1.
 
     q = q_0 + tau d + tau^2 / 2 (q_1 - 2 q_0 + q_-1), and v is its derivative. tau is `Angles.section` in steps, 0 at a
-    steady speed. The error is of third order in dt for q, of second order for v, like the central difference.
+    steady speed. The error is of third order in dt for q, of second order for v, like the central difference. `before`,
+    `now` and `after` are the motions at steps -1, 0 and 1. `scratch.z_change` must contain d, the central difference of
+    z; it is overwritten.
     """
     if tau == 0.0:
         recover_all(harmonics, now.z, scratch.share, scratch.tips, section_out[0])
@@ -126,7 +128,10 @@ def record_section(
 
 @inlined_kernel
 def add_orbit(signals: FloatArray, out: FloatArray) -> None:
-    """Add X, Y, X^2 + Y^2, V_X^2 + V_Y^2 and X V_Y - Y V_X of the disk centre, inertial, to `out` (5,)."""
+    """Add X, Y, X^2 + Y^2, V_X^2 + V_Y^2 and X V_Y - Y V_X of the disk centre, inertial, to `out` (5,).
+
+    `signals` are the signals of the shaft at one step, in m and m/s.
+    """
     x, y, vx, vy = signals[X], signals[Y], signals[SPEED_X], signals[SPEED_Y]
     out[0] += x
     out[1] += y
