@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import connected_components
 from rubgen.arrays import BoolArray, FloatArray, IntArray
 from rubgen.linalg.block_kernels import Product
 from rubgen.linalg.harmonic_kernels import Harmonics
-from rubgen.linalg.lanes_kernels import MOST_ROWS, line_kind
+from rubgen.linalg.lanes_kernels import COUNT, FIRST, KIND, MOST_ROWS, line_kind
 from rubgen.linalg.vector_kernels import LANES
 
 COUPLING_TOLERANCE = 1e-9
@@ -106,10 +106,28 @@ class Blocks:
         Y = self.transform.T @ matrix @ self.transform
         size = ROUNDING * scale_of(self.transform.T @ like @ self.transform)
         product = self._packed(np.where(np.abs(Y) > size, Y, 0.0), triangle=False)
-        kind, _, first, _, count = product.lines.T
-        used = count * (kind // 2 + 1)
-        kept = [bool(product.entries[f : f + u].any()) for f, u in zip(first, used, strict=True)]
+        used = zip(product.lines[:, FIRST], entry_rows(product.lines), strict=True)
+        kept = [bool(product.entries[first : first + rows].any()) for first, rows in used]
         return Product(np.ascontiguousarray(product.lines[kept]), product.entries)
+
+    def skew_pairs(self, matrix: FloatArray, like: FloatArray, most: int) -> FloatArray | None:
+        """Divide a skew-symmetric matrix (n, n) into pairs of vectors a, b in z: it is the sum of a b^T - b a^T.
+
+        Returns the vectors (pairs, 2, any), or None where `most` pairs leave more than rounding (ROUNDING) relative to
+        the matrix `like` (n, n). Each pair clears the rows and columns of one entry, the largest of what is left.
+        """
+        left = self.transform.T @ matrix @ self.transform
+        left = (left - left.T) / 2
+        size = ROUNDING * scale_of(self.transform.T @ like @ self.transform)
+        pairs: list[list[FloatArray]] = []
+        while (large := np.abs(left) > size).any():
+            if len(pairs) == most:
+                return None
+            i, j = np.unravel_index(np.argmax(np.divide(np.abs(left), size, where=large, out=0 * size)), left.shape)
+            a, b = left[:, i] / left[i, j], left[:, j]
+            pairs.append([self.vector(a), self.vector(b)])
+            left = left - (np.outer(a, b) - np.outer(b, a))
+        return aligned(np.array(pairs).reshape(-1, 2, self.rows * LANES))
 
     def damping(self, matrix: FloatArray, *, whole: bool = False) -> Product:
         """Store a damping matrix C (n, n) as a triangle, so that a kernel computes d^T C d as 2 d^T (triangle d).
@@ -176,6 +194,11 @@ class Blocks:
             row += rows
         table = np.array(lines, dtype=np.int64).reshape(-1, 5)
         return Product(table, aligned(np.concatenate([np.zeros((0, LANES)), *entries])))
+
+
+def entry_rows(lines: IntArray) -> IntArray:
+    """Return how many rows of eight entries each line (any, 5) reads."""
+    return np.asarray(lines[:, COUNT] * (lines[:, KIND] // 2 + 1))
 
 
 def parts_of(rows: int) -> list[slice]:

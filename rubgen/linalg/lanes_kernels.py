@@ -94,6 +94,11 @@ def dot_rows(a: FloatArray, b: FloatArray, count: int) -> float:
     return float(a.reshape(-1)[: LANES * count] @ b.reshape(-1)[: LANES * count])
 
 
+def dot_pairs(pairs: FloatArray, left: FloatArray, right: FloatArray) -> float:
+    """Return left^T matrix right for the sum of a b^T - b a^T over `pairs` (any, 2, a multiple of eight) of a, b."""
+    return sum(float((a @ left) * (b @ right) - (b @ left) * (a @ right)) for a, b in pairs)
+
+
 Source = tuple[Any, Any]
 """Entries a and x."""
 
@@ -161,6 +166,20 @@ class _Emitter(Emitter):
                     total = builder.call(self.fma, [left, number, builder.load(each[row])])
                     builder.store(total, each[row])
         return [[builder.load(total) for total in each] for each in sums]
+
+    def sum_crossed(self, a: Any, firsts: list[Any], vectors: list[Any], rows: Any) -> list[list[Any]]:
+        """Return for each of `firsts` the sums of the products of each vector with so many rows of a from there on."""
+        builder = self.builder
+        sums = [[cgutils.alloca_once_value(builder, self.zero) for _ in vectors] for _ in firsts]  # type: ignore[no-untyped-call]
+        for total in [total for each in sums for total in each]:
+            builder.store(self.zero, total)
+        with cgutils.for_range(builder, rows) as loop:
+            right = [self.load(vector, loop.index) for vector in vectors]
+            for first, each in zip(firsts, sums, strict=True):
+                left = self.load(a, builder.add(first, loop.index))
+                for number, total in zip(right, each, strict=True):
+                    builder.store(builder.call(self.fma, [left, number, builder.load(total)]), total)
+        return [[self.lane_sum(builder.load(total)) for total in each] for each in sums]
 
 
 Visit = Callable[[list[Any], int, bool], None]
@@ -282,8 +301,31 @@ def _dot_rows(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     return emit.lane_sum(total)
 
 
+def _dot_pairs(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """Write the vector code of `dot_pairs`."""
+    caller = _Emitter(context, builder)
+    pairs, left, right = (caller.array(kind, array) for kind, array in zip(signature.args, args, strict=True))
+
+    def body(emit: _Emitter, pairs: Any, count: Any, rows: Any, left: Any, right: Any) -> Any:
+        builder, double = emit.builder, ir.DoubleType()
+        total = cgutils.alloca_once_value(builder, ir.Constant(double, 0.0))  # type: ignore[no-untyped-call]
+        builder.store(ir.Constant(double, 0.0), total)
+        with cgutils.for_range(builder, count) as loop:
+            first = builder.mul(builder.add(loop.index, loop.index), rows)
+            (al, ar), (bl, br) = emit.sum_crossed(pairs, [first, builder.add(first, rows)], [left, right], rows)
+            part = builder.fsub(builder.fmul(al, br), builder.fmul(bl, ar))
+            builder.store(builder.fadd(builder.load(total), part), total)
+        return builder.load(total)
+
+    return caller.call(
+        "dot_pairs", ir.DoubleType(), body, pairs.data, caller.shape(pairs, 0),
+        caller.row_count(caller.shape(pairs, 2)), left.data, right.data,
+    )  # fmt: skip
+
+
 compile_as(add_lines, types.void, _add_lines)
 compile_as(set_two_lines, types.void, _set_two_lines)
 compile_as(gather_lines, types.void, _gather_lines)
 compile_as(dot_lines, types.float64, _dot_lines)
+compile_as(dot_pairs, types.float64, _dot_pairs)
 compile_as(dot_rows, types.float64, _dot_rows)

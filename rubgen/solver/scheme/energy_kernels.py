@@ -9,6 +9,7 @@ from rubgen.contact.contact_kernels import contact_slip
 from rubgen.contact.geometry_kernels import casing_rows, tip_position
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.block_kernels import quadratic
+from rubgen.linalg.lanes_kernels import dot_pairs
 from rubgen.solver.scheme.model_kernels import EnergyTerms, Model
 from rubgen.solver.scheme.state_kernels import Coordinates, State
 from rubgen.solver.scheme.step_kernels import previous_gap
@@ -37,7 +38,10 @@ def add_linear_works(terms: EnergyTerms, now: FloatArray, change: FloatArray, dt
     for i in range(terms.force.shape[0]):
         unbalance += terms.force[i] * change[terms.force_places[i]]
     damping = -2.0 * quadratic(terms.damping, change, change) / dt
-    circulatory = -quadratic(terms.circulatory, change, now)
+    if terms.circulatory_pairs.shape[0] > 0:
+        circulatory = -dot_pairs(terms.circulatory_pairs, change, now)
+    else:
+        circulatory = -quadratic(terms.circulatory, change, now)
     works[UNBALANCE] += unbalance
     works[DAMPING] += damping
     works[CIRCULATORY] += circulatory

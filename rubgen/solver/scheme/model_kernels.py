@@ -62,7 +62,10 @@ class EnergyTerms(NamedTuple):
     damping: Product
     """The lower triangle of C_sym with half its diagonal, so that d^T C d = 2 d^T (triangle d)."""
     circulatory: Product
-    """K_skew."""
+    """K_skew; without lines where `circulatory_pairs` hold it."""
+    circulatory_pairs: FloatArray
+    """K_skew as the sum of a b^T - b a^T over pairs of vectors a, b (pairs, 2, any); no pairs where `circulatory` holds
+    it."""
     M: Product
     """The symmetric part of M."""
     K: Product

@@ -11,7 +11,8 @@ from numpy.polynomial import Chebyshev
 
 from rubgen.arrays import FloatArray, frozen
 from rubgen.linalg.block_kernels import Product
-from rubgen.linalg.blocks import aligned, padded
+from rubgen.linalg.blocks import aligned, entry_rows, padded
+from rubgen.linalg.lanes_kernels import FIRST
 from rubgen.solver.scheme.free_step_kernels import Scheme
 from rubgen.solver.scheme.speed_part import SpeedPart
 
@@ -149,12 +150,8 @@ def _with_places(laws: FloatArray, numbers: FloatArray) -> FloatArray:
 def _keep_lines(parts: list[SpeedPart]) -> SpeedPart:
     """Return the first part, its circulatory stiffness without the lines that are zero in all parts."""
     energy = parts[0].energy
-    kind, _, first, _, count = energy.circulatory.lines.T
-    used = count * (kind // 2 + 1)
-    kept = [
-        any(part.energy.circulatory.entries[f : f + u].any() for part in parts)
-        for f, u in zip(first, used, strict=True)
-    ]
+    used = zip(energy.circulatory.lines[:, FIRST], entry_rows(energy.circulatory.lines), strict=True)
+    kept = [any(part.energy.circulatory.entries[first : first + rows].any() for part in parts) for first, rows in used]
     lines = np.ascontiguousarray(energy.circulatory.lines[np.array(kept, dtype=bool)])
     circulatory = Product(lines, energy.circulatory.entries)
     return frozen(parts[0]._replace(energy=energy._replace(circulatory=circulatory)))

@@ -1,10 +1,16 @@
 """Stored energy and works of the linear forces, against dense matrices; works of contacts: test_contact_rows.py."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from rubgen.linalg.blocks import aligned
-from rubgen.scenario import ContactLaw
+from rubgen.machine import load_machine
+from rubgen.reduction import reduce
+from rubgen.scenario import ContactLaw, Reduction
+from rubgen.solver.linear.system_blocks import system_blocks
+from rubgen.solver.scheme.central_difference import energy_terms
 from rubgen.solver.scheme.energy_kernels import (
     ABSOLUTE,
     CIRCULATORY,
@@ -15,6 +21,7 @@ from rubgen.solver.scheme.energy_kernels import (
     stored_energy,
 )
 from rubgen.solver.speed.start import rub_free_stepper
+from rubgen.units import rad_per_s
 
 
 @pytest.fixture
@@ -51,3 +58,40 @@ def test_works_of_unbalance_dampers_and_circulatory_forces(stepper):
     assert np.all(expected[[UNBALANCE, DAMPING, CIRCULATORY]] != 0)
     assert works[DAMPING] < 0
     np.testing.assert_allclose(works, 2 * expected, rtol=1e-9, atol=1e-15)
+
+
+@pytest.fixture(scope="module")
+def preset():
+    return reduce(load_machine("zeng2019"), Reduction()).at_speed(rad_per_s(6900.0))
+
+
+def uneven(system):
+    """The same system with one stiffer blade."""
+    K = system.K.copy()
+    K[1, 1] *= 1.02
+    return replace(system, K=K)
+
+
+@pytest.mark.parametrize("zeros", [False, True])
+def test_works_of_an_uneven_blade_are_those_of_the_dense_matrices(preset, zeros):
+    """Two pairs of vectors stand for the circulatory stiffness, except where all entries must remain."""
+    system, dt = uneven(preset), 2e-5
+    blocks = system_blocks(system)
+    terms = energy_terms(system, blocks, zeros=zeros)
+    assert len(terms.circulatory_pairs) == (0 if zeros else 2)
+    assert (len(terms.circulatory.lines) > 0) is zeros
+    now, change = np.random.default_rng(5).normal(size=(2, len(system.M))) * 1e-4
+    works, skew = np.zeros(WORKS), (system.K - system.K.T) / 2
+    add_linear_works(terms, blocks.to_z(now), blocks.to_z(change), dt, works)
+    summed = np.abs(change) @ np.abs(skew) @ np.abs(now)
+    assert works[CIRCULATORY] == pytest.approx(-change @ skew @ now, rel=0, abs=1e-12 * summed)
+    assert works[DAMPING] == pytest.approx(-change @ system.C @ change / dt, rel=1e-9)
+
+
+def test_equal_blades_keep_the_product_of_the_circulatory_stiffness(preset):
+    blocks = system_blocks(preset)
+    terms = energy_terms(preset, blocks)
+    product = blocks.without_zeros((preset.K - preset.K.T) / 2, preset.K)
+    assert len(terms.circulatory_pairs) == 0
+    np.testing.assert_array_equal(terms.circulatory.lines, product.lines)
+    np.testing.assert_array_equal(terms.circulatory.entries, product.entries)
