@@ -25,8 +25,10 @@ from rubgen.sensors.sensor import SampledSensor
 from schemas.make import documents
 
 MADE = "<!-- Made from the code by `make reference`; do not edit. -->"
-DRAWN = ("Constant", "Uniform", "LogUniform", "NormalShape", "Normal", "Choice", "WordChoice")
+DRAWN = ("Constant", "Uniform", "LogUniform", "Normal", "NormalShape", "Choice", "WordChoice")
 """The ways to draw a value. They have a section of their own and are not followed in every key."""
+TWIN, OF_MACHINE = "The twin's value, in place of that of its run. ", " Without it the machine's own value."
+"""Sentences of many keys that a table need not repeat: the text above [twins] says the one, the default the other."""
 HEAD = "| key | meaning | unit | allowed | default |\n|---|---|---|---|---|\n"
 
 
@@ -48,7 +50,8 @@ def recipe_page(schema: Node) -> str:
     for name in DRAWN:
         way = _defs(schema)[name]
         if _keys(way):
-            ways.append(f"### {_first(way).rstrip('.')}\n\n{key_table(way, schema)}")
+            title = "Keys of the table `normal`" if name == "NormalShape" else _first(way).rstrip(".")
+            ways.append(f"### {title}\n\n{key_table(way, schema)}")
     return _page(
         "Recipe",
         "A recipe is a TOML file that defines a data set: `rubgen generate RECIPE --out DIR` makes it. "
@@ -193,7 +196,13 @@ def _rows(keys: Iterable[Key]) -> str:
 
 def _cells(key: Key) -> tuple[str, ...]:
     default = "required" if key.required else f"`{key.default}`" if key.default else ""
-    return f"`{key.name}`", key.meaning, key.unit, key.allowed, default
+    meaning = key.meaning.removeprefix(TWIN).removesuffix(OF_MACHINE)
+    if key.meaning.startswith(TWIN):
+        text = re.sub(r" Without it [^.]+\.$", "", meaning).rstrip(".")
+        meaning, default = f"{text[0].upper()}{text[1:]}.", "its run's"
+    elif key.meaning.endswith(OF_MACHINE):
+        default = "the machine's"
+    return f"`{key.name}`", meaning, key.unit, key.allowed, default
 
 
 def _cell(text: str) -> str:
