@@ -16,6 +16,11 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]], *, numbers_from:
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
+def folded(title: str, text: str) -> str:
+    """A part of a page of which only the title shows until a click opens it."""
+    return f'<details markdown="1">\n<summary>{title}</summary>\n\n{text}\n\n</details>'
+
+
 def with_tables(page: str, tables: Mapping[str, str]) -> str:
     """The page with these texts, each from `<!-- name -->` to the next `<!-- end -->`."""
     for name, text in tables.items():

@@ -22,7 +22,7 @@ from rubgen.scenario.vary import vary
 from rubgen.units import rev_per_min
 from validation.command import run_command
 from validation.confusion.runs import SERIES, run
-from validation.markdown import table
+from validation.markdown import folded, table
 from validation.piece import MOTION_LABELS, Found, Piece
 from validation.store import Store
 
@@ -106,6 +106,7 @@ def page(every: Sequence[Pair], courses: dict[tuple[str, float], str]) -> str:
             here = [each for each in every if (each.series, each.speed_rpm) == (name, speed)]
             rows.append([name, f"{speed:,.0f}", here[0].steady.value, *(each.window.value for each in here)])
     rates = [f"run-up, {_rate(seconds)}" for seconds in DURATIONS_S]
+    each_speed = table(["series", "rev/min", "steady run", *rates], rows)
     listed = "\n".join(f"- {name}, {_rate(seconds)}: {text}." for (name, seconds), text in courses.items())
     return f"""# Motion in run-ups, beside steady runs
 
@@ -124,7 +125,7 @@ Rows are steady runs, columns windows of run-ups.
 
 ## Each speed
 
-{table(["series", "rev/min", "steady run", *rates], rows)}
+{folded(f"{len(rows)} speeds: the steady run and each run-up", each_speed)}
 
 ## The course of each run-up
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from rubgen.labels.labels import Motion
 from validation.confusion.runs import SERIES, SPEEDS_RPM
 from validation.confusion.verdicts import AGREE, Case, Cause, Clusters, Sign, ZeroOne
-from validation.markdown import table
+from validation.markdown import folded, table
 
 COMMAND = "python -m validation.confusion"
 
@@ -119,7 +119,7 @@ def _disagreements(cases: Sequence[Case]) -> str:
     return f"""
 ## Every disagreement
 
-{table(header, rows)}
+{folded(f"{len(rows)} runs, with the cause of each", table(header, rows))}
 """
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rubgen.viz.colors import BLUE, GREEN, ORANGE, VERMILION
+from rubgen.viz.colors import BLUE, LINES, VERMILION
 from validation.contact_options.chords import Artefact
 from validation.contact_options.matched import Compared
 from validation.contact_options.runs import Found
@@ -42,9 +42,9 @@ def chords_figure(artefact: Artefact, smooth: Compared, chords: Compared) -> Fig
 def liner_figure(found: Sequence[Found]) -> Figure:
     """Worn profiles, and the impulses a turn while they are worn."""
     figure, panels = _figure(2)
-    colors = (BLUE, GREEN, ORANGE, VERMILION)
-    for each, color in zip(found, colors * len(found), strict=False):
-        worn = each.worn
+    colors = dict(zip(dict.fromkeys(each.case for each in found), LINES, strict=False))
+    for each in found:
+        worn, color = each.worn, colors[each.case]
         if worn is None:
             continue
         style = "--" if each.option != "liner" else "-"
@@ -52,8 +52,10 @@ def liner_figure(found: Sequence[Found]) -> Figure:
         panels[0].plot(np.rad2deg(worn.angle), 1e3 * worn.depth, style, color=color, linewidth=1, label=label)
         panels[1].plot(each.impulse, style, color=color, linewidth=0.8)
     _label(panels[0], "polar angle, degrees", "worn depth, mm")
-    panels[0].legend(frameon=False, fontsize=8)
+    figure.legend(loc="outside lower center", ncols=5, frameon=False, fontsize=8)
     _label(panels[1], "turn of the record", "impulse a turn, N s")
+    panels[0].set_title("profile of the liner after the record", fontsize=9)
+    panels[1].set_title("normal impulse while it wears", fontsize=9)
     return figure
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from validation.contact_options.chords import Artefact
 from validation.contact_options.matched import FIGURE_RPM
 from validation.contact_options.runs import HEAVY_FRICTION, LINER, Found
-from validation.markdown import table
+from validation.markdown import folded, table
 
 COMMAND = "python -m validation.contact_options"
 
@@ -115,17 +115,19 @@ def _heavy(found: Sequence[Found]) -> str:
             _impulse(each) if each.impulse.size else "-",
             f"{1e3 * each.bent:.1f}" if each.impulse.size else "-",
             f"{1e6 * each.shortened:.0f}" if each.impulse.size else "-",
-            each.reason or "-",
         ]
         for each in found
     ]
-    header = ["rev/min", "ends as", "impulse a turn, N s", "tips bent, mm", "draw-in, um", "reason"]
+    header = ["rev/min", "ends as", "impulse a turn, N s", "tips bent, mm", "draw-in, um"]
+    reasons = "\n".join(f"- {each.speed_rpm:,.0f} rev/min: {each.reason}" for each in found if each.reason)
     return f"""
 ## Heavy rub near the critical speed
 
 The preset with friction {HEAVY_FRICTION:g}, nothing else changed. Its critical speed is 8,776 rev/min.
 
 {table(header, rows)}
+
+{folded("Reasons of the runs that diverged", reasons)}
 
 Some of these runs settle into irregular motion in which the blades chatter by millimetres. The others leave the
 range of the model, 10 mm, and are recorded as `diverged`. Their reason names the part that left first, the turn, and

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from rubgen.labels.labels import Motion
 from rubgen.labels.motion.classify import Motions
-from validation.markdown import table
+from validation.markdown import folded, table
 from validation.sensitivity.confidence import KEPT_WHERE_SURE, SURE, bins, interval, shared, spreads, sure
 from validation.sensitivity.recipes import RECIPES, RUNS, SEEDS, SEEN, Halved
 
@@ -107,7 +107,7 @@ def _moved(pairs: Sequence[Halved]) -> str:
         if not pair.kept
     ]
     header = ["run", "rev/min", "motion", "confidence", "largest stray", "K", "exponent a turn"]
-    return f"Every class that moves (1,024 / 2,048 steps):\n\n{table(header, rows)}"
+    return folded(f"{len(rows)} classes that move (1,024 / 2,048 steps)", table(header, rows))
 
 
 def _class(found: Motions) -> str:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from textwrap import fill
 
-from validation.markdown import table
+from validation.markdown import folded, table
 from validation.sensitivity.cases import CASES, STUDIES, Study
 from validation.sensitivity.figures import QUANTITIES
 from validation.sensitivity.halving import (
@@ -39,7 +39,8 @@ def page(results: Mapping[str, Results], pairs: Sequence[Pair]) -> str:
 def _section(study: Study, results: Results) -> str:
     lines = [f"## {study.quantity}", f"![{study.quantity}](sensitivity-{study.name}.png)", REMARKS[study.name].strip()]
     lines.append(_wrapped(_equal_labels(study, results)))
-    lines.append(table(_COLUMNS, [_row(study, results, value, name) for value in _values(results) for name in CASES]))
+    rows = [_row(study, results, value, name) for value in _values(results) for name in CASES]
+    lines.append(folded(f"{len(rows)} runs: motion, zones, impulse and orders of each", table(_COLUMNS, rows)))
     if study.model:
         header = [
             "value",

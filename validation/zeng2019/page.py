@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 
-from validation.markdown import table
+from validation.markdown import folded, table
 from validation.zeng2019.changes import changed, tally
 from validation.zeng2019.differences import Experiment, cause_of
 from validation.zeng2019.fitting.evidence import read_evidence
@@ -30,11 +30,14 @@ from validation.zeng2019.statement import DIFFERS, Statement
 PAGE = "zeng2019"
 PARTS = {
     "modes": "modes and frequencies (figures 6 to 9)",
-    "speed": "the sweep of the speed (figures 10 to 16)",
-    "supports": "stiffness of the supports (figures 17 to 21)",
+    "speed": "the sweep of the speed (figures 10 and 11)",
+    "regions": "regions of the speed (figures 12 to 16)",
+    "disk-support": "stiffness of the disk's support (figures 17 to 19)",
+    "casing-support": "stiffness of the casing's support (figures 20 and 21)",
     "conclusions": "friction, conclusions and causes",
 }
 """The parts of the page by the ending of their file names."""
+LAST_FIGURE = {"modes": 9, "speed": 11, "regions": 16, "disk-support": 19, "casing-support": 21}
 DIFFERING = "differences"
 POINTER = f"[The first page]({PAGE}.md) names the machines, the rules of the verdicts and the counts."
 STYLE = (
@@ -93,7 +96,7 @@ def pages(judged: Sequence[Judged], size: Size) -> dict[str, str]:
 def part_of(name: str) -> str:
     """The part of the pages that has the section of that name."""
     number = int(name) if name.isdecimal() else 99
-    return "modes" if number <= 9 else "speed" if number <= 16 else "supports" if number <= 21 else "conclusions"
+    return next((part for part, last in LAST_FIGURE.items() if number <= last), "conclusions")
 
 
 def _joined(parts: Sequence[str]) -> str:
@@ -118,8 +121,13 @@ def _sections(judged: Sequence[Judged], size: Size) -> list[str]:
 def _ending(judged: Sequence[Judged]) -> list[str]:
     parts = []
     for title, text, tables in _closing(judged):
-        parts += [f"## {title}", text, *(table(header, rows) for header, rows in tables if rows)]
+        parts += [f"## {title}", text, *(_closing_table(header, rows) for header, rows in tables if rows)]
     return parts
+
+
+def _closing_table(header: Sequence[str], rows: Rows) -> str:
+    made = table(header, rows)
+    return folded(f"{len(rows)} statements whose verdict changed", made) if header is CHANGE_HEADER else made
 
 
 def html(judged: Sequence[Judged], size: Size) -> str:
@@ -142,7 +150,7 @@ def html(judged: Sequence[Judged], size: Size) -> str:
 
 def _introduction(size: Size) -> list[str]:
     remark = [QUICK_REMARK] if size.name == QUICK.name else [EVERY_REMARK] if size.speed_thin > 1 else []
-    return [*INTRODUCTION.split("\n\n"), *remark, rules(size)]
+    return [*INTRODUCTION.split("\n\n"), *remark, *rules(size).split("\n\n")]
 
 
 def _statements(each: Judged) -> tuple[Sequence[str], Rows]:

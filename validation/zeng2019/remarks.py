@@ -47,15 +47,22 @@ def rules(size: Size) -> str:
     return f"""Verdicts follow rules that were set before the runs. A number agrees if it is within {
         100 * ROUNDING:g} %. Up to {
         100 * TOLERANCE:g} %, it agrees within its error. Beyond, it differs. For the accuracies of \
-a reduction the first limit is 2 %. A statement about many runs agrees if at least {100 * MOST:g} % of them \
+a reduction the first limit is 2 %.
+
+A statement about many runs agrees if at least {100 * MOST:g} % of them \
 confirm it. Down to {100 * HALF:g} %, it agrees within the share that does not confirm it. Below, it differs. A \
-statement is unknowable if it needs a parameter or a drawing that is lost. Motion classes are the classes of \
+statement is unknowable if it needs a parameter or a drawing that is lost. A motion with the label undecided confirms \
+no statement.
+
+Motion classes are the classes of \
 `docs/labels.md`, from {size.record_turns} turns after {size.settle_turns} turns of settling, without the \
-Lyapunov exponent: no companion trajectory runs, because it would double the time. The paper judges 49 points by eye, \
+Lyapunov exponent: no companion trajectory runs, because it would double the time.
+
+The paper judges 49 points by eye, \
 which cannot recognise quasi-periodic motion. Such motion counts as chaotic, and as multi-period where the paper has \
 this word. What the eye sees is given as a number: how far the 49 points scatter, over the height of the diagram of \
 the whole sweep; below 2 % they look like one point. If the verdict by this number is another one, the page states \
-both. A motion with the label undecided confirms no statement."""
+both."""
 
 
 QUICK_REMARK = (

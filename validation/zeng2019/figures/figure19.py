@@ -112,7 +112,7 @@ def figures(size: Size, found: Found) -> dict[str, Figure]:
         right.semilogy(k / 1e8, share, ".-", color=color, label=part, linewidth=0.8)
     right.legend(frameon=False, fontsize=8)
     style(right, "Disk support, 1e8 N/m", "Rms over its largest")
-    return {"Forward whirl of one nodal diameter at 10,000 rev/min ($f_r$ red), and rms of the sweep": figure}
+    return {"Forward whirl of one nodal diameter at 10,000 rev/min (f_r red), and rms of the sweep": figure}
 
 
 SECTION = Section(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from validation.markdown import table
+from validation.markdown import folded, table
 from validation.piece import Arrays, Found, Piece
 from validation.zeng2019.fitting.candidate import PRESET, RECORD, SETTLE, Candidate
 from validation.zeng2019.fitting.room import room
@@ -85,7 +85,10 @@ def page(scores: Sequence[Score], found_room: Found) -> str:
         ROOM,
         table(("damping", "unbalance, kg m", "clearance, um"), [_room_row(*each) for each in rooms.items()]),
         "## All candidates",
-        table(CANDIDATES, [_row(str(i), one, None) for i, one in enumerate(ranked, start=1)]),
+        folded(
+            f"{len(ranked)} candidates, best first",
+            table(CANDIDATES, [_row(str(i), one, None) for i, one in enumerate(ranked, start=1)]),
+        ),
     ]
     return "\n\n".join(parts) + "\n"
 
