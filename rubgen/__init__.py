@@ -70,8 +70,8 @@ def simulate(scenario: Scenario) -> Run:
     """Simulate the run that `scenario` describes and return its true response, recorded channels and labels.
 
     Progress is shown on a terminal. A run that fails has `response.status` and `response.reason`, but its recording and
-    labels are None. Raises UserError for a machine that cannot be modelled or reduced as asked, or a record too short
-    for its signals. See `rubgen.pipeline.simulate`.
+    labels are None. Raises UserError for a machine that cannot be modelled or reduced, or a record too short for its
+    signals. See `rubgen.pipeline.simulate`.
     """
     from rubgen.pipeline import simulate
     from rubgen.progress import shown

@@ -25,7 +25,7 @@ class Windows(Dataset):  # type: ignore[misc]
     `windows[i]` is the window number i of `DataSet.windows` with the same arguments, and its answer, the value of the
     target. The window is a float32 tensor (channels, time). The answer is a tensor without dimension, an integer or
     float32, and for the target `faults` a tensor (kinds,). `y` are the answers of all windows, for weights and
-    samplers. Signals are read when a window is asked for; the last run that was read stays in memory. A shuffled order
+    samplers. `windows[i]` reads the signals of its run; the last run that was read stays in memory. A shuffled order
     reads a row group of four runs for each window: `Stream` shuffles at less cost.
 
     Raises UserError as `DataSet.windows` does.

@@ -39,7 +39,10 @@ class Task:
 
 
 def known(answers: Values) -> BoolArray:
-    """Return which windows (windows,) have an answer: a finite number that is not -1. Labels always have one."""
+    """Return which windows (windows,) have an answer: a finite number that is not -1.
+
+    All windows have an answer if the answers are labels (windows, labels).
+    """
     if answers.ndim == 2:
         return np.ones(len(answers), dtype=bool)
     return np.asarray(np.isfinite(answers) & (answers != -1))

@@ -13,9 +13,10 @@ from typing import Any
 def terminable() -> Iterator[None]:
     """Raise KeyboardInterrupt in the block for SIGTERM and SIGINT (Ctrl-C), also where the shell ignores SIGINT.
 
-    Compiled code of other libraries may swallow or print this exception, and fail later with another exception. After a
-    signal their messages are not printed, and KeyboardInterrupt is raised in place of the other exception. The former
-    handlers are restored after the block. Outside the main thread, which cannot handle signals, nothing is changed.
+    Compiled code of other libraries may swallow or print this exception, and fail later with an exception of its own.
+    After a signal, messages of these libraries are not printed, and KeyboardInterrupt is raised in place of their
+    exception. The handlers from before the block are restored after it. Outside the main thread, which cannot handle
+    signals, nothing is changed.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

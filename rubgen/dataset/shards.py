@@ -36,7 +36,7 @@ class Shard:
 
 
 def shards_of(recipe: Recipe) -> Iterator[Shard]:
-    """Yield the shards of the recipe's set: full ones in the order of their last runs, then the last of each split.
+    """Yield the shards of the recipe's set: full shards in the order of their last runs, then the last of each split.
 
     A merged set has the shards of its sources, one source after the other. Memory does not grow with the number of
     runs.

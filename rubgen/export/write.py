@@ -28,7 +28,7 @@ BYTES = 4
 
 @dataclass(frozen=True)
 class Exported:
-    """What an export contains."""
+    """The numbers of runs and files of an export, and the names of its splits and channels."""
 
     runs: int
     files: int

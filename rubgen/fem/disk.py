@@ -54,8 +54,8 @@ def assemble_disk(disk: Disk) -> DiskModel:
 def annular_mesh(disk: Disk) -> ShellMesh:
     """Make the mesh of the annulus, rings from the bore outwards, with all nodes on true circles.
 
-    Rings of corner nodes have two nodes an element (corner and midside). The rings between have one, at the angles of
-    the corners.
+    A ring through the corners of elements has two nodes an element (corner and midside). A ring between two of these
+    has one node an element, at the angle of a corner.
     """
     n_r, n_c = disk.radial_elements, disk.circumferential_elements
     radii = np.linspace(disk.bore_radius_m, disk.rim_radius_m, 2 * n_r + 1)

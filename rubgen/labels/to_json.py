@@ -17,8 +17,8 @@ MOTION_LABELS = ("motion", "motion_blisk", "motion_casing")
 def labels_to_json(labels: Labels) -> dict[str, object]:
     """Return the labels of one run by their public names, as plain Python values for JSON.
 
-    The keys are in the order of `rubgen.labels.registry`, which lists names, units and meanings. The labels of each
-    true signal follow, `<tap>_orders` and so on. Undefined values and NaN are None.
+    The keys are in the order of `rubgen.labels.registry`, which lists names, units and meanings. Then follow the labels
+    of each true signal, such as `<tap>_orders`. Undefined values and NaN are None.
     """
     values = {each.name: _plain(each.kind, each.value(labels)) for each in LABELS}
     for tap, orders in labels.orders.items():

@@ -96,8 +96,8 @@ class Disk:
 class Mistuning:
     """Relative deviation of each blade's elastic stiffness: `pattern`, or values drawn with `relative_std` and `seed`.
 
-    Blade k has Young's modulus E (1 + deviation_k), and its shear modulus accordingly. All blades have the same mass
-    and shape. A pattern begins with blade 0 on x, where the unbalance is, and continues counter-clockwise. Draws are
+    Young's modulus and shear modulus of blade k are multiplied by 1 + deviation_k. All blades have the same mass and
+    shape. A pattern begins with blade 0 on x, where the unbalance is, and continues counter-clockwise. Draws are
     independent and normal with mean 0, so the mean of one draw is not exactly 0.
     """
 

@@ -10,13 +10,14 @@ from rubgen.machine.machine import BladeRow, Casing, Disk
 def disk_nodes(disk: Disk) -> int:
     """Return the number of nodes of the disk's mesh.
 
-    Each ring of corner nodes has two nodes an element, each ring between them one.
+    A ring through the corners of elements has two nodes an element. A ring between two of these has one node an
+    element.
     """
     return disk.circumferential_elements * (3 * disk.radial_elements + 2)
 
 
 def pitch_problem(disk: Disk, blades: BladeRow) -> str | None:
-    """Return a problem if the blades do not meet corner nodes of the rim, or there is only one; else None.
+    """Return a problem if the blades do not meet corner nodes of the rim, or if there is a single blade; else None.
 
     The pull of a single blade would not be balanced.
     """

@@ -258,7 +258,8 @@ class ReducedModel:
         """Speed in rev/min at which undamped forward lateral whirl is synchronous with the rotation.
 
         At this speed K_e + K_s + Omega^2 (K_sigma - S) is singular: an unbalance, static in the turning frame, acts
-        against no stiffness. Of all such speeds it is the one with the largest share of energy in the lateral springs.
+        against no stiffness. If there are several such speeds, it is the speed with the largest share of energy in the
+        lateral springs.
         """
         with one_blas_thread():
             inverse_squares, modes = eigh(-self.blisk.A, self.stiffness(0.0))

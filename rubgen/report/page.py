@@ -105,8 +105,8 @@ def _replays(directory: Path, examples: list[str]) -> dict[str, Replay]:
 def example_runs(good: pd.DataFrame) -> list[str]:
     """Choose up to six runs to show. Returns their names. `good` is the table of the runs with status ok.
 
-    They are the run with the largest impulse of each class of motion, then a run without contact, then others by
-    impulse.
+    First the run with the largest impulse of each class of motion is taken, then a run without contact. The rest are
+    the runs with the largest impulse that remain.
     """
     by_impulse = good.sort_index().sort_values("contact_impulse_per_turn_n_s", ascending=False, kind="stable")
     hardest = [by_impulse.index[by_impulse["motion"] == motion.value][:1] for motion in Motion]

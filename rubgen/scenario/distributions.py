@@ -31,7 +31,7 @@ class Constant(RootModel[Finite]):
         return self.root
 
     def extremes(self) -> tuple[float, ...]:
-        """Return the value, as the only one that can be drawn."""
+        """Return a tuple of the value: no other value can be drawn."""
         return (self.root,)
 
 

@@ -40,7 +40,7 @@ MOST_ZONES = 4
 def simulate_command(
     options: dict[str, Any], out: Path | None, *, replay: bool = False, force: bool = False, as_json: bool
 ) -> int:
-    """Simulate one run and print its labels. Write it to a file or show it if asked.
+    """Simulate one run and print its labels. With `out` also write a file, with `replay` also show the run.
 
     - options: the parameters of `make_scenario` by name, from the command line.
     - out: file to write, in the format of its ending, or None.

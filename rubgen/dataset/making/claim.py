@@ -234,7 +234,7 @@ def check_same(layout: Layout, there: Identity, asked: Identity, *, versions: bo
 
     - layout: paths of the directory, for the message.
     - there: identity of the set in the directory.
-    - asked: identity of the wanted set.
+    - asked: identity of the set that is to be made.
     - versions: compare the versions of packages too.
     """
     if not there.same_recipe(asked):

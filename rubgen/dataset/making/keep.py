@@ -107,7 +107,7 @@ def rows_of(
     """Yield the rows of kept runs in one table, as record batches. Runs without a row in the table are left out.
 
     - kept: the runs, in the order of the rows.
-    - table: `runs` or one of the tables.
+    - table: a table of the set, from `dataset.tables`, such as RUNS.
     - types: the table's schema.
     - formats: the formats of the set, which determine its tables.
     """

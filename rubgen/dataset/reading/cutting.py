@@ -46,13 +46,13 @@ class Cut:
     def cutter(self, signals: Float32Array, pulses: FloatArray) -> Callable[[float], Float32Array]:
         """Return a function that cuts a window (channels, samples) out of a run's signals.
 
-        Its argument is the start in s.
+        The function takes the start of the window in s, which must be a start in `pieces`.
 
         - signals (channels, count): the channels of the run.
         - pulses: times of the run's once_per_rev pulses in s.
 
-        A start is one of `pieces`. Windows of turns have SAMPLES_PER_TURN values a turn at equal angles, as in computed
-        order tracking: a monotone cubic goes through the times of the pulses, and a cubic spline through the samples.
+        Windows of turns have SAMPLES_PER_TURN values a turn at equal angles, as in computed order tracking: a monotone
+        cubic goes through the times of the pulses, and a cubic spline through the samples.
         """
         if not self.turns:
             return lambda start: signals[:, round(start * self.rate) : round(start * self.rate) + self.length]

@@ -86,7 +86,7 @@ class WindowIndex:
     def cutters(self, numbers: Iterable[int]) -> Iterator[tuple[int, Callable[[float], Float32Array]]]:
         """Yield for each run its position in `runs`, and the function that cuts its windows (`Cut.cutter`).
 
-        `numbers` are the positions of the wanted runs in `runs`. One run is in memory at a time.
+        `numbers` are the positions in `runs` of the runs to read. One run is in memory at a time.
         """
         numbers, count = list(numbers), _samples(self.data)
         chosen = [self.runs[number] for number in numbers]
@@ -134,9 +134,10 @@ def windows(index: WindowIndex, out: Path | str | None) -> Windows:
 
 
 def chosen_runs(data: DataSet, split: str | None, runs: Sequence[str] | None) -> list[str]:
-    """Return the names of the good runs of `split`, or of the list `runs`, or for two None of the whole set.
+    """Return the names of the good runs (status ok) of `split`, or of the list `runs`.
 
-    Raises UserError where both are given, a split or run is unknown, a run of the list failed, or no run is left.
+    If both are None, return all good runs of the set. Raises UserError where both are given, a split or run is unknown,
+    a run of the list failed, or no run is left.
     """
     good = data.ok
     if split is not None and runs is not None:

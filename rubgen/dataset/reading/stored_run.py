@@ -33,7 +33,7 @@ class StoredRun:
     data: DataSet = field(repr=False)
 
     def signals(self, channels: Sequence[str] | None = None) -> dict[str, Float32Array]:
-        """Read the recorded channels as arrays by name; `channels` names the wanted ones. See `DataSet.signals`."""
+        """Read the recorded channels as arrays by name. `channels` are the names to read: see `DataSet.signals`."""
         return self.data.signals(self.run_id, channels)
 
     def touches(self) -> pd.DataFrame:

@@ -56,7 +56,7 @@ class RemoteMaking:
 
         Records of shards that were uploaded before are downloaded, so that these shards are not made again. Shards that
         were closed in the local folder and not uploaded before an interruption are uploaded now. Raises UserError where
-        the place contains anything else, or a finished set with fewer runs, and where it cannot be used.
+        the URL has other files or a finished set with fewer runs, and where it cannot be read or written.
         """
         store = self.store
         there = store.begin(identity, grows=False)

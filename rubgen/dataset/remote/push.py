@@ -16,8 +16,8 @@ def push(directory: Path | str, url: str) -> int:
 
     Files are uploaded one by one, the manifest and its digest last: an incomplete set cannot be opened. The same call
     after an interruption copies the missing files. If the URL has a set with fewer runs of the same recipe, the new
-    runs are added. Raises UserError where the directory holds no finished set or a damaged file, the URL cannot be
-    written, or it contains anything else.
+    runs are added. Raises UserError where the directory has no finished set or a damaged file, the URL cannot be
+    written, or the URL has other files.
     """
     source, store = Layout(directory), Store(url)
     manifest = read_manifest(source)

@@ -39,10 +39,11 @@ class Store:
         return {name[start:]: int(facts["size"] or 0) for name, facts in found.items()}
 
     def begin(self, identity: Identity, *, grows: bool = True) -> dict[str, int]:
-        """Reserve the place for the set of this identity before anything is made. Return the files there, as `sizes`.
+        """Reserve the URL for the set of this identity before anything is made. Return the files there, as `sizes`.
 
-        With `grows` False, a finished set with fewer runs is refused. An unfinished set with another identity and a
-        place with other files are always refused. Raises UserError for these, and where the place cannot be written.
+        Raises UserError where the URL has a set of another recipe or of other package versions, a set with more runs,
+        or other files, and where it cannot be written. With `grows` False, a finished set with fewer runs is refused
+        too.
         """
         layout, there = self.layout, self.sizes()
         marker = self._name(layout.identity)
@@ -66,7 +67,7 @@ class Store:
         return there
 
     def abandon(self) -> None:
-        """Remove the identity that `begin` wrote, if the place has no other file."""
+        """Remove the identity that `begin` wrote, if no other file is at the URL."""
         marker = self._name(self.layout.identity)
         if self._marked:
             with suppress(UserError):

@@ -266,7 +266,7 @@ def checked_labels(content: McapContent) -> dict[str, Any]:
 
 
 def check_facts(channel: Channel) -> None:
-    """Check unit, place and range in the metadata of a channel.
+    """Check unit, position and range in the metadata of a channel.
 
     Raises DamageError where a value is missing or wrong.
     """

@@ -115,7 +115,7 @@ CONTACT_FIELDS = {
 def proto_file(path: str, package: str, messages: dict[str, list[Field]]) -> descriptor_pb2.FileDescriptorProto:
     """Describe a .proto file with the given messages. It imports the files of other messages among their fields.
 
-    - path: the name under which other files import this one.
+    - path: name of the file, under which other files import it.
     - package: the protobuf package of the messages.
     - messages: the fields of each message, by its name.
     """

@@ -129,12 +129,12 @@ def read_table(path: Path, columns: Sequence[str] | None = None, asked_bytes: fl
 
 
 def row_groups(path: Path, asked_bytes: float = 0.0, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
-    """Yield the row groups of the Parquet file at `path` one by one, with every page checked. Only one is in memory.
+    """Yield the row groups of the Parquet file at `path` one by one, with every page checked.
 
     - asked_bytes: expected unpacked size of a row group, allowed beyond the general bound of 256 MiB.
     - columns: names of the columns to read; None reads all.
 
-    Raises UserError where the file is missing or damaged.
+    Only one row group is in memory. Raises UserError where the file is missing or damaged.
     """
     with ParquetSource(path, asked_bytes) as file:
         for group in range(file.num_row_groups):

@@ -166,9 +166,9 @@ def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Tab
 
 
 def merged_from(source: str, index: int) -> str:
-    """Return the value of the column `merged_from` for run number `index` of a source.
+    """Return the value of the column `merged_from` for run number `index` of a source: `<source>/<name of the run>`.
 
-    `source` are the source's digits.
+    `source` is the text of digits that names the source, the beginning of a digest.
     """
     return f"{source}/{run_id_of(index)}"
 

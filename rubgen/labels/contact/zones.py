@@ -106,7 +106,8 @@ def _without_lightest(density: FloatArray) -> FloatArray:
 def touched_arcs(touched: np.typing.NDArray[np.bool_]) -> list[tuple[int, int]]:
     """Return the first bin and the number of bins of each arc of True bins in `touched`, on a circle.
 
-    At least one bin must be True. Gaps up to GAP are closed. If no gap is larger, the one arc is (0, number of bins).
+    At least one bin must be True. Gaps up to GAP are closed. If no gap is larger, the single arc is (0, number of
+    bins).
     """
     bins = np.flatnonzero(touched)
     to_next = np.diff(bins, append=bins[0] + touched.size)

@@ -89,9 +89,9 @@ def off_branches(points: FloatArray, branches: int) -> FloatArray:
 def prediction_error(values: FloatArray) -> float:
     """Return the rms error of a prediction of each of the values (n,) from the EARLIER values before it.
 
-    The error is divided by the standard deviation of the values; it is 0 where this is 0. The prediction is linear,
-    with the coefficients of the least error; the rms error is corrected for their number. A motion of m frequencies
-    obeys such a recurrence of order 2 m exactly, also while it settles. Chaos does not.
+    The error is divided by the standard deviation of the values; equal values have the error 0. The prediction is
+    linear, with the coefficients of the least error; the rms error is corrected for their number. A motion of m
+    frequencies obeys such a recurrence of order 2 m exactly, also while it settles. Chaos does not.
     """
     centred = values - values.mean()
     size = centred.std()

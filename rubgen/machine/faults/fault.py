@@ -35,7 +35,10 @@ class Ramp:
 
 @dataclass(frozen=True, kw_only=True)
 class HarmonicLoad:
-    """A force on the disk centre in the inertial frame: F_X = Re(x e^(i order theta)) and F_Y likewise, in N."""
+    """A force on the disk centre in the inertial frame, in N.
+
+    F_X = Re(x e^(i order theta)) and F_Y = Re(y e^(i order theta)), with theta the blisk's angle.
+    """
 
     order: int
     x: complex

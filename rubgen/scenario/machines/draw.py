@@ -42,7 +42,7 @@ def candidate(table: MachineTable, files: tuple[Machine, ...], seed: int, number
 
 
 class Population:
-    """The virtual machines of a recipe. Each machine is drawn and checked when it is first asked for."""
+    """The virtual machines of a recipe. A machine is drawn and checked at the first call that needs it."""
 
     def __init__(
         self, table: MachineTable, files: tuple[Machine, ...], seed: int, problem: Problem, known: Mapping[int, int]

@@ -25,9 +25,9 @@ MOST_TRIES = 10_000
 
 @dataclass(frozen=True)
 class Cell:
-    """One class of runs of a balance: its name, its share of all runs, and what the runs in it have in common.
+    """One class of runs of a balance, with its name and its share of all runs.
 
-    `rub` is whether they rub, `motion` their class of motion ("" for any), `severities` the band of their
+    `rub` is whether the runs rub, `motion` their class of motion ("" for any), `severities` the band of their
     contact_severity, without its upper end.
     """
 

@@ -164,6 +164,6 @@ def check_twins(twins: BaseModel, around: BaseModel | None, corners: Sequence[Sc
 
 
 def fault_of(twins: BaseModel | None) -> tuple[Fault, ...]:
-    """Return the fault that the table adds to twins, as a tuple of one; an empty tuple without a table or a fault."""
+    """Return a tuple of the fault that the table adds to twins. It is empty without a table or without a fault."""
     fault: Fault | None = getattr(twins, "fault", None)
     return (fault,) if fault else ()

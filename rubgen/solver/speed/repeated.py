@@ -26,11 +26,14 @@ class RepeatedDriver(SteadyDriver):
 
     @property
     def times(self) -> float:
-        """Turns of the run for each turn that was integrated. The stepper's works must be multiplied by it."""
+        """Turns of the run for each turn that was integrated. Multiply the stepper's works (J) by this number."""
         return (self.integrated + self.repeated) / self.integrated
 
     def run_turns(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
-        """Yield the turns with these numbers. One turn is integrated; it is repeated with the numbers of all others."""
+        """Yield the turns with these numbers. One integrated turn is repeated under each number.
+
+        A recorded turn in which `opening` is not yet 0 is integrated itself.
+        """
         for number in numbers:
             yield self._run_turn(number, opening, recording=recording)
 

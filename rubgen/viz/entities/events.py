@@ -60,8 +60,8 @@ def contact_map(replay: Replay) -> FloatArray:
 def send_tip_timing(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
     """Send the tip deflections from each probe's arrival times, in um, as points at these times.
 
-    With `full` all points are sent. Else, if there are many, all points around the hardest touch and some of the others
-    are sent.
+    With `full` all points are sent. Without it, if there are many, all points around the hardest touch and some of the
+    rest are sent.
     """
     recording, radius = replay.recording, replay.scenario.machine.tip_radius_m
     most = MOST_PASSAGES // max(len(recording.tip_timing), 1)
