@@ -15,6 +15,7 @@ from rubgen.dataset.making.claim import acquired
 from rubgen.dataset.making.workers import unordered, worker_pool
 from rubgen.errors import UserError, write_problems
 from rubgen.io.files import write_durably
+from rubgen.progress import step
 from rubgen.scenario import Scenario
 from validation.piece import Arrays, Piece
 
@@ -112,7 +113,7 @@ def _is_run(piece: Piece) -> bool:
 
 
 def _make(key: str, piece: Piece) -> tuple[str, Arrays]:
-    with threadpool_limits(1, user_api="blas"):
+    with threadpool_limits(1, user_api="blas"), step("make a piece"):  # what it counts are no pieces
         return key, piece.make(*piece.arguments)
 
 

@@ -1,9 +1,13 @@
 """The results that studies keep: made once, made again after a cut or a change of code, by one process at a time."""
 
+from contextlib import contextmanager
+
 import numpy as np
 import pytest
 
+from rubgen import progress
 from rubgen.errors import UserError
+from rubgen.progress import count
 from validation import piece as piece_module
 from validation.markdown import table
 from validation.piece import PACKAGE, Piece, physics
@@ -95,3 +99,26 @@ def test_a_table_escapes_what_would_end_a_cell():
         r"| x\|y | 1 |",
         "| short |",
     ]
+
+
+def busy(n):
+    """A piece that counts its own parts, as an integration counts turns."""
+    for done in range(n):
+        count(done, n)
+    return squares(n)
+
+
+def test_progress_is_of_pieces_not_of_their_parts(tmp_path):
+    store, told = Store(tmp_path), []
+
+    @contextmanager
+    def show(_text, _unit, *, long):
+        yield lambda *done: told.append(done)
+
+    token = progress._showing.set(show)
+    try:
+        with store.claimed(), progress.step("simulate", "pieces"):
+            store.compute([Piece(busy, (700,))], 1, count)
+    finally:
+        progress._showing.reset(token)
+    assert told == [(0, 1), (1, 1)]
