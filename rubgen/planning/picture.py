@@ -13,7 +13,7 @@ from rubgen.viz.colors import GREY
 from rubgen.viz.figures.style import label_axes, new_figure, note
 
 RUB, NO_RUB = "#c44e52", "#4c72b0"
-COLUMNS, BINS = 4, 12
+COLUMNS, BINS, TICKS = 4, 12, 4
 LOGARITHMIC = "{ log_uniform"
 
 
@@ -54,6 +54,23 @@ def _histogram(axes: Axes, values: Sequence[float], rubs: Sequence[bool], *, log
     axes.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=5))
     if logarithmic:
         axes.set_xscale("log")
+        axes.set_xticks(_round_values(least, largest))
+        axes.minorticks_off()
     else:
         axes.xaxis.set_major_locator(MaxNLocator(nbins=4))
-        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _place: f"{value:.3g}"))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _place: _text(value)))
+
+
+def _round_values(least: float, largest: float) -> list[float]:
+    """Return at most four round values from `least` to `largest`, and the two ends where there are none."""
+    decades = range(math.floor(math.log10(least)), math.ceil(math.log10(largest)) + 1)
+    for factors in ((1, 2, 5), (1, 3), (1,)):
+        values = [factor * 10.0**decade for decade in decades for factor in factors]
+        inside = [value for value in values if least <= value <= largest]
+        if len(inside) <= TICKS:
+            return inside or [least, largest]
+    return inside[:: math.ceil(len(inside) / TICKS)]
+
+
+def _text(value: float) -> str:
+    return f"{value:,.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.3g}"

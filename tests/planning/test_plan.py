@@ -10,7 +10,8 @@ from rubgen.cli import main
 from rubgen.cli.commands.planning import plan_lines
 from rubgen.pipeline import simulate
 from rubgen.planning import plan as planning
-from rubgen.planning.picture import plan_figure
+from rubgen.planning.drawn import Drawn
+from rubgen.planning.picture import TICKS, plan_figure
 from rubgen.planning.plan import plan
 from rubgen.scenario import Recipe, load_recipe, parse_recipe
 from rubgen.scenario.costs import SECONDS_A_CANDIDATE
@@ -133,6 +134,15 @@ def test_the_picture_has_a_panel_for_each_key_that_varies_and_one_for_the_penetr
     assert counted == [3, 3, 3]
     unknown = replace(made, reach=tuple(replace(each, depth_m=math.inf) for each in made.reach))
     assert "not known" in plan_figure(unknown).axes[0].texts[0].get_text()
+
+
+@pytest.mark.parametrize(("least", "largest"), [(5.2e4, 5.8e5), (0.35, 2.7), (2.8e-4, 3.1e-3), (1e-9, 3), (4.1, 4.3)])
+def test_the_axis_of_a_key_drawn_by_its_logarithm_has_few_values(least, largest):
+    made = plan(changed(runs=3))
+    drawn = Drawn(key="vary.k", how="{ log_uniform = [1, 2] }", values=(least, largest), runs=(0, 1))
+    axes = plan_figure(replace(made, drawn=(drawn,))).axes[1]
+    assert 1 <= sum(least <= place <= largest for place in axes.get_xticks()) <= TICKS
+    assert axes.get_xticks(minor=True).size == 0
 
 
 def run(capsys, *words):
