@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from threadpoolctl import threadpool_limits
 
+from rubgen.arrays import IntArray
 from rubgen.baseline.evaluate import FOLDS, SEEDS, Samples, Scores, cross_validated, transferred
-from rubgen.baseline.models import Model, models
+from rubgen.baseline.models import models
 from rubgen.baseline.tasks import TASKS, Task, known, onsets
 from rubgen.baseline.windows import TRAIN, SetWindows, windows_of
+from rubgen.dataset.making.workers import unordered, worker_pool
 from rubgen.dataset.reading.open import DataSet
 from rubgen.errors import UserError
 from rubgen.machine.problems import nearest
+from rubgen.progress import count, step
 
 SOLVED, NOTHING = 0.95, 0.6
 """A task that one threshold scores higher on is too easy; one that no model scores so much on teaches nothing."""
@@ -42,13 +47,24 @@ class Baseline:
     """What is wrong with the task; empty if nothing is."""
 
 
+class TaskWindows(NamedTuple):
+    """The windows that count for a task."""
+
+    samples: Samples
+    """The windows without their inputs."""
+    splits: npt.NDArray[np.str_]
+    """The split of each."""
+    rows: IntArray
+    """The number of each among all windows of the set."""
+
+
 def baselines(
     directory: Path, tasks: Sequence[str] | None = None, *, workers: int = 1
 ) -> tuple[list[Baseline], dict[str, str]]:
     """Score simple models on the tasks of the data set in `directory`.
 
     - tasks: names in TASKS; None takes all that are possible with the set.
-    - workers: number of processes for the inputs.
+    - workers: number of processes. Scores do not depend on it.
 
     Models see the input channels of WINDOWS windows of each run: as the features of `rubgen features`, or as random
     convolutions. The score "by group" keeps a machine on one side of a split where the set has several machines, else a
@@ -72,11 +88,7 @@ def baselines(
     if len(reasons) == len(tasks or TASKS):
         raise UserError(f"{directory}: no task is possible: {'; '.join(f'{k}: {v}' for k, v in reasons.items())}")
     windows = windows_of(directory, data, SEEDS, workers)
-    with threadpool_limits(1):  # threads of OpenMP that wait for each other cost more than they bring
-        found = [
-            _of_task(name, *_samples(data, TASKS[name], windows)) for name in tasks or TASKS if name not in reasons
-        ]
-    return found, reasons
+    return _scored(data, windows, [name for name in tasks or TASKS if name not in reasons], workers), reasons
 
 
 def mark_of(scores: ModelScores, task: Task) -> str:
@@ -105,37 +117,57 @@ def mark_of(scores: ModelScores, task: Task) -> str:
     return "" if learned else f"nothing learns it ({best:.2f}, the majority {majority:.2f})"
 
 
-def _of_task(name: str, samples: Samples, splits: npt.NDArray[np.str_]) -> Baseline:
-    task, here = TASKS[name], _learned(splits)
-    train = samples[here]
-    scores = {
-        model: _of_model(model, made, task, samples, splits, here) for model, made in models(samples.answers).items()
+def _scored(data: DataSet, windows: SetWindows, names: Sequence[str], workers: int) -> list[Baseline]:
+    """Score all models on the tasks called `names`. Each model of each task is one job of the `workers` processes."""
+    parts = {name: _windows_of_task(data, TASKS[name], windows) for name in names}
+    found: dict[str, ModelScores] = {
+        name: {model: {} for model in models(part.samples.answers)} for name, part in parts.items()
     }
-    return Baseline(name, len(train.groups), np.unique(train.groups).size, scores, mark_of(scores, task))
+    with TemporaryDirectory() as folder, step("learn", "models"):
+        files = {name: Path(folder) / f"{name}.npy" for name in windows.inputs}
+        for name, path in files.items():
+            np.save(path, windows.inputs[name])
+        jobs = [(name, model, parts[name], files) for name in names for model in found[name]]
+        with worker_pool(min(workers, len(jobs))) as pool:
+            for done, (name, model, scores) in enumerate(unordered(pool, _scores_of, jobs), 1):
+                found[name][model] = scores
+                count(done, len(jobs))
+    return [_baseline(name, parts[name], found[name]) for name in names]
 
 
-def _of_model(
-    name: str, model: Model, task: Task, samples: Samples, splits: npt.NDArray[np.str_], here: npt.NDArray[np.bool_]
-) -> dict[str, Scores]:
-    train, found = samples[here], {}
-    found[BY_GROUP] = cross_validated(train, model, task.metrics, by_group=True)
-    if name in LEAKY:
-        found["leaky"] = cross_validated(train, model, task.metrics, by_group=False)
-    for split in dict.fromkeys(splits[~here]):
-        test = samples[splits == split]
-        if test.answers.ndim == 2 or np.unique(test.answers).size > 1:
-            found[f"on {split}"] = transferred(train, test, model, task.metrics)
-    return {way: scores for way, scores in found.items() if scores}
+def _baseline(name: str, part: TaskWindows, scores: ModelScores) -> Baseline:
+    groups = part.samples.groups[_learned(part.splits)]
+    return Baseline(name, groups.size, np.unique(groups).size, scores, mark_of(scores, TASKS[name]))
 
 
-def _samples(data: DataSet, task: Task, windows: SetWindows) -> tuple[Samples, npt.NDArray[np.str_]]:
-    """Return the windows that count for a task, and the split of each."""
+def _scores_of(
+    task_name: str, name: str, part: TaskWindows, files: Mapping[str, Path]
+) -> tuple[str, str, dict[str, Scores]]:
+    """Return the two names, and the scores of the model by way. `files` hold the inputs. A worker process calls it."""
+    task, model = TASKS[task_name], models(part.samples.answers)[name]
+    names = {model.inputs(seed) for seed in range(SEEDS)}
+    inputs = {each: np.load(files[each], mmap_mode="r")[part.rows] for each in names}
+    samples, here = replace(part.samples, inputs=inputs), _learned(part.splits)
+    train = samples[here]
+    tests = {f"on {split}": samples[part.splits == split] for split in dict.fromkeys(part.splits[~here])}
+    tests = {way: test for way, test in tests.items() if test.answers.ndim == 2 or np.unique(test.answers).size > 1}
+    found = {}
+    with threadpool_limits(1):  # threads of OpenMP that wait for each other cost more than they bring
+        found[BY_GROUP] = cross_validated(train, model, task.metrics, by_group=True)
+        if name in LEAKY:
+            found["leaky"] = cross_validated(train, model, task.metrics, by_group=False)
+        found |= transferred(train, tests, model, task.metrics)
+    return task_name, name, {way: scores for way, scores in found.items() if scores}
+
+
+def _windows_of_task(data: DataSet, task: Task, windows: SetWindows) -> TaskWindows:
+    """Return the windows that count for a task."""
     answers = task.answers(data, windows)
     rows = known(answers)
     if task.of_rubs:
         rows &= data.ok.loc[list(windows.runs), "rub"].to_numpy(dtype=bool)
-    every = Samples(windows.inputs, answers, windows.groups, windows.runs, windows.edges, onsets(data, windows))
-    return every[rows], windows.splits[rows]
+    every = Samples({}, answers, windows.groups, windows.runs, windows.edges, onsets(data, windows))
+    return TaskWindows(every[rows], windows.splits[rows], np.flatnonzero(rows))
 
 
 def _learned(splits: npt.NDArray[np.str_]) -> npt.NDArray[np.bool_]:
@@ -151,7 +183,7 @@ def _blank_windows(data: DataSet) -> SetWindows:
 
 def _why_not(data: DataSet, task: Task, blank: SetWindows) -> str:
     """Say why the set does not allow the task: too few groups, or a class in too few of them."""
-    samples, splits = _samples(data, task, blank)
+    samples, splits, _ = _windows_of_task(data, task, blank)
     if task.error and not np.isfinite(samples.onset).any():
         return "no run begins to rub within its signals while its speed changes"
     train = samples[_learned(splits)]

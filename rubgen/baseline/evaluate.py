@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
@@ -60,16 +60,24 @@ def cross_validated(samples: Samples, model: Model, metrics: Metrics, *, by_grou
         found = Outcome(np.empty_like(samples.answers), np.zeros(len(samples.groups)))
         owners = samples.groups if by_group else np.arange(len(samples.groups))
         for test in folds(owners, samples.answers, seed):
-            part = _said(samples[~test], samples[test], model, seed)
+            part = _said(_learned(samples[~test], model, seed), samples[test], model, seed)
             found.answers[test], found.ranks[test] = part
         return found
 
-    return _scores(outcome, samples, metrics)
+    return _scores([outcome(seed) for seed in range(SEEDS)], samples, metrics)
 
 
-def transferred(train: Samples, test: Samples, model: Model, metrics: Metrics) -> Scores:
-    """Learn from `train` and score on `test` by `metrics`, with SEEDS seeds of the model."""
-    return _scores(lambda seed: _said(train, test, model, seed), test, metrics)
+def transferred(train: Samples, tests: Mapping[str, Samples], model: Model, metrics: Metrics) -> dict[str, Scores]:
+    """Learn from `train` with SEEDS seeds of the model, and score on each of `tests` by `metrics`.
+
+    Returns the scores by the name of the test. A model learns once a seed, for all tests.
+    """
+    outcomes: dict[str, list[Outcome]] = {name: [] for name in tests}
+    for seed in range(SEEDS):
+        learned = _learned(train, model, seed)
+        for name, test in tests.items():
+            outcomes[name].append(_said(learned, test, model, seed))
+    return {name: _scores(outcomes[name], test, metrics) for name, test in tests.items()}
 
 
 def folds(groups: npt.NDArray[Any], answers: npt.NDArray[Any], seed: int) -> Iterator[npt.NDArray[np.bool_]]:
@@ -88,14 +96,16 @@ def folds(groups: npt.NDArray[Any], answers: npt.NDArray[Any], seed: int) -> Ite
         yield np.isin(numbers, order[fold::FOLDS])
 
 
-def _said(train: Samples, test: Samples, model: Model, seed: int) -> Outcome:
-    name = model.inputs(seed)
-    learned = model.make(seed).fit(train.inputs[name], train.answers)
-    return Outcome(learned.predict(test.inputs[name]), learned.rank(test.inputs[name]))
+def _learned(train: Samples, model: Model, seed: int) -> Any:
+    return model.make(seed).fit(train.inputs[model.inputs(seed)], train.answers)
 
 
-def _scores(outcome: Callable[[int], Outcome], samples: Samples, metrics: Metrics) -> Scores:
-    found = [outcome(seed) for seed in range(SEEDS)]
+def _said(learned: Any, test: Samples, model: Model, seed: int) -> Outcome:
+    inputs = test.inputs[model.inputs(seed)]
+    return Outcome(learned.predict(inputs), learned.rank(inputs))
+
+
+def _scores(found: Sequence[Outcome], samples: Samples, metrics: Metrics) -> Scores:
     scores = {name: [metric(each, samples) for each in found] for name, metric in metrics.items()}
     return {
         name: (float(np.mean(each)), float(np.std(each))) for name, each in scores.items() if np.isfinite(each).all()
