@@ -6,6 +6,7 @@ import pytest
 
 from rubgen.baseline import baseline, evaluate
 from rubgen.cli import main
+from rubgen.cli.commands import scoring
 
 
 def run(capsys, *words):
@@ -31,6 +32,7 @@ def test_an_unknown_task_and_a_missing_package_are_named(small_set, capsys, monk
 
 
 def test_scores_are_written_and_a_marked_task_ends_with_one(small_set, capsys, monkeypatch, tmp_path):
+    monkeypatch.setattr(scoring, "usable_cores", lambda: 1)  # other processes would not know of the next lines
     monkeypatch.setattr(evaluate, "SEEDS", 1)
     monkeypatch.setattr(baseline, "SEEDS", 1)
     for module in (baseline, evaluate):
