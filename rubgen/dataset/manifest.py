@@ -18,7 +18,7 @@ from pydantic import (
 
 from rubgen.dataset.files import json_text, sha256_of, write_text
 from rubgen.dataset.layout import Layout
-from rubgen.errors import UserError
+from rubgen.errors import UserError, os_reason
 from rubgen.io.files import check_regular, read_json
 from rubgen.io.places import is_there
 from rubgen.machine import Machine
@@ -262,10 +262,12 @@ def read_manifest(layout: Layout) -> Manifest:
         for path in (layout.manifest, layout.digest):
             check_regular(path)
         content, digest = layout.manifest.read_bytes(), layout.digest.read_bytes()
-    except (UserError, OSError) as error:
+    except UserError as error:
         raise UserError(
             f"{layout.root}: no finished data set of rubgen ({error}); give the directory of `rubgen generate`"
         ) from None
+    except OSError as error:
+        raise UserError(f"{layout.root}: its manifest cannot be read ({os_reason(error)})") from None
     if digest != _digest_text(layout, content).encode():
         raise UserError(f"{layout.manifest}: its digest is not the one in {layout.digest.name}; {MAKE_AGAIN}")
     try:

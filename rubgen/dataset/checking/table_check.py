@@ -197,7 +197,7 @@ def _compared(run_id: str, problems: Callable[[], list[str]]) -> Iterator[str]:
     try:
         yield from (f"{run_id}: {problem}" for problem in problems())
     except UNCOMPARABLE as error:
-        yield f"{run_id}: its values do not fit each other ({type(error).__name__}: {error})"
+        yield f"{run_id}: its values cannot be compared ({type(error).__name__}: {error})"
 
 
 def _groups(

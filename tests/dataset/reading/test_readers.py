@@ -1,6 +1,8 @@
 """Others read what rubgen writes, to the bit: memory, Parquet and MCAP carry the same floats."""
 
+import errno
 import re
+from pathlib import Path
 
 import duckdb
 import numpy as np
@@ -122,3 +124,12 @@ def test_open_says_what_is_missing(data, tmp_path):
         data.signals("run-7")
     with pytest.raises(UserError, match="no finished data set of rubgen"):
         rubgen.open(tmp_path)
+
+
+def test_a_manifest_that_the_system_refuses_is_no_missing_set(data, monkeypatch):
+    def refuse(path):
+        raise PermissionError(errno.EACCES, "of the system", str(path))
+
+    monkeypatch.setattr(Path, "read_bytes", refuse)
+    with pytest.raises(UserError, match=r"its manifest cannot be read \(.*manifest\.json: Permission denied\)$"):
+        rubgen.open(data.layout.root)
