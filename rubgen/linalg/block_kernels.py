@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.jit import allocation_free_kernel, inlined_kernel
-from rubgen.linalg.lanes_kernels import add_lines, dot_lines
+from rubgen.linalg.lanes_kernels import add_lines, dot_lines, dot_lines_each
 
 
 class Product(NamedTuple):
@@ -35,6 +35,12 @@ def quadratic(product: Product, left: FloatArray, right: FloatArray) -> float:
     """Return left^T matrix right, with `left` and `right` in the order of blocks as z."""
     total: float = dot_lines(product.lines, product.entries, right, left)
     return total
+
+
+@inlined_kernel
+def quadratic_each(product: Product, left: FloatArray, right: FloatArray, out: FloatArray) -> None:
+    """Write left_i^T matrix right_i into `out[i]`, for lines i < TOGETHER of `left` and `right`."""
+    dot_lines_each(product.lines, product.entries, right, left, out)
 
 
 @allocation_free_kernel

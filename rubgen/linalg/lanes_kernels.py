@@ -20,6 +20,8 @@ MOST_ROWS = 6
 """Rows of results that one line may give: they share each load of x."""
 CHAINS = 4
 """Least number of independent partial sums: a fused product takes about four cycles, and two may start in each."""
+TOGETHER = 4
+"""How many vectors `dot_lines_each` takes: with `MOST_ROWS` their sums fill most of 32 vector registers."""
 KIND, ROW, FIRST, START, COUNT = range(5)
 """A line: its kind; the first row of results; the first of its rows of entries; the first row or number of x; how
 many. See `line_kind`."""
@@ -89,6 +91,15 @@ def dot_lines(lines: IntArray, a: FloatArray, x: FloatArray, left: FloatArray) -
     return sum(float((line_sum(line, a, x) * left.reshape(-1, LANES)[_results(line)]).sum()) for line in lines)
 
 
+def dot_lines_each(lines: IntArray, a: FloatArray, x: FloatArray, left: FloatArray, out: FloatArray) -> None:
+    """Write `dot_lines` of lines i of x and left into `out[i]`, for i < TOGETHER; all share each load of a.
+
+    x and left are (TOGETHER, a multiple of eight), `out` is (TOGETHER,).
+    """
+    for i in range(TOGETHER):
+        out[i] = dot_lines(lines, a, x[i], left[i])
+
+
 def dot_rows(a: FloatArray, b: FloatArray, count: int) -> float:
     """Return the sum of the products of the first `count` rows of eight of a and b."""
     return float(a.reshape(-1)[: LANES * count] @ b.reshape(-1)[: LANES * count])
@@ -101,6 +112,8 @@ def dot_pairs(pairs: FloatArray, left: FloatArray, right: FloatArray) -> float:
 
 Source = tuple[Any, Any]
 """Entries a and x."""
+Factors = Callable[[Any], list[Any]]
+"""Takes a place, returns what each source has there, in all lanes or as a row of eight."""
 
 
 class _Emitter(Emitter):
@@ -150,16 +163,18 @@ class _Emitter(Emitter):
             parts = [self.builder.fadd(*parts[i : i + 2]) for i in range(0, len(parts), 2)]
         return parts[0]
 
-    def sum_gathered(self, a: Any, z: Any, places: list[Any], line: list[Any], rows: int) -> list[list[Any]]:
-        """Return for each place and each row the sum over j < COUNT of a[FIRST + j rows + row] z[places[START + j]]."""
+    def sum_shared(self, a: Any, factors: Factors, sources: int, line: list[Any], rows: int) -> list[list[Any]]:
+        """Return for each source and each row the sum over j < COUNT of a[FIRST + j rows + row] factor[START + j].
+
+        `factors` returns the factors of all `sources` at a place; they share each load of a.
+        """
         builder = self.builder
-        sums = [[cgutils.alloca_once_value(builder, self.zero) for _ in range(rows)] for _ in places]  # type: ignore[no-untyped-call]
+        sums = [[cgutils.alloca_once_value(builder, self.zero) for _ in range(rows)] for _ in range(sources)]  # type: ignore[no-untyped-call]
         for total in [total for each in sums for total in each]:
             builder.store(self.zero, total)
         with cgutils.for_range(builder, line[COUNT]) as loop:
             base = builder.add(line[FIRST], builder.mul(loop.index, self.index(rows)))
-            place = builder.add(line[START], loop.index)
-            right = [self.broadcast(z, builder.load(builder.gep(each, [place]))) for each in places]
+            right = factors(builder.add(line[START], loop.index))
             for row in range(rows):
                 left = self.load(a, builder.add(base, self.index(row)))
                 for number, each in zip(right, sums, strict=True):
@@ -258,9 +273,13 @@ def _gather_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     def body(emit: _Emitter, lines: Any, count: Any, a: Any, z: Any, *ends: Any) -> None:
         numbers, outputs = list(ends[:2]), ends[2:]
 
+        def gathered(place: Any) -> list[Any]:
+            return [emit.broadcast(z, emit.builder.load(emit.builder.gep(each, [place]))) for each in numbers]
+
         def visit(line: list[Any], rows: int, broadcast: bool) -> None:
             if broadcast:
-                for output, totals in zip(outputs, emit.sum_gathered(a, z, numbers, line, rows), strict=True):
+                sums = emit.sum_shared(a, gathered, len(numbers), line, rows)
+                for output, totals in zip(outputs, sums, strict=True):
                     for row, total in enumerate(totals):
                         emit.store(total, output, emit.builder.add(line[ROW], emit.index(row)))
 
@@ -290,6 +309,34 @@ def _dot_lines(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     return caller.call(
         "dot_lines", ir.DoubleType(), body, lines.data, caller.shape(lines, 0), a.data, x.data, left.data
     )
+
+
+def _dot_lines_each(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """Write the vector code of `dot_lines_each`."""
+    caller = _Emitter(context, builder)
+    lines, a, x, left, out = (caller.array(kind, array) for kind, array in zip(signature.args, args, strict=True))
+
+    def body(emit: _Emitter, lines: Any, count: Any, a: Any, out: Any, *vectors: Any) -> None:
+        builder, rights, lefts = emit.builder, vectors[:TOGETHER], vectors[TOGETHER:]
+        sums = [cgutils.alloca_once_value(builder, emit.zero) for _ in rights]  # type: ignore[no-untyped-call]
+
+        def visit(line: list[Any], rows: int, broadcast: bool) -> None:
+            def factors(place: Any) -> list[Any]:
+                return [emit.broadcast(each, place) if broadcast else emit.load(each, place) for each in rights]
+
+            shared = emit.sum_shared(a, factors, TOGETHER, line, rows)
+            for total, vector, totals in zip(sums, lefts, shared, strict=True):
+                for row, part in enumerate(totals):
+                    own = emit.load(vector, builder.add(line[ROW], emit.index(row)))
+                    builder.store(builder.call(emit.fma, [own, part, builder.load(total)]), total)
+
+        _each_line(emit, lines, count, visit)
+        for i, total in enumerate(sums):
+            builder.store(emit.lane_sum(builder.load(total)), builder.gep(out, [emit.index(i)]))
+
+    vectors = [caller.line_of(array, caller.index(i)) for array in (x, left) for i in range(TOGETHER)]
+    caller.call("dot_lines_each", ir.VoidType(), body, lines.data, caller.shape(lines, 0), a.data, out.data, *vectors)
+    return context.get_dummy_value()
 
 
 def _dot_rows(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -327,5 +374,6 @@ compile_as(add_lines, types.void, _add_lines)
 compile_as(set_two_lines, types.void, _set_two_lines)
 compile_as(gather_lines, types.void, _gather_lines)
 compile_as(dot_lines, types.float64, _dot_lines)
+compile_as(dot_lines_each, types.void, _dot_lines_each)
 compile_as(dot_pairs, types.float64, _dot_pairs)
 compile_as(dot_rows, types.float64, _dot_rows)

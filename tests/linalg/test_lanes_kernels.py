@@ -7,8 +7,10 @@ from rubgen.jit import kernel
 from rubgen.linalg.blocks import aligned
 from rubgen.linalg.lanes_kernels import (
     MOST_ROWS,
+    TOGETHER,
     add_lines,
     dot_lines,
+    dot_lines_each,
     dot_rows,
     gather_lines,
     line_kind,
@@ -26,7 +28,11 @@ def _gather(lines, a, z, places, out):
     gather_lines(lines, a, z, places, 2, 0, out)
 
 
-both, gather = kernel(_both), kernel(_gather)
+def _dot_each(lines, a, x, left, out):
+    dot_lines_each(lines, a, x, left, out)
+
+
+both, gather, dot_each = kernel(_both), kernel(_gather), kernel(_dot_each)
 LINE_KINDS = [(rows, scaled) for rows in range(1, MOST_ROWS + 1) for scaled in (False, True)]
 
 
@@ -77,3 +83,24 @@ def test_compiled_gathered_sums_are_those_of_plain_python(rows, count):
         np.testing.assert_allclose(results[0][c, 8 * rows : 8 * rows + 8], last, rtol=1e-13, atol=1e-13)
     assert np.all(results[0][1] == 7.0)
     assert np.all(results[0][:, 8 * (1 + rows) :] == 7.0)
+
+
+@pytest.mark.parametrize("count", [0, 1, 5])
+@pytest.mark.parametrize(("rows", "scaled"), LINE_KINDS)
+def test_several_vectors_have_the_sums_of_each(rows, scaled, count):
+    """Compiled and in plain Python, against the dense products; another line follows."""
+    rng = np.random.default_rng(count)
+    a = aligned(rng.normal(size=(60, 8)))
+    x, left = (aligned(rng.normal(size=(TOGETHER, 12 * 8))) for _ in range(2))
+    lines = np.array([[line_kind(rows, scaled=scaled), 2, 3, 5, count], [line_kind(1, scaled=False), 1, 40, 0, 3]])
+    expected = np.zeros(TOGETHER)
+    for v in range(TOGETHER):
+        X, L = x[v].reshape(-1, 8), left[v].reshape(-1, 8)
+        for i in range(count):
+            factor = x[v, 5 + i] if scaled else X[5 + i]
+            expected[v] += sum((a[3 + rows * i + row] * factor) @ L[2 + row] for row in range(rows))
+        expected[v] += sum((a[40 + i] * X[i]) @ L[1] for i in range(3))
+    for function in (dot_each, _dot_each):
+        out = np.full(TOGETHER, np.nan)
+        function(lines, a, x, left, out)
+        np.testing.assert_allclose(out, expected, rtol=1e-13, atol=1e-12)

@@ -15,6 +15,9 @@ PAIR_COST = 16
 """Each pair of vectors must stand for this many times as many rows of entries of a product as z has. A pair reads four
 times as many, a and b and both vectors, so pairs read a quarter at most."""
 
+LARGE_BYTES = 2**15
+"""A damping matrix of more bytes is read once for several steps: the nearest cache does not keep it between them."""
+
 
 def scheme(M: FloatArray, C: FloatArray, K: FloatArray, force: FloatArray, dt: float, blocks: Blocks) -> Scheme:
     """Build the step without contact forces, q* = P1 q_n + P2 q_n-1 + p0, and A^-1, packed in `blocks`.
@@ -55,14 +58,16 @@ def energy_terms(system: SpinningSystem, blocks: Blocks, *, zeros: bool = False)
     force = blocks.to_z(system.force)
     places = np.arange(force.size) if zeros else np.flatnonzero(force)
     circulatory, pairs = _circulatory_terms(system.K, blocks, zeros=zeros)
+    damping = blocks.damping(system.C, whole=zeros)
     return EnergyTerms(
-        damping=blocks.damping(system.C, whole=zeros),
+        damping=damping,
         circulatory=circulatory,
         circulatory_pairs=pairs,
         M=blocks.product((system.M + system.M.T) / 2),
         K=blocks.product((system.K + system.K.T) / 2),
         force=force[places],
         force_places=places,
+        waits=damping.entries.nbytes > LARGE_BYTES,
     )
 
 

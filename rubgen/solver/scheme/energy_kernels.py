@@ -8,10 +8,10 @@ from rubgen.arrays import FloatArray
 from rubgen.contact.contact_kernels import contact_slip
 from rubgen.contact.geometry_kernels import casing_rows, tip_position
 from rubgen.jit import allocation_free_kernel, inlined_kernel
-from rubgen.linalg.block_kernels import quadratic
-from rubgen.linalg.lanes_kernels import dot_pairs
+from rubgen.linalg.block_kernels import quadratic, quadratic_each
+from rubgen.linalg.lanes_kernels import TOGETHER, dot_pairs
 from rubgen.solver.scheme.model_kernels import EnergyTerms, Model
-from rubgen.solver.scheme.state_kernels import Coordinates, State
+from rubgen.solver.scheme.state_kernels import Coordinates, State, Waiting
 from rubgen.solver.scheme.step_kernels import previous_gap
 
 UNBALANCE, DAMPING, CIRCULATORY, CONTACT, NORMAL, FRICTION, ABSOLUTE, SPEED_CHANGE = range(8)
@@ -29,23 +29,67 @@ def stored_energy(terms: EnergyTerms, before: FloatArray, now: FloatArray, diffe
 
 
 @inlined_kernel
-def add_linear_works(terms: EnergyTerms, now: FloatArray, change: FloatArray, dt: float, works: FloatArray) -> None:
-    """Add the works of unbalance, dampers and circulatory stiffness in one step to `works` (8,), J.
+def add_works(terms: EnergyTerms, change: FloatArray, damping: float, circulatory: float, works: FloatArray) -> None:
+    """Add the works of unbalance, dampers and circulatory stiffness in one step to `works`; the last two are given.
 
-    `now` is z at step n, `change` is d = (z_n+1 - z_n-1) / 2, `dt` in s.
+    `change` is d in z.
     """
     unbalance = 0.0
     for i in range(terms.force.shape[0]):
         unbalance += terms.force[i] * change[terms.force_places[i]]
+    works[UNBALANCE] += unbalance
+    works[DAMPING] += damping
+    works[CIRCULATORY] += circulatory
+    works[ABSOLUTE] += abs(unbalance) + abs(damping) + abs(circulatory)
+
+
+@inlined_kernel
+def add_linear_works(terms: EnergyTerms, now: FloatArray, change: FloatArray, dt: float, works: FloatArray) -> None:
+    """Add the works of unbalance, dampers and circulatory stiffness in one step to `works`.
+
+    `change` is d, in z as `now`.
+    """
     damping = -2.0 * quadratic(terms.damping, change, change) / dt
     if terms.circulatory_pairs.shape[0] > 0:
         circulatory = -dot_pairs(terms.circulatory_pairs, change, now)
     else:
         circulatory = -quadratic(terms.circulatory, change, now)
-    works[UNBALANCE] += unbalance
-    works[DAMPING] += damping
-    works[CIRCULATORY] += circulatory
-    works[ABSOLUTE] += abs(unbalance) + abs(damping) + abs(circulatory)
+    add_works(terms, change, damping, circulatory, works)
+
+
+@allocation_free_kernel
+def add_waiting_works(terms: EnergyTerms, count: int, dt: float, waiting: Waiting, works: FloatArray) -> None:
+    """Add to `works` what `add_linear_works` adds in each of the first `count` steps that wait."""
+    if count == 0:
+        return
+    quadratic_each(terms.damping, waiting.change, waiting.change, waiting.damping)
+    if terms.circulatory_pairs.shape[0] > 0:
+        for i in range(count):
+            waiting.circulatory[i] = dot_pairs(terms.circulatory_pairs, waiting.change[i], waiting.now[i])
+    else:
+        quadratic_each(terms.circulatory, waiting.change, waiting.now, waiting.circulatory)
+    for i in range(count):
+        add_works(terms, waiting.change[i], -2.0 * waiting.damping[i] / dt, -waiting.circulatory[i], works)
+
+
+@inlined_kernel
+def book_linear_works(
+    terms: EnergyTerms, now: FloatArray, change: FloatArray, dt: float, count: int, waiting: Waiting, works: FloatArray
+) -> int:
+    """Add the works of `add_linear_works` to `works`, at once or, with large matrices, when TOGETHER steps wait.
+
+    Return the number of steps that wait; `count` is that before.
+    """
+    if not terms.waits:
+        add_linear_works(terms, now, change, dt, works)
+        return 0
+    for i in range(change.shape[0]):
+        waiting.change[count, i] = change[i]
+        waiting.now[count, i] = now[i]
+    if count + 1 < TOGETHER:
+        return count + 1
+    add_waiting_works(terms, TOGETHER, dt, waiting, works)
+    return 0
 
 
 @inlined_kernel

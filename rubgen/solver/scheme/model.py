@@ -8,6 +8,7 @@ from rubgen.contact.contact_kernels import ContactWork
 from rubgen.contact.geometry import blade_tips, casing_surface, unworn, with_zeros
 from rubgen.contact.geometry_kernels import Surface, Tips
 from rubgen.linalg.blocks import Blocks, aligned, padded, share_width, system_harmonics
+from rubgen.linalg.lanes_kernels import TOGETHER
 from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import ContactLaw
 from rubgen.scenario.contact_laws.contact_law import NORMAL_LAWS
@@ -16,7 +17,7 @@ from rubgen.solver.scheme.energy_kernels import WORKS
 from rubgen.solver.scheme.model_kernels import Angles, Laws, Model
 from rubgen.solver.scheme.motion_kernels import Motion
 from rubgen.solver.scheme.speed_part import SpeedPart
-from rubgen.solver.scheme.state_kernels import Scratch, State
+from rubgen.solver.scheme.state_kernels import Scratch, State, Waiting
 from rubgen.solver.supports.constants import support_of
 from rubgen.solver.supports.support_kernels import SUPPORT_WORKS, SupportState
 
@@ -177,6 +178,7 @@ def _scratch(model: Model) -> Scratch:
     return Scratch(
         new_motion(model), aligned(np.zeros(numbers)), aligned(np.zeros(numbers)),
         aligned(np.zeros((3, share_width(blades)))), aligned(np.zeros(n)), aligned(np.zeros((3, width))),
+        Waiting(*aligned(np.zeros((2, TOGETHER, numbers))), *np.zeros((2, TOGETHER))),
     )  # fmt: skip
 
 

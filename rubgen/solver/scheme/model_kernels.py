@@ -74,6 +74,8 @@ class EnergyTerms(NamedTuple):
     """The numbers of the unbalance force that are not zero, N."""
     force_places: IntArray
     """Their places in z."""
+    waits: bool
+    """Whether works wait until those of several steps are computed at once: large matrices are read once for all."""
 
 
 class Model(NamedTuple):

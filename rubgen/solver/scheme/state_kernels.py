@@ -23,6 +23,19 @@ class Coordinates(NamedTuple):
     """d = (q_n+1 - q_n-1) / 2, or the velocity d / dt."""
 
 
+class Waiting(NamedTuple):
+    """Steps whose works of the linear forces are still to be added, and room for these; see `book_linear_works`."""
+
+    change: FloatArray
+    """d of each step (TOGETHER, any), in z."""
+    now: FloatArray
+    """z_n of each step (TOGETHER, any)."""
+    damping: FloatArray
+    """d^T (triangle d) of each step (TOGETHER,)."""
+    circulatory: FloatArray
+    """d^T K_skew q of each step (TOGETHER,)."""
+
+
 class Scratch(NamedTuple):
     """Arrays that every step writes before it reads them."""
 
@@ -38,6 +51,7 @@ class Scratch(NamedTuple):
     """d or a velocity (n,)."""
     tips: FloatArray
     """The three coordinates of all tips (3, width)."""
+    waiting: Waiting
 
 
 class State(NamedTuple):

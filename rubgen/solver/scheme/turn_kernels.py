@@ -8,7 +8,13 @@ from rubgen.contact.clearance_kernels import casing_displacement_bound
 from rubgen.contact.contact_kernels import wear_where_lined
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.harmonic_kernels import Harmonics, recover_all
-from rubgen.solver.scheme.energy_kernels import ABSOLUTE, add_contact_works, add_linear_works, stored_energy
+from rubgen.solver.scheme.energy_kernels import (
+    ABSOLUTE,
+    add_contact_works,
+    add_waiting_works,
+    book_linear_works,
+    stored_energy,
+)
 from rubgen.solver.scheme.model_kernels import Model
 from rubgen.solver.scheme.motion_kernels import Motion
 from rubgen.solver.scheme.state_kernels import Coordinates, Scratch, Snapshots, State, keep_snapshot
@@ -214,7 +220,7 @@ def run_turn(
     laws, steps = model.laws, model.angles.cosine.shape[0] - 2
     work, scratch = state.contact, state.scratch
     before, now, after = state.motions
-    ended = arrivals = frame = number = 0
+    ended = arrivals = frame = number = waiting = 0
     result.summary[:] = 0.0
     result.orbit[:] = 0.0
     for s in range(steps):
@@ -222,11 +228,14 @@ def run_turn(
             number = keep_snapshot(snapshots, number, before, now, work)
         code, count = advance(model, s, opening, before, now, after, state)
         if code != OK:
+            add_waiting_works(model.energy, waiting, laws.dt, scratch.waiting, state.works)
             return code, s, ended
         coordinates = Coordinates(before.q, now.q, after.q, scratch.change)
         for i in range(scratch.z_change.shape[0]):
             scratch.z_change[i] = 0.5 * (after.z[i] - before.z[i])
-        add_linear_works(model.energy, now.z, scratch.z_change, laws.dt, state.works)
+        waiting = book_linear_works(
+            model.energy, now.z, scratch.z_change, laws.dt, waiting, scratch.waiting, state.works
+        )
         if model.support.active:
             cosine, sine = model.angles.cosine[s], model.angles.sine[s]
             state.works[ABSOLUTE] += add_support_works(
@@ -255,6 +264,7 @@ def run_turn(
         before, now, after = now, after, before
         wear_where_lined(count, model.surface.liner, laws.dt, work, state.wear)
         shift_gaps(work)
+    add_waiting_works(model.energy, waiting, laws.dt, scratch.waiting, state.works)
     keep_snapshot(snapshots, number, before, now, work)
     ended = close_touches(touches, clock + steps - 1, ended)
     result.summary[3] = arrivals

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rubgen.linalg.blocks import aligned
+from rubgen.linalg.lanes_kernels import TOGETHER
 from rubgen.machine import load_machine
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
@@ -18,8 +19,11 @@ from rubgen.solver.scheme.energy_kernels import (
     UNBALANCE,
     WORKS,
     add_linear_works,
+    add_waiting_works,
+    book_linear_works,
     stored_energy,
 )
+from rubgen.solver.scheme.state_kernels import Waiting
 from rubgen.solver.speed.start import rub_free_stepper
 from rubgen.units import rad_per_s
 
@@ -86,6 +90,31 @@ def test_works_of_an_uneven_blade_are_those_of_the_dense_matrices(preset, zeros)
     summed = np.abs(change) @ np.abs(skew) @ np.abs(now)
     assert works[CIRCULATORY] == pytest.approx(-change @ skew @ now, rel=0, abs=1e-12 * summed)
     assert works[DAMPING] == pytest.approx(-change @ system.C @ change / dt, rel=1e-9)
+
+
+@pytest.mark.parametrize("zeros", [False, True])
+@pytest.mark.parametrize("steps", [0, 3, 4, 11])
+def test_works_that_wait_are_those_of_each_step(preset, steps, zeros):
+    """Pairs and a dense product; numbers of steps below, at and beyond those taken at once."""
+    system, dt = uneven(preset), 2e-5
+    blocks = system_blocks(system)
+    terms = energy_terms(system, blocks, zeros=zeros)
+    assert terms.waits
+    size = 8 * blocks.rows
+    waiting, count = Waiting(*np.full((2, TOGETHER, size), np.nan), *np.full((2, TOGETHER), np.nan)), 0
+    works, expected, rng = np.zeros(WORKS), np.zeros(WORKS), np.random.default_rng(6)
+    for step in range(steps):
+        now, change = (blocks.to_z(each) for each in rng.normal(size=(2, len(system.M))) * 1e-4)
+        count = book_linear_works(terms, now, change, dt, count, waiting, works)
+        assert count == (step + 1) % TOGETHER
+        add_linear_works(terms, now, change, dt, expected)
+    add_waiting_works(terms, count, dt, waiting, works)
+    assert (expected[[UNBALANCE, DAMPING, CIRCULATORY, ABSOLUTE]] != 0).all() == (steps > 0)
+    np.testing.assert_allclose(works, expected, rtol=0, atol=1e-13 * expected[ABSOLUTE])
+
+
+def test_works_of_equal_blades_do_not_wait(preset):
+    assert not energy_terms(preset, system_blocks(preset)).waits
 
 
 def test_equal_blades_keep_the_product_of_the_circulatory_stiffness(preset):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rubgen.scenario import ContactLaw
+from rubgen.solver.scheme.energy_kernels import ABSOLUTE, CIRCULATORY, DAMPING, UNBALANCE
 from rubgen.solver.scheme.step_kernels import DIVERGED, OK
 from rubgen.solver.speed.start import closing_ramp, rub_free_stepper
 
@@ -56,3 +57,24 @@ def test_a_turn_that_fails_is_the_last(small_system, failing):
     assert codes[-1] == DIVERGED
     # A single step moves on even where it fails: what the turn left as its last motion is the present one there.
     np.testing.assert_array_equal(together.coordinates.after, single.coordinates.now)
+
+
+@pytest.mark.parametrize("failing", [False, True])
+def test_works_that_wait_are_in_every_turn(small_system, failing):
+    """Works of large matrices are added four steps at once: the same to rounding in a turn of 98 steps, with the same
+    bits of the motion; also where the turn ends early."""
+    steps, ends = 98, []
+    for waits in (False, True):
+        stepper = rub_free_stepper(small_system(speed=500.0), ContactLaw(friction=0.1), steps)
+        energy = stepper.model.energy._replace(waits=waits)
+        stepper.model = stepper.model._replace(energy=energy)
+        opening = np.full(steps + 2, 5e-5)
+        if failing:
+            opening[43:] = -0.1
+        code, step, _ = stepper.run_turn(opening)
+        assert (code, step) == ((DIVERGED, 42) if failing else (OK, 98))
+        ends.append((stepper.coordinates.now, stepper.end.works.copy()))
+    (motion, works), (same, waited) = ends
+    np.testing.assert_array_equal(motion, same)
+    assert (works[[UNBALANCE, DAMPING, CIRCULATORY]] != 0).all()
+    np.testing.assert_allclose(waited, works, rtol=0, atol=1e-13 * works[ABSOLUTE])
