@@ -273,6 +273,8 @@ def turned_taps(taps: Taps, system: SpinningSystem, theta: FloatArray) -> Taps:
 
 def _blades_around_rays(system: SpinningSystem, rays: FloatArray, theta: FloatArray) -> tuple[IntArray, FloatArray]:
     """Return the blades (steps, rays, 2) on either side of each ray at angles `theta`, and the ray's share between."""
+    if not len(rays):
+        return np.zeros((len(theta), 0, 2), dtype=np.int64), np.zeros((len(theta), 0))
     turn = 2 * np.pi
     order = np.argsort(np.mod(system.blade_angles, turn), kind="stable")
     placed = np.mod(system.blade_angles, turn)[order]

@@ -13,6 +13,7 @@ from rubgen.arrays import FloatArray, frozen
 from rubgen.linalg.block_kernels import Product
 from rubgen.linalg.blocks import aligned, entry_rows, padded
 from rubgen.linalg.lanes_kernels import FIRST
+from rubgen.linalg.vector_kernels import LANES
 from rubgen.solver.scheme.free_step_kernels import Scheme
 from rubgen.solver.scheme.speed_part import SpeedPart
 
@@ -55,18 +56,38 @@ class SpeedInterpolation:
         self.template = _keep_lines([*parts, *pushed])
         self.layout = _layout([*parts, *pushed])
         self.values = np.array([_packed(part, self.layout) for part in parts])
-        self.slopes = np.array([_packed(part, self.layout) for part in pushed]) - self.values
-        self.slopes /= acceleration or 1.0
+        slopes = np.array([_packed(part, self.layout) for part in pushed]) - self.values
+        slopes /= acceleration or 1.0
+        self.slopes = [(place, np.ascontiguousarray(slopes[:, place])) for place in _used_places(slopes, self.layout)]
+        self.rooms = [np.zeros((0, self.values.shape[1]))] * 2
+        self.pushed = self.rooms[0]
         growth = np.array([part.tips.static[0].mean() for part in parts])
         self.growth = Chebyshev.fit(speeds, growth, deg=NODES - 1, domain=[speeds[0], speeds[-1]])
 
     def at(self, speeds: FloatArray, accelerations: FloatArray) -> Iterator[SpeedPart]:
-        """Yield the part at each speed (rad/s) and acceleration (rad/s2), both (any number,)."""
-        weights = lagrange_weights(self.speeds, speeds)
-        rows = aligned(weights @ self.values + (accelerations[:, None] * weights) @ self.slopes)
+        """Yield the part at each speed (rad/s) and acceleration (rad/s2), both (any number,).
+
+        The next call but one overwrites the parts. New memory for each call would take longer than the numbers.
+        """
+        weights, count = lagrange_weights(self.speeds, speeds), len(speeds)
+        rows = self._next_room(count)
+        np.matmul(weights, self.values, out=rows)
+        for place, slopes in self.slopes:
+            pushed = self.pushed[:count, : place.stop - place.start]
+            rows[:, place] += np.matmul(accelerations[:, None] * weights, slopes, out=pushed)
         rows.flags.writeable = False
         for row in rows:
             yield _unpacked(self.template, row, self.layout)
+
+    def _next_room(self, count: int) -> FloatArray:
+        """Return memory for the rows of so many parts, by turns one of two rooms, and let `pushed` have as many."""
+        room = self.rooms.pop(0)
+        if len(room) < count:
+            room = aligned(np.zeros((count, room.shape[1])))
+        if len(self.pushed) < count:
+            self.pushed = np.zeros_like(room)
+        self.rooms.append(room)
+        return room[:count]
 
     def mean_growth(self, speeds: FloatArray) -> FloatArray:
         """Return the tips' mean steady radial growth in m at each speed (any number,)."""
@@ -103,6 +124,19 @@ def _layout(parts: list[SpeedPart]) -> PartLayout:
             layout[name] = slice(start, start + first.size), first.shape
             start += padded(first.size)
     return layout
+
+
+def _used_places(slopes: FloatArray, layout: PartLayout) -> list[slice]:
+    """Return the places of the arrays in `layout` that follow the acceleration; neighbours are joined."""
+    places: list[slice] = []
+    for place, _ in layout.values():
+        if not slopes[:, place].any():
+            continue
+        if places and place.start - places[-1].stop < LANES:
+            places[-1] = slice(places[-1].start, place.stop)
+        else:
+            places.append(place)
+    return places
 
 
 def _packed(part: SpeedPart, layout: PartLayout) -> FloatArray:

@@ -52,3 +52,29 @@ def test_interpolated_matrices_are_those_made_at_that_speed(acceleration):
         assert interpolation.mean_growth(np.array(speed)) == pytest.approx(exact.tips.static[0].mean(), rel=1e-9)
         np.testing.assert_array_equal(part.support.laws[:, 0].astype(int), exact.support.laws[:, 0].astype(int))
         np.testing.assert_allclose(part.support.laws, exact.support.laws, rtol=1e-12)
+
+
+def test_parts_last_until_the_next_call_but_one(small_system):
+    """Calls with more and fewer parts than before give the numbers of a single part each time."""
+    systems = [small_system(speed=speed) for speed in (300.0, 400.0)]
+    stepper = Stepper(systems[1], ContactLaw(), 256, alike=systems)
+    speeds = chebyshev_speeds(300.0, 400.0)
+
+    def part_at(speed, acceleration):
+        system = small_system(speed=speed)
+        pushed = replace(system, K=system.K + acceleration * np.triu(system.C), force=system.force + acceleration)
+        return speed_part(pushed, stepper.blocks, stepper.dt)
+
+    interpolation, rng = SpeedInterpolation(part_at, speeds, 50.0), np.random.default_rng(7)
+    before = []
+    for count in (1, 5, 3, 5, 7, 2, 7):
+        wanted = rng.uniform(300, 400, count), rng.uniform(-50, 50, count)
+        parts = list(interpolation.at(*wanted))
+        for speed, acceleration, part in [*before, *zip(*wanted, parts, strict=True)]:
+            exact = part_at(speed, acceleration)
+            for found, true in ((part.scheme.now, exact.scheme.now), (part.energy.K, exact.energy.K)):
+                found, true = (each if isinstance(each, np.ndarray) else each.entries for each in (found, true))
+                np.testing.assert_allclose(found, true, atol=1e-11 * np.abs(true).max())
+            assert not part.scheme.now.flags.writeable
+            np.testing.assert_allclose(part.energy.force, exact.energy.force, rtol=1e-9, atol=1e-9)
+        before = list(zip(*wanted, parts, strict=True))
