@@ -5,7 +5,8 @@ Cells never break between a number and its error, and break in long names after 
 
 import re
 
-STACKED = {"cause", "class", "expected", "found with zeng2019", "main cause", "meaning", "reason", "result", "test"}
+STACKED = {"cause", "class", "expected", "found with zeng2019", "labels", "main cause", "meaning", "metric", "reason"}
+STACKED |= {"result", "test"}
 """A table of four columns or more with one of these stacks its cells on a phone: the column holds text."""
 
 

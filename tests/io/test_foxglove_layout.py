@@ -51,6 +51,13 @@ def test_every_preview_has_a_plot_and_every_panel_a_place(rub_run, mcap):
     assert sorted(panels_of(layout["layout"])) == sorted(layout["configById"])
 
 
+def test_both_viewers_find_the_title_of_each_plot_under_their_own_key(rub_run):
+    panels = foxglove_layout(rub_run.recording)["configById"].values()
+    titles = [(each["foxglovePanelTitle"], each["lichtblickPanelTitle"]) for each in panels if "paths" in each]
+    assert ("touches", "touches") in titles
+    assert all(first == second for first, second in titles)
+
+
 def test_the_command_writes_it_for_an_mcap_file(rub_run, mcap, tmp_path, capsys):
     with pytest.raises(SystemExit) as ended:
         sys.exit(main(["replay", str(mcap), "--foxglove", str(tmp_path / "layout.json")]))

@@ -1,4 +1,7 @@
-"""A layout for Foxglove that opens an MCAP file of rubgen with a name at each line."""
+"""A layout for Foxglove that opens an MCAP file of rubgen with a name at each line.
+
+Keys and panels follow LayoutData of Foxglove Studio, of which Lichtblick is the open-source successor.
+"""
 
 from collections.abc import Sequence
 from typing import Any
@@ -26,7 +29,7 @@ def foxglove_layout(recording: Recording) -> dict[str, Any]:
     panels["Plot!contact"] = _plot("touches", touches, joined=False)
     motion = [("/labels/motion.motion", "motion"), ("/labels/motion.motion_blisk", "blisk"),
               ("/labels/motion.motion_casing", "casing")]  # fmt: skip
-    panels["StateTransitions!motion"] = {"paths": _paths(motion), "isSynced": True, "foxglovePanelTitle": "motion"}
+    panels["StateTransitions!motion"] = {"paths": _paths(motion), "isSynced": True, **_titled("motion")}
     panels["3D!frames"] = {"followTf": GROUND, "transforms": {f"frame:{BLISK}": {"visible": True}}, "topics": {}}
     return {
         "configById": panels,
@@ -39,7 +42,12 @@ def foxglove_layout(recording: Recording) -> dict[str, Any]:
 
 def _plot(title: str, lines: Sequence[tuple[str, str]], *, joined: bool = True) -> dict[str, Any]:
     paths = [{**path, "showLine": joined} for path in _paths(lines)]
-    return {"paths": paths, "foxglovePanelTitle": title, "xAxisVal": "timestamp", "showLegend": True, "isSynced": True}
+    return {"paths": paths, **_titled(title), "xAxisVal": "timestamp", "showLegend": True, "isSynced": True}
+
+
+def _titled(title: str) -> dict[str, str]:
+    """Return the title of a panel under the keys of Foxglove and of Lichtblick, which reads the same layouts."""
+    return {"foxglovePanelTitle": title, "lichtblickPanelTitle": title}
 
 
 def _paths(lines: Sequence[tuple[str, str]]) -> list[dict[str, Any]]:
