@@ -17,8 +17,8 @@ from rubgen.progress import shown
 DONE, WANTING, MISTAKE, INTERRUPTED, UNREAD = 0, 1, 2, 130, 141
 EXIT_CODES = {
     DONE: "the command did what it was asked",
-    WANTING: "the command ran and found something wrong, such as a damaged set, or the system failed",
-    MISTAKE: "the input is wrong: one line on stderr says what, and what is allowed",
+    WANTING: "the command ran and found something wrong, such as a damaged set, or worker processes died",
+    MISTAKE: "the input is wrong, or a file or the disk cannot be used: one line on stderr says why",
     INTERRUPTED: "Ctrl-C or SIGTERM",
     UNREAD: "the program that read the output has closed the pipe, as `head` does",
 }
