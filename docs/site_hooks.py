@@ -6,7 +6,7 @@ Cells never break between a number and its error, and break in long names after 
 import re
 
 STACKED = {"cause", "class", "expected", "found with zeng2019", "labels", "main cause", "meaning", "metric", "reason"}
-STACKED |= {"result", "test"}
+STACKED |= {"measured quantity", "result", "test", "unknowable"}
 """A table of four columns or more with one of these stacks its cells on a phone: the column holds text."""
 
 
@@ -38,7 +38,7 @@ def _opened(picture: re.Match[str]) -> str:
 
 def _stacked(table: re.Match[str]) -> str:
     names = [re.sub(r"<[^>]+>", "", name).strip() for name in re.findall(r"<th[^>]*>(.*?)</th>", table[0], re.DOTALL)]
-    if len(names) < 4 or not STACKED & set(names):
+    if names[:2] != ["argument", "meaning"] and (len(names) < 4 or not STACKED & set(names)):
         return table[0]
     return re.sub(r"<tr>.*?</tr>", lambda row: _named(row[0], names), table[0], flags=re.DOTALL).replace(
         "<table>", "<table data-stack>"

@@ -41,6 +41,10 @@ def test_a_table_with_a_column_of_text_names_the_column_in_each_cell():
     ]
 
 
+def test_the_arguments_of_a_command_stack_too():
+    assert "<table data-stack>" in hooks().on_page_content(table(["argument", "meaning", "default"], "abc"))
+
+
 @pytest.mark.parametrize("names", [["key", "unit", "meaning"], ["run", "K", "stray", "zones"]])
 def test_a_small_table_and_a_table_of_numbers_stay(names):
     html = table(names, "abcd"[: len(names)])

@@ -14,13 +14,16 @@ from validation.sensitivity.recipes import RECIPES, RUNS, SEEDS, SEEN, Halved
 TEXT = """
 # What a confidence is worth
 
-`motion_confidence` says how surely a run keeps its class of motion with half the step.
+`motion_confidence` says how surely a run keeps its class of motion with half the step. A class is kept if class and
+period of the whole system are equal.
+
 `python -m validation.sensitivity recipes` makes this page from runs of the recipes with a steady speed, with 1,024 and
-with 2,048 steps a turn, for two seeds of each recipe. The constants of the confidence were set by 106 runs of the first
-seed ("fit"). The second seed ("check") shows what the confidence is worth. Its first 16 runs of each recipe were known
-when the constants were set; its later runs were looked at only afterwards. Only runs that rub are compared: without
-contact the class cannot change. At a changing speed the motion of a run with contact is always `undecided`. A class is
-kept if class and period of the whole system are equal.
+with 2,048 steps a turn, for two seeds of each recipe. Only runs that rub are compared: without contact the class cannot
+change. At a changing speed the motion of a run with contact is always `undecided`.
+
+The constants of the confidence were set by 106 runs of the first seed ("fit"). The second seed ("check") shows what the
+confidence is worth. Its first 16 runs of each recipe were known when the constants were set; its later runs were looked
+at only afterwards.
 
 ![Reliability of the confidence](confidence.png)
 """
