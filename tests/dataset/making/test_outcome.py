@@ -1,11 +1,16 @@
 """Counts of a finished set: rub, classes, and the shortest reason of each way to fail."""
 
+import errno
+from pathlib import Path
+
 import pyarrow as pa
 import pytest
 
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.making import outcome
-from rubgen.dataset.making.outcome import Failure, outcome_of
+from rubgen.dataset.making.close import read_closed
+from rubgen.dataset.making.outcome import Failure, outcome_of, unfinished
+from rubgen.errors import RubgenError, UserError
 
 
 @pytest.fixture
@@ -38,3 +43,37 @@ def test_a_set_in_which_every_run_failed_has_no_motion(counted):
     found = counted(("run-000000", "energy", "lost", None, None))
     assert (found.rub, found.no_rub, found.motion) == (0, 0, {})
     assert [failure.count for failure in found.failures] == [1]
+
+
+def test_a_record_that_the_system_refuses_is_not_called_damaged_and_stays(tmp_path, monkeypatch):
+    layout = Layout(tmp_path)
+    layout.closed("").parent.mkdir(parents=True)
+    layout.closed("train-00000").write_text("{}")
+
+    def refuse(path):
+        raise PermissionError(errno.EACCES, "of the system", str(path))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "read_bytes", refuse)
+        with pytest.raises(PermissionError):
+            read_closed(layout, "train-00000")
+    assert layout.closed("train-00000").exists()
+    with pytest.raises(RubgenError, match=r"train-00000\.json: damaged"):
+        read_closed(layout, "train-00000")
+    assert not layout.closed("train-00000").exists()
+
+
+def test_an_identity_that_cannot_be_read_says_why(tmp_path, monkeypatch):
+    layout = Layout(tmp_path)
+    layout.staging.mkdir()
+    layout.identity.write_text("[]")
+    with pytest.raises(UserError, match=r"identity\.json: cannot be read \(TypeError: list indices"):
+        unfinished(tmp_path)
+    layout.identity.write_text('{"recipe": {"name": "a", "runs": 2}}')
+
+    def bug(_directory):
+        raise LookupError("of ours")
+
+    monkeypatch.setattr(outcome, "finished_runs", bug)
+    with pytest.raises(LookupError, match="of ours"):
+        unfinished(tmp_path)
