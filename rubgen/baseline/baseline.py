@@ -146,7 +146,7 @@ def _scores_of(
     """Return the two names, and the scores of the model by way. `files` hold the inputs. A worker process calls it."""
     task, model = TASKS[task_name], models(part.samples.answers)[name]
     names = {model.inputs(seed) for seed in range(SEEDS)}
-    inputs = {each: np.load(files[each], mmap_mode="r")[part.rows] for each in names}
+    inputs = {each: np.load(files[each], mmap_mode="r", allow_pickle=False)[part.rows] for each in names}
     samples, here = replace(part.samples, inputs=inputs), _learned(part.splits)
     train = samples[here]
     tests = {f"on {split}": samples[part.splits == split] for split in dict.fromkeys(part.splits[~here])}
