@@ -50,10 +50,10 @@ def cache_folder(name: str) -> Path | None:
 
 
 def problem_of(root: Path) -> str:
-    """Try to write caches below the folder `root`. Return the reason if that fails, or an empty text if it works.
+    """Try to write caches in the folder `root` and its subfolders. Return the reason if that fails, or an empty text.
 
-    Missing folders are made. A folder that belongs to another user, or that all users may write to, is refused: anyone
-    could put code there.
+    The subfolders are `kernels` and `reduction`. Missing folders are made. A folder that belongs to another user, or
+    that all users may write to, is refused: anyone could put code there.
     """
     if str(root).startswith("~"):
         return "there is no home folder"

@@ -43,13 +43,14 @@ def write_problems(
 ) -> Iterator[None]:
     """Turn errors of a block that writes `output` into errors that name the file.
 
-    An OSError at `output`, or a full disk, becomes a UserError, since the user can mend it. An OSError elsewhere
-    becomes a RubgenError with the file that the system names. A closed pipe (BrokenPipeError) is raised unchanged.
+    An OSError at `output`, below it or at a folder above it, and a full disk where the system names no file, become a
+    UserError, since the user can mend them. Any other OSError, also a full disk at another file, becomes a RubgenError
+    with the file that the system names. A closed pipe (BrokenPipeError) is raised unchanged.
 
     - `output`: file or directory that the block writes
     - `named`: its name in messages; the path if empty
-    - `advice`: what the user can do if it cannot be written
-    - `kept`: what is not lost, for the message
+    - `advice`: what the user can do if it cannot be written, except on a full disk
+    - `kept`: what is not lost, for the messages of a full disk and of an error elsewhere
     """
     try:
         yield

@@ -110,7 +110,11 @@ def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) ->
 
 
 def blade_tips(system: SpinningSystem) -> Tips:
-    """Make the tips of a system: radius at rest, steady displacement, angle on the disk. The arrays are read-only."""
+    """Make the tips of a system, with read-only arrays.
+
+    They have one radius at rest, m; the steady displacement along the blades' axes (3, n_blades), m; each blade's angle
+    on the disk, rad; and the cosines and sines of this angle and of its multiples by the orders of the surface.
+    """
     angle = np.asarray(system.blade_angles, dtype=float)
     orders = np.multiply.outer(np.asarray(system.surface.order, dtype=float), angle)
     return frozen(

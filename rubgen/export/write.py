@@ -43,12 +43,13 @@ def export(
 
     - name: uff58, mat, hdf5, csv, wav, ts, webdataset or parquet.
     - split: name of a split; None takes all runs.
-    - channels: names of the channels; None takes all recorded channels, without clean ones.
+    - channels: names of recorded channels, without clean ones; None takes all of them.
 
     The folder has the files of the runs, `channels.csv`, and `runs.csv` with parameters and labels. The format parquet
-    has no labels and parameters and no `runs.csv`. A file is complete or does not exist, and the same call completes an
-    interrupted export. Raises UserError for an unknown format, split or channel, for a missing package, for content
-    that the format cannot contain, and where `out` has other content.
+    has no labels, no parameters, no `runs.csv` and no channel that no probe can measure. A file is complete or does not
+    exist, and the same call completes an interrupted export. Raises UserError for an unknown format, split or channel,
+    for a missing package, for content that the format cannot contain, for a set without good runs, and where `out` has
+    other content.
     """
     data = DataSet(directory)
     kind = _format(name)

@@ -166,7 +166,8 @@ class _Emitter(Emitter):
     def sum_shared(self, a: Any, factors: Factors, sources: int, line: list[Any], rows: int) -> list[list[Any]]:
         """Return for each source and each row the sum over j < COUNT of a[FIRST + j rows + row] factor[START + j].
 
-        `factors` returns the factors of all `sources` at a place; they share each load of a.
+        `factors` returns the factor of each of the `sources` at a place: one number in all lanes, or a row of eight.
+        All sources share each load of a.
         """
         builder = self.builder
         sums = [[cgutils.alloca_once_value(builder, self.zero) for _ in range(rows)] for _ in range(sources)]  # type: ignore[no-untyped-call]

@@ -30,9 +30,10 @@ class Tried:
 
 
 def try_runs(recipe: Recipe, tries: int) -> Tried:
-    """Simulate `tries` runs, or all if there are fewer, and write their files to a temporary folder.
+    """Simulate `tries` runs spread evenly over the recipe, or all if there are fewer, and measure them.
 
-    The first run is simulated twice, so that its time does not contain the compilation.
+    Their files are written to a temporary folder, which is deleted. Failed runs count by their status. The time is CPU
+    time with the writing. The first run is simulated once before, so that no time contains the compilation.
     """
     places = sorted({round(place) for place in np.linspace(0, recipe.runs - 1, min(tries, recipe.runs))})
     classes: Counter[str] = Counter()

@@ -118,9 +118,10 @@ def reduce_blisk(
 
 
 def with_places(blisk: ReducedBlisk, present: IntArray, count: int) -> ReducedBlisk:
-    """Return the blisk with DoFs for the tips of all `count` blades. Before, only the blades `present` have DoFs.
+    """Return the blisk with three DoFs for each of `count` tips; before, only the blades `present` have them.
 
-    A tip without a blade has the mass DUST times the largest mass of a DoF, and the highest frequency of the blisk.
+    Each DoF of a tip without a blade is uncoupled. It has the mass DUST times the largest mass of a DoF, and the
+    highest frequency of the blisk. The root of a missing blade has zeros.
     """
     size = len(blisk.M) + 3 * (count - present.size)
     own = np.concatenate([(3 * present[:, None] + np.arange(3)).ravel(), np.arange(3 * count, size)])

@@ -50,7 +50,8 @@ def integrate(
     surface closes smoothly (continuous second derivative) over `operation.closing_turns`, at most the settle turns.
 
     - model: makes the system at the speeds of the operation. A `SpinningSystem` is run at its own speed.
-    - operation: speed over time, settle and record turns, steps.
+    - operation: speed over time, settle and record turns, and the least steps a turn. The steps are doubled until they
+      are stable and feed `wants.sample_rate_hz`.
     - contact: the contact law.
     - wants: taps, their duration, and other things that the response records.
 
@@ -61,10 +62,11 @@ def integrate(
     its exponent would mix the motions before and after. At a changing speed the time steps are equal and the Poincare
     section lies between steps (`turn_kernels.record_section`). There are then no companion and no symmetry states.
 
-    A run that fails has the status and the reason; its other fields are not valid. Raises UserError for a system that
-    `check_system` refuses, for a record too short for a wanted exponent, for a profile without a key that it needs, and
-    for a turn of more than 4,194,304 steps. Raises ValueError where M, C or K couple blisk and casing. Valid for small
-    casing displacements.
+    A run that fails has the status and the reason; its other fields are not valid. A system that is unstable without
+    contact is not integrated: its status is unstable. Raises UserError for a system that `check_system` refuses, for a
+    record too short for a wanted exponent, for a profile without a key that it needs, and for a turn of more than
+    4,194,304 steps. Raises ValueError where M, C or K couple blisk and casing, and TypeError for a `SpinningSystem` at
+    a changing speed. Valid for small casing displacements.
     """
     if wants.companion:
         check_turns(operation.record_turns)

@@ -52,14 +52,21 @@ def export(
     /,
     *,
     format_: Annotated[
-        str, Parameter(name="--format", help="uff58, mat, hdf5, csv, wav, ts, webdataset, or parquet without answers.")
+        str,
+        Parameter(
+            name="--format",
+            help="uff58, mat, hdf5, csv, wav, ts, webdataset, or parquet, without labels, parameters and channels that "
+            "no probe measures.",
+        ),
     ],
     out: Annotated[Path, option("New or empty folder, or one of the same export, which is then completed.")],
     split: Annotated[str | None, option("Only this split; all when not given.")] = None,
-    channels: Annotated[str | None, option("Names with commas; all recorded channels when not given.")] = None,
+    channels: Annotated[
+        str | None, option("Names with commas; all recorded channels but clean ones when not given.")
+    ] = None,
     json: Json = False,
 ) -> int:
-    """Write the runs of a data set in a file format of other programs, with units and sensors."""
+    """Write the good runs of a data set in a format of other programs, with units, sensors, parameters and labels."""
     from rubgen.cli.commands.exporting import export_command
 
     return export_command(directory, out, format_, split, channels, as_json=json)

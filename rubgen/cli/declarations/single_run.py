@@ -96,7 +96,7 @@ def regenerate(
     force: Force = False,
     json: Json = False,
 ) -> int:
-    """Simulate one run again from the manifest and compare it with the stored run; exit 1 where it differs."""
+    """Simulate one run again and compare it with the stored one; exit 1 where versions do not explain a difference."""
     from rubgen.cli.commands.regenerating import regenerate_command
 
     return regenerate_command(directory, run, out, force=force, as_json=json)

@@ -20,7 +20,8 @@ def warm_up(scenario: Scenario, corners: tuple[Scenario, ...], first_runs: tuple
     - first_runs: the first runs of the recipe.
 
     Returns warnings: problems of a worker with the caches, and that none of the first runs can be made or can rub.
-    Raises UserError where a machine cannot be reduced or the first virtual machine cannot be drawn.
+    Raises UserError where the machine of a corner cannot be reduced, or the virtual machine of `scenario` cannot be
+    drawn. A UserError of reducing or simulating `scenario` itself is ignored: that run will be recorded as refused.
     """
     from rubgen.pipeline import simulate
     from rubgen.reduction import reduce

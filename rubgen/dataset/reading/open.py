@@ -272,10 +272,11 @@ class DataSet:
     def folds(self, k: int, by: str = "machine_id", split: str | None = None) -> list[Fold]:
         """Divide the good runs into k folds: `for train, test in data.folds(5): data.arrays(runs=train)`.
 
-        The runs with one value of the column `by` are a group. Each group is on the test side of exactly one fold, and
-        never on both sides. The folds are the same each time: groups are assigned by size and then by name. `split` is
-        the name of a split; None takes all runs. Raises UserError where there are fewer groups than folds, and where
-        `by` would put runs of one machine, or a run and its twin, on both sides.
+        The runs with one value of the column `by` are a group; by 'run_id' a run and its twins are one. Each group is
+        on the test side of exactly one fold, and never on both sides. The folds are the same each time: groups are
+        assigned by size and then by name. `split` is the name of a split; None takes all runs. Raises UserError for k
+        below 2, for fewer groups than folds, for an unknown split or column, and where `by` would put runs of one
+        machine (of several), or a run and its twin, on both sides.
         """
         return folds(self, k, by, split)
 

@@ -95,9 +95,10 @@ class Balance(StrictModel):
 
     @property
     def cells(self) -> tuple[Cell, ...]:
-        """All classes of runs in fixed order, with their shares, which add up to 1.
+        """All classes of runs in fixed order: no rub, then each class of motion with each band of severity.
 
-        Every possible run is in one class.
+        Their shares add up to 1; a share may be 0. Every possible run is in one class. The speed is not part of a
+        class: `place` chooses its band apart.
         """
         motions: list[tuple[str, float]] = list((self.motion or {}).items()) or [(ANY_MOTION, 1.0)]
         rest = 1 - sum(share for _, share in motions)

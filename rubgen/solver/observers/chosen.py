@@ -22,7 +22,9 @@ LEAST_TAIL_TURNS = 100
 def chosen_observers(driver: SpeedDriver, record: int, wants: Wants) -> list[Observer]:
     """Return the observers of a record of `record` turns.
 
-    The snapshots that they need are requested from the stepper.
+    Every run has taps, sections, touches, track and orbit. At a changing speed its orders are added. At a steady speed
+    orders, symmetry and, if wanted, the companion are added, or the known decay where a free turn is repeated. At a
+    steady speed the snapshots that they need are requested from the stepper.
     """
     stepper, steady = driver.stepper, driver.rotation.is_steady
     observers: list[Observer] = [

@@ -134,9 +134,10 @@ def _motion_at(replay: Replay, time: float) -> Motion:
 
 
 def machine_along_axis(axes: Axes, replay: Replay, row: int, factor: float) -> None:
-    """Draw frame number `row` of a replay along the axis of rotation.
+    """Draw frame number `row` of a replay, seen along the axis of rotation.
 
-    Deviations from the circle of the tips are enlarged by `factor`. The replay must have frames.
+    It shows the casing at rest and deformed, the blisk, the unbalances, and the touches of this frame (large) and of
+    the last turn (small). Deviations from the circle of the tips are enlarged by `factor`. The replay must have frames.
     """
     machine, frames = replay.scenario.machine, replay.frames
     assert frames is not None  # noqa: S101 - the caller has looked
