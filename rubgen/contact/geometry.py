@@ -30,7 +30,8 @@ def periodic_derivative(values: FloatArray) -> FloatArray:
 def hermite_bends(values: FloatArray, slopes: FloatArray, step: float) -> FloatArray:
     """Return the largest second derivative by the angle of each mode's displacement (n_casing,) between nodes.
 
-    The Hermite cubic's second derivative is linear in the angle, so it is largest at a node.
+    It is the length of the vector in X and Y, per rad^2 and unit of the mode. The Hermite cubic's second derivative is
+    linear in the angle, so its length is largest at a node.
 
     - values, slopes (nodes, 2, n_casing): displacement at the nodes and its derivative by the angle.
     - step: angle between nodes, rad.
@@ -71,8 +72,8 @@ def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) ->
     `contact` may select the inner surface's displacement, chords between the nodes instead of the smooth curve, and a
     liner. Nodal slopes come from the Fourier series of the nodal displacements, so u is exact to fourth order in the
     node distance, and continuous in slope. The displacement of each mode between nodes is at most the largest nodal
-    value plus a quarter of the node distance times the largest slope. The arrays are read-only. Raises UserError as
-    `surface_modes`.
+    value plus a quarter of the node distance times the largest slope. The arrays are read-only. Raises UserError where
+    `contact.half_thickness` is set and the system has no rotations.
     """
     modes = surface_modes(system, contact)
     nodes = modes.shape[0]

@@ -27,7 +27,10 @@ class ExportedChannel:
 
     @property
     def facts(self) -> dict[str, str | float]:
-        """The description of its sensor: kind, quantity, axis, location, angle, range."""
+        """The description of its sensor: kind, quantity, axis, location, range, and angle in degrees if it has one.
+
+        The pulse of the shaft has no range and no angle.
+        """
         if self.sensor is None:
             return {"kind": "once_per_rev", "quantity": "pulse", "axis": "", "location": "shaft"}
         about, (low, high) = self.sensor.description, self.sensor.full_range
@@ -65,7 +68,7 @@ class ExportedRun:
 
 
 def exported_runs(data: DataSet, run_ids: Sequence[str], channels: Sequence[str]) -> Iterator[ExportedRun]:
-    """Read the good runs `run_ids` one after the other, each with the named channels."""
+    """Yield the good runs `run_ids` in this order, each with the channels `channels`; one is in memory at a time."""
     sensors = {sensor.name: sensor for sensor in data.sensors.sampled}
     for run_id, signals, pulses in data.recorded(run_ids, channels):
         row = data.row(run_id)

@@ -78,8 +78,8 @@ def gather_lines(
 ) -> None:
     """Write each line's sums with the numbers of z at `places[c]` into its rows of `out[c]`.
 
-    c is `first`, then `second`; both share each load of a. The lines are scaled ones; `places` is (any, any), `out`
-    (any, any).
+    c is `first`, then `second`; both share each load of a. `lines` (any, 5) are scaled ones, `a` (any, 8) are the
+    entries. `places` is (vectors, numbers), `out` (vectors, a multiple of eight).
     """
     for line in lines:
         for c in (first, second):
@@ -87,14 +87,18 @@ def gather_lines(
 
 
 def dot_lines(lines: IntArray, a: FloatArray, x: FloatArray, left: FloatArray) -> float:
-    """Return left^T (matrix x): the sum of the products of each line's sums with its rows of `left`."""
+    """Return left^T (matrix x): the sum of the products of each line's sums with its rows of `left`.
+
+    `lines` is (any, 5), `a` (any, 8) are the entries, `x` and `left` the vectors.
+    """
     return sum(float((line_sum(line, a, x) * left.reshape(-1, LANES)[_results(line)]).sum()) for line in lines)
 
 
 def dot_lines_each(lines: IntArray, a: FloatArray, x: FloatArray, left: FloatArray, out: FloatArray) -> None:
-    """Write `dot_lines` of lines i of x and left into `out[i]`, for i < TOGETHER; all share each load of a.
+    """Write left[i]^T (matrix x[i]) into `out[i]`, as `dot_lines`, for i < TOGETHER; all share each load of a.
 
-    x and left are (TOGETHER, a multiple of eight), `out` is (TOGETHER,).
+    `lines` is (any, 5), `a` (any, 8) are the entries. x and left are (TOGETHER, a multiple of eight), `out` is
+    (TOGETHER,).
     """
     for i in range(TOGETHER):
         out[i] = dot_lines(lines, a, x[i], left[i])
@@ -184,7 +188,10 @@ class _Emitter(Emitter):
         return [[builder.load(total) for total in each] for each in sums]
 
     def sum_crossed(self, a: Any, firsts: list[Any], vectors: list[Any], rows: Any) -> list[list[Any]]:
-        """Return for each of `firsts` the sums of the products of each vector with so many rows of a from there on."""
+        """Return for each of `firsts` and each of `vectors` the sum of the products of a's rows and the vector's.
+
+        They are `rows` rows of eight: of a from row `first` on, of the vector from its start. A sum is one number.
+        """
         builder = self.builder
         sums = [[cgutils.alloca_once_value(builder, self.zero) for _ in vectors] for _ in firsts]  # type: ignore[no-untyped-call]
         for total in [total for each in sums for total in each]:

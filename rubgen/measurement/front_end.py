@@ -30,8 +30,8 @@ def resonance(frequency_hz: float, damping: float, dt: float) -> tuple[FloatArra
 def front_end(sensor: SampledSensor, signal: FloatArray, dt: float) -> FloatArray:
     """Return the signal (steps,) after bandwidth, resonance and saturation of a sensor, in the sensor's unit.
 
-    The filters start at rest at its first value. A sensor without these properties returns it unchanged. `dt` is the
-    time step in s.
+    The bandwidth is a Butterworth low-pass of second order. The filters start in equilibrium with the first value. A
+    sensor without these properties returns the signal unchanged. `dt` is the time step in s.
     """
     if sensor.bandwidth_hz is not None or sensor.resonance_hz is not None:
         signal = _behind_filters(sensor, signal, dt)
@@ -56,7 +56,8 @@ def _behind_filters(sensor: SampledSensor, signal: FloatArray, dt: float) -> Flo
 def memory_seconds(sensor: SampledSensor) -> float:
     """Return the memory of the sensor's filters in s: the length of signal needed before the first sample.
 
-    It is 0 for a sensor without filters.
+    It is the time in which the start of a filter decays to 1e-4, summed over bandwidth and resonance. It is 0 for a
+    sensor without filters.
     """
     seconds = 0.0
     if sensor.bandwidth_hz is not None:
@@ -72,7 +73,7 @@ def miscalibrate(sensor: SampledSensor, signal: FloatArray, *, zero: float, samp
     - sensor: the sensor with its errors.
     - signal (samples,): x.
     - zero: reading of the sensor for the value 0 of the measured quantity.
-    - sample_rate_hz: sample rate.
+    - sample_rate_hz: sample rate, from which t follows: s from the first sample.
     """
     if not (sensor.gain_error or sensor.offset or sensor.drift_per_s):
         return signal
@@ -123,7 +124,8 @@ def _shape(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> FloatA
 def drop_out(sensor: SampledSensor, values: FloatArray, sample_rate_hz: float, rng: np.random.Generator) -> FloatArray:
     """Replace samples in gaps at random times by the last sample before the gap. Return the samples (n,).
 
-    The starts of the gaps are a Poisson process of the sensor's rate `dropouts_per_s`; each gap lasts `dropout_s`.
+    The starts of the gaps are a Poisson process of the sensor's rate `dropouts_per_s`; each gap lasts `dropout_s`. The
+    first sample is always kept.
 
     - sensor: the sensor.
     - values (n,): samples.

@@ -74,8 +74,8 @@ def plan(recipe: Recipe, *, tries: int = 0) -> Plan:
     """Examine a recipe before its data set is made. Nothing is integrated in time unless `tries` is above 0.
 
     The recipe must be checked already (`load_recipe`). Up to 64 runs are examined, 16 where virtual machines are drawn.
-    With `[balance]` the first candidate of each run is examined, which may not be chosen later. `tries` is the number
-    of runs to simulate.
+    The extremes of `[vary]` are examined too, except where virtual machines are drawn. With `[balance]` the first
+    candidate of each run is examined, which may not be chosen later. `tries` is the number of runs to simulate.
     """
     scenarios = list(_looked_at(recipe))
     with recipe.machine_named(), step("look at the runs", "runs", long=True):

@@ -24,9 +24,9 @@ class Tried:
     classes: dict[str, int]
     """Number of runs by rub and class of motion, or by status where they failed."""
     seconds_a_run: float
-    """Mean CPU time, without compilation."""
+    """Mean CPU time of simulating and writing a run, s, without compilation."""
     megabytes_a_run: dict[str, float]
-    """Mean size of the files by format."""
+    """Mean size of the files of a good run, MB, by format; 0 where no run is good."""
 
 
 def try_runs(recipe: Recipe, tries: int) -> Tried:

@@ -89,7 +89,7 @@ def refused_response(system: SpinningSystem, operation: Operation, steps: int, r
 def film_refusal(system: SpinningSystem, steps: int) -> Refusal | None:
     """Return status FILM_CLOSED and a reason if no rub-free motion fits the laws of the support; else None.
 
-    `steps` is the number of steps in a turn.
+    A motion fits if at most 1e-8 of the force on O_d is not balanced. `steps` is the number of steps in a turn.
     """
     forces = system.starting.turning
     if forces is None or not forces.laws:
@@ -106,7 +106,8 @@ def film_refusal(system: SpinningSystem, steps: int) -> Refusal | None:
 def stability(system: SpinningSystem) -> tuple[Refusal | None, float]:
     """Return a refusal, and the slowest decay of all modes in 1/s. The refusal is None for a stable system.
 
-    A refusal is status UNSTABLE and a reason. It is returned if the system grows by itself or has an undamped mode.
+    A refusal is status UNSTABLE and a reason. It is returned if the system grows by itself, or if the slowest decay is
+    at most 1e-6 of the speed in rad/s.
     """
     decay = slowest_decay(system)
     if decay > UNDYING_SHARE * system.speed:

@@ -77,7 +77,7 @@ class Replay:
 
 
 def replay_of(run: Run) -> Replay:
-    """Make the replay of a run in memory. Raises ValueError for a run without a recording."""
+    """Make the replay of a run in memory. Raises NoPictureError, a ValueError, for a run without a recording."""
     if run.recording is None or run.labels is None:
         raise NoPictureError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to show")
     touches, recording = contact_intervals(run.response, run.recording), run.recording

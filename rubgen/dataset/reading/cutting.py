@@ -75,8 +75,8 @@ def cut_of(seconds: float | None, turns: int | None, hop: float | None, rate: fl
     - rate: samples per second.
     - tacho: whether the set has a once_per_rev sensor.
 
-    Raises UserError where not exactly one length is given, a length or hop is not positive, or `turns` is given without
-    a tacho.
+    Raises UserError where not exactly one length is given, a length or hop is not positive, is shorter than a sample or
+    is no whole number of turns, or `turns` is given without a tacho.
     """
     if (seconds is None) == (turns is None):
         raise UserError("windows: give their length either in seconds or in turns")

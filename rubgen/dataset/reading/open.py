@@ -91,10 +91,7 @@ class DataSet:
 
     @cached_property
     def units(self) -> dict[str, str]:
-        """Unit of each recorded channel by its name.
-
-        Clean channels (without noise) are included where the set has them.
-        """
+        """Unit of each recorded channel by name. Clean channels (without noise) are included if the set has them."""
         columns = signal_columns(self._sensing.set, clean=self._sensing.keep_clean)
         return {column.name: column.unit for column in columns if column.kind == "signal"}
 
@@ -118,7 +115,7 @@ class DataSet:
 
     @property
     def weights(self) -> pd.Series[float]:
-        """The importance weight of each run of a balanced set, by name; NaN for a failed run. See `balance_weights`.
+        """The importance weight of each run of a balanced set, by name; NaN for a failed run, for a twin its partner's.
 
         Raises UserError for a set without a balance.
         """
@@ -191,15 +188,15 @@ class DataSet:
     def touches(self, run_id: str) -> pd.DataFrame:
         """Read the touches of blades within the whole record of a run, one row a touch, in order of their start.
 
-        `touches_frame` describes the columns. Raises UserError where the run does not exist or failed, or the file is
-        damaged.
+        Columns: `start_s` and `end_s` from the first sample, `blade`, `angle_rad`, `impulse_n_s`, `friction_work_j` and
+        `normal_work_j` <= 0. Raises UserError where the run does not exist or failed, or the file is damaged.
         """
         self.check_has_signals(run_id)
         ((_, touches),) = self.each_touches([run_id])
         return touches
 
     def each_touches(self, run_ids: Sequence[str]) -> Iterator[tuple[str, pd.DataFrame]]:
-        """Yield the name and the touches of each of these good runs, in the order of `run_ids`. See `touches`."""
+        """Yield name and touches of each of these good runs, in the order of `run_ids`; columns as in `touches`."""
         for run_id, table in self._sections.each(run_ids, ["run_id", *TOUCH_COLUMNS]):
             record = read_touches(table, 0, self._sections.places[run_id].file)
             yield run_id, touches_frame(record, self._sensing, self.signal_seconds)
@@ -262,9 +259,10 @@ class DataSet:
         return windows(window_index(self, channels, cut, target, split, runs), out)
 
     def cut(self, seconds: float | None, turns: int | None, hop: float | None) -> Cut:
-        """Return how to cut this set into windows; the arguments are those of `windows`.
+        """Return how to cut this set into windows of `seconds`, or of `turns`, every `hop`: as for `windows`.
 
-        Raises UserError as `windows` does.
+        Raises UserError where not exactly one length is given, a length or hop is not positive, is shorter than a
+        sample or is no whole number of turns, or the set has no once_per_rev sensor for `turns`.
         """
         tacho = any(isinstance(sensor, OncePerRev) for sensor in self._sensing.set.sensors)
         return cut_of(seconds, turns, hop, self.sample_rate_hz, tacho=tacho)
@@ -275,16 +273,16 @@ class DataSet:
         The runs with one value of the column `by` are a group; by 'run_id' a run and its twins are one. Each group is
         on the test side of exactly one fold, and never on both sides. The folds are the same each time: groups are
         assigned by size and then by name. `split` is the name of a split; None takes all runs. Raises UserError for k
-        below 2, for fewer groups than folds, for an unknown split or column, and where `by` would put runs of one
-        machine (of several), or a run and its twin, on both sides.
+        below 2, for fewer groups than folds, and where `by` would put runs of one machine of several, or a run and its
+        twin, on both sides.
         """
         return folds(self, k, by, split)
 
     def groups_of(self, run_ids: Sequence[str]) -> npt.NDArray[np.str_]:
         """Return the group of each run (runs,): runs of one group must be on the same side of a split.
 
-        The group is the machine where the set has several machines. Else it is the name of the run, or of the partner
-        for a twin.
+        The group is the machine where the good runs of the set have several machines. Else it is the name of the run,
+        or of the partner for a twin. Raises KeyError for an unknown run.
         """
         several = self.ok["machine_id"].nunique() > 1
         rows = self.runs.loc[list(run_ids)]
@@ -296,7 +294,8 @@ class DataSet:
     ) -> Iterator[tuple[str, dict[str, Float32Array], FloatArray]]:
         """Yield for each of these good runs its name, its channels by name and the arrival times of its pulses (s).
 
-        One run is in memory at a time. `channels` is as in `signals`, and UserError is raised as in `signals`.
+        One run is in memory at a time. `channels` are names; None reads all. Raises UserError, at the first run, where
+        a channel or the row of a run does not exist, or the set has no signals; at any run where its file is damaged.
         """
         names = self.known_channels(channels)
         for run_id, table in self._recorded(run_ids, names):
@@ -305,7 +304,7 @@ class DataSet:
     def each_channel(self, name: str) -> Iterator[tuple[str, Float32Array, FloatArray]]:
         """Yield for each good run its name, the samples of the channel `name` and the arrival times of its pulses (s).
 
-        One run is in memory at a time. Raises UserError where the channel was not recorded.
+        One run is in memory at a time. Raises UserError, at the first run, where the set has no such channel.
         """
         for run_id, signals, pulses in self.recorded(list(self.ok.index), [name]):
             yield run_id, signals[name], pulses

@@ -134,10 +134,10 @@ def windows(index: WindowIndex, out: Path | str | None) -> Windows:
 
 
 def chosen_runs(data: DataSet, split: str | None, runs: Sequence[str] | None) -> list[str]:
-    """Return the names of the good runs (status ok) of `split`, or of the list `runs`.
+    """Return the names of the good runs (status ok) of `split`, or of the list `runs`, each once.
 
     If both are None, return all good runs of the set. Raises UserError where both are given, a split or run is unknown,
-    a run of the list failed, or no run is left.
+    a run of the list failed, or the split or the set has no good run.
     """
     good = data.ok
     if split is not None and runs is not None:

@@ -33,11 +33,18 @@ class StoredRun:
     data: DataSet = field(repr=False)
 
     def signals(self, channels: Sequence[str] | None = None) -> dict[str, Float32Array]:
-        """Read the recorded channels as arrays by name. `channels` are the names to read: see `DataSet.signals`."""
+        """Read the recorded channels by name, each (n_samples,) in its unit of `data.units`.
+
+        `channels` are the names of the channels to read; None reads all. Raises UserError where the run failed, a
+        channel does not exist, a file is damaged, or the set has no files with signals.
+        """
         return self.data.signals(self.run_id, channels)
 
     def touches(self) -> pd.DataFrame:
-        """Read the touches of blades, one row a touch. See `DataSet.touches`."""
+        """Read the touches of blades within the whole record, one row a touch, with the columns of `DataSet.touches`.
+
+        Raises UserError where the run failed or the file is damaged.
+        """
         return self.data.touches(self.run_id)
 
     def __repr__(self) -> str:

@@ -125,10 +125,11 @@ def _bits(value: Any) -> object:
 def moved_labels(new: dict[str, Any], old: dict[str, Any]) -> list[str]:
     """Return the names of a run's labels that differ by more than the tolerance for its class of motion.
 
-    `new` and `old` are the run's rows of `runs.parquet`, with classes as words. Rounding determines values that are
-    zero in exact arithmetic, such as a phase without amplitude or the floor between orders. Amplitudes are therefore
-    compared relative to the largest order of their signal, phases as complex amplitudes, shares by their difference,
-    and the Lyapunov exponent within its standard error. Diagnostics are not compared.
+    `new` and `old` are the run's rows of `runs.parquet`, with classes as words. If `status`, `motion` or `rub` differ,
+    only these are named. Of a period-1 run all other labels are compared except diagnostics, of any other run only
+    amplitudes. Rounding determines values that are zero in exact arithmetic, such as a phase without amplitude or the
+    floor between orders. Amplitudes are therefore compared relative to the largest order of their signal, phases as
+    complex amplitudes, shares by their difference, and the Lyapunov exponent within its standard error.
     """
     if new["status"] != old["status"] or new["motion"] != old["motion"] or new["rub"] != old["rub"]:
         return [name for name in ("status", "motion", "rub") if new[name] != old[name]]

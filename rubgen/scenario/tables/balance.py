@@ -117,7 +117,8 @@ class Balance(StrictModel):
         """Return the cell of run number `index` and its band of the speed, from 0.
 
         They do not depend on the number of runs. Both follow from a Weyl sequence in two dimensions, whose start the
-        seed draws. Of n successive runs each cell has its share to within some runs.
+        seed draws. Of n successive runs each cell has its share to within some runs. A cell with the share 0 has no
+        run.
         """
         start = np.random.default_rng([seed, zlib.crc32(b"balance")]).random(2)
         u, v = (float(np.modf(begin + index * step)[0]) for begin, step in zip(start, WEYL, strict=True))
@@ -141,14 +142,15 @@ class Balance(StrictModel):
 
 
 def check_balance(balance: Balance, profile: str, drawn: set[str], source: str) -> None:
-    """Check that the runs of a recipe can be in every class of its balance.
+    """Check the balance of a recipe against its speed.
 
     - balance: the table.
     - profile: the speed profile of the recipe.
     - drawn: the keys of `[vary]`.
     - source: beginning of messages.
 
-    Raises UserError of one line for a class that cannot occur, and for bands of a speed that is not drawn.
+    Raises UserError of one line for shares of motion or bands of severity at a changing speed, and for bands of a speed
+    that is not drawn. Whether a class occurs at the drawn values is not checked.
     """
     if balance.needs_run and profile != "steady":
         key = "motion" if balance.motion else "severity_bounds"

@@ -84,7 +84,8 @@ def deepest(scenario: Scenario) -> tuple[float, float]:
     """Return the largest free penetration of a run in m, and its speed in rev/min. A negative penetration is a gap.
 
     A changing speed is checked at nine speeds from the slowest to the fastest, each as a steady speed. The amplitude of
-    a run through a critical speed is smaller. Raises UserError where the system cannot be integrated at a speed.
+    a run through a critical speed is smaller. The penetration is infinite where the motion without rub is not known
+    because of laws of the support. Raises UserError where the system cannot be integrated at a speed.
     """
     scenario = with_clearance(scenario)
     model = reduce(scenario.machine, scenario.reduction)

@@ -104,7 +104,7 @@ def automatic_settle_turns(system: SpinningSystem, closing_turns: int, decay: fl
 def settle_turns(system: SpinningSystem, operation: Operation, decay: float | None = None) -> int:
     """Return the settle turns of the operation; for "auto" they are `automatic_settle_turns`.
 
-    `decay` is the slowest decay in 1/s; None computes it.
+    `decay` is the slowest decay in 1/s; None computes it. Raises ValueError for "auto" and an unstable system.
     """
     if operation.settle_turns == "auto":
         return automatic_settle_turns(system, operation.closing_turns, decay)

@@ -48,7 +48,7 @@ def chosen_observers(driver: SpeedDriver, record: int, wants: Wants) -> list[Obs
 
 
 def tail_turns(driver: SpeedDriver, record: int, wants: Wants) -> int:
-    """Return the number of turns that the taps cover: those of `wants.tail_seconds`, at least 100.
+    """Return the number of turns that the taps cover: `wants.tail_seconds` at the fastest speed, at least 100 turns.
 
     They are at most all turns of the run. `record` is the number of turns of the record.
     """

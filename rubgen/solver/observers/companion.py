@@ -36,7 +36,10 @@ def check_turns(record_turns: int) -> None:
 
 
 def piece_ends(steps: int) -> list[int]:
-    """Return the numbers of the steps at which the 16 pieces of a turn of `steps` steps end, as equal as possible."""
+    """Return the numbers of the steps at which the pieces of a turn of `steps` steps end, as equal as possible.
+
+    There are 16 pieces, or `steps` if that is less.
+    """
     pieces = min(PIECES, steps)
     return [round(steps * piece / pieces) for piece in range(1, pieces + 1)]
 

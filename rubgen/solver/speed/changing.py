@@ -30,9 +30,10 @@ class ChangingSystem:
         return min(self.systems, key=slowest_decay)
 
     def steps(self, sample_rate_hz: float) -> int:
-        """Return the steps in a turn at the highest speed: `steps_per_turn`, doubled until all speeds are stable.
+        """Return the steps in a turn at the highest speed: those of the operation, doubled until all speeds are stable.
 
-        They are also enough for `sample_rate_hz`, the sensors' rate.
+        They are also enough for `sample_rate_hz`, the sensors' rate. Raises UserError for a system that would need more
+        than 4,194,304 steps at the highest speed.
         """
         steps = steps_per_turn(self.systems[-1], self.operation.steps_per_turn, sample_rate_hz)
         longest = STEP_SAFETY * min(stable_step(system) for system in self.systems)

@@ -56,17 +56,19 @@ class _Scene:
 def picture(replay: Replay, time: float | None = None) -> Figure:
     """Draw the machine seen along its axis, the orbit and the contact force at one moment.
 
-    `time` is in s; None is the time of the hardest touch. The machine is drawn in the nearest frame, and the picture
-    shows the time of this frame. Raises ValueError for a replay without frames, or a time outside the recording.
+    `time` is in s from the first sample; None is the time of the hardest touch. The machine is drawn in the nearest
+    frame, and the picture shows the time of this frame. Raises NoPictureError, a ValueError, for a replay without
+    frames, or a time outside the recording.
     """
     scene = _scene(replay)
     return _drawn(scene, _nearest(scene, replay.hardest_touch if time is None else time))
 
 
 def write_gif(replay: Replay, path: Path) -> None:
-    """Write an endless animation of 64 frames, two of the dense turns, to `path`.
+    """Write an endless animation of the first 64 dense frames, which are two turns, to `path`.
 
-    Raises ValueError for a replay without frames.
+    Without dense frames it is of the first 64 frames; with fewer frames it is shorter. Raises NoPictureError, a
+    ValueError, for a replay without frames.
     """
     from PIL import Image
 
