@@ -137,7 +137,7 @@ def chosen_runs(data: DataSet, split: str | None, runs: Sequence[str] | None) ->
     """Return the names of the good runs (status ok) of `split`, or of the list `runs`, each once.
 
     If both are None, return all good runs of the set. Raises UserError where both are given, a split or run is unknown,
-    a run of the list failed, or the split or the set has no good run.
+    the list is empty, a run of it failed, or the split or the set has no good run.
     """
     good = data.ok
     if split is not None and runs is not None:
@@ -150,6 +150,8 @@ def chosen_runs(data: DataSet, split: str | None, runs: Sequence[str] | None) ->
     if runs is not None:
         if isinstance(runs, str):
             raise UserError(f"runs = {runs!r}: give a list of names, [{runs!r}]")
+        if not len(runs):
+            raise UserError("runs = []: give the name of at least one run")
         for run_id in runs:
             data.check_has_signals(run_id)
         return list(dict.fromkeys(runs))

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
-from rubgen.arrays import FloatArray
+from rubgen.arrays import FloatArray, IntArray
 from rubgen.errors import NoPictureError
 from rubgen.labels.labels import Motion
 from rubgen.machine import Unbalance
@@ -65,22 +65,32 @@ def picture(replay: Replay, time: float | None = None) -> Figure:
 
 
 def write_gif(replay: Replay, path: Path) -> None:
-    """Write an endless animation of the first 64 dense frames, which are two turns, to `path`.
+    """Write an endless animation of the 64 dense frames about the hardest touch, which are two turns, to `path`.
 
-    Without dense frames it is of the first 64 frames; with fewer frames it is shorter. Raises NoPictureError, a
-    ValueError, for a replay without frames.
+    Without dense frames it is of 64 frames about the same time; with fewer frames it is shorter. Raises NoPictureError,
+    a ValueError, for a replay without frames.
     """
     from PIL import Image
 
     scene = _scene(replay)
-    dense = np.flatnonzero(scene.frames.dense)
-    chosen = dense[:GIF_FRAMES] if dense.size else np.arange(min(scene.frames.time.size, GIF_FRAMES))
+    chosen = frames_about(scene.frames, replay.hardest_touch)
     drawn = [Image.fromarray(pixels) for pixels in _pixels(scene, chosen)]
     palette = _palette(drawn[:: max(1, len(drawn) // PALETTE_FRAMES)])
     images = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in drawn]
     images[0].save(
         path, format="GIF", save_all=True, append_images=images[1:], duration=GIF_MILLISECONDS, loop=0, optimize=True
     )
+
+
+def frames_about(frames: MotionFrames, time: float) -> IntArray:
+    """Return the numbers of GIF_FRAMES dense frames, or of all frames if none is dense, with `time` (s) in the middle.
+
+    Fewer frames are returned only where there are fewer.
+    """
+    numbers = np.flatnonzero(frames.dense) if frames.dense.any() else np.arange(frames.time.size)
+    middle = int(np.argmin(np.abs(frames.time[numbers] - time)))
+    first = max(0, min(middle - GIF_FRAMES // 2, numbers.size - GIF_FRAMES))
+    return numbers[first : first + GIF_FRAMES]
 
 
 def _palette(images: list[Image.Image]) -> Image.Image:

@@ -147,6 +147,7 @@ def test_folds_by_machine_are_balanced_and_refuse_to_part_machines(data, monkeyp
         (lambda data: data.arrays(target="contact_zone_centres_rad"), "is a list of another length in each run"),
         (lambda data: data.arrays(split="test"), "no split 'test'; it has train"),
         (lambda data: data.arrays(split="train", runs=["run-000000"]), "give one of the two"),
+        (lambda data: data.arrays(runs=[]), r"runs = \[\]: give the name of at least one run"),
         (lambda data: data.arrays(runs="run-000000"), r"give a list of names, \['run-000000'\]"),
         (lambda data: data.arrays(runs=["run-9"]), "no run 'run-9'"),
         (lambda data: data.arrays(out="X.bin"), "must end with .npy"),
