@@ -9,7 +9,6 @@ from __future__ import annotations
 import argparse
 import tomllib
 from collections.abc import Callable, Sequence
-from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -80,7 +79,7 @@ def made_in_each_way(directory: Path, runs: int) -> dict[str, Path]:
     """
     made, labels = {}, []
     for number, (way, change) in enumerate(WAYS.items()):
-        recipe = deepcopy(tomllib.loads((RECIPES / f"{RECIPE}.toml").read_text(encoding="utf-8")))
+        recipe = tomllib.loads((RECIPES / f"{RECIPE}.toml").read_text(encoding="utf-8"))
         change(recipe)
         made[way] = directory.with_name(f"{directory.name}-{runs}-{number}")
         rubgen.generate(recipe, made[way], runs=runs, progress=True)

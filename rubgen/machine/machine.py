@@ -125,10 +125,7 @@ class Mistuning:
         return self
 
     def deviations(self, count: int) -> tuple[float, ...]:
-        """Return the relative deviations of `count` blades: the pattern, or values drawn by numpy's default generator.
-
-        The same seed draws the same values.
-        """
+        """Return the relative deviations of `count` blades: the pattern, or values that `seed` fixes."""
         if self.pattern is not None:
             return self.pattern
         drawn = np.random.default_rng(self.seed).standard_normal(count)
