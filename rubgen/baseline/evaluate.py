@@ -54,13 +54,17 @@ def cross_validated(samples: Samples, model: Model, metrics: Metrics, *, by_grou
 
     The predictions of all folds are scored together by `metrics`. With `by_group` a group is never on both sides.
     Without it windows are assigned to folds at random, so that windows of one run are on both sides, which leaks.
+    Nothing is learned where no metric is defined.
     """
+    if not _any_defined(metrics, samples):
+        return {}
 
     def outcome(seed: int) -> Outcome:
         found = Outcome(np.empty_like(samples.answers), np.zeros(len(samples.groups)))
         owners = samples.groups if by_group else np.arange(len(samples.groups))
         for test in folds(owners, samples.answers, seed):
-            part = _said(_learned(samples[~test], model, seed), samples[test], model, seed)
+            learned = _learned(samples[~test], model, seed, owners[~test])
+            part = _said(learned, samples[test], model, seed)
             found.answers[test], found.ranks[test] = part
         return found
 
@@ -70,11 +74,15 @@ def cross_validated(samples: Samples, model: Model, metrics: Metrics, *, by_grou
 def transferred(train: Samples, tests: Mapping[str, Samples], model: Model, metrics: Metrics) -> dict[str, Scores]:
     """Learn from `train` with SEEDS seeds of the model, and score on each of `tests` by `metrics`.
 
-    Returns the scores by the name of the test. A model learns once a seed, for all tests.
+    Returns the scores by the name of the test. A model learns once a seed, for all tests. Tests where no metric is
+    defined are left out.
     """
+    tests = {name: test for name, test in tests.items() if _any_defined(metrics, test)}
+    if not tests:
+        return {}
     outcomes: dict[str, list[Outcome]] = {name: [] for name in tests}
     for seed in range(SEEDS):
-        learned = _learned(train, model, seed)
+        learned = _learned(train, model, seed, train.groups)
         for name, test in tests.items():
             outcomes[name].append(_said(learned, test, model, seed))
     return {name: _scores(outcomes[name], test, metrics) for name, test in tests.items()}
@@ -96,8 +104,14 @@ def folds(groups: npt.NDArray[Any], answers: npt.NDArray[Any], seed: int) -> Ite
         yield np.isin(numbers, order[fold::FOLDS])
 
 
-def _learned(train: Samples, model: Model, seed: int) -> Any:
-    return model.make(seed).fit(train.inputs[model.inputs(seed)], train.answers)
+def _any_defined(metrics: Metrics, samples: Samples) -> bool:
+    """Return whether the right answers of these samples have a score by any metric."""
+    right = Outcome(samples.answers, np.zeros(len(samples.groups)))
+    return any(np.isfinite(metric(right, samples)) for metric in metrics.values())
+
+
+def _learned(train: Samples, model: Model, seed: int, groups: npt.NDArray[Any]) -> Any:
+    return model.make(seed).fit(train.inputs[model.inputs(seed)], train.answers, groups)
 
 
 def _said(learned: Any, test: Samples, model: Model, seed: int) -> Outcome:

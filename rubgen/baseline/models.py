@@ -1,7 +1,7 @@
-"""The models of the baselines. All have `fit(numbers, answers)`, `predict(numbers)` and `rank(numbers)`.
+"""The models of the baselines. All have `fit(numbers, answers, groups)`, `predict(numbers)` and `rank(numbers)`.
 
-Numbers are (samples, any), answers (samples,), or labels of 0 and 1 (samples, labels). `rank` grows with the chance of
-the last of two classes, and is 0 for all other answers.
+Numbers are (samples, any), answers (samples,), or labels of 0 and 1 (samples, labels). Samples of one group (samples,)
+belong together. `rank` grows with the chance of the last of two classes, and is 0 for all other answers.
 """
 
 from __future__ import annotations
@@ -13,18 +13,23 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from rubgen.arrays import FloatArray
+from rubgen.arrays import BoolArray, FloatArray
 from rubgen.baseline.scores import best_threshold, rank_correlation
+from rubgen.measurement.channel import Float32Array
 
 Answer = npt.NDArray[Any]
+Groups = npt.NDArray[Any]
 BOOSTING = {"max_iter": 50, "max_leaf_nodes": 8}
 """A third of the time of the defaults: a task of labels learns some hundred of these."""
+PENALTIES = (1e1, 1e2, 1e3, 1e4, 1e5)
+HELD_OUT = 0.2
+"""Share of the groups that choose the penalty of a ridge regression."""
 
 
 class Majority:
     """Predicts the most frequent class, or the median of numbers."""
 
-    def fit(self, _features: FloatArray, answers: Answer) -> Self:
+    def fit(self, _features: FloatArray, answers: Answer, _groups: Groups) -> Self:
         """Store the most frequent class of `answers` (samples,), or the median of numbers."""
         if answers.dtype.kind == "f":
             self.answer: Any = float(np.median(answers))
@@ -48,7 +53,7 @@ class OneFeature:
     NaN is the smallest value.
     """
 
-    def fit(self, features: FloatArray, answers: Answer) -> Self:
+    def fit(self, features: FloatArray, answers: Answer, _groups: Groups) -> Self:
         """Choose the feature, its threshold, and its sense: 1 if the feature grows with the answers, -1 if it falls.
 
         `features` are (samples, features), `answers` (samples,).
@@ -87,7 +92,7 @@ class Classifier:
     def __init__(self, model: Any) -> None:
         self.model = model
 
-    def fit(self, features: FloatArray, answers: Answer) -> Self:
+    def fit(self, features: FloatArray, answers: Answer, _groups: Groups) -> Self:
         """Learn from features (samples, features) and the classes (samples,)."""
         self.model.fit(features, answers)
         self.shares = np.array([np.mean(answers == each) for each in self.model.classes_])
@@ -103,12 +108,12 @@ class Classifier:
 
 
 class Plain:
-    """A model of scikit-learn without any change."""
+    """A model of scikit-learn without any change, whose ranks are 0."""
 
     def __init__(self, model: Any) -> None:
         self.model = model
 
-    def fit(self, numbers: FloatArray, answers: Answer) -> Self:
+    def fit(self, numbers: FloatArray, answers: Answer, _groups: Groups) -> Self:
         """Learn from `numbers` (samples, numbers) and the answers (samples,)."""
         self.model.fit(numbers, answers)
         return self
@@ -118,10 +123,58 @@ class Plain:
         return np.asarray(self.model.predict(numbers))
 
     def rank(self, numbers: FloatArray) -> FloatArray:
-        """Return the distance of each sample from the plane between two classes, or 0 for a model that has no plane."""
-        decide = getattr(self.model, "decision_function", None)
-        found = np.asarray(decide(numbers)) if decide else np.zeros(len(numbers))
-        return found if found.ndim == 1 else np.zeros(len(numbers))
+        """Return rank 0 for each sample."""
+        return np.zeros(len(numbers))
+
+
+class Ridge:
+    """A ridge regression on standardized numbers, for numbers, classes or labels.
+
+    A class or a label is a target that is 1 where a sample has it, else 0. Predicted targets are scaled so that their
+    mean over the learned samples is 1 for samples that have it and 0 for others. A label is predicted where its scaled
+    target is above 0.5. The class of a sample is the one with the largest scaled target.
+
+    The penalty is the one of PENALTIES with the least squared error on groups that are held out. Held-out windows of
+    learned groups would choose a penalty too small, with which the model knows its groups again.
+    """
+
+    def __init__(self, seed: int) -> None:
+        self.seed = seed
+
+    def fit(self, numbers: Float32Array, answers: Answer, groups: Groups) -> Self:
+        """Learn from `numbers` (samples, numbers), the answers and the groups."""
+        from sklearn.linear_model import Ridge as Regression
+        from sklearn.model_selection import GridSearchCV, GroupShuffleSplit
+        from sklearn.pipeline import make_pipeline
+        from sklearn.preprocessing import StandardScaler
+
+        classes = answers.ndim == 1 and answers.dtype.kind != "f"
+        self.classes = np.unique(answers) if classes else None
+        targets = np.asarray(answers if self.classes is None else answers[:, None] == self.classes, numbers.dtype)
+        self.model = GridSearchCV(
+            make_pipeline(StandardScaler(), Regression(solver="cholesky")),
+            {"ridge__alpha": PENALTIES},
+            scoring="neg_mean_squared_error",
+            cv=GroupShuffleSplit(1, test_size=HELD_OUT, random_state=self.seed),
+        ).fit(numbers, targets, groups=groups)
+        if targets.ndim == 2:
+            said = self.model.predict(numbers)
+            self.zero, self.one = _means(said, targets == 0, absent=0), _means(said, targets == 1, absent=1)
+        return self
+
+    def predict(self, numbers: Float32Array) -> Answer:
+        """Return the answer of each sample."""
+        found = np.asarray(self.model.predict(numbers))
+        if found.ndim == 1:
+            return found
+        scaled = (found - self.zero) / (self.one - self.zero)
+        return (scaled > 0.5).astype(np.int64) if self.classes is None else self.classes[np.argmax(scaled, axis=1)]
+
+    def rank(self, numbers: Float32Array) -> FloatArray:
+        """Return the target of the last class of each sample, or 0 for numbers and labels."""
+        if self.classes is None:
+            return np.zeros(len(numbers))
+        return np.asarray(self.model.predict(numbers)[:, -1], dtype=np.float64)
 
 
 class EachLabel:
@@ -133,9 +186,10 @@ class EachLabel:
     def __init__(self, make: Callable[[], Any]) -> None:
         self.make = make
 
-    def fit(self, features: FloatArray, answers: Answer) -> Self:
+    def fit(self, features: FloatArray, answers: Answer, groups: Groups) -> Self:
         """Learn one model for each column of `answers` (samples, labels), from `features` (samples, features)."""
-        self.models = [(self.make() if np.ptp(labels) else Majority()).fit(features, labels) for labels in answers.T]
+        made = ((self.make() if np.ptp(labels) else Majority(), labels) for labels in answers.T)
+        self.models = [each.fit(features, labels, groups) for each, labels in made]
         return self
 
     def predict(self, features: FloatArray) -> Answer:
@@ -157,20 +211,24 @@ class Model:
 
 def models(answers: Answer) -> dict[str, Model]:
     """Return the models by name for answers of this kind: classes, numbers, or labels (samples, labels)."""
+    rocket = Model(Ridge, lambda seed: f"rocket {seed}")
     if answers.ndim == 2:
-        return {name: _each_label(model) for name, model in models(np.array([0, 1])).items()}
+        return {name: _each_label(model) for name, model in _of_features(np.array([0, 1])).items()} | {"rocket": rocket}
+    return _of_features(answers) | {"rocket": rocket}
+
+
+def _of_features(answers: Answer) -> dict[str, Model]:
     numbers = answers.dtype.kind == "f"
     threshold = _one_split if not numbers and np.unique(answers).size > 2 else lambda _seed: OneFeature()
     return {
         "majority": Model(lambda _seed: Majority()),
         "one threshold": Model(threshold),
         "boosting": Model(_boosted_numbers if numbers else _boosted_classes),
-        "rocket": Model(lambda _seed: _ridge(numbers=numbers), lambda seed: f"rocket {seed}"),
     }
 
 
 def _each_label(model: Model) -> Model:
-    return Model(lambda seed: EachLabel(lambda: model.make(seed)), model.inputs)
+    return Model(lambda seed: EachLabel(lambda: model.make(seed)))
 
 
 def _boosted_classes(seed: int) -> Classifier:
@@ -192,15 +250,11 @@ def _one_split(seed: int) -> Plain:
     return Plain(DecisionTreeClassifier(max_depth=1, class_weight="balanced", random_state=seed))
 
 
-def _ridge(*, numbers: bool) -> Plain:
-    """Make a ridge regression on standardized numbers, whose penalty is chosen by leaving samples out."""
-    from sklearn.linear_model import RidgeClassifierCV, RidgeCV
-    from sklearn.pipeline import make_pipeline
-    from sklearn.preprocessing import StandardScaler
-
-    penalties = np.logspace(-3, 5, 9)
-    ridge = RidgeCV(penalties) if numbers else RidgeClassifierCV(penalties, class_weight="balanced")
-    return Plain(make_pipeline(StandardScaler(), ridge))
+def _means(values: Float32Array, chosen: BoolArray, absent: float) -> FloatArray:
+    """Return the mean of the chosen values of each column, or `absent` for a column without any."""
+    return np.array(
+        [column[here].mean() if here.any() else absent for column, here in zip(values.T, chosen.T, strict=True)]
+    )
 
 
 def _finite(features: FloatArray) -> FloatArray:

@@ -10,7 +10,6 @@ from itertools import combinations
 
 import numpy as np
 
-from rubgen.arrays import FloatArray
 from rubgen.measurement.channel import Float32Array
 
 TAPS = 9
@@ -38,7 +37,7 @@ class Rocket:
     biases: Float32Array
     """(channels, spacings, kernels, seeds)"""
 
-    def transform(self, window: Float32Array) -> FloatArray:
+    def transform(self, window: Float32Array) -> Float32Array:
         """Return the numbers of a window (channels, samples) for each seed: (seeds, numbers).
 
         They are the share of samples at which each convolution is above its bias, and the mean and the logarithm of the
@@ -52,7 +51,7 @@ class Rocket:
                 shares.append([np.count_nonzero(convolved > each[:, None], axis=1) / channel.size for each in biases.T])
         spread = np.log10(np.maximum(window.std(axis=1), np.finfo(np.float32).tiny))
         levels = np.broadcast_to(np.concatenate([window.mean(axis=1), spread]), (len(shares[0]), 2 * len(window)))
-        return np.concatenate([*map(np.array, shares), levels], axis=1)
+        return np.concatenate([*map(np.array, shares), levels], axis=1).astype(np.float32)
 
 
 def fitted(examples: Float32Array, seeds: int) -> Rocket:

@@ -85,7 +85,7 @@ def _rockets(directory: Path, data: DataSet, channels: Sequence[str], seeds: int
 
 def _rockets_of(
     directory: Path, channels: tuple[str, ...], rocket: Rocket, number: int, runs: list[str]
-) -> tuple[int, FloatArray]:
+) -> tuple[int, Float32Array]:
     """Return the numbers of all windows of these runs (seeds, windows, numbers), after `number`."""
     cut = [_cut(signals, channels) for _, signals, _ in _opened(directory).recorded(runs, channels)]
     return number, np.array([rocket.transform(window) for windows in cut for window in windows]).swapaxes(0, 1)

@@ -9,7 +9,7 @@ from sklearn.metrics import balanced_accuracy_score, f1_score
 
 from rubgen.baseline.baseline import mark_of
 from rubgen.baseline.evaluate import FOLDS, Outcome, Samples, cross_validated, folds, transferred
-from rubgen.baseline.models import OneFeature, models
+from rubgen.baseline.models import Model, OneFeature, Ridge, models
 from rubgen.baseline.rocket import KERNELS, fitted
 from rubgen.baseline.scores import (
     balanced_accuracy,
@@ -155,7 +155,7 @@ def test_a_model_of_labels_learns_each_and_keeps_one_that_never_changes():
     labels = np.column_stack([features[:, 1] > 0, np.ones(120), features[:, 2] > 0.5]).astype(int)
     for name, made in models(labels).items():
         key = "majority" if name == "majority" else name
-        predicted = made.make(0).fit(features, labels).predict(features)
+        predicted = made.make(0).fit(features, labels, np.arange(120)).predict(features)
         assert predicted.shape == labels.shape
         assert (predicted[:, 1] == 1).all()
         if key != "majority":
@@ -185,4 +185,33 @@ def test_one_feature_ranks_numbers_in_either_sense_and_takes_undefined_values():
     answers, features = rng.uniform(size=100), rng.uniform(size=(100, 3))
     features[:, 1] = -answers
     features[:5, 0] = np.nan
-    assert rank_correlation(OneFeature().fit(features, answers).predict(features), answers) == pytest.approx(1)
+    learned = OneFeature().fit(features, answers, np.arange(100))
+    assert rank_correlation(learned.predict(features), answers) == pytest.approx(1)
+
+
+def test_held_out_groups_choose_a_larger_penalty_than_held_out_windows():
+    samples = _identity_only()
+    names = np.eye(40)[np.repeat(np.arange(40), 8)]  # a number for each group: of use only where the group is known
+    numbers = np.column_stack([names, samples.answers + RNG.standard_normal(320)]).astype(np.float32)
+    by_group = Ridge(0).fit(numbers, samples.answers, samples.groups)
+    by_window = Ridge(0).fit(numbers, samples.answers, np.arange(320))
+    assert by_group.model.best_params_["ridge__alpha"] > by_window.model.best_params_["ridge__alpha"]
+
+
+def test_ridge_ranks_by_its_last_class_and_predicts_numbers():
+    numbers = RNG.standard_normal((200, 3)).astype(np.float32)
+    learned = Ridge(0).fit(numbers, (numbers[:, 0] > 1).astype(int), np.arange(200))
+    assert rank_correlation(learned.rank(numbers), numbers[:, 0]) > 0.95
+    assert balanced_accuracy(learned.predict(numbers), (numbers[:, 0] > 1).astype(int)) > 0.9
+    learned = Ridge(0).fit(numbers, numbers[:, 1].astype(float), np.arange(200))
+    np.testing.assert_allclose(learned.predict(numbers), numbers[:, 1], atol=0.2)
+    assert (learned.rank(numbers) == 0).all()
+
+
+def test_nothing_is_learned_where_no_metric_is_defined():
+    def never(_seed):
+        raise AssertionError("a model was made")
+
+    samples = _identity_only()  # without an onset
+    assert cross_validated(samples, Model(never), TASKS["onset"].metrics, by_group=True) == {}
+    assert transferred(samples, {"other": samples}, Model(never), TASKS["onset"].metrics) == {}
