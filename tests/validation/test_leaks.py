@@ -4,10 +4,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from scipy.stats import kstest
 
 from rubgen.io.parquet.set_tables import signals_schema
 from rubgen.scenario import parse_recipe
-from validation.leaks import facts_of, verdict
+from validation.leaks import facts_of, verdict, zeros_among_near
 
 RUNS = 96
 RECIPE = {"name": "leaks", "runs": RUNS, "machine": "zeng2019", "output": {"signal_seconds": 0.007}}
@@ -52,6 +53,22 @@ def zeros(found, rng):
     return found
 
 
+def loud(found, rng):
+    """Record a channel in steps, three times as loud in rubs: it has fewer zeros there."""
+    for row in found:
+        row["casing_acc_0"] = np.round(np.array(row["casing_acc_0"]) * (18 if row["rub"] else 6)).tolist()
+    return found
+
+
+def loud_without_small_steps(found, rng):
+    """As `loud`, and in rubs most samples one step off 0 are 0, as behind a threshold of noise."""
+    for row in loud(found, rng):
+        steps = np.array(row["casing_acc_0"])
+        gone = (np.abs(steps) == 1) & (rng.random(steps.size) < 0.8) & row["rub"]
+        row["casing_acc_0"] = np.where(gone, 0, steps).tolist()
+    return found
+
+
 def lengths(found, rng):
     for row in found:
         if row["rub"]:
@@ -71,14 +88,18 @@ def second_of_two(found, rng):
     return found
 
 
-@pytest.mark.parametrize("plant", [nothing, order, names, zeros, lengths, nulls, second_of_two])
+SILENT = (nothing, loud)
+LEAKS = (order, names, zeros, loud_without_small_steps, lengths, nulls, second_of_two)
+
+
+@pytest.mark.parametrize("plant", [*SILENT, *LEAKS])
 def test_a_planted_leak_is_found_and_nothing_is_silent(plant, tmp_path):
     rng = np.random.default_rng(5)
     found, schema = rows(rng)
     path = tmp_path / "train-00000.parquet"
     pq.write_table(pa.Table.from_pylist(plant(found, rng), schema), path, row_group_size=4)
     told = verdict(facts_of([path]))
-    assert told.found == (plant is not nothing), told
+    assert told.found == (plant in LEAKS), told
     assert abs(told.chance - 0.5) < 0.1
 
 
@@ -103,3 +124,13 @@ def test_the_size_of_a_channel_is_no_leak(tmp_path):
     path = tmp_path / "train-00000.parquet"
     pq.write_table(pa.Table.from_pylist(found, schema), path, row_group_size=1)
     assert not verdict(facts_of([path])).found
+
+
+def test_the_place_of_zeros_is_uniform_whatever_the_amplitude():
+    rng = np.random.default_rng(8)
+    for size in (20, 200):
+        places = [zeros_among_near(np.round(size * rng.standard_normal(4000)), rng) for _ in range(400)]
+        assert kstest(places, "uniform").pvalue > 0.01, size
+    doubled = [zeros_among_near(np.round(50 * rng.standard_normal(4000) / 2) * 2, rng) for _ in range(400)]
+    assert kstest(doubled, "uniform").pvalue > 0.01  # steps of 2
+    assert zeros_among_near(np.zeros(10), rng) > 0.9
