@@ -118,7 +118,10 @@ def mark_of(scores: ModelScores, task: Task) -> str:
 
 
 def _scored(data: DataSet, windows: SetWindows, names: Sequence[str], workers: int) -> list[Baseline]:
-    """Score all models on the tasks called `names`. Each model of each task is one job of the `workers` processes."""
+    """Score all models on the tasks called `names`. Each model of each task is one job of the `workers` processes.
+
+    Jobs with the most answers begin first, so that no long one is left at the end.
+    """
     parts = {name: _windows_of_task(data, TASKS[name], windows) for name in names}
     found: dict[str, ModelScores] = {
         name: {model: {} for model in models(part.samples.answers)} for name, part in parts.items()
@@ -127,7 +130,8 @@ def _scored(data: DataSet, windows: SetWindows, names: Sequence[str], workers: i
         files = {name: Path(folder) / f"{name}.npy" for name in windows.inputs}
         for name, path in files.items():
             np.save(path, windows.inputs[name])
-        jobs = [(name, model, parts[name], files) for name in names for model in found[name]]
+        longest = sorted(names, key=lambda name: -parts[name].samples.answers.size)
+        jobs = [(name, model, parts[name], files) for name in longest for model in reversed(found[name])]
         with worker_pool(min(workers, len(jobs))) as pool:
             for done, (name, model, scores) in enumerate(unordered(pool, _scores_of, jobs), 1):
                 found[name][model] = scores
