@@ -92,11 +92,16 @@ def baselines(
 
 
 def mark_of(scores: ModelScores, task: Task) -> str:
-    """Return a clause that says whether one threshold solves the task, or no model learns it. Empty for a good task.
+    """Return a clause that says that one threshold solves the task, or that nothing learns it. Empty for a good task.
 
-    The first metric is used, with the score by group. If it is undefined there and defined on another split, such as
-    the onset where training has steady speeds, the score on that split is used. A task is learned if a model removes at
-    least `LEAST_GAIN` of what the majority lacks: of its error, or of 1 less its score.
+    The first metric of the task is used, with the score by group. If it is undefined there, it is the score on the
+    first split where it is defined, such as the onset where training has steady speeds. The clause is empty if it is
+    defined nowhere.
+
+    - One threshold solves the task if its score is above SOLVED. This is not asked for a metric that is an error.
+    - Nothing learns the task if the best score is below NOTHING.
+    - Nothing learns it either if no model removes more than LEAST_GAIN of what the majority lacks: of its error, or of
+      1 less its score.
     """
     metric = next(iter(task.metrics))
     way = next((way for way, each in scores["majority"].items() if metric in each), None)

@@ -52,9 +52,9 @@ Scores = dict[str, tuple[float, float]]
 def cross_validated(samples: Samples, model: Model, metrics: Metrics, *, by_group: bool) -> Scores:
     """Score a model on windows that it did not learn from, SEEDS times with different folds.
 
-    The predictions of all folds are scored together by `metrics`. With `by_group` a group is never on both sides.
-    Without it windows are assigned to folds at random, so that windows of one run are on both sides, which leaks.
-    Nothing is learned where no metric is defined.
+    Returns the scores. The predictions of all folds are scored together by `metrics`. With `by_group` a group is never
+    on both sides. Without it windows are assigned to folds at random, so that windows of one run are on both sides,
+    which leaks. Where no metric is defined, nothing is learned and the scores are empty.
     """
     if not _any_defined(metrics, samples):
         return {}
@@ -89,11 +89,14 @@ def transferred(train: Samples, tests: Mapping[str, Samples], model: Model, metr
 
 
 def folds(groups: npt.NDArray[Any], answers: npt.NDArray[Any], seed: int) -> Iterator[npt.NDArray[np.bool_]]:
-    """Yield for each fold which samples (samples,) it tests: groups are shuffled, sorted by answer and dealt in turn.
+    """Yield a mask (samples,) for each of FOLDS folds: the samples that it tests. Every sample is tested in one fold.
 
-    So each class is spread over the FOLDS folds. `groups` and `answers` have a value for each sample; a group has the
-    answer of its first sample. Groups are not sorted if the answers are labels (samples, labels). `seed` is for the
-    shuffle.
+    The groups are shuffled by `seed`, sorted by answer, and dealt to the folds one after another. This spreads each
+    class over the folds. All samples of a group are in one fold. With fewer groups than FOLDS some folds are empty.
+
+    - groups (samples,): group of each sample.
+    - answers (samples,): answer of each sample; a group has the answer of its first sample. For labels (samples,
+      labels) the groups are shuffled, but not sorted.
     """
     names, first, numbers = np.unique(groups, return_index=True, return_inverse=True)
     shuffled = np.random.default_rng(seed).permutation(names.size)

@@ -27,7 +27,7 @@ def casing_displacement_bound(surface: Surface, q_casing: FloatArray) -> float:
 
 @allocation_free_kernel
 def largest_nodal_displacement(surface: Surface, q_casing: FloatArray) -> float:
-    """Return the largest displacement of a casing node, m; NaN where any displacement is NaN.
+    """Return the largest displacement of a casing node, m; NaN if a coordinate is NaN.
 
     `q_casing` (n_casing,) are the casing's modal coordinates.
     """
@@ -156,9 +156,10 @@ def deformation_bounds(surface: Surface, q_casing: FloatArray, tip_shift: float)
 
 @inlined_kernel
 def radial_displacement(surface: Surface, casing: FloatArray, angle: float) -> float:
-    """Return the radial displacement u_r of the casing at a polar angle (rad), linear between the nodes, m.
+    """Return the radial displacement u_r of the casing at a polar angle, m: linear in the angle between two nodes.
 
-    `casing` (a multiple of eight,) are the casing's modal coordinates, then zeros.
+    - casing (a multiple of eight,): the casing's modal coordinates, then zeros.
+    - angle: inertial polar angle, rad, of any number of turns. Node i is at i times `surface.node_step`.
     """
     nodes = surface.radial.shape[0]
     position = angle * (1.0 / surface.node_step)
@@ -191,9 +192,10 @@ def tighten(
 ) -> bool:
     """Replace every clearance bound of at most `far` by a bound of the clearance to the deformed surface.
 
-    Return True if all replaced bounds are positive. Then no tip touches, provided that `far` is at least the bound of
-    the casing's displacement plus limits[0]. A tip whose new bound exceeds `radial_margin(margin, limits)`, for any
-    margin in m, is inside the deformed surface and farther than the margin from it.
+    A bound that is NaN is replaced too. Return True if all replaced bounds are positive, or none is replaced. Then no
+    tip touches, provided that `far` is at least the bound of the casing's displacement plus limits[0]. A tip whose new
+    bound exceeds `radial_margin(margin, limits)`, for any margin in m, is inside the deformed surface and farther than
+    the margin from it.
 
     - casing (a multiple of eight,): the casing's modal coordinates, then zeros.
     - displacement (2 or more, any): radial and tangential displacement of each blade's tip, m.

@@ -82,11 +82,12 @@ def find_near(
 ) -> tuple[int, bool]:
     """Find the blades nearer to the surface than `margin`. Return their number, and whether any tip has entered it.
 
-    The foot, gap, tangent and number of each such blade are written into `work`. Only tips whose bound in `work.bounds`
-    allows it are evaluated.
+    The numbers of these blades are written into `work.blade`, ascending. `psi`, `gap` and `tangent` of `work` are
+    written at the place of each such blade. The gap of every other blade is set to NaN. Only tips whose bound in
+    `work.bounds` is at most `radial_margin` are evaluated: any other is farther than `margin`.
 
     - worn (bins,): coefficients of the worn depth, m.
-    - q (n,): q*; the displacements of the evaluated tips are written into it.
+    - q (n,): q*; radial and tangential displacement of the evaluated tips are copied into it.
     - displacement (2, any): radial and tangential displacement of each tip, m.
     - casing_start: index of the first casing coordinate in q.
     - opening: added to the radius of the surface, m.

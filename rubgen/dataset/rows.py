@@ -81,10 +81,13 @@ class RunRows:
         return places
 
     def each(self, run_ids: Iterable[str], columns: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
-        """Yield name and row of each run in `run_ids`, in the same order, with only the columns `columns`.
+        """Yield the name of each run in `run_ids`, in the same order, and its row: a table of one row.
 
-        A row group is read once for successive runs in it. Raises UserError, with file and run, where a run has no row
-        or no value, or a page is damaged.
+        `columns` are the names of the columns to read. They are those of the schema; any other name raises KeyError. A
+        row group is read once for successive runs in it.
+
+        Raises UserError, which names the run: before the first row, where any run has no row; at its row, where a value
+        is null, a column is missing or a page is damaged.
         """
         run_ids = list(run_ids)
         lost = [run_id for run_id in run_ids if run_id not in self.places]

@@ -12,10 +12,11 @@ from rubgen.machine import DiskSupport
 
 
 def rigid_rows(arm: FloatArray) -> FloatArray:
-    """Return rows (n, 6, 12) of the constraint T [q_O, q_i] = 0 that ties nodes at `arm` (n, 2), m, rigidly to O_d.
+    """Return rows T (n, 6, 12) of the constraint T [q_O, q_i] = 0 that ties n nodes rigidly to O_d.
 
-    u_i - u_O + Y th_Z = 0, v_i - v_O - X th_Z = 0, w_i - w_O - Y th_X + X th_Y = 0, rotations equal (Zeng et al. 2019,
-    Eq. 1).
+    `arm` (n, 2) are X and Y of the nodes from O_d, m. q_O and q_i are u, v, w, th_X, th_Y, th_Z of O_d and of node i.
+    The rows are, in this order, u_i - u_O + Y th_Z = 0, v_i - v_O - X th_Z = 0, w_i - w_O - Y th_X + X th_Y = 0 with
+    the rotations of O_d, and th_i - th_O = 0 for each rotation (Zeng et al. 2019, Eq. 1).
     """
     x, y = arm[:, 0], arm[:, 1]
     T = np.zeros((len(arm), 6, 12))
@@ -28,7 +29,8 @@ def rigid_rows(arm: FloatArray) -> FloatArray:
 def rigid_link(arm: FloatArray, node_dof: IntArray, centre_dof: IntArray, size: int) -> SparseMatrix:
     """Return the constraint rows T (6 n, size) of a rigid link between O_d and n nodes, as a sparse matrix.
 
-    The penalty stiffness is k_p T^T T, and the force of the link on node i is -k_p T_i q.
+    The rows are those of `rigid_rows`, node after node. The penalty stiffness is k_p T^T T, and the force of the link
+    on node i is -k_p T_i q.
 
     - arm (n, 2): X and Y of the nodes from O_d, m.
     - node_dof (n, 6), centre_dof (6,): numbers of the DoFs of the nodes and of O_d.
@@ -40,7 +42,7 @@ def rigid_link(arm: FloatArray, node_dof: IntArray, centre_dof: IntArray, size: 
 
 
 def link_stress_stiffness(arm: FloatArray, force: FloatArray) -> FloatArray:
-    """Return the geometric stiffness (6, 6) of O_d from the steady forces in a rigid link.
+    """Return the geometric stiffness (6, 6) of O_d from the steady forces in a rigid link; only its rotations have one.
 
     - arm (n, 2): positions r_i of the nodes from O_d, m.
     - force (n, 3): forces F_i of the link on the nodes, N.
@@ -57,7 +59,10 @@ def link_stress_stiffness(arm: FloatArray, force: FloatArray) -> FloatArray:
 
 
 def blade_rotation(angle: float) -> FloatArray:
-    """Return T_k (6, 6), which turns displacements from the axes of a blade at polar `angle` (rad) to o-xyz."""
+    """Return T_k (6, 6), which turns the DoFs of a node from the axes of a blade at polar `angle` (rad) to o-xyz.
+
+    Displacements and rotations are turned alike.
+    """
     c, s = np.cos(angle), np.sin(angle)
     R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     return np.kron(np.eye(2), R)
@@ -86,7 +91,10 @@ def _sparse_rows(rows: FloatArray, columns: IntArray, size: int) -> SparseMatrix
 
 
 def factorize(K: SparseMatrix) -> SuperLU:
-    """Factorise a symmetric positive definite stiffness as LU, ordered for symmetric matrices, without pivoting."""
+    """Factorise a symmetric positive definite stiffness as LU, ordered for symmetric matrices, without pivoting.
+
+    Raises RuntimeError for an exactly singular matrix.
+    """
     return splu(sp.csc_array(K), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 

@@ -28,8 +28,8 @@ def place_of(text: str | Path) -> Path:
     """Return the path of a directory, or of a URL as a UPath, which has the methods of a Path that reading needs.
 
     Keys, endpoints and regions come from the settings of the library for the URL's scheme: environment, files of
-    settings, configuration of fsspec. Raises UserError where the scheme is unknown, its library is not installed, or
-    the URL contains a name or a password.
+    settings, configuration of fsspec. A URL of the local file system gives a Path. Raises UserError where the scheme is
+    unknown, its library is not installed, nothing follows it, or the URL contains a name or a password.
     """
     found = _URL.match(text) if isinstance(text, str) else None
     if not isinstance(text, str) or not found:
@@ -75,8 +75,8 @@ def is_there(path: Path) -> bool:
 def answered(path: Path, work: Callable[[], R]) -> R:
     """Call `work`, a short request to the server of the URL `path`, and return its result.
 
-    Raises UserError where the server does not answer within 30 s. Without this bound the libraries try again for many
-    minutes.
+    Raises UserError where the server does not answer within PATIENCE_S, and where `work` raises any error
+    (`url_problems`). Without this bound the libraries try again for many minutes.
     """
     results: list[R] = []
     errors: list[BaseException] = []
@@ -100,7 +100,11 @@ def answered(path: Path, work: Callable[[], R]) -> R:
 
 @contextmanager
 def url_problems(path: Path) -> Iterator[None]:
-    """Turn any error of the block at a URL into a UserError of one line. Each library has errors of its own."""
+    """Turn an Exception of the block, which uses the URL `path`, into a UserError of one line that names `path`.
+
+    Each library has errors of its own, so all are turned alike. A RubgenError passes unchanged. It is not checked that
+    `path` is a URL.
+    """
     try:
         yield
     except RubgenError:

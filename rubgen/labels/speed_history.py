@@ -52,7 +52,11 @@ class SpeedHistory:
 
 
 def speed_history(response: Response) -> SpeedHistory:
-    """Find every change of rub or motion of a run whose speed changes, and the speeds of its first and last touch.
+    """Find every change of rub or motion of a run whose speed changes, and the speeds at which rub begins and ends.
+
+    The speeds are those at the start of the first touch and at the end of the last touch, None without touch. The
+    motion is classified for each window by `drifting_motion`; a window where rub begins or ends is divided there. The
+    first entry of `changes` is the state at the start of the record.
 
     Raises ValueError for a response at a steady speed.
     """
@@ -71,18 +75,21 @@ def speed_history(response: Response) -> SpeedHistory:
 def changing_motion(response: Response, rub: bool) -> Motions:
     """Return the motion of a whole record in which the speed or the machine changes: the forced whirl, or undecided.
 
-    It is undecided with rub, and where the motion without rub is not known because a support is not linear. `rub` is
-    whether any blade touched.
+    It is undecided with rub, and where the motion without rub is not known because a support is not linear. The casing
+    is at rest without rub, undecided with rub. `rub` is whether any blade touched.
     """
     blisk = UNDECIDED if rub or not response.knows_free_motion else FORCED
     return Motions(blisk=blisk, casing=UNDECIDED if rub else AT_REST, system=blisk)
 
 
 def changing_orders(windows: Windows) -> dict[str, TapOrders]:
-    """Average the orders of a record at a changing speed over its windows. Returns the orders of each tap.
+    """Average the orders of a record at a changing speed over its windows. Returns the orders by tap.
 
-    Amplitudes are root mean squares of the windows' amplitudes. Floors are root mean squares of their standard errors.
-    Phases, fractional orders and blade passing are unknown: NaN.
+    - windows: the windows of the record, at least one, from `rubgen.labels.windows`.
+
+    Amplitudes (20,) at the orders 1 to 20 are root mean squares over the windows. Floors (20,) are root mean squares of
+    the windows' standard errors. A window with NaN makes the order NaN. Phases, fractional orders and blade passing are
+    unknown: NaN.
     """
     unknown = {
         "phases": np.full(HIGHEST_ORDER, np.nan),
@@ -102,7 +109,8 @@ def _rms(values: FloatArray) -> FloatArray:
 def by_angle(response: Response) -> ContactEvents:
     """Return the touches in steps of equal angle, `steps_per_turn` a turn, instead of steps of equal time.
 
-    At a steady speed the touches are returned unchanged.
+    Starts and ends are rounded to whole steps. A touch has at least one step. At a steady speed the touches are
+    returned unchanged.
     """
     changing, events = response.changing_speed, response.events
     if changing is None:

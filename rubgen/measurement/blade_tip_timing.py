@@ -31,9 +31,11 @@ def tick(time: FloatArray, clock_hz: float) -> FloatArray:
 def blurred(sensor: TimingProbe | OncePerRev, time: FloatArray, noise: float, rng: np.random.Generator) -> FloatArray:
     """Return times (any,) in s with the jitter and the counter of a sensor.
 
+    Jitter is Gaussian, with the rms `noise` times `sensor.jitter_s`. The counter rounds down after it (`tick`).
+
     - time (any,): exact times, s.
     - noise: factor of the sensor's jitter.
-    - rng: random numbers.
+    - rng: random numbers. None is drawn without jitter.
     """
     jitter = noise * sensor.jitter_s
     shaken = time + jitter * rng.standard_normal(time.size) if jitter else time
@@ -51,12 +53,14 @@ def tip_times(
     rng: np.random.Generator,
     lost: Sequence[int] = (),
 ) -> TipTimes:
-    """Record the passages of blades at a probe within a recording, with jitter, counter and clock offset.
+    """Record the passages of blades at a probe within a recording.
 
-    Missed passages and lost blades are left out.
+    Passages are recorded whose true time from the first sample is in [0, `seconds`). Those of lost blades are left out.
+    Each other passage is missed with the probability `probe.missed`. The clock offset of the probe is added to the true
+    time, then jitter, and the counter rounds the result down (`blurred`). Passages are in order of the recorded time.
 
     - probe: the sensor.
-    - arrivals: the true passages in steps.
+    - arrivals: the true passages in steps from the start of the record.
     - dt: time step, s.
     - start: time of the first sample from the start of the record, s.
     - seconds: length of the recording, s.

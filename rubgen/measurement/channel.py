@@ -74,7 +74,8 @@ class Recording:
     def by_quantity(self) -> dict[str, list[Channel]]:
         """Group the channels by quantity and unit. Groups and channels are in the order of the recording.
 
-        The key is the quantity with "_" for blanks. A group in another unit has the unit in its key.
+        The key is the quantity with "_" for blanks. If its channels have several units, each unit has a group. The
+        first unit's group has this key. The key of any other is `<quantity>_in_<unit>`, with "_per_" for "/".
         """
         groups: dict[str, list[Channel]] = {}
         for channel in self.channels.values():
@@ -102,7 +103,8 @@ def preview(channels: Sequence[Channel], sample_rate_hz: float, rate_hz: float =
 
     - channels: at least one, all of the same length, in the order of the columns.
     - sample_rate_hz: sample rate of the channels.
-    - rate_hz: approximate number of bins a second.
+    - rate_hz: approximate number of bins a second. A bin has a whole number of samples, at least one; the last bin may
+      have fewer than the others.
     """
     samples_per_bin = max(1, round(sample_rate_hz / rate_hz))
     ends = [end for channel in channels for end in min_max(channel.values, samples_per_bin)]

@@ -74,8 +74,9 @@ def lyapunov(growth: FloatArray) -> Exponent | None:
 def is_settled(growth: Sequence[float]) -> bool:
     """Return whether the exponent of the growths so far is settled: more growths would not change its sign.
 
-    It can be settled only at 150, 200, ... growths, if it is farther from zero than SETTLED_ERRORS standard errors and
-    than SETTLED_FROM. A last growth that is NaN settles it too: there is then no exponent.
+    `growth` (n,) is the ln of the growth in each turn, as for `lyapunov`; n is at least 1. The exponent can be settled
+    only at 150, 200, ... growths, if it is farther from zero than SETTLED_ERRORS standard errors and than SETTLED_FROM
+    in 1/turn. A last growth that is NaN or infinite settles it at any number: there is then no exponent.
     """
     n = len(growth)
     if not math.isfinite(growth[-1]):
@@ -91,7 +92,9 @@ def changed_after(impulse: FloatArray, turns: int, exponent: float) -> bool:
 
     - impulse (n,): impulse of each turn, N s.
     - turns: number of turns from which the exponent was computed, 100 at least.
-    - exponent: its value.
+    - exponent: its value in 1/turn.
+
+    It has not changed where fewer than 50 turns follow.
 
     Chaos may be a transient, and a regular motion an episode. A motion with a positive exponent has changed if some 50
     later turns repeat ten times more closely than the last 100 turns before. Any other motion has changed if they

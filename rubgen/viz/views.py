@@ -46,9 +46,11 @@ def arrangement(replay: Replay, *, full: bool = False) -> rrb.Blueprint:
 
 
 def previews(sensors: Sequence[SampledSensor]) -> tuple[rrb.View, ...]:
-    """Return small views of a run for a table: the orbit of all drawn turns, and the acceleration or first quantity.
+    """Return small views of a run for a table of runs: the orbit, and previews of channels over time.
 
-    Without two proximity probes there is no orbit. The views fit recordings of the sensors `sensors`.
+    The orbit has all drawn turns. This view is left out without two proximity probes. The channels are the
+    accelerations; without one they are those of the first sensor's quantity. Of several units the first is shown
+    (`Recording.by_quantity`). `sensors` are the sensors of the recordings that are shown, at least one.
     """
     hidden = rrb.PlotLegend(visible=False)
     keys = [quantity_key(sensor.description.quantity) for sensor in sensors]

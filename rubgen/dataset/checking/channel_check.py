@@ -35,7 +35,7 @@ ORDER_TOLERANCE = 0.01
 def windows_fit(row: Row) -> bool:
     """Return whether the run's impulse per turn is the mean over the windows of its record, weighted by their turns.
 
-    `row` has the values of the run by column name.
+    `row` has the values of the run by column name. The result is False for a wrong number of windows.
     """
     turns, values = _window_turns(row), row["window_impulse_per_turn_n_s"]
     if len(values) != turns.size:
@@ -47,8 +47,8 @@ def windows_fit(row: Row) -> bool:
 def duty_fits(row: Row) -> bool:
     """Return whether the run's contact duty is the mean over the windows of its record, weighted by their turns.
 
-    `row` has the values of the run by column name. The result is True for a run with a changing speed: its turns have
-    unequal length, and nothing is compared.
+    `row` has the values of the run by column name. The result is False for a wrong number of windows. It is True for a
+    run with a changing speed: its turns have unequal length, and nothing is compared.
     """
     turns, values = _window_turns(row), row["window_contact_duty"]
     if row["change_times_s"] or len(values) != turns.size:
@@ -58,9 +58,10 @@ def duty_fits(row: Row) -> bool:
 
 
 def window_times_fit(row: Row) -> bool:
-    """Return whether the windows begin after whole turns and have the run's speed.
+    """Return whether the windows begin after whole turns, WINDOW_TURNS apart, and have the run's speed.
 
-    `row` has the values of the run by column name. The result is True for a changing speed.
+    `row` has the values of the run by column name. The result is False for a wrong number of windows. It is True for a
+    changing speed.
     """
     if row["change_times_s"]:
         return True
@@ -75,7 +76,8 @@ def window_times_fit(row: Row) -> bool:
 def exponents_fit(row: Row) -> bool:
     """Return whether the Lyapunov exponents in 1/s and in 1/turn agree.
 
-    `row` has the values of the run by column name. The result is True for a changing speed, or without exponents.
+    `row` has the values of the run by column name. The result is True for a changing speed, or without exponents. It is
+    False where only one of the two exponents is known.
     """
     by_turn, by_second = row["lyapunov_per_turn"], row["lyapunov_per_second"]
     if row["change_times_s"] or (by_turn is None and by_second is None):
@@ -91,7 +93,7 @@ def impulse_problems(row: Row, force: Float32Array, noise_rms: float, step: floa
     by `resolved_impulse`. Nothing is compared where fewer than LEAST_TURNS turns are recorded, or where the label
     contradicts the run's windows.
 
-    - row: the run's labels, by column.
+    - row: the labels by column, of a period-1 run in contact at a steady speed; this is not checked.
     - force (samples,): the channel in N.
     - noise_rms, step: noise and ADC step in N.
     """
@@ -183,12 +185,17 @@ def _window_turns(row: Row) -> FloatArray:
 
 
 def order_problems(row: Row, tap: str, values: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
-    """Compare the amplitudes of a true signal at orders 1 to 10 with the amplitudes of its channel, at a steady speed.
+    """Compare the amplitudes of a true signal at orders 1 to 10 with the amplitudes of its channel.
 
-    Yields a sentence if they differ by more than noise, ADC and tolerance allow. Nothing is compared where the channel
-    has fewer turns than the label.
+    The label covers the last SPECTRUM_TURNS turns of the record, or all turns if there are fewer. Nothing is compared
+    where the channel has fewer turns than the label. Orders above the pass band of the anti-alias filter are not
+    compared.
 
-    - row: the run's labels, by column.
+    Amplitudes may differ by the sum of three bounds: the effect of noise and ADC, ORDER_TOLERANCE of the largest
+    amplitude of the label, and the effect of the last samples of the record, which the channel does not have. Yields
+    one sentence, about the order with the largest excess, if an amplitude differs by more.
+
+    - row: the labels by column, of a run at a steady speed; this is not checked.
     - tap: name of the true signal.
     - values (samples,): the channel.
     - noise_rms, step: noise and ADC step, in the channel's unit.

@@ -108,10 +108,11 @@ def generate_as(
     finish: bool = False,
     progress: Report | bool | None = None,
 ) -> Generated:
-    """Make a data set as `generate` does, without choosing candidates of virtual machines and of balances again.
+    """Make a data set as `generate` does, with candidates of virtual machines and of balances that are given.
 
-    `decided` is a `runs.parquet` whose rows have the candidates that the runs take. None chooses them as `generate`
-    does.
+    `decided` is a `runs.parquet` with a row for each run, at the number of the run. The run takes the candidates of its
+    row, and they are not checked again. None chooses them as `generate` does. With `shard`, `decided` is not used.
+    Other arguments, result and errors are those of `generate`.
     """
     recipe = _recipe(recipe, runs)
     remote = RemoteMaking(str(out), shard or "") if is_url(out) else None

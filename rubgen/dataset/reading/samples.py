@@ -136,8 +136,9 @@ def windows(index: WindowIndex, out: Path | str | None) -> Windows:
 def chosen_runs(data: DataSet, split: str | None, runs: Sequence[str] | None) -> list[str]:
     """Return the names of the good runs (status ok) of `split`, or of the list `runs`, each once.
 
-    If both are None, return all good runs of the set. Raises UserError where both are given, a split or run is unknown,
-    the list is empty, a run of it failed, or the split or the set has no good run.
+    If both are None, return all good runs of the set. The order is that of the set, or of the list. Raises UserError
+    where both are given, a split or run is unknown, `runs` is a text, the list is empty, a run of it failed, or the
+    split or the set has no good run.
     """
     good = data.ok
     if split is not None and runs is not None:
@@ -162,9 +163,9 @@ def chosen_runs(data: DataSet, split: str | None, runs: Sequence[str] | None) ->
 
 
 def chosen_channels(data: DataSet, channels: Sequence[str] | None) -> tuple[str, ...]:
-    """Return the names of the channels; for None all `data.inputs`.
+    """Return the names of the channels, each once, in the order of `channels`; for None all `data.inputs`.
 
-    Raises UserError for an unknown or an empty choice.
+    Raises UserError for an unknown name, and where no channel is chosen.
     """
     names = data.known_channels(data.inputs if channels is None else channels)
     if not names:

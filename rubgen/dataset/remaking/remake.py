@@ -28,13 +28,20 @@ from rubgen.scenario.run_id import run_id_of
 
 
 def other_versions(manifest: Manifest) -> dict[str, tuple[str, str]]:
-    """Return the packages whose installed version is not the set's: by name, the set's and the installed version."""
+    """Return the packages whose installed version is not the set's: by name, the set's and the installed version.
+
+    A package for which the manifest has no version has "none" as the set's.
+    """
     before, now = manifest.identity.packages, identity_of(manifest.identity.recorded()).packages
     return {name: (before.get(name, "none"), now.get(name, "none")) for name in now if before.get(name) != now[name]}
 
 
 def shards_with(recipe: Recipe, paths: Iterable[str]) -> set[str]:
-    """Return the names of the shards to which the files at `paths` belong. `runs.parquet` belongs to no shard."""
+    """Return the names of the shards to which the files at `paths`, relative to the set, belong.
+
+    A file belongs to a shard if it has the name of the shard, or of one of its runs. Files outside of folders, such as
+    `runs.parquet`, belong to no shard.
+    """
     stems = {Path(path).stem for path in paths if "/" in path}
     return {
         shard.name
@@ -44,12 +51,16 @@ def shards_with(recipe: Recipe, paths: Iterable[str]) -> set[str]:
 
 
 def remake(layout: Layout, manifest: Manifest, wrong: set[str], *, trusting: bool = True) -> list[str]:
-    """Simulate the runs of the damaged files `wrong` again, and replace these files.
+    """Simulate the runs of damaged or missing files again, and replace these files. Return their paths, sorted.
 
-    Return the paths of the replaced files. The runs are those of the files' shards. For `runs.parquet` they are those
-    of the shards whose rows cannot be read. If this does not restore the listed bytes of `runs.parquet`, or without
-    `trusting`, all runs are simulated. A file is replaced only by the bytes that the manifest lists. The installed
-    package versions must be those of the set.
+    - wrong: paths of the files, relative to the set. Paths that the manifest does not list are ignored.
+    - trusting: whether the rows of a damaged `runs.parquet` are used that can be read.
+
+    The runs are those of the files' shards (`shards_with`). For `runs.parquet` they are those of the shards whose rows
+    cannot be read; without `trusting`, all runs. If this does not restore the listed bytes of `runs.parquet`, all runs
+    are simulated. A file is replaced only by the bytes that the manifest lists. Where they are not restored, the file
+    is left as it is, and is not in the result. The installed package versions must be those of the set
+    (`other_versions`); this is not checked.
     """
     recipe = manifest.identity.recorded(str(layout.manifest))
     listed = {entry.path: entry.sha256 for entry in manifest.files}

@@ -97,12 +97,15 @@ def motion(response: Response, exponent: Exponent | None = None) -> Motions:
 
 
 def indicators(parts: list[FloatArray], exponent: Exponent | None, *, resolved: bool = True) -> tuple[Indicators, ...]:
-    """Compute the indicators of each part: period of its clusters, K of the 0-1 test, exponent, settling.
+    """Compute the indicators of the blisk and, if it moves, of the casing, in the order of `parts`.
 
-    - parts: points (turns, groups, any) of the section of the blisk and, if it moves, of the casing, as from
-      `blisk_points`.
-    - exponent: Lyapunov exponent of the system, or None.
-    - resolved: whether the time step resolves the touches.
+    - parts: points (turns, groups, values) of the section, from `blisk_points` and `casing_points`; at least one part
+      and LEAST_TURNS turns.
+    - exponent: Lyapunov exponent of the system, or None. Every part gets it.
+    - resolved: whether the time step resolves the touches. Every part gets it.
+
+    Period (`cluster_period`) and rms distance from the clusters (`stray`) are those of each part. All parts have one K
+    of the 0-1 test, the largest of any part (`chaos_indicator`). All parts settle if any part settles (`settles`).
     """
     periods = [cluster_period(part) for part in parts]
     strays = [stray(part, period) for part, period in zip(parts, periods, strict=True)]

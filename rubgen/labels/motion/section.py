@@ -66,11 +66,14 @@ def casing_rests(response: Response) -> bool:
 
 
 def asymmetry(response: Response) -> float | None:
-    """Return how far the motion is from the symmetry of the N lobes: 0 for symmetric motion. None without lobes.
+    """Return how far the motion is from the symmetry of the N lobes: 0 for symmetric motion.
 
-    It is the largest distance between the states after each Nth of the last turn, divided by the size of the motion.
-    For the blisk it is the largest distance of disk centre and tips, as in the clusters. The casing is turned back by
-    the angle by which the blisk has turned.
+    The states after 1/N, 2/N, ... of the last turn (`Response.symmetry_states`) are compared with the state at its end.
+    In each state the casing is turned back by the angle by which the blisk has turned. The result is the largest
+    distance of disk centre, any tip, and casing. The casing is left out if it rests. States are scaled as in
+    `blisk_points` and `casing_points`, so that distances are shares of the size of the motion.
+
+    None with fewer than two states: at a changing speed, and if N is 1 (`lobes_of`).
     """
     q, v = response.symmetry_states[:, 0], response.symmetry_states[:, 1]
     if len(q) < 2:
@@ -82,6 +85,6 @@ def asymmetry(response: Response) -> float | None:
 
 
 def is_symmetric(response: Response) -> bool | None:
-    """Return whether the motion has the symmetry of the lobes: `asymmetry` is at most 3 %. None without lobes."""
+    """Return whether the motion has the symmetry of the lobes: `asymmetry` is at most 3 %. None where that is None."""
     found = asymmetry(response)
     return None if found is None else found <= EXCURSION

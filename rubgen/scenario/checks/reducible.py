@@ -12,7 +12,7 @@ from rubgen.scenario.scenario import Reduction
 
 
 def reduction_problem(machine: Machine, reduction: Reduction) -> str | None:
-    """Return why the machine cannot be reduced, with the key, its value and the remedy; None where it can."""
+    """Return the first reason why the machine cannot be reduced, with key, value and remedy; None where it can be."""
     return (
         pitch_problem(machine.disk, machine.blades)
         or node_problem(machine.casing)
@@ -23,9 +23,10 @@ def reduction_problem(machine: Machine, reduction: Reduction) -> str | None:
 
 
 def casing_problem(machine: Machine, modes: int) -> str | None:
-    """Return why the casing cannot have `modes` modes; None where it can.
+    """Return why the casing cannot have `modes` modes, with key, value and remedy; None where it can.
 
-    They may not be more than the casing's degrees of freedom, and must carry the circumferential order of its lobes.
+    There must be at least one mode, and no more than the casing's degrees of freedom, three a node. The modes must
+    carry the circumferential order of its lobes in full (`carried_orders`).
     """
     lobes, most = machine.casing.lobes, 3 * machine.casing.nodes
     if not 1 <= modes <= most:

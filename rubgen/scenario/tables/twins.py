@@ -77,7 +77,7 @@ Twins = create_model(
 def partner_of(index: int, share: float, seed: int, first: int, count: int) -> int | None:
     """Return the number of the partner of run number `index` if the run is a twin; None for any other run.
 
-    - share: share of the runs without twins among them that have a twin, 0 to 1.
+    - share: number of twins over the number of all other runs, 0 to 1.
     - first, count: number of the first run of the run's machine, and the number of the machine's runs.
 
     The machine's runs are divided into slots of two neighbours. A slot is a pair with probability p = 2 share / (1 +
@@ -97,6 +97,7 @@ def partner_of(index: int, share: float, seed: int, first: int, count: int) -> i
 def twin(partner: Scenario, twins: BaseModel, source: str = "") -> Scenario:
     """Return the twin of a run: the scenario `partner` with the one value of the table `[twins]` changed.
 
+    A fault replaces a fault of the same kind, or is added. A clearance or a free penetration replaces either of them.
     Raises UserError, beginning with `source`, where the value is not allowed.
     """
     key = twins.changed  # type: ignore[attr-defined]
@@ -142,15 +143,18 @@ def paired(twins: BaseModel, partner: int | None, index: int, draw: Callable[[in
 
 
 def check_twins(twins: BaseModel, around: BaseModel | None, corners: Sequence[Scenario], source: str) -> None:
-    """Check that at least one twin differs from its partner.
+    """Check that a run of the recipe can differ from its twin.
 
     - twins: the table `[twins]`.
     - around: the recipe's table `[surroundings]`, or None.
-    - corners: scenarios at the extreme values of the recipe, each followed by its twin.
+    - corners: scenarios at the extreme values of the recipe, each followed by its twin; at least one pair.
     - source: beginning of messages.
 
-    Raises UserError of one line where no twin differs, or where the twin changes the surroundings and the recipe has
-    none.
+    The pairs of `corners` are compared. If the twin changes a key of `[surroundings]`, the first scenario of `corners`
+    is compared with its twin instead, in the least and in the largest surroundings of the table.
+
+    Raises UserError of one line where every scenario equals its twin, and where the twin changes a key of
+    `[surroundings]` and the recipe has no such table.
     """
     key = twins.changed  # type: ignore[attr-defined]
     if key in AROUND and around is None:

@@ -96,7 +96,9 @@ class Taps(NamedTuple):
 def tip_radius_on_ray(tips: Tips, rays: Rays, displacement: FloatArray, step: int, ray: int) -> float:
     """Return the radius of the tips on a ray, m: linear in angle between the two blades around it.
 
-    `displacement` (2, any) is the radial and tangential displacement of the tips at step number `step` of the turn, m.
+    The radius of a tip is sqrt((R + a)^2 + t^2) with the radius R at rest. a and t are its radial and tangential
+    displacement, steady and `displacement` (2, any) together, m. The angles are those of the undeformed blisk at step
+    `step` of the turn. `ray` is the number of the ray in `rays`.
     """
     radius = 0.0
     for side in range(2):
@@ -117,6 +119,7 @@ def casing_radius_on_ray(rays: Rays, sums: FloatArray, opening: float, ray: int)
 
     - sums: values of the linear functionals, with u_r, u_t and u_r' of the ray.
     - opening: added to the radius of the surface, m.
+    - ray: number of the ray in `rays`.
     """
     first = rays.sum[ray]
     radial, tangential, slope = sums[first], sums[first + 1], sums[first + 2]
@@ -127,7 +130,10 @@ def casing_radius_on_ray(rays: Rays, sums: FloatArray, opening: float, ray: int)
 
 @inlined_kernel
 def read_shaft(model: Model, taps: Taps, coordinates: Coordinates, support: SupportState, step: int) -> None:
-    """Write displacement, velocity and support force of O_d, in the inertial frame, into `taps.signals`."""
+    """Write displacement, velocity and support force of O_d, in the inertial frame, into `taps.signals`.
+
+    They are those of step n, number `step` of the turn, which is `coordinates.now`. Velocity is a central difference.
+    """
     speed, dt = model.laws.speed, model.laws.dt
     cosine, sine = model.angles.cosine[step], model.angles.sine[step]
     x, y = coordinates.now[taps.centre], coordinates.now[taps.centre + 1]

@@ -207,7 +207,9 @@ def run_turn(
 ) -> tuple[int, int, int]:
     """Integrate one turn or part of a turn. Return a code, the step where it ended, and the number of ended touches.
 
-    Taps of step n contain the contact force lam_n of the same time.
+    The code is OK, or the code of `step_kernels` for the failure of a step. The turn ends at a step that fails: outputs
+    of later steps are not written, and present touches are not ended. Taps of step n contain the contact force lam_n of
+    the same time.
 
     - model: constants; its `angles` have the steps.
     - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., steps, m.
@@ -311,11 +313,14 @@ def run_turns(
 ) -> tuple[int, int, int]:
     """Integrate turns, or parts of turns, one after another: one call is faster than a call for each turn.
 
-    Return a code, the number of whole turns, and the step where the last turn ended.
+    Return a code, the number of turns without a failed step, and the step where the last turn ended. The code is OK, or
+    that of a turn which failed (`run_turn`). No turn follows it; its row of `ends` is written too.
 
     - opening (turns, steps + 2): as in `run_turn`, a row for each turn. `touches.ended`, `results`, `ends` and the
       arrays of `snapshots` except `steps` also have a row for each turn.
-    - model, clock, recording, state, taps: as in `run_turn`. Arrivals are those of the last turn.
+    - state: its arrays are changed. `moved_on` for the number of all steps gives the state at the end.
+    - model, recording, taps: as in `run_turn`. Arrivals are those of the last turn.
+    - clock: number of the first step of the first turn in the run.
     """
     code, step, steps = OK, 0, model.angles.cosine.shape[0] - 2
     for t in range(opening.shape[0]):

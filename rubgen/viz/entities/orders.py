@@ -30,7 +30,14 @@ def spectrum_channels(replay: Replay) -> dict[str, Channel]:
 
 
 def send_orders(stream: rr.RecordingStream, replay: Replay) -> None:
-    """Send `/spectrum/<channel>` for each block of turns, and `/waterfall/<channel>` of all blocks in dB."""
+    """Send the spectra (`order_map`) of each channel of `spectrum_channels` to the recording `stream`.
+
+    - `/spectrum/<channel>`: a row of bars for each block of turns, at the time when the block begins. The bars are peak
+      amplitudes in the channel's unit.
+    - `/waterfall/<channel>`: all blocks (blocks, orders) in dB of the channel's largest amplitude, cut at FLOOR.
+
+    A channel without blocks, or with amplitudes of zero alone, is left out.
+    """
     for name, channel in spectrum_channels(replay).items():
         found = order_map(channel.values, replay.recording.sample_rate_hz, replay.pulse_times, most_blocks=MOST_BLOCKS)
         if not found.amplitude.size or not found.amplitude.any():
@@ -65,8 +72,8 @@ def send_bars(
 
     - stream, entity: recording, and path of the bars in it.
     - index: times of the rows.
-    - values (rows, n): heights at each time.
-    - left (n,): left edges, at equal steps.
+    - values (rows, n): heights at each time; at least one row.
+    - left (n,): left edges, at equal steps; a single bar has the width 1.
     - color: colour of all bars.
     """
     width = np.full(left.size, left[1] - left[0] if left.size > 1 else 1.0)
