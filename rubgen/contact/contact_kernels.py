@@ -170,6 +170,8 @@ def contact_slip(
 ) -> tuple[float, float]:
     """Return the velocity of the tip of contact m relative to the casing, along tangent and axis, in m/s.
 
+    `work.rows` and `work.tangent` must be those of this contact.
+
     - velocity (n,): q' or a step d of q, in the coordinates' own frames. With d the result is a path in m.
     - q (n,): coordinates, m.
     - speed: Omega, or Omega dt where `velocity` is d.

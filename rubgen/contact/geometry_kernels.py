@@ -26,7 +26,7 @@ class Surface(NamedTuple):
     order: FloatArray
     """Their orders."""
     phase: FloatArray
-    """Their phases."""
+    """Their phases, as in `CasingSurface`."""
     table: FloatArray
     """X, Y and their derivatives by the polar angle for each node and mode (nodes, n_casing, 4)."""
     node_step: float

@@ -119,7 +119,7 @@ def lemke(W: FloatArray, b: FloatArray, m: int, lam_out: FloatArray, tableau: Fl
 
     Cottle, Pang, Stone, The Linear Complementarity Problem, 4.4. W (m, m) and b (m,) are as in
     `projected_gauss_seidel`; `tableau` (m, 2 m + 2) and `basis` (m,) are scratch. Returns SOLVED, or UNSOLVED when the
-    pivoting ends on a ray.
+    pivoting ends on a ray, after 50 (m + 1) pivots, and where W is zero.
     """
     size = 0.0
     for i in range(m):

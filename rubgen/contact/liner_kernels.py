@@ -19,7 +19,7 @@ class Liner(NamedTuple):
     rate: float
     """Volume worn for each unit of force times sliding, m2/N."""
     area: float
-    """Volume of a coefficient of one metre, m2."""
+    """Worn volume for each metre of a coefficient, m2."""
 
 
 class Wear(NamedTuple):

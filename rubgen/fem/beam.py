@@ -59,7 +59,7 @@ def blade_matrices(blades: BladeRow, root_radius: float) -> BeamMatrices:
     M = int rho N^T N, G = int rho N^T (e_z x N), S = int rho N^T (1 - e_z e_z^T) N, f_c = int rho N^T r_perp over the
     volume, so with rotary inertia. f_c contains the propeller moment -rho I_yz about x. K_sigma, at 1 rad/s, is twice
     the energy per length of P (u_y'^2 + u_z'^2) / 2 + P I_p / A th_x'^2 / 2 + E2, P(x) = int_x^L rho A r dr, where E2 =
-    rho [I_y2 (th_x^2 + th_z^2) - I_yz th_y th_z] / 2 is the work of the centrifugal load on the second-order
+    rho [I_y2 (th_x^2 + th_z^2) - I_yz th_y th_z] / 2 is minus the work of the centrifugal load on the second-order
     displacement th x (th x s) / 2 of the cross-section.
 
     Left out: warping, the coupling of extension with twist, the geometric stiffness of the steady twisting moment.
@@ -190,9 +190,9 @@ def static_root_strain(
 ) -> tuple[FloatArray, FloatArray]:
     """Return a blade's root strain per displacement of its tip (3,) and of its root (6,), without inertia.
 
-    The strain is that of `root_strain_row`. Between tip and root the blade has the shape of least energy under K +
-    Omega^2 (K_sigma - S). At rest this is the cubic of a tip load; at speed it is flatter, with more curvature near the
-    root.
+    The strain is that of `root_strain_row`. The displacements lie along the blade's axes: u of the tip in m, u in m and
+    th in rad of the root. Between tip and root the blade has the shape of least energy under K + Omega^2 (K_sigma - S).
+    At rest this is the cubic of a tip load; at speed it is flatter, with more curvature near the root.
 
     - blades: the blade row.
     - root_radius: radius of the root, m.

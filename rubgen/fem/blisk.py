@@ -85,8 +85,8 @@ def assemble_blisk(disk: Disk, blades: BladeRow, support: DiskSupport, missing: 
     deviation) K: E scales every term of K, the shape functions depend only on ratios of stiffness, and its pull on the
     rim follows from its mass.
 
-    Raises UserError where blades do not meet corner nodes of the rim, for a single blade, whose pull is not a symmetric
-    load, and for a bore outside the rim.
+    Raises UserError where blades do not meet corner nodes of the rim, and for a single blade, whose pull is not a
+    symmetric load.
     """
     problem = pitch_problem(disk, blades)
     if problem:

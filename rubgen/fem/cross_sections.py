@@ -50,7 +50,7 @@ def rectangle_torsion_constant(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def cross_sections(blades: BladeRow, root_radius: float, x: FloatArray) -> CrossSections:
-    """Compute the properties of a blade's cross-sections at distances `x` (any,) in m from its root.
+    """Compute the properties of a blade's cross-sections at distances `x` (of any shape) in m from its root.
 
     Chord, thickness and angle are linear in x. The chord points along cos(angle) e_y + sin(angle) e_z, the thickness
     normal along -sin(angle) e_y + cos(angle) e_z: at angle 0 the blade lies flat in the plane of the disk.
@@ -128,7 +128,7 @@ def cross_section_pull(s: CrossSections) -> FloatArray:
 def cross_section_second_order(s: CrossSections) -> FloatArray:
     """Return the quadratic form I_y2 (th_x^2 + th_z^2) - I_yz th_y th_z, the part of rotations in K_sigma.
 
-    It is twice the work of the centrifugal load -(0, y, 0) on the second-order displacement th x (th x s) / 2.
+    It is minus twice the work of the centrifugal load (r, y, 0) on the second-order displacement th x (th x s) / 2.
     """
     m = np.zeros((*s.area.shape, 6, 6))
     m[..., 3, 3] = m[..., 5, 5] = s.yy

@@ -16,7 +16,8 @@ class DiskModel:
 
     M is mass, K elastic stiffness, G Coriolis (skew), S spin softening, f_c (6 n,) centrifugal load at 1 rad/s. The
     equations are M q'' + 2 Omega G q' + (K - Omega^2 S) q = Omega^2 f_c + loads, and the centrifugal stress is added.
-    `bore` (2 c,) are the nodes at the bore, `rim` (c,) the corner nodes at the rim, counter-clockwise from +x.
+    `bore` (2 c,) are the nodes at the bore, `rim` (c,) the corner nodes at the rim, counter-clockwise from +x. c is the
+    number of elements around.
     """
 
     mesh: ShellMesh

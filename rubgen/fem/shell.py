@@ -67,7 +67,7 @@ def shell_inertia(mesh: ShellMesh, material: Material) -> ShellInertia:
 
 
 def shell_stress_stiffness(mesh: ShellMesh, material: Material, displacement: FloatArray) -> SparseMatrix:
-    """Assemble the geometric stiffness (6 n, 6 n) from the membrane stress that `displacement` (6 n,) in m causes.
+    """Assemble the geometric stiffness (6 n, 6 n) from the membrane stress of `displacement` (6 n,), m and rad.
 
     Energy h grad(d)^T sigma grad(d) / 2 for d = u, v, w, and the same for th_x, th_y with h^3/12, per area. sigma is
     taken at the 3 x 3 points of the membrane stiffness, so that it balances the loads of these points exactly.

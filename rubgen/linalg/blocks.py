@@ -19,11 +19,11 @@ from rubgen.linalg.lanes_kernels import COUNT, FIRST, KIND, MOST_ROWS, line_kind
 from rubgen.linalg.vector_kernels import LANES
 
 COUPLING_TOLERANCE = 1e-9
-"""An entry couples when it exceeds this share of the geometric mean of its row's and its column's largest entry.
-Rounding of the reduction is 1e-12 to 1e-10 between nodal diameters; a mistuned blade couples far above."""
+"""An entry couples when it exceeds this share of `scale_of`. Rounding of the reduction is 1e-12 to 1e-10 between nodal
+diameters; a mistuned blade couples far above."""
 
 ROUNDING = 1e-14
-"""Entries below this share of that mean are rounding in a matrix of differences, such as K - K^T."""
+"""Entries up to this share of `scale_of` are rounding in a matrix of differences, such as K - K^T."""
 
 
 def aligned(array: FloatArray) -> FloatArray:
@@ -68,7 +68,7 @@ def coupled(matrix: FloatArray) -> BoolArray:
 def scale_of(matrix: FloatArray) -> FloatArray:
     """Return the scale (n, n) relative to which an entry of a matrix is small.
 
-    It is the geometric mean of the largest entries of the entry's row and column.
+    For entry (i, j) it is sqrt(m_i m_j), with m_i the largest size of an entry in row i or column i.
     """
     size = np.abs(matrix)
     scale = np.sqrt(np.maximum(size.max(axis=0), size.max(axis=1)))
@@ -114,7 +114,8 @@ class Blocks:
         """Divide a skew-symmetric matrix (n, n) into pairs of vectors a, b in z: it is the sum of a b^T - b a^T.
 
         Returns the vectors (pairs, 2, any), or None where `most` pairs leave more than rounding (ROUNDING) relative to
-        the matrix `like` (n, n). Each pair clears the rows and columns of one entry, the largest of what is left.
+        the matrix `like` (n, n). Each pair clears the rows and columns of one entry, the largest of what is left
+        relative to `scale_of`.
         """
         left = self.transform.T @ matrix @ self.transform
         left = (left - left.T) / 2
@@ -133,8 +134,8 @@ class Blocks:
         """Store a damping matrix C (n, n) as a triangle, so that a kernel computes d^T C d as 2 d^T (triangle d).
 
         The triangle is the lower triangle of the symmetric part with half its diagonal. Within a block, Coriolis forces
-        couple more coordinates than dampers. Entries that the symmetric part does not couple are left out, unless
-        `whole` is set.
+        couple more coordinates than dampers. In blocks side by side, entries between coordinates that the symmetric
+        part does not connect are left out, unless `whole` is set.
         """
         Y = self.transform.T @ matrix @ self.transform
         Y = (Y + Y.T) / 2

@@ -19,7 +19,8 @@ from rubgen.linalg.vector_kernels import LANES, Emitter, compile_as
 MOST_ROWS = 6
 """Rows of results that one line may give: they share each load of x."""
 CHAINS = 4
-"""Least number of independent partial sums: a fused product takes about four cycles, and two may start in each."""
+"""Independent partial sums that keep a processor busy: a fused product takes about four cycles, and two may start in
+each. One or two rows have so many sums in all. Three or more rows have one sum each."""
 TOGETHER = 4
 """How many vectors `dot_lines_each` takes: with `MOST_ROWS` their sums fill most of 32 vector registers."""
 KIND, ROW, FIRST, START, COUNT = range(5)

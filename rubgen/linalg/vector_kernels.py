@@ -128,7 +128,7 @@ def blended_product(a: FloatArray, first: int, second: int, share: float, x: Flo
 def not_above(x: FloatArray, row: int, limit: float) -> int:
     """Return which of the eight numbers in row `row` of x are not above the limit, as bits: bit i for number i.
 
-    x is (a multiple of eight,).
+    x is (a multiple of eight,). A NaN is not above the limit.
     """
     return int(sum(1 << i for i, value in enumerate(x[LANES * row : LANES * (row + 1)]) if not value > limit))
 
@@ -139,7 +139,10 @@ def lowest_bit(bits: int) -> int:
 
 
 def square_of_farthest(a: FloatArray, b: FloatArray) -> float:
-    """Return the largest squared distance between the same columns of a and b, both (2, a multiple of eight)."""
+    """Return the largest squared distance between the same columns of a and b, both (2, a multiple of eight).
+
+    With a NaN in a column plain Python returns NaN, and compiled code leaves the column out.
+    """
     return float(np.square(a[:2] - b[:2]).sum(axis=0).max(initial=0.0))
 
 

@@ -95,6 +95,8 @@ def reduce_blisk(
     - missing: numbers of the blades that are missing.
     - cyclic: use one sector of the disk for all sectors. False uses the sparse matrices of the whole disk, in twice the
       time and with the same result to 1e-9. A disk with missing blades is never cyclic.
+
+    Raises UserError as `assemble_blisk` and `craig_bampton` do.
     """
     model = assemble_blisk(disk, blades, support, missing)
     joined = _join_components(model, reduction, _turning(disk, blades) if cyclic and not missing else None)

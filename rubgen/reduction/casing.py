@@ -37,12 +37,13 @@ class ReducedCasing:
 def reduce_casing(machine: Machine, modes: int) -> ReducedCasing:
     """Compute the first `modes` modes of the casing, mass-normalised, and its undeformed inner surface.
 
-    Solves K phi = omega^2 M phi. Signs are fixed: radial plus tangential displacement is positive at the node nearest
-    to the lobe axis, where a symmetric mode is radial and an antisymmetric mode tangential. Of two modes of the same
-    frequency the second has no radial displacement there.
+    The harmonics of the surface that faults of the machine cause are added. Solves K phi = omega^2 M phi. Signs are
+    fixed: radial plus tangential displacement is positive at the node nearest to the lobe axis, where a symmetric mode
+    is radial and an antisymmetric mode tangential. Of two modes of the same frequency the second has no radial
+    displacement there.
 
-    Raises UserError for more modes than DoFs, for modes that do not include the order of the casing's lobes in full
-    (`carried_orders`), and for a mesh that `assemble_casing` refuses.
+    Raises UserError for less than one mode, for more modes than DoFs, for modes that do not include the order of the
+    casing's lobes in full (`carried_orders`), and for a mesh that `assemble_casing` refuses.
     """
     problem = casing_problem(machine, modes)
     if problem:

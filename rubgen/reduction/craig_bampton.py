@@ -44,8 +44,8 @@ class Turning:
     def project(self, X: SparseMatrix, V: FloatArray, *, skew: bool = False) -> FloatArray:
         """Return V^T X V of a symmetric or `skew` X (n, n), with V (n, 6 + 6 blades + modes) from `copy_columns`.
 
-        Only the columns of O_d, node 0 and the modes are multiplied; the products of all other columns follow by
-        symmetry.
+        X must be a matrix of the disk, which the turns do not change. Only the columns of O_d, node 0 and the modes are
+        multiplied; the products of all other columns follow by symmetry.
         """
         blades, size = len(self.place), V.shape[1]
         modes = slice(6 + 6 * blades, size)
@@ -92,7 +92,8 @@ def craig_bampton(
     - turning: rotations of the disk; the first twelve masters are solved for, and their shapes rotated. None solves for
       all.
 
-    Raises UserError where there are fewer modes with mass than `modes`. Tests: tests/reduction/test_craig_bampton.py.
+    Raises UserError where there are fewer modes with mass than `modes`. With more than DENSE_LIMIT DoFs that are not
+    kept, this is not checked. Tests: tests/reduction/test_craig_bampton.py.
     """
     slaves = np.setdiff1d(np.arange(K.shape[0]), masters)
     K_ss, M_ss = K[slaves][:, slaves], M[slaves][:, slaves]

@@ -22,7 +22,8 @@ class CasingSurface:
     order: FloatArray
     """Order of each harmonic (harmonics,)."""
     phase: FloatArray
-    """Polar angle of a maximum of each harmonic (harmonics,), rad."""
+    """Polar angle phase_j of each harmonic (harmonics,), rad. There it is largest, or least where the amplitude is
+    negative, as for the casing's lobes."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,7 +85,10 @@ class TurningForces:
 
     @property
     def is_periodic(self) -> bool:
-        """Whether a force depends only on the angle theta, so that O_d moves in the turning frame without rub."""
+        """Whether a force depends only on the angle theta, so that O_d moves in the turning frame without rub.
+
+        Loads that grow do not count.
+        """
         return self.weight is not None or self.loads is not None
 
     @property
@@ -118,7 +122,8 @@ class SpinningSystem:
     K: FloatArray
     """Stiffness matrix (n, n) with centrifugal, support and circulatory terms."""
     force: FloatArray
-    """Constant force (n,), N: unbalances, uneven growth on O_d, the Euler force of a changing speed."""
+    """Constant force (n,), N: unbalances, uneven growth on O_d, lost masses and blades, loads of faults that are
+    constant in the turning frame, the Euler force of a changing speed."""
     n_blades: int
     """Number of blades."""
     n_casing: int
@@ -130,7 +135,8 @@ class SpinningSystem:
     tip_static: FloatArray
     """Steady centrifugal displacement of the tips in the full model (n_blades, 3), m, along the blade's own axes.
 
-    It is no part of q. Positions of the tips add it to q."""
+    It is no part of q. Positions of the tips add it to q. The tip of a lost blade is put 5 % of its radius inside, so
+    that it never touches."""
     surface: CasingSurface
     """Undeformed inner surface of the casing."""
     casing_modes: FloatArray

@@ -37,7 +37,7 @@ class ReducedModel:
     """A machine reduced to n DoFs: the blisk in its turning frame, then the casing's modes.
 
     `springs` (N/m, N m/rad) and `dampers` (N s/m, N m s/rad), both (6,), act on O_d in the inertial frame. `beta` (s)
-    is the factor of the blisk's elastic damping beta K_e.
+    is the factor of the blisk's elastic damping beta K_e. `machine` is the machine as its faults have altered it.
     """
 
     machine: Machine
@@ -70,9 +70,10 @@ class ReducedModel:
         H_s = T^T D S6 T. T (6, n) gives the motion of O_d. The dampers D = diag(c) are in the inertial frame and act on
         the absolute velocity (S6 is e_z x). The term Omega H_s makes K unsymmetric. Casing modes: 1, 2 zeta omega,
         omega^2. Each unbalance acts with Omega^2 U outward, on O_d or on a tip. The unbalance of uneven growth
-        (mistuned blades) acts on O_d. Uneven supports, laws of the support, gravity and loads of faults are in
-        `turning`. A changing speed adds Omega' G to K and -Omega' (f_t + e_z x U) to the forces (Euler term).
-        Acceleration and change of the tips' steady growth are left out, a share of at most Omega' / Omega^2 of it.
+        (mistuned blades) acts on O_d. Uneven supports, laws of the support, gravity and loads of faults that turn or
+        grow are in `turning`. A changing speed adds Omega' G to K and -Omega' (f_t + e_z x U) to the forces (Euler
+        term). Acceleration and change of the tips' steady growth are left out, a share of at most Omega' / Omega^2 of
+        it.
         """
         with one_blas_thread():
             return self._assemble(speed, acceleration)
