@@ -26,7 +26,8 @@ def candidate_problem(scenario: Scenario, bounds: MachineTable, slowest: float, 
     - slowest, fastest: the speeds of the recipe, rad/s.
 
     Checked in this order: reduction, critical speed, stability at three speeds, and at nine speeds the clearance at
-    which the blades just reach the casing. This onset clearance is the machine's clearance plus the free penetration.
+    which the blades just reach the casing. This onset clearance is the machine's clearance plus the largest free
+    penetration. A quantity without bounds is not checked.
     """
     try:
         with one_blas_thread():

@@ -24,8 +24,8 @@ class Exponent:
     error: float
     """Its standard error in the same unit."""
     convergence: FloatArray
-    """Its value (10,) from the first tenth of the growths, from the first two tenths, and so on. The last is the
-    exponent."""
+    """Its value (10,) from the first tenth of the growths that count, from the first two tenths, and so on. The last is
+    the exponent."""
     turns: int
     """Number of growths."""
 
@@ -46,7 +46,7 @@ SETTLED_ERRORS, SETTLED_FROM = 6.0, 0.01
 CHANGE, CHANGE_TURNS, MOST_LAG = 10.0, 100, 16
 """See `changed_after`; the lags are the periods that a motion may have, in turns."""
 LEAST = 1e-3
-"""Exponents within this of zero, in 1/turn, count as zero: over 500 turns they grow by less than half."""
+"""Exponents within this of zero, in 1/turn, count as zero: over 500 turns a distance then grows at most 1.65 times."""
 
 
 def lyapunov(growth: FloatArray) -> Exponent | None:
@@ -56,8 +56,8 @@ def lyapunov(growth: FloatArray) -> Exponent | None:
 
     - growth (n,): ln of the growth of a companion's distance from one renormalisation to the next.
 
-    Returns None for fewer than 20 growths after the first tenth, and where a growth is NaN: the companion then could
-    not follow the run.
+    Returns None for fewer than 20 growths after the first tenth, and where any growth is NaN or infinite: the companion
+    then could not follow the run.
     """
     counted = growth[int(ALIGNING * growth.size) :]
     if counted.size < 2 * BLOCKS or not np.isfinite(growth).all():

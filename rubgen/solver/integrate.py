@@ -63,10 +63,11 @@ def integrate(
     section lies between steps (`turn_kernels.record_section`). There are then no companion and no symmetry states.
 
     A run that fails has the status and the reason; its other fields are not valid. A system that is unstable without
-    contact is not integrated: its status is unstable. Raises UserError for a system that `check_system` refuses, for a
-    record too short for a wanted exponent, for a profile without a key that it needs, and for a turn of more than
-    4,194,304 steps. Raises ValueError where M, C or K couple blisk and casing, and TypeError for a `SpinningSystem` at
-    a changing speed. Valid for small casing displacements.
+    contact is not integrated: its status is unstable. If no rub-free motion fits the laws of its support, the status is
+    film-closed. Raises UserError for a system that `check_system` refuses, for a record too short for a wanted
+    exponent, for a profile without a key that it needs, and for a turn of more than 4,194,304 steps. Raises ValueError
+    where M, C or K couple blisk and casing, and for a tap that the system does not have. Raises TypeError for a
+    `SpinningSystem` at a changing speed. Valid for small casing displacements.
     """
     if wants.companion:
         check_turns(operation.record_turns)

@@ -72,14 +72,14 @@ class TipArrivals:
 class EnergyBalance:
     """Energies and works over the whole integration, in J, computed as the scheme computes them.
 
-    end - start is the sum of the works except for rounding. A work is positive where it adds energy. Works are taken in
-    the turning frame.
+    end - start is the sum of unbalance, damping, circulatory, anisotropy, support_laws, gravity, contact, speed_change
+    and faults except for rounding. A work is positive where it adds energy. These works are taken in the turning frame.
     """
 
     start: float
-    """Energy E at the first step."""
+    """Energy E half a step before the first step."""
     end: float
-    """Energy E at the last step."""
+    """Energy E half a step before the end."""
     unbalance: float
     """Work of the forces that are constant in the turning frame: unbalance, bow."""
     damping: float
@@ -107,7 +107,7 @@ class EnergyBalance:
     absolute_work: float
     """Sum of the absolute works."""
     residual: float
-    """|end - start - sum of works| over `absolute_work`; over the largest |E| where hardly any work is done."""
+    """|end - start - sum of works| over the largest of `absolute_work`, the largest |E| and the rounding error of E."""
     faults: float = 0.0
     """Work of the other loads of faults."""
     wear_loss: float = 0.0
@@ -209,7 +209,7 @@ class Response:
     n_casing: int
     """Number of casing modes."""
     track: Track | None = None
-    """The motion about the hardest touch; None where no signal was asked for."""
+    """The motion about the hardest touch; None where signals of less than a turn were asked for."""
     worn: WornLiner | None = None
     """The liner at the end of the run; None without a liner."""
     companion_growth: FloatArray = field(default_factory=lambda: np.zeros(0))
@@ -234,7 +234,7 @@ class Response:
     free_penetration: float = float("nan")
     """How deep the tips of the rub-free motion would enter the casing at rest, m; negative is a clearance.
 
-    Infinite where laws of the support leave that motion unknown; NaN at a changing speed."""
+    Infinite where laws of the support leave that motion unknown, else NaN at a changing speed."""
     window_orders: ComplexArray = field(default_factory=lambda: np.zeros((0, 0, 20), dtype=np.complex128))
     """Complex amplitudes of each tap at k f_r, k = 1 .. 20, in windows of 16 turns (windows, taps, 20).
 

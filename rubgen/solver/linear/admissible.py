@@ -16,9 +16,10 @@ LEAST_MASS_SHARE = 1e-13
 def check_system(system: SpinningSystem) -> None:
     """Check that a system can be integrated. Raises UserError, one line, where it cannot.
 
-    It must turn and have blades, finite matrices, and positive definite masses of blisk and casing. At rest the tips
-    must be inside the casing's narrowest radius. At speed the tips, with their centrifugal growth, must be inside its
-    widest radius: between the two radii the blades rub, beyond the widest they cannot turn.
+    It must turn and have blades, finite matrices, and positive definite masses of blisk and casing. At rest, or at
+    speed if all of them draw back, the tips must be inside the casing's narrowest radius. At speed the tips, with their
+    centrifugal growth, must be inside its widest radius: between the two radii the blades rub, beyond the widest they
+    cannot turn.
     """
     for problem in (_speed_problem, _blade_problem, _number_problem, _mass_problem, _rest_problem, _growth_problem):
         text = problem(system)

@@ -100,11 +100,11 @@ def rub_free_motion(system: SpinningSystem, steps: float = 0) -> RubFreeMotion:
     """Compute the periodic motion without rub, by harmonic balance.
 
     `steps` is the number of steps in a turn: the result is then the motion of the time-stepping scheme. With 0 it is
-    the motion of the differential equation M q'' + C q' + K q = force + weight(theta) + E f(theta, u, v). Each harmonic
-    of f on O_d moves the blisk by the receptance of that harmonic. This leaves a small system for u alone, solved at
-    equal angles of a turn by Newton's method (one step where it is linear). For the scheme's motion 2 (cos m phi - 1) /
-    dt^2 replaces -(m Omega)^2 and i sin(m phi) / dt replaces i m Omega, phi = 2 pi / steps: a run that starts from it
-    keeps it.
+    the motion of the differential equation M q'' + C q' + K q = force + weight(theta) + E (p(theta) + f(theta, u, v)),
+    with p the steady loads of faults. Loads that grow are left out. Each harmonic of f on O_d moves the blisk by the
+    receptance of that harmonic. This leaves a small system for u alone, solved at equal angles of a turn by Newton's
+    method (one step where it is linear). For the scheme's motion 2 (cos m phi - 1) / dt^2 replaces -(m Omega)^2 and i
+    sin(m phi) / dt replaces i m Omega, phi = 2 pi / steps: a run that starts from it keeps it.
 
     With laws of the support there may be more than one motion. The iteration starts from the motion without f,
     shortened to within the range of the laws. If it finds no motion, nothing is raised: `residual` is large. Laws with

@@ -27,9 +27,10 @@ FLOQUET_STEPS = 1024
 def eigenvalues(system: SpinningSystem) -> ComplexArray:
     """Return all 2 n eigenvalues s in 1/s of M q'' + C q' + K q = 0. Blisk and casing are computed separately.
 
-    Laws of the support are linearised at the rub-free motion. With uneven supports, which turn relative to the blisk,
-    the result are Floquet exponents, whose imaginary parts are known up to a multiple of 2 Omega (Omega with laws).
-    Laws with a motion that must settle are left out.
+    Laws of the support are linearised at the rub-free motion. The results are Floquet exponents (`floquet_exponents`)
+    with uneven supports, which turn relative to the blisk, and with laws where gravity or loads of faults move O_d.
+    Their imaginary parts are known up to a multiple of 2 Omega (Omega with laws). Laws with a motion that must settle
+    are left out.
     """
     system = system.starting
     forces = system.turning
@@ -70,8 +71,8 @@ def stable_step(system: SpinningSystem) -> float:
 def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0.0) -> int:
     """Double `least` until the step is stable and the step rate is at least 2.56 `sample_rate_hz`. Return the steps.
 
-    A step is stable if dt < 0.95 * 2 / omega_max. A turn is a whole number of steps, so the Poincare section lies on
-    steps exactly. Raises UserError for a system that would need more than 4,194,304 steps.
+    A step counts as stable if dt is at most 0.95 * 2 / omega_max. A turn is a whole number of steps, so the Poincare
+    section lies on steps exactly. Raises UserError for a system that would need more than 4,194,304 steps.
     """
     turn = 2 * math.pi / system.speed
     sampled = 1 / (STEPS_PER_SAMPLE * sample_rate_hz) if sample_rate_hz else turn

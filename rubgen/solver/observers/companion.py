@@ -80,7 +80,8 @@ class CompanionGrowth(Observer):
 class DecayGrowth(Observer):
     """The growth of a companion's distance for a motion that never touches.
 
-    Every turn it shrinks by the slowest decay.
+    In every turn ln of the distance falls by `decay_per_turn`, the slowest decay times the duration of a turn. `record`
+    is the number of turns of the record.
     """
 
     def __init__(self, decay_per_turn: float, record: int) -> None:
@@ -89,7 +90,7 @@ class DecayGrowth(Observer):
         self.growth = growth[:ASKED_FROM] if settled else growth
 
     def result(self) -> dict[str, Any]:
-        """Return the field `companion_growth` (turns,), for as many turns as a companion would have run."""
+        """Return the field `companion_growth` (turns,), for as many turns as a companion that stops would have run."""
         return {"companion_growth": self.growth}
 
 

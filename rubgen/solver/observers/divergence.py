@@ -81,7 +81,10 @@ def what_diverged(stepper: Stepper) -> tuple[str, str]:
 
 @dataclass(frozen=True, kw_only=True)
 class Trend:
-    """Growth exp(rate k) of an amplitude over turns k, and its geometric mean `size` in m."""
+    """Growth exp(rate k) of an amplitude over turns k, and its geometric mean `size` in m.
+
+    `turns` is the number of turns from the first amplitude to the last.
+    """
 
     rate: float
     size: float
@@ -95,7 +98,7 @@ class Trend:
 def trend(amplitudes: FloatArray) -> Trend | None:
     """Fit the growth of amplitudes (turns,), m, by least squares on their logarithms; None for fewer than two values.
 
-    Amplitudes that are zero or NaN are left out and do not count.
+    Amplitudes that are zero, NaN or infinite are left out and do not count.
     """
     known = np.isfinite(amplitudes) & (amplitudes > 0)
     if known.sum() < 2:

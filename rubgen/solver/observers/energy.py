@@ -24,7 +24,10 @@ ROUNDING_SHARE = 1e-6
 
 
 class EnergyIdentity:
-    """Measures how well a stepper satisfies the energy identity, from the creation of this object on."""
+    """Measures how well a stepper satisfies the energy identity, from the creation of this object on.
+
+    The stepper's works must be zero at the creation.
+    """
 
     def __init__(self, stepper: Stepper) -> None:
         self.stepper, self.start_energy = stepper, stepper.energy()

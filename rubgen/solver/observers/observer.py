@@ -9,7 +9,7 @@ from rubgen.solver.speed.turn import Turn
 class Observer(ABC):
     """Records a part of a response.
 
-    It never changes the motion, and its memory does not grow with the number of steps.
+    It never changes the motion, and does not keep the state of every step.
     """
 
     def start(self) -> None:  # noqa: B027

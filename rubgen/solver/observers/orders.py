@@ -75,9 +75,9 @@ class ChangingOrders(Observer):
 def turn_orders(taps: FloatArray, theta: FloatArray) -> ComplexArray:
     """Compute complex amplitudes (taps, 20) at k = 1 .. 20 of `taps` (taps, steps) over the angle of one turn.
 
-    2 / (2 pi) sum x exp(-i k theta) dtheta by the trapezoidal rule at the angles `theta` (steps + 1,) of the steps,
-    rad. The mean is removed before. The steps are treated as exactly one turn. Each end is off by at most half a step,
-    an error of a share 1 / steps.
+    2 / (theta_last - theta_0) sum x exp(-i k theta) dtheta by the trapezoidal rule at the angles `theta` (steps + 1,)
+    of the steps, rad. The mean is removed before. The steps are treated as exactly one turn. Each end is off by at most
+    half a step, an error of a share 1 / steps.
     """
     weight = np.zeros(taps.shape[1])
     weight += 0.5 * np.diff(theta)

@@ -12,7 +12,10 @@ from rubgen.solver.scheme.stepper import Stepper
 
 
 def lobes_of(system: SpinningSystem) -> int:
-    """Return the number N of lobes: the casing is unchanged by a rotation of 1/N turn. 1 if its nodes are not."""
+    """Return the number N of lobes: the casing is unchanged by a rotation of 1/N turn.
+
+    It is 1 for a round surface. It is also 1 where this rotation does not bring the casing's nodes onto nodes.
+    """
     orders = [round(order) for order, a in zip(system.surface.order, system.surface.amplitude, strict=True) if a]
     lobes = math.gcd(*orders)
     return lobes if lobes and len(system.casing_modes) % lobes == 0 else 1

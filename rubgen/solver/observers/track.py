@@ -18,8 +18,8 @@ TRACK_TURNS = 8
 class TrackKeeper(Observer):
     """Keeps the frames of the eight turns around the hardest touch, the touch with the largest impulse.
 
-    Turns of the record before `first_turn` are left out. Without a touch the first eight turns are kept. The memory
-    does not grow with the number of turns.
+    Turns of the record before `first_turn` are left out. Without a touch the first eight turns are kept. The memory of
+    the frames does not grow with the number of turns. At a changing speed the tips' growth is kept for every turn.
     """
 
     def __init__(self, driver: SpeedDriver, record: int, first_turn: int) -> None:

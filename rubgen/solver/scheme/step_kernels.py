@@ -59,6 +59,8 @@ def previous_gap(
 ) -> float:
     """Return the gap of a blade at step n - 1, m: the scheme's gap if it is known, else the gap from the geometry.
 
+    The result is kept in `work.step_gaps`.
+
     - worn (bins,): coefficients of the worn depth, m.
     - opening: added to the radius of the surface at step n - 1, m.
     - cosine, sine: cosine and sine of the blisk's angle at step n - 1.
@@ -206,9 +208,9 @@ def contact_step(
 ) -> tuple[int, int]:
     """Turn q* in `after` into q_n+1. Return OK or CONTACT_UNSOLVED, and the number of contacts that were solved.
 
-    If a blade has entered the surface, all blades whose gap in q* is below a margin are solved together. The contact
-    forces may close other gaps by at most `largest_approach`. Where that exceeds the margin, the step is solved again
-    with a larger margin, so no blade can be missed.
+    If a blade has entered the surface, or with restitution, all blades whose gap in q* is below a margin are solved
+    together. The contact forces may close other gaps by at most `largest_approach`. Where that exceeds the margin, the
+    step is solved again with a larger margin, so no blade can be missed. After MARGIN_TRIES margins it is unsolved.
 
     - step: number of the step n in `model.angles`.
     - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., m.

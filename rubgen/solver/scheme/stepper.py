@@ -85,10 +85,10 @@ class Stepper:
 
     @property
     def coordinates(self) -> Coordinates:
-        """Read-only copies of q at the step before the next turn, at its first step, and at the last step written.
+        """Read-only copies of q: `before` at the step before the next turn, `now` at its first step.
 
-        Use `set_coordinates` to change them. `change` is half the difference of the first two; it is not valid at a
-        start.
+        Use `set_coordinates` to change them. `after` is valid only after a turn that has failed: it is what the failed
+        step has computed. `change` is half the difference of the first two; it is not valid at a start.
         """
         before, now, after = (self.blocks.to_q(motion.z) for motion in self.state.motions)
         for q in (before, now, after):
@@ -167,7 +167,7 @@ class Stepper:
         `state` is the state after the last turn, and the arrivals of timing probes belong to the last turn. The turns
         end after a turn that fails.
 
-        - opening (turns, steps + 2): as in `run_turn`, a row for each turn.
+        - opening (turns, steps + 2): as in `run_turn`, a row for each turn. There may be TURNS rows at most.
         - clock, recording: as in `run_turn`.
         """
         touches, snapshots, results, ends = self._rows(len(opening))
@@ -212,7 +212,7 @@ class Stepper:
         return self.touches.ended[: close_touches(self.touches, clock, 0)].copy()
 
     def clear_works(self) -> None:
-        """Set the works to zero."""
+        """Set the works in `state.works` to zero. The works of the supports are kept."""
         self.state.works[:] = 0.0
 
     def take_frames(self, frames: int) -> None:
@@ -234,7 +234,8 @@ class Stepper:
         """Make one step from step `index` of the turn, without works, taps and touches.
 
         Returns a code of `step_kernels` and the number of solved contacts. Their forces `lam`, numbers `blade` and so
-        on are in `state.contact`. `opening` (steps + 2,) is added to the radius of the surface, m; None is 0.
+        on are in `state.contact`. `opening` (steps + 2,) is added to the radius of the surface, m; None is 0. The state
+        moves on even where the step fails.
         """
         width, state = np.zeros(self.steps + 2) if opening is None else opening, self.state
         code, count = advance(self.model, index, width, *state.motions, state)

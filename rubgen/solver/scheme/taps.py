@@ -47,7 +47,7 @@ class TapLayout:
     """Collects the linear functionals of taps: for each source, positions in the sums and the rows there.
 
     A functional is (source, row): the product of the row with the source's vector. The value of a tap is the sum of its
-    functionals. Each source begins a new row of eight.
+    functionals. All sources share the positions, which the taps take in their order.
     """
 
     system: SpinningSystem
@@ -144,9 +144,10 @@ def polar_rows(surface: Surface, angle: float) -> list[FloatArray]:
 def ring_strain_row(system: SpinningSystem, recovery: Recovery, angle: float) -> FloatArray:
     """Return the row of the hoop strain at the casing's outer face: (u_t' + u_r) / R + (h / 2) (u_t' - u_r'') / R^2.
 
-    It has a value for each casing mode, at the polar angle `angle` in rad. The first term is the stretch of the centre
-    line. The second is the bending of a thin ring, from the rotation (u_t - u_r') / R of the cross-section (Love 1888).
-    Derivatives are taken of the trigonometric polynomial through the nodes.
+    It has a value for each casing mode, at the polar angle `angle` in rad. R is the mean radius of the inner surface, h
+    the thickness. The first term is the stretch of the centre line. The second is the bending of a thin ring, from the
+    rotation (u_t - u_r') / R of the cross-section (Love 1888). Derivatives are taken of the trigonometric polynomial
+    through the nodes.
     """
     modes = system.casing_modes
     nodes = len(modes)

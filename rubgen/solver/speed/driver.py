@@ -19,7 +19,8 @@ from rubgen.solver.speed.start import narrowed
 from rubgen.solver.speed.turn import Turn, TurnFrames
 
 SPEED_SHARE = 2e-4
-"""Within a part the matrices are constant, at its middle speed. The speed changes by at most this share."""
+"""Within a part the matrices are constant, at its middle speed. The speed changes by at most this share, if MOST_PARTS
+parts of a turn are enough for that."""
 MOST_PARTS = 64
 MOST_STEPS_AT_ONCE = 4096
 """Turns of more steps are run one by one: entering the kernel is a small share of such a turn, and room for the touches
@@ -49,6 +50,8 @@ class SpeedDriver(Protocol):
         - numbers: numbers of the turns; negative before the record.
         - opening: opening of the surface, m, as a function of the turns from the start.
         - recording: whether taps, orbit and arrivals are recorded.
+
+        A turn that fails is yielded too, with its code. No turn may be taken after it.
         """
         ...
 
@@ -110,9 +113,10 @@ class ChangingDriver:
     """A speed that follows a rotation. At t = 0 theta is 0 and the record begins, after `settle` turns.
 
     Time steps are equal. A turn begins at the step that is nearest to theta = 0 mod 2 pi. Each turn is cut into equal
-    parts in which the speed changes by at most SPEED_SHARE. The matrices of a part belong to the speed in its middle,
-    so the error falls with the square of a part's length. The tips' mean steady growth changes at every step, as part
-    of the opening of the surface.
+    parts, MOST_PARTS at most, in which the speed changes by at most SPEED_SHARE if so many are enough. The end of the
+    ramp also begins a part. The matrices of a part belong to the speed in its middle, so the error falls with the
+    square of a part's length. The tips' mean steady growth changes at every step, as part of the opening of the
+    surface.
     """
 
     def __init__(self, stepper: Stepper, matrices: SpeedInterpolation, rotation: Rotation, settle: int) -> None:

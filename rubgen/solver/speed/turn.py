@@ -38,7 +38,7 @@ class Turn:
     arrivals: FloatArray
     """Passages under timing probes (any, 4)."""
     opening: FloatArray
-    """Opening of the surface in the last part of the turn, m."""
+    """Opening of the surface at steps -1, 0, ..., steps of the turn, or of its last part (steps + 2,), m."""
     frames: TurnFrames
     tip_growth: FloatArray
-    """Steady displacement of the tips at its beginning (n_blades, 3), m."""
+    """Steady displacement of the tips in the turn, or in its first part (n_blades, 3), m."""
