@@ -253,11 +253,11 @@ def check_same(layout: Layout, there: Identity, asked: Identity, *, versions: bo
 
 
 def _first_difference(there: Identity, asked: Identity) -> tuple[str, object, object]:
-    for part in ("recipe", "machine", "sensors"):
-        old, new = _flat(getattr(there, part)), _flat(getattr(asked, part))
+    for part in ("recipe", "machine", "sensors", "split_sensors"):
+        old, new = (_flat({part: getattr(each, part)}) for each in (there, asked))
         for key in [*new, *old]:
             if old.get(key) != new.get(key):
-                return key if part == "recipe" else f"{part}.{key}", old.get(key), new.get(key)
+                return key.removeprefix("recipe."), old.get(key), new.get(key)
     return "identity.sources", [each.digits for each in there.sources], [each.digits for each in asked.sources]
 
 

@@ -263,6 +263,20 @@ def test_a_closed_shard_that_lost_a_file_is_made_again(tmp_path, monkeypatch, sp
     assert tree(tmp_path / "set") == tree(tmp_path / "whole")
 
 
+def test_what_differs_is_told_of_several_machines_and_of_the_sensors_of_a_split(tmp_path):
+    def identity(*widths, noise=0):
+        machines = [{"name": f"m{number}", "width": width} for number, width in enumerate(widths)]
+        split_sensors = {"other": {"noise": noise}}
+        return Identity(recipe={"runs": 4}, machine=machines, sensors={}, packages={}, split_sensors=split_sensors)
+
+    for asked, difference in (
+        (identity(1, 3), r"machine\.m1\.width = 2, asked for 3"),
+        (identity(1, 2, noise=5), r"split_sensors\.other\.noise = 0, asked for 5"),
+    ):
+        with pytest.raises(UserError, match=rf"holds the output of another recipe \({difference}\)"):
+            check_same(Layout(tmp_path), identity(1, 2), asked)
+
+
 def test_another_recipe_is_told_by_the_name_of_the_sensor_that_differs(tmp_path):
     """Not by its place, which a sensor that is added before it changes."""
 
