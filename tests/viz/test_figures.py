@@ -78,6 +78,14 @@ def test_every_axis_has_a_unit_and_no_panel_covers_another(figure):
     assert all(figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1 for box in boxes)
 
 
+def test_a_set_of_sensors_without_the_usual_channel_shows_its_first(rig_run):
+    channels = dict(rig_run.recording.channels)
+    del channels["casing_acc_0"]
+    wave = overview(dataclasses.replace(rig_run, recording=dataclasses.replace(rig_run.recording, channels=channels)))
+    assert wave.axes[1].lines[0].get_ydata()[-1] == channels["proximity_45"].values[-1]
+    assert wave.axes[1].get_ylabel().endswith(f"disk centre, {channels['proximity_45'].unit}")
+
+
 def test_without_contact_the_panels_say_so(free_run):
     figure = overview(free_run)
     texts = [text.get_text() for axes in figure.axes for text in axes.texts]

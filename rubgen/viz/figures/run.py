@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 ORBIT_TURNS = 30
 OVERVIEW_TURNS, WAVE_TURNS = 5, 6
 """Turns of the waveform in the overview and in the figure of its own."""
+USUAL = "casing_acc_0"
+"""Channel of the waveform. Where a sensor set has none of this name, the overview shows its first channel."""
 SECTORS = 90
 
 
@@ -42,10 +44,12 @@ def overview(run: Run) -> Figure:
     figure = new_figure(10.0, 7.2)
     grid = figure.add_gridspec(2, 2, width_ratios=[1, 1.25])
     _true_orbit(figure.add_subplot(grid[0, 0]), run)
-    channel, seconds = run.recording.channels["casing_acc_0"], OVERVIEW_TURNS * run.response.turn_seconds
+    channels, seconds = run.recording.channels, OVERVIEW_TURNS * run.response.turn_seconds
+    channel = channels.get(USUAL) or next(iter(channels.values()))
+    what = f"Casing acceleration at 0°, {_unit(channel)}" if channel.name == USUAL else _named(channel)
     wave = figure.add_subplot(grid[0, 1])
     _waveform(wave, channel, run.recording.sample_rate_hz, run.recording.once_per_rev, seconds)
-    label_axes(wave, "Time, ms (a line at every turn)", f"Casing acceleration at 0°, {_unit(channel)}")
+    label_axes(wave, "Time, ms (a line at every turn)", what)
     events, turns = run.response.events, run.response.record_turns
     ring = cast("PolarAxes", figure.add_subplot(grid[1, 0], projection="polar"))
     contact_map(ring, events.angle, events.impulse, turns)
@@ -89,6 +93,10 @@ def _waveform(axes: Axes, channel: Channel, rate: float, pulses: FloatArray, sec
     axes.vlines(1e3 * turns, 0, 1, color=PAPER_GREY, linewidth=1, transform=axes.get_xaxis_transform())
     axes.plot(1e3 * np.arange(count) / rate, channel.values[-count:], color=BLUE, linewidth=0.9)
     axes.margins(x=0)
+
+
+def _named(channel: Channel) -> str:
+    return f"{channel.quantity[0].upper()}{channel.quantity[1:]}, {channel.location}, {_unit(channel)}"
 
 
 def _unit(channel: Channel) -> str:
@@ -167,7 +175,7 @@ def contact_distribution(replay: Replay) -> Figure:
     return figure
 
 
-def waveform_orders(replay: Replay, name: str = "casing_acc_0") -> Figure:
+def waveform_orders(replay: Replay, name: str = USUAL) -> Figure:
     """Draw the channel `name` over its last six turns, and its order spectrum over the whole recording.
 
     Raises ValueError for a channel that was not recorded.
@@ -177,8 +185,7 @@ def waveform_orders(replay: Replay, name: str = "casing_acc_0") -> Figure:
     wave, orders = figure.subplots(1, 2)
     _waveform(wave, channel, rate, replay.pulse_times, WAVE_TURNS * replay.turn_seconds)
     unit = _unit(channel)
-    what = f"{channel.quantity[0].upper()}{channel.quantity[1:]}, {channel.location}, {unit}"
-    label_axes(wave, "Time, ms (a line at every turn)", what)
+    label_axes(wave, "Time, ms (a line at every turn)", _named(channel))
     found = order_map(channel.values, rate, replay.pulse_times, turns=replay.pulse_times.size)
     label_axes(orders, "Order $f / f_r$", f"Amplitude, {unit}")
     orders.set_xticks(range(HIGHEST_ORDER + 1))
