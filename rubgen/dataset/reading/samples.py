@@ -86,9 +86,11 @@ class WindowIndex:
     def cutters(self, numbers: Iterable[int]) -> Iterator[tuple[int, Callable[[float], Float32Array]]]:
         """Yield for each run its position in `runs`, and the function that cuts its windows (`Cut.cutter`).
 
-        `numbers` are the positions in `runs` of the runs to read. One run is in memory at a time.
+        `numbers` are the positions in `runs` of the runs to read. A run without windows is left out. One run is in
+        memory at a time.
         """
-        numbers, count = list(numbers), _samples(self.data)
+        numbers = [number for number in numbers if self.starts[number].size]
+        count = _samples(self.data)
         chosen = [self.runs[number] for number in numbers]
         for number, (run_id, signals, pulses) in zip(numbers, self.data.recorded(chosen, self.channels), strict=True):
             yield number, self.cut.cutter(_stacked(run_id, signals, self.channels, count), pulses)

@@ -1,5 +1,7 @@
 """Arrays and windows for learning: the samples that the files have, the answers of their own stretch, groups apart."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -7,6 +9,7 @@ import pytest
 import rubgen
 from rubgen.dataset.reading.answers import Answers
 from rubgen.dataset.reading.cutting import SAMPLES_PER_TURN, cut_of
+from rubgen.dataset.reading.samples import WindowIndex
 from rubgen.errors import RubgenWarning, UserError
 from rubgen.labels import MOTION_CLASSES
 
@@ -108,6 +111,22 @@ def test_windows_of_turns_are_read(data):
     assert found.X.shape[1:] == (1, 16 * SAMPLES_PER_TURN)
     assert set(found.run_ids) == set(data)
     assert (np.diff(found.start[found.run_ids == "run-000000"]) > 0).all()
+
+
+def test_a_run_too_slow_for_a_window_is_left_out():
+    """Its one pulse allows no window of turns; it is neither read nor cut."""
+    pulses = {"fast": np.arange(9) / 80, "slow": np.array([0.05])}
+
+    def recorded(runs, channels):
+        yield from ((run, {name: np.zeros(100, np.float32) for name in channels}, pulses[run]) for run in runs)
+
+    cut = cut_of(None, 4, None, 1000.0, tacho=True)
+    starts = tuple(cut.pieces(each, 100)[:, 0] for each in pulses.values())
+    data = SimpleNamespace(signal_seconds=0.1, sample_rate_hz=1000.0, recorded=recorded)
+    index = WindowIndex(data, tuple(pulses), ("a",), cut, starts, np.zeros(1))
+    (found,) = index.cutters([1, 0])
+    assert (found[0], index.lengths) == (0, [1, 0])
+    assert found[1](starts[0][0]).shape == (1, 4 * SAMPLES_PER_TURN)
 
 
 def test_folds_never_part_a_group(data):
