@@ -28,11 +28,11 @@ from rubgen.dataset.reading.tables import check_runs, runs_frame, touches_frame
 from rubgen.dataset.rows import RunRows, asked_bytes
 from rubgen.dataset.tables import SECTIONS, SIGNALS, TRUTH, SetTable
 from rubgen.errors import UserError
-from rubgen.io.columns import Column, Role, scalar_columns, signal_columns
+from rubgen.io.columns import Column, Role, signal_columns
 from rubgen.io.parquet.compact_records import TOUCH_COLUMNS, read_touches
 from rubgen.io.parquet.read import damage_named, read_table
 from rubgen.io.parquet.words import with_words
-from rubgen.io.parquet.write import recipe_schema
+from rubgen.io.parquet.write import recipe_columns, recipe_schema
 from rubgen.machine.problems import nearest
 from rubgen.measurement.channel import Float32Array
 from rubgen.scenario import Recipe, Sensing
@@ -135,8 +135,7 @@ class DataSet:
     @property
     def run_columns(self) -> tuple[Column, ...]:
         """The columns of `runs`, each with name, unit, role, kind and meaning."""
-        around = self._recipe.surroundings is not None
-        return scalar_columns(self._sensing.set, surroundings=around, faults=self.fault_kinds)
+        return recipe_columns(self._recipe)
 
     @property
     def fault_kinds(self) -> tuple[str, ...]:

@@ -110,6 +110,17 @@ def recipe_schema(recipe: Recipe, *, signals: bool) -> pa.Schema:
     )
 
 
+def recipe_columns(recipe: Recipe) -> tuple[Column, ...]:
+    """Return the columns of `runs.parquet` in the data set that `recipe` makes."""
+    return scalar_columns(
+        recipe.sensing.set,
+        surroundings=recipe.surroundings is not None,
+        faults=recipe.fault_kinds,
+        machines=recipe.machine_keys,
+        drawing=drawing_of(recipe),
+    )
+
+
 def drawing_of(recipe: Recipe, *, signals: bool = False) -> list[str]:
     """Return the names in DRAWING whose columns the files of the recipe's set have.
 

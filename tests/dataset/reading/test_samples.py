@@ -9,9 +9,12 @@ import pytest
 import rubgen
 from rubgen.dataset.reading.answers import Answers
 from rubgen.dataset.reading.cutting import SAMPLES_PER_TURN, cut_of
+from rubgen.dataset.reading.open import DataSet
 from rubgen.dataset.reading.samples import WindowIndex
 from rubgen.errors import RubgenWarning, UserError
+from rubgen.io.parquet.write import recipe_schema
 from rubgen.labels import MOTION_CLASSES
+from rubgen.scenario import load_recipe
 
 
 @pytest.fixture(scope="module")
@@ -127,6 +130,14 @@ def test_a_run_too_slow_for_a_window_is_left_out():
     (found,) = index.cutters([1, 0])
     assert (found[0], index.lengths) == (0, [1, 0])
     assert found[1](starts[0][0]).shape == (1, 4 * SAMPLES_PER_TURN)
+
+
+@pytest.mark.parametrize("name", ["machines", "twins", "balanced", "rig", "surroundings"])
+def test_every_column_of_the_runs_is_described(name):
+    recipe = load_recipe(name)
+    data = DataSet.__new__(DataSet)
+    data.__dict__["_recipe"] = recipe
+    assert [column.name for column in data.run_columns] == recipe_schema(recipe, signals=False).names
 
 
 def test_folds_never_part_a_group(data):
