@@ -77,8 +77,9 @@ class Answers:
         if self._column.kind not in ("flag", "class") or np.unique(y).size > 1:
             return
         where = f"of split {split!r}" if split else "chosen"
-        only = dict(zip(NUMBERS.get(self._column.name, {}).values(), NUMBERS.get(self._column.name, {}), strict=True))
-        value = only.get(int(y[0]), bool(y[0]))
+        words = NUMBERS.get(self._column.name, {"False": 0, "True": 1})
+        only = {number: word for word, number in words.items()}
+        value = "undefined" if np.isnan(y[0]) else only.get(int(y[0]), "undefined")
         same = f"all runs {where} have {self._column.name} = {value}"
         warn(f"{self._data.layout.root}: {same}: nothing can be learned from them or tested; take others")
 

@@ -12,6 +12,7 @@ from rubgen.dataset.reading.cutting import SAMPLES_PER_TURN, cut_of
 from rubgen.dataset.reading.open import DataSet
 from rubgen.dataset.reading.samples import WindowIndex
 from rubgen.errors import RubgenWarning, UserError
+from rubgen.io.columns import Column, Role
 from rubgen.io.parquet.write import recipe_schema
 from rubgen.labels import MOTION_CLASSES
 from rubgen.scenario import load_recipe
@@ -210,3 +211,18 @@ def test_one_class_alone_is_a_warning(data):
     alone = data.runs.index[data.runs["rub"]][0]
     with pytest.warns(RubgenWarning, match="all runs chosen have rub = True"):
         data.arrays(["proximity_x"], runs=[alone])
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "y", "said"),
+    [
+        ("class", "whirl", [-1], "undefined"),
+        ("class", "motion", [-1], "undecided"),
+        ("flag", "even", [np.nan], "undefined"),
+    ],
+)
+def test_a_label_that_is_undefined_in_every_run_is_a_warning(kind, name, y, said):
+    column = Column(name, kind, "", "", role=Role.TARGET)
+    data = SimpleNamespace(run_columns=(column,), layout=SimpleNamespace(root="set"))
+    with pytest.warns(RubgenWarning, match=f"all runs chosen have {name} = {said}"):
+        Answers(data, name).warn_of_missing(np.array(y), None)
