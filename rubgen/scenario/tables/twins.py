@@ -26,7 +26,7 @@ KEEPS_MOTION = ("friction", *CLEARANCES, *AROUND)
 WITH_CLEARANCE = "rubgen.solver.linear.reach:with_clearance"
 """It needs the solver, above this room, so it is named here and imported when used."""
 _HINTS = get_type_hints(Surroundings, include_extras=True)
-_SHARE = "Share of the runs that have a twin. Fewer twins leave more runs that stand alone."
+_SHARE = "Number of twins over the number of all other runs. Fewer twins leave more runs that stand alone."
 _FAULT = "A fault of the twin: its kind and its values. It replaces a fault of the same kind that the run has."
 
 
