@@ -69,9 +69,9 @@ def __dir__() -> list[str]:
 def simulate(scenario: Scenario) -> Run:
     """Simulate the run that `scenario` describes and return its true response, recorded channels and labels.
 
-    Progress is shown on a terminal. A run that fails has `response.status` and `response.reason`, but its recording and
-    labels are None. Raises UserError for a machine that cannot be modelled or reduced, or a record too short for its
-    signals. See `rubgen.pipeline.simulate`.
+    Progress is shown on a terminal and in a notebook. A run that fails has `response.status` and `response.reason`, but
+    its recording and labels are None. Raises UserError for a machine that cannot be modelled or reduced, or a record
+    too short for its signals. See `rubgen.pipeline.simulate`.
     """
     from rubgen.pipeline import simulate
     from rubgen.progress import shown
@@ -93,7 +93,7 @@ def open(directory: Path | str) -> DataSet:  # noqa: A001
 def verify(directory: Path | str) -> list[str]:
     """Check the data set in `directory` and return its problems, one sentence each. The list is empty for a good set.
 
-    Raises UserError where the directory holds no finished data set.
+    Raises UserError where the directory holds no finished data set, and for a URL.
     """
     from rubgen.dataset.checking.verify import verify
 

@@ -9,14 +9,15 @@ from itertools import islice
 import numpy as np
 
 FEW, LONGEST, MOST = 3, 60, 780
-"""Entries of a list or table that are shown, and the longest text in characters of one value and of a whole object."""
+"""Number of entries of a list or mapping that are shown; longest text, in characters, of one value and of an object."""
 
 
 def brief(value: object) -> str:
     """Return a dataclass as text, `Name(field=..., ...)`, in one line of at most about MOST characters.
 
-    Arrays are shown by their shape, tables and long lists by their size. Fields with their default value are left out.
-    Classes with large fields use it as their `__repr__`.
+    An array is shown by its shape, a mapping by its size and first FEW keys, a list of more than FEW values by its
+    size. Fields whose number, text or None is the default are left out. Classes with large fields use it as their
+    `__repr__`.
     """
     fields = dataclasses.fields(value) if dataclasses.is_dataclass(value) else ()
     shown = [f"{field.name}={_short(getattr(value, field.name))}" for field in fields if _is_shown(value, field)]
@@ -42,7 +43,7 @@ def html_table(title: str, rows: Mapping[str, str]) -> str:
 
 
 def number(value: object) -> str:
-    """Return a label or parameter as a short text: a float with 4 digits, None as "-", any other value in full."""
+    """Return a label or parameter as a short text: a float with 4 significant digits, None as "-", else in full."""
     if value is None:
         return "-"
     return f"{value:.4g}" if isinstance(value, float) else str(value)

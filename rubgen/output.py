@@ -46,7 +46,8 @@ def writer_of(path: Path, named: str) -> Write:
 def plot(run: Run) -> Figure:
     """Draw a run in four panels: orbit with Poincare section, a recorded channel, contact by angle, orders.
 
-    The orders are those of the contact force. Raises UserError for a failed run.
+    The channel is `casing_acc_0`, or the first of a sensor set without it. The orders are those of the contact force.
+    Raises UserError for a failed run.
     """
     from rubgen.viz.figures import overview
 
@@ -57,8 +58,8 @@ def plot(run: Run) -> Figure:
 def replay(run: Run, *, web: bool = False) -> None:
     """Show a run in Rerun's viewer and return when the viewer is closed.
 
-    With `web` the viewer is a page in the browser, served to this computer alone. Raises UserError for a failed run,
-    and without `web` where there is no screen.
+    With `web` the viewer is a page in the browser, served to this computer alone until Ctrl-C. Raises UserError for a
+    failed run, without `web` where there is no screen, and where the viewer cannot be started or ends with an error.
     """
     from rubgen.viz.replay import replay_of
     from rubgen.viz.viewer import has_screen, open_viewer

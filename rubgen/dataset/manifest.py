@@ -77,7 +77,10 @@ class Identity(StrictModel):
         return {key: each for key, each in values.items() if key not in absent}
 
     def same_recipe(self, other: "Identity") -> bool:
-        """Return whether both identities describe the same data set. Package versions are ignored."""
+        """Return whether both identities describe the same data set.
+
+        Package versions are ignored, except those in the sources of a merged set.
+        """
         return self._described == other._described
 
     @property
@@ -117,7 +120,7 @@ class Identity(StrictModel):
 
     @property
     def sensor_set(self) -> SensorSet:
-        """The sensors of every run."""
+        """The sensors of every run, without the sets that single splits have (`split_sensors`)."""
         return TypeAdapter(SensorSet).validate_python(self.sensors)
 
     @property

@@ -13,7 +13,7 @@ from rubgen.scenario.vary import PARAMETERS
 
 COUNTED = ["split", "machine_id", "status", "rub", "motion"]
 NOTEWORTHY = 0.1
-"""Least difference of two means, as a share of the mean of good runs, that is told."""
+"""A parameter is listed where its two means differ by more than this share of the mean over good runs."""
 
 
 @dataclass
@@ -51,7 +51,8 @@ class Tally:
 def tally_of(runs: Path) -> Tally:
     """Count the runs of a set in its file `runs.parquet`: runs, machines, status, rub and motion, by split.
 
-    One row group and the names of all machines are in memory. Raises UserError where the file is missing or damaged.
+    The result also lists the parameters whose means over failed and good runs differ by more than NOTEWORTHY. One row
+    group and the names of all machines are in memory. Raises UserError where the file is missing or damaged.
     """
     splits: dict[str, SplitTally] = {}
     machines: set[tuple[str, str]] = set()

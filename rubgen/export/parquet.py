@@ -15,7 +15,10 @@ IDS = ("run_id", "machine_id", "split")
 
 
 def write_parquet(runs: Iterator[ExportedRun], path: Path) -> None:
-    """Write runs, a row each: names, recorded pulses and channels, without parameters, labels and true signals."""
+    """Write runs, a row each: the names in IDS, recorded pulses and channels, without parameters and labels.
+
+    `runs` must yield at least one run. `export` gives runs without channels that no probe can measure.
+    """
     first = next(runs)
     fields = [pa.field(name, pa.string()) for name in IDS]
     fields.append(pa.field("once_per_rev_s", pa.list_(pa.float64()), metadata={"unit": "s"}))

@@ -43,7 +43,7 @@ def export(
 
     - name: uff58, mat, hdf5, csv, wav, ts, webdataset or parquet.
     - split: name of a split; None takes all runs.
-    - channels: names of recorded channels, without clean ones; None takes all of them.
+    - channels: names of recorded channels, without clean ones; None, or no name, takes all of them.
 
     The folder has the files of the runs, `channels.csv`, and `runs.csv` with parameters and labels. The format parquet
     has no labels, no parameters, no `runs.csv` and no channel that no probe can measure. A file is complete or does not

@@ -52,7 +52,7 @@ def repair(directory: Directory, /, *, json: Json = False) -> int:
 
 
 def doctor(*, json: Json = False) -> int:
-    """Print versions, caches, cores and Vulkan of this computer; exit 1 where a required package is missing."""
+    """Print versions, caches, cores and Vulkan of this computer; exit 1 where a package is missing or unfit."""
     from rubgen.cli.commands.doctor import doctor_command
 
     return doctor_command(as_json=json)

@@ -21,7 +21,7 @@ LEAST_TURNS = 2
 SIGMAS = 6.5
 """A Gaussian number lies beyond it once in 1e10 times."""
 STOP_BAND = 10 ** (-85 / 20)
-"""Gain of the anti-alias filter beyond half the sample rate (`sensors/chain.py`)."""
+"""Gain of the anti-alias filter beyond half the sample rate (`measurement/chain.py`)."""
 ROUNDING = 1e-9
 """Tolerance as a share of the label: the sums have another order."""
 COMPARED_ORDERS = 10
@@ -131,8 +131,9 @@ def whole_turn_weights(samples: int, turn: float) -> FloatArray | None:
 def resolved_impulse(row: Row, weights: FloatArray, noise_rms: float, step: float) -> float:
     """Return the smallest difference of impulse per turn, in N s, that the channel can show.
 
-    It is the sum of four known errors, for m recorded turns. `weights` are from `whole_turn_weights`; `noise_rms` and
-    `step` are noise and ADC step in N.
+    Four errors are known, for m recorded turns. The result is SIGMAS times the root of the sum of squares of noise and
+    unequal turns, plus the ADC's bias, plus the error of sampling. `weights` are from `whole_turn_weights`; `noise_rms`
+    and `step` are noise and ADC step in N.
 
     - Noise of rms s and ADC steps d: the weighted mean has the standard error sqrt((s^2 + d^2 / 12) sum w^2).
     - The ADC's bias where noise does not dither it. The mean error of a rounded Gaussian is the series (d / pi) sum_k

@@ -60,7 +60,10 @@ def file_findings(layout: Layout, manifest: Manifest, chosen: Callable[[str], bo
 
 
 def size_findings(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
-    """Yield a finding for every listed file that is missing or has another size. No file is read."""
+    """Yield a finding for every listed file that is missing or has another size. No file is read.
+
+    The sizes of derived files are not compared.
+    """
     for entry in manifest.files:
         yield from _entry_findings(
             layout.root, entry.path, entry, "the manifest", _kind(layout, entry.path), read=False

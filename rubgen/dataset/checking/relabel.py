@@ -47,8 +47,8 @@ def relabel(directory: Path) -> Relabelled:
     """Compute the labels of every good run again from its compact record, and compare them with `runs.parquet`.
 
     Numbers are equal within rounding (`equal`). Labels of orders are left out: they need the signals at every step.
-    Nothing is simulated and no file is changed. Raises UserError where `directory` holds no finished data set, or a set
-    without `sections/`.
+    Nothing is simulated and no file is changed. Raises UserError where `directory` holds no finished data set or a set
+    without `sections/`, and where a file is damaged or `sections/` has other runs than `runs.parquet`.
     """
     layout = Layout(directory)
     manifest = read_manifest(layout)

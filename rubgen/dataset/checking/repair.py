@@ -41,7 +41,7 @@ def repair(directory: Path) -> Repaired:
       versions of the packages that made the set.
     - A damaged `runs.parquet`: the runs of the shards whose rows cannot be read are simulated again.
     - sensors.parquet, README.md and croissant.json are written again.
-    - An .rrd file is made from its MCAP file if that is good. Else its run is simulated again.
+    - An .rrd file is made from its MCAP file if that is good. Else its run is simulated again, with the same versions.
 
     No other file is changed and none is deleted. Raises UserError where `directory` holds no finished data set, its
     manifest is damaged, or it cannot be written.

@@ -26,7 +26,7 @@ def verify(directory: Path | str, *, sample: int | None = None) -> list[str]:
 
     With `sample` the content of only that many shards is checked, drawn anew at each call. Presence and size are
     checked for all. Memory does not grow with the number of runs. Raises UserError where `directory` holds no finished
-    data set, or its manifest is damaged.
+    data set or is a URL, where its manifest is damaged, and for a `sample` below 1.
     """
     return [finding.text for finding in findings(directory, sample=sample)]
 

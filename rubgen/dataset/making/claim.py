@@ -58,8 +58,9 @@ def _acquired(lock: BaseFileLock) -> BaseFileLock | None:
 def finished(layout: Layout, identity: Identity) -> bool:
     """Return whether the directory holds the finished data set with this identity.
 
-    A set with fewer runs of the same recipe is not finished: more runs can be added. Raises UserError where the
-    directory holds the finished set of another recipe, or a set of this recipe with more runs.
+    A set with fewer runs of the same recipe is not finished: more runs can be added. Package versions are ignored.
+    Raises UserError where the directory holds the finished set of another recipe, or a set of this recipe with more
+    runs.
     """
     if not (is_there(layout.manifest) and is_there(layout.digest)):
         return False
@@ -113,8 +114,8 @@ def begun(layout: Layout, identity: Identity) -> Iterator[None]:
     """Make the folders of an unfinished data set for the block, which fills them. Call it within `claimed`.
 
     Incomplete files are removed. `.staging` appears in one step with the identity in it, so that the same recipe can
-    continue after any stop. Raises UserError where the unfinished set of another recipe is there. If the block raises a
-    UserError before the first run is finished, everything is removed.
+    continue after any stop. Raises UserError where the unfinished set of another recipe or of other package versions is
+    there. If the block raises a UserError before the first run is finished, everything is removed.
     """
     if not layout.identity.exists():
         _begin(layout, identity)

@@ -39,8 +39,9 @@ def merge(
     contains the recipe of each source, from which any run can be made again. One shard is copied at a time, with a few
     runs in memory. An interrupted merge leaves no finished set.
 
-    Raises UserError for fewer than two sets, sets of other versions, formats, sensors or columns, two sets with the
-    same seed, a machine that is in different splits, damaged files, and an `out` that `generate` refuses.
+    Raises UserError for fewer than two sets, sets of other versions, licence, formats, length of signals, sensors or
+    columns, two sets with the same seed, a machine that is in different splits, damaged files, and an `out` that is in
+    one of the sets or that `generate` refuses.
     """
     sets = read_sources(directories)
     check_sources(sets)

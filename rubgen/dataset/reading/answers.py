@@ -29,10 +29,13 @@ SHOWN = 12
 
 
 class Answers:
-    """The values of one target (a label of runs or windows) as numbers. `DataSet.arrays` describes the numbers."""
+    """The values of one column of `runs` as numbers, for runs or windows. `DataSet.arrays` describes the numbers."""
 
     def __init__(self, data: DataSet, target: str) -> None:
-        """Take the name of a column. Raises UserError for one that is no target, or has no single value a run."""
+        """Take the name of a column of any role but id, such as a label or a parameter.
+
+        Raises UserError for any other name, and for a column without one flag, class or number a run, except `faults`.
+        """
         columns = {column.name: column for column in data.run_columns}
         targets = [name for name, column in columns.items() if column.role is Role.TARGET]
         if target not in columns or columns[target].role is Role.ID:
@@ -45,7 +48,9 @@ class Answers:
     def of_runs(self, runs: Sequence[str]) -> npt.NDArray[Any]:
         """Return the answer of each of the runs, by name: (runs,), or for the target `faults` (runs, kinds).
 
-        A flag is 0 or 1, a class its number or -1 where it is undefined, a number NaN where it is undefined.
+        A flag is 0 or 1, a class its number or -1 where it is undefined, a number NaN where it is undefined. If a flag
+        or an integer is undefined in any of the runs, all are floats, with NaN there. Raises KeyError for an unknown
+        run.
         """
         values = self._data.runs.loc[list(runs), self._column.name]
         if self._column.name == "faults":
@@ -58,7 +63,7 @@ class Answers:
         return values.to_numpy(dtype=np.int64)
 
     def of_windows(self, runs: Sequence[str], pieces: Sequence[FloatArray]) -> npt.NDArray[Any]:
-        """Return the answer of each window (windows,), run after run.
+        """Return the answer of each window (windows,), run after run, or for the target `faults` (windows, kinds).
 
         Targets without a value of the window have the run's. `pieces` are start and end of the windows of each run
         (windows, 2), in s from the first sample.
@@ -70,7 +75,7 @@ class Answers:
         return np.concatenate([compute(self._data.row(run_id), touches, edges) for (run_id, touches), edges in rows])
 
     def warn_of_missing(self, y: npt.NDArray[Any], split: str | None) -> None:
-        """Warn if all answers `y` are the same class or flag: no model can learn from them or be tested with them.
+        """Warn if all answers `y`, at least one, are the same class or flag: no model can learn from them.
 
         `split` is the name of their split for the message, or None.
         """

@@ -24,11 +24,11 @@ def balance_table(runs: pd.DataFrame, recipe: Recipe) -> pd.DataFrame:
     - recipe: the recipe of the set.
 
     Columns: `split`; `cell`, the class; `wanted`, its share in the recipe; `natural`, its estimated share in a set
-    without balance; `runs`, the good runs drawn for the class; `tries`, their candidates; `weight`, the importance
-    weight of such a run. Twins do not count. With s_c candidates seen in class c in the split and the band, the natural
-    share is
+    without balance; `runs`, the good runs drawn for the class; `tries`, the candidates of these runs and of the failed
+    ones; `weight`, the importance weight of such a run, NaN where there is none. Twins do not count. With s_c
+    candidates seen in class c in the split and the band, and B bands of equal chance, the natural share is
 
-        p(no rub) = s_0 / s,   p(c) = (1 - p(no rub)) s_c / (sum of s over rubbing classes)
+        p(no rub) = s_0 / (s B),   p(c) = (1 / B - p(no rub)) s_c / (sum of s over rubbing classes)
 
     The second factor counts only the classes of the recipe. Every candidate is an independent draw, and a run stops at
     the first candidate in its class, so these ratios tend to the shares (Wald's equation). Candidates that are not

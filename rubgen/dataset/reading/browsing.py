@@ -39,9 +39,10 @@ class Rows:
 def rows_of(data: DataSet, run_ids: Sequence[str], predictions: Path | None = None) -> Rows:
     """Return the rows of these runs: name, split, status, headline, differing parameters, labels, and predictions.
 
-    `predictions` is the path of a file for `read_predictions`, or None. A predicted column with the name of a label
-    stands after the label. If the label is no number, a flag `<name>_right` follows, which is True where both are
-    equal. Predicted columns with other names stand at the end.
+    `predictions` is the path of a file for `read_predictions`, or None. A predicted column with the name of a shown
+    column stands after it. A flag `<name>_right` follows, True where both are equal, if the answers are words or
+    numbers of a class, 0 or 1 for a flag, whole numbers for an integer, or texts. Other answers, such as probabilities,
+    are not compared. Predicted columns with other names stand at the end. Raises UserError as `read_predictions` does.
     """
     kinds = {column.name: column for column in data.run_columns if column.kind in COLUMN_TYPES}
     shown = _shown(data.runs, list(kinds.values()))
@@ -75,8 +76,9 @@ def rows_of(data: DataSet, run_ids: Sequence[str], predictions: Path | None = No
 def read_predictions(path: Path, data: DataSet) -> pd.DataFrame:
     """Read the predictions of a model from a CSV or Parquet file, with one row a run. The column `run_id` is the index.
 
-    Raises UserError where the file is missing or of another kind, has no `run_id` or no other column, names a run
-    twice, names no run of the set, or contains lists.
+    Characters of column names other than letters, digits and _ become _. Raises UserError where the file is missing or
+    of another kind, has no `run_id` or no other column, names a run twice, names no run of the set, contains lists, or
+    has two columns with the same name then.
     """
     reader, named = READERS.get(path.suffix), f"--predictions {path}"
     if reader is None:

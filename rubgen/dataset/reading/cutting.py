@@ -36,6 +36,8 @@ class Cut:
     def pieces(self, pulses: FloatArray, count: int) -> FloatArray:
         """Return start and end of each window (windows, 2), in s from the first sample. A rest at the end is left out.
 
+        Windows of turns begin and end at pulses, the first at the first pulse.
+
         - pulses: times of the run's once_per_rev pulses in s.
         - count: number of samples of the run.
         """
@@ -71,12 +73,13 @@ class Cut:
 def cut_of(seconds: float | None, turns: int | None, hop: float | None, rate: float, *, tacho: bool) -> Cut:
     """Return how to cut signals: into windows of `seconds`, or of `turns`, every `hop`.
 
-    - hop: distance of the starts, in the same unit; None is the length of a window.
+    - seconds: length of a window, rounded to whole samples.
+    - hop: distance of the starts, in the same unit and rounded alike; None is the length of a window.
     - rate: samples per second.
     - tacho: whether the set has a once_per_rev sensor.
 
-    Raises UserError where not exactly one length is given, a length or hop is not positive, is shorter than a sample or
-    is no whole number of turns, or `turns` is given without a tacho.
+    Raises UserError where not exactly one length is given, a length or hop is not positive, rounds to no sample or is
+    no whole number of turns, or `turns` is given without a tacho.
     """
     if (seconds is None) == (turns is None):
         raise UserError("windows: give their length either in seconds or in turns")

@@ -25,9 +25,9 @@ class Fold(NamedTuple):
 def folds(data: DataSet, k: int, by: str, split: str | None) -> list[Fold]:
     """Divide the good runs of a split, or of the set for None, into `k` folds by the column `by`. See `DataSet.folds`.
 
-    Runs with one value of `by` stay together; by 'run_id' a run stays with its twins. Raises UserError for k below 2,
-    for fewer groups than folds, for an unknown split or column, and where `by` would put runs of one machine (of
-    several), or a run and its twin, on both sides.
+    Runs with one value of `by` stay together; by 'run_id' a run stays with its twins. A run without a value is left
+    out. Raises UserError for k below 2, for fewer groups than folds, for an unknown split or column, and where `by`
+    would put runs of one machine (of several), or a run and its twin, on both sides.
     """
     runs = chosen_runs(data, split, None)
     groups = _groups(data, runs, by)

@@ -123,7 +123,7 @@ class DataSet:
 
     @property
     def sensors(self) -> SensorSet:
-        """The sensor set with which the runs were recorded."""
+        """The sensor set of the recipe. A split may have other values of the same sensors."""
         return self._sensing.set
 
     @property
@@ -218,13 +218,13 @@ class DataSet:
         same name must be on the same side of a split.
 
         - channels: names; None takes `inputs`, all channels that a sensor could record.
-        - target: a column with one value a run.
+        - target: a column with one value a run, of any role but id.
         - split: name of a split; None takes all runs.
         - runs: names of runs, as from `folds`, in place of a split.
-        - out: path of a new .npy file for X, mapped into memory. So X may be larger than the memory.
+        - out: path of a .npy file for X, mapped into memory, so that X may be larger. An existing file is overwritten.
 
-        Raises UserError for an unknown channel, target, split or run, and where there is no run. Warns where all runs
-        have the same class.
+        Raises UserError for an unknown channel, target, split or run, a failed run, split with runs, another `out`, and
+        where there is no run. Warns where all runs have the same class.
         """
         return arrays(self, channels, target, split, runs, out)
 
@@ -271,9 +271,9 @@ class DataSet:
 
         The runs with one value of the column `by` are a group; by 'run_id' a run and its twins are one. Each group is
         on the test side of exactly one fold, and never on both sides. The folds are the same each time: groups are
-        assigned by size and then by name. `split` is the name of a split; None takes all runs. Raises UserError for k
-        below 2, for fewer groups than folds, and where `by` would put runs of one machine of several, or a run and its
-        twin, on both sides.
+        assigned by size and then by name. A run without a value is left out. `split` is the name of a split; None takes
+        all runs. Raises UserError for k below 2, fewer groups than folds, an unknown split or column, and where `by`
+        would put runs of one machine of several, or a run and its twin, on both sides.
         """
         return folds(self, k, by, split)
 
@@ -309,7 +309,7 @@ class DataSet:
             yield run_id, signals[name], pulses
 
     def check_has_signals(self, run_id: str) -> None:
-        """Check that the run has signals. Raises UserError where it does not exist or failed."""
+        """Check that the run ended well, as all with signals did. Raises UserError if it failed or does not exist."""
         status, reason = (self._table[name][self._number(run_id)].as_py() for name in ("status", "reason"))
         if status != "ok":
             failed = f"{run_id} failed ({status}: {reason}) and has no signals"

@@ -44,7 +44,7 @@ def exported_signals(
 ) -> Iterator[tuple[str, pa.Table]]:
     """Yield the name of each run and a table of its channels `names` and pulses, read from files of single runs (MCAP).
 
-    Raises UserError where no format of the set has signals, or where a file contains another run.
+    Raises UserError where a run has no such file, and where the file cannot be read or contains another run.
     """
     readers = [(each.signals, each.name) for each in run_formats() if each.signals]
     listed = {name for _, folder in readers for name in manifest.listed(folder)}

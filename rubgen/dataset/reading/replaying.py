@@ -69,7 +69,10 @@ def find_replay(source: Path, run_id: str | None = None, where: str | None = Non
 
 
 def replay_of_mcap(path: Path) -> FoundReplay:
-    """Make the replay of an MCAP file. The remarks name the content that a damaged file has lost."""
+    """Make the replay of an MCAP file. The remarks name the content that a damaged file has lost.
+
+    Raises UserError where the file cannot be read even in part, or its scenario is of another version of rubgen.
+    """
     from rubgen.io.mcap.read import salvage_mcap
 
     run, lost = salvage_mcap(path)

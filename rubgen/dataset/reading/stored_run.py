@@ -29,7 +29,7 @@ class StoredRun:
     parameters: dict[str, Any]
     """The keys of `[vary]`."""
     labels: dict[str, Any]
-    """What else `runs.parquet` says of the run; None where the run failed or a label is undefined."""
+    """What else `runs.parquet` says of the run; a label is None where the run failed or it is undefined."""
     data: DataSet = field(repr=False)
 
     def signals(self, channels: Sequence[str] | None = None) -> dict[str, Float32Array]:

@@ -37,9 +37,9 @@ UNITS = {
 def runs_frame(table: pa.Table, sensors: SensorSet) -> pd.DataFrame:
     """Turn the table of `runs.parquet` into a DataFrame with `run_id` as the index. Failed runs are included.
 
-    Flags are pandas "boolean", integers "Int64", text "string", with <NA> for a failed run: a flag can still select
-    rows. Numbers are float64 with NaN. Lists are numpy arrays, or None where a run has no list. `attrs["units"]` and
-    `attrs["meanings"]` map each column to its unit and its meaning.
+    Flags are pandas "boolean", integers "Int64", texts and classes "string". Of a failed run, and where a value is
+    undefined, they are <NA>: a flag can still select rows. Numbers are float64 with NaN. Lists are numpy arrays, or
+    None where a run has no list. `attrs["units"]` and `attrs["meanings"]` map each column to its unit and its meaning.
     """
     frame: pd.DataFrame = table.to_pandas(types_mapper=_nullable)
     frame = frame.set_index("run_id")

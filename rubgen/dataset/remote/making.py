@@ -24,7 +24,10 @@ class RemoteMaking:
     """
 
     def __init__(self, url: str, part: str = "") -> None:
-        """Take the URL, and the part of the set that is made in a folder of its own."""
+        """Take the URL, and the part of the set that is made in a folder of its own.
+
+        Raises UserError where the URL cannot be used or the cache folder cannot be written.
+        """
         self.store = Store(url)
         folder = cache_folder("sets")
         if folder is None:
@@ -36,8 +39,8 @@ class RemoteMaking:
     def folder(self) -> Iterator[None]:
         """Make the parent of the local folder.
 
-        Delete the local folder after the block, unless the block raises an error. A warning names the folder, since a
-        large set needs space there.
+        Delete the local folder after the block, unless the block raises an error. After a UserError the reservation at
+        the URL is removed, if nothing else is there. A warning names the folder, since a large set needs space there.
         """
         self.layout.root.parent.mkdir(parents=True, exist_ok=True)
         warn(f"{self.store.layout.root}: made in {self.layout.root}, from which finished shards go up and are deleted")

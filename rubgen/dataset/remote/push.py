@@ -17,7 +17,7 @@ def push(directory: Path | str, url: str) -> int:
     Files are uploaded one by one, the manifest and its digest last: an incomplete set cannot be opened. The same call
     after an interruption copies the missing files. If the URL has a set with fewer runs of the same recipe, the new
     runs are added. Raises UserError where the directory has no finished set or a damaged file, the URL cannot be
-    written, or the URL has other files.
+    written, or the URL has other files, another set, or the same set with more runs or of other package versions.
     """
     source, store = Layout(directory), Store(url)
     manifest = read_manifest(source)

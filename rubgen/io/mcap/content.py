@@ -75,9 +75,10 @@ class McapContent:
 def read_content(path: Path, lost: list[str] | None = None) -> McapContent:
     """Read every record of the file at `path`.
 
-    If a list `lost` is given, damaged parts are left out, and a text about each part is appended to the list. Raises
-    DamageError for damage without `lost`, where two channels or attachments share a name, or a message has no described
-    channel.
+    If a list `lost` is given, damaged parts and messages without a described channel are left out, and a text about
+    each damaged part is appended to the list. Without `lost` DamageError is raised for them. It is always raised for a
+    file that does not begin like MCAP, for too many messages, and where two channels, metadata records or attachments
+    share a name. Raises UserError or OSError where the file cannot be read at all.
     """
     content = McapContent()
     topics: dict[int, str] = {}
@@ -147,7 +148,8 @@ def check_kind(content: McapContent, topic: str, name: str) -> None:
 def check_other(content: McapContent, topic: str) -> None:
     """Check a topic that is written for other programs: `/tf` and previews. Every message is decoded.
 
-    Raises DamageError where the bytes cannot be decoded, values are not finite, or the topic is unknown.
+    Raises DamageError where messages are of another type or cannot be decoded, a preview has other names than its
+    channel or values that are not finite, or the topic is unknown.
     """
     channel = content.channels[topic]
     if topic == "/tf":
@@ -177,8 +179,9 @@ def _check_schema(content: McapContent, channel: Channel, name: str, encoding: s
 def event_columns(content: McapContent, topic: str, scenario: Scenario) -> dict[str, FloatArray]:
     """Decode the events of a topic, such as contacts, into one array (n_events,) for each field of their message.
 
-    `scenario` has the number of blades and the length of the recording. Raises DamageError where a value is not finite,
-    a blade does not exist, or events are outside of the recording or not in order.
+    The field `timestamp` is left out. `scenario` has the number of blades and the length of the recording. Raises
+    DamageError where a value is not finite, a blade does not exist, or events are not in order, or more than SLACK_S
+    outside of the recording.
     """
     found = decoded(content, topic)
     names = [each.name for each in message_class(message_name(topic) or "").DESCRIPTOR.fields]

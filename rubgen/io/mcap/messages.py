@@ -190,7 +190,10 @@ def sample_block(values: Float32Array, sample_rate_hz: float, first_index: int, 
 
 
 def read_sample_block(data: bytes) -> tuple[int, float, int, Float32Array]:
-    """Parse a serialised SampleBlock: time in ns, sample rate in Hz, index of the first sample, values (n,)."""
+    """Parse a serialised SampleBlock: time in ns, sample rate in Hz, index of the first sample, values (n,).
+
+    Raises protobuf's DecodeError, or ValueError, for other bytes.
+    """
     block = _bytes_block().FromString(data)
     time_ns = block.timestamp.seconds * 10**9 + block.timestamp.nanos
     return time_ns, block.sample_rate, block.first_index, np.frombuffer(block.values, dtype="<f4")

@@ -36,8 +36,8 @@ FRAMES, MODES = "/motion/frames", "/motion/casing_modes"
 def read_frames(content: McapContent, scenario: Scenario) -> MotionFrames | None:
     """Decode the frames of motion: positions of disk, tips and casing at single moments. None if the file has none.
 
-    Raises DamageError where the sizes of the frames contradict each other or the machine, or times do not ascend within
-    the recording.
+    Raises DamageError where the sizes of the frames contradict each other or the machine, a value is not finite, times
+    descend, or a time is outside of the recording.
     """
     found, shapes = decoded(content, FRAMES), decoded(content, MODES)
     if not found or not shapes:
@@ -86,7 +86,7 @@ class McapRun:
     signals: dict[str, Float32Array]
     """Samples (n,) float32 of each channel by its name, in its unit."""
     clean: dict[str, Float32Array]
-    """The same of clean channels."""
+    """The same of clean channels, by the names of `signals`."""
     channels: dict[str, dict[str, str]]
     """Unit, quantity, axis, location, range and so on of each channel."""
     contacts: dict[str, FloatArray]
@@ -106,8 +106,8 @@ def read_mcap(path: Path, *, channels: Collection[str] | None = None) -> McapRun
     """Read the run in the MCAP file at `path`. CRCs of chunks, data and summary, and the content, are checked.
 
     `channels` are names of channels (`<name>_clean` for the channel without noise): only these channels and the pulses
-    are decoded. None decodes everything. Raises UserError, one line, where the file does not exist, is damaged, or has
-    no run of rubgen.
+    are decoded, beside scenario and labels. A name without a channel is ignored. None decodes everything. Raises
+    UserError, one line, where the file does not exist, is damaged, or has no run of rubgen.
     """
     try:
         return run_of(read_content(path), channels=channels)
@@ -121,7 +121,7 @@ def run_of(content: McapContent, *, gaps: bool = False, channels: Collection[str
     """Make the run from the records of its file. Raises DamageError where they are not a run of rubgen.
 
     - gaps: True sets missing samples to NaN; False raises DamageError for a missing block.
-    - channels: names of the channels to decode, with the pulses and nothing else; None decodes everything.
+    - channels: names of the channels to decode, with pulses, scenario and labels alone; None decodes everything.
     """
     plain, scenario = checked_scenario(content)
     if not content.topics("/raw/"):

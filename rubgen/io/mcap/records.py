@@ -63,8 +63,9 @@ def read_records(path: Path, lost: list[str] | None = None) -> Iterator[McapReco
     """Yield schemas, channels, messages, metadata and attachments in file order, including records within chunks.
 
     Raises DamageError where a record, a size or a CRC is wrong. If a list `lost` is given, damaged parts are left out
-    instead, a text about each part is appended to `lost`, and the CRCs of the whole file are not checked. Raises
-    UserError or OSError where the file cannot be read at all.
+    instead, a text about each part is appended to `lost`, and the CRCs of the whole file are not checked. DamageError
+    is then raised only for a file that does not begin like MCAP. Raises UserError or OSError where the file cannot be
+    read at all.
     """
     size = check_regular(path)
     with path.open("rb") as stream:

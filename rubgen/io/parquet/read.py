@@ -134,7 +134,7 @@ def row_groups(path: Path, asked_bytes: float = 0.0, columns: Sequence[str] | No
     - asked_bytes: expected unpacked size of a row group, allowed beyond the general bound of 256 MiB.
     - columns: names of the columns to read; None reads all.
 
-    Only one row group is in memory. Raises UserError where the file is missing or damaged.
+    Only one row group is in memory. Raises UserError where the file is missing or damaged, or a column is missing.
     """
     with ParquetSource(path, asked_bytes) as file:
         for group in range(file.num_row_groups):
@@ -155,7 +155,8 @@ def damage_named(path: Path) -> Iterator[None]:
     """Turn an error of pyarrow in the block into a UserError of one line that names the file `path`.
 
     pyarrow reports damage by its own exceptions, by an OSError without a number, and for names of columns by a
-    UnicodeDecodeError. An OSError with a number comes from the system. Any other error passes: it is a bug.
+    UnicodeDecodeError. An OSError with a number and a MemoryError come from the system. Any other error of a file
+    passes: it is a bug. At a URL every Exception is turned (`url_problems`).
     """
     with url_problems(path) if is_url(path) else nullcontext():
         try:
