@@ -54,7 +54,10 @@ def kernel_key() -> str:
 
 
 def kernels_are_compiled() -> bool:
-    """Return whether all kernels of this code were compiled before, so that a run need not wait for the compiler."""
+    """Return whether all kernels of this code were compiled before, so that a run need not wait for the compiler.
+
+    The sign is LAST_COMPILED in the cache. The result is True too where numba's compiler is switched off.
+    """
     config: Any = numba.config
     folder = cache_folder("kernels")
     return bool(config.DISABLE_JIT) or (folder is not None and any((folder / kernel_key()).rglob(LAST_COMPILED)))
@@ -63,8 +66,8 @@ def kernels_are_compiled() -> bool:
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile `function` with numba, without the GIL and without fastmath, and store it in the cache `kernels`.
 
-    Kernels are in files named `*_kernels.py`. They take only arrays and scalars and never raise: a division by zero is
-    inf or NaN. `NUMBA_DISABLE_JIT=1` runs them as plain Python.
+    Kernels are in files named `*_kernels.py`. They take only arrays, scalars and tuples of these, and never raise: a
+    division by zero is inf or NaN. `NUMBA_DISABLE_JIT=1` runs them as plain Python.
     """
     return _compiled(function)
 
