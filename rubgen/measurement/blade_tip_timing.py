@@ -87,12 +87,14 @@ def tip_deflections(times: TipTimes, once_per_rev: FloatArray, tip_radius: float
     The mean deflection of each blade cannot be known and is 0. The angle of arrival is AoA = Omega (t - t_0) from the
     last pulse t_0, with Omega = 2 pi over the turn's time. The deflection is x = R (mean AoA of the blade - AoA): early
     is positive (S. Heath, M. Imregun, Int. J. Mech. Sci. 38, 1996). It is NaN for arrivals before the first pulse or
-    after the last.
+    after the last, so for all arrivals with fewer than two pulses.
 
     - times: the passages that the probe recorded.
     - once_per_rev (pulses,): times of the pulses, s.
     - tip_radius: R, m.
     """
+    if once_per_rev.size < 2:
+        return np.full(times.time.size, np.nan)
     turn = np.searchsorted(once_per_rev, times.time, side="right") - 1
     inside = (turn >= 0) & (turn < once_per_rev.size - 1)
     first = once_per_rev[np.where(inside, turn, 0)]

@@ -52,6 +52,12 @@ def test_arrivals_outside_the_pulses_are_unknown():
     assert known.tolist() == [False, True, True, False]
 
 
+@pytest.mark.parametrize("pulses", [[], [2e-3]])
+def test_without_a_whole_turn_every_arrival_is_unknown(pulses):
+    seen = TipTimes(time=np.array([1e-3, 8e-3]), blade=np.array([0, 1]), true_displacement=np.zeros(2))
+    assert np.isnan(tip_deflections(seen, np.array(pulses), RADIUS)).tolist() == [True, True]
+
+
 def test_a_probe_blurs_shifts_and_misses_as_it_says():
     rng, dt, count = np.random.default_rng(2), 1e-5, 20_000
     step = np.sort(rng.uniform(0, 5e5, count))
