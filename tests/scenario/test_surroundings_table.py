@@ -143,6 +143,19 @@ def test_a_key_that_changes_no_channel_is_warned_of(surroundings, words):
     assert str(caught[0].message).startswith("r.toml: surroundings.")
 
 
+def test_a_level_drawn_from_0_on_that_no_sensor_feels_is_warned_of(tmp_path):
+    sensors = tmp_path / "s.toml"
+    sensors.write_text('name = "one"\n[[sensors]]\nname = "f"\nkind = "contact_force"\n')
+    drawn = {"name": "r", "runs": 2, "machine": "zeng2019", "surroundings": {"runout_m": {"uniform": [0, 1e-6]}}}
+    with pytest.warns(RubgenWarning, match="runout_m = 1e-06: .* the sensor set one has no proximity probe"):
+        parse_recipe(drawn | {"sensors": {"set": str(sensors)}})
+
+
+def test_a_slope_of_a_level_drawn_from_0_on_is_not_warned_of(recwarn):
+    recipe(background_m_per_s2={"uniform": [0, 10]}, background_slope={"uniform": [0, 1]})  # its least is without one
+    assert not [each for each in recwarn if issubclass(each.category, RubgenWarning)]
+
+
 def test_a_level_that_no_sensor_feels_is_warned_of(tmp_path):
     sensors = tmp_path / "s.toml"
     sensors.write_text('name = "one"\n[[sensors]]\nname = "f"\nkind = "contact_force"\n')

@@ -25,12 +25,19 @@ SCALED_BY = {
 def idle_surroundings(scenario: Scenario) -> dict[str, str]:
     """Return the keys of the scenario's surroundings that change no recorded channel, each with the text of a warning.
 
-    A key is returned if its value differs from its default and no sensor feels it. The keys are written as
-    `surroundings.KEY`. The result is empty if every key changes a channel. The scenario must have surroundings.
+    A key is returned if its value differs from its default and changes no channel: no sensor feels it, or the levels
+    that it scales are 0. The keys are written as `surroundings.KEY`. The result is empty if every key changes a
+    channel. The scenario must have surroundings.
     """
-    around, sensors = scenario.surroundings, scenario.sensing.set
-    values, usual = vars(around), vars(Surroundings())
+    values, usual, why = vars(scenario.surroundings), vars(Surroundings()), _reasons(scenario)
     given = {key: value for key, value in values.items() if value != usual[key]}
+    names = {key: f"surroundings.{key}" for key in given if key in why}
+    return {name: f"{name} = {given[key]:g}: changes no channel: {why[key]}" for key, name in names.items()}
+
+
+def _reasons(scenario: Scenario) -> dict[str, str]:
+    """Return why keys of the surroundings would change no channel, whatever their values."""
+    values, sensors = vars(scenario.surroundings), scenario.sensing.set
     taps = [sensor.tap for sensor in sensors.sampled]
     why = {
         key: f"the sensor set {sensors.name} has no {which}"
@@ -42,19 +49,19 @@ def idle_surroundings(scenario: Scenario) -> dict[str, str]:
             why[key] = f"without {' or '.join(levels)}"
     if not (sensors.on_housing or values["path_gain"]):
         why["frame_spread"] = "without path_gain or an accelerometer on the housing"
-    names = {key: f"surroundings.{key}" for key in given if key in why}
-    return {name: f"{name} = {given[key]:g}: changes no channel: {why[key]}" for key, name in names.items()}
+    return why
 
 
 def idle(scenarios: Sequence[Scenario]) -> dict[str, str]:
     """Return the keys that change no channel in any of the scenarios, each with the text of a warning.
 
     Such a key is a key of the surroundings, or `faults.KIND` for a fault that only shakes a frame which no sensor
-    feels.
+    feels. A text has the value of the first scenario in which the key differs from its default.
     """
-    around = [idle_surroundings(scenario) for scenario in scenarios if scenario.surroundings]
-    useless = {key: text for texts in around for key, text in texts.items()}
-    found = {key: text for key, text in useless.items() if all(key in texts for texts in around)}
+    around = [scenario for scenario in scenarios if scenario.surroundings]
+    useless = {key: text for scenario in reversed(around) for key, text in idle_surroundings(scenario).items()}
+    reasons = [{f"surroundings.{key}" for key in _reasons(scenario)} for scenario in around]
+    found = {key: text for key, text in useless.items() if all(key in names for names in reasons)}
     striking = [fault for scenario in scenarios for fault in scenario.machine.faults if fault.STRIKES]
     if striking and not any(scenario.frame for scenario in scenarios):
         which = f"faults.{striking[0].kind}"
