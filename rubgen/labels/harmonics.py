@@ -7,7 +7,7 @@ from typing import TypeVar
 import numpy as np
 from scipy.fft import rfft
 
-from rubgen.arrays import ComplexArray, FloatArray
+from rubgen.arrays import ComplexArray, FloatArray, IntArray
 from rubgen.solver.response import Response
 
 Array = TypeVar("Array", FloatArray, ComplexArray)
@@ -28,7 +28,10 @@ FLOOR = 0.1
 
 @dataclass(frozen=True, kw_only=True)
 class TapOrders:
-    """Peak amplitudes of one true signal at its orders, in the signal's unit, and phases in rad."""
+    """Peak amplitudes of one true signal at its orders, in the signal's unit, and phases in rad.
+
+    Orders above half the step rate are NaN: the steps cannot show them.
+    """
 
     amplitudes: FloatArray
     """A (20,) at k f_r, k = 1 .. 20, in A cos(k theta + phase)."""
@@ -39,7 +42,7 @@ class TapOrders:
     fractional: FloatArray
     """Amplitudes (9,) at FRACTIONS of f_r."""
     blade_passing: FloatArray
-    """Amplitudes (5,) at the orders n_blades - 2 .. n_blades + 2; NaN above half the step rate."""
+    """Amplitudes (5,) at the orders n_blades - 2 .. n_blades + 2."""
 
     @property
     def even_share(self) -> float:
@@ -54,7 +57,7 @@ class TapOrders:
     @property
     def dominant(self) -> int:
         """The order k of the largest amplitude; 0 where all amplitudes are zero."""
-        return int(np.argmax(self.amplitudes)) + 1 if self.amplitudes.any() else 0
+        return int(np.nanargmax(self.amplitudes)) + 1 if np.nansum(self.amplitudes) > 0 else 0
 
     @property
     def present(self) -> tuple[int, ...]:
@@ -89,16 +92,23 @@ def tap_orders(tap: FloatArray, response: Response) -> TapOrders:
     turns = spectrum_turns(response)
     looked_at = turns * (max(HIGHEST_ORDER, response.n_blades + SIDEBANDS) + 1)
     lines = order_lines(tap, response)[:looked_at]
-    size = np.abs(lines)
-    at = turns * np.arange(1, HIGHEST_ORDER + 1)
+    whole = _at_orders(lines, turns * np.arange(1, HIGHEST_ORDER + 1))
     blades = np.arange(response.n_blades - SIDEBANDS, response.n_blades + SIDEBANDS + 1)
     return TapOrders(
-        amplitudes=size[at],
-        phases=np.where(size[at] > 0, np.angle(lines[at]), 0.0),
-        floors=order_floors(size, turns),
+        amplitudes=np.abs(whole),
+        phases=np.where(whole == 0, 0.0, np.angle(whole)),
+        floors=order_floors(np.abs(lines), turns),
         fractional=fractional_amplitudes(tap, response),
-        blade_passing=np.array([size[turns * b] if 0 <= turns * b < size.size else np.nan for b in blades.tolist()]),
+        blade_passing=np.abs(_at_orders(lines, turns * blades)),
     )
+
+
+def _at_orders(lines: ComplexArray, places: IntArray) -> ComplexArray:
+    """Return the lines at these places; NaN where there is none."""
+    found = np.full(places.size, np.nan, dtype=np.complex128)
+    inside = (places >= 0) & (places < lines.size)
+    found[inside] = lines[places[inside]]
+    return found
 
 
 def spectrum_turns(response: Response) -> int:

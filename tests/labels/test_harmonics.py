@@ -50,6 +50,15 @@ def test_blade_passing_and_its_sidebands(respond: Respond) -> None:
     assert found.blade_passing == pytest.approx([0.25, 0.0, 2.0, 0.5, 0.0], abs=1e-9)
 
 
+def test_orders_above_half_the_step_rate_are_unknown(respond: Respond) -> None:
+    tap = wave({3.0: 2.0, 5.0: 0.5}, steps=32)
+    found = harmonics(respond(taps={"blisk_x": tap}, steps=32))["blisk_x"]
+    assert found.amplitudes[:16] == pytest.approx([0, 0, 2, 0, 0.5, *[0] * 11], abs=1e-9)
+    assert np.isnan([*found.amplitudes[16:], *found.phases[16:], *found.blade_passing, found.even_share]).all()
+    assert found.dominant == 3
+    assert found.present == (3, 5)
+
+
 def test_even_and_odd_parts_of_the_casing_field(respond: Respond) -> None:
     # An even field is alike at 0 and 180 degrees, an odd one opposite.
     even, odd = wave({2.0: 3.0}), wave({3.0: 5.0})
