@@ -15,7 +15,7 @@ def choose(recipe: Recipe, balance: Balance, index: int) -> Scenario:
 
     Cell and candidates follow only from the seed and the number of the run, so runs are independent of each other. If
     none of `balance.tries` candidates is in the cell, the last candidate is returned with the problem, and `simulate`
-    refuses it.
+    refuses it. A candidate whose virtual machine has a problem is returned at once, and refused too.
     """
     cell, cells = balance.place(recipe.seed, index)[0], balance.cells
     seen = [0] * (len(cells) + 2)

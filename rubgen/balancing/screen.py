@@ -49,7 +49,8 @@ def short_run(scenario: Scenario) -> Verdict | None:
 
     The short run is the beginning of the run itself, without the companion trajectory. Its steps are the same unless
     the sensors need more: the class does not depend on the sensors, so that other sensors have the same motions. A run
-    with faults that grow is simulated to its end. Raises UserError for a run that is not possible.
+    at a changing speed, or with faults that grow, is simulated to its end. Raises UserError for a run that is not
+    possible.
     """
     with one_blas_thread():
         scenario = with_clearance(scenario)

@@ -70,7 +70,8 @@ def baselines(
     convolutions. The score "by group" keeps a machine on one side of a split where the set has several machines, else a
     run with its twin. Models learn from the split "train", if the set has one, and are also scored on each other split.
     Returns the scores, and the reason for each task that is not possible with the set. Raises UserError for an unknown
-    task, a task in `tasks` that is not possible, a set without good runs, and without scikit-learn.
+    task, a task in `tasks` that is not possible, a set with which no task is, a set without good runs, and without
+    scikit-learn.
     """
     _check_sklearn()
     for name in tasks or ():
@@ -98,10 +99,10 @@ def mark_of(scores: ModelScores, task: Task) -> str:
     first split where it is defined, such as the onset where training has steady speeds. The clause is empty if it is
     defined nowhere.
 
-    - One threshold solves the task if its score is above SOLVED. This is not asked for a metric that is an error.
+    - One threshold solves the task if its score is above SOLVED.
     - Nothing learns the task if the best score is below NOTHING.
     - Nothing learns it either if no model removes more than LEAST_GAIN of what the majority lacks: of its error, or of
-      1 less its score.
+      1 less its score. For a metric that is an error only this is asked.
     """
     metric = next(iter(task.metrics))
     way = next((way for way, each in scores["majority"].items() if metric in each), None)

@@ -41,7 +41,7 @@ class Outcome(NamedTuple):
 
     answers: npt.NDArray[Any]
     ranks: FloatArray
-    """Numbers that grow with the chance of the last class, of two classes; else 0."""
+    """Numbers that grow with the chance of the last class, of two classes; without meaning for other answers."""
 
 
 Metrics = Mapping[str, Callable[[Outcome, Samples], float]]

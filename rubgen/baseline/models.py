@@ -1,7 +1,7 @@
 """The models of the baselines. All have `fit(numbers, answers, groups)`, `predict(numbers)` and `rank(numbers)`.
 
 Numbers are (samples, any), answers (samples,), or labels of 0 and 1 (samples, labels). Samples of one group (samples,)
-belong together. `rank` grows with the chance of the last of two classes, and is 0 for all other answers.
+belong together. `rank` grows with the chance of the last of two classes. It has no meaning for other answers.
 """
 
 from __future__ import annotations

@@ -115,8 +115,8 @@ def onset_error(outcome: Outcome, samples: Samples) -> float:
 def onsets(data: DataSet, windows: SetWindows) -> FloatArray:
     """Return when the rub of each window's run begins (windows,), in s from the run's first sample.
 
-    It is NaN if the rub does not begin within the signals. Only runs whose speed changes have an onset: in other runs a
-    rub begins before the record.
+    It is NaN if the rub does not begin within the signals. Only runs whose speed changes have an onset. At a steady
+    speed it is NaN, also where a growing fault starts the rub.
     """
     changing = data.ok.index[data.ok["onset_speed_rpm"].notna()]
     first = {run: float(touches["start_s"].min()) for run, touches in data.each_touches(list(changing))}

@@ -55,7 +55,8 @@ def condition(data: DataSet, limits: Limits | None = None, *, runs: Sequence[str
     The quantities come only from the recorded channels and the recorded pulses: orders are averaged over whole turns
     between two pulses (order tracking). Quantities that a channel cannot have are NaN, such as orders without a
     once_per_rev sensor. The column `unit` is the unit of the channel. `attrs["meanings"]` has the definitions. Raises
-    UserError for a failed or unknown run, an unknown channel or quantity in `limits`, and limits that do not rise.
+    UserError for a failed or unknown run, an unknown channel or quantity in `limits`, and limits that do not rise from
+    above 0.
     """
     import pandas as pd
 

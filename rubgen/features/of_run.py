@@ -29,7 +29,8 @@ def run_features(
     - signals: at least the channels of the plan, each (samples,) in its unit.
     - pulses: times of the recorded pulses (any,) in s from the first sample.
 
-    Raises UserError where the window is longer than the signals.
+    Raises UserError where the window is longer than the signals, and where tsfel gives other features than those of the
+    plan.
     """
     stacked = np.array([signals[name] for name in plan.channels], dtype=np.float64)
     samples, rate = stacked.shape[1], plan.rate_hz

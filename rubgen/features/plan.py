@@ -71,8 +71,8 @@ def make_plan(data: DataSet, window: str | None, channels: Sequence[str] | None,
     - channels: names; None takes all channels that a sensor could record.
     - sets: time, order, envelope, orbit or tsfel; None takes all but tsfel that are possible.
 
-    Raises UserError for an unknown channel, set or window, for features that need a pulse or a pair of shaft probes
-    that the data set does not have, and for tsfel if it is not installed.
+    Raises UserError for an unknown channel, set or window, and for features that need a pulse or a pair of shaft probes
+    that the data set does not have. Whether tsfel is installed is not checked.
     """
     root, sensors, rate = data.layout.root, data.sensors, data.sample_rate_hz
     names = _channels(data, channels)
@@ -111,9 +111,10 @@ def _sets(sets: Sequence[str]) -> list[str]:
 
 
 def shaft_pairs(sensors: SensorSet, channels: Sequence[str]) -> tuple[tuple[str, str, float, float], ...]:
-    """Return the first two shaft probes that are not parallel and have the same unit, with their angles in degrees.
+    """Return the first two shaft probes that can show an orbit, with their angles in degrees.
 
-    The result is empty if there is no such pair among the `channels`.
+    They have the same unit, and the sine of the angle between them is above NEVER_PARALLEL. The result has one pair, or
+    is empty if there is none among the `channels`.
     """
     probes = [each for each in sensors.sampled if isinstance(each, Proximity) and each.name in channels]
     for a, b in combinations(probes, 2):

@@ -29,7 +29,7 @@ def by_turn(signals: FloatArray, rate_hz: float, pulses: FloatArray) -> FloatArr
 
     The angle is linear in time between two pulses. Values between samples come from Lagrange's polynomial through the
     six nearest samples: the error of an amplitude is below 1 % up to a sixth of the sample rate. A turn has as many
-    points as the longest turn has samples. Without two pulses there are no turns.
+    points as the longest turn has samples, at least LEAST_POINTS. Without two pulses there are no turns.
     """
     count, samples = signals.shape
     inside = within(pulses, samples, rate_hz)

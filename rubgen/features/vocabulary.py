@@ -16,7 +16,7 @@ ORDERS = tuple(range(1, 13))
 FRACTIONS = {"1_3": (1, 3), "1_2": (1, 2), "2_3": (2, 3)}
 """Fractional orders by their name, as numerator and denominator."""
 BANDS_HZ = ((500, 2000), (2000, 5000), (5000, 10000))
-"""Bands of the envelope. A data set has those below its sample rate / 2.56, where its channels are flat."""
+"""Bands of the envelope. A data set has those up to its sample rate / 2.56, where its channels are flat."""
 ENVELOPE_ORDERS = (1, 2, 3, 4)
 SIDES = ("1_2", "1", "2", "3")
 """Orders of the full spectrum of an orbit, by their name."""
@@ -80,7 +80,7 @@ def envelope(sample_rate_hz: float) -> tuple[Feature, ...]:
 
 
 def bands(sample_rate_hz: float) -> tuple[tuple[int, int], ...]:
-    """Return the envelope's bands, in Hz, that end below the sample rate / 2.56."""
+    """Return the envelope's bands, in Hz, that end at or below the sample rate / 2.56."""
     return tuple(band for band in BANDS_HZ if band[1] <= sample_rate_hz / 2.56)
 
 

@@ -46,12 +46,12 @@ class TapOrders:
 
     @property
     def even_share(self) -> float:
-        """Share of the sum of squared amplitudes that is on even orders; NaN where all amplitudes are zero."""
+        """Share of the sum of squared amplitudes that is on even orders; NaN where all are zero or one is NaN."""
         return _share(self.amplitudes, self.amplitudes[1::2])
 
     @property
     def odd_share(self) -> float:
-        """Share of the sum of squared amplitudes that is on odd orders; NaN where all amplitudes are zero."""
+        """Share of the sum of squared amplitudes that is on odd orders; NaN where all are zero or one is NaN."""
         return _share(self.amplitudes, self.amplitudes[0::2])
 
     @property
@@ -61,7 +61,7 @@ class TapOrders:
 
     @property
     def present(self) -> tuple[int, ...]:
-        """The orders k that stand out: amplitude above FLOOR, and 20 dB above the median of the lines around k."""
+        """The orders k that stand out: above FLOOR, and at least 20 dB above the median of the lines around k."""
         stands = (self.amplitudes > FLOOR) & (self.amplitudes >= RATIO * self.floors)
         return tuple((np.flatnonzero(stands) + 1).tolist())
 

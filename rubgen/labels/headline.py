@@ -11,8 +11,8 @@ def headline(labels: Mapping[str, Any], profile: str) -> str:
     - profile: its speed profile: steady, run-up, coast-down or fluctuating.
 
     If the speed changes, the line has no class of motion, because the class may change within the record. It has the
-    speeds of the first and the last touch instead. If the run rubs at the start or the end of the record, the line says
-    so in place of the speed.
+    speeds of the first and the last touch instead. The first speed is left out if the run rubs at the start of the
+    record, the last speed if it rubs at the end. If it rubs at both, the line says so without speeds.
     """
     if profile == "steady":
         rub = f"{labels['rub_extent']} rub" if labels["rub"] else "no rub"

@@ -21,8 +21,9 @@ def label(response: Response) -> Labels:
 
     Labels describe the true response, before any sensor. Contact and motion are computed from the whole record, orders
     from its last 100 turns. Only the number of windows with amplitudes depends on the length of the taps. The class of
-    motion is reliable for a record of 500 turns or more. Raises UserError below 32 turns. For a changing speed see
-    `speed_history`. A response made from a compact record has no taps: its labels are the same, without orders.
+    motion is reliable for a record of 500 turns or more. Raises UserError below 32 turns, but not where the speed
+    changes or a fault grows. For a changing speed see `speed_history`. A response made from a compact record has no
+    taps: its labels are the same, without orders.
     """
     response = in_record_precision(response)
     contact_steps = int(response.contact_steps_per_turn.sum())

@@ -71,7 +71,8 @@ class Labels:
     orders_present: tuple[int, ...] = ()
     """The k that stand out of the casing acceleration at 0 degrees."""
     lyapunov: Exponent | None = None
-    """Largest exponent of the whole system; None where it was switched off."""
+    """Largest exponent of the whole system; None where it was switched off, and where the speed changes or a fault
+    grows."""
     lyapunov_per_second: float | None = None
     """The same in 1/s."""
     motion_confidence: float = 1.0

@@ -19,8 +19,8 @@ from rubgen.solver.response import WINDOW_TURNS, ChangingSpeed, ContactEvents, R
 class Change:
     """A change of rub or motion during a record, and the state after it.
 
-    A rub begins with its first touch. It ends with the end of its last touch, if no touch follows within WINDOW_TURNS
-    turns. All other changes are at the start of a window.
+    A rub begins with its first touch. It ends with the end of its last touch; touches fewer than WINDOW_TURNS turns
+    apart are one rub. All other changes are at the start of a window.
     """
 
     time: float

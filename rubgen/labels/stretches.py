@@ -28,8 +28,9 @@ def window_motions(
     or period-k, with unknown confidence. A window within an irregular stretch has the class of the whole record. A
     window across the end of a stretch is undecided.
 
-    While the speed changes, a window has the class from `history`, if it is the same throughout the window. While a
-    fault grows and blades rub, it has the class of `drifting_motion`. Both have unknown confidence.
+    While the speed changes, a window has the class from `history` if it is the same throughout the window, and is
+    undecided otherwise. While a fault grows and blades rub, it has the class of `drifting_motion`. Both have unknown
+    confidence.
     """
     edges = window_edges(response)
     windows = list(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True))

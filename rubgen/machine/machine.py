@@ -97,7 +97,7 @@ class Mistuning:
     """Relative deviation of each blade's elastic stiffness: `pattern`, or values drawn with `relative_std` and `seed`.
 
     Young's modulus and shear modulus of blade k are multiplied by 1 + deviation_k. All blades have the same mass and
-    shape. A pattern begins with blade 0 on x, where the unbalance is, and continues counter-clockwise. Draws are
+    shape. A pattern begins with blade 0, on x of the turning frame, and continues counter-clockwise. Draws are
     independent and normal with mean 0, so the mean of one draw is not exactly 0.
     """
 

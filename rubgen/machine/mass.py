@@ -13,7 +13,8 @@ def blisk_mass(machine: Machine) -> float:
     """Compute the mass of disk and blades in kg; blade cross-sections count as chord times thickness.
 
     Disk: 2 pi rho times the integral of r t(r), t linear from bore to rim; blades: rho L times the mean of the product
-    of two linear functions. In the preset within 0.1 % of the finite-element model: tests/machine/test_mass.py.
+    of two linear functions. Blades that a fault has taken away count too. In the preset within 0.1 % of the
+    finite-element model: tests/machine/test_mass.py.
     """
     disk, blades = machine.disk, machine.blades
     a, b = disk.bore_radius_m, disk.rim_radius_m

@@ -75,7 +75,10 @@ def limit(value: float) -> str:
 
 
 def digits(value: float) -> str:
-    """Write a number with three significant digits and commas between thousands, without an exponent."""
+    """Write a number with three significant digits and commas between thousands.
+
+    It has an exponent only below 0.0001 and from 1e12 on.
+    """
     return limit(float(f"{value:.3g}"))
 
 

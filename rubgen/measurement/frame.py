@@ -14,7 +14,7 @@ from rubgen.machine.quantities import FRAME_HZ, MODAL_KG
 class FrameMotion:
     """Accelerations of a machine's frame under the forces of the disk on its support.
 
-    The forces are linear between the steps. A mode with fewer than two steps a period is left out: the steps cannot
+    The forces are linear between the steps. A mode with two steps a period or fewer is left out: the steps cannot
     resolve it.
     """
 

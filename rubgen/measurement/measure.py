@@ -56,11 +56,12 @@ def measure(
     - faults: faults of the machine; only their blows on the frame are used here.
     - lost: numbers of lost blades, which pass no probe.
 
-    The last sample is half a filter length before the end of the tail, so that no sample is affected by its edge. The
-    step after the tail has theta = 0 mod 2 pi. Each sensor has its own child of `rng`, by its place in the set: its
-    noise depends only on the state of `rng` and the number of samples. The surroundings have another child, which does
-    not depend on the set. Raises UserError where the tail is too short for `seconds` and the filter, where the step
-    rate is below 2.56 sample rates, and where a sensor or the surroundings need a frame and there is none.
+    The last sample of the latest clock is half a filter length before the end of the tail, so that no sample is
+    affected by its edge. The step after the tail has theta = 0 mod 2 pi. Each sensor has its own child of `rng`, by its
+    place in the set: its noise depends only on the state of `rng` and the number of samples. The surroundings have
+    another child, which does not depend on the set. Raises UserError where the tail is too short for `seconds` and the
+    filter, where the step rate is below 2.56 sample rates, and where a sensor or the surroundings need a frame and
+    there is none.
     """
     rate, sensors = sensing.sample_rate_hz, sensing.set.sensors
     positions = sample_positions(response, sensing, seconds)

@@ -80,7 +80,7 @@ class Tail:
         return {0: np.ones(self.angle.size, dtype=np.complex128), 1: np.asarray(np.exp(1j * self.angle))}
 
     def resolved(self, order: float) -> npt.NDArray[np.bool_]:
-        """Return whether an order of the rotation has two or more steps a period, at each step (steps,)."""
+        """Return whether an order of the rotation has more than two steps a period, at each step (steps,)."""
         return np.asarray(order * self.speed * self.dt < np.pi)
 
     def sinusoids(self, amplitudes: ComplexArray, advances: FloatArray) -> FloatArray:

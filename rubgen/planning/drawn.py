@@ -28,7 +28,10 @@ class Drawn:
 
 
 def drawn_keys(recipe: Recipe, scenarios: Sequence[Scenario]) -> list[Drawn]:
-    """Return every key of the recipe that draws or fixes a value, with its values in the runs `scenarios`."""
+    """Return every key of the recipe that draws or fixes a value, with its values in the runs `scenarios`.
+
+    Tones of the surroundings, words that are not drawn, and the keys of splits and twins are left out.
+    """
     parts = (_machines, _varied, _around, _faults)
     return [each for part in parts for each in part(recipe, scenarios)]
 

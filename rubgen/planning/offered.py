@@ -20,13 +20,13 @@ DEFAULTS = {"recipe": DEFAULT_RECIPE.stem, "machine": "zeng2019", "sensors": "de
 def offered(kind: str) -> dict[str, str]:
     """Return the names of the files of a kind that come with rubgen, each with the first sentence of its comment.
 
-    `kind` is recipe, machine or sensors.
+    A sentence ends at its first colon too. `kind` is recipe, machine or sensors.
     """
     return {path.stem: _first_sentence(path) for path in sorted(FOLDERS[kind].glob("*.toml"))}
 
 
 def offered_faults() -> dict[str, str]:
-    """Return the kinds of fault, each with the first sentence of its description."""
+    """Return the kinds of fault, each with the first sentence of its description, which ends at its first colon too."""
     return {kind: _sentence(" ".join((fault.__doc__ or "").split())) for kind, fault in FAULTS.items()}
 
 

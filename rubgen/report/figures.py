@@ -36,7 +36,8 @@ SHOWN_UNIT = {"m": (1e6, "µm"), "m/s2": (1.0, "m/s²")}
 class Choice:
     """The user's choice of what a figure shows: run, parameter of a sweep, channel, ranges, modes.
 
-    Ranges are texts LOW:HIGH, of the speed in rev/min and of the frequency in Hz. None is the default of the figure.
+    `where` is a condition on the columns of `runs.parquet` that chooses the run. Ranges are texts LOW:HIGH, of the
+    speed in rev/min and of the frequency in Hz. None is the default of the figure.
     """
 
     run_id: str | None = None

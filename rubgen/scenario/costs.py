@@ -153,7 +153,10 @@ def file_bytes(scenario: Scenario, name: str) -> float:
 
 
 def run_problem(scenario: Scenario) -> str | None:
-    """Return the problem where a run records more than 2 GB, with a length that fits; None without a problem."""
+    """Return the problem where a run takes more than 2 GB of memory, with the remedy; None without a problem.
+
+    Record and signals are checked apart: each may take 2 GB.
+    """
     operation = scenario.operation
     turn, second = bytes_a_turn(scenario), bytes_a_second(scenario)
     if operation.recorded_turns * turn > MOST_RUN_BYTES:

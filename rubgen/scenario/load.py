@@ -43,7 +43,8 @@ def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> R
     - path: path of the file, or a name that `rubgen list` prints, without .toml. None is the default recipe.
     - runs: number of runs in place of the recipe's; None keeps the recipe's.
 
-    Raises UserError with file, key, value, what is allowed and the remedy, before anything is computed.
+    Warns (RubgenWarning) of values that are hardly intended. Raises UserError with file, key, value, what is allowed
+    and the remedy, before anything is computed.
     """
     file = DEFAULT_RECIPE if path is None else _recipe_path(str(path))
     data = read_toml(file)
@@ -72,7 +73,7 @@ def parse_recipe(
     - folder: folder from which relative paths start; None is the current folder.
     - runs: number of runs in place of the recipe's; None keeps the recipe's.
 
-    Raises UserError for anything that is not allowed.
+    Warns (RubgenWarning) of values that are hardly intended. Raises UserError for anything that is not allowed.
     """
     if runs is not None:
         data = replaced_runs(data, checked_runs(runs))
@@ -129,7 +130,8 @@ def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | 
     - source: beginning of messages.
     - data: the TOML values of the recipe; without them, fields that are set count as given.
 
-    Warns once of each value that is hardly intended. Raises UserError where some run is not possible.
+    Warns once of each value that is hardly intended, but not for a recipe that was checked before. Raises UserError
+    where some run is not possible.
     """
     validated(
         source, recipe.model_dump(mode="json", warnings=False), TypeAdapter(Recipe)

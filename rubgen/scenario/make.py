@@ -140,8 +140,8 @@ def make_scenario(
       given.
     - `fault_keys`: values of these faults, each by its key: parallel_m = 5e-5
 
-    Warns (RubgenWarning) of values that are allowed but hardly intended. Raises UserError for an unknown machine or
-    sensor set, a value that is not allowed, and keys that exclude each other.
+    Warns (RubgenWarning) of values that are allowed but hardly intended. Raises UserError for an unknown key, machine
+    or sensor set, a value that is not allowed, and keys that exclude each other.
     """
     given = {key: value for key, value in locals().items() if key != "fault_keys" and value is not None}
     return _checked_scenario(given, fault_keys)

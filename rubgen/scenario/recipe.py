@@ -250,8 +250,8 @@ class Recipe(StrictModel):
 
         It depends on no other run and not on the number of runs. With `[balance]` its candidates are simulated briefly
         until one has the wanted class, which takes seconds (`rubgen.balancing`). With `screened` False nothing is
-        simulated: the first candidate is returned, for checks. Raises UserError for a number that is no run, and for
-        drawn values that make no machine.
+        simulated: the first candidate is returned, for checks. Numbers from `runs` on are drawn too. Raises UserError
+        for anything but a whole number from 0 to below MOST_RUNS, and for drawn values that make no machine.
         """
         if isinstance(index, bool) or not isinstance(index, int | np.integer) or not 0 <= index < MOST_RUNS:
             raise UserError(f"index = {index!r:.100}: give the number of a run, from 0 to below {MOST_RUNS:,}")
@@ -369,9 +369,10 @@ class Recipe(StrictModel):
     def corners(self, source: str = "") -> Iterator[Scenario]:
         """Yield the scenarios in which one key has an extreme value of its distribution. Checks of the recipe use them.
 
-        Every other key has its first value. The machines are those of the files, with the largest number of blades of
-        `[machines]`. With `[twins]` each scenario is followed by its twin. Raises UserError, beginning with `source`,
-        where an extreme value is not allowed.
+        Every other key has its first value. The keys of the surroundings are all at their least, then all at their
+        largest value; for faults see `scenario.faults.extremes`. The machines are those of the files, with the largest
+        number of blades of `[machines]`. With `[twins]` each scenario is followed by its twin. Raises UserError,
+        beginning with `source`, where an extreme value is not allowed.
         """
         for where, part in self.named_parts(source):
             yield from part.own_corners(where)

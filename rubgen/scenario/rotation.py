@@ -55,7 +55,7 @@ class Rotation:
     def acceleration(self, time: npt.ArrayLike) -> FloatArray:
         """Return Omega' in rad/s2 at `time` (any shape) in s.
 
-        At t = 0 and t = `seconds` it is the acceleration of the ramp.
+        The ramp's acceleration counts from t = 0 to t = `seconds`, both included.
         """
         time = np.asarray(time)
         ramp = np.where((time >= 0) & (time <= self.seconds), self.rate, 0.0)

@@ -190,9 +190,9 @@ class Chosen:
     """The candidate that a run of a recipe with `[balance]` is: number `tries` of its candidates, from 1.
 
     `cell` is the name of the class that the run was to have. `seen` counts the candidates by class: first the cells of
-    the balance in their order, then candidates with a rub in a class that no cell has, then candidates that are not
-    possible. `problem` is the reason where no candidate was in the cell: the run is then refused. It is empty
-    otherwise.
+    the balance in their order, then candidates with a rub whose class was not computed because the run was to have no
+    rub, then candidates that are not possible. `problem` is the reason where no candidate was in the cell: the run is
+    then refused. It is empty otherwise.
     """
 
     cell: str
@@ -284,7 +284,7 @@ def scenario_dict(scenario: Scenario) -> dict[str, object]:
     Keys are the names of the dataclasses' fields. `TypeAdapter(Scenario).validate_python(scenario_dict(s)) == s`: every
     float keeps all its bits in JSON. Keys for what the run does not have, such as surroundings, faults or a twin, are
     left out. A run of the first source of a merged set has no key `merged`: its values, name and files are the same as
-    in the source.
+    in the source, and it is read back as the run of the source.
     """
     values = cast("dict[str, object]", TypeAdapter(Scenario).dump_python(scenario, mode="json"))
     if scenario.surroundings is None:

@@ -149,7 +149,10 @@ SURROUNDINGS = (
 
 
 def surroundings_values(around: Surroundings) -> dict[str, float | list[float]]:
-    """Return the values of a run by column name: a number for each key, and three lists with a value for each tone."""
+    """Return the values of a run by column name: a number for each key, and three lists with a value for each tone.
+
+    The order or the fixed frequency that a tone does not have is 0.
+    """
     values: dict[str, float | list[float]] = {each.key: getattr(around, each.key) for each in SURROUNDINGS}
     values["tones_order"] = [tone.order or 0.0 for tone in around.tones]
     values["tones_frequency_hz"] = [tone.frequency_hz or 0.0 for tone in around.tones]

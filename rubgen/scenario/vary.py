@@ -72,7 +72,7 @@ class Parameter:
     def read(self, scenario: Scenario) -> float:
         """Return the key's value in `scenario`.
 
-        A steady run has its speed as end speed and its record's length as duration.
+        Without an end speed it is `speed_rpm`. Without a duration it is the length of the record in s.
         """
         value: float | None = attrgetter(self.places[0])(scenario)
         if value is not None:

@@ -52,7 +52,7 @@ class Catalog:
     """
 
     def __init__(self, name: str) -> None:
-        """Begin a catalog with one dataset called `name`. Raises UserError where Rerun's catalog cannot be used."""
+        """Begin a catalog with one dataset called `name`. Raises UserError without the package datafusion."""
         if find_spec("datafusion") is None:
             raise UserError("Rerun's catalog needs the package datafusion; pip install 'rubgen[browse]'")
         from rerun.server import Server

@@ -53,7 +53,7 @@ class Replay:
 
     @property
     def hardest_touch(self) -> float:
-        """Time in s of the touch with the largest impulse; the middle of the recording where nothing touched."""
+        """Start in s of the touch with the largest impulse, at least 0; the middle of the recording without touches."""
         touches = self.touches
         if not touches.impulse.size:
             return self.seconds / 2

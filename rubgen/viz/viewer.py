@@ -26,7 +26,7 @@ def open_viewer(replay: Replay, *, web: bool = False, full: bool = False) -> Non
     - web: show it in the browser, served to this computer only.
     - full: with every sample and every touch.
 
-    Raises UserError where the viewer ends with an error, OSError where its file cannot be written.
+    Raises UserError where the viewer cannot be started or ends with an error, OSError where its file cannot be written.
     """
     from rubgen.viz.rerun import write_replay
 

@@ -10,7 +10,7 @@ from rubgen.solver.response import ContactEvents
 BINS = 720
 """Bins of half a degree round the casing."""
 GAP = np.deg2rad(10.0)
-"""Arcs with contact are one zone where the gap between them is smaller than this."""
+"""Arcs with contact are one zone where the gap between them is at most this."""
 SPECK = 0.02
 """The lightest bins that together have this share of the impulse are left out, and zones below this share too."""
 SPACING_TOLERANCE = np.deg2rad(3.0)
@@ -128,7 +128,7 @@ def _zone(share: FloatArray, first: int, count: int) -> tuple[float, float, floa
 
 
 def turn_imbalance(events: ContactEvents, centres: FloatArray, steps_per_turn: int) -> float:
-    """Compute how unequal the zones are: the standard deviation of their impulses in all turns over the mean impulse.
+    """Compute how unequal the zones are: standard deviation over mean of the impulses of all zones in all turns.
 
     It is 0 for symmetric motion, q(t + T/N) = q(t), where all zones have equal impulses in each turn. An event belongs
     to the zone with the nearest centre. A turn begins at the angle with the least contact, so that no touch of a

@@ -65,6 +65,7 @@ def growth_correlation(observable: FloatArray) -> float:
     over n = 1 .. N/10. Without its oscillation it is D_c(n) = M_c(n) - mean(phi)^2 (1 - cos n c)/(1 - cos c). The
     damped variant is D*_c(n) = D_c(n) + DAMPING var(phi) sin(sqrt(2) n): its oscillation is far larger than the slow
     growth that a little noise adds to regular motion. K_c = corr(n, D*_c(n)), and K is the median of K_c over all c.
+    Below DAMPED_FROM points D_c takes the place of D*_c.
     The authors scale the oscillation by mean(phi)^2, which depends on the zero of the observable; var(phi) does not.
     Not valid for a constant with rounding noise: test for clusters first.
     """

@@ -18,7 +18,8 @@ def cluster_period(points: FloatArray) -> int | None:
 
     Only the second half of the record is used, where transients have decayed. A point's distance to the mean of its
     cluster is the distance of its farthest group, so that one chattering tip counts. The distances must be at most
-    CLUSTER_RADIUS (rms over turns) and at most EXCURSION in each turn, and must not grow.
+    CLUSTER_RADIUS (rms over turns) and at most EXCURSION in each turn, and must not grow. In a short record k is at
+    most an eighth of the turns.
     """
     late = _late(points)
     for period in range(1, _longest(late) + 1):
@@ -31,9 +32,9 @@ def cluster_period(points: FloatArray) -> int | None:
 def stray(points: FloatArray, period: int | None) -> float:
     """Return the rms distance of the points of the record's second half from their k clusters.
 
-    k is `period`, or for None the k <= 16 with the smallest distance. `points` (turns, groups, values) are divided by
-    the size of the motion. The means of k clusters of n points lie nearer to the points than the true means: dividing
-    the mean square by 1 - k / n corrects this.
+    k is `period`, or for None the k with the smallest distance, of those that `cluster_period` tries. `points` (turns,
+    groups, values) are divided by the size of the motion. The means of k clusters of n points lie nearer to the points
+    than the true means: dividing the mean square by 1 - k / n corrects this.
     """
     late = _late(points)
     periods = range(1, _longest(late) + 1) if period is None else (period,)
@@ -64,9 +65,9 @@ def farthest(points: FloatArray) -> FloatArray:
 def without_periodic_part(points: FloatArray) -> FloatArray:
     """Subtract from the points (turns, groups, values) the means of their k clusters, and return the rest.
 
-    k <= 16 is the number with the least remaining variance. Without this, a motion that wanders within bands and visits
-    the bands in turn would look regular, because the bands are larger. The variance is divided by turns - k, so that
-    more clusters alone do not reduce it.
+    k is the number with the least remaining variance, at most 16 and an eighth of the turns. Without this, a motion
+    that wanders within bands and visits the bands in turn would look regular, because the bands are larger. The
+    variance is divided by turns - k, so that more clusters alone do not reduce it.
     """
     turns = points.shape[0]
     left = [off_cluster(points, k) for k in range(1, min(LONGEST_PERIOD, turns // 8) + 1)]
@@ -94,7 +95,8 @@ def settles(points: FloatArray) -> bool:
     """Return whether the points (turns, groups, values) still approach a steady motion.
 
     In the second half of the record, the rms distance from the clusters then falls by more than half from the first
-    quarter to the last, from above CLUSTER_RADIUS. The number of clusters is the k <= 16 with the smallest distance.
+    quarter to the last, from above CLUSTER_RADIUS. The number of clusters is the k with the smallest distance, of those
+    that `cluster_period` tries.
     """
     late = _late(points)
     distances = [cluster_distances(late, k) / math.sqrt(1 - k / len(late)) for k in range(1, _longest(late) + 1)]

@@ -154,9 +154,10 @@ def _normal(deviate: float) -> float:
 def combined(blisk: MotionClass, casing: MotionClass) -> MotionClass:
     """Combine the classes of blisk and casing into the class of the system: the less regular of the two classes.
 
-    It is undecided if one class is undecided and none is chaotic. The period is the least common multiple of both
-    periods; a part at rest counts as 1. The confidence belongs to the part with the less regular class. For two equal
-    classes it is the larger confidence where the motion does not repeat, and the smaller where it does.
+    It is undecided if one class is undecided and none is chaotic. If the motion repeats, the period is the least common
+    multiple of both periods, where a part at rest counts as 1, and the confidence is the smaller of both. If it does
+    not repeat, the period is None. The confidence is then that of the less regular part, and the larger for equal
+    classes.
     """
     worst = max(blisk, casing, key=lambda part: _REGULARITY.index(part.motion))
     alike = [part.confidence for part in (blisk, casing) if part.motion is worst.motion]

@@ -42,7 +42,8 @@ def drifting_motion(response: Response, first: int, last: int, *, rub: bool) -> 
     """Return the classes of motion of the turns first .. last - 1 of a record, whose speed or machine may drift.
 
     `rub` is whether blades touch in these turns. Without a rub the motion is the forced motion, if this is known
-    (`Response.knows_free_motion`). Otherwise, on the turns about the middle:
+    (`Response.knows_free_motion`); while the casing still moves, casing and system are undecided. Otherwise, on the
+    turns about the middle:
 
     - periodic after k <= 4 turns where the points lie on k branches, within CLUSTER_RADIUS rms and EXCURSION each. A
       branch is every kth point, fitted by a quadratic in time; the rms is corrected for its coefficients.

@@ -42,9 +42,9 @@ def segments(parts: list[FloatArray]) -> list[Segment]:
 
 
 def is_intermittent(found: list[Segment]) -> bool:
-    """Return whether a motion with the segments `found` switches: it is regular, irregular and regular again.
+    """Return whether a motion with the segments `found` switches: at least two are regular and one is irregular.
 
-    The regular and the irregular segments must each have at least a tenth of the turns.
+    The regular segments together, and the irregular ones, must have at least a tenth of the turns.
     """
     regular = [segment.period > 0 for segment in found]
     turns = found[-1].end - found[0].start

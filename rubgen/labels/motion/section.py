@@ -59,7 +59,10 @@ def _casing(response: Response, q: FloatArray, v: FloatArray) -> FloatArray:
 
 
 def casing_rests(response: Response) -> bool:
-    """Return whether the casing's energy stays below REST_ENERGY in the second half of the record."""
+    """Return whether the casing's energy stays below REST_ENERGY in the second half of the record.
+
+    The energy is the sum over its modes of (v^2 + Omega^2 q^2) / 2 in the section.
+    """
     half = response.section_q.shape[0] // 2
     states = _casing(response, response.section_q[half:], response.section_v[half:])
     return bool(np.sum(states**2, axis=1).max() / 2 < REST_ENERGY)

@@ -28,7 +28,7 @@ LEAST_PERIOD_TURNS = 0.1
 def check_used(source: str, recipe: Mapping[str, Any], place: Callable[[Place], Place] = lambda path: path) -> None:
     """Check that the speed profile of a recipe uses every key that the recipe contains.
 
-    Raises UserError for an unused key.
+    Raises UserError for an unused key. A key with the value false passes.
 
     - source: beginning of messages.
     - recipe: the TOML values.

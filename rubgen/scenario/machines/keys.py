@@ -261,7 +261,8 @@ def machine_values(machine: Machine) -> dict[str, float]:
 def with_values(machine: Machine, values: Mapping[str, float], pattern_seed: int = 0) -> Machine:
     """Return the machine with the values of some keys of `[machines.vary]` changed.
 
-    - values: by key, in the key's unit; applied in the order of MACHINE_KEYS. Other keys are ignored.
+    - values: by key, in the key's unit; applied in the order of MACHINE_KEYS. Other keys are ignored. Keys of the frame
+      need a machine with a frame.
     - pattern_seed: seed of the mistuning pattern of the blades, used where `values` has "mistuning".
 
     Raises UserError where the values make no machine, such as a bore larger than the rim.

@@ -41,7 +41,7 @@ class Proximity(SampledSensor):
     def scale(self) -> tuple[float, float]:
         """Factor and zero of the reading: reading = zero + factor x. In V it is the gap voltage, bias + sensitivity x.
 
-        The voltage is negative and rises as the shaft comes nearer.
+        The voltage rises as the shaft comes nearer. With the default bias it is negative.
         """
         return (self.sensitivity_v_per_m, self.bias_v) if self.unit == "V" else super().scale
 

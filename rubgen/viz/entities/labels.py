@@ -20,8 +20,8 @@ PARTS = {"system": "motion", "blisk": "motion_blisk", "casing": "motion_casing"}
 def send_labels(stream: rr.RecordingStream, replay: Replay) -> None:
     """Send labels and scenario, as properties and as text, and the classes of motion over time.
 
-    Only labels with one value for the whole run are properties, and all labels are in the property `json`: each
-    property takes up to a kilobyte of the file, half of it in the index at its end.
+    Only labels with one value for the whole run, and of no single true signal, are properties. All labels are in the
+    property `json`: each property takes up to a kilobyte of the file, half of it in the index at its end.
     """
     plain, scenario = replay.labels, scenario_dict(replay.scenario)
     stream.send_property("labels", rr.AnyValues(**_single(plain), json=json.dumps(plain)))

@@ -18,7 +18,8 @@ COARSE_TURNS = 100
 def send_orbit(stream: rr.RecordingStream, replay: Replay) -> None:
     """Send the recorded orbit turn by turn, and its first point of every turn, in um.
 
-    All turns near the hardest touch are sent, and up to 100 other turns. Nothing is sent without a pair of probes.
+    All turns near the hardest touch are sent, and up to 100 other turns. Nothing is sent without a pair of probes, or
+    with fewer than two pulses.
     """
     orbit, turns = shaft_orbit(replay), replay.pulse_times
     if orbit is None or turns.size < 2:

@@ -28,7 +28,7 @@ def shown_channels(replay: Replay) -> int:
 def detail_window(replay: Replay) -> slice:
     """Return the range of samples that are sent at full rate: 20 turns around the hardest touch.
 
-    If turns are long, the range has fewer turns. Without contact it is the middle of the recording.
+    If turns are long or channels many, the range has fewer turns. Without contact it is the middle of the recording.
     """
     recording, samples = replay.recording, replay.recording.samples
     length = round(DETAIL_TURNS * replay.turn_seconds * recording.sample_rate_hz)

@@ -37,8 +37,10 @@ def campbell(
     critical speed is where a forward mode meets 1X. Middle, in the turning frame: modes of all nodal diameters n.
     Stationary forces excite n waves at order n; each crossing of the backward wave is marked. Right: modes of the
     casing in the inertial frame, and where the blisk, which turns under N lobes, excites them at orders k N. All modes
-    are damped and without contact. `speeds_rpm` is the range of speed in rev/min, `frequencies_hz` the range of
-    frequency in Hz; for None the ranges are chosen for each panel.
+    are without contact; modes of the blisk are damped.
+
+    - speeds_rpm: range of speed in rev/min. None is from 0 to 1.2 times the critical speed, at least to 15,000.
+    - frequencies_hz: range of frequency in Hz. None chooses it for each panel.
     """
     low, high = speeds_rpm or (0.0, max(HIGHEST_RPM, ABOVE_CRITICAL * model.critical_speed_rpm))
     speeds = np.linspace(low, high, SPEEDS)

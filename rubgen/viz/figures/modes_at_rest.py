@@ -45,8 +45,8 @@ def mode_shapes(model: ReducedModel, modes: str | None = None) -> Figure:
     The points are displaced outward by the mode's largest component. The component is named, with the nodal diameters
     (ND) of the mode. `modes` chooses by commas: `7` is mode 7 of the blisk in the list of `rubgen modes`, `casing 3`
     mode 3 of the casing, `blade 1` a family, `ND 2` all modes of two nodal diameters, `blade 1 ND 2` or `casing ND 2`
-    both. For None the first six of the casing and of the blisk are drawn. Raises ValueError where no mode meets a
-    choice.
+    both. For None the first six of the casing and of the blisk are drawn. At most 24 modes are drawn. Raises ValueError
+    where no mode meets a choice.
     """
     blisk, casing = _blisk_shapes(model), _casing_shapes(model)
     shapes = casing[:COLUMNS] + blisk[:COLUMNS] if modes is None else _chosen(blisk, casing, modes)

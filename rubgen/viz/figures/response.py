@@ -28,8 +28,9 @@ def unbalance_response(model: ReducedModel, speeds_rpm: tuple[float, float] | No
     """Draw amplitude and phase of the disk centre's 1X whirl over the speed, each speed steady and without contact.
 
     The response is exact for the linear system: nothing is integrated in time. The phase is the angle of the forward
-    whirl behind the mark of the blisk, in degrees. Uneven supports and laws of the support add a backward whirl.
-    `speeds_rpm` is the range in rev/min; None is up to twice the critical speed.
+    whirl from blade 0 in the sense of rotation, in degrees: it falls where the whirl lags more. Uneven supports and
+    laws of the support add a backward whirl. `speeds_rpm` is the range in rev/min; None is up to twice the critical
+    speed.
     """
     critical = model.critical_speed_rpm
     low, high = speeds_rpm or (0.0, TIMES_CRITICAL * critical)

@@ -25,7 +25,7 @@ def waterfall(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> 
 
     Each line belongs to 16 turns at equal angles. A circle in the sense of rotation is order 1, a circle against it
     order -1. The first touch is marked, or a line of text says where it is. `speeds_rpm` is the shown range, in
-    rev/min. Raises ValueError where no pair of proximity probes was recorded, or the speed is steady.
+    rev/min. Raises ValueError as `whirl_by_turn` does.
     """
     speeds, turns = whirl_by_turn(replay)
     count = len(turns) // BLOCK_TURNS
@@ -57,9 +57,9 @@ def waterfall(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> 
 def bode(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> Figure:
     """Draw amplitude and phase of the forward 1X whirl over the speed, turn by turn.
 
-    The first touch is marked, or a line of text says where it is. The phase is the angle of the whirl behind the mark
-    of the once-per-turn pulse, in degrees. `speeds_rpm` is the shown range, in rev/min. Raises ValueError where no pair
-    of proximity probes was recorded, or the speed is steady.
+    The first touch is marked, or a line of text says where it is. The phase is the angle of the whirl from +X at the
+    once-per-turn pulse, in the sense of rotation and in degrees: it falls where the whirl lags more. `speeds_rpm` is
+    the shown range, in rev/min. Raises ValueError as `whirl_by_turn` does.
     """
     speeds, turns = whirl_by_turn(replay)
     whirl = forward_1x(turns)
@@ -82,7 +82,8 @@ def bode(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> Figur
 def whirl_by_turn(replay: Replay) -> tuple[FloatArray, ComplexArray]:
     """Return for each whole turn its speed in rev/min (turns,) and the orbit x + i y in µm at equal angles (turns, 64).
 
-    Raises ValueError where no pair of proximity probes was recorded, or the speed is steady.
+    Raises ValueError where no pair of proximity probes was recorded, the speed is steady, or there are fewer than 17
+    pulses.
     """
     if replay.scenario.operation.profile == "steady":
         raise NoPictureError("the speed of this run is steady; choose a run-up or a coast-down")

@@ -81,7 +81,10 @@ def save_png(figure: Figure, path: Path, *, dpi: int = 110) -> None:
 
 
 def save_figure(figure: Figure, path: Path) -> None:
-    """Write `figure` in the format of the ending of `path`: .png, .svg or .pdf, without dates."""
+    """Write `figure` in the format of the ending of `path`: .png, .svg or .pdf, without dates.
+
+    Raises KeyError for any other ending.
+    """
     if path.suffix == ".png":
         save_png(figure, path, dpi=150)
     else:
