@@ -210,7 +210,10 @@ class Model:
 
 
 def models(answers: Answer) -> dict[str, Model]:
-    """Return the models by name for answers of this kind: classes, numbers, or labels (samples, labels)."""
+    """Return the models by name for answers of this kind: classes, numbers, or labels (samples, labels).
+
+    The names are "majority", "one threshold", "boosting" and "rocket", in this order.
+    """
     rocket = Model(Ridge, lambda seed: f"rocket {seed}")
     if answers.ndim == 2:
         return {name: _each_label(model) for name, model in _of_features(np.array([0, 1])).items()} | {"rocket": rocket}

@@ -65,11 +65,11 @@ class Labels:
     period: int | None
     """Least common multiple of the two; None where there is none."""
     has_2fr: bool
-    """Order 2 stands out of the casing acceleration at 0 degrees."""
+    """Order 2 stands out of the casing acceleration at 0 degrees; False without a rub."""
     orders: dict[str, TapOrders]
     """By tap: amplitudes at multiples of the rotation frequency; root mean squares over windows at changing speed."""
     orders_present: tuple[int, ...] = ()
-    """The k that stand out of the casing acceleration at 0 degrees."""
+    """The k that stand out of the casing acceleration at 0 degrees; none without a rub."""
     lyapunov: Exponent | None = None
     """Largest exponent of the whole system; None where it was switched off, and where the speed changes or a fault
     grows."""

@@ -41,7 +41,10 @@ Place = tuple[int | str, ...]
 
 
 def usual_values(record: Any, place: Place = ()) -> Iterator[tuple[Place, float, Usual]]:
-    """Yield every number of a record, and of records in it, that has a usual range: its path, value and usual range."""
+    """Yield every number of a record, and of records in it, that has a usual range: its path, value and usual range.
+
+    Paths begin with `place`, the path of the record.
+    """
     for name, usual in _usual_ranges(record.__class__).items():
         yield from _values(getattr(record, name), usual, (*place, name))
 

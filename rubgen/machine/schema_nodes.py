@@ -83,7 +83,7 @@ def digits(value: float) -> str:
 
 
 def below(value: float) -> str:
-    """Write a number rounded down to three significant digits, for a value that may not exceed it."""
+    """Write a number above 0, rounded down to three significant digits, for a value that may not exceed it."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 2)
     return f"{math.floor(value / unit) * unit:.12g}"
 

@@ -33,7 +33,7 @@ def commented(kind: str, name: str) -> str:
 def begin(kind: str, name: str, path: Path) -> list[Path]:
     """Write the text of `commented` to `path`, and its schema for editors beside it. Return the written files.
 
-    An existing schema is kept. Raises UserError where a file cannot be written.
+    An existing schema is kept, an existing file at `path` is replaced. Raises UserError where a file cannot be written.
     """
     text = commented(kind, name)
     schema = path.with_name(FILE_NAMES[kind])

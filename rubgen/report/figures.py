@@ -66,7 +66,8 @@ Make = Callable[[Path | None, Choice], Figure]
 def make_figure(name: str, source: Path | None, choice: Choice) -> Figure:
     """Draw the figure called `name`, one of FIGURES.
 
-    - source: name or TOML of a machine, directory of a data set, or an MCAP file, as the figure needs.
+    - source: name or TOML of a machine, directory of a data set, or an MCAP file, as the figure needs. None is the
+      machine zeng2019 for a figure of a machine.
     - choice: what the figure shows of the source.
 
     Raises UserError for an unknown figure, a source that does not fit, an option that the figure does not use, and

@@ -45,7 +45,7 @@ def write_report(directory: Path, path: Path) -> None:
 
     It shows the content of the set, balance of classes, coverage of parameters, failed runs and reasons, six examples
     with pictures, the channels, how to load it, and its checks. Raises UserError where there is no finished data set,
-    no good run, or the file cannot be written.
+    no good run, no example that can be read, or the file cannot be written.
     """
     html = render_report(directory)
     with write_problems(path):

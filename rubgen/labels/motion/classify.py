@@ -36,7 +36,7 @@ class Motions:
     system: MotionClass
     """Class of both together."""
     indicators: tuple[Indicators, ...] = ()
-    """Indicators of the blisk and, where it moves, of the casing; none without contact."""
+    """Indicators of the blisk and, where it moves, of the casing; none for the forced motion without contact."""
     symmetric: bool | None = None
     """Whether the motion has the symmetry of the lobes; None unless it is period-1 in contact."""
     tip_chatter: bool = False

@@ -70,7 +70,11 @@ def branches(modes: Sequence[Sequence[Mode]], waves: int) -> FloatArray:
 
 
 def crossings(speeds: FloatArray, hertz: FloatArray, order: float) -> FloatArray:
-    """Return the speeds in rev/min at which the frequencies `hertz` (speeds,), in Hz, meet the order `order`."""
+    """Return the speeds (any,) in rev/min at which a frequency meets the order `order` of the rotation.
+
+    `hertz` (speeds,) are the frequencies in Hz at `speeds` (speeds,) in rev/min, ascending; between two speeds they are
+    linear. The frequency must be above the order at one speed and below it at the next; NaN does not count.
+    """
     above = hertz - order * speeds / 60
     at = np.flatnonzero(above[:-1] * above[1:] < 0)
     share = above[at] / (above[at] - above[at + 1])
