@@ -232,6 +232,10 @@ BAD = {
         {"machines": {"count": 9, "vary": {"blade_count": {"choice": [18, 36]}}}},
         "machines: 9 machines, of which only 1 can differ",
     ),
+    "mistuning or none": (
+        {"machines": {"count": 9, "vary": {"mistuning": {"choice": [0, 0.02]}}}},
+        "machines: 9 machines, of which only 1 can differ",
+    ),
     "several files": ({"machine": ["zeng2019", "zeng2019-fitted"], "runs": 4}, "several machines need [machines] with"),
     "a file twice": ({"machine": ["zeng2019"] * 2, "machines": {"count": 2}}, "name each machine once"),
     "part of a blade": (

@@ -80,8 +80,8 @@ def _check_count(recipe: Recipe, table: MachineTable, source: str) -> None:
         return
     raise UserError(
         f"{source}: machines: {recipe.machine_count} machines, of which only {files} can differ: without a key drawn "
-        "from a range some would be equal, and stand in two splits; add a range or mistuning to machines.vary, or take "
-        f"{files * table.runs_per_machine} runs"
+        "from a range some would be equal, and stand in two splits; add a range or mistuning above 0 to machines.vary, "
+        f"or take {files * table.runs_per_machine} runs"
     )
 
 

@@ -79,10 +79,10 @@ class MachineTable(StrictModel):
     @property
     def never_twice(self) -> bool:
         """Whether no two machines are equal: a value is drawn from a range, or each machine has its own mistuning."""
+        ends = [(entry.key, each, min(each.extremes()), max(each.extremes())) for entry, each in self.distributions()]
         return any(
-            max(each.extremes()) > (0.0 if entry.key == "mistuning" else min(each.extremes()))
-            for entry, each in self.distributions()
-            if entry.key == "mistuning" or not isinstance(each, Constant | Choice)
+            (key == "mistuning" and least > 0) or (not isinstance(each, Constant | Choice) and largest > least)
+            for key, each, least, largest in ends
         )
 
 
