@@ -100,8 +100,8 @@ def onset_error(outcome: Outcome, samples: Samples) -> float:
     """Compute the median absolute error of the time at which a rub begins, in s.
 
     Only runs whose rub begins within their signals at a changing speed count. The predicted time is the middle of the
-    first window that is predicted as a rub. If no window is, it is the end of the last window. NaN without a run that
-    counts.
+    first window that is predicted as a rub: its answer in `outcome` is 1. If no window is, it is the end of the last
+    window. NaN without a run that counts.
     """
     errors = []
     for run in np.unique(samples.runs[np.isfinite(samples.onset)]):

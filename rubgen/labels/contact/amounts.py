@@ -74,8 +74,9 @@ def contact_amounts(response: Response, zones: ContactZones, *, record_steps: in
 def rub_extent(duty: float, zones: ContactZones) -> RubExtent:
     """Classify how far around the casing a rub extends: none, partial or full annular.
 
-    `duty` is the share of the time with contact, 0 to 1. A rub is full annular if `duty` is at least LASTING and the
-    contact zone is the whole circle (Muszynska 2005, Rotordynamics, ch. 5).
+    `duty` is the share of the time with contact, 0 to 1, `zones` the contact zones of the record. A rub is full annular
+    if `duty` is at least LASTING and the single zone is the whole circle (Muszynska 2005, Rotordynamics, ch. 5). There
+    is none if `duty` is 0.
     """
     if duty == 0:
         return RubExtent.NONE

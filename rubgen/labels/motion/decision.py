@@ -66,7 +66,7 @@ FORCED = MotionClass(motion=Motion.PERIOD_1, period=1)
 
 
 def decide(seen: Indicators) -> MotionClass:
-    """Return the class of motion on which the indicators agree. If they contradict, the class is undecided.
+    """Return the class of motion on which the indicators `seen` of a part agree. If they contradict, it is undecided.
 
     - Clusters: periodic at the scale of the motion. The rest may be chaotic at a far smaller scale. If the rest is not
       far smaller (CLOSE) and the two other indicators find chaos, the part is undecided.

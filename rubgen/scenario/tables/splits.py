@@ -85,6 +85,8 @@ def share_of(split: float | SplitTable) -> float:
 def split_of_machine(splits: Mapping[str, Any], seed: int, number: int) -> str:
     """Return the name of the split of machine `number`. It does not depend on the number of machines.
 
+    `splits` is the recipe's table `[splits]` and `seed` the recipe's seed.
+
     u = frac(u0 + number (sqrt(5) - 1) / 2), with u0 drawn by the seed, lies in the split's interval of [0, 1). Of n
     successive machines each split has its share to within some machines (three-distance theorem). The same holds for
     the machines of each file where the recipe has several.

@@ -104,7 +104,10 @@ def plate_mesh() -> Mesh:
 
 
 def plate_shapes(machine: Machine, factor: float) -> FloatArray:
-    """Return matrices (stations, 3, 3) that stretch and turn `plate_mesh` into the plates of the casing at rest."""
+    """Return matrices (stations, 3, 3) that stretch and turn `plate_mesh` into the plates of the casing at rest.
+
+    `factor` is as in `undeformed_curve`.
+    """
     curve = undeformed_curve(machine, casing_angles(), factor)
     chord = (np.roll(curve, -1, axis=0) - np.roll(curve, 1, axis=0)) / 2
     length = np.linalg.norm(chord, axis=1)
@@ -262,7 +265,7 @@ def drawn_tips(machine: Machine, frames: MotionFrames, factor: float) -> FloatAr
 
 
 def spring(start: FloatArray, end: FloatArray) -> FloatArray:
-    """Return a zigzag line (points, 3) between two points, in the plane across Z."""
+    """Return a zigzag line (points, 3) from `start` (3,) to `end` (3,), in m, in the plane across Z."""
     share = np.concatenate([[0.0, 0.15], np.linspace(0.2, 0.8, 2 * COILS), [0.85, 1.0]])
     side = np.concatenate([[0.0, 0.0], COIL_WIDTH_M * (-1.0) ** np.arange(2 * COILS), [0.0, 0.0]])
     along = end - start

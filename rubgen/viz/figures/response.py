@@ -59,9 +59,9 @@ def unbalance_response(model: ReducedModel, speeds_rpm: tuple[float, float] | No
 def whirl_of_unbalance(model: ReducedModel, speeds_rpm: FloatArray) -> ComplexArray:
     """Compute the complex amplitudes (speeds, 2) of the disk centre's forward and backward 1X whirl, m.
 
-    x + i y = forward e^(i theta) + backward e^(-i theta) + other orders, in the inertial frame, at each steady speed
-    without contact (`rub_free_motion`). In the turning frame the forward part is the mean of the motion and the
-    backward part turns with -2 theta.
+    x + i y = forward e^(i theta) + backward e^(-i theta) + other orders, in the inertial frame, at each steady speed of
+    `speeds_rpm` (speeds,) in rev/min, without contact (`rub_free_motion`). In the turning frame the forward part is the
+    mean of the motion and the backward part turns with -2 theta.
     """
     from rubgen.solver.linear.rub_free import rub_free_motion  # it imports kernels, which readers must not
 

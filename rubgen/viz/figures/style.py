@@ -76,7 +76,10 @@ def motion_legend(motions: Iterable[str], marker: str | None = None, *, hollow: 
 
 
 def save_png(figure: Figure, path: Path, *, dpi: int = 110) -> None:
-    """Write `figure` as PNG without a date or version: the same figure always makes the same bytes."""
+    """Write `figure` as PNG without a date or version: the same figure always makes the same bytes.
+
+    `dpi` is the number of pixels an inch.
+    """
     figure.savefig(path, dpi=dpi, metadata={"Software": None})
 
 
