@@ -43,7 +43,8 @@ def counts(data: DataSet) -> str:
 
 def results(data: DataSet, found: Sequence[Baseline], whole: int) -> str:
     """The part of the page: how large the set is, what it holds, and the scores."""
-    return f"""Of {len(data.runs):,} runs of {whole:,}, made with rubgen {rubgen.__version__}:
+    many = f"all {whole:,} runs" if len(data.runs) == whole else f"{len(data.runs):,} runs of {whole:,}"
+    return f"""Of {many}, made with rubgen {rubgen.__version__}:
 
 {counts(data)}
 
