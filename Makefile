@@ -53,6 +53,7 @@ sample: $(VENV)/.installed
 
 baselines: $(VENV)/.installed-dev
 	$(BIN)/python -m validation.benchmark out/blade-rub-bench-v1
+	$(BIN)/python -m validation.benchmark out/blade-rub-bench-v1 --ways 240
 
 bench-set: $(VENV)/.installed
 	$(BIN)/rubgen generate rubgen/scenario/recipes/blade-rub-bench-v1.toml --out out/blade-rub-bench-v1

@@ -1,7 +1,7 @@
-"""What a set of the benchmark holds and what baselines score on it: `python -m validation.benchmark DIR [--runs N]`.
+"""What a set of the benchmark holds and what baselines score on it: `python -m validation.benchmark DIR [--ways N]`.
 
-The tables go to docs/benchmark.md. The last one is of the first N runs, made in three ways beside DIR: as they are,
-without the noise of sensors, and without surroundings.
+The tables go to docs/benchmark.md. With --ways only the last one is made. It is of the first N runs, made in three ways
+beside DIR: as they are, without the noise of sensors, and without surroundings.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from rubgen.scenario.load import RECIPES
 from validation.markdown import table, with_tables
 
 PAGE = Path(__file__).parents[1] / "docs" / "benchmark.md"
-RECIPE, RUNS = "blade-rub-bench-v1", 240
+RECIPE = "blade-rub-bench-v1"
 MODELS = ("majority", "one threshold", "boosting", "rocket")
 WAY_TASKS = ("rub", "severity", "faults")
 
@@ -102,16 +102,18 @@ def scores_of_each_way(made: dict[str, Path]) -> str:
 
 
 def main() -> None:
-    """Score the sets and write the page."""
+    """Score the set, or the first runs in each way, and write the page."""
     parser = argparse.ArgumentParser(prog="python -m validation.benchmark")
     parser.add_argument("directory", type=Path)
-    parser.add_argument("--runs", type=int, default=RUNS, help="number of runs that are made in each way")
+    parser.add_argument("--ways", type=int, metavar="N", help="make and score only the first N runs in each way")
     given = parser.parse_args()
+    if given.ways:
+        ways = scores_of_each_way(made_in_each_way(given.directory, given.ways))
+        _fill("ways", f"Of {given.ways} runs, by group:\n\n{ways}")
+        return
     found, reasons = baselines(given.directory, workers=usable_cores())
     impossible = "".join(f"\n- {name}: not possible: {reason}" for name, reason in reasons.items())
     _fill("baselines", results(rubgen.open(given.directory), found, load_recipe(RECIPE).runs) + impossible)
-    ways = scores_of_each_way(made_in_each_way(given.directory, given.runs))
-    _fill("ways", f"Of {given.runs} runs, by group:\n\n{ways}")
 
 
 def _fill(name: str, text: str) -> None:
