@@ -46,18 +46,18 @@ class TapOrders:
 
     @property
     def even_share(self) -> float:
-        """Share of the sum of squared amplitudes that is on even orders; NaN where all are zero or one is NaN."""
+        """Share of the sum of squared amplitudes that is on even orders; NaN where the sum is zero or one is NaN."""
         return _share(self.amplitudes, self.amplitudes[1::2])
 
     @property
     def odd_share(self) -> float:
-        """Share of the sum of squared amplitudes that is on odd orders; NaN where all are zero or one is NaN."""
+        """Share of the sum of squared amplitudes that is on odd orders; NaN where the sum is zero or one is NaN."""
         return _share(self.amplitudes, self.amplitudes[0::2])
 
     @property
     def dominant(self) -> int:
-        """The order k of the largest amplitude; 0 where all amplitudes are zero."""
-        return int(np.nanargmax(self.amplitudes)) + 1 if np.nansum(self.amplitudes) > 0 else 0
+        """The order k of the largest amplitude; 0 where the sum of squared amplitudes is zero, as below 1e-162."""
+        return int(np.nanargmax(self.amplitudes)) + 1 if np.nansum(self.amplitudes**2) > 0 else 0
 
     @property
     def present(self) -> tuple[int, ...]:

@@ -186,9 +186,11 @@ def _present_fit(row: Row) -> bool:
 
 
 def _shares_fit(row: Row, tap: str) -> bool:
-    orders = np.asarray(row[f"{tap}_orders"])
-    even, odd = row[f"{tap}_even_share"], row[f"{tap}_odd_share"]
-    if not orders.any():
-        return even is None and odd is None and row[f"{tap}_dominant_order"] == 0
-    total = math.nan if even is None or odd is None else even + odd
-    return bool(abs(total - 1) < SHARE_TOLERANCE and row[f"{tap}_dominant_order"] == int(orders.argmax()) + 1)
+    orders = np.asarray(row[f"{tap}_orders"], dtype=np.float64)  # NaN above half the step rate
+    even, odd, dominant = (row[f"{tap}_{name}"] for name in ("even_share", "odd_share", "dominant_order"))
+    moves = bool(np.nansum(orders**2) > 0)
+    if dominant != (int(np.nanargmax(orders)) + 1 if moves else 0):
+        return False
+    if not moves or np.isnan(orders).any():
+        return even is None and odd is None
+    return even is not None and odd is not None and bool(abs(even + odd - 1) < SHARE_TOLERANCE)

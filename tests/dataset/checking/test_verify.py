@@ -137,6 +137,26 @@ def test_labels_that_contradict_each_other_are_found(change, message, rows):
     assert message in " | ".join(label_problems({**row, **change}))
 
 
+NOTHING = {"even_share": None, "odd_share": None}
+
+
+@pytest.mark.parametrize(
+    ("orders", "rest", "holds"),
+    [
+        ([1e-165, 2e-165, *[0.0] * 18], {"dominant_order": 0} | NOTHING, True),  # squares are zero
+        ([1e-165, 2e-165, *[0.0] * 18], {"dominant_order": 2} | NOTHING, False),
+        ([3.0, 4.0, *[0.0] * 14, *[None] * 4], {"dominant_order": 2} | NOTHING, True),  # above half the step rate
+        ([3.0, 4.0, *[0.0] * 14, *[None] * 4], {"dominant_order": 1} | NOTHING, False),
+        ([3.0, 4.0, *[0.0] * 18], {"dominant_order": 2, "even_share": 0.64, "odd_share": 0.36}, True),
+        ([3.0, 4.0, *[0.0] * 18], {"dominant_order": 2} | NOTHING, False),
+    ],
+)
+def test_shares_are_undefined_where_orders_are(orders, rest, holds, rows):
+    row, _ = rows[True]
+    changed = {f"blisk_x_{name}": value for name, value in ({"orders": orders} | rest).items()}
+    assert ("shares or dominant order of blisk_x" not in list(label_problems({**row, **changed}))) == holds
+
+
 def test_second_order_needs_contact(rows):
     row, _ = rows[False]
     assert "has_2fr without rub" in list(label_problems({**row, "has_2fr": True}))
