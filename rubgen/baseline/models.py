@@ -159,7 +159,8 @@ class Ridge:
         ).fit(numbers, targets, groups=groups)
         if targets.ndim == 2:
             said = self.model.predict(numbers)
-            self.zero, self.one = _means(said, targets == 0, absent=0), _means(said, targets == 1, absent=1)
+            self.zero, one = _means(said, targets == 0, absent=0), _means(said, targets == 1, absent=1)
+            self.spread = np.where(one > self.zero, one - self.zero, np.inf)  # equal numbers tell no sample apart
         return self
 
     def predict(self, numbers: Float32Array) -> Answer:
@@ -167,7 +168,7 @@ class Ridge:
         found = np.asarray(self.model.predict(numbers))
         if found.ndim == 1:
             return found
-        scaled = (found - self.zero) / (self.one - self.zero)
+        scaled = (found - self.zero) / self.spread
         return (scaled > 0.5).astype(np.int64) if self.classes is None else self.classes[np.argmax(scaled, axis=1)]
 
     def rank(self, numbers: Float32Array) -> FloatArray:

@@ -208,6 +208,13 @@ def test_ridge_ranks_by_its_last_class_and_predicts_numbers():
     assert (learned.rank(numbers) == 0).all()
 
 
+def test_ridge_answers_where_all_numbers_are_equal():
+    numbers, answers = np.ones((40, 3), dtype=np.float32), np.arange(40) % 2
+    assert set(Ridge(0).fit(numbers, answers, np.arange(40)).predict(numbers)) <= {0, 1}
+    labels = np.column_stack([answers, np.ones(40)]).astype(int)
+    assert (Ridge(0).fit(numbers, labels, np.arange(40)).predict(numbers)[:, 1] == 1).all()
+
+
 def test_nothing_is_learned_where_no_metric_is_defined():
     def never(_seed):
         raise AssertionError("a model was made")
