@@ -280,6 +280,10 @@ BAD = {
         {"machines": {"count": 3, "vary": V}, "splits": {"train": 0.6, "validation": 0.05, "test": 0.35}},
         "splits.validation: none of the 3 machines falls into it; take at least",
     ),
+    "never a machine in it": (
+        {"machines": {"count": 3, "vary": V}, "splits": {"train": 1 - 1e-9, "test": 1e-9}},
+        "splits.test: none of the 3 machines falls into it; take a larger share",
+    ),
     "unknown key": (
         {"machines": {"count": 9, "vary": V}, "splits": {"train": {"share": 1, "machine": {}}}},
         "splits.train.machine: unknown key; did you mean machine? allowed: machines, operation,",

@@ -15,7 +15,7 @@ from rubgen.scenario.distributions import Choice, Constant
 from rubgen.scenario.machines.keys import MACHINE_KEYS, with_values
 from rubgen.scenario.scenario import Scenario
 from rubgen.scenario.tables.machines import MachineTable
-from rubgen.scenario.tables.splits import SplitTable, enough_machines, split_of_machine
+from rubgen.scenario.tables.splits import SplitTable, enough_machines
 from rubgen.scenario.vary import FREE_PENETRATION
 from rubgen.sensors.sensor_set import SensorSet
 
@@ -88,8 +88,7 @@ def _check_count(recipe: Recipe, table: MachineTable, source: str) -> None:
 def check_splits(recipe: Recipe, source: str) -> None:
     """Check that every split of a recipe has machines, and that all splits have the same columns.
 
-    Raises UserError, beginning with `source`, where they do not. A recipe without `[splits]` passes. Of more than
-    10,000 machines the first 10,000 are looked at.
+    Raises UserError, beginning with `source`, where they do not. A recipe without `[splits]` passes.
     """
     splits, machines = recipe.splits, recipe.machine_count
     if not splits:
@@ -98,13 +97,13 @@ def check_splits(recipe: Recipe, source: str) -> None:
         raise UserError(
             f"{source}: splits: go by machine, and the recipe has one machine; add [machines], or leave [splits] out"
         )
-    filled = {split_of_machine(splits, recipe.seed, number) for number in range(min(machines, 10_000))}
     for name, split in splits.items():
-        if name not in filled:
-            enough = enough_machines(splits, recipe.seed, name)
+        enough = enough_machines(splits, recipe.seed, name)
+        if enough is None or enough > machines:
+            runs = enough and enough * recipe.machines.runs_per_machine
+            more = f"at least {enough} machines, {runs} runs, or " if enough else ""
             raise UserError(
-                f"{source}: splits.{name}: none of the {machines} machines falls into it; take at least {enough} "
-                f"machines, {enough * recipe.machines.runs_per_machine} runs, or a larger share"
+                f"{source}: splits.{name}: none of the {machines} machines falls into it; take {more}a larger share"
             )
         if isinstance(split, SplitTable):
             _check_columns(recipe, split, f"{source}: splits.{name}")

@@ -100,12 +100,12 @@ def split_of_machine(splits: Mapping[str, Any], seed: int, number: int) -> str:
     return name
 
 
-def enough_machines(splits: Mapping[str, Any], seed: int, name: str) -> int:
-    """Return the least number of machines of which at least one is in the split `name`.
+def enough_machines(splits: Mapping[str, Any], seed: int, name: str) -> int | None:
+    """Return the least number of machines of which one is in the split `name`; None if that is above MOST_RUNS.
 
     `splits` is the recipe's table `[splits]` and `seed` the recipe's seed.
     """
-    return next(number for number in range(MOST_RUNS) if split_of_machine(splits, seed, number) == name) + 1
+    return next((number + 1 for number in range(MOST_RUNS) if split_of_machine(splits, seed, number) == name), None)
 
 
 def changes_of(recipe: Any, split: SplitTable) -> dict[str, Any]:
