@@ -208,16 +208,8 @@ def run_turn(
     """Integrate one turn or part of a turn. Return a code, the step where it ended, and the number of ended touches.
 
     The code is OK, or the code of `step_kernels` for the failure of a step. The turn ends at a step that fails: outputs
-    of later steps are not written, and present touches are not ended. Taps of step n contain the contact force lam_n of
-    the same time.
-
-    - model: constants; its `angles` have the steps.
-    - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., steps, m.
-    - clock: number of the first step in the run.
-    - recording: False leaves out taps, orbit and arrivals. The motion is the same.
-    - state: changed. Its motions are at step -1, at step 0, and scratch; they change places with every step.
-    - touches, result: written.
-    - snapshots: written at their steps; the last step is the end of the turn or later.
+    of later steps are not written, and present touches are not ended. The parameters are those of `run_turns`, of one
+    turn. The motions of `state` are at step -1, at step 0, and scratch; they change places with every step.
     """
     laws, steps = model.laws, model.angles.cosine.shape[0] - 2
     work, scratch = state.contact, state.scratch
@@ -316,11 +308,15 @@ def run_turns(
     Return a code, the number of turns without a failed step, and the step where the last turn ended. The code is OK, or
     that of a turn which failed (`run_turn`). No turn follows it; its row of `ends` is written too.
 
-    - opening (turns, steps + 2): as in `run_turn`, a row for each turn. `touches.ended`, `results`, `ends` and the
-      arrays of `snapshots` except `steps` also have a row for each turn.
-    - state: its arrays are changed. `moved_on` for the number of all steps gives the state at the end.
-    - model, recording, taps: as in `run_turn`. Arrivals are those of the last turn.
+    - model: constants; its `angles` have the steps.
+    - opening (turns, steps + 2): added to the radius of the surface at steps -1, 0, ..., steps of each turn, m.
     - clock: number of the first step of the first turn in the run.
+    - recording: False leaves out taps, orbit and arrivals. The motion is the same.
+    - state: its arrays are changed. `moved_on` for the number of all steps gives the state at the end.
+    - taps: true signals of the present step n, with the contact force lam_n of the same time; changed.
+    - touches, results, ends: written. `touches.ended` has a row for each turn. Arrivals are those of the last turn.
+    - snapshots: written at their steps; the last step is the end of a turn or later. Its arrays except `steps` have a
+      row for each turn.
     """
     code, step, steps = OK, 0, model.angles.cosine.shape[0] - 2
     for t in range(opening.shape[0]):
