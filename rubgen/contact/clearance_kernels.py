@@ -1,4 +1,4 @@
-"""Bounds of tip clearance and of casing displacement. They only save work: no result depends on them."""
+"""Bounds of tip clearance and of casing displacement. They only save work: no bit of a run depends on them."""
 
 import math
 
@@ -159,7 +159,8 @@ def radial_displacement(surface: Surface, casing: FloatArray, angle: float) -> f
     """Return the radial displacement u_r of the casing at a polar angle, m: linear in the angle between two nodes.
 
     - casing (a multiple of eight,): the casing's modal coordinates, then zeros.
-    - angle: inertial polar angle, rad, of any number of turns. Node i is at i times `surface.node_step`.
+    - angle: polar angle in the inertial frame, rad; it need not lie in [0, 2 pi). Node i is at i times
+      `surface.node_step`.
     """
     nodes = surface.radial.shape[0]
     position = angle * (1.0 / surface.node_step)

@@ -2,7 +2,8 @@
 
 Geometry is evaluated at the free state q* and the angle theta of the new step. B_n lam is the normal force. B lam with
 B = B_n + mu B_tau is the whole force. Both matrices have entries only at three tip coordinates and the casing modes of
-each contact.
+each contact. A is the matrix of the time step, A q_n+1 = right side: A^-1 times a force is the displacement by which
+the force changes q_n+1.
 """
 
 import math
@@ -240,7 +241,8 @@ def build_rows(
 def build_casing_response(m: int, compliance: FloatArray, work: ContactWork) -> None:
     """Write A^-1 B of contact m on the casing into row m of `work.casing_response`.
 
-    `compliance[j]` (n_casing,) is column j of the casing's part of A^-1.
+    `work.full_casing[m]` must have been written (`build_rows`). `compliance` (n_casing, n_casing) is the casing's part
+    of A^-1; row j is column j of A^-1.
     """
     n_casing = work.rows.shape[1]
     for i in range(n_casing):
@@ -255,7 +257,12 @@ def build_casing_response(m: int, compliance: FloatArray, work: ContactWork) -> 
 def build_compliance(count: int, compliance: FloatArray, work: ContactWork) -> None:
     """Write W = B_n^T A^-1 B of all `count` contacts into `work.W`: the change of each gap per newton of each force.
 
-    `compliance[j]` (3 n_blades,) is column j of A^-1 between tip coordinates.
+    Rows m < `count` of `blade`, `normal_tip`, `full_tip`, `normal_casing` and `casing_response` of `work` must have
+    been written (`build_rows`, `build_casing_response`). Written is `work.W[:count, :count]`, m/N; it contains tips and
+    casing.
+
+    - compliance (3 n_blades, 3 n_blades): row j is column j of A^-1 between the tip coordinates, m/N. Coordinates 3 k,
+      3 k + 1 and 3 k + 2 are radial, tangential and axial of blade k.
     """
     for row in range(count):
         base = 3 * work.blade[row]

@@ -30,7 +30,7 @@ SPIN = np.kron(np.eye(2), np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0
 
 @dataclass(frozen=True)
 class ShellInertia:
-    """Inertia matrices of a mesh: mass M, Coriolis G (skew), spin softening S, each (6 n, 6 n)."""
+    """Inertia matrices of n nodes, each (6 n, 6 n), kg and kg m2: mass M, Coriolis G (skew), spin softening S."""
 
     M: SparseMatrix
     G: SparseMatrix
@@ -53,7 +53,8 @@ def shell_stiffness(mesh: ShellMesh, material: Material) -> SparseMatrix:
 def shell_inertia(mesh: ShellMesh, material: Material) -> ShellInertia:
     """Assemble the consistent inertia of a mesh: rho h on translations, rho h^3/12 on th_x and th_y, none on th_z.
 
-    M = int rho N^T N; S = int rho N^T (1 - e_z e_z^T) N, without w; G = int rho N^T (e_z x N) = (e_z x) S.
+    M = int rho N^T N is the mass. S = int rho N^T (1 - e_z e_z^T) N is M with zeros for w: it has the inertia of u, v,
+    th_x and th_y. G = int rho N^T (e_z x N) = (e_z x) S, without the factor 2 Omega of the Coriolis force.
     """
     points, T = quadrature(mesh.firsts, 3), _following(_element_stiffness(mesh.firsts, material))
     rho_area = material.density_kg_per_m3 * points.area

@@ -111,11 +111,15 @@ class Blocks:
         return Product(np.ascontiguousarray(product.lines[kept]), product.entries)
 
     def skew_pairs(self, matrix: FloatArray, like: FloatArray, most: int) -> FloatArray | None:
-        """Divide a skew-symmetric matrix (n, n) into pairs of vectors a, b in z: it is the sum of a b^T - b a^T.
+        """Divide a skew-symmetric matrix into pairs of vectors a, b: the matrix is the sum of a b^T - b a^T.
 
-        Returns the vectors (pairs, 2, any), or None where `most` pairs leave more than rounding (ROUNDING) relative to
-        the matrix `like` (n, n). Each pair clears the rows and columns of one entry, the largest of what is left
-        relative to `scale_of`.
+        - matrix (n, n): in the coordinates q. Its symmetric part is ignored.
+        - like (n, n): the matrix, such as K, from whose entries `matrix` was computed. Entries up to ROUNDING times its
+          `scale_of` count as zero.
+        - most: largest number of pairs.
+
+        Returns the vectors (pairs, 2, 8 rows) in the order of z, or None if `most` pairs are not enough. Each pair
+        clears the two rows and columns of the largest entry that is left, relative to the scale of `like`.
         """
         left = self.transform.T @ matrix @ self.transform
         left = (left - left.T) / 2

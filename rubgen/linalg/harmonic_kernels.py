@@ -29,9 +29,13 @@ class Harmonics(NamedTuple):
 
 @inlined_kernel
 def recover_tips(harmonics: Harmonics, z: FloatArray, share_work: FloatArray, tips_out: FloatArray) -> None:
-    """Compute the coordinates of all tips from z, into `tips_out` (2 or 3, width): radial, tangential and axial.
+    """Compute the coordinates of all tips from z, into the rows of `tips_out`: radial, tangential and axial.
 
-    The axial coordinate is computed if `tips_out` has three rows. `share_work` (3, any) is scratch.
+    The coordinates have the unit of z: m, or m/s of a velocity.
+
+    - share_work (3, `share_width(n_blades)` or more): scratch.
+    - tips_out (2 or 3, n_blades or more): written, one column a blade. Further columns are not changed. The axial
+      coordinate is computed if there are three rows.
     """
     blades, many, sums = harmonics.basis.shape[0], tips_out.shape[0], share_work
     half = blades // 2 if blades % 2 == 0 else blades
@@ -61,7 +65,7 @@ def recover_rest(harmonics: Harmonics, z: FloatArray, q_out: FloatArray) -> None
 def recover_all(
     harmonics: Harmonics, z: FloatArray, share_work: FloatArray, tips_work: FloatArray, q: FloatArray
 ) -> None:
-    """Compute all coordinates q (n,) from z. `share_work` (3, any) and `tips_work` (3, width) are scratch."""
+    """Compute all coordinates from z, into `q` (n,). `share_work` and `tips_work` are scratch, as in `recover_tips`."""
     recover_tips(harmonics, z, share_work, tips_work)
     for k in range(harmonics.basis.shape[0]):
         for a in range(3):

@@ -26,9 +26,10 @@ def preset_names() -> list[str]:
 
 
 def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
-    """Load the preset with the given name, or the machine in a TOML file. A relative path starts from `folder`.
+    """Load the preset with the given name, or the machine in a TOML file: a text that ends with .toml is a path.
 
-    Raises UserError with file, key, value and what is allowed where the machine does not exist or is not valid.
+    A relative path starts from `folder`; None is the current directory. Raises UserError with file, key, value and what
+    is allowed where the machine does not exist or is not valid.
     """
     if name_or_path in preset_names():
         return _machine_from(PRESETS / f"{name_or_path}.toml")

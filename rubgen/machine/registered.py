@@ -1,10 +1,10 @@
-"""Find the laws that are registered as keys of a record: a field whose type is a law or None."""
+"""Find the laws that are registered as keys of a record: a field of the type `SomeLaw | None`."""
 
 from typing import Any, get_args, get_type_hints
 
 
 def registered(record: Any, law: Any) -> dict[str, Any]:
-    """Return the fields of the class `record` whose type is a subclass of `law` or None, each with this subclass."""
+    """Return L by field name, for each field of the class `record` with a type `L | None`, L a subclass of `law`."""
     return {
         key: kind
         for key, hint in get_type_hints(record).items()

@@ -54,9 +54,10 @@ def start_seconds(sensing: Sensing, seconds: float, *, steps: int, dt: float) ->
 def margin_seconds(sensing: Sensing, seconds: float = 0.0, frame: Frame | None = None) -> float:
     """Return the length of signal in s that a recording of `seconds` needs in addition to `seconds`.
 
-    It is half the filter's length on either side, the memory of the filters of sensors with dynamics and of the modes
-    of `frame` (None without a frame), and the error of early or late clocks. Two sample periods are added for rounding
-    to whole steps and samples.
+    It is the sum of half the anti-alias filter's length on either side, the decay time of the sensors' own filters, the
+    decay time of the modes of the machine's `frame` (None without a frame), and how far the sensors' clocks are early
+    and late within `seconds`. A decay time is the time in which a start decays to 1e-4. Two sample periods are added
+    for rounding to whole steps and samples.
     """
     margin = 2 * half_width_seconds(sensing.sample_rate_hz) + 2 / sensing.sample_rate_hz
     margin += max((memory_seconds(each) for each in sensing.set.sampled), default=0.0)
@@ -65,10 +66,11 @@ def margin_seconds(sensing: Sensing, seconds: float = 0.0, frame: Frame | None =
 
 
 def impulse_response(time: FloatArray, sample_rate_hz: float) -> FloatArray:
-    """Return h(t) of the anti-alias filter in 1/s at `time` (any,) in s.
+    """Return h(t) of the anti-alias filter in 1/s at each `time` in s, an array of any shape.
 
-    A sinc, cut off midway in the transition band, with a Kaiser window: h(t) = 2 f_c sinc(2 f_c t) I0(beta sqrt(1 -
-    (t/W)^2)) / I0(beta) for |t| < W, else 0. It is even, hence without delay.
+    A sinc with a Kaiser window: h(t) = 2 f_c sinc(2 f_c t) I0(beta sqrt(1 - (t/W)^2)) / I0(beta) for |t| < W, else 0.
+    The cut-off frequency f_c is midway between the end of the pass band and the Nyquist frequency. W is
+    `half_width_seconds`, beta KAISER_BETA. h is even, so the filter has no delay.
     """
     half_width = half_width_seconds(sample_rate_hz)
     cut_off = sample_rate_hz / 4 * (1 + PASS_BAND_SHARE)

@@ -54,7 +54,7 @@ def _behind_filters(sensor: SampledSensor, signal: FloatArray, dt: float) -> Flo
 
 
 def memory_seconds(sensor: SampledSensor) -> float:
-    """Return the memory of the sensor's filters in s: the length of signal needed before the first sample.
+    """Return the decay time of the sensor's filters in s: the length of signal needed before the first sample.
 
     It is the time in which the start of a filter decays to 1e-4, summed over bandwidth and resonance. It is 0 for a
     sensor without filters.

@@ -69,11 +69,13 @@ class ReducedModel:
         Blisk: C = 2 Omega G + C_s + beta K_e, K = K_e + K_s + Omega^2 (K_sigma - S) + Omega H_s, with C_s = T^T D T and
         H_s = T^T D S6 T. T (6, n) gives the motion of O_d. The dampers D = diag(c) are in the inertial frame and act on
         the absolute velocity (S6 is e_z x). The term Omega H_s makes K unsymmetric. Casing modes: 1, 2 zeta omega,
-        omega^2. Each unbalance acts with Omega^2 U outward, on O_d or on a tip. The unbalance of uneven growth
-        (mistuned blades) acts on O_d. Uneven supports, laws of the support, gravity and loads of faults that turn or
-        grow are in `turning`. A changing speed adds Omega' G to K and -Omega' (f_t + e_z x U) to the forces (Euler
-        term). Acceleration and change of the tips' steady growth are left out, a share of at most Omega' / Omega^2 of
-        it.
+        omega^2. Each unbalance acts with Omega^2 U outward, on O_d or on a tip. Mistuned blades grow unequally under
+        the centrifugal load: the unbalance of this growth acts on O_d. Uneven supports, laws of the support, gravity
+        and loads of faults that turn or grow are in the field `turning` of the result, all other loads in `force`.
+
+        A changing speed adds Omega' G to K and -Omega' (f_t + e_z x U) to the forces (Euler force). f_t = int rho N^T
+        (e_z x r) is the tangential load of the undeformed blisk. The inertia of the tips' steady growth while the speed
+        changes is left out: at most the share Omega' / Omega^2 of the growth.
         """
         with one_blas_thread():
             return self._assemble(speed, acceleration)

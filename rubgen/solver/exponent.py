@@ -90,16 +90,18 @@ def is_settled(growth: Sequence[float]) -> bool:
 def changed_after(impulse: FloatArray, turns: int, exponent: float) -> bool:
     """Return whether the class of a motion has changed since its exponent was settled after `turns` turns.
 
-    - impulse (n,): impulse of each turn, N s.
-    - turns: number of turns from which the exponent was computed, 100 at least.
-    - exponent: its value in 1/turn.
+    - impulse (n,): impulse of each turn of the record from its first, N s.
+    - turns: number of first turns from which the exponent was computed, 100 at least.
+    - exponent: its value in 1/turn. Only its sign is used.
 
-    It has not changed where fewer than 50 turns follow.
+    Chaos may be a transient, and a regular motion an episode. The deviation of successive turns is the rms difference
+    of their impulses from the impulses p turns before, for the p = 1..16 where it is least. The 100 turns before
+    `turns` are compared with each 50 turns after `turns`. A motion with a positive exponent has changed if the
+    deviation falls to less than a tenth in any of these 50 turns. Any other motion has changed if the deviation rises
+    to more than ten times. With fewer than 50 later turns the result is False.
 
-    Chaos may be a transient, and a regular motion an episode. A motion with a positive exponent has changed if some 50
-    later turns repeat ten times more closely than the last 100 turns before. Any other motion has changed if they
-    repeat ten times less closely. Of 86 rubs of three recipes one changed, and repeated to rounding. The other chaotic
-    rubs stayed within factors of 0.34 and 2.2; the regular rubs repeated more and more closely.
+    Of 86 rubs of three recipes one changed: its deviation fell to rounding. In the other chaotic rubs the deviation
+    changed by a factor of 0.34 to 2.2. In the regular rubs it fell.
     """
     before = _unlikeness(impulse[turns - CHANGE_TURNS : turns])
     starts = range(turns, len(impulse) - ASKED_EVERY + 1, ASKED_EVERY)

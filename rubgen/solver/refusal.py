@@ -1,4 +1,4 @@
-"""Refuse runs that cannot be integrated: the reason, known before the run, and the response.
+"""Refuse runs that cannot be integrated: find the reason before the run, and make a response with this reason.
 
 O_d is the disk centre.
 """
@@ -104,10 +104,11 @@ def film_refusal(system: SpinningSystem, steps: int) -> Refusal | None:
 
 
 def stability(system: SpinningSystem) -> tuple[Refusal | None, float]:
-    """Return a refusal, and the slowest decay of all modes in 1/s. The refusal is None for a stable system.
+    """Return a refusal, and the `slowest_decay` of the system in 1/s. The refusal is None for a stable system.
 
-    A refusal is status UNSTABLE and a reason. It is returned if the system grows by itself, or if the slowest decay is
-    at most 1e-6 of the speed in rad/s.
+    A refusal is status UNSTABLE and a reason. It is returned if the decay is negative (a motion grows without a force)
+    or at most 1e-6 of the speed in rad/s. With supports that make the system periodic it is the decay of the Floquet
+    exponents.
     """
     decay = slowest_decay(system)
     if decay > UNDYING_SHARE * system.speed:

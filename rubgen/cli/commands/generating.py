@@ -36,8 +36,9 @@ class Work:
 def generate_command(recipe: Path | None, out: Path, runs: int | None, work: Work, *, as_json: bool) -> int:
     """Generate a data set and print a summary. `recipe`, `out`, `runs` and `work` are as in `rubgen.generate`.
 
-    Returns the exit code 1 where no run of the set is ok, else 0; of a part always 0. After Ctrl-C it prints how to
-    continue and returns 130.
+    `recipe` None is the default recipe. With `as_json` the summary is JSON, and no progress is shown. Returns the exit
+    code 1 where no run of the set is ok, else 0. For a part of a set (`work.shard`) it is always 0. After Ctrl-C it
+    prints how to continue and returns 130.
     """
     made = partial(generate, recipe, out, runs=runs, progress=not as_json, **dataclasses.asdict(work))
     kept_in = RemoteMaking(str(out), work.shard or "").layout.root if is_url(out) else out

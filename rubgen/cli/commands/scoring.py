@@ -18,8 +18,9 @@ from rubgen.progress import step
 def baseline_command(directory: Path, task: str | None, out: Path | None, *, force: bool, as_json: bool) -> int:
     """Score simple models on a data set, print a table, and write it as JSON to `out` if given.
 
-    `task` are names of tasks with commas between them; None takes all. Returns the exit code 1 where a task is marked
-    because one threshold or no model solves it; else 0.
+    `task` are names of tasks with commas between them; None takes all that are possible. `force` replaces an existing
+    `out`. `as_json` prints JSON in place of the table. Returns the exit code 1 if one threshold solves a task, or if no
+    model solves one; else 0.
     """
     if out:
         check_new_file("--out", out, (".json",), force=force)

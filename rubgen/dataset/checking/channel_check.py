@@ -1,6 +1,7 @@
 """Checks of labels against labels of windows, and against the recorded channels as far as their errors allow.
 
-A row has the columns of one run.
+A row has the parameters and labels of one run with status ok, by the column names of `runs.parquet`, and the labels of
+its windows.
 """
 
 import math
@@ -186,19 +187,20 @@ def _window_turns(row: Row) -> FloatArray:
 
 
 def order_problems(row: Row, tap: str, values: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
-    """Compare the amplitudes of a true signal at orders 1 to 10 with the amplitudes of its channel.
+    """Compare the labels of a true signal, its amplitudes at orders 1 to 10, with the amplitudes of its channel.
 
     The label covers the last SPECTRUM_TURNS turns of the record, or all turns if there are fewer. Nothing is compared
     where the channel has fewer turns than the label. Orders above the pass band of the anti-alias filter are not
     compared.
 
     Amplitudes may differ by the sum of three bounds: the effect of noise and ADC, ORDER_TOLERANCE of the largest
-    amplitude of the label, and the effect of the last samples of the record, which the channel does not have. Yields
-    one sentence, about the order with the largest excess, if an amplitude differs by more.
+    amplitude of the label, and the effect of the end of the record. The channel ends half an anti-alias filter before
+    the record. Yields one sentence, about the order with the largest excess, if an amplitude differs by more.
 
-    - row: the labels by column, of a run at a steady speed; this is not checked.
-    - tap: name of the true signal.
-    - values (samples,): the channel.
+    - row: of a run at a steady speed; this is not checked.
+    - tap: name of the true signal, such as casing_acc_0.
+    - values (samples,): the channel in SI units, of a sensor without errors besides noise, range and ADC
+      (`is_faultless`).
     - noise_rms, step: noise and ADC step, in the channel's unit.
     """
     turns = min(SPECTRUM_TURNS, row["record_turns"])

@@ -69,9 +69,10 @@ def find_replay(source: Path, run_id: str | None = None, where: str | None = Non
 
 
 def replay_of_mcap(path: Path) -> FoundReplay:
-    """Make the replay of an MCAP file. The remarks name the content that a damaged file has lost.
+    """Make the replay of the run in an MCAP file. The remarks name the content that a damaged file has lost.
 
-    Raises UserError where the file cannot be read even in part, or its scenario is of another version of rubgen.
+    A file without a motion track gives a replay without frames. Raises UserError where the file is missing or cannot be
+    read even in part, or where this version of rubgen cannot read its scenario.
     """
     from rubgen.io.mcap.read import salvage_mcap
 

@@ -29,12 +29,16 @@ CHANNEL_KEYS = ("unit", "quantity", "axis", "location", "range_min", "range_max"
 def check_mcap(path: Path, run_id: str = "") -> list[str]:
     """Check the MCAP file at `path` and return its problems, one sentence each. The list is empty for a good file.
 
-    `run_id` is the name of the run that the file must contain; "" does not check it. Checked are: CRCs of chunks, data
-    and summary; scenario and labels, present and equal in metadata and attachments; every message of every topic, which
-    must decode and have the time of its record; the order of times; the description of channels; blocks of samples,
-    which must be without gap, of one sample rate, at the times of their indices and of the length in the scenario; a
-    preview for every quantity; and the rules of `read_mcap`: finite values, existing blades, events within the
-    recording.
+    `run_id` is the name of the run that the file must contain; "" does not check it. No error is raised: a file that is
+    missing, cannot be read or is damaged has one problem, and nothing else is checked. Checked are:
+
+    - CRCs of chunks, data and summary.
+    - Scenario and labels: present and equal in metadata and attachments.
+    - Messages of every topic: each decodes and has the time of its record, and times are in order.
+    - Channels: described, with a preview for every quantity.
+    - Blocks of samples: no gap, the scenario's sample rate, each block at the time of its first sample. All blocks of a
+      channel together have the length in the scenario.
+    - Without any problem so far, the rules of `read_mcap`: finite values, existing blades, events within the recording.
     """
     try:
         content = read_content(path)

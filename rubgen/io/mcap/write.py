@@ -41,11 +41,12 @@ Stamped = tuple[int, bytes]
 def write_mcap(run: Run, path: Path) -> None:
     """Write `run` to the MCAP file at `path`, complete or not at all. The same run always makes the same bytes.
 
-    Topics: `/raw/<channel>` (`/clean/<channel>` without noise) has blocks of 1024 float32 samples,
-    `/preview/<quantity>` has minimum and maximum at about 1 kHz. Events are on `/contact`, `/once_per_rev`,
-    `/blade_tip_timing/<probe>` and `/labels/motion`. A run with a motion track has `/motion/frames`,
-    `/motion/casing_modes` and `/tf`. Times are integer ns from the first sample. Scenario and labels are metadata
-    records (`rubgen.scenario`, `rubgen.labels`; each value JSON) and attachments. Raises ValueError for a run without a
+    A file at `path` is replaced; its folder must exist. Topics: `/raw/<channel>` has blocks of 1024 float32 samples.
+    `/clean/<channel>` has the same without noise, for a run whose clean channels are kept. `/preview/<quantity>` has
+    minimum and maximum at about 1 kHz. Events are on `/contact`, `/once_per_rev`, `/blade_tip_timing/<probe>` and
+    `/labels/motion`. A run with a motion track has `/motion/frames`, `/motion/casing_modes` and `/tf`. Times are
+    integer ns from the first sample; an event that began before it has time 0. Scenario and labels are metadata records
+    (`rubgen.scenario`, `rubgen.labels`; each value JSON) and attachments. Raises ValueError for a run without a
     recording, OSError where the file cannot be written.
     """
     if run.recording is None or run.labels is None:

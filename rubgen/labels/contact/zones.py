@@ -70,9 +70,9 @@ def contact_zones(events: ContactEvents, *, steps_per_turn: int) -> ContactZones
 def impulse_histogram(events: ContactEvents, steps_per_turn: int) -> FloatArray:
     """Distribute the impulse of all touches over BINS bins of casing angle from 0.
 
-    Returns the impulse of each bin (BINS,), N s. The bins add up to the impulse of all touches. The impulse of a touch
-    is distributed evenly over the angle that the blade swept during contact, steps dt Omega, around its mean angle.
-    `events` and `steps_per_turn` are as in `contact_zones`.
+    Returns the normal impulse of each bin (BINS,), N s; zeros without touches. The bins add up to the impulse of all
+    touches. The impulse of a touch is distributed evenly over the angle that the blade swept during contact, at most a
+    whole turn, with the touch's mean angle in the middle. `events` and `steps_per_turn` are as in `contact_zones`.
     """
     sweep = np.minimum(events.steps * (2 * np.pi / steps_per_turn), 2 * np.pi)
     start = np.mod(events.angle - sweep / 2, 2 * np.pi) / (2 * np.pi) * BINS

@@ -103,7 +103,7 @@ def automatic_settle_turns(system: SpinningSystem, closing_turns: int, decay: fl
 
 
 def settle_turns(system: SpinningSystem, operation: Operation, decay: float | None = None) -> int:
-    """Return the settle turns of the operation; for "auto" they are `automatic_settle_turns`.
+    """Return the number of turns before the record: `operation.settle_turns`, or `automatic_settle_turns` for "auto".
 
     `decay` is the slowest decay in 1/s; None computes it. Raises ValueError for "auto" and an unstable system.
     """

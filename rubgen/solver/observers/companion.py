@@ -47,7 +47,8 @@ def piece_ends(steps: int) -> list[int]:
 class CompanionGrowth(Observer):
     """Measures the growth of a companion's distance in each turn of a record.
 
-    With `stops` it ends with a settled exponent.
+    With `stops` the companion stops once its exponent `is_settled`; the run goes on without it. The stepper must take
+    snapshots at `piece_ends` of a turn.
     """
 
     def __init__(self, stepper: Stepper, *, stops: bool) -> None:
@@ -60,9 +61,10 @@ class CompanionGrowth(Observer):
         self.companion, self.removed = Companion(self.stepper), self.stepper.state.wear.sums[REMOVED]
 
     def turn(self, turn: Turn) -> None:
-        """Run the companion through the turn, and keep the growth of its distance.
+        """Run the companion through the turn, and append ln of the growth of its distance to `growth`.
 
-        The growth is NaN if the surface has worn in the turn: the companion's surface then differs from the run's.
+        Nothing is done before `start` and after the companion has stopped. The growth is NaN if the surface has worn in
+        the turn: the companion's surface then differs from the run's.
         """
         before, self.removed = self.removed, self.stepper.state.wear.sums[REMOVED]
         if self.companion is None:

@@ -1,4 +1,4 @@
-"""Compare the states after each Nth of a turn. A motion with the symmetry of the casing has N equal states."""
+"""Record the states after each Nth of a turn. They are equal for a motion with the symmetry of the casing."""
 
 import math
 from typing import Any
@@ -45,7 +45,12 @@ class Symmetry(Observer):
         self.steps = sorted({min(math.ceil(place), steps) for place in self.places})
 
     def result(self) -> dict[str, Any]:
-        """Return the field `symmetry_states` (N, 2, n): q and v, interpolated between two steps; v is q's slope."""
+        """Return the field `symmetry_states` (N, 2, n): q and v, m and m/s, in the coordinates of `SpinningSystem`.
+
+        The blisk's coordinates are in its turning frame. The casing's are turned back by the same share of a turn, so
+        that a motion with the symmetry of the casing has N equal states. q is interpolated linearly between the two
+        steps around the time, and v is their difference over the time step.
+        """
         stepper, states = self.stepper, []
         for share, place in zip(self.shares, self.places, strict=True):
             step = min(math.ceil(place), stepper.steps)

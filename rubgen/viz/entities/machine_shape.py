@@ -38,9 +38,10 @@ class Mesh:
 def drawing_factor(machine: Machine, frames: MotionFrames | None) -> float:
     """Choose the factor by which deviations from the tip circle are enlarged: 1, 2 or 5 times a power of ten.
 
-    It is the largest such factor with which half the ovality, the clearance, and each displacement of a tip along an
-    axis and of the disk centre stay within DRAWN_SHARE of the tip radius. Lost blades and the casing's deflection do
-    not count. Without frames only ovality and clearance do.
+    It is the largest such factor with which each of these lengths stays within DRAWN_SHARE of the tip radius: half the
+    ovality, the clearance, every coordinate of a tip's displacement (radial, tangential, axial) and of the disk
+    centre's (X, Y). Lost blades and the casing's deflection do not count. With `frames` None or empty only ovality and
+    clearance count.
     """
     largest = max(machine.casing.ovality_m / 2, machine.casing.clearance_m)
     if frames is not None and frames.time.size:
