@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from rubgen.brief import counted
 from rubgen.dataset.reading.samples import chosen_runs
-from rubgen.errors import UserError
+from rubgen.errors import UserError, warn
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,9 +26,9 @@ class Fold(NamedTuple):
 def folds(data: DataSet, k: int, by: str, split: str | None) -> list[Fold]:
     """Divide the good runs of a split, or of the set for None, into `k` folds by the column `by`. See `DataSet.folds`.
 
-    Runs with one value of `by` stay together; by 'run_id' a run stays with its twins. A run without a value is left
-    out. Raises UserError for k below 2, for fewer groups than folds, for an unknown split or column, and where `by`
-    would put runs of one machine (of several), or a run and its twin, on both sides.
+    Runs with one value of `by` stay together; by 'run_id' a run stays with its twins. Runs without a value are left
+    out, with a warning. Raises UserError for k below 2, for fewer groups than folds, for an unknown split or column,
+    and where `by` would put runs of one machine (of several), or a run and its twin, on both sides.
     """
     runs = chosen_runs(data, split, None)
     groups = _groups(data, runs, by)
@@ -42,6 +43,10 @@ def folds(data: DataSet, k: int, by: str, split: str | None) -> list[Fold]:
         side[name] = filled.index(min(filled))
         filled[side[name]] += int(size)
     places = groups.map(side)
+    without = groups.index[groups.isna()]
+    if len(without):
+        left = f"{counted(len(without), 'run')} without a value, such as {without[0]}"
+        warn(f"{data.layout.root}: by = {by!r}: no fold has {left}")
     return [
         Fold(train=tuple(groups.index[places != fold]), test=tuple(groups.index[places == fold])) for fold in range(k)
     ]

@@ -271,9 +271,9 @@ class DataSet:
 
         The runs with one value of the column `by` are a group; by 'run_id' a run and its twins are one. Each group is
         on the test side of exactly one fold, and never on both sides. The folds are the same each time: groups are
-        assigned by size and then by name. A run without a value is left out. `split` is the name of a split; None takes
-        all runs. Raises UserError for k below 2, fewer groups than folds, an unknown split or column, and where `by`
-        would put runs of one machine of several, or a run and its twin, on both sides.
+        assigned by size and then by name. A run without a value is left out, with a warning. `split` is the name of a
+        split; None takes all runs. Raises UserError for k below 2, fewer groups than folds, an unknown split or column,
+        and where `by` would put runs of one machine of several, or a run and its twin, on both sides.
         """
         return folds(self, k, by, split)
 
