@@ -32,6 +32,20 @@ def place(text: str) -> Parameter:
     return Parameter(help=text, converter=_as_written)
 
 
+def here(text: str) -> Parameter:
+    """Return the declaration of an option or argument that takes a path on this computer, with the help text `text`."""
+    return Parameter(help=text, converter=_here)
+
+
+def _here(_type: Any, tokens: Sequence[Token]) -> Path:
+    """Return a path. Raises UserError for a URL: its slashes would become a folder called s3: in the current one."""
+    text = tokens[0].value
+    if "://" in text:
+        named = f"{tokens[0].keyword} {text}" if tokens[0].keyword else text
+        raise UserError(f"{named}: is a URL; give a path on this computer")
+    return Path(text)
+
+
 def _local(_type: Any, tokens: Sequence[Token]) -> Path:
     text = tokens[0].value
     if "://" in text:

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from rubgen.cli.options import Force, Json, RecipeFile, option, whole, whole_number
+from rubgen.cli.options import Force, Json, RecipeFile, here, option, whole, whole_number
 
 
 def list_offered(*, json: Json = False) -> int:
@@ -17,7 +17,7 @@ def list_offered(*, json: Json = False) -> int:
 
 def init(
     kind: Annotated[Literal["recipe", "machine", "sensors"], option("What to begin.")],
-    file: Annotated[Path | None, option("File to write; the kind with the ending .toml when not given.")] = None,
+    file: Annotated[Path | None, here("File to write; the kind with the ending .toml when not given.")] = None,
     /,
     *,
     origin: Annotated[
@@ -41,7 +41,7 @@ def plan(
             name="--try", converter=whole, help="Number of runs to simulate: their classes, and time and sizes here."
         ),
     ] = 0,
-    out: Annotated[Path | None, option("Picture to write: .png, .svg or .pdf.")] = None,
+    out: Annotated[Path | None, here("Picture to write: .png, .svg or .pdf.")] = None,
     force: Force = False,
     json: Json = False,
 ) -> int:

@@ -5,14 +5,14 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from rubgen.cli.options import Force, Json, Place, option, whole_number
+from rubgen.cli.options import Force, Json, Place, here, option, whole_number
 
 
 def features(
     directory: Place,
     /,
     *,
-    out: Annotated[Path, option("File to write: .parquet.")],
+    out: Annotated[Path, here("File to write: .parquet.")],
     window: Annotated[str | None, option("Length such as 0.25s or 16turns; the whole signal when not given.")] = None,
     channels: Annotated[str | None, option("Names with commas; all that a probe can measure when not given.")] = None,
     set_: Annotated[
@@ -37,7 +37,7 @@ def baseline(
         str | None,
         option("rub, severity, motion, zones, where, faults, onset, with commas; all possible when not given."),
     ] = None,
-    out: Annotated[Path | None, option("File for the scores: .json.")] = None,
+    out: Annotated[Path | None, here("File for the scores: .json.")] = None,
     force: Force = False,
     json: Json = False,
 ) -> int:
@@ -59,7 +59,7 @@ def export(
             "no probe measures.",
         ),
     ],
-    out: Annotated[Path, option("New or empty folder, or one of the same export, which is then completed.")],
+    out: Annotated[Path, here("New or empty folder, or one of the same export, which is then completed.")],
     split: Annotated[str | None, option("Only this split; all when not given.")] = None,
     channels: Annotated[
         str | None, option("Names with commas; all recorded channels but clean ones when not given.")

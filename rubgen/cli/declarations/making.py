@@ -5,7 +5,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from rubgen.cli.options import Directory, Json, RecipeFile, option, place, whole_number
+from rubgen.cli.options import Directory, Json, RecipeFile, here, option, place, whole_number
 
 
 def generate(
@@ -49,7 +49,7 @@ def resense(
     /,
     *,
     sensors: Annotated[str, option("Sensor set: default, rig, field, field-cheap, or the path of a TOML.")],
-    out: Annotated[Path, option("New or empty directory, or the one of the same command, which is then completed.")],
+    out: Annotated[Path, here("New or empty directory, or the one of the same command, which is then completed.")],
     workers: Annotated[int | None, whole_number("Number of processes; the number of cores when not given.")] = None,
     json: Json = False,
 ) -> int:
@@ -64,7 +64,7 @@ def resense(
 
 def merge(
     *directories: Directory,
-    out: Annotated[Path, option("New or empty directory, or the one of the same command, which is then completed.")],
+    out: Annotated[Path, here("New or empty directory, or the one of the same command, which is then completed.")],
     json: Json = False,
 ) -> int:
     """Make one data set of several that have different seeds; runs get new names, splits stay, nothing is simulated.

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from rubgen.cli.options import Directory, Force, option
+from rubgen.cli.options import Directory, Force, here, option
 
 
 def figure(
@@ -16,11 +16,11 @@ def figure(
             "of a data set bifurcation, cascade, exponent, overview."
         ),
     ],
-    source: Annotated[Path | None, option("A machine, a data set's directory, or for one run an MCAP file.")] = None,
+    source: Annotated[Path | None, here("A machine, a data set's directory, or for one run an MCAP file.")] = None,
     run: Annotated[str | None, option("Name of a run of the data set.")] = None,
     /,
     *,
-    out: Annotated[Path, option("File to write: .png, .svg or .pdf.")],
+    out: Annotated[Path, here("File to write: .png, .svg or .pdf.")],
     where: Annotated[str | None, option("The first run that meets this condition.")] = None,
     over: Annotated[str | None, option("Parameter of a sweep; the first that varies when not given.")] = None,
     channel: Annotated[str | None, option("Recorded channel to draw.")] = None,
@@ -50,7 +50,7 @@ def report(
     directory: Directory,
     /,
     *,
-    out: Annotated[Path | None, option("File to write; DIR/report.html when not given.")] = None,
+    out: Annotated[Path | None, here("File to write; DIR/report.html when not given.")] = None,
     force: Force = False,
 ) -> int:
     """Write one page that shows a data set: classes, coverage, failures, examples, channels, how to load it."""
@@ -67,7 +67,7 @@ def browse(
         str | None, option("Only the good runs that meet this condition on the columns of runs.parquet.")
     ] = None,
     predictions: Annotated[
-        Path | None, option("Answers of a model: .csv or .parquet with the column run_id, shown beside the truth.")
+        Path | None, here("Answers of a model: .csv or .parquet with the column run_id, shown beside the truth.")
     ] = None,
     web: Annotated[bool, Parameter(negative=(), help="Open it in the browser, on this machine alone.")] = False,
     serve: Annotated[bool, Parameter(negative=(), help="Open no viewer; print the address and serve it.")] = False,

@@ -6,7 +6,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from rubgen.cli.option_texts import TEXTS
-from rubgen.cli.options import Force, Json, MachineName, Place, option, whole_number
+from rubgen.cli.options import Force, Json, MachineName, Place, here, option, whole_number
 from rubgen.format_names import ENDINGS
 
 
@@ -48,7 +48,7 @@ def simulate(
     signal_seconds: Annotated[float, option(TEXTS["signal_seconds"])] = 1.0,
     seed: Annotated[int, whole_number(TEXTS["seed"])] = 0,
     lyapunov: Annotated[bool | None, option(TEXTS["lyapunov"])] = None,
-    out: Annotated[Path | None, option(f"File to write: {ENDINGS}.")] = None,
+    out: Annotated[Path | None, here(f"File to write: {ENDINGS}.")] = None,
     force: Force = False,
     replay: Annotated[bool, Parameter(negative=(), help="Then show the run in the viewer.")] = False,
     json: Json = False,
@@ -62,17 +62,17 @@ def simulate(
 
 
 def replay(
-    source: Annotated[Path, option("Directory of a data set, or an MCAP file of rubgen.")],
+    source: Annotated[Path, here("Directory of a data set, or an MCAP file of rubgen.")],
     run: Annotated[str | None, option("Name of a run of the data set.")] = None,
     /,
     *,
     where: Annotated[
         str | None, option("The first run that meets this condition on the columns of runs.parquet.")
     ] = None,
-    save: Annotated[Path | None, option("Write an .rrd file instead of opening the viewer.")] = None,
-    gif: Annotated[Path | None, option("Write an animation of the turns about the hardest touch.")] = None,
-    png: Annotated[Path | None, option("Write a picture of one moment.")] = None,
-    foxglove: Annotated[Path | None, option("Write a layout for Foxglove, .json, with a name at each line.")] = None,
+    save: Annotated[Path | None, here("Write an .rrd file instead of opening the viewer.")] = None,
+    gif: Annotated[Path | None, here("Write an animation of the turns about the hardest touch.")] = None,
+    png: Annotated[Path | None, here("Write a picture of one moment.")] = None,
+    foxglove: Annotated[Path | None, here("Write a layout for Foxglove, .json, with a name at each line.")] = None,
     time: Annotated[float | None, option("Moment of the picture, s; the hardest touch when not given.")] = None,
     web: Annotated[bool, Parameter(negative=(), help="Open it in the browser, on this machine alone.")] = False,
     full: Annotated[
@@ -92,7 +92,7 @@ def regenerate(
     run: Annotated[str, option("Name of a run of the data set.")],
     /,
     *,
-    out: Annotated[Path | None, option(f"Also write the run to this file: {ENDINGS}.")] = None,
+    out: Annotated[Path | None, here(f"Also write the run to this file: {ENDINGS}.")] = None,
     force: Force = False,
     json: Json = False,
 ) -> int:
