@@ -16,6 +16,7 @@ from rubgen.errors import UserError
 from rubgen.export.formats import FORMATS, ExportFormat
 from rubgen.export.run import ExportedRun, exported_runs
 from rubgen.io.files import write_durably
+from rubgen.io.places import is_url
 from rubgen.machine.problems import nearest
 from rubgen.progress import count
 
@@ -45,11 +46,11 @@ def export(
     - split: name of a split; None takes all runs.
     - channels: names of recorded channels, without clean ones; None, or no name, takes all of them.
 
-    The folder has the files of the runs, `channels.csv`, and `runs.csv` with parameters and labels. The format parquet
-    has no labels, no parameters, no `runs.csv` and no channel that no probe can measure. A file is complete or does not
-    exist, and the same call completes an interrupted export. Raises UserError for an unknown format, split or channel,
-    for a missing package, for content that the format cannot contain, for a set without good runs, and where `out` has
-    other content.
+    The folder has the files of the runs, `channels.csv`, and `runs.csv` with parameters and labels, lists as JSON. The
+    format parquet has no labels, no parameters, no `runs.csv` and no channel that no probe can measure. A file is
+    complete or does not exist, and the same call completes an interrupted export. Raises UserError for an unknown
+    format, split or channel, for a missing package, for content that the format cannot contain, for a set without good
+    runs, and where `out` lies in the set or has other content.
     """
     data = DataSet(directory)
     kind = _format(name)
@@ -63,7 +64,7 @@ def export(
         "split": split,
         "channels": list(chosen),
     }
-    _claim(out, origin)
+    _claim(out, data.layout.root, origin)
     files = list(_files(kind, runs, out))
     for number, (path, members) in enumerate(files):
         if not path.exists():
@@ -74,7 +75,7 @@ def export(
     first = next(exported_runs(data, everyone[:1], chosen))
     write_durably(out / CHANNELS, lambda part: _channel_table(first).to_csv(part, index=False))
     if kind.answers:
-        write_durably(out / RUNS, lambda part: data.runs.loc[everyone].to_csv(part))
+        write_durably(out / RUNS, lambda part: _run_table(data, everyone).to_csv(part))
     if (out / BEGUN).exists():
         (out / BEGUN).replace(out / DONE)
     return Exported(len(everyone), len(files), tuple(runs), chosen)
@@ -121,9 +122,11 @@ def _check_holds(data: DataSet, kind: ExportFormat, name: str, channels: int) ->
         raise UserError(f"--format {name}: {more}; choose fewer --channels, or hdf5")
 
 
-def _claim(out: Path, origin: dict[str, Any]) -> None:
-    """Take a new or empty folder, or one of the same export. Raises UserError for any other."""
+def _claim(out: Path, root: Path, origin: dict[str, Any]) -> None:
+    """Take a new or empty folder, or one of the same export. Raises UserError for any other, and within `root`."""
     text = json.dumps(origin, indent=2) + "\n"
+    if not is_url(root) and out.resolve().is_relative_to(root.resolve()):
+        raise UserError(f"--out {out}: lies in the data set {root}; choose a folder outside of it")
     if out.exists() and not out.is_dir():
         raise UserError(f"--out {out}: is a file; give a new folder")
     here = [each.name for each in out.iterdir()] if out.exists() else []
@@ -148,6 +151,16 @@ def _files(kind: ExportFormat, runs: dict[str, list[str]], out: Path) -> Iterato
         else:
             for number, first in enumerate(range(0, len(members), kind.runs_per_file)):
                 yield out / f"{split}-{number:05d}{kind.ending}", members[first : first + kind.runs_per_file]
+
+
+def _run_table(data: DataSet, run_ids: Sequence[str]) -> Any:
+    """Return parameters and labels of these runs, with lists as JSON: a text of numpy would lose digits and values."""
+    table = data.runs.loc[list(run_ids)]
+    return table.apply(lambda column: column.map(_json) if column.dtype == object else column)
+
+
+def _json(values: Any) -> str | None:
+    return None if values is None else json.dumps([None if each != each else each for each in values.tolist()])
 
 
 def _channel_table(run: ExportedRun) -> Any:

@@ -18,7 +18,7 @@ from rubgen.cli import main
 from rubgen.dataset.reading.replaying import scenario_of
 from rubgen.export.formats import FORMATS
 from rubgen.export.run import without_nulls
-from rubgen.export.write import export
+from rubgen.export.write import _json, export
 from rubgen.linalg.threads import one_blas_thread
 from rubgen.reduction import reduce
 
@@ -144,6 +144,18 @@ def test_tables_beside_the_files(data, exported):
     assert json.loads((folder / "export.json").read_text())["format"] == "csv"
 
 
+def test_lists_in_the_table_of_runs_are_json_with_every_digit(data, exported):
+    runs = pd.read_csv(exported("ts") / "runs.csv", index_col="run_id")
+    assert _json(np.array([1 / 3, np.nan])) == "[0.3333333333333333, null]"
+    assert _json(np.array(["a, b", None], dtype=object)) == '["a, b", null]'
+    lists = [name for name in runs if data.runs[name].dtype == object]
+    assert {"blade_touches", "contact_force_orders", "window_rub"} <= set(lists)
+    for name in lists:
+        for text, truth in zip(runs[name], data.runs[name], strict=True):
+            found = None if pd.isna(text) else np.array(json.loads(text), truth.dtype)
+            assert (found is truth is None) or np.array_equal(found, truth, equal_nan=True), name
+
+
 @pytest.mark.parametrize("name", ["uff58", "mat", "hdf5", "webdataset"])
 def test_a_stopped_export_is_completed_to_the_same_bytes(small_set, tmp_path, name):
     export(small_set.directory, tmp_path / "whole", name, channels=CHANNELS)
@@ -191,6 +203,13 @@ def test_another_folder_is_never_overwritten(small_set, tmp_path, capsys):
     assert "is not empty (mine.txt)" in _refused(capsys, small_set.directory, tmp_path, "--format", "csv")
     export(small_set.directory, tmp_path / "out", "csv", channels=CHANNELS)
     assert "has another export" in _refused(capsys, small_set.directory, tmp_path / "out", "--format", "wav")
+
+
+@pytest.mark.parametrize("inner", ["csv", "signals/csv", "."])
+def test_no_export_goes_into_the_set_itself(copied_set, capsys, inner):
+    before = sorted(copied_set.rglob("*"))
+    assert "lies in the data set" in _refused(capsys, copied_set, copied_set / inner, "--format", "csv")
+    assert sorted(copied_set.rglob("*")) == before
 
 
 def _refused(capsys, directory, out, *options):
