@@ -54,8 +54,7 @@ class Generated:
     outcome: Outcome
     """Counts of rub and classes of motion, and reasons of failures."""
     verified: bool = False
-    """True where the set was finished before. In a directory the sizes of its files are then those of the manifest; at
-    a URL they were not compared."""
+    """True where the set was finished before. The sizes of its files are then those of the manifest."""
     part: str = ""
     """The part of the set that this call made, such as 17/200; the set is not complete. Empty for a whole set."""
 
@@ -86,7 +85,7 @@ def generate(
 
     Each run is simulated alone and stored as soon as it is finished. The same call after an interruption makes the
     missing runs, with the same bytes. Failed runs are listed with their reason. If the set is finished, only the digest
-    of the manifest and, in a directory, the sizes of its files are checked; nothing is changed.
+    of the manifest and the sizes of its files are checked; nothing is changed.
 
     Works from a script without a main guard, a notebook, a pipe or a thread: workers do not import the main module.
     Raises UserError, one line, for bad input, a directory with other content or not writable, and a full disk;
@@ -200,7 +199,9 @@ def _make_at_url(task: _Task, remote: RemoteMaking) -> Generated:
     store = remote.store.layout
     if finished(store, task.identity):
         shutil.rmtree(task.layout.root, ignore_errors=True)  # of a stop at the very end
-        return _whole(store, read_manifest(store))
+        manifest = read_manifest(store)
+        remote.store.check_sizes(manifest)
+        return _whole(store, manifest)
     if task.part and (shards := sum(1 for _ in shards_of(task.recipe))) < task.part.count:
         raise UserError(
             f"--shard {task.part}: the set has {counted(shards, 'shard')}, and parts at a URL cannot share one; give "

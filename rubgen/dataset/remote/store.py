@@ -8,6 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from rubgen.brief import counted
 from rubgen.dataset.files import write_json
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.making.claim import check_same
@@ -37,6 +38,27 @@ class Store:
         found = answered(self.layout.root, lambda: self._files.find(self._root, detail=True))
         start = len(self._root) + 1
         return {name[start:]: int(facts["size"] or 0) for name, facts in found.items()}
+
+    def check_sizes(self, manifest: Manifest) -> None:
+        """Check that the listed files of a finished set are there with their sizes; of derived files no size is known.
+
+        Raises UserError with the first that is not.
+        """
+        there = self.sizes()
+        wrong = [
+            f"{entry.path}: has {there[entry.path]:,} bytes, the manifest says {entry.bytes:,}"
+            if entry.path in there
+            else f"{entry.path}: listed in the manifest, but not there"
+            for entry in manifest.files
+            if there.get(entry.path) != entry.bytes
+        ]
+        wrong += [f"{name}: listed in the manifest, but not there" for name in manifest.derived if name not in there]
+        if wrong:
+            root = self.layout.root
+            raise UserError(
+                f"{root}: {wrong[0]} ({counted(len(wrong), 'problem')} in all); copy it again from a directory with "
+                f"this set: rubgen push DIRECTORY {root}"
+            )
 
     def begin(self, identity: Identity, *, grows: bool = True) -> dict[str, int]:
         """Reserve the URL for the set of this identity before anything is made. Return the files there, as `sizes`.

@@ -209,6 +209,23 @@ def test_a_set_is_made_at_s3_in_spite_of_stops_and_a_lost_folder(s3, quick, monk
         rubgen.generate(RECIPE, url, runs=30, workers=1)
 
 
+@pytest.mark.parametrize("shard", [None, "1/2"])
+def test_a_finished_set_at_a_url_that_lost_a_file_is_not_called_whole(memory, quick, shard, tmp_path):
+    rubgen.generate(RECIPE, tmp_path / "set", workers=1)
+    push(tmp_path / "set", f"{memory}/set")
+    files = fsspec.filesystem("memory")
+    files.pipe_file("/place/set/runs.parquet", b"cut")
+    whole = (tmp_path / "set/runs.parquet").stat().st_size
+    with pytest.raises(rubgen.UserError, match=rf"runs\.parquet: has 3 bytes, the manifest says {whole:,} \(1 problem"):
+        rubgen.generate(RECIPE, f"{memory}/set", shard=shard, workers=1)
+    files.rm_file("/place/set/sections/train-00000.parquet")
+    advice = r"copy it again from a directory with this set: rubgen push DIRECTORY memory://place/set$"
+    with pytest.raises(rubgen.UserError, match=rf"\(2 problems in all\); {advice}"):
+        rubgen.generate(RECIPE, f"{memory}/set", shard=shard, workers=1)
+    assert push(tmp_path / "set", f"{memory}/set") == 2
+    assert rubgen.generate(RECIPE, f"{memory}/set", shard=shard, workers=1).verified
+
+
 def test_parts_of_a_set_meet_at_the_url(memory, quick, tmp_path):
     rubgen.generate(RECIPE, tmp_path / "here", workers=1)
     for number in (2, 1, 3):
