@@ -1,12 +1,15 @@
 """One small set that really was simulated: short records, made once for all tests of data sets."""
 
+import re
 import shutil
+import sys
 from contextlib import contextmanager
 from types import SimpleNamespace
 
 import pytest
 
 import rubgen
+from rubgen.cli import main
 
 RECIPE = {
     "name": "small",
@@ -72,3 +75,42 @@ def shown_set(tmp_path_factory):
 def copied_shown_set(shown_set, tmp_path):
     """A copy that a test may damage."""
     return shutil.copytree(shown_set, tmp_path / "copy")
+
+
+ADDRESS = re.compile(r"(\d+) runs? at (rerun\+http://127\.0\.0\.1:\d+)/entry/(\w+)")
+
+
+@pytest.fixture
+def browse(capsys):
+    """Calls `rubgen browse`; gives exit code and stderr."""
+
+    def browse(*words):
+        with pytest.raises(SystemExit) as ended:
+            sys.exit(main(["browse", *map(str, words)]))
+        return ended.value.code, capsys.readouterr().err
+
+    return browse
+
+
+@pytest.fixture
+def table_of(browse, monkeypatch, capsys):
+    """What the catalog has once everything is served, as a table by run_id. The command ends with code 0."""
+    from rerun.catalog import CatalogClient
+
+    def table_of(*words):
+        tables = []
+
+        def served(_seconds):
+            runs, server, entry = ADDRESS.search(capsys.readouterr().out).groups()
+            client = CatalogClient(server)
+            table = client.get_dataset(id=entry).segment_table().to_pandas()
+            assert len(table) == int(runs)
+            tables.append(table)
+            raise KeyboardInterrupt
+
+        monkeypatch.setattr("rubgen.cli.commands.browsing.time.sleep", served)
+        assert browse(*words, "--serve")[0] == 0
+        (table,) = tables
+        return table.map(lambda cell: cell[0] if hasattr(cell, "__len__") and not isinstance(cell, str) else cell)
+
+    return table_of

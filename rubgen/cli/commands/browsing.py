@@ -5,6 +5,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from rubgen.brief import counted
 from rubgen.cli.printing import say
 from rubgen.dataset.reading.browsing import Rows, rows_of
 from rubgen.dataset.reading.open import DataSet
@@ -41,7 +42,7 @@ def browse_command(directory: Path, where: str | None, predictions: Path | None,
         rows = rows_of(data, run_ids, predictions)
     with Catalog(data.manifest.name) as catalog:
         missing = _fill(catalog, data, run_ids, rows)
-        say(f"{len(run_ids)} runs at {catalog.url}")
+        say(f"{counted(len(run_ids), 'run')} at {catalog.url}")
         viewer = None if serve else start_viewer(catalog.url, web=web)
         try:
             if _make(catalog, directory, missing, viewer):

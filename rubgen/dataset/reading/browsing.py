@@ -19,6 +19,8 @@ from rubgen.labels.headline import headline
 COLUMN_TYPES: dict[str, Any] = {"flag": bool, "integer": int, "number": float, "text": str, "class": str}
 """Kinds of column that have one value a run, and their types."""
 ALWAYS = ("run_id", "split", "status")
+BELONGING = ("machine_id", "twin_of")
+"""Columns of names that tell which runs belong together."""
 READERS: dict[str, Callable[[Path], pd.DataFrame]] = {".csv": pd.read_csv, ".parquet": pd.read_parquet}
 
 
@@ -37,7 +39,9 @@ class Rows:
 
 
 def rows_of(data: DataSet, run_ids: Sequence[str], predictions: Path | None = None) -> Rows:
-    """Return the rows of these runs: name, split, status, headline, differing parameters, labels, and predictions.
+    """Return the rows of these runs: name, split, status, headline, what differs, labels, and predictions.
+
+    What differs are parameters, and the machine and the partner of a twin.
 
     `predictions` is the path of a file for `read_predictions`, or None. A predicted column with the name of a shown
     column stands after it. A flag `<name>_right` follows, True where both are equal, if the answers are words or
@@ -89,6 +93,8 @@ def read_predictions(path: Path, data: DataSet) -> pd.DataFrame:
         found: pd.DataFrame = reader(path)
     except (ValueError, OSError) as error:
         raise UserError(f"{named}: cannot be read as {path.suffix[1:]} ({str(error).splitlines()[0]})") from None
+    if found.index.name == "run_id":  # pandas writes the index of a frame to Parquet too
+        found = found.reset_index()
     if "run_id" not in found.columns:
         raise UserError(f"{named}: has no column run_id; name the runs there, one row each")
     if len(found.columns) < 2:
@@ -111,10 +117,11 @@ def read_predictions(path: Path, data: DataSet) -> pd.DataFrame:
 
 
 def _shown(runs: pd.DataFrame, columns: Sequence[Column]) -> list[str]:
-    """Return the names of the columns to show: parameters only where they differ between runs."""
+    """Return the names of the columns to show: parameters and BELONGING only where they differ between runs."""
     names = [column.name for column in columns if column.name in ALWAYS]
     for column in columns:
-        differs = column.role is Role.PARAMETER and column.name in runs and runs[column.name].nunique() > 1
+        may_differ = column.role is Role.PARAMETER or column.name in BELONGING
+        differs = may_differ and column.name in runs and runs[column.name].nunique() > 1
         if differs or (column.role is Role.TARGET and column.name in runs):
             names.append(column.name)
     return names

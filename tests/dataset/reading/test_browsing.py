@@ -1,50 +1,14 @@
 """A data set in Rerun's catalog: served without a viewer, and read with the client of Rerun's SDK."""
 
-import re
-import sys
-
 import pandas as pd
 import pytest
-from rerun.catalog import CatalogClient
 from rerun.chunk import RrdReader
 
 import rubgen
-from rubgen.cli import main
 from rubgen.sensors.kinds.proximity import Proximity
 from rubgen.sensors.load import load_sensor_set
 from rubgen.viz.catalog import Catalog
 from rubgen.viz.views import previews
-
-ADDRESS = re.compile(r"(\d+) runs at (rerun\+http://127\.0\.0\.1:\d+)/entry/(\w+)")
-
-
-def code_of(*words):
-    with pytest.raises(SystemExit) as ended:
-        sys.exit(main(["browse", *map(str, words)]))
-    return ended.value.code
-
-
-@pytest.fixture
-def table_of(monkeypatch, capsys):
-    """What the catalog has once everything is served, as a table by run_id. The command ends with code 0."""
-
-    def browse(*words):
-        tables = []
-
-        def served(_seconds):
-            runs, server, entry = ADDRESS.search(capsys.readouterr().out).groups()
-            client = CatalogClient(server)
-            table = client.get_dataset(id=entry).segment_table().to_pandas()
-            assert len(table) == int(runs)
-            tables.append(table)
-            raise KeyboardInterrupt
-
-        monkeypatch.setattr("rubgen.cli.commands.browsing.time.sleep", served)
-        assert code_of(*words, "--serve") == 0
-        (table,) = tables
-        return table.map(lambda cell: cell[0] if hasattr(cell, "__len__") and not isinstance(cell, str) else cell)
-
-    return browse
 
 
 def test_each_run_is_a_row_with_its_parameters_labels_and_recording(copied_shown_set, table_of):
@@ -57,7 +21,8 @@ def test_each_run_is_a_row_with_its_parameters_labels_and_recording(copied_shown
     assert list(table.index) == list(runs.index)
     for name in ("speed_rpm", "friction", "motion", "contact_duty", "rub"):
         assert list(table[f"property:run:{name}"]) == list(runs[name]), name
-    assert "property:run:disk_support_stiffness_n_per_m" not in table  # one value in all runs
+    for name in ("disk_support_stiffness_n_per_m", "machine_id"):  # one value in all runs
+        assert f"property:run:{name}" not in table
     assert all("rub" in text for text in table["property:run:headline"])
     assert list(table["property:labels:motion"]) == list(runs["motion"])  # from the recordings themselves
     assert table["time:end"].notna().all()
@@ -105,6 +70,14 @@ def test_answers_of_a_model_stand_beside_the_truth(shown_set, table_of, tmp_path
     assert "property:prediction:score_right" not in table
 
 
+def test_answers_in_the_index_of_a_frame_are_found(shown_set, table_of, tmp_path):
+    """A frame with the index of `data.runs`, as pandas writes it."""
+    runs = rubgen.open(shown_set).runs
+    pd.DataFrame({"rub": [1, 1]}, index=runs.index).to_parquet(tmp_path / "answers.parquet")
+    table = table_of(shown_set, "--predictions", tmp_path / "answers.parquet").set_index("property:run:run_id")
+    assert list(table.loc[runs.index, "property:prediction:rub_right"]) == list(runs["rub"])
+
+
 def test_a_condition_chooses_the_runs_and_a_probability_stays_a_number(shown_set, table_of, tmp_path):
     path = tmp_path / "answers.csv"
     path.write_text("run_id,rub,motion,my note\nrun-000001,0.5,chaotic,a b\nrun-000000,0.25,chaotic,\n")
@@ -128,22 +101,22 @@ def test_a_condition_chooses_the_runs_and_a_probability_stays_a_number(shown_set
         (None, "there is no such file"),
     ],
 )
-def test_a_mistake_in_the_answers_is_one_line(shown_set, tmp_path, capsys, text, said):
+def test_a_mistake_in_the_answers_is_one_line(shown_set, tmp_path, browse, text, said):
     path = tmp_path / "answers.csv"
     if text is not None:
         path.write_text(text)
-    assert code_of(shown_set, "--serve", "--predictions", path) == 2
-    error = capsys.readouterr().err
+    code, error = browse(shown_set, "--serve", "--predictions", path)
+    assert code == 2
     assert said in error
     assert len(error.splitlines()) == 1
 
 
-def test_a_catalog_needs_a_package_and_the_viewer_a_screen(shown_set, monkeypatch, capsys):
+def test_a_catalog_needs_a_package_and_the_viewer_a_screen(shown_set, monkeypatch, browse):
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr("rubgen.viz.viewer.sys.platform", "linux")
-    assert code_of(shown_set) == 2
-    assert "give --web or --serve" in capsys.readouterr().err
+    code, error = browse(shown_set)
+    assert (code, "give --web or --serve" in error) == (2, True)
     monkeypatch.setattr("rubgen.viz.catalog.find_spec", lambda _name: None)
-    assert code_of(shown_set, "--serve") == 2
-    assert "pip install 'rubgen[browse]'" in capsys.readouterr().err
+    code, error = browse(shown_set, "--serve")
+    assert (code, "pip install 'rubgen[browse]'" in error) == (2, True)

@@ -87,3 +87,19 @@ def test_a_run_is_drawn_again_from_the_manifest(made, monkeypatch):
     again = scenario_of(data, "run-000005")
     assert again == asked
     assert again.machine_id == data.runs.loc["run-000005", "machine_id"]
+
+
+def test_a_set_of_virtual_machines_is_browsed_with_what_tells_them_apart(made, table_of, tmp_path):
+    """The set has no recordings: those of the two runs that the condition chooses are made again from the manifest."""
+    runs = rubgen.open(made).ok
+    last = runs[runs["machine_number"] == runs["machine_number"].iloc[-1]]
+    answers = pd.DataFrame({"rub": [0] * len(runs)}, index=runs.index)
+    answers.to_parquet(tmp_path / "answers.parquet")
+    where = f"machine_number = {last['machine_number'].iloc[0]}"
+    table = table_of(made, "--where", where, "--predictions", tmp_path / "answers.parquet")
+    table = table.set_index("property:run:run_id").loc[list(last.index)]
+    for name in ("machine_id", "split", "disk_support_stiffness_n_per_m", "casing_width_m", "speed_rpm"):
+        assert list(table[f"property:run:{name}"]) == list(last[name]), name
+    assert "property:run:blade_count" not in table  # 12 on all machines
+    assert table["property:prediction:rub_right"].all()
+    assert table["time:end"].notna().all()
