@@ -17,6 +17,9 @@ LEAST_POINTS = 64
 NEAR = np.arange(-2.0, 4.0)
 """Samples about a place that a value there is interpolated from."""
 
+EDGE = 1e-6
+"""Samples by which a pulse may lie outside the first and the last sample: subtracted times have rounding errors."""
+
 BLOCK = 2048
 """Places whose weights are computed together: their arrays stay in the processor's cache."""
 
@@ -44,11 +47,12 @@ def by_turn(signals: FloatArray, rate_hz: float, pulses: FloatArray) -> FloatArr
 
 
 def within(pulses: FloatArray, samples: int, rate_hz: float) -> FloatArray:
-    """Return the pulses (any,) in s that lie between the first and the last of `samples` samples.
+    """Return the pulses (any,) in s that lie between the first and the last of `samples` samples, both included.
 
     Times count from the first sample. `rate_hz` is the sample rate.
     """
-    return pulses[(pulses >= 0) & (pulses <= (samples - 1) / rate_hz)]
+    places = pulses * rate_hz
+    return pulses[(places >= -EDGE) & (places <= samples - 1 + EDGE)]
 
 
 def circles(turned: FloatArray | ComplexArray, orders: Sequence[int], turns: int = 1) -> ComplexArray:

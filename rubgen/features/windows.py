@@ -10,6 +10,7 @@ import numpy as np
 
 from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
+from rubgen.features.turns import within
 
 LEAST_SAMPLES = 64
 """The fewest samples in a window that features are computed from."""
@@ -34,9 +35,9 @@ class Window:
         if self.unit == "s":
             size = round(self.length * rate_hz)
             return [(size * number, size) for number in range(samples // size)]
-        inside = pulses[(pulses >= 0) & (pulses <= (samples - 1) / rate_hz)]
-        first = np.floor(inside[:: int(self.length)] * rate_hz).astype(int)
-        last = np.ceil(inside[:: int(self.length)] * rate_hz).astype(int)
+        places = within(pulses, samples, rate_hz)[:: int(self.length)] * rate_hz
+        first = np.maximum(np.floor(places), 0).astype(int)
+        last = np.minimum(np.ceil(places), samples - 1).astype(int)
         return [(int(a), int(b - a + 1)) for a, b in zip(first[:-1], last[1:], strict=True)]
 
     def longest(self, samples: int, rate_hz: float, pulses: FloatArray) -> str:
@@ -46,8 +47,7 @@ class Window:
         """
         if self.unit == "s":
             return f"{samples / rate_hz:g}s"
-        inside = pulses[(pulses >= 0) & (pulses <= (samples - 1) / rate_hz)]
-        return f"{max(inside.size - 1, 0)}turns"
+        return f"{max(within(pulses, samples, rate_hz).size - 1, 0)}turns"
 
 
 def parse_window(text: str, rate_hz: float) -> Window:
