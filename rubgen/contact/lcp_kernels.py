@@ -70,16 +70,16 @@ def projected_gauss_seidel(
 
 
 @allocation_free_kernel
-def _leaving_row(tableau: FloatArray, entering: int, m: int) -> int:
+def _leaving_row(tableau: FloatArray, basis: IntArray, entering: int, m: int) -> int:
     """Return the row of the smallest ratio; -1 on a ray.
 
-    Ties go to the artificial variable's row if last, else the first.
+    Ties go to the artificial variable's row, which ends the pivoting, else to the first row.
     """
     best, row = math.inf, -1
     for i in range(m):
         if tableau[i, entering] > 1e-14:
             ratio = tableau[i, 2 * m + 1] / tableau[i, entering]
-            if ratio < best:
+            if ratio < best or (ratio == best and basis[i] == 2 * m):
                 best, row = ratio, i
     return row
 
@@ -142,7 +142,7 @@ def lemke(W: FloatArray, b: FloatArray, m: int, lam_out: FloatArray, tableau: Fl
                     lam_out[basis[i] - m] = max(0.0, tableau[i, 2 * m + 1]) / size
             return SOLVED
         entering = left + m if left < m else left - m
-        row = _leaving_row(tableau, entering, m)
+        row = _leaving_row(tableau, basis, entering, m)
         if row < 0:
             return UNSOLVED
     return UNSOLVED

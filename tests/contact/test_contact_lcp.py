@@ -59,6 +59,22 @@ def test_an_indefinite_but_solvable_problem_is_pivoted():
     assert any(np.allclose(lam, solution) for solution in by_enumeration(W, b))
 
 
+def test_degenerate_problems_that_have_a_solution_are_solved():
+    """Semi-definite W of small whole numbers: the ratio test has ties, where another row than z0's ends on a ray."""
+    rng = np.random.default_rng(9)
+    for m in (2, 3, 4) * 100:
+        root, pressed = rng.integers(-2, 3, (m, m)).astype(float), rng.integers(0, 2, m)
+        W = root @ root.T
+        if not W.any():
+            continue
+        b = (1 - pressed) * rng.integers(0, 2, m) - W @ (pressed * rng.integers(0, 2, m))
+        lam = np.zeros(m)
+        assert lemke(W, b, m, lam, np.zeros((m, 2 * m + 2)), np.zeros(m, dtype=np.int64)) == SOLVED
+        gap = b + W @ lam
+        assert min(lam.min(), gap.min()) > -1e-10
+        assert abs(lam @ gap) < 1e-9
+
+
 def test_a_problem_without_solution_is_refused():
     W, b = np.array([[-1.0]]), np.array([-1.0])
     assert lemke(W, b, 1, np.zeros(1), np.zeros((1, 4)), np.zeros(1, dtype=np.int64)) == UNSOLVED
