@@ -106,14 +106,14 @@ def usual() -> dict[str, float]:
 def coordinated(runs: int) -> dict[str, float]:
     """Plan the jobs of a set of that many runs, none of them made. Return CPU seconds and peak memory."""
     from rubgen.dataset.layout import Layout
-    from rubgen.dataset.making.plan import Plan
+    from rubgen.dataset.making.plan import PartOfSet, Plan
     from rubgen.scenario import parse_recipe
 
     recipe = parse_recipe({**RECIPE, "runs": runs})
     base = _peak_mb()
     start = time.process_time()
     with tempfile.TemporaryDirectory() as folder:
-        plan = Plan(recipe, Layout(Path(folder)), "session")
+        plan = Plan(PartOfSet(recipe, Layout(Path(folder))), "session")
         jobs = 0
         for _, _, shard, indexes in plan.jobs(64):
             jobs += 1

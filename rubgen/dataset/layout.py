@@ -46,10 +46,6 @@ class Layout:
         """The data-set card."""
         self.croissant = root / "croissant.json"
         """The description for machine-learning tools."""
-        self.signals = root / "signals"
-        """Folder of the Parquet files with signals."""
-        self.sections = root / "sections"
-        """Folder of the compact records, from which labels can be made again."""
         self.staging = root / staging
         """Kept runs and closed shards until the set is complete."""
         self.identity = self.staging / "identity.json"
@@ -82,4 +78,4 @@ class Layout:
 
     def folders(self, names: Iterable[str]) -> list[Path]:
         """Return the folders of the formats `names`: `signals` for Parquet, else the folder with the format's name."""
-        return [self.root / name if format_of(name).one_file_a_run else self.signals for name in names]
+        return [self.root / (name if format_of(name).one_file_a_run else "signals") for name in names]

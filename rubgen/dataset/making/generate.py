@@ -16,7 +16,7 @@ from rubgen.dataset.making.claim import begun, check_begun, claimed, finished, h
 from rubgen.dataset.making.cluster import SLURM, cluster, slurm
 from rubgen.dataset.making.finish import finish_set
 from rubgen.dataset.making.outcome import Outcome, outcome_of
-from rubgen.dataset.making.plan import Part, Plan, do, part_of
+from rubgen.dataset.making.plan import Part, PartOfSet, Plan, do, part_of
 from rubgen.dataset.making.warm_up import warm_up, warming_up
 from rubgen.dataset.making.workers import Pool, unordered, usable_cores, worker_pool
 from rubgen.dataset.manifest import Identity, Manifest, identity_of, read_manifest
@@ -265,7 +265,7 @@ def _make_missing(task: _Task) -> int:
     formats = tuple(recipe.output.formats)
     if task.remote:
         task.remote.begin(task.identity, formats)
-    plan = Plan(recipe, layout, uuid4().hex[:12], task.part or Part())
+    plan = Plan(PartOfSet(recipe, layout, task.part or Part()), uuid4().hex[:12])
     report = task.progress if callable(task.progress) else None
     if task.finish and plan.missing:
         raise UserError(

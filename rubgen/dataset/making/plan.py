@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import ceil
 from pathlib import Path
 
@@ -41,42 +42,91 @@ def part_of(text: str) -> Part:
     return Part(int(number), int(count))
 
 
-@dataclass
-class Plan:
-    """The missing runs of a set, or of one part of it, and the jobs that make them, in order.
+@dataclass(frozen=True)
+class PartOfSet:
+    """The runs of a set, or of one part of it, by shard, and which of them are missing.
 
-    Creating a plan reads no file of a closed shard: only the folder of closed shards is listed.
+    No file of a closed shard is read: only the folder of closed shards is listed. All is as it was when it was first
+    looked at.
     """
 
     recipe: Recipe
     layout: Layout
-    session: str
-    """Name of this call of `generate`."""
     part: Part = field(default_factory=Part)
     only: frozenset[str] | None = None
     """Names of the shards to make; None makes all."""
-    done: int = 0
-    """Number of runs that were finished before."""
-    total: int = 0
-    """Number of runs, of the part."""
-    first_missing: int = -1
-    """Number of the first run to make; -1 where none is missing."""
+    _missing: dict[str, tuple[int, ...]] = field(default_factory=dict, init=False, repr=False)
+    """The missing runs of the shards that were looked at, by name of the shard."""
 
-    def __post_init__(self) -> None:
-        """Count what is there."""
-        self._closed = {path.stem for path in self.layout.closed("").parent.glob("*.json")}
-        self._begun = {path.name for path in self.layout.kept("").glob("*")}
-        self._shards = sum(1 for _ in shards_of(self.recipe)) if self.part.count > 1 else 1
+    def shards(self) -> Iterator[tuple[Shard, tuple[int, ...]]]:
+        """Yield the shards of this part, each with its runs: whole shards, or runs where there are fewer shards."""
+        for place, shard in enumerate(shards_of(self.recipe)):
+            if self.only is not None and shard.name not in self.only:
+                continue
+            if self._shares_shards:
+                runs = self.runs_of(shard)
+                if runs:
+                    yield shard, runs
+            elif place % self.part.count == self.part.number - 1:
+                yield shard, shard.indexes
+
+    def runs_of(self, shard: Shard) -> tuple[int, ...]:
+        """Return the numbers of the runs of a shard that are of this part, of all runs where parts share no shard."""
+        if not self._shares_shards:
+            return shard.indexes
+        count, runs = self.part.count, self.recipe.runs
+        return tuple(index for index in shard.indexes if index * count // runs == self.part.number - 1)
+
+    def missing_of(self, shard: Shard) -> tuple[int, ...]:
+        """Return the numbers of the runs of this part that the shard lacks."""
+        if shard.name in self.closed:
+            return ()
+        if shard.name not in self._begun:
+            return self.runs_of(shard)
+        if shard.name not in self._missing:
+            good = {
+                index for index, kept in kept_runs(self.layout, shard.name).items() if self._is_whole(index, kept.good)
+            }
+            self._missing[shard.name] = tuple(index for index in self.runs_of(shard) if index not in good)
+        return self._missing[shard.name]
+
+    @cached_property
+    def closed(self) -> frozenset[str]:
+        """Names of the closed shards."""
+        return frozenset(path.stem for path in self.layout.closed("").parent.glob("*.json"))
+
+    @cached_property
+    def _begun(self) -> frozenset[str]:
+        return frozenset(path.name for path in self.layout.kept("").glob("*"))
+
+    @cached_property
+    def _shares_shards(self) -> bool:
+        """Whether there are fewer shards than parts."""
+        return self.part.count > 1 and sum(1 for _ in shards_of(self.recipe)) < self.part.count
+
+    def _is_whole(self, index: int, good: bool) -> bool:
+        """Return whether the files of a kept run are there."""
+        formats = run_formats(self.recipe.output.formats) if good else []
+        return all(self.layout.export(each.name, run_id_of(index)).exists() for each in formats)
+
+
+class Plan:
+    """The jobs that make the missing runs of a part of a set, in order."""
+
+    def __init__(self, part: PartOfSet, session: str) -> None:
+        """Count what is there. `session` is the name of this call of `generate`."""
+        self._part, self._session = part, session
+        self.done = self.total = 0
+        self.first_missing = -1
+        """Number of the first run to make; -1 where none is missing."""
         self._urgent: deque[Job] = deque()
         self._left: dict[str, int] = {}
-        self._missing: dict[str, tuple[int, ...]] = {}
-        for shard, mine in self._mine():
-            self.total += len(mine)
-            missing = self._missing_of(shard, mine)
-            self.done += len(mine) - len(missing)
+        for shard, runs in part.shards():
+            self.total += len(runs)
+            missing = part.missing_of(shard)
+            self.done += len(runs) - len(missing)
             if missing and self.first_missing < 0:
                 self.first_missing = missing[0]
-        self._size = 1
 
     @property
     def missing(self) -> int:
@@ -85,15 +135,15 @@ class Plan:
 
     def kept_now(self) -> int:
         """Return the number of runs kept so far in the shards that are at work."""
-        return sum(len(kept_runs(self.layout, name)) for name in self._left)
+        return sum(len(kept_runs(self._part.layout, name)) for name in self._left)
 
     def jobs(self, workers: int) -> Iterator[Job]:
         """Yield the jobs, as the arguments of `do`, for `workers` workers.
 
         `ended` may add jobs: take one after each result.
         """
-        self._size = max(1, min(MOST_RUNS_A_JOB, ceil(self.missing / (JOBS_PER_WORKER * workers))))
-        return _Queue(self._urgent, self._jobs())
+        size = max(1, min(MOST_RUNS_A_JOB, ceil(self.missing / (JOBS_PER_WORKER * workers))))
+        return _Queue(self._urgent, self._jobs(size))
 
     def ended(self, shard: Shard) -> None:
         """Note that a job that made runs of this shard has ended.
@@ -105,60 +155,25 @@ class Plan:
             del self._left[shard.name]
             self._close(shard)
 
-    def _jobs(self) -> Iterator[Job]:
-        for shard, mine in self._mine():
-            missing = self._missing_of(shard, mine)
-            pieces = [missing[start : start + self._size] for start in range(0, len(missing), self._size)]
+    def _jobs(self, size: int) -> Iterator[Job]:
+        for shard, _ in self._part.shards():
+            missing = self._part.missing_of(shard)
+            pieces = [missing[start : start + size] for start in range(0, len(missing), size)]
             if pieces:
                 self._left[shard.name] = len(pieces)
                 yield from (self._job(shard, piece) for piece in pieces)
-            elif shard.name not in self._closed:
+            elif shard.name not in self._part.closed:
                 self._close(shard)
                 while self._urgent:
                     yield self._urgent.popleft()
 
     def _close(self, shard: Shard) -> None:
         """Ask for the closing of a shard, if all its runs are of this part: another part may be at work on the rest."""
-        if len(self._own(shard)) == len(shard.indexes):
+        if len(self._part.runs_of(shard)) == len(shard.indexes):
             self._urgent.append(self._job(shard, ()))
 
     def _job(self, shard: Shard, indexes: tuple[int, ...]) -> Job:
-        return self.layout.root.resolve(), self.session, shard, indexes
-
-    def _mine(self) -> Iterator[tuple[Shard, tuple[int, ...]]]:
-        """Yield the shards of this part, each with its runs: whole shards, or runs where there are fewer shards."""
-        for place, shard in enumerate(shards_of(self.recipe)):
-            if self.only is not None and shard.name not in self.only:
-                continue
-            if self._shards < self.part.count:
-                mine = self._own(shard)
-                if mine:
-                    yield shard, mine
-            elif place % self.part.count == self.part.number - 1:
-                yield shard, shard.indexes
-
-    def _own(self, shard: Shard) -> tuple[int, ...]:
-        if self._shards >= self.part.count:
-            return shard.indexes
-        count, runs = self.part.count, self.recipe.runs
-        return tuple(index for index in shard.indexes if index * count // runs == self.part.number - 1)
-
-    def _missing_of(self, shard: Shard, mine: tuple[int, ...]) -> tuple[int, ...]:
-        if shard.name in self._closed:
-            return ()
-        if shard.name not in self._begun:
-            return mine
-        if shard.name not in self._missing:
-            good = {
-                index for index, kept in kept_runs(self.layout, shard.name).items() if self._is_whole(index, kept.good)
-            }
-            self._missing[shard.name] = tuple(index for index in mine if index not in good)
-        return self._missing[shard.name]
-
-    def _is_whole(self, index: int, good: bool) -> bool:
-        """Return whether the files of a kept run are there."""
-        formats = run_formats(self.recipe.output.formats) if good else []
-        return all(self.layout.export(each.name, run_id_of(index)).exists() for each in formats)
+        return self._part.layout.root.resolve(), self._session, shard, indexes
 
 
 class _Queue(Iterator[Job]):

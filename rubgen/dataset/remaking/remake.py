@@ -14,7 +14,7 @@ from rubgen.dataset.layout import Layout
 from rubgen.dataset.making.claim import STAGED
 from rubgen.dataset.making.close import read_closed
 from rubgen.dataset.making.finish import write_runs
-from rubgen.dataset.making.plan import MOST_RUNS_A_JOB, Plan, do
+from rubgen.dataset.making.plan import MOST_RUNS_A_JOB, PartOfSet, Plan, do
 from rubgen.dataset.making.workers import unordered, usable_cores, worker_pool
 from rubgen.dataset.manifest import Manifest, identity_of
 from rubgen.dataset.rows import RunTable
@@ -73,7 +73,7 @@ def remake(layout: Layout, manifest: Manifest, wrong: set[str], *, trusting: boo
     for name in STAGED:
         (inner.staging / name).mkdir(parents=True, exist_ok=True)
     write_json(inner.identity, manifest.identity.model_dump(mode="json"))
-    plan = Plan(recipe, inner, uuid4().hex[:12], only=frozenset(chosen))
+    plan = Plan(PartOfSet(recipe, inner, only=frozenset(chosen)), uuid4().hex[:12])
     putting = _PuttingBack(layout, inner, wanted, listed)
     for name in chosen:
         putting.files_of(name)  # of shards that were closed before a stop

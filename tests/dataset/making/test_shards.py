@@ -10,7 +10,7 @@ from rubgen.dataset import shards as sharding
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.making import generate as generating
 from rubgen.dataset.making.keep import Keeper, kept_runs
-from rubgen.dataset.making.plan import Part, Plan, part_of
+from rubgen.dataset.making.plan import Part, PartOfSet, Plan, part_of
 from rubgen.dataset.shards import shards_of
 from rubgen.errors import UserError
 from rubgen.scenario import Recipe, parse_recipe
@@ -81,7 +81,7 @@ def test_parts_share_all_runs_and_have_none_twice(tmp_path):
     for count in (1, 3, 6, 7, 23, 40):
         mine = []
         for number in range(1, count + 1):
-            plan = Plan(recipe, Layout(tmp_path), "session", Part(number, count))
+            plan = Plan(PartOfSet(recipe, Layout(tmp_path), Part(number, count)), "session")
             for _, _, shard, indexes in plan.jobs(2):
                 mine += indexes
                 if indexes:
@@ -140,7 +140,7 @@ def test_a_set_is_as_it_was_until_it_has_grown(tmp_path, monkeypatch):
 
 def test_jobs_are_for_all_workers_and_full_shards_come_first(tmp_path):
     recipe = parse_recipe({**VALUES, "runs": 20})
-    jobs = list(Plan(recipe, Layout(tmp_path), "session").jobs(2))
+    jobs = list(Plan(PartOfSet(recipe, Layout(tmp_path)), "session").jobs(2))
     assert len(jobs) >= 8
     whole = [shard.full for shard in shards_of(recipe)]
     assert whole == sorted(whole, reverse=True)
