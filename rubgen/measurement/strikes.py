@@ -3,7 +3,7 @@
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.machine.faults.strikes import Strikes
+from rubgen.machine.faults.fault import Strikes
 
 
 def force_of(strikes: Strikes, turned: FloatArray, dt: float) -> tuple[FloatArray, FloatArray]:

@@ -10,8 +10,7 @@ from pydantic import model_validator
 from pydantic.dataclasses import dataclass
 
 from rubgen.arrays import FloatArray
-from rubgen.machine.faults.fault import Fault, Severity
-from rubgen.machine.faults.strikes import Strikes
+from rubgen.machine.faults.fault import Fault, Severity, Strikes
 from rubgen.machine.quantities import STRICT, BallCount, Direction, Length, about, real
 
 BALL_DENSITY = 7800.0

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, ClassVar, Self
 import numpy as np
 
 from rubgen.arrays import FloatArray
-from rubgen.machine.faults.strikes import Strikes
 from rubgen.machine.support_laws.law import SupportLaw
 
 if TYPE_CHECKING:
@@ -80,6 +79,17 @@ class LostMass:
 
     blade: int
     kg: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Strikes:
+    """Blows on the bearing housing. Each blow is so short that only its impulse counts."""
+
+    turned: FloatArray
+    """Angle of the shaft at each (any,), in rad, on the scale of the angles that were asked for."""
+    impulse_n_s: FloatArray
+    direction_rad: FloatArray
+    """Direction of each in the inertial frame, from +X."""
 
 
 @dataclass(frozen=True, kw_only=True)
