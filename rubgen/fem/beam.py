@@ -32,8 +32,8 @@ class BeamMatrices:
 
     M is mass, K elastic stiffness, G Coriolis (skew), S spin softening, K_sigma stiffness from centrifugal stress, f_c
     centrifugal load at 1 rad/s. The blade's share of the equation of motion in the turning frame at spin speed Omega is
-    M q'' + 2 Omega G q' + (K + Omega^2 (K_sigma - S)) q = Omega^2 f_c. `root_pull` is the axial force at the root at 1
-    rad/s, in N s^2. The rest of the machine carries this force, and its geometric stiffness belongs there.
+    M q'' + 2 Omega G q' + (K + Omega^2 (K_sigma - S)) q = Omega^2 f_c. The rest of the machine carries
+    the axial force at the root; its geometric stiffness belongs there.
     """
 
     M: FloatArray
@@ -42,7 +42,6 @@ class BeamMatrices:
     S: FloatArray
     K_sigma: FloatArray
     f_c: FloatArray
-    root_pull: float
 
 
 def blade_matrices(blades: BladeRow, root_radius: float) -> BeamMatrices:
@@ -93,7 +92,6 @@ def blade_matrices(blades: BladeRow, root_radius: float) -> BeamMatrices:
             + integral(shape, rho * cross_section_second_order(sections))
         ),
         f_c=_assemble_vector(load),
-        root_pull=float(cross_sections(blades, root_radius, np.zeros(1)).pull[0]),
     )
 
 

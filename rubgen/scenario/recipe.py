@@ -366,19 +366,22 @@ class Recipe(StrictModel):
                 own = isinstance(split, SplitTable) and split.changes
                 yield f"{source}: splits.{name}".removeprefix(": ") if own else source, part
 
-    def corners(self, source: str = "") -> Iterator[Scenario]:
+    def corners(self) -> Iterator[Scenario]:
         """Yield the scenarios in which one key has an extreme value of its distribution. Checks of the recipe use them.
 
         Every other key has its first value. The keys of the surroundings are all at their least, then all at their
         largest value; for faults see `scenario.faults.extremes`. The machines are those of the files, with the largest
-        number of blades of `[machines]`. With `[twins]` each scenario is followed by its twin. Raises UserError,
-        beginning with `source`, where an extreme value is not allowed.
+        number of blades of `[machines]`. With `[twins]` each scenario is followed by its twin. Raises UserError where
+        an extreme value is not allowed.
         """
-        for where, part in self.named_parts(source):
+        for where, part in self.named_parts():
             yield from part.own_corners(where)
 
     def own_corners(self, source: str = "") -> Iterator[Scenario]:
-        """Yield the scenarios of `corners` for this recipe alone, without the changes of its splits."""
+        """Yield the scenarios of `corners` for this recipe alone, without the changes of its splits.
+
+        `source` is the beginning of messages.
+        """
         for base in self.bases:
             machine = self.machines.largest(base.machine) if self.machines else base.machine
             for corner in self.corners_of(base, machine, source):

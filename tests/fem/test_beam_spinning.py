@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 from test_beam_statics import rigid_motion, volume
 
 from rubgen.fem.beam import blade_matrices
+from rubgen.fem.cross_sections import cross_sections
 from rubgen.machine.machine import Material
 from validation.verification.elements.beams import FLAP, THICK, TIMOSHENKO, cantilever_frequencies
 from validation.verification.elements.twisted_blades import RADIUS, TWISTED
@@ -33,7 +34,7 @@ def test_rigid_rotation_sees_the_exact_centrifugal_potential() -> None:
     The blade hangs on a rigid link of length RADIUS that carries the root's pull P: turning it by th about y or z
     moves the root sideways by RADIUS th and costs P RADIUS th^2 / 2, the link's own geometric stiffness.
     """
-    m = blade_matrices(TWISTED, RADIUS)
+    m, pull = blade_matrices(TWISTED, RADIUS), float(cross_sections(TWISTED, RADIUS, np.zeros(1)).pull[0])
     r, mass = volume(TWISTED)
 
     def potential(axis: np.ndarray, angle: float) -> float:
@@ -44,7 +45,7 @@ def test_rigid_rotation_sees_the_exact_centrifugal_potential() -> None:
     axes = np.vstack([np.eye(3), rng.normal(size=(4, 3))])
     for axis in axes / np.linalg.norm(axes, axis=1, keepdims=True):
         q = rigid_motion(TWISTED, np.cross(axis, [RADIUS, 0, 0]), axis)
-        ours = q @ (m.K_sigma - m.S) @ q + m.root_pull * RADIUS * (axis[1] ** 2 + axis[2] ** 2)
+        ours = q @ (m.K_sigma - m.S) @ q + pull * RADIUS * (axis[1] ** 2 + axis[2] ** 2)
         h = 1e-3
         exact = (potential(axis, h) - 2 * potential(axis, 0.0) + potential(axis, -h)) / h**2
         # atol: the difference quotient's rounding; the twist-plane terms are 1e-4 of the large ones.

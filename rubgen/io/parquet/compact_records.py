@@ -13,7 +13,6 @@ import numpy as np
 import pyarrow as pa
 
 from rubgen.errors import UserError
-from rubgen.io.parquet.write import write_table
 from rubgen.labels.compact_record import SCALARS, TOUCHES, CompactRecord, compact_record, named_scalars
 from rubgen.solver.response import Response
 
@@ -59,11 +58,6 @@ def record_table(run_id: str, response: Response) -> pa.Table:
     record = compact_record(response)
     columns = {name: pa.array([record[name].ravel()], pa.list_(kind)) for name, (kind, _) in RECORD_COLUMNS.items()}
     return pa.table({"run_id": pa.array([run_id])} | columns, schema=SCHEMA)
-
-
-def write_record(run_id: str, response: Response, path: Path) -> None:
-    """Write the compact record of the response of run `run_id` as a Parquet file at `path`, complete or not at all."""
-    write_table([record_table(run_id, response)], SCHEMA, path)
 
 
 class _MisfitError(Exception):

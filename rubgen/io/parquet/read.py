@@ -116,15 +116,14 @@ class ParquetSource:
             raise UserError(f"{self.path}: would unpack to {unpacked:,} bytes; that is no file of rubgen")
 
 
-def read_table(path: Path, columns: Sequence[str] | None = None, asked_bytes: float = 0.0) -> pa.Table:
+def read_table(path: Path, columns: Sequence[str] | None = None) -> pa.Table:
     """Read all rows of the Parquet file at `path`, with every page checked.
 
     - columns: names of the columns to read; None reads all.
-    - asked_bytes: expected unpacked size of a row group, allowed beyond the general bound of 256 MiB.
 
     Raises UserError where the file is missing or damaged, or a column is missing.
     """
-    with ParquetSource(path, asked_bytes) as file:
+    with ParquetSource(path) as file:
         return file.read(columns)
 
 
