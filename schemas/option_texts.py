@@ -1,14 +1,12 @@
-"""Texts that stand in the code itself, made from the descriptions: `python -m schemas.option_texts`.
+"""Help texts of `rubgen simulate`, made from the descriptions: `python -m schemas.option_texts`.
 
-They are the help texts of `rubgen simulate`, which must not import the package, and the keys of `make_scenario` in its
-docstring, which tools read without running it.
+They stand in a module of texts, because the command line must not import the package.
 """
 
 import json
 import re
 from inspect import signature
 from pathlib import Path
-from textwrap import wrap
 
 from rubgen.dataset.files import write_text
 from rubgen.machine.descriptions import Key, keys_of
@@ -16,8 +14,7 @@ from rubgen.planning.user_schemas import user_schema
 from rubgen.scenario.make import SURROUNDINGS_KEYS, TABLES, make_scenario
 from rubgen.scenario.vary import DRAWN
 
-ROOT = Path(__file__).parents[1]
-TEXTS_FILE, MAKE_FILE = ROOT / "rubgen/cli/option_texts.py", ROOT / "rubgen/scenario/make.py"
+TEXTS_FILE = Path(__file__).parents[1] / "rubgen/cli/option_texts.py"
 HEAD = '''"""Help texts of the keys of a run, made from their descriptions by `make reference`; do not edit."""
 
 TEXTS = {
@@ -70,17 +67,5 @@ def _literal(text: str) -> str:
     return f"'{text}'" if '"' in text and "'" not in text else json.dumps(text, ensure_ascii=False)
 
 
-def with_keys(source: str) -> str:
-    """The source of `make_scenario` with the texts of its keys in its docstring."""
-    for name, key in run_keys().items():
-        entry = "\n".join(wrap(f"- `{name}`: {short(key)}", 116, initial_indent="    ", subsequent_indent="      "))
-        pattern = rf"(?m)^    - `{name}`:.*\n(?:      .*\n)*"
-        source, count = re.subn(pattern, lambda _, entry=entry: f"{entry}\n", source)  # type: ignore[misc]
-        if count != 1:
-            raise ValueError(f"make_scenario: {name} is described {count} times, once was expected")
-    return source
-
-
 if __name__ == "__main__":
     write_text(TEXTS_FILE, texts_module())
-    write_text(MAKE_FILE, with_keys(MAKE_FILE.read_text(encoding="utf-8")))

@@ -89,59 +89,34 @@ def make_scenario(
 ) -> Scenario:
     """Describe one run of a machine for `simulate`; a key that is not given keeps the machine's value.
 
-    - `machine`: A preset of rubgen by its name, or the path of a machine in TOML.
-    - `speed_rpm`: Spin speed, of a run-up or coast-down at its start; in rev/min, at least 0.001 and at most
-      1,000,000; 10,000 when not given.
-    - `clearance_m`: Smallest gap between blade tips and casing at rest; in m, at least 1e-07 and at most 100.
-    - `free_penetration_m`: How deep tips would be without contact; the clearance follows from it; in m, at least
-      -0.1 and at most 0.1.
-    - `ovality_m`: Largest minus smallest radius of the inner surface; in m, at least 0 and at most 100.
-    - `disk_support_stiffness_n_per_m`: Lateral stiffness of the shaft and bearings at the disk centre, mean of X
-      and Y; in N/m, at least 0.001 and at most 1e+16.
-    - `casing_support_stiffness_n_per_m`: Radial and circumferential stiffness under each casing node; in N/m, at
-      least 0.001 and at most 1e+16.
-    - `friction`: Coulomb coefficient of sliding friction; at least 0 and at most 0.3.
-    - `lobes`: Number of narrow places around the inner surface; at least 2 and at most 100.
-    - `unbalance_kg_m`: Mass times radius of the unbalance on the disk; in kg m, at least 0 and at most 10,000,000.
-    - `casing_thickness_m`: Radial thickness of the ring; in m, at least 1e-07 and at most 100.
-    - `lateral_damping`: Damping ratio of the blisk that moves laterally as a rigid body; at least 0 and below 1.
-    - `support_anisotropy`: (k_X - k_Y) / (k_X + k_Y) of the lateral springs; above -1 and below 1.
-    - `gravity_m_per_s2`: Gravity along -Y on the blisk; in m/s2, at least 0 and at most 10,000.
-    - `unbalance_angle_deg`: Angle of unbalance_kg_m from blade 0, in the sense of rotation; in deg, at least -360
-      and at most 360.
-    - `background_m_per_s2`: Rms of the casing's broadband background from 10 Hz to 20 kHz, at 10,000 rev/min; in
-      m/s2, at least 0 and at most 1,000,000,000; 0 when not given.
-    - `blade_passing_m_per_s2`: Rms of the casing's answer to the pressure of the blades, at 10,000 rev/min; in
-      m/s2, at least 0 and at most 1,000,000,000; 0 when not given.
-    - `runout_m`: Amplitude of order 1 of the shaft's runout under the proximity probes; in m, at least 0 and at
-      most 100; 0 when not given.
-    - `path_gain`: Share of the motion of the machine's frame that the casing's sensors feel; at least 0 and at most
-      1,000,000; 0 when not given.
-    - `fault`: kind of a fault of the machine, or several kinds in a list (docs/faults.md)
-    - `profile`: How the speed changes: not at all, linearly up, linearly down, or as a sine; "steady", "run-up",
-      "coast-down", "fluctuating".
-    - `end_speed_rpm`: Speed at the end of a run-up or coast-down, which need it; in rev/min, at least 0.001 and at
-      most 1,000,000.
-    - `duration_s`: Duration of a record whose speed changes; every profile but "steady" needs it; in s, above 0 and
-      at most 100,000.
-    - `fluctuation_rpm`: Amplitude of a fluctuating speed, which needs it; in rev/min, at least 0 and at most
-      1,000,000; 0 when not given.
-    - `fluctuation_period_s`: Period of a fluctuating speed; in s, above 0 and at most 100,000; 1 when not given.
-    - `settle_turns`: Turns before the record, in which transients decay; at least 1 and at most 1,000,000 or
-      "auto"; "auto" when not given.
-    - `record_turns`: Turns of the record of a steady run, from which its labels come; at least 1 and at most
-      1,000,000; 500 when not given.
-    - `steps_per_turn`: Least number of integration steps in a turn; at least 32 and at most 16,384.
-    - `sample_rate_hz`: Samples a second of every recorded channel; in Hz, above 0 and at most 1,000,000,000.
-    - `sensors`: A sensor set of rubgen by its name, or the path of a sensor set in TOML.
-    - `signal_seconds`: Length of the recorded signals: the end of the record; in s, above 0 and at most 100,000.
-    - `seed`: Seed of all random numbers; at least 0 and at most 9,223,372,036,854,775,807.
-    - `lyapunov`: Whether the largest Lyapunov exponent of each steady run is computed; true, false; true when not
-      given.
-    - `fault_keys`: values of these faults, each by its key: parallel_m = 5e-5
+    A name ends with its unit: m, s, hz, deg, rpm (rev/min), n_per_m (N/m), kg_m (kg m), m_per_s2 (m/s2), or has none.
 
-    Warns (RubgenWarning) of values that are allowed but hardly intended. Raises UserError for an unknown key, machine
-    or sensor set, a value that is not allowed, and keys that exclude each other.
+    - `machine`: A preset of rubgen by its name, or the path of a machine in TOML.
+    - `speed_rpm`: Spin speed; 10,000 when not given.
+    - `profile`: "steady"; "run-up" or "coast-down" from `speed_rpm` to `end_speed_rpm`; or "fluctuating" by
+      `fluctuation_rpm` (0 when not given) with the period `fluctuation_period_s` (1 when not given). All but "steady"
+      need `duration_s`, the length of the record.
+    - `clearance_m`: Smallest gap between blade tips and casing at rest. In its place `free_penetration_m` may say how
+      deep tips would be without contact.
+    - `ovality_m`, `lobes`: Largest minus smallest radius of the inner surface; number of narrow places around it.
+    - `casing_thickness_m`: Radial thickness of the ring.
+    - `casing_support_stiffness_n_per_m`: Radial and circumferential stiffness under each casing node.
+    - `disk_support_stiffness_n_per_m`: Lateral stiffness of the shaft and bearings at the disk centre, mean of X and Y;
+      `support_anisotropy` is (k_X - k_Y) / (k_X + k_Y).
+    - `lateral_damping`: Damping ratio of the blisk that moves laterally as a rigid body.
+    - `unbalance_kg_m`: Mass times radius of the unbalance on the disk, at `unbalance_angle_deg` ahead of blade 0.
+    - `friction`, `gravity_m_per_s2`: Coulomb coefficient of sliding friction; gravity along -Y on the blisk.
+    - `fault`: Kind of a fault, or a list of kinds (docs/faults.md); `fault_keys` are its values: parallel_m = 5e-5.
+    - `background_m_per_s2`, `blade_passing_m_per_s2`, `runout_m`, `path_gain`: What sensors feel besides the motion
+      (docs/surroundings.md); 0 when not given.
+    - `settle_turns`, `record_turns`: Turns before the record, and of a steady record; "auto" and 500 when not given.
+    - `steps_per_turn`: Least number of integration steps in a turn.
+    - `sensors`: A sensor set of rubgen by its name, or the path of one in TOML, sampled at `sample_rate_hz`.
+    - `signal_seconds`, `seed`: Length of the recorded signals, the end of the record; seed of all random numbers.
+    - `lyapunov`: Whether the largest Lyapunov exponent of a steady run is computed; true when not given.
+
+    Warns (RubgenWarning) of what is hardly intended. Raises UserError for an unknown key, machine or sensor set, keys
+    that exclude each other, and a value out of its range (`rubgen simulate --help`).
     """
     given = {key: value for key, value in locals().items() if key != "fault_keys" and value is not None}
     return _checked_scenario(given, fault_keys)

@@ -1,5 +1,6 @@
 """A single run by its keys: all that `rubgen simulate` takes, and every mistake in one line."""
 
+import re
 from inspect import getdoc, signature
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 import rubgen
+from rubgen.cli.option_texts import TEXTS
 from rubgen.errors import RubgenWarning, UserError
 from rubgen.scenario import load_recipe, make_scenario, parse_recipe
 from rubgen.scenario.load import RECIPES
@@ -46,25 +48,22 @@ def test_it_is_the_run_of_a_recipe_with_the_same_values():
     assert make_scenario(speed_rpm=8000, lobes=3, seed=4) == parse_recipe(recipe).scenario(0)
 
 
-def test_every_key_is_named_with_its_unit():
+def test_every_key_is_described_with_its_default_and_ends_with_its_unit():
     text, parameters = getdoc(make_scenario), signature(make_scenario).parameters
     assert set(KEYS) <= set(parameters)
+    _, ends, *items = re.split(r"\nA name ends with its unit: |\n- ", text)
     for name, parameter in parameters.items():
-        assert f"- `{name}`: " in text
+        described = [item for item in items if f"`{name}`" in item.split(": ")[0]] or [
+            item for item in items if f"`{name}`" in item
+        ]
+        assert len(described) == 1, name
+        default = re.search(r"(\S+) when not given", TEXTS.get(name, ""))
+        assert default is None or default[1] in described[0]
         kinds = {"machine": parameter.POSITIONAL_OR_KEYWORD, "fault_keys": parameter.VAR_KEYWORD}
         assert parameter.kind is kinds.get(name, parameter.KEYWORD_ONLY)
-    units = {
-        "rev/min": "rev/min",
-        "m": "in m,",
-        "N/m": "N/m",
-        "kg m": "kg m",
-        "deg": "in deg,",
-        "m/s2": "m/s2",
-        "s": "in s",
-    }
+    units = {"m": "m", "s": "s", "deg": "deg"} | {unit: end for end, unit in re.findall(r"(\w+) \(([^)]+)\)", ends)}
     for entry in PARAMETERS:
-        item = text.split(f"\n- `{entry.key}`: ")[1].split("\n- `")[0]
-        assert units.get(entry.unit, "") in " ".join(item.split())
+        assert entry.unit == "1" or entry.key.endswith(f"_{units[entry.unit]}")
     assert rubgen.make_scenario is make_scenario
 
 
