@@ -21,8 +21,9 @@ Write = Callable[["Run", Path], None]
 def save(run: Run, path: Path, *, named: str = "") -> None:
     """Write a run to a file in the format of its ending: .parquet, .mcap or .rrd. A Parquet file has one row.
 
-    The file is complete or not written at all. `named` is its name in messages; the path if empty. Raises UserError for
-    a failed run, an unknown ending, a folder that does not exist, and a file that cannot be written.
+    An existing file is replaced. The file is complete or not written at all. `named` is its name in messages; the path
+    if empty. Raises UserError for a failed run, an unknown ending, a folder that does not exist, and a file that cannot
+    be written.
     """
     named = named or str(path)
     write = writer_of(path, named)

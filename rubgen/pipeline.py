@@ -65,7 +65,10 @@ class Run:
         }
 
     def save(self, path: Path | str) -> None:
-        """Write the run to a file in the format of its ending: .parquet, .mcap or .rrd. See `rubgen.output.save`."""
+        """Write the run to a file in the format of its ending: .parquet, .mcap or .rrd. An existing file is replaced.
+
+        Raises UserError as `rubgen.output.save` does.
+        """
         from rubgen.output import save
 
         save(self, Path(path))

@@ -41,9 +41,9 @@ def best_threshold(values: FloatArray, flags: BoolArray) -> Threshold:
 
 
 def balanced_accuracy(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:
-    """Compute the mean over the classes in `truth` (any,) of the share of their samples that is predicted right.
+    """Compute the mean over the classes in `truth` of the share of their samples that is predicted right.
 
-    It is NaN for fewer than two classes.
+    `predicted` and `truth` (samples,) are classes. The result is NaN for fewer than two classes in `truth`.
     """
     classes = np.unique(truth)
     return (
@@ -67,7 +67,7 @@ def detection_rate(ranks: FloatArray, truth: npt.NDArray[Any]) -> float:
 
 
 def label_f1(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:
-    """Compute the mean over labels of 2 hits / (times predicted + times true). `truth` is (any, labels), of 0 and 1.
+    """Compute the mean over labels of 2 hits / (times predicted + times true). Both are (samples, labels), 0 or 1.
 
     Only labels that occur in `truth` count; NaN if there are none.
     """
@@ -79,7 +79,10 @@ def label_f1(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:
 
 
 def macro_f1(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:
-    """Compute the mean over the classes in `truth` (any,) of 2 hits / (times predicted + times true)."""
+    """Compute the mean over the classes in `truth` of 2 hits / (times predicted + times true).
+
+    `predicted` and `truth` (samples,) are classes; there must be at least one sample.
+    """
     classes = np.unique(truth)
     hits = np.array([np.sum((predicted == each) & (truth == each)) for each in classes])
     sizes = np.array([np.sum(predicted == each) + np.sum(truth == each) for each in classes])
@@ -87,7 +90,7 @@ def macro_f1(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:
 
 
 def rank_correlation(predicted: FloatArray, truth: FloatArray) -> float:
-    """Compute Spearman's rank correlation; 0 where all predicted or all true values are equal."""
+    """Compute Spearman's rank correlation of `predicted` and `truth` (samples,); 0 if all values of one are equal."""
     from scipy.stats import spearmanr
 
     if np.ptp(predicted) == 0 or np.ptp(truth) == 0:

@@ -67,7 +67,7 @@ def tip_angle(tips: Tips, blade: int, displacement: FloatArray, theta: float) ->
 
     The tip is at the radius a, with the distance t from the blade's axis. t / radius replaces arctan(t / a).
 
-    - displacement (2 or more, any): radial and tangential displacement of each blade's tip, m.
+    - displacement (2 or more, n_blades or more): radial and tangential displacement of each blade's tip, m.
     - theta: angle of the blisk, rad.
     """
     aside = tips.static[1, blade] + displacement[1, blade]
@@ -104,7 +104,7 @@ def clearance_bounds(
     blade's by x, with an error of at most |x|^3 / 3. There r differs from r + r' x by at most |r''| x^2 / 2. |P| is at
     most a + t x / 2.
 
-    - displacement (2 or more, any): radial and tangential displacement of each blade's tip, m.
+    - displacement (2 or more, n_blades or more): radial and tangential displacement of each blade's tip, m.
     - opening: added to the radius of the surface, m.
     - tip_shift: bound of |a - radius| and |t|, in tip radii; below LARGEST_TIP_SHIFT.
     - cos_orders, sin_orders (n_harmonics,): cosine and sine of order_j (theta - phase_j).
@@ -199,7 +199,7 @@ def tighten(
     the margin from it.
 
     - casing (a multiple of eight,): the casing's modal coordinates, then zeros.
-    - displacement (2 or more, any): radial and tangential displacement of each blade's tip, m.
+    - displacement (2 or more, n_blades or more): radial and tangential displacement of each blade's tip, m.
     - theta: angle of the blisk, rad.
     - far: largest bound that is replaced, m.
     - limits: the two `deformation_bounds`.

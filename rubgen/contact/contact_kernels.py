@@ -25,7 +25,7 @@ class ContactWork(NamedTuple):
     bounds: FloatArray
     """Bound of each blade's clearance, infinite behind the last blade to a multiple of eight, m."""
     psi: FloatArray
-    """Polar angle of each blade's foot (n_blades,)."""
+    """Polar angle of each blade's foot (n_blades,), rad, from -pi to pi."""
     gap: FloatArray
     """Free gap of each blade at q* (n_blades,), NaN where the blade is certainly farther than the margin, m."""
     tangent: FloatArray
@@ -87,9 +87,9 @@ def find_near(
     written at the place of each such blade. The gap of every other blade is set to NaN. Only tips whose bound in
     `work.bounds` is at most `radial_margin` are evaluated: any other is farther than `margin`.
 
-    - worn (bins,): coefficients of the worn depth, m.
+    - worn (bins,): coefficients of the worn depth, m; (0,) without a liner.
     - q (n,): q*; radial and tangential displacement of the evaluated tips are copied into it.
-    - displacement (2, any): radial and tangential displacement of each tip, m.
+    - displacement (2, n_blades or more): radial and tangential displacement of each tip, m.
     - casing_start: index of the first casing coordinate in q.
     - opening: added to the radius of the surface, m.
     - cos_theta, sin_theta: of the blisk's angle.
@@ -132,7 +132,7 @@ def gap_at(
 ) -> float:
     """Return the gap of one blade's tip to the deformed surface in the state q (n,), m; negative in penetration.
 
-    - worn (bins,): coefficients of the worn depth, m.
+    - worn (bins,): coefficients of the worn depth, m; (0,) without a liner.
     - casing_start: index of the first casing coordinate in q.
     - opening: added to the radius of the surface, m.
     - cos_theta, sin_theta: cosine and sine of the blisk's angle.
@@ -148,7 +148,8 @@ def slip_velocity(
 ) -> tuple[float, float]:
     """Return the velocity of the tip relative to the casing along the surface's tangent and along e_z, m/s.
 
-    `tip` is (x, y, z), `casing` and `tangent` (x, y), all in the inertial frame.
+    `tip` (x, y, z) and `casing` (x, y) are the velocities, m/s, `tangent` (x, y) is the unit tangent, all in the
+    inertial frame.
     """
     return (tip[0] - casing[0]) * tangent[0] + (tip[1] - casing[1]) * tangent[1], tip[2]
 
@@ -171,7 +172,7 @@ def contact_slip(
 ) -> tuple[float, float]:
     """Return the velocity of the tip of contact m relative to the casing, along tangent and axis, in m/s.
 
-    `work.rows` and `work.tangent` must be those of this contact.
+    `work.rows` must contain the `casing_rows` at the contact's psi, and `work.tangent` what `find_near` writes.
 
     - velocity (n,): q' or a step d of q, in the coordinates' own frames. With d the result is a path in m.
     - q (n,): coordinates, m.
@@ -314,7 +315,7 @@ def wear_liner(count: int, liner: Liner, dt: float, work: ContactWork, wear: Wea
     the receding surface is added to `wear.sums`. The gaps of this step used the present depth, the gaps of two steps
     before `wear.earlier[0]`. In one step the surface has therefore receded by half the difference of the two depths.
 
-    - count: number of contacts in `work`.
+    - count: number of contacts in `work`, of which `blade`, `psi`, `lam` and `sliding` are read.
     - dt: time step, s.
     """
     for m in range(count):

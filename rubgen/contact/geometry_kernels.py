@@ -113,7 +113,7 @@ def worn_radius(surface: Surface, worn: FloatArray, psi: float) -> tuple[float, 
 
 @inlined_kernel
 def smooth_radius(surface: Surface, psi: float) -> tuple[float, float, float]:
-    """Return r, dr/dpsi and d2r/dpsi2 of the smooth curve r = R + sum_j a_j cos(n_j (psi - phase_j))."""
+    """Return r, dr/dpsi and d2r/dpsi2 of the smooth curve r = R + sum_j a_j cos(n_j (psi - phase_j)), m; psi in rad."""
     radius, slope, bend = surface.mean_radius, 0.0, 0.0
     for j in range(surface.amplitude.shape[0]):
         order = surface.order[j]
@@ -129,7 +129,8 @@ def smooth_radius(surface: Surface, psi: float) -> tuple[float, float, float]:
 def interval(psi: float, node_step: float, nodes: int) -> tuple[int, int, float]:
     """Return the numbers of the two nodes around the polar angle psi, and the share of the interval before psi.
 
-    psi is in rad. The `nodes` nodes are `node_step` rad apart, and node 0 is at the angle 0.
+    psi is in rad and need not lie in [0, 2 pi). The `nodes` nodes are `node_step` rad apart, and node 0 is at the angle
+    0.
     """
     position = psi / node_step
     first = math.floor(position)
@@ -161,21 +162,21 @@ def load_interval(table: FloatArray, first: int, second: int, q_casing: FloatArr
 def hermite(s: float, h: float) -> tuple[float, float, float, float]:
     """Return the cubic Hermite weights of first value, second value, first slope, second slope.
 
-    s, 0 to 1, is the position along an interval of length h.
+    s, 0 to 1, is the position along an interval of length h, here an angle in rad.
     """
     return (1 + 2 * s) * (1 - s) * (1 - s), s * s * (3 - 2 * s), h * s * (1 - s) * (1 - s), h * s * s * (s - 1)
 
 
 @allocation_free_kernel
 def hermite_slope(s: float, h: float) -> tuple[float, float, float, float]:
-    """Return the derivatives of the `hermite` weights by the polar angle."""
+    """Return the derivatives of the `hermite` weights by the polar angle, at the same s and h."""
     bump = 6 * s * (1 - s) / h
     return -bump, bump, (1 - s) * (1 - 3 * s), s * (3 * s - 2)
 
 
 @allocation_free_kernel
 def hermite_bend(s: float, h: float) -> tuple[float, float, float, float]:
-    """Return the second derivatives of the `hermite` weights by the polar angle."""
+    """Return the second derivatives of the `hermite` weights by the polar angle, at the same s and h."""
     bend = (12 * s - 6) / (h * h)
     return bend, -bend, (6 * s - 4) / h, (6 * s - 2) / h
 
@@ -198,10 +199,11 @@ def foot_of(
 ) -> tuple[float, float, float, float]:
     """Find the foot of the point (x, y) on the deformed surface: polar parameter psi, gap, and the tangent's X and Y.
 
-    Newton's method on (P - X(psi)).X'(psi) = 0, from the polar angle of P. The gap is n.(P - X) with the inward normal
-    n = e_z x t, positive inside the casing. With chords the foot is on the chord at the polar angle of P.
+    Newton's method on (P - X(psi)).X'(psi) = 0, from the polar angle of P in [-pi, pi]. psi is in rad, the gap in m.
+    The gap is n.(P - X) with the inward normal n = e_z x t, positive inside the casing. With chords the foot is on the
+    chord at the polar angle of P.
 
-    - worn (bins,): coefficients of the worn depth, m.
+    - worn (bins,): coefficients of the worn depth, m; (0,) without a liner.
     - q_casing (n_casing,): the casing's modal coordinates.
     - opening: added to the radius of the surface, m.
     - x, y: the point in the inertial frame, m.
@@ -243,7 +245,7 @@ def foot_of(
 
 @inlined_kernel
 def casing_rows(surface: Surface, psi: float, rows_out: FloatArray) -> None:
-    """Write X and Y displacement at the polar angle psi per unit of each casing mode into `rows_out` (2, n_casing)."""
+    """Write X and Y displacement at the polar angle psi (rad) per unit of each mode into `rows_out` (2, n_casing)."""
     first, second, s = interval(psi, surface.node_step, surface.table.shape[0])
     w = hermite(s, surface.node_step)
     table = surface.table

@@ -118,8 +118,8 @@ def lemke(W: FloatArray, b: FloatArray, m: int, lam_out: FloatArray, tableau: Fl
     """Solve 0 <= lam _|_ b + W lam >= 0 for `lam_out` (m,), N, by Lemke's complementary pivoting.
 
     Cottle, Pang, Stone, The Linear Complementarity Problem, 4.4. W (m, m) and b (m,) are as in
-    `projected_gauss_seidel`; `tableau` (m, 2 m + 2) and `basis` (m,) are scratch. Returns SOLVED, or UNSOLVED when the
-    pivoting ends on a ray, after 50 (m + 1) pivots, and where W is zero.
+    `projected_gauss_seidel`; `tableau` (m, 2 m + 2) and `basis` (m,) are scratch. All arrays may be larger. Returns
+    SOLVED, or UNSOLVED when the pivoting ends on a ray, after 50 (m + 1) pivots, and where W is zero.
     """
     size = 0.0
     for i in range(m):
@@ -163,9 +163,9 @@ def solve_normal(
 
     Where the symmetric part of W is positive definite the solution is unique, and projected Gauss-Seidel is tried
     first. Where it is not, or fails, Lemke's pivoting is used for rigid contact; any other law is then unsolved. `law`
-    is the number of the law in the registry and its parameters; W and b are as in `projected_gauss_seidel`. `square`,
-    `tableau` and `basis` are scratch. For a law with a rate, the first row of `tableau` contains the gaps at step n -
-    1.
+    is the number of the law in the registry and its parameters; W and b are as in `projected_gauss_seidel`. `square`
+    (m, m), `tableau` (m, 2 m + 2) and `basis` (m,) are scratch. All arrays may be larger. For a law with a rate, the
+    first row of `tableau` contains the gaps at step n - 1.
     """
     if is_positive_definite(W, m, square) and projected_gauss_seidel(law, W, b, tableau[0], m, lam_out) == SOLVED:
         return SOLVED

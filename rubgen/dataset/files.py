@@ -21,7 +21,7 @@ def is_system_file(name: str) -> bool:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write `text` in UTF-8 with its own line ends. The file is written completely and durably, or not at all."""
+    """Write `text` in UTF-8 with its own line ends, completely and durably or not at all. It replaces an old file."""
     write_durably(path, lambda part: part.write_bytes(text.encode()))
 
 

@@ -40,17 +40,18 @@ class Exported:
 def export(
     directory: Path, out: Path, name: str, *, split: str | None = None, channels: Sequence[str] | None = None
 ) -> Exported:
-    """Write the good runs of the set in `directory` to the folder `out` in the format `name`.
+    """Write the good runs (status ok) of the set in `directory` to the folder `out` in the format `name`.
 
     - name: uff58, mat, hdf5, csv, wav, ts, webdataset or parquet.
     - split: name of a split; None takes all runs.
-    - channels: names of recorded channels, without clean ones; None, or no name, takes all of them.
+    - channels: names of recorded channels. Clean channels (without noise) cannot be chosen. None, or no name, takes all
+      other channels.
 
     The folder has the files of the runs, `channels.csv`, and `runs.csv` with parameters and labels, lists as JSON. The
     format parquet has no labels, no parameters, no `runs.csv` and no channel that no probe can measure. A file is
     complete or does not exist, and the same call completes an interrupted export. Raises UserError for an unknown
     format, split or channel, for a missing package, for content that the format cannot contain, for a set without good
-    runs, and where `out` lies in the set or has other content.
+    runs, and where `out` lies in the set or has other content than this export.
     """
     data = DataSet(directory)
     kind = _format(name)

@@ -53,8 +53,8 @@ def write_features(
     - workers: number of processes.
 
     The bytes depend on the data set, the parameters and the versions of the packages, not on `workers`. The file is
-    complete or not written at all. Raises UserError as `make_plan` and `run_features` do, for a set without good runs,
-    and for the set tsfel if it is not installed.
+    complete or not written at all. An existing file is replaced. Raises UserError as `make_plan` and `run_features` do,
+    for a set without good runs, and for the set tsfel if it is not installed.
     """
     directory, out = Path(directory), Path(out)
     data = DataSet(directory)

@@ -135,7 +135,10 @@ FIELDS = tuple(CasingAcceleration(name=f"casing_{part}", angle_deg=0) for part i
 
 
 def tap_columns(name: str, unit: str) -> list[Column]:
-    """Return the columns of the labels of the tap `name`, such as its amplitudes at orders. `unit` is the tap's."""
+    """Return the columns of the labels of the tap (true signal) `name`, such as its amplitudes at orders.
+
+    `unit` is the unit of the tap.
+    """
     return [
         Column(f"{name}_{x.ending}", x.kind, unit if x.unit is None else x.unit, x.meaning.format(tap=name), True)
         for x in TAP_LABELS

@@ -101,7 +101,8 @@ class Blocks:
     def without_zeros(self, matrix: FloatArray, like: FloatArray) -> Product:
         """Store a matrix as `product` does, but without lines of zeros.
 
-        An entry counts as zero if it is rounding: below ROUNDING times the scale of the matrix `like` (n, n).
+        An entry counts as zero if it is rounding: at most ROUNDING times the `scale_of` the matrix `like` (n, n), from
+        whose entries `matrix` (n, n) was computed.
         """
         Y = self.transform.T @ matrix @ self.transform
         size = ROUNDING * scale_of(self.transform.T @ like @ self.transform)
@@ -150,7 +151,7 @@ class Blocks:
         return self._packed(lower, triangle=True, coupling=np.ones_like(Y, dtype=bool) if whole else coupled(Y))
 
     def connected(self, coordinates: IntArray) -> IntArray:
-        """Return all coordinates of y in the blocks that contain any of `coordinates`, sorted."""
+        """Return the indices of all coordinates of y in the blocks that contain any of the `coordinates`, sorted."""
         blocks = [block for bundle in self.lanes for block in bundle] + self.single
         found = [block[block >= 0] for block in blocks if np.isin(block, coordinates).any()]
         return np.sort(np.concatenate(found))
@@ -257,8 +258,8 @@ def find_blocks(matrices: list[FloatArray], blades: int) -> Blocks:
 
     The first 3 `blades` coordinates are the tips, three for each blade. They are first changed to harmonics over the
     blades: equal blades then couple only within one nodal diameter. Blocks are the connected components of the entries
-    that `coupled` finds. Up to eight blocks of equal size are stored side by side, so that a kernel computes them at
-    once, if that saves work. Mistuned blades make one large block.
+    that `coupled` finds. If that saves work, up to eight blocks of equal size are stored side by side, so that a kernel
+    computes them at once. Mistuned blades make one large block.
     """
     n = len(matrices[0])
     T = np.eye(n)

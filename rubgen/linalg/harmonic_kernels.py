@@ -1,4 +1,7 @@
-"""Change z to physical coordinates and back: blade tips are harmonics over the blades, the others are unchanged."""
+"""Change z to physical coordinates and back: blade tips are harmonics over the blades, the others are unchanged.
+
+z are the coordinates in the order of the blocks (`linalg.blocks`), padded to rows of eight.
+"""
 
 from typing import NamedTuple
 
@@ -16,7 +19,7 @@ class Harmonics(NamedTuple):
     """
 
     basis: FloatArray
-    """The harmonics (blades, width), orthonormal, one row a blade, padded to a multiple of eight."""
+    """The harmonics (blades, width), orthonormal, one row a blade. The width is padded to a multiple of eight."""
     columns: FloatArray
     """Entries of the sums over the harmonics (any, 8)."""
     lines: IntArray
@@ -77,7 +80,7 @@ def recover_all(
 def spread_tip_force(harmonics: Harmonics, blade: int, force: FloatArray, scale: float, z_force: FloatArray) -> None:
     """Add `scale` times a force (3,) on the tip of one blade to the force `z_force` in z.
 
-    The force is radial, tangential, axial.
+    The force is radial, tangential, axial, in N.
     """
     for a in range(3):
         size = scale * force[a]

@@ -17,11 +17,11 @@ CASING_HZ = (180.98, 181.04, 181.05, 181.22, 181.54, 181.99, 181.99, 183.35, 183
 
 
 def blisk_deviation(frequencies_hz: list[float]) -> dict[int, float]:
-    """Return the relative deviation of blisk frequencies (ascending, Hz) from the published values, by mode number."""
+    """Return the relative deviation of blisk frequencies (ascending, Hz) from the published values, by mode from 1."""
     return {mode: frequencies_hz[mode - 1] / hz - 1 for mode, hz in BLISK_HZ.items() if mode <= len(frequencies_hz)}
 
 
 def casing_deviation(frequencies_hz: list[float]) -> dict[int, float]:
-    """Return the relative deviation of casing frequencies (ascending, Hz) from the published values, by mode number."""
+    """Return the relative deviation of casing frequencies (ascending, Hz) from the published values, by mode from 1."""
     pairs = zip(frequencies_hz, CASING_HZ, strict=False)
     return {mode: hz / published - 1 for mode, (hz, published) in enumerate(pairs, start=1)}

@@ -48,7 +48,8 @@ def names_toml(name: str) -> bool:
 def toml_path(name: str | Path, folder: Path | None = None) -> Path:
     """Return the path `name` of a user, with `~` as the home directory. A relative path starts from `folder`.
 
-    The file need not exist. Raises UserError for a text with control characters.
+    `folder` None is the current directory. The file need not exist. Raises UserError for a text with control
+    characters.
     """
     text = str(name)
     if any(ord(letter) < 32 for letter in text):
@@ -64,7 +65,8 @@ def toml_path(name: str | Path, folder: Path | None = None) -> Path:
 def named_toml(key: str, name: str, folder: Path | None = None) -> Path:
     """Return the path of the TOML file `name`. A relative path starts from `folder`.
 
-    Raises UserError with `key`, the key whose value `name` is, where the file does not exist.
+    `folder` None is the current directory. Raises UserError with `key`, the key whose value `name` is, where the file
+    does not exist.
     """
     path = toml_path(name, folder)
     if os.path.lexists(path):
@@ -90,7 +92,7 @@ def check_kind(path: Path | str, data: dict[str, object], wanted: str) -> None:
 
 
 def read_toml(path: Path) -> dict[str, object]:
-    """Read a TOML file and return its values.
+    """Read a TOML file and return its values. `~` in `path` is the home directory.
 
     A byte order mark of UTF-8 is skipped. Lines may end as on any system. Raises UserError of one line where the file
     is missing, not text, too large or not TOML.

@@ -1,4 +1,4 @@
-"""Turn the tap of a sampled sensor into its recorded channel."""
+"""Turn the tap (true signal) of a sampled sensor into its recorded channel."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Compute the signals that the surroundings add to sensors. The motion and its labels know nothing of them."""
+"""Compute the signals that the surroundings add to taps (true signals). The motion and its labels do not change."""
 
 from __future__ import annotations
 

@@ -32,10 +32,11 @@ def default_sensor_set() -> SensorSet:
 
 
 def load_sensor_set(name_or_path: str, folder: Path | None = None) -> SensorSet:
-    """Load the sensor set of rubgen with the given name, or the set in a TOML file.
+    """Load the set of rubgen with the given name, or the set in a TOML file: a text that ends with .toml is a path.
 
-    A relative path starts from `folder`. A table `[kinds.<kind>]` in the file has default values for all sensors of a
-    kind. Raises UserError with file, key, value and what is allowed where the set does not exist or is not valid.
+    A relative path starts from `folder`; None is the current directory. A table `[kinds.<kind>]` in the file has
+    default values for all sensors of a kind. Raises UserError with file, key, value and what is allowed where the set
+    does not exist or is not valid.
     """
     if name_or_path in sensor_set_names():
         return parse_sensor_set(SETS / f"{name_or_path}.toml")

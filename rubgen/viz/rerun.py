@@ -38,7 +38,7 @@ def write_replay(replay: Replay, path: Path, *, full: bool = False, named: str =
     orbit, order spectra, motion classes, labels and scenario as text and as properties. It takes about a megabyte for
     any length; with `full` every sample and every touch are written. The id of the recording is `named`, or
     `recording_id` if `named` is empty. Times are ns from the first sample. Two recordings of the same replay differ in
-    their bytes, not in their content. Raises OSError where the file cannot be written.
+    their bytes, not in their content. A file at `path` is replaced. Raises OSError where the file cannot be written.
     """
     from rerun_bindings import flush_and_cleanup_orphaned_recordings
 
@@ -106,7 +106,8 @@ def _send_blueprint(stream: RecordingStream, blueprint: Blueprint) -> None:
 def check_rrd(path: Path, run_id: str | None = None) -> list[str]:
     """Check the recording at `path` with `rerun rrd verify`, then as `content_problems` does. Returns its problems.
 
-    `run_id` is the name of the run that the recording must contain; None does not check it.
+    `run_id` is the name of the run that the recording must contain; None does not check it. A missing file is a problem
+    in the list, not an error.
     """
     if not path.is_file():
         return ["there is no such file"]
@@ -121,8 +122,8 @@ def check_rrd(path: Path, run_id: str | None = None) -> list[str]:
 def content_problems(path: Path, run_id: str | None = None) -> list[str]:
     """Return the problems of the recording at `path`: missing content of `write_rrd`, or another run than `run_id`.
 
-    `run_id` None does not check the run. The file is decoded in this process: use it only for files whose bytes are
-    proven to be as written.
+    `run_id` None does not check the run. A file that cannot be decoded has one problem. The file is decoded in this
+    process: use it only for files whose bytes are proven to be as written.
     """
     from rerun.chunk import RrdReader
 

@@ -23,7 +23,8 @@ _SOFTWARE_DRIVER = "lvp_icd"
 def doctor_command(*, as_json: bool) -> int:
     """Print versions, caches, cores, Vulkan and screen of this computer.
 
-    Returns the exit code 1 where a package is missing or outside of the versions that rubgen declares, else 0.
+    With `as_json` they are printed as JSON. Returns the exit code 1 where a package is missing or outside of the
+    versions that rubgen declares, else 0.
     """
     root = wanted_root()
     problem = problem_of(root)

@@ -19,7 +19,8 @@ def export_command(
 ) -> int:
     """Write the data set in the format `name` to the folder `out` and print what it contains. Returns the exit code 0.
 
-    `channels` are names with commas between them, or None. The other parameters are those of `export`.
+    `channels` are names with commas between them; None takes all but the clean ones. `directory`, `out`, `name` and
+    `split` are as in `export`. With `as_json` the summary is JSON.
     """
     with step("export", "files"), terminable(), write_problems(out, named=f"--out {out}", kept="files so far are kept"):
         made = export(directory, out, name, split=split, channels=names_in("--channels", channels))

@@ -48,8 +48,8 @@ def generate_command(recipe: Path | None, out: Path, runs: int | None, work: Wor
 def resense_command(directory: Path, sensors: str, out: Path, workers: int | None, *, as_json: bool) -> int:
     """Make a data set again with other sensors and print a summary. The parameters are those of `resense`.
 
-    Returns the exit code 1 where no run of the set is ok, else 0. After Ctrl-C it prints how to continue and returns
-    130.
+    With `as_json` the summary is JSON, and no progress is shown. Returns the exit code 1 where no run of the set is ok,
+    else 0. After Ctrl-C it prints how to continue and returns 130.
     """
     made = partial(resense, directory, sensors, out, workers=workers, progress=not as_json)
     return _made_in(out, made, out, as_json=as_json)
@@ -58,8 +58,8 @@ def resense_command(directory: Path, sensors: str, out: Path, workers: int | Non
 def merge_command(directories: Sequence[Path], out: Path, *, as_json: bool) -> int:
     """Merge data sets and print a summary. The parameters are those of `rubgen.merge`.
 
-    Returns the exit code 1 where no run of the set is ok, else 0. After Ctrl-C it prints how to continue and returns
-    130.
+    With `as_json` the summary is JSON, and no progress is shown. Returns the exit code 1 where no run of the set is ok,
+    else 0. After Ctrl-C it prints how to continue and returns 130.
     """
     return _made_in(out, partial(merge, directories, out, progress=not as_json), out, as_json=as_json)
 
@@ -67,7 +67,7 @@ def merge_command(directories: Sequence[Path], out: Path, *, as_json: bool) -> i
 def push_command(directory: Path, url: str, *, as_json: bool) -> int:
     """Copy a finished data set to a URL and print the number of files copied. Returns the exit code 0.
 
-    After Ctrl-C it prints how to continue and returns 130.
+    With `as_json` the number is printed as JSON. After Ctrl-C it prints how to continue and returns 130.
     """
     try:
         with terminable(), shown(not as_json and None):

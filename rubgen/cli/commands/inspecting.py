@@ -25,7 +25,8 @@ def info_command(directory: Path, *, as_json: bool) -> int:
     """Print the content of the data set in `directory`: runs by status, rub and motion, and reasons of failed runs.
 
     For an unfinished set, after an interrupted `generate`, the number of finished runs and how to continue are printed.
-    Returns the exit code 0. Raises UserError where the directory holds no data set.
+    With `as_json` the counts are printed as JSON, without the reasons. Returns the exit code 0. Raises UserError where
+    the directory holds no data set.
     """
     begun = unfinished(directory)
     if begun is not None:
@@ -62,6 +63,7 @@ def verify_command(directory: Path, sample: int | None, *, repair: bool = False,
 
     - sample: number of shards whose content is read; None reads all.
     - repair: then make files again, as `repair_command` does.
+    - as_json: print problems and remedy as JSON.
 
     Returns the exit code 1 if a problem remains, else 0. Raises UserError for `sample` with `repair`.
     """
@@ -77,7 +79,8 @@ def verify_command(directory: Path, sample: int | None, *, repair: bool = False,
 def repair_command(directory: Path, *, as_json: bool, told: bool = False) -> int:
     """Make damaged or missing files again and print them, then the problems that remain.
 
-    With `told` the problems before the repair are printed first. Returns the exit code 1 if a problem remains, else 0.
+    With `told` the problems before the repair are printed first. With `as_json` all is printed as JSON. Returns the
+    exit code 1 if a problem remains, else 0.
     """
     from rubgen.dataset.checking.repair import repair
 
@@ -112,8 +115,9 @@ def _tell(directory: Path, found: list[Finding], more: dict[str, object], *, as_
 def label_command(directory: Path, *, as_json: bool) -> int:
     """Compute the labels of a data set again from its compact records, and print those that differ from `runs.parquet`.
 
-    No file is changed. Numbers that differ only by rounding are equal. Labels of orders are left out. Returns the exit
-    code 1 if a label differs, else 0. Raises UserError where `directory` holds no finished data set.
+    No file is changed. Numbers that differ only by rounding are equal. Labels of orders are left out. With `as_json`
+    the differences are printed as JSON. Returns the exit code 1 if a label differs, else 0. Raises UserError where
+    `directory` holds no finished data set.
     """
     with step("make labels again"):
         done = relabel(directory)

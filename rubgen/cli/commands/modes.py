@@ -20,8 +20,9 @@ HIGHEST_RPM = 60_000.0
 def modes_command(machine: str, speed_rpm: float, *, as_json: bool) -> int:
     """Reduce a machine and print its size, critical speed and modes at `speed_rpm`. Returns the exit code 0.
 
-    `machine` is the name of a preset or the path of a TOML file. At rest the preset zeng2019 is compared with the
-    published frequencies. Raises UserError for a speed outside 0 to 60,000 rev/min.
+    `machine` is the name of a preset or the path of a TOML file. `as_json` prints JSON, with all modes. At rest the
+    preset zeng2019 is compared with the published frequencies. Raises UserError for a speed outside 0 to 60,000
+    rev/min.
     """
     if not 0 <= speed_rpm <= HIGHEST_RPM:
         raise UserError(f"--speed-rpm {speed_rpm:g}: must be from 0 to {HIGHEST_RPM:,.0f}")

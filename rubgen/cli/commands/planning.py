@@ -36,7 +36,9 @@ def plan_command(
     - recipe: path or name of the recipe; None is the default recipe.
     - runs: number of runs in place of the recipe's; None keeps it.
     - tries: number of runs to simulate.
-    - out: picture to write, or None.
+    - out: picture to write (.png, .svg, .pdf), or None.
+    - force: replace an existing picture.
+    - as_json: print the plan as JSON.
     - slurm: also print the script of a job of SLURM.
 
     Returns the exit code 1 where runs, or scenarios at extreme values of the recipe, are refused; else 0.

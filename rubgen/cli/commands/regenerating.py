@@ -13,8 +13,9 @@ MOST_NAMED = 6
 def regenerate_command(directory: Path, run_id: str, out: Path | None, *, force: bool, as_json: bool) -> int:
     """Simulate a run again and print where it differs from the stored run. `out` is a file for the run, or None.
 
-    Returns the exit code 1 where a label differs by more than other versions or another processor explain, or where a
-    bit differs with the same versions; else 0.
+    With `force` an existing `out` is replaced. With `as_json` the differences are printed as JSON. Returns the exit
+    code 1 where a label differs by more than other versions or another processor explain, or where a bit differs with
+    the same versions; else 0.
     """
     if out is not None:
         check_new_file("--out", out, tuple(f".{name}" for name in FORMAT_NAMES), force=force)

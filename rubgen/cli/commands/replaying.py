@@ -61,7 +61,10 @@ class Showing:
 
 
 def replay_command(source: Path, run_id: str | None, where: str | None, showing: Showing) -> int:
-    """Find a run as `find_replay` does, print the remarks on it to stderr, and show it. Returns the exit code 0."""
+    """Find a run as `find_replay` does, print the remarks on it to stderr, and show it. Returns the exit code 0.
+
+    `source`, `run_id` and `where` are as in `find_replay`, `showing` are the user's options.
+    """
     showing.check()
     from rubgen.dataset.reading.replaying import find_replay
 

@@ -13,7 +13,7 @@ TITLES = {"recipe": "recipes", "machine": "machines", "sensors": "sensor sets"}
 def list_command(*, as_json: bool) -> int:
     """Print the recipes, machines, sensor sets and faults that come with rubgen, each with one sentence.
 
-    Returns the exit code 0.
+    With `as_json` they are printed as JSON. Returns the exit code 0.
     """
     found = {TITLES[kind]: offered(kind) for kind in TITLES} | {"faults": offered_faults()}
     if as_json:

@@ -94,8 +94,8 @@ def impulse_problems(row: Row, force: Float32Array, noise_rms: float, step: floa
     by `resolved_impulse`. Nothing is compared where fewer than LEAST_TURNS turns are recorded, or where the label
     contradicts the run's windows.
 
-    - row: the labels by column, of a period-1 run in contact at a steady speed; this is not checked.
-    - force (samples,): the channel in N.
+    - row: of a period-1 run in contact at a steady speed; this is not checked.
+    - force (samples,): the channel in N, of a sensor without errors besides noise, range and ADC (`is_faultless`).
     - noise_rms, step: noise and ADC step in N.
     """
     weights = whole_turn_weights(force.size, samples_per_turn(row))

@@ -50,8 +50,9 @@ MOST_SHOWN = 5
 class DataSet:
     """The data set in a directory. Its files are read only when they are needed.
 
-    `len(data)` is the number of its runs, failed runs included. `data[run_id]` is one run, and iteration yields the
-    names of the runs. The set consists of the files that its manifest lists; other files in the directory are ignored.
+    `len(data)` is the number of its runs, failed runs included. A good run has the status ok. `data[run_id]` is one
+    run, and iteration yields the names of the runs. The set consists of the files that its manifest lists; other files
+    in the directory are ignored.
     """
 
     def __init__(self, directory: Path | str) -> None:
@@ -187,8 +188,9 @@ class DataSet:
     def touches(self, run_id: str) -> pd.DataFrame:
         """Read the touches of blades within the whole record of a run, one row a touch, in order of their start.
 
-        Columns: `start_s` and `end_s` from the first sample, `blade`, `angle_rad`, `impulse_n_s`, `friction_work_j` and
-        `normal_work_j` <= 0. Raises UserError where the run does not exist or failed, or the file is damaged.
+        Columns (see `touches_frame`): `start_s` and `end_s` from the first sample, `blade`, `angle_rad` on the casing,
+        `impulse_n_s`, `friction_work_j` and `normal_work_j` <= 0. Raises UserError where the run does not exist or
+        failed, or the file is damaged.
         """
         self.check_has_signals(run_id)
         ((_, touches),) = self.each_touches([run_id])
@@ -243,8 +245,7 @@ class DataSet:
         """Cut runs into windows for learning: `X, y, groups, start, run_ids = data.windows(seconds=0.25)`.
 
         A window has the length `seconds`, or `turns` of the shaft between its recorded pulses, with 256 samples a turn.
-        Windows start every `hop`, in the same unit; by default they do not overlap. A shorter rest at the end is left
-        out.
+        Windows start every `hop`, in the same unit; by default they do not overlap. A shorter rest is left out.
 
         For the targets `rub`, `contact_duty`, `contact_impulse_per_turn_n_s` and `motion` the answer belongs to the
         window: in a window before a rub begins, `rub` is 0. `motion` is -1 where the class changes within the window.

@@ -187,7 +187,7 @@ def merged_from(source: str, index: int) -> str:
 def write_table(tables: Iterable[pa.Table], types: pa.Schema, path: Path) -> int:
     """Write tables of schema `types` to the file at `path`, each as one row group. Return the number of rows written.
 
-    The file is complete or not written at all.
+    The file is complete or not written at all. An existing file is replaced.
     """
     rows = 0
 
@@ -203,7 +203,10 @@ def write_table(tables: Iterable[pa.Table], types: pa.Schema, path: Path) -> int
 
 
 def write_parquet(run: Run, path: Path) -> None:
-    """Write one run as a Parquet file of one row, with its signals. Raises OSError when the file cannot be written."""
+    """Write one run as a Parquet file of one row, with its signals. An existing file is replaced.
+
+    Raises OSError where the file cannot be written.
+    """
     table = run_table(run)
     write_table([table], table.schema, path)
 

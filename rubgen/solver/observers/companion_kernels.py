@@ -1,5 +1,7 @@
 """A companion of the run starts near the run, takes the same steps, and is brought back near the run repeatedly.
 
+z are the coordinates in the order of the blocks (`linalg.blocks`).
+
 The largest Lyapunov exponent is the mean growth of the distance (Benettin, Galgani, Giorgilli, Strelcyn 1980).
 """
 
@@ -16,9 +18,9 @@ from rubgen.solver.scheme.step_kernels import OK, advance, shift_gaps
 
 @allocation_free_kernel
 def bring_back(main: FloatArray, scale: float, companion: FloatArray) -> None:
-    """Scale the companion's distance from the run: companion = main + scale (companion - main).
+    """Scale the companion's distance from the run: `companion` becomes main + scale (companion - main).
 
-    An element whose distance is not finite becomes the element of `main`. `main` and `companion` are (any,).
+    An element whose distance is not finite becomes the element of `main`. Both arrays have the same length.
     """
     for i in range(companion.shape[0]):
         away = companion[i] - main[i]
@@ -29,8 +31,8 @@ def bring_back(main: FloatArray, scale: float, companion: FloatArray) -> None:
 def distance(laws: Laws, mass: Product, main: FloatArray, companion: tuple[Motion, Motion], scratch: Scratch) -> float:
     """Return sqrt(d_v^T M d_v + Omega^2 d_q^T M d_q), with d the difference between the run and its companion.
 
-    `main` (2, any) is z of the run at two successive steps, `companion` its motions at these steps. `mass` is M in
-    blocks.
+    `main` (2, size of z) is z of the run at two successive steps, `companion` its motions at these steps. `mass` is M
+    in blocks. `scratch.z_force` and `scratch.z_change` are overwritten.
     """
     speed, dt = laws.speed, laws.dt
     for i in range(scratch.z_change.shape[0]):

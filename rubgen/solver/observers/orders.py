@@ -1,4 +1,4 @@
-"""Compute the orders of rotation of each turn, over its angle."""
+"""Compute the amplitudes of taps (true signals) at orders of the rotation in each turn, over its angle."""
 
 from typing import Any
 

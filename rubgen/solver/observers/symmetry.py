@@ -35,7 +35,7 @@ def turned_back(modes: FloatArray, share: float) -> FloatArray:
 
 
 class Symmetry(Observer):
-    """Takes the states after 1/N, 2/N, ... 1 of the last turn, N lobes. A turn must take snapshots at `steps`."""
+    """Takes the states after 1/N, 2/N, ... 1 of the last turn, N lobes. The stepper must take snapshots at `steps`."""
 
     def __init__(self, stepper: Stepper) -> None:
         self.stepper, steps = stepper, stepper.steps

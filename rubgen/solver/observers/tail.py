@@ -1,4 +1,4 @@
-"""Keep the taps and the passages under timing probes of the last turns."""
+"""Keep the taps (true signals) and the passages under timing probes of the last turns, the tail of a run."""
 
 from collections import deque
 from typing import Any

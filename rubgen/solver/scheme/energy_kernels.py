@@ -1,4 +1,4 @@
-"""The scheme's own energy identity, whose works are summed in every step.
+"""The scheme's own energy identity, whose works are summed in every step. z is q in the order of the blocks.
 
 E_n+1/2 = v^T M v / 2 + q_n+1^T K_sym q_n / 2,   v = (q_n+1 - q_n) / dt
 dE      = f.d - (C v_c).d - (K_skew q_n).d + lam^T B^T d,   d = (q_n+1 - q_n-1) / 2,   v_c = d / dt
@@ -30,9 +30,9 @@ def stored_energy(terms: EnergyTerms, before: FloatArray, now: FloatArray, diffe
 
 @inlined_kernel
 def add_works(terms: EnergyTerms, change: FloatArray, damping: float, circulatory: float, works: FloatArray) -> None:
-    """Add the works of unbalance, dampers and circulatory stiffness in one step to `works`; the last two are given.
+    """Add the works of unbalance, dampers and circulatory stiffness in one step to `works` (8,), J.
 
-    `change` is d in z.
+    `damping` and `circulatory` are the last two works, J. `change` is d in z.
     """
     unbalance = 0.0
     for i in range(terms.force.shape[0]):
@@ -45,9 +45,9 @@ def add_works(terms: EnergyTerms, change: FloatArray, damping: float, circulator
 
 @inlined_kernel
 def add_linear_works(terms: EnergyTerms, now: FloatArray, change: FloatArray, dt: float, works: FloatArray) -> None:
-    """Add the works of unbalance, dampers and circulatory stiffness in one step to `works`.
+    """Compute the works of unbalance, dampers and circulatory stiffness in one step, and add them to `works` (8,), J.
 
-    `change` is d, in z as `now`.
+    `now` is z at step n, `change` d in z, `dt` in s.
     """
     damping = -2.0 * quadratic(terms.damping, change, change) / dt
     if terms.circulatory_pairs.shape[0] > 0:
@@ -78,7 +78,8 @@ def book_linear_works(
 ) -> int:
     """Add the works of `add_linear_works` to `works`, at once or, with large matrices, when TOGETHER steps wait.
 
-    Return the number of steps that wait; `count` is that before.
+    Return the number of steps that wait in `waiting`; `count` is their number before this step. The other parameters
+    are as in `add_linear_works`.
     """
     if not terms.waits:
         add_linear_works(terms, now, change, dt, works)
@@ -100,7 +101,13 @@ def add_contact_works(
 
     The normal loss is lam (g_n+1 - g_n-1) / 2. The gaps are the scheme's: linearised where the blade was near, else
     geometric. The friction loss is lam mu tau.v_rel dt, with tau the direction of friction in the step and v_rel the
-    central relative velocity. It is -mu lam |v_rel| dt, except that the contact changes the direction of v_rel.
+    central relative velocity. It is -mu lam |v_rel| dt, except that the contact changes the direction of v_rel. The
+    works go into `state.works`.
+
+    - m: number of the contact in `state.contact`, not of the blade.
+    - step: number of the step n in `model.angles`.
+    - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., m.
+    - coordinates: of the contact's blade the tip coordinates must be valid. `change` is d.
     """
     surface, tips, laws, angles = model.surface, model.tips, model.laws, model.angles
     work, works = state.contact, state.works

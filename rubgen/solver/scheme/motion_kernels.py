@@ -11,9 +11,9 @@ class Motion(NamedTuple):
     """The coordinates at one step: z in blocks, and the physical coordinates that contact needs."""
 
     z: FloatArray
-    """All coordinates in blocks."""
+    """All coordinates in the order of the blocks (`linalg.blocks`), padded to rows of eight."""
     tips: FloatArray
-    """Radial and tangential coordinates of the tips (2, width), one column a blade."""
+    """Radial and tangential coordinates of the tips (2, n_blades or more), one column a blade."""
     q: FloatArray
     """Physical coordinates (n,). A tip's are valid only after `recover_blade`; all others always are."""
 
@@ -22,7 +22,7 @@ class Motion(NamedTuple):
 def recover(harmonics: Harmonics, motion: Motion, share_work: FloatArray) -> None:
     """Compute `tips` of a motion, and the coordinates behind the tips in its `q`, from its z.
 
-    `share_work` is scratch.
+    `share_work` is scratch, as in `recover_tips`.
     """
     recover_tips(harmonics, motion.z, share_work, motion.tips)
     recover_rest(harmonics, motion.z, motion.q)

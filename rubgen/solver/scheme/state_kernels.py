@@ -1,4 +1,7 @@
-"""The state of a run, which every step changes, the scratch of a step, and the snapshots that a turn leaves."""
+"""The state of a run, which every step changes, the scratch of a step, and the snapshots that a turn leaves.
+
+z are the coordinates in the order of the blocks (`linalg.blocks`). d = (q_n+1 - q_n-1) / 2 is the change in a step.
+"""
 
 from typing import NamedTuple
 
@@ -27,9 +30,9 @@ class Waiting(NamedTuple):
     """Steps whose works of the linear forces are still to be added, and room for these; see `book_linear_works`."""
 
     change: FloatArray
-    """d of each step (TOGETHER, any), in z."""
+    """d of each step (TOGETHER, size of z), in z."""
     now: FloatArray
-    """z_n of each step (TOGETHER, any)."""
+    """z_n of each step (TOGETHER, size of z)."""
     damping: FloatArray
     """d^T (triangle d) of each step (TOGETHER,)."""
     circulatory: FloatArray
@@ -46,11 +49,11 @@ class Scratch(NamedTuple):
     z_force: FloatArray
     """A force in z."""
     share: FloatArray
-    """Sums over the harmonics of each tip coordinate (3, any)."""
+    """Sums over the harmonics of each tip coordinate (3, `share_width(n_blades)`)."""
     change: FloatArray
     """d or a velocity (n,)."""
     tips: FloatArray
-    """The three coordinates of all tips (3, width)."""
+    """The three coordinates of all tips (3, n_blades or more)."""
     waiting: Waiting
 
 
@@ -76,7 +79,7 @@ class Snapshots(NamedTuple):
     steps: IntArray
     """Rising numbers of the steps (snapshots,), from 1 to the steps of a turn."""
     z: FloatArray
-    """z at the step before and at the step (snapshots, 2, any)."""
+    """z at the step before and at the step (snapshots, 2, size of z)."""
     step_gaps: FloatArray
     """The scheme's gaps there (snapshots, 2, n_blades), m."""
 

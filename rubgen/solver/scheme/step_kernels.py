@@ -61,7 +61,7 @@ def previous_gap(
 
     The result is kept in `work.step_gaps`.
 
-    - worn (bins,): coefficients of the worn depth, m.
+    - worn (bins,): coefficients of the worn depth, m; (0,) without a liner.
     - opening: added to the radius of the surface at step n - 1, m.
     - cosine, sine: cosine and sine of the blisk's angle at step n - 1.
     """
@@ -89,7 +89,7 @@ def starting_margin(laws: Laws, step_gaps: FloatArray) -> float:
 
 @inlined_kernel
 def recover_contacts(count: int, model: Model, motion: Motion, work: ContactWork) -> None:
-    """Compute the tip coordinates of the `count` contacts' blades in `motion.q`."""
+    """Write the tip coordinates of the blades of `count` contacts into `motion.q`, from its z and `tips`."""
     for m in range(count):
         recover_blade(model.harmonics, motion, work.blade[m])
 
@@ -98,7 +98,10 @@ def recover_contacts(count: int, model: Model, motion: Motion, work: ContactWork
 def change_contacts(
     count: int, before: Motion, after: Motion, scale: float, work: ContactWork, change_out: FloatArray
 ) -> None:
-    """Write scale (q_after - q_before) on the contacts' blades and on the casing into `change_out` (n,)."""
+    """Write scale (q_after - q_before) into `change_out` (n,), for the tips of `count` contacts and the casing alone.
+
+    The tip coordinates in both q must be valid (`recover_contacts`).
+    """
     for m in range(count):
         k = work.blade[m]
         for i in range(3 * k, 3 * k + 3):
@@ -113,7 +116,11 @@ def solve_contacts(
 ) -> int:
     """Solve for the normal forces of all `count` near blades at q* (`coordinates.after`). Return SOLVED or UNSOLVED.
 
-    The forces go into `state.contact.lam`. `opening` (steps + 2,) is added to the radius of the surface, m.
+    The forces go into `state.contact.lam`. `state.contact` must contain the blades of `find_near`.
+
+    - step: number of the step n in `model.angles`.
+    - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., m.
+    - coordinates: of the contacts' blades the tip coordinates must be valid. `change` is the velocity d / dt.
     """
     surface, tips, laws, angles = model.surface, model.tips, model.laws, model.angles
     work, back = state.contact, step - 1 if step > 0 else angles.cosine.shape[0] - 1
@@ -140,7 +147,10 @@ def solve_contacts(
 
 @inlined_kernel
 def apply_contacts(count: int, model: Model, after: Motion, state: State) -> None:
-    """Move the motion `after` by the contact forces: add A^-1 B lam of `count` contacts."""
+    """Move the motion `after` by the contact forces: add A^-1 B lam of `count` contacts to its z, `tips` and casing.
+
+    The tip coordinates in its q stay those of q*, until `recover_contacts`. `state.scratch.z_force` is overwritten.
+    """
     work, force, harmonics = state.contact, state.scratch.z_force, model.harmonics
     start = harmonics.rest.shape[0] - work.rows.shape[1]
     force[:] = 0.0
@@ -210,7 +220,8 @@ def contact_step(
 
     If a blade has entered the surface, or with restitution, all blades whose gap in q* is below a margin are solved
     together. The contact forces may close other gaps by at most `largest_approach`. Where that exceeds the margin, the
-    step is solved again with a larger margin, so no blade can be missed. After MARGIN_TRIES margins it is unsolved.
+    step is solved again with a larger margin, so no blade can be missed. After MARGIN_TRIES margins it is unsolved. The
+    new gaps, as far as they are known, are left in `work.step_gaps[2]`.
 
     - step: number of the step n in `model.angles`.
     - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., m.
@@ -281,7 +292,8 @@ def has_diverged(surface: Surface, laws: Laws, q: FloatArray, casing_start: int,
 def leaves_range(model: Model, motion: Motion, casing_bound: float, scratch: Scratch) -> bool:
     """Return whether a motion has diverged, as `has_diverged` does. Bounds are checked first, which are faster.
 
-    No tip coordinate is larger than the norm of z. `casing_bound` is a bound of the casing's displacement, m.
+    No tip coordinate is larger than the norm of z. `casing_bound` is a bound of the casing's displacement, m. The tip
+    coordinates in `motion.q` may be overwritten by their values.
     """
     norm = dot_rows(motion.z, motion.z, motion.z.shape[0] // LANES)
     if norm <= model.laws.tip_limit**2 and casing_bound <= model.laws.casing_limit:
@@ -306,6 +318,7 @@ def advance(
     - step: number of the step n in `model.angles`.
     - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., m.
     - before, now: motion at steps n - 1 and n.
+    - after: written. Its tip coordinates in q are not valid.
     - state: gaps, contacts, supports and scratch; changed.
     """
     free_step(model.scheme, before.z, now.z, after.z)

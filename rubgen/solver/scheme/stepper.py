@@ -207,7 +207,7 @@ class Stepper:
     def end_record(self, clock: int) -> FloatArray:
         """End the record at the step `clock` of the run: end the present touches, and return them (touches, 8).
 
-        The columns are blade, first step, number of steps and so on, as in `turn_kernels`.
+        The columns are those of `turn_kernels.Touches`.
         """
         return self.touches.ended[: close_touches(self.touches, clock, 0)].copy()
 
@@ -233,9 +233,9 @@ class Stepper:
     def step(self, index: int, opening: FloatArray | None = None) -> tuple[int, int]:
         """Make one step from step `index` of the turn, without works, taps and touches.
 
-        Returns a code of `step_kernels` and the number of solved contacts. Their forces `lam`, numbers `blade` and so
-        on are in `state.contact`. `opening` (steps + 2,) is added to the radius of the surface, m; None is 0. The state
-        moves on even where the step fails.
+        Returns a code of `step_kernels` and the number of solved contacts. `state.contact` has the force `lam` and the
+        `blade` of each. `opening` (steps + 2,) is added to the radius of the surface, m; None is 0. The state moves on
+        even where the step fails.
         """
         width, state = np.zeros(self.steps + 2) if opening is None else opening, self.state
         code, count = advance(self.model, index, width, *state.motions, state)

@@ -1,7 +1,7 @@
 """Read the true signals of a step: taps at step n, and the passages of blades under timing probes.
 
-Every tap except the clearances is a linear functional. A row of `Taps.sums` holds eight of them. O_d is the disk
-centre.
+Every tap except the clearances is a linear functional. A row of `Taps.sums` holds eight of them. z are the coordinates
+in the order of the blocks (`linalg.blocks`). O_d is the disk centre.
 """
 
 import math
@@ -55,7 +55,8 @@ class Timing(NamedTuple):
     blade: IntArray
     """The blades on either side of each probe at each step (steps, probes, 2)."""
     arrivals: FloatArray
-    """Written (many, 4): probe, blade, time in steps, displacement of the chord along the rotation there, m."""
+    """Written (rows, 4): probe, blade, time in steps, displacement of the chord along the rotation there, m. There are
+    2 (n_blades + 1) rows for each probe."""
 
 
 class Taps(NamedTuple):
@@ -97,8 +98,8 @@ def tip_radius_on_ray(tips: Tips, rays: Rays, displacement: FloatArray, step: in
     """Return the radius of the tips on a ray, m: linear in angle between the two blades around it.
 
     The radius of a tip is sqrt((R + a)^2 + t^2) with the radius R at rest. a and t are its radial and tangential
-    displacement, steady and `displacement` (2, any) together, m. The angles are those of the undeformed blisk at step
-    `step` of the turn. `ray` is the number of the ray in `rays`.
+    displacement, steady and `displacement` (2, n_blades or more) together, m. The angles are those of the undeformed
+    blisk at step `step` of the turn. `ray` is the number of the ray in `rays`.
     """
     radius = 0.0
     for side in range(2):
@@ -221,7 +222,7 @@ def angle_beyond(
     """Return by which angle a blade has passed a probe, rad in [-pi, pi]; negative before the passage.
 
     The blade is `more` rad farther along the rotation than its position on the disk. `theta[step]` is the blisk's
-    angle. `timing` describes the probes.
+    angle, rad. `probe` is the number of the probe in `timing`.
     """
     angle = theta[step] + tips.angle[blade] - timing.angle[probe] + more
     turned: float = angle - 2 * math.pi * math.floor(angle / (2 * math.pi) + 0.5)
@@ -232,9 +233,10 @@ def angle_beyond(
 def is_near(
     tips: Tips, theta: FloatArray, timing: Timing, probe: int, blade: int, step: int, displacement: FloatArray
 ) -> bool:
-    """Return whether a blade may pass the probe in this step, from its tangential `displacement` (2, any) alone.
+    """Return whether a blade may pass the probe in this step: it is nearer to the probe than `timing.near_angle`.
 
-    It is a cheap test before `beyond_probe`: the blade is nearer to the probe than `timing.near_angle`.
+    It is a cheap test before `beyond_probe`. Only the second row of `displacement` (2, n_blades or more) is read, the
+    tangential displacement of each tip, m.
     """
     along = tips.static[1, blade] + displacement[1, blade] + timing.chord_slope * timing.axial[probe]
     near: bool = abs(angle_beyond(tips, theta, timing, probe, blade, step, along / tips.radius)) < timing.near_angle
@@ -272,10 +274,10 @@ def record_arrivals(
     Return the number of arrivals so far. A blade passes where `beyond_probe` changes from negative to positive. Between
     the steps the displacement is a parabola: d_n + s (d_n+1 - d_n) - s (1 - s) c / 2, with c the second difference.
 
-    - motions: at steps n - 1, n, n + 1; tips in their q are recovered.
+    - motions: at steps n - 1, n, n + 1. The tip coordinates of blades near a probe are written into their q.
     - theta (steps + 2,): angle of the blisk, rad.
     - step: number of step n in the turn.
-    - clock: number of the turn's first step.
+    - clock: number of the turn's first step in the run.
     - count: number of arrivals before this step.
     """
     before, now, after = motions

@@ -1,4 +1,7 @@
-"""Make taps in the form that the kernels take. A new kind of sampled tap is one function and one line in `TAP_ROWS`."""
+"""Make taps, the true signals of a run, in the form that the kernels take.
+
+A new kind of sampled tap is one function and one line in `TAP_ROWS`.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field

@@ -24,8 +24,8 @@ def waterfall(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> 
     """Draw full spectra of the orbit over the speed: forward orders to the right, backward orders to the left.
 
     Each line belongs to 16 turns at equal angles. A circle in the sense of rotation is order 1, a circle against it
-    order -1. The first touch is marked, or a line of text says where it is. `speeds_rpm` is the shown range, in
-    rev/min. Raises ValueError as `whirl_by_turn` does.
+    order -1. The first touch is marked, or a line of text says where it is. `speeds_rpm` is the shown range in rev/min;
+    None shows all speeds. Raises ValueError as `whirl_by_turn` does.
     """
     speeds, turns = whirl_by_turn(replay)
     count = len(turns) // BLOCK_TURNS
@@ -59,7 +59,7 @@ def bode(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> Figur
 
     The first touch is marked, or a line of text says where it is. The phase is the angle of the whirl from +X at the
     once-per-turn pulse, in the sense of rotation and in degrees: it falls where the whirl lags more. `speeds_rpm` is
-    the shown range, in rev/min. Raises ValueError as `whirl_by_turn` does.
+    the shown range in rev/min; None shows all speeds. Raises ValueError as `whirl_by_turn` does.
     """
     speeds, turns = whirl_by_turn(replay)
     whirl = forward_1x(turns)

@@ -67,8 +67,8 @@ def picture(replay: Replay, time: float | None = None) -> Figure:
 def write_gif(replay: Replay, path: Path) -> None:
     """Write an endless animation of the 64 dense frames about the hardest touch, which are two turns, to `path`.
 
-    Without dense frames it is of 64 frames about the same time; with fewer frames it is shorter. Raises NoPictureError,
-    a ValueError, for a replay without frames.
+    An existing file is replaced. Without dense frames it is of 64 frames about the same time; with fewer frames it is
+    shorter. Raises NoPictureError, a ValueError, for a replay without frames.
     """
     from PIL import Image
 
