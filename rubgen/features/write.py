@@ -56,11 +56,10 @@ def write_features(
     complete or not written at all. An existing file is replaced. Raises UserError as `make_plan` and `run_features` do,
     for a set without good runs, and for the set tsfel if it is not installed.
     """
-    directory, out = Path(directory), Path(out)
     data = DataSet(directory)
     good = list(data.ok.index)
     if not good:
-        raise UserError(f"{directory}: no run of this set ended well; there is nothing to compute")
+        raise UserError(f"{data.layout.root}: no run of this set ended well; there is nothing to compute")
     plan = _with_generic(make_plan(data, window, channels, sets), data, good[0])
     jobs = [
         (directory, plan, number, good[number : number + RUNS_PER_JOB]) for number in range(0, len(good), RUNS_PER_JOB)
@@ -79,7 +78,7 @@ def write_features(
                 windows += table.num_rows
                 count(windows, 0)
 
-    write_durably(out, write)
+    write_durably(Path(out), write)
     return Written(len(good), windows, len(plan.schema()) - len(IDS), plan.channels, plan.sets)
 
 
@@ -104,12 +103,12 @@ def _with_generic(plan: Plan, data: DataSet, first: str) -> Plan:
     return replace(plan, generic=tuple(generic_features(signal[start : start + size], plan.rate_hz)))
 
 
-def _features_of(directory: Path, plan: Plan, number: int, run_ids: list[str]) -> tuple[int, pa.Table]:
+def _features_of(directory: Path | str, plan: Plan, number: int, run_ids: list[str]) -> tuple[int, pa.Table]:
     return number, features_of(_opened(directory), plan, run_ids)
 
 
 @lru_cache(maxsize=1)
-def _opened(directory: Path) -> DataSet:
+def _opened(directory: Path | str) -> DataSet:
     return DataSet(directory)
 
 

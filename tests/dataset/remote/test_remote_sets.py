@@ -137,6 +137,18 @@ def test_only_what_is_asked_for_is_read(memory, monkeypatch):
     assert not [name for name in read if name.startswith(("truth/", "windows/"))]
 
 
+def test_features_and_exports_of_a_set_at_a_url_are_those_of_its_directory(memory, tmp_path):
+    push(SAMPLE, f"{memory}/set")
+    for place, name in ((f"{memory}/set", "there"), (str(SAMPLE), "here")):
+        chosen = ["--channels", "proximity_x", "--out", str(tmp_path / name / "features.parquet")]
+        (tmp_path / name).mkdir()
+        assert called("features", place, "--set", "time", "--workers", "1", *chosen) == 0
+        chosen[-1] = str(tmp_path / name / "export")
+        assert called("export", place, "--format", "csv", *chosen) == 0
+    assert len(tree(tmp_path / "here")) == 8
+    assert tree(tmp_path / "there") == tree(tmp_path / "here")
+
+
 class Stopped(BaseException):
     """A stop at any moment, as of Ctrl-C."""
 
@@ -305,5 +317,20 @@ def test_a_command_that_needs_a_directory_says_so(capsys):
     for command in ("repair", "verify"):
         assert called(command, "s3://bucket/set") == 2
         assert "s3://bucket/set: this command needs a directory" in capsys.readouterr().err
-    with pytest.raises(rubgen.UserError, match="verify needs a directory"):
-        rubgen.verify("memory://place/set")
+
+
+def test_what_needs_directories_says_so_and_writes_nothing(memory, tmp_path):
+    url = f"{memory}/set"
+    push(SAMPLE, url)
+    before = contents(memory)
+    for name, call in {
+        "verify": lambda: rubgen.verify(url),
+        "merge": lambda: rubgen.merge([url, SAMPLE], tmp_path / "out"),
+        "resense": lambda: rubgen.resense(url, "rig", tmp_path / "out"),
+    }.items():
+        with pytest.raises(rubgen.UserError, match=f"^memory://place/set: {name} needs a directory; bring the files"):
+            call()
+    with pytest.raises(rubgen.UserError, match=r"^memory://place/new: merge needs a directory"):
+        rubgen.merge([SAMPLE, tmp_path], f"{memory}/new")
+    assert contents(memory) == before
+    assert list(tmp_path.iterdir()) == []
