@@ -66,22 +66,20 @@ def check_new_file(option: str, path: Path, endings: tuple[str, ...], *, force: 
     `path` is no file, or the file exists and `force` is False. Only the report may lie in a data set: `rubgen verify`
     would find a file that the manifest does not list. Nothing is written.
     """
+    from rubgen.io.places import set_around
+
     if path.suffix not in endings:
         allowed = endings[0] if len(endings) == 1 else f"{', '.join(endings[:-1])} or {endings[-1]}"
         raise UserError(f"{option} {path}: unknown kind of file; end the name in {allowed}")
     if not path.parent.is_dir():
         raise UserError(f"{option} {path}: there is no directory {path.parent}; make it first")
-    data_set = next((folder for folder in path.resolve().parents if _is_data_set(folder)), None)
+    data_set = set_around(path)
     if data_set and path.name != REPORT:
         raise UserError(f"{option} {path}: lies in the data set {data_set}; choose a place outside of it")
     if path.exists() and not path.is_file():
         raise UserError(f"{option} {path}: exists already and is no file; choose another name")
     if path.exists() and not force:
         raise UserError(f"{option} {path}: exists already; choose another name, or replace it with --force")
-
-
-def _is_data_set(folder: Path) -> bool:
-    return all((folder / name).is_file() for name in ("manifest.json", "manifest.json.sha256"))
 
 
 def write_file(option: str, path: Path, write: Callable[[Path], object]) -> None:

@@ -16,7 +16,7 @@ from rubgen.errors import UserError
 from rubgen.export.formats import FORMATS, ExportFormat
 from rubgen.export.run import ExportedRun, exported_runs
 from rubgen.io.files import write_durably
-from rubgen.io.places import is_url
+from rubgen.io.places import set_around
 from rubgen.machine.problems import nearest
 from rubgen.progress import count
 
@@ -51,7 +51,7 @@ def export(
     format parquet has no labels, no parameters, no `runs.csv` and no channel that no probe can measure. A file is
     complete or does not exist, and the same call completes an interrupted export. Raises UserError for an unknown
     format, split or channel, for a missing package, for content that the format cannot contain, for a set without good
-    runs, and where `out` lies in the set or has other content than this export.
+    runs, and where `out` lies in a data set or has other content than this export.
     """
     data = DataSet(directory)
     kind = _format(name)
@@ -65,7 +65,7 @@ def export(
         "split": split,
         "channels": list(chosen),
     }
-    _claim(out, data.layout.root, origin)
+    _claim(out, origin)
     files = list(_files(kind, runs, out))
     for number, (path, members) in enumerate(files):
         if not path.exists():
@@ -123,11 +123,12 @@ def _check_holds(data: DataSet, kind: ExportFormat, name: str, channels: int) ->
         raise UserError(f"--format {name}: {more}; choose fewer --channels, or hdf5")
 
 
-def _claim(out: Path, root: Path, origin: dict[str, Any]) -> None:
-    """Take a new or empty folder, or one of the same export. Raises UserError for any other, and within `root`."""
+def _claim(out: Path, origin: dict[str, Any]) -> None:
+    """Take a new or empty folder, or one of the same export. Raises UserError for any other, and in a data set."""
     text = json.dumps(origin, indent=2) + "\n"
-    if not is_url(root) and out.resolve().is_relative_to(root.resolve()):
-        raise UserError(f"--out {out}: lies in the data set {root}; choose a folder outside of it")
+    data_set = set_around(out / "file")
+    if data_set:
+        raise UserError(f"--out {out}: lies in the data set {data_set}; choose a folder outside of it")
     if out.exists() and not out.is_dir():
         raise UserError(f"--out {out}: is a file; give a new folder")
     here = [each.name for each in out.iterdir()] if out.exists() else []

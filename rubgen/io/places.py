@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import threading
 from collections.abc import Callable, Iterator
@@ -51,6 +52,20 @@ def place_of(text: str | Path) -> Path:
     except ValueError as error:
         raise UserError(f"{text}: cannot be used ({_reason(error)}); give a URL such as s3://bucket/set") from None
     return Path(path.path) if "file" in known.protocol else cast("Path", path)
+
+
+def check_local(path: Path, what: str) -> None:
+    """Raise UserError where `path` is a URL. `what` needs a directory, for the message."""
+    if is_url(path):
+        raise UserError(f"{path}: {what} needs a directory; bring the files there first")
+
+
+def set_around(path: Path) -> Path | None:
+    """Return the innermost folder above `path` that holds a finished data set, or None."""
+    for folder in Path(os.path.realpath(path)).parents:
+        if all((folder / name).is_file() for name in ("manifest.json", "manifest.json.sha256")):
+            return folder
+    return None
 
 
 def is_there(path: Path) -> bool:

@@ -11,7 +11,7 @@ from rubgen.dataset.manifest import Manifest, read_manifest
 from rubgen.dataset.shards import Shard, shards_of
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
-from rubgen.io.places import is_url
+from rubgen.io.places import check_local
 from rubgen.scenario.run_id import run_id_of
 
 
@@ -38,8 +38,7 @@ def findings(directory: Path | str, *, sample: int | None = None) -> list[Findin
     Raises UserError as `verify` does.
     """
     layout = Layout(directory)
-    if is_url(layout.root):
-        raise UserError(f"{layout.root}: verify needs a directory; bring the files there first")
+    check_local(layout.root, "verify")
     manifest = read_manifest(layout)
     chosen = _Chosen(layout, manifest, sample)
     found = list(file_findings(layout, manifest, chosen.path))

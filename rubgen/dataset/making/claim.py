@@ -16,7 +16,7 @@ from rubgen.dataset.tables import RUNS, TABLES
 from rubgen.errors import UserError, warn
 from rubgen.format_names import FORMAT_NAMES
 from rubgen.io.files import PART, sync_directory
-from rubgen.io.places import is_there
+from rubgen.io.places import is_there, set_around
 
 STAGED = ("kept", "closed", *(table.name for table in (RUNS, *TABLES)))
 """Folders of `.staging`."""
@@ -83,8 +83,8 @@ def claimed(layout: Layout, identity: Identity, *, wait_s: float = 0.0) -> Itera
     If another process has the lock, this process waits for at most `wait_s` seconds. The state of the directory may
     have changed since a check before the block. A directory that was made here is removed if it stays empty, its
     parents are not. Sets of other recipes are refused by `finished` and `begun`, not here. Raises UserError where the
-    directory has content that is no data set, or another process keeps the lock; OSError where the directory cannot be
-    made.
+    directory lies in another data set or has content that is no data set, or another process keeps the lock; OSError
+    where the directory cannot be made.
     """
     root = layout.root
     _check_place(layout)
@@ -189,6 +189,9 @@ def _check_place(layout: Layout) -> None:
         raise UserError(f"--out {root}: is a link to {root.readlink()}, which is not there; give another directory")
     if root.exists() and not root.is_dir():
         raise UserError(f"--out {root}: is a file; give a new or empty directory")
+    data_set = set_around(root)
+    if data_set:
+        raise UserError(f"--out {root}: lies in the data set {data_set}; choose a directory outside of it")
     if not (_is_ours(layout) or not root.exists() or _holds_nothing(layout) or _is_ours(layout)):
         raise _not_ours(layout)
 

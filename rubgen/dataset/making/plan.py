@@ -36,7 +36,7 @@ class Part:
 
 def part_of(text: str) -> Part:
     """Return the part that a text such as "17/200" names. Raises UserError for any other text."""
-    number, _, count = text.partition("/")
+    number, _, count = str(text).partition("/")
     if not (number.isdecimal() and count.isdecimal() and 1 <= int(number) <= int(count)):
         raise UserError(f"--shard {text}: give number/count, the number from 1 to the count, such as 17/200")
     return Part(int(number), int(count))

@@ -9,6 +9,7 @@ from rubgen.dataset.layout import Layout
 from rubgen.dataset.making.generate import Generated, generate_as
 from rubgen.dataset.manifest import Identity, identity_of, read_manifest
 from rubgen.errors import UserError, warn
+from rubgen.io.places import check_local
 from rubgen.machine import Machine, load_machine
 from rubgen.progress import Report
 from rubgen.scenario import Recipe
@@ -41,24 +42,26 @@ def resense(
     The same call completes an interrupted set. Labels that need no sensor keep all bits where a run has the same steps
     a turn and the package versions are the same. Fast sensors need more steps: a warning names the speeds at which the
     steps change. Labels of amplitudes at orders are computed for the new sensors' signals. A sensor on the housing adds
-    the machine's frame, which changes `machine_id`. Raises UserError for a directory without a finished set, an unknown
-    sensor set, the sensors that the set has already, and sensors that the machine cannot have.
+    the machine's frame, which changes `machine_id`. Raises UserError for a URL as `directory`, a directory without a
+    finished set, an unknown sensor set, the sensors that the set has already, and sensors that the machine cannot have.
     """
-    identity = read_manifest(Layout(directory)).identity
+    layout = Layout(directory)
+    check_local(layout.root, "resense")
+    identity = read_manifest(layout).identity
     if identity.sources:
         raise UserError(f"{directory}: is a merged set; give the command for each of its sources and merge them again")
     before = identity.recorded()
     new = load_sensor_set(str(sensors))
     if new == before.sensing.set:
         raise UserError(f"--sensors {sensors}: the data set in {directory} has these sensors already; name others")
-    recipe = _with_sensors(identity, str(sensors), new, Path(directory))
+    recipe = _with_sensors(identity, str(sensors), new, layout.root)
     _warn_of_other_steps(before, recipe, str(sensors))
     versions = identity_of(recipe).packages
     other = [name for name, version in identity.packages.items() if versions.get(name, version) != version]
     if other:
         warn(f"{directory}: made with other versions of {', '.join(other)}; chaotic motions may differ from it")
     warn_of(recipe.corners(), f"{directory}: ")
-    return generate_as(recipe, out, decided=Layout(directory).runs, workers=workers, progress=progress)
+    return generate_as(recipe, out, decided=layout.runs, workers=workers, progress=progress)
 
 
 def _with_sensors(identity: Identity, name: str, new: SensorSet, directory: Path) -> Recipe:

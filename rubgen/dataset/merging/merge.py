@@ -14,6 +14,7 @@ from rubgen.dataset.merging.copying import copy_shard
 from rubgen.dataset.merging.sources import SourceSet, check_sources, merged_identity, read_sources
 from rubgen.dataset.shards import Shard, shards_of
 from rubgen.errors import UserError, write_problems
+from rubgen.io.places import check_local
 from rubgen.progress import Report, count, shown, step
 from rubgen.scenario import Recipe
 from rubgen.scenario.merged import MergedRecipe
@@ -43,9 +44,11 @@ def merge(
     columns, two sets with the same seed, a machine that is in different splits, damaged files, and an `out` that is in
     one of the sets or that `generate` refuses.
     """
+    layout = Layout(out)
+    check_local(layout.root, "merge")
     sets = read_sources(directories)
     check_sources(sets)
-    layout, identity = Layout(out), merged_identity(sets)
+    identity = merged_identity(sets)
     _check_out(layout, sets)
     with write_problems(layout.root, advice="give a directory that you may write to", kept="copied shards are kept"):
         if not finished(layout, identity):

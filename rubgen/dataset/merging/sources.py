@@ -1,6 +1,6 @@
 """Which data sets can be one: same versions, formats, channels and columns; other seeds; no machine in two splits."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ from rubgen.dataset.manifest import Identity, Manifest, Source, read_manifest
 from rubgen.dataset.tables import RUNS, tables_of
 from rubgen.errors import UserError
 from rubgen.io.parquet.read import row_groups
+from rubgen.io.places import check_local
 from rubgen.machine.quantities import MOST_RUNS
 from rubgen.scenario import Recipe
 
@@ -40,12 +41,15 @@ class SourceSet:
 def read_sources(directories: Sequence[Path | str]) -> list[SourceSet]:
     """Read the manifests of the data sets in these directories, in this order.
 
-    Raises UserError where a directory holds no finished set, a file is missing or has another size, or the content of
-    `runs.parquet` does not have the listed sha256.
+    Raises UserError where `directories` is no list, a directory is a URL or holds no finished set, a file is missing or
+    has another size, or the content of `runs.parquet` does not have the listed sha256.
     """
+    if isinstance(directories, str | Path) or not isinstance(directories, Iterable):
+        raise UserError(f"merge: {directories!r:.200}: is no list of directories; give two or more")
     sets: list[SourceSet] = []
     for directory in directories:
         layout = Layout(directory)
+        check_local(layout.root, "merge")
         manifest = read_manifest(layout)
         found = list(size_findings(layout, manifest))
         if found:

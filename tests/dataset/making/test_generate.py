@@ -212,6 +212,20 @@ def test_a_directory_that_is_not_ours_is_refused_and_left_alone(fake_simulate, t
         rubgen.generate(recipe(), tmp_path / "letter.txt")
 
 
+@pytest.mark.parametrize("inner", ["new", "signals", "signals/far/new"])
+def test_no_set_is_made_within_another(copied_set, fake_simulate, inner):
+    before = sorted(copied_set.rglob("*"))
+    with pytest.raises(UserError, match=rf"{inner}: lies in the data set .+copy; choose a directory outside of it$"):
+        rubgen.generate(recipe(), copied_set / inner, workers=1)
+    assert sorted(copied_set.rglob("*")) == before
+
+
+def test_a_link_to_itself_on_the_way_is_one_line(fake_simulate, tmp_path):
+    (tmp_path / "loop").symlink_to("loop")
+    with pytest.raises(UserError, match=r"cannot be written \(Too many levels of symbolic links\)"):
+        rubgen.generate(recipe(), tmp_path / "loop" / "set", workers=1)
+
+
 def test_a_directory_that_cannot_be_written_is_refused(fake_simulate):
     with pytest.raises(UserError, match=r"/proc/rubgen: cannot be written \(.+\); give a directory that you may"):
         rubgen.generate(recipe(), "/proc/rubgen", workers=1)

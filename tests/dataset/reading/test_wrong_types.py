@@ -1,5 +1,7 @@
 """Python functions given what is of another type: one line, and never a wrong result."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -49,6 +51,19 @@ def test_what_is_no_number_of_workers(tmp_path, workers):
     with pytest.raises(UserError, match=f"--workers {workers}: must be at least 1; give a number of processes"):
         rubgen.generate(MINIMAL, tmp_path / "set", workers=workers)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("shard", [3, 1.5, True, "", "1/0", "0/2", "3/2", "-1/2", "a/b", "1/2/3", "1/1.5"])
+def test_what_is_no_part_of_a_set(tmp_path, shard):
+    with pytest.raises(UserError, match=f"^--shard {shard}: give number/count, the number from 1 to the count, "):
+        rubgen.generate(MINIMAL, tmp_path / "set", shard=shard)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("directories", ["sets", None, 3, Path("sets")])
+def test_what_is_no_list_of_sets_to_merge(tmp_path, directories):
+    with pytest.raises(UserError, match=r"^merge: .+: is no list of directories; give two or more$"):
+        rubgen.merge(directories, tmp_path / "set")
 
 
 @pytest.mark.parametrize("scenario", [None, "zeng2019", MINIMAL, rubgen.load_recipe()])
