@@ -75,6 +75,15 @@ class Replay:
         """Times in s at which a turn begins, (turns,)."""
         return self.recording.once_per_rev
 
+    @property
+    def closed(self) -> FloatArray:
+        """How far faults have closed the clearance at each frame (frames,), m; empty without frames."""
+        time = self.frames.time + self.recording.start_seconds if self.frames else np.zeros(0)
+        machine, closed = self.scenario.machine, np.zeros(time.size)
+        for each in (each for fault in machine.faults for each in fault.narrowings(machine)):
+            closed += each.amount_m * each.ramp.share(time)
+        return closed
+
 
 def replay_of(run: Run) -> Replay:
     """Make the replay of a run in memory. Raises NoPictureError, a ValueError, for a run without a recording."""

@@ -1,22 +1,30 @@
 """What is drawn is where it is, its deviations from the tip circle multiplied by one factor."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from rubgen.machine import load_machine
+from rubgen.machine.faults.casing_off_centre import CasingOffCentre
+from rubgen.machine.faults.closing_clearance import ClosingClearance
+from rubgen.reduction.casing import reduce_casing
 from rubgen.viz.entities.machine_shape import (
+    DRAWN_SHARE,
     STATIONS,
     blade_leanings,
     blade_mesh,
     blade_placements,
     casing_angles,
     casing_curve,
+    casing_radius,
     disk_mesh,
     drawing_factor,
     drawn_tips,
     plate_mesh,
     plate_shapes,
     spring,
+    undeformed_curve,
 )
 from rubgen.viz.replay import replay_of
 
@@ -83,7 +91,8 @@ def test_the_drawn_clearance_is_the_true_one_times_the_factor(machine, frames):
     """At a factor of one the drawing is the machine itself, and differences grow by the factor."""
     angle = casing_angles()
     assert angle.size == STATIONS
-    true, drawn = (np.hypot(*np.moveaxis(casing_curve(machine, frames, angle, f), -1, 0)) for f in (1.0, FACTOR))
+    open_ = np.zeros(frames.time.size)
+    true, drawn = (np.hypot(*np.moveaxis(casing_curve(machine, frames, angle, f, open_), -1, 0)) for f in (1.0, FACTOR))
     grown = machine.tip_radius_m + FACTOR * (true - machine.tip_radius_m)
     np.testing.assert_allclose(drawn, grown, rtol=0, atol=2e-3 * machine.tip_radius_m)
     nodes = len(frames.casing_modes)
@@ -98,6 +107,43 @@ def test_the_factor_is_one_two_or_five_times_a_power_of_ten(machine, frames):
     factor = drawing_factor(machine, frames)
     assert factor == 10.0
     assert drawing_factor(machine, None) == 10.0
+
+
+def test_the_drawn_surface_is_that_of_the_contact_also_off_centre(machine):
+    """Tips that touch on one side touch there in the picture too."""
+    moved = replace(machine, faults=(CasingOffCentre(offset_m=4e-4, direction_deg=70.0),))
+    angle = np.linspace(0, 2 * np.pi, 100)
+    for each in (machine, moved):
+        surface = reduce_casing(each, 11).surface
+        waves = np.cos(surface.order * (angle[:, None] - surface.phase))
+        expected = surface.mean_radius + waves @ surface.amplitude
+        np.testing.assert_allclose(casing_radius(each, angle), expected, rtol=1e-14)
+        place = undeformed_curve(each, angle, 1.0)
+        np.testing.assert_allclose(np.hypot(*place.T), expected, rtol=1e-14)
+
+
+def test_a_far_casing_is_enlarged_less(machine):
+    far = replace(machine, faults=(CasingOffCentre(offset_m=1e-2),))
+    assert drawing_factor(far, None) == 2.0 < drawing_factor(machine, None)
+    assert 2.0 * 1e-2 < DRAWN_SHARE * machine.tip_radius_m < 5.0 * 1e-2
+
+
+def test_the_drawn_casing_closes_with_the_clearance(rub_run):
+    """The true gap between tip and casing at each frame, from the fault's own ramp over the record."""
+    fault = ClosingClearance(closing_m=2e-4, start_s=0.05, growth_s=0.4)
+    whole = replay_of(rub_run)
+    closing = replace(whole.scenario, machine=replace(whole.scenario.machine, faults=(fault,)))
+    replay, angle = replace(whole, scenario=closing), casing_angles()
+    time = whole.frames.time + whole.recording.start_seconds
+    expected = 2e-4 * np.clip((time - 0.05) / 0.4, 0, 1)
+    assert np.ptp(expected) > 1e-5
+    before, after = (
+        casing_curve(each.scenario.machine, each.frames, angle, FACTOR, each.closed) for each in (whole, replay)
+    )
+    inward = np.sum((before - after) * np.column_stack([np.cos(angle), np.sin(angle)]), axis=-1)
+    np.testing.assert_allclose(inward, FACTOR * np.broadcast_to(expected[:, None], inward.shape), rtol=1e-9)
+    assert not whole.closed.any()
+    assert replace(replay, frames=None).closed.size == 0
 
 
 def test_a_spring_goes_from_end_to_end():

@@ -56,7 +56,7 @@ def _send_casing(stream: rr.RecordingStream, replay: Replay, frames: MotionFrame
     """Send plates that move with the ring, and the inner surface at rest as a line."""
     machine, angle = replay.scenario.machine, casing_angles()
     _log_mesh(stream, "/machine/casing/ring", plate_mesh(), RING)
-    curve = casing_curve(machine, frames, angle, factor)
+    curve = casing_curve(machine, frames, angle, factor, replay.closed)
     places = np.concatenate([curve, np.zeros((*curve.shape[:2], 1))], axis=2)
     _send_instances(stream, "/machine/casing/ring", frames, places, plate_shapes(machine, factor))
     rest = undeformed_curve(machine, np.append(angle, 0.0), factor)
@@ -164,7 +164,7 @@ def _send_contact_points(stream: rr.RecordingStream, replay: Replay, frames: Mot
     rows = _touches_of_frames(replay, frames)
     frame = np.repeat(np.arange(len(rows)), [row.size for row in rows])
     chosen = np.concatenate(rows)
-    curve = casing_curve(replay.scenario.machine, frames, casing_angles(), factor)
+    curve = casing_curve(replay.scenario.machine, frames, casing_angles(), factor, replay.closed)
     positions = _on_curves(curve[frame], touches.angle[chosen])
     share = np.sqrt(touches.impulse / touches.impulse.max())[chosen]
     radii = replay.scenario.machine.tip_radius_m * (SMALLEST_POINT + (LARGEST_POINT - SMALLEST_POINT) * share)

@@ -39,11 +39,12 @@ def drawing_factor(machine: Machine, frames: MotionFrames | None) -> float:
     """Choose the factor by which deviations from the tip circle are enlarged: 1, 2 or 5 times a power of ten.
 
     It is the largest such factor with which each of these lengths stays within DRAWN_SHARE of the tip radius: half the
-    ovality, the clearance, every coordinate of a tip's displacement (radial, tangential, axial) and of the disk
-    centre's (X, Y). Lost blades and the casing's deflection do not count. With `frames` None or empty only ovality and
-    clearance count.
+    ovality, the clearance, the casing's offset, every coordinate of a tip's displacement (radial, tangential, axial)
+    and of the disk centre's (X, Y). Lost blades and the casing's deflection do not count. With `frames` None or empty
+    only ovality, clearance and offset count.
     """
-    largest = max(machine.casing.ovality_m / 2, machine.casing.clearance_m)
+    offsets = (each.amplitude_m for fault in machine.faults for each in fault.surface_harmonics(machine))
+    largest = max(machine.casing.ovality_m / 2, machine.casing.clearance_m, *offsets)
     if frames is not None and frames.time.size:
         tips = np.delete(frames.tips, machine.lost_blades, axis=1)
         largest = max(largest, float(np.abs(tips).max()), float(np.abs(frames.centre).max()))
@@ -58,17 +59,24 @@ def casing_angles(stations: int = STATIONS) -> FloatArray:
 
 
 def casing_radius(machine: Machine, angle: FloatArray) -> FloatArray:
-    """Return the inner radius of the undeformed casing at the given polar angles (rad), m."""
+    """Return the inner radius of the undeformed casing at the given polar angles (rad), m, with harmonics of faults."""
     casing = machine.casing
     wave = np.cos(casing.lobes * (angle - np.radians(casing.lobe_angle_deg)))
-    return np.asarray(machine.casing_mean_radius_m - casing.ovality_m / 2 * wave)
+    radius = machine.casing_mean_radius_m - casing.ovality_m / 2 * wave
+    for fault in machine.faults:
+        for each in fault.surface_harmonics(machine):
+            radius = radius + each.amplitude_m * np.cos(each.order * (angle - each.phase_rad))
+    return np.asarray(radius)
 
 
-def casing_curve(machine: Machine, frames: MotionFrames, angle: FloatArray, factor: float) -> FloatArray:
+def casing_curve(
+    machine: Machine, frames: MotionFrames, angle: FloatArray, factor: float, closed: FloatArray
+) -> FloatArray:
     """Return drawn points (frames, stations, 2) of the casing's deformed inner surface, m. Nodes are joined linearly.
 
     - angle (stations,): polar angles, rad.
     - factor: factor by which deviations from the tip circle are enlarged.
+    - closed (frames,): how far faults have closed the clearance, m.
     """
     nodes = frames.casing_modes.shape[0]
     place = np.mod(angle, 2 * np.pi) * nodes / (2 * np.pi)
@@ -76,13 +84,14 @@ def casing_curve(machine: Machine, frames: MotionFrames, angle: FloatArray, fact
     modes = frames.casing_modes
     shape = (1 - share)[:, None, None] * modes[low] + share[:, None, None] * modes[(low + 1) % nodes]
     displacement = np.einsum("sdc,fc->fsd", shape, frames.casing)
+    displacement -= np.multiply.outer(closed, np.column_stack([np.cos(angle), np.sin(angle)]))
     return np.asarray(undeformed_curve(machine, angle, factor) + factor * displacement)
 
 
 def undeformed_curve(machine: Machine, angle: FloatArray, factor: float) -> FloatArray:
     """Return drawn points (stations, 2) of the casing at rest, m, at polar angles `angle` (rad).
 
-    Deviations from the tip circle are enlarged by `factor`.
+    It is the casing at the start of the record. Deviations from the tip circle are enlarged by `factor`.
     """
     radius = machine.tip_radius_m + factor * (casing_radius(machine, angle) - machine.tip_radius_m)
     return np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])

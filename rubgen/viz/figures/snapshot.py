@@ -156,7 +156,8 @@ def machine_along_axis(axes: Axes, replay: Replay, row: int, factor: float) -> N
     time, angle = float(frames.time[row]), float(frames.angle[row])
     one = _only(frames, row)
     around = np.append(casing_angles(ARC), 0.0)
-    rest, curve = undeformed_curve(machine, around, factor), casing_curve(machine, one, around, factor)[0]
+    rest = undeformed_curve(machine, around, factor)
+    curve = casing_curve(machine, one, around, factor, replay.closed[row : row + 1])[0]
     axes.plot(*rest.T, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1)
     axes.plot(*curve.T, color="#4a5a68", linewidth=4.5, solid_capstyle="round", zorder=3)
     centre = factor * np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) @ one.centre[0]
