@@ -36,19 +36,8 @@ class Role(StrEnum):
     """Says how good the simulation or a label is."""
 
 
-TARGETS = frozenset(
-    {
-        "rub", "contact_duty", "contact_impulse_per_turn_n_s", "contact_severity", "blades_touched", "contact_zones",
-        "contact_zone_centres_rad", "contact_zone_widths_rad", "rub_extent", "motion", "period", "onset_speed_rpm",
-    }
-)  # fmt: skip
-"""Labels that are answers. All others come from the true motion or say how good a label is."""
-DIAGNOSTICS = frozenset(
-    {
-        "motion_confidence", "motion_settling", "stray_blisk", "stray_casing", "zero_one_k", "lyapunov_error",
-        "lyapunov_convergence", "lyapunov_turns", "energy_residual",
-    }
-)  # fmt: skip
+DIAGNOSTICS = frozenset(x.name for x in (*LABELS, *ENERGY_LABELS) if x.role == "diagnostic")
+"""Names of the labels that say how good the simulation or another label is."""
 UNMEASURABLE = (ContactForce, ContactTorque)
 """Taps that no probe measures: a channel of them is truth, not input."""
 
@@ -119,15 +108,10 @@ def label_columns(labels: Iterable[Label] = LABELS) -> list[Column]:
             x.meaning,
             nullable=True,
             words=x.words,
-            role=_role(x.name),
+            role=Role(x.role),
         )
         for x in labels
     ]
-
-
-def _role(label: str) -> Role:
-    """Return the role of a label by its name."""
-    return Role.TARGET if label in TARGETS else Role.DIAGNOSTIC if label in DIAGNOSTICS else Role.TRUTH
 
 
 FIELDS = tuple(CasingAcceleration(name=f"casing_{part}", angle_deg=0) for part in ("even", "odd"))
@@ -146,7 +130,7 @@ def tap_columns(name: str, unit: str) -> list[Column]:
 
 
 def _energy() -> list[Column]:
-    return [Column(x.name, "number", x.unit, x.meaning, True, role=_role(x.name)) for x in ENERGY_LABELS]
+    return [Column(x.name, "number", x.unit, x.meaning, True, role=Role(x.role)) for x in ENERGY_LABELS]
 
 
 def _channel(sensor: SampledSensor | OncePerRev) -> Column:

@@ -1,4 +1,4 @@
-"""Every label by its public name: kind, unit, meaning, and how its value is read.
+"""Every label by its public name: kind, unit, meaning, role, and how its value is read.
 
 The columns of Parquet files, the JSON form (MCAP, Rerun, `--json`), the schema of a run, the card, Croissant, the units
 of a DataFrame and the tables of docs/labels.md come from here. A new label is one entry, where its column is to stand.
@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Literal
 
 import numpy as np
 
@@ -20,6 +21,9 @@ from rubgen.labels.labels import Labels, Motion
 from rubgen.labels.motion.whirl import WhirlDirection
 from rubgen.solver.response import EnergyBalance
 from rubgen.units import rev_per_min
+
+Role = Literal["target", "truth", "diagnostic"]
+"""What a label is for: an answer that a model may learn, the true motion, or how good the simulation or a label is."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +44,7 @@ class Label:
     """The words that a text may be, or whose numbers (`class_numbers`) a list has."""
     from_taps: bool = False
     """Whether it needs the signals at every step, which the compact record does not have."""
+    role: Role = "truth"
 
 
 @dataclass(frozen=True)
@@ -75,33 +80,34 @@ class EnergyLabel:
     unit: str
     meaning: str
     value: Callable[[EnergyBalance], float]
+    role: Role = "truth"
 
 
 _Value = Callable[[Labels], object]
 
 
-def _text(name: str, meaning: str, words: type[StrEnum], value: _Value) -> Label:
-    return Label(name, "text", "", meaning, value, words=words)
+def _text(name: str, meaning: str, words: type[StrEnum], value: _Value, *, role: Role = "truth") -> Label:
+    return Label(name, "text", "", meaning, value, words=words, role=role)
 
 
-def _flag(name: str, meaning: str, value: _Value, *, from_taps: bool = False) -> Label:
-    return Label(name, "flag", "", meaning, value, from_taps=from_taps)
+def _flag(name: str, meaning: str, value: _Value, *, from_taps: bool = False, role: Role = "truth") -> Label:
+    return Label(name, "flag", "", meaning, value, from_taps=from_taps, role=role)
 
 
-def _count(name: str, meaning: str, value: _Value, *, unit: str = "") -> Label:
-    return Label(name, "integer", unit, meaning, value)
+def _count(name: str, meaning: str, value: _Value, *, unit: str = "", role: Role = "truth") -> Label:
+    return Label(name, "integer", unit, meaning, value, role=role)
 
 
 def _counts(name: str, meaning: str, value: _Value, *, unit: str = "", from_taps: bool = False) -> Label:
     return Label(name, "integers", unit, meaning, value, from_taps=from_taps)
 
 
-def _number(name: str, unit: str, meaning: str, value: _Value) -> Label:
-    return Label(name, "number", unit, meaning, value)
+def _number(name: str, unit: str, meaning: str, value: _Value, *, role: Role = "truth") -> Label:
+    return Label(name, "number", unit, meaning, value, role=role)
 
 
-def _numbers(name: str, unit: str, meaning: str, value: _Value) -> Label:
-    return Label(name, "numbers", unit, meaning, value)
+def _numbers(name: str, unit: str, meaning: str, value: _Value, *, role: Role = "truth") -> Label:
+    return Label(name, "numbers", unit, meaning, value, role=role)
 
 
 def _rpm(speed: float | None) -> float | None:
@@ -111,15 +117,25 @@ def _rpm(speed: float | None) -> float | None:
 _NUMBERED = ", ".join(f"{number} {word}" for word, number in MOTION_CLASSES.items())
 
 CONTACT = (
-    _flag("rub", "a blade touched the casing within the record", lambda x: x.rub),
-    _number("contact_duty", "1", "share of the time in which any blade touches", lambda x: x.contact_duty),
+    _flag("rub", "a blade touched the casing within the record", lambda x: x.rub, role="target"),
     _number(
-        "contact_impulse_per_turn_n_s", "N s", "mean normal impulse a turn, all blades", lambda x: x.impulse_per_turn
+        "contact_duty", "1", "share of the time in which any blade touches", lambda x: x.contact_duty, role="target"
     ),
-    _count("blades_touched", "number of blades that touched", lambda x: x.blades_touched),
-    _count("contact_zones", "number of separate contact zones on the casing", lambda x: x.contact_zones),
-    _numbers("contact_zone_centres_rad", "rad", "polar angle of each zone", lambda x: x.contact_zone_centres),
-    _numbers("contact_zone_widths_rad", "rad", "angular width of each zone", lambda x: x.contact_zone_widths),
+    _number(
+        "contact_impulse_per_turn_n_s",
+        "N s",
+        "mean normal impulse a turn, all blades",
+        lambda x: x.impulse_per_turn,
+        role="target",
+    ),
+    _count("blades_touched", "number of blades that touched", lambda x: x.blades_touched, role="target"),
+    _count("contact_zones", "number of separate contact zones on the casing", lambda x: x.contact_zones, role="target"),
+    _numbers(
+        "contact_zone_centres_rad", "rad", "polar angle of each zone", lambda x: x.contact_zone_centres, role="target"
+    ),
+    _numbers(
+        "contact_zone_widths_rad", "rad", "angular width of each zone", lambda x: x.contact_zone_widths, role="target"
+    ),
     _flag(
         "contact_zones_symmetric",
         "zones equal and evenly spread; null without contact",
@@ -132,14 +148,20 @@ CONTACT = (
         "mean work of friction a turn, all blades, <= 0",
         lambda x: x.amounts.friction_work,
     ),
-    _number("contact_severity", "1", "mean normal force over the blisk's weight", lambda x: x.amounts.severity),
+    _number(
+        "contact_severity",
+        "1",
+        "mean normal force over the blisk's weight",
+        lambda x: x.amounts.severity,
+        role="target",
+    ),
     _number(
         "free_penetration_m",
         "m",
         "how deep tips would be without contact; null at changing speeds and where a support is loose or oil whirls",
         lambda x: x.amounts.free_penetration,
     ),
-    _text("rub_extent", "none, partial or full-annular", RubExtent, lambda x: x.amounts.extent),
+    _text("rub_extent", "none, partial or full-annular", RubExtent, lambda x: x.amounts.extent, role="target"),
     _counts("blade_touches", "touches of each blade within the record", lambda x: x.amounts.blade_touches),
     _numbers(
         "blade_impulses_per_turn_n_s",
@@ -165,7 +187,7 @@ MOTION = (
         lambda x: x.motion_blisk,
     ),
     _text("motion_casing", "the same of the casing", Motion, lambda x: x.motion_casing),
-    _text("motion", "the less regular of the two", Motion, lambda x: x.motion),
+    _text("motion", "the less regular of the two", Motion, lambda x: x.motion, role="target"),
     _count(
         "period_blisk",
         "turns after which the blisk repeats; null where it does not",
@@ -173,19 +195,31 @@ MOTION = (
         unit="turns",
     ),
     _count("period_casing", "the same of the casing", lambda x: x.period_casing, unit="turns"),
-    _count("period", "least common multiple of the two; null where there is none", lambda x: x.period, unit="turns"),
+    _count(
+        "period",
+        "least common multiple of the two; null where there is none",
+        lambda x: x.period,
+        unit="turns",
+        role="target",
+    ),
     _number(
         "motion_confidence",
         "1",
         "chance that half the time step keeps the class, 0 to 1; 0 where undecided",
         lambda x: x.motion_confidence,
+        role="diagnostic",
     ),
     _flag(
         "motion_symmetric",
         "q(t + T/N) = q(t) for N lobes; null unless period-1 in contact",
         lambda x: x.motion_symmetric,
     ),
-    _flag("motion_settling", "the motion still settles in the second half of the record", lambda x: x.motion_settling),
+    _flag(
+        "motion_settling",
+        "the motion still settles in the second half of the record",
+        lambda x: x.motion_settling,
+        role="diagnostic",
+    ),
     _flag("motion_intermittent", "the motion switches between regular and irregular", lambda x: bool(x.segment_starts)),
     _numbers(
         "motion_segment_starts_s", "s", "starts of its stretches, from the record's start", lambda x: x.segment_starts
@@ -199,10 +233,17 @@ MOTION = (
         "1",
         "how far the blisk's section strays from repeating, over its motion",
         lambda x: x.stray_blisk,
+        role="diagnostic",
     ),
-    _number("stray_casing", "1", "the same of the casing; null where it rests", lambda x: x.stray_casing),
     _number(
-        "zero_one_k", "1", "K of the 0-1 test: near 1 for chaos, near 0 for regular motion", lambda x: x.zero_one_k
+        "stray_casing", "1", "the same of the casing; null where it rests", lambda x: x.stray_casing, role="diagnostic"
+    ),
+    _number(
+        "zero_one_k",
+        "1",
+        "K of the 0-1 test: near 1 for chaos, near 0 for regular motion",
+        lambda x: x.zero_one_k,
+        role="diagnostic",
     ),
 )
 ORDERS = (
@@ -222,17 +263,21 @@ EXPONENT = (
         lambda x: x.lyapunov and x.lyapunov.per_turn,
     ),
     _number("lyapunov_per_second", "1/s", "the same by the second", lambda x: x.lyapunov_per_second),
-    _number("lyapunov_error", "1/turn", "its standard error", lambda x: x.lyapunov and x.lyapunov.error),
+    _number(
+        "lyapunov_error", "1/turn", "its standard error", lambda x: x.lyapunov and x.lyapunov.error, role="diagnostic"
+    ),
     _numbers(
         "lyapunov_convergence",
         "1/turn",
         "it from 1/10, 2/10, ... of the turns that count",
         lambda x: x.lyapunov.convergence if x.lyapunov else (),
+        role="diagnostic",
     ),
     _count(
         "lyapunov_turns",
         "turns of the record after which the exponent was settled",
         lambda x: x.lyapunov and x.lyapunov.turns,
+        role="diagnostic",
     ),
 )
 HISTORY = (
@@ -241,6 +286,7 @@ HISTORY = (
         "rev/min",
         "speed at the first touch; null without or at a steady speed",
         lambda x: _rpm(x.history.onset_speed) if x.history else None,
+        role="target",
     ),
     _number(
         "end_of_rub_speed_rpm",
@@ -329,7 +375,11 @@ WINDOW_LABELS = (
 )
 ENERGY_LABELS = (
     EnergyLabel(
-        "energy_residual", "1", "error of the energy identity, share of all absolute works", lambda x: x.residual
+        "energy_residual",
+        "1",
+        "error of the energy identity, share of all absolute works",
+        lambda x: x.residual,
+        role="diagnostic",
     ),
     EnergyLabel("normal_loss_j", "J", "energy lost in normal impacts, <= 0", lambda x: x.normal_loss),
     EnergyLabel("friction_loss_j", "J", "energy lost in friction, <= 0", lambda x: x.friction_loss),
