@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from rubgen.errors import UserError
-from rubgen.labels.registry import ENERGY_LABELS, LABELS, TAP_LABELS, WINDOW_LABELS, Label
+from rubgen.labels.entries import Label
+from rubgen.labels.registry import ENERGY_LABELS, LABELS, TAP_LABELS, WINDOW_LABELS
 from rubgen.machine.faults.registry import FAULTS
 from rubgen.scenario.machines.keys import MachineKey, own_keys
 from rubgen.scenario.surroundings import SURROUNDINGS

@@ -6,239 +6,147 @@ Meanings stand in the files: another wording changes their bytes.
 """
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
-from enum import StrEnum
-from typing import Literal
 
 import numpy as np
 
-from rubgen.arrays import FloatArray
 from rubgen.labels.classes import MOTION_CLASSES
 from rubgen.labels.contact.amounts import RubExtent
-from rubgen.labels.harmonics import FRACTIONS, TapOrders
-from rubgen.labels.labels import Labels, Motion
+from rubgen.labels.entries import EnergyLabel, Label, TapLabel, WindowLabel, count, counts, flag, number, numbers, text
+from rubgen.labels.harmonics import FRACTIONS
+from rubgen.labels.labels import Motion
 from rubgen.labels.motion.whirl import WhirlDirection
-from rubgen.solver.response import EnergyBalance
 from rubgen.units import rev_per_min
-
-Role = Literal["target", "truth", "diagnostic"]
-"""What a label is for: an answer that a model may learn, the true motion, or how good the simulation or a label is."""
-
-
-@dataclass(frozen=True)
-class Label:
-    """One label of a run. Its value is null where the run failed or the label is undefined."""
-
-    name: str
-    """Public name, with the unit as its end."""
-    kind: str
-    """text, flag, integer, integers (list), number or numbers (list)."""
-    unit: str
-    """Empty for a text, a flag and a count; "1" for a ratio."""
-    meaning: str
-    """One line for tables."""
-    value: Callable[[Labels], object]
-    """Its value: a Python value, None where it is undefined, any iterable for a list. NaN becomes None."""
-    words: type[StrEnum] | None = None
-    """The words that a text may be, or whose numbers (`class_numbers`) a list has."""
-    from_taps: bool = False
-    """Whether it needs the signals at every step, which the compact record does not have."""
-    role: Role = "truth"
-
-
-@dataclass(frozen=True)
-class TapLabel:
-    """One label of each true signal (tap).
-
-    Its name is `<tap>_<ending>`; `{tap}` in its meaning stands for the tap's name.
-    """
-
-    ending: str
-    kind: str
-    unit: str | None
-    """None for the unit of the tap."""
-    meaning: str
-    value: Callable[[TapOrders], object]
-
-
-@dataclass(frozen=True)
-class WindowLabel:
-    """One label of each true signal (tap) in windows, a column of data files only. Its name is `<tap>_<ending>`."""
-
-    ending: str
-    meaning: str
-    value: Callable[[FloatArray], object]
-    """Its value from amplitudes (windows, 20) in the unit of the tap."""
-
-
-@dataclass(frozen=True)
-class EnergyLabel:
-    """One energy term of a run, a column of Parquet files only; null where the run failed."""
-
-    name: str
-    unit: str
-    meaning: str
-    value: Callable[[EnergyBalance], float]
-    role: Role = "truth"
-
-
-_Value = Callable[[Labels], object]
-
-
-def _text(name: str, meaning: str, words: type[StrEnum], value: _Value, *, role: Role = "truth") -> Label:
-    return Label(name, "text", "", meaning, value, words=words, role=role)
-
-
-def _flag(name: str, meaning: str, value: _Value, *, from_taps: bool = False, role: Role = "truth") -> Label:
-    return Label(name, "flag", "", meaning, value, from_taps=from_taps, role=role)
-
-
-def _count(name: str, meaning: str, value: _Value, *, unit: str = "", role: Role = "truth") -> Label:
-    return Label(name, "integer", unit, meaning, value, role=role)
-
-
-def _counts(name: str, meaning: str, value: _Value, *, unit: str = "", from_taps: bool = False) -> Label:
-    return Label(name, "integers", unit, meaning, value, from_taps=from_taps)
-
-
-def _number(name: str, unit: str, meaning: str, value: _Value, *, role: Role = "truth") -> Label:
-    return Label(name, "number", unit, meaning, value, role=role)
-
-
-def _numbers(name: str, unit: str, meaning: str, value: _Value, *, role: Role = "truth") -> Label:
-    return Label(name, "numbers", unit, meaning, value, role=role)
 
 
 def _rpm(speed: float | None) -> float | None:
     return None if speed is None else rev_per_min(speed)
 
 
-_NUMBERED = ", ".join(f"{number} {word}" for word, number in MOTION_CLASSES.items())
+_NUMBERED = ", ".join(f"{place} {word}" for word, place in MOTION_CLASSES.items())
 
 CONTACT = (
-    _flag("rub", "a blade touched the casing within the record", lambda x: x.rub, role="target"),
-    _number(
+    flag("rub", "a blade touched the casing within the record", lambda x: x.rub, role="target"),
+    number(
         "contact_duty", "1", "share of the time in which any blade touches", lambda x: x.contact_duty, role="target"
     ),
-    _number(
+    number(
         "contact_impulse_per_turn_n_s",
         "N s",
         "mean normal impulse a turn, all blades",
         lambda x: x.impulse_per_turn,
         role="target",
     ),
-    _count("blades_touched", "number of blades that touched", lambda x: x.blades_touched, role="target"),
-    _count("contact_zones", "number of separate contact zones on the casing", lambda x: x.contact_zones, role="target"),
-    _numbers(
+    count("blades_touched", "number of blades that touched", lambda x: x.blades_touched, role="target"),
+    count("contact_zones", "number of separate contact zones on the casing", lambda x: x.contact_zones, role="target"),
+    numbers(
         "contact_zone_centres_rad", "rad", "polar angle of each zone", lambda x: x.contact_zone_centres, role="target"
     ),
-    _numbers(
+    numbers(
         "contact_zone_widths_rad", "rad", "angular width of each zone", lambda x: x.contact_zone_widths, role="target"
     ),
-    _flag(
+    flag(
         "contact_zones_symmetric",
         "zones equal and evenly spread; null without contact",
         lambda x: x.contact_zones_symmetric,
     ),
-    _count("contact_touches", "uninterrupted touches of single blades within the record", lambda x: x.amounts.touches),
-    _number(
+    count("contact_touches", "uninterrupted touches of single blades within the record", lambda x: x.amounts.touches),
+    number(
         "contact_friction_work_per_turn_j",
         "J",
         "mean work of friction a turn, all blades, <= 0",
         lambda x: x.amounts.friction_work,
     ),
-    _number(
+    number(
         "contact_severity",
         "1",
         "mean normal force over the blisk's weight",
         lambda x: x.amounts.severity,
         role="target",
     ),
-    _number(
+    number(
         "free_penetration_m",
         "m",
         "how deep tips would be without contact; null at changing speeds and where a support is loose or oil whirls",
         lambda x: x.amounts.free_penetration,
     ),
-    _text("rub_extent", "none, partial or full-annular", RubExtent, lambda x: x.amounts.extent, role="target"),
-    _counts("blade_touches", "touches of each blade within the record", lambda x: x.amounts.blade_touches),
-    _numbers(
+    text("rub_extent", "none, partial or full-annular", RubExtent, lambda x: x.amounts.extent, role="target"),
+    counts("blade_touches", "touches of each blade within the record", lambda x: x.amounts.blade_touches),
+    numbers(
         "blade_impulses_per_turn_n_s",
         "N s",
         "mean normal impulse a turn of each blade",
         lambda x: x.amounts.blade_impulses,
     ),
-    _text(
+    text(
         "whirl",
         "direction of the disk centre's orbit: forward, backward or mixed",
         WhirlDirection,
         lambda x: x.whirl and x.whirl.direction,
     ),
-    _number(
+    number(
         "whirl_index", "1", "1 a circle forward, 0 a line, -1 a circle backward", lambda x: x.whirl and x.whirl.index
     ),
 )
 MOTION = (
-    _text(
+    text(
         "motion_blisk",
         "static, period-1, period-k, quasi-periodic, undecided or chaotic",
         Motion,
         lambda x: x.motion_blisk,
     ),
-    _text("motion_casing", "the same of the casing", Motion, lambda x: x.motion_casing),
-    _text("motion", "the less regular of the two", Motion, lambda x: x.motion, role="target"),
-    _count(
+    text("motion_casing", "the same of the casing", Motion, lambda x: x.motion_casing),
+    text("motion", "the less regular of the two", Motion, lambda x: x.motion, role="target"),
+    count(
         "period_blisk",
         "turns after which the blisk repeats; null where it does not",
         lambda x: x.period_blisk,
         unit="turns",
     ),
-    _count("period_casing", "the same of the casing", lambda x: x.period_casing, unit="turns"),
-    _count(
+    count("period_casing", "the same of the casing", lambda x: x.period_casing, unit="turns"),
+    count(
         "period",
         "least common multiple of the two; null where there is none",
         lambda x: x.period,
         unit="turns",
         role="target",
     ),
-    _number(
+    number(
         "motion_confidence",
         "1",
         "chance that half the time step keeps the class, 0 to 1; 0 where undecided",
         lambda x: x.motion_confidence,
         role="diagnostic",
     ),
-    _flag(
+    flag(
         "motion_symmetric",
         "q(t + T/N) = q(t) for N lobes; null unless period-1 in contact",
         lambda x: x.motion_symmetric,
     ),
-    _flag(
+    flag(
         "motion_settling",
         "the motion still settles in the second half of the record",
         lambda x: x.motion_settling,
         role="diagnostic",
     ),
-    _flag("motion_intermittent", "the motion switches between regular and irregular", lambda x: bool(x.segment_starts)),
-    _numbers(
+    flag("motion_intermittent", "the motion switches between regular and irregular", lambda x: bool(x.segment_starts)),
+    numbers(
         "motion_segment_starts_s", "s", "starts of its stretches, from the record's start", lambda x: x.segment_starts
     ),
-    _counts(
+    counts(
         "motion_segment_periods", "period of each stretch, 0 where irregular", lambda x: x.segment_periods, unit="turns"
     ),
-    _flag("tip_chatter", "tips do not repeat, disk centre and casing do", lambda x: x.tip_chatter),
-    _number(
+    flag("tip_chatter", "tips do not repeat, disk centre and casing do", lambda x: x.tip_chatter),
+    number(
         "stray_blisk",
         "1",
         "how far the blisk's section strays from repeating, over its motion",
         lambda x: x.stray_blisk,
         role="diagnostic",
     ),
-    _number(
+    number(
         "stray_casing", "1", "the same of the casing; null where it rests", lambda x: x.stray_casing, role="diagnostic"
     ),
-    _number(
+    number(
         "zero_one_k",
         "1",
         "K of the 0-1 test: near 1 for chaos, near 0 for regular motion",
@@ -247,8 +155,8 @@ MOTION = (
     ),
 )
 ORDERS = (
-    _flag("has_2fr", "order 2 stands out of the casing acceleration at 0 degrees", lambda x: x.has_2fr, from_taps=True),
-    _counts(
+    flag("has_2fr", "order 2 stands out of the casing acceleration at 0 degrees", lambda x: x.has_2fr, from_taps=True),
+    counts(
         "orders_present",
         "the k up to 20 that stand out of that acceleration, as for has_2fr",
         lambda x: x.orders_present,
@@ -256,24 +164,24 @@ ORDERS = (
     ),
 )
 EXPONENT = (
-    _number(
+    number(
         "lyapunov_per_turn",
         "1/turn",
         "largest Lyapunov exponent; null where switched off",
         lambda x: x.lyapunov and x.lyapunov.per_turn,
     ),
-    _number("lyapunov_per_second", "1/s", "the same by the second", lambda x: x.lyapunov_per_second),
-    _number(
+    number("lyapunov_per_second", "1/s", "the same by the second", lambda x: x.lyapunov_per_second),
+    number(
         "lyapunov_error", "1/turn", "its standard error", lambda x: x.lyapunov and x.lyapunov.error, role="diagnostic"
     ),
-    _numbers(
+    numbers(
         "lyapunov_convergence",
         "1/turn",
         "it from 1/10, 2/10, ... of the turns that count",
         lambda x: x.lyapunov.convergence if x.lyapunov else (),
         role="diagnostic",
     ),
-    _count(
+    count(
         "lyapunov_turns",
         "turns of the record after which the exponent was settled",
         lambda x: x.lyapunov and x.lyapunov.turns,
@@ -281,28 +189,28 @@ EXPONENT = (
     ),
 )
 HISTORY = (
-    _number(
+    number(
         "onset_speed_rpm",
         "rev/min",
         "speed at the first touch; null without or at a steady speed",
         lambda x: _rpm(x.history.onset_speed) if x.history else None,
         role="target",
     ),
-    _number(
+    number(
         "end_of_rub_speed_rpm",
         "rev/min",
         "speed at the end of the last touch",
         lambda x: _rpm(x.history.end_of_rub_speed) if x.history else None,
     ),
-    _numbers(
+    numbers(
         "change_times_s",
         "s",
         "times from the record's start at which labels change; first 0",
         lambda x: [change.time for change in x.changes],
     ),
-    _numbers("change_speeds_rpm", "rev/min", "speed at each", lambda x: [_rpm(change.speed) for change in x.changes]),
-    _counts("change_rub", "1 where a rub goes on from there, else 0", lambda x: [change.rub for change in x.changes]),
-    _numbers(
+    numbers("change_speeds_rpm", "rev/min", "speed at each", lambda x: [_rpm(change.speed) for change in x.changes]),
+    counts("change_rub", "1 where a rub goes on from there, else 0", lambda x: [change.rub for change in x.changes]),
+    numbers(
         "change_impulse_per_turn_n_s",
         "N s",
         "mean normal impulse a turn until the next",
@@ -318,15 +226,13 @@ HISTORY = (
     ),
 )
 WINDOWS = (
-    _numbers("window_starts_s", "s", "starts of windows of 16 turns", lambda x: x.windows.start),
-    _numbers(
-        "window_speeds_rpm", "rev/min", "mean speed of each", lambda x: [_rpm(speed) for speed in x.windows.speed]
-    ),
-    _counts("window_rub", "1 where a blade touches within the window, else 0", lambda x: x.windows.duty > 0),
-    _numbers(
+    numbers("window_starts_s", "s", "starts of windows of 16 turns", lambda x: x.windows.start),
+    numbers("window_speeds_rpm", "rev/min", "mean speed of each", lambda x: [_rpm(speed) for speed in x.windows.speed]),
+    counts("window_rub", "1 where a blade touches within the window, else 0", lambda x: x.windows.duty > 0),
+    numbers(
         "window_contact_duty", "1", "share of the time in which any blade touches, of each", lambda x: x.windows.duty
     ),
-    _numbers("window_impulse_per_turn_n_s", "N s", "mean normal impulse a turn of each", lambda x: x.windows.impulse),
+    numbers("window_impulse_per_turn_n_s", "N s", "mean normal impulse a turn of each", lambda x: x.windows.impulse),
     Label(
         "window_motion_classes",
         "integers",
@@ -335,7 +241,7 @@ WINDOWS = (
         lambda x: [MOTION_CLASSES[motion] for motion, _ in x.windows.motion],
         words=Motion,
     ),
-    _numbers(
+    numbers(
         "window_motion_confidence",
         "1",
         "chance that half the time step keeps that class; null where it was not measured",
