@@ -47,7 +47,7 @@ def writer_of(path: Path, named: str) -> Write:
 def plot(run: Run) -> Figure:
     """Draw a run in four panels: orbit with Poincare section, a recorded channel, contact by angle, orders.
 
-    The channel is `casing_acc_0`, or the first of a sensor set without it. The orders are those of the contact force.
+    The channel is `casing_acc_0`, or the first of a sensor set without it. The orders belong to the contact force.
     Raises UserError for a failed run.
     """
     from rubgen.viz.figures import overview

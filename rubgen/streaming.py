@@ -18,7 +18,7 @@ def stream(recipe: Recipe | Mapping[str, object] | Path | str | None = None) -> 
 
     - recipe: a recipe, its TOML values, its file, or None for the default recipe. Its number of runs is ignored.
 
-    The runs are those of the data set that `generate` makes of the recipe, in the order of their numbers: run i has the
+    They are the runs of the data set that `generate` makes of the recipe, in the order of their numbers: run i has the
     same recording and labels. Failed runs are left out. This process makes the runs, one at a time; memory of a run is
     freed when the caller drops it. Raises UserError for a recipe that is not allowed, at the call; RubgenError where 64
     runs fail one after the other, with the reason of the last run.

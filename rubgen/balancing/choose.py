@@ -7,7 +7,7 @@ from rubgen.scenario import Recipe, Scenario
 from rubgen.scenario.tables.balance import NO_CANDIDATE, Balance, Cell
 
 UNCLASSED, IMPOSSIBLE = "rub, class not asked", "not possible"
-"""The two last counts of `Chosen.seen`, behind those of the cells."""
+"""The last two counts of `Chosen.seen`, after the counts of the cells."""
 
 
 def choose(recipe: Recipe, balance: Balance, index: int) -> Scenario:

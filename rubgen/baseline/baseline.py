@@ -95,9 +95,9 @@ def baselines(
 def mark_of(scores: ModelScores, task: Task) -> str:
     """Return a clause that says that one threshold solves the task, or that nothing learns it. Empty for a good task.
 
-    `scores` are those of all models on `task`. The first metric of the task is used, with the score by group. If it is
-    undefined there, it is the score on the first split where it is defined, such as the onset where training has steady
-    speeds. The clause is empty if it is defined nowhere.
+    `scores` are the scores of all models on `task`. The first metric of the task is used, with the score by group. If
+    it is undefined there, it is the score on the first split where it is defined, such as the onset where training has
+    steady speeds. The clause is empty if it is defined nowhere.
 
     - One threshold solves the task if its score is above SOLVED.
     - Nothing learns the task if the best score is below NOTHING.

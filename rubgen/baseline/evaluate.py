@@ -18,7 +18,7 @@ FOLDS, SEEDS = 5, 3
 
 @dataclass(frozen=True)
 class Samples:
-    """Windows with their inputs, answers, groups and runs. All arrays have a row a window."""
+    """Windows with their inputs, answers, groups and runs. All arrays have a row for each window."""
 
     inputs: Mapping[str, FloatArray]
     answers: npt.NDArray[Any]

@@ -176,7 +176,7 @@ def contact_slip(
 
     - velocity (n,): q' or a step d of q, in the coordinates' own frames. With d the result is a path in m.
     - q (n,): coordinates, m.
-    - speed: Omega, or Omega dt where `velocity` is d.
+    - speed: Omega, rad/s, or Omega dt where `velocity` is d.
     - cosine, sine: of the blade's angle.
     """
     k, n_casing = work.blade[m], work.rows.shape[1]
@@ -211,7 +211,8 @@ def build_rows(
     a liner `sliding` is written too. Without both `slip` is 0.
 
     - m: number of the contact, not of the blade.
-    - q (n,), velocity (n,): free state q* and its velocity. Of the tips only coordinates of this blade are read.
+    - q (n,), velocity (n,): free state q*, m, and its velocity, m/s. Of the tips only coordinates of this blade are
+      read.
     - speed: Omega, rad/s.
     - friction: coefficient of friction, 0 for none.
     - cos_theta, sin_theta: cosine and sine of the blisk's angle at the new step.

@@ -62,7 +62,10 @@ class Place(NamedTuple):
 
 
 class RunRows:
-    """Access to single runs in Parquet files with one row a run. The last FILES_OPEN files that were read stay open."""
+    """Access to single runs in Parquet files with one row for each run.
+
+    The last FILES_OPEN files that were read stay open.
+    """
 
     def __init__(self, files: Sequence[Path], types: pa.Schema, asked_bytes: float) -> None:
         """Take the files, their schema `types`, and the unpacked size of a row group (function `asked_bytes`)."""
@@ -83,8 +86,8 @@ class RunRows:
     def each(self, run_ids: Iterable[str], columns: Sequence[str]) -> Iterator[tuple[str, pa.Table]]:
         """Yield the name of each run in `run_ids`, in the same order, and its row: a table of one row.
 
-        `columns` are the names of the columns to read. They are those of the schema; any other name raises KeyError. A
-        row group is read once for successive runs in it.
+        `columns` are the names of the columns to read. A name that is not in the schema raises KeyError. A row group is
+        read once for successive runs in it.
 
         Raises UserError, which names the run: before the first row, where any run has no row; at its row, where a value
         is null, a column is missing or a page is damaged.

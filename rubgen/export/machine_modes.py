@@ -39,7 +39,7 @@ def nodes_of(model: ReducedModel) -> tuple[IntArray, FloatArray]:
 
 
 def modes_of(model: ReducedModel, highest_hz: float) -> list[ShownMode]:
-    """Return the modes of casing and blisk up to `highest_hz`, first those of the casing.
+    """Return the modes of casing and blisk up to `highest_hz`, the modes of the casing first.
 
     The modes of the blisk solve K phi = omega^2 M phi of the reduced model at rest: without damping, rotation and
     contact. A tip's radial, tangential and axial displacement is turned into x, y, z at the angle of its blade.

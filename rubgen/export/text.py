@@ -25,7 +25,7 @@ def write_csv(runs: Iterator[ExportedRun], path: Path) -> None:
 
 
 def write_ts(runs: Iterator[ExportedRun], path: Path) -> None:
-    """Write runs as cases of equal length, one dimension a channel, with the class `rub` (`true` or `false`).
+    """Write runs as cases of equal length, one dimension for each channel, with the class `rub` (`true` or `false`).
 
     The head of the file names channels, units and sample rate in comments.
     """

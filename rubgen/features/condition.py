@@ -44,7 +44,7 @@ Limits = Mapping[str, tuple[str, float, float, float]]
 
 
 def condition(data: DataSet, limits: Limits | None = None, *, runs: Sequence[str] | None = None) -> pd.DataFrame:
-    """Compute QUANTITIES of each channel of good runs: a DataFrame with one row a run and channel.
+    """Compute QUANTITIES of each channel of good runs: a DataFrame with one row for each run and channel.
 
     - data: the data set.
     - limits: for a channel a quantity and the upper limits of the zones A, B and C, in the unit of the quantity, such

@@ -23,14 +23,14 @@ from rubgen.measurement.channel import Float32Array
 def run_features(
     plan: Plan, ids: tuple[str, str, str], signals: Mapping[str, Float32Array], pulses: FloatArray
 ) -> pa.Table:
-    """Compute the rows of a run, one a window, with the columns of `plan.schema()`. NaN becomes null.
+    """Compute the rows of a run, one for each window, with the columns of `plan.schema()`. NaN becomes null.
 
     - ids: names of run, machine and split.
     - signals: at least the channels of the plan, each (samples,) in its unit.
     - pulses: times of the recorded pulses (any,) in s from the first sample.
 
-    Raises UserError where the window is longer than the signals, and where tsfel gives other features than those of the
-    plan.
+    Raises UserError where the window is longer than the signals, and where tsfel gives other features than the plan
+    has.
     """
     stacked = np.array([signals[name] for name in plan.channels], dtype=np.float64)
     samples, rate = stacked.shape[1], plan.rate_hz

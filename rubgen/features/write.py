@@ -47,7 +47,7 @@ def write_features(
     sets: Sequence[str] | None = None,
     workers: int = 1,
 ) -> Written:
-    """Write the features of every good run of the set in `directory` to the Parquet file `out`, one row a window.
+    """Write the features of every good run of the set in `directory` to the Parquet file `out`, a row for each window.
 
     - window, channels, sets: as in `make_plan`; None takes the whole signal, all channels and all sets but tsfel.
     - workers: number of processes.

@@ -188,9 +188,9 @@ def static_root_strain(
 ) -> tuple[FloatArray, FloatArray]:
     """Return a blade's root strain per displacement of its tip (3,) and of its root (6,), without inertia.
 
-    The strain is that of `root_strain_row`. The displacements lie along the blade's axes: u of the tip in m, u in m and
-    th in rad of the root. Between tip and root the blade has the shape of least energy under K + Omega^2 (K_sigma - S).
-    At rest this is the cubic of a tip load; at speed it is flatter, with more curvature near the root.
+    The strain is defined as in `root_strain_row`. The displacements lie along the blade's axes: u of the tip in m, u in
+    m and th in rad of the root. Between tip and root the blade has the shape of least energy under K + Omega^2
+    (K_sigma - S). At rest it is the cubic of a tip load; at speed it is flatter, with more curvature near the root.
 
     - blades: the blade row.
     - root_radius: radius of the root, m.

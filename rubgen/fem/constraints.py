@@ -29,8 +29,8 @@ def rigid_rows(arm: FloatArray) -> FloatArray:
 def rigid_link(arm: FloatArray, node_dof: IntArray, centre_dof: IntArray, size: int) -> SparseMatrix:
     """Return the constraint rows T (6 n, size) of a rigid link between O_d and n nodes, as a sparse matrix.
 
-    The rows are those of `rigid_rows`, node after node. The penalty stiffness is k_p T^T T, and the force of the link
-    on node i is -k_p T_i q.
+    The rows of `rigid_rows` stand node after node. The penalty stiffness is k_p T^T T, and the force of the link on
+    node i is -k_p T_i q.
 
     - arm (n, 2): X and Y of the nodes from O_d, m.
     - node_dof (n, 6), centre_dof (6,): numbers of the DoFs of the nodes and of O_d.
@@ -61,7 +61,7 @@ def link_stress_stiffness(arm: FloatArray, force: FloatArray) -> FloatArray:
 def blade_rotation(angle: float) -> FloatArray:
     """Return T_k (6, 6), which turns the DoFs of a node from the axes of a blade at polar `angle` (rad) to o-xyz.
 
-    Displacements and rotations are turned alike.
+    Displacements and rotations are turned in the same way.
     """
     c, s = np.cos(angle), np.sin(angle)
     R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

@@ -34,7 +34,7 @@ class ShellMesh:
         return ShellMesh(self.nodes, self.elements[:: self.around], self.thickness)
 
     def turned(self, firsts: FloatArray) -> FloatArray:
-        """Return the matrices (e, 6 a, 6 b) of all elements from those of the first elements: Z_j X Z_j^T.
+        """Return the matrices (e, 6 a, 6 b) of all elements, Z_j X Z_j^T, from X = `firsts` of the first elements.
 
         Z_j turns each node's DoFs to the position of element j of the group.
         """
@@ -68,8 +68,8 @@ class Quadrature:
 def serendipity(xi: FloatArray, eta: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return shape functions N (q, 8) and their derivatives (q, 8, 2) by xi, eta at points (q,) of [-1, 1]^2.
 
-    Corners: (1 + a)(1 + b)(a + b - 1)/4 with a = xi xi_i, b = eta eta_i; midsides (1 - xi^2)(1 + b)/2 and so on
-    (Zienkiewicz and Taylor, The Finite Element Method, serendipity family).
+    Corners: (1 + a)(1 + b)(a + b - 1)/4 with a = xi xi_i, b = eta eta_i; midsides (1 - xi^2)(1 + b)/2 and (1 + a)(1 -
+    eta^2)/2 (Zienkiewicz and Taylor, The Finite Element Method, serendipity family).
     """
     x, y = xi[:, None], eta[:, None]
     a, b = x * _XI, y * _ETA

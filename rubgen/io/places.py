@@ -118,8 +118,8 @@ def answered(path: Path, work: Callable[[], R]) -> R:
 def url_problems(path: Path) -> Iterator[None]:
     """Turn an Exception of the block, which uses the URL `path`, into a UserError of one line that names `path`.
 
-    Each library has errors of its own, so all are turned alike. A RubgenError passes unchanged. It is not checked that
-    `path` is a URL.
+    Each library has errors of its own, so all are turned in the same way. A RubgenError passes unchanged. It is not
+    checked that `path` is a URL.
     """
     try:
         yield

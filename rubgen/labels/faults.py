@@ -1,4 +1,4 @@
-"""Labels of faults: what is wrong with the machine of a run, beside what the run shows."""
+"""Labels of faults: which faults the machine of a run has, how severe they are, and when the rub begins."""
 
 from rubgen.machine.faults.registry import FAULTS
 from rubgen.scenario import Scenario

@@ -64,7 +64,7 @@ class SchemaNodes:
 def bounds_in_words(nodes: list[Node]) -> str:
     """Return the allowed range of a number in words, "at least 0 and below 1"; empty without bounds.
 
-    The range is that of the first of the JSON schema nodes `nodes` that has bounds.
+    It is the range of the first of the JSON schema nodes `nodes` that has bounds.
     """
     for node in nodes:
         if any(key in node for key in BOUNDS):

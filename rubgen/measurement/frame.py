@@ -79,8 +79,8 @@ def _cosine(angle_deg: float) -> float:
 def spread(frame: Frame, deviation: float, rng: np.random.Generator) -> Frame:
     """Draw the frame of another machine of the same kind. With `deviation` 0 the frame is returned unchanged.
 
-    Each frequency and each mass is multiplied by exp(`deviation` x), x standard normal. Values outside of the allowed
-    range are set to its nearest end.
+    Each frequency and each mass is multiplied by exp(`deviation` x), x standard normal: `deviation` is the standard
+    deviation of the logarithm. Values outside of the allowed range are set to its nearest end.
     """
     if deviation == 0:
         return frame

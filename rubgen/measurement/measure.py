@@ -1,4 +1,7 @@
-"""Record all channels and events of one run."""
+"""Record all channels and events of one run.
+
+The tail are the last steps of a run, at which the response has taps (true signals).
+"""
 
 import zlib
 from collections.abc import Sequence

@@ -1,4 +1,7 @@
-"""Compute the shaft's angle over the steps of a tail, and the pulse once per revolution at theta = 0."""
+"""Compute the shaft's angle over the tail of a run, and the pulse once per revolution at theta = 0.
+
+The tail are the last steps of a run, at which the response has taps (true signals).
+"""
 
 import math
 from typing import Any

@@ -86,7 +86,7 @@ class Tail:
     def sinusoids(self, amplitudes: ComplexArray, advances: FloatArray) -> FloatArray:
         """Return sum_j Re(a_j exp(i w_j n)) (steps,), with n counted from the step after the last one.
 
-        The exponential of n = BLOCK k + m is the product of those of BLOCK k and of m, so few are computed.
+        The exponential of n = BLOCK k + m is the product of the exponentials of BLOCK k and of m, so few are computed.
 
         - amplitudes (sinusoids,): complex amplitudes a.
         - advances (sinusoids,): w, rad a step.

@@ -20,7 +20,7 @@ USES = {
 
 
 def commented(kind: str, name: str) -> str:
-    """Return the text of rubgen's file `name` with a comment for each key. Its values are those of rubgen's file.
+    """Return the text of rubgen's file `name` with a comment for each key. It has the values of rubgen's file.
 
     `kind` is recipe, machine or sensors.
     """

@@ -49,16 +49,16 @@ class Plan:
     """Number of runs of each split."""
     drawn: tuple[Drawn, ...]
     reach: tuple[Reach, ...]
-    """Of each run looked at."""
+    """One for each examined run."""
     corners: int
     """Number of scenarios at the extremes of what is drawn."""
     refused_corners: tuple[str, ...]
-    """Why those of them are refused that are."""
+    """The reason of each of these scenarios that is refused."""
     cpu_seconds: float
     megabytes: dict[str, float]
     """Size of the files by format."""
     tried: Tried | None
-    """What a few runs gave, where they were asked for. Time and sizes then follow from them."""
+    """Results of a few simulated runs, or None. If there are any, time and sizes follow from them."""
 
     @property
     def share_that_can_rub(self) -> float:

@@ -36,9 +36,9 @@ def cached_blisk(
 ) -> ReducedBlisk:
     """Return the reduced blisk from the cache, or make it with `reduce_blisk` and store it. The bits are the same.
 
-    The parameters are those of `reduce_blisk`. Lateral stiffness and the number of casing modes do not affect the
-    result, so runs that vary them share one file. A damaged file is made again. If nothing can be stored, each process
-    makes the blisk itself. If several processes need the same blisk, one makes it, and the others wait for at most
+    The parameters are as in `reduce_blisk`. Lateral stiffness and the number of casing modes do not affect the result,
+    so runs that vary them share one file. A damaged file is made again. If nothing can be stored, each process makes
+    the blisk itself. If several processes need the same blisk, one makes it, and the others wait for at most
     PATIENCE_S. Raises UserError as `reduce_blisk` does.
     """
     folder = cache_folder("reduction")

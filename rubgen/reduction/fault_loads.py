@@ -13,7 +13,7 @@ from rubgen.reduction.model import GrowingLoad
 def steady_loads(machine: Machine, speed: float) -> ComplexArray:
     """Return the sum of the machine's fault loads that do not grow, at `speed` in rad/s: p (orders, 2) in N.
 
-    The orders are those of the turning frame, as in `turning_harmonics`.
+    The orders are counted in the turning frame, as in `turning_harmonics`.
     """
     return turning_harmonics(load for load in _loads(machine, speed) if load.ramp is None)
 

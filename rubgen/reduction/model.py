@@ -28,7 +28,7 @@ class CasingSurface:
 
 @dataclass(frozen=True, kw_only=True)
 class Recovery:
-    """Data for sensors beside the coordinates: linear functionals of the blisk's n coordinates, and geometry."""
+    """Data that sensors need in addition to q: linear functionals of the blisk's n coordinates, and geometry."""
 
     root_strain: Callable[[int], FloatArray]
     """For a blade's number, the row (n,) of the spanwise strain at its root."""

@@ -18,7 +18,8 @@ STEPS_PER_SAMPLE = 2.56
 LEAST_TAIL_TURNS = 100
 LEAST_TAPS = 11
 SURROUNDINGS_ARRAYS, FRAME_ARRAYS = 12, 9
-"""Arrays with a value at every step that surroundings, and a frame beside its modes, need at a time."""
+"""Arrays with a value at every step that the surroundings need at a time, and that a frame needs in addition to its
+modes."""
 GIGA = 1e9
 SECONDS_A_STEP = {True: 1.3e-6, False: 4e-6}
 """CPU time of a step of a run that rubs, with its labels and exponent, by whether its speed is steady. Measured in

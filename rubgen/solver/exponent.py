@@ -24,8 +24,7 @@ class Exponent:
     error: float
     """Its standard error in the same unit."""
     convergence: FloatArray
-    """Its value (10,) from the first tenth of the growths that count, from the first two tenths, and so on. The last is
-    the exponent."""
+    """Its value (10,) from the first k tenths of the growths that count, k = 1..10. The last value is the exponent."""
     turns: int
     """Number of growths."""
 

@@ -1,7 +1,7 @@
-"""Serve the recordings of many runs from Rerun's own catalog, with a table of what is known of each run.
+"""Serve the recordings of many runs from Rerun's own catalog, with a table of properties of each run.
 
-A recording is a segment of a dataset in this catalog. What is known of a run lies beside its recording, in layers of a
-few properties. Each property is a column of the table. Files stay where they are.
+A recording is a segment of a dataset in this catalog. The properties of a run are stored in layers beside its
+recording, a few properties in each. A property is a column of the table. Files stay where they are.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@ def previews(sensors: Sequence[SampledSensor]) -> tuple[rrb.View, ...]:
     """Return small views of a run for a table of runs: the orbit, and previews of channels over time.
 
     The orbit has all drawn turns. This view is left out without two proximity probes. The channels are the
-    accelerations; without one they are those of the first sensor's quantity. Of several units the first is shown
+    accelerations; without one, the channels of the first sensor's quantity. Of several units the first is shown
     (`Recording.by_quantity`). `sensors` are the sensors of the recordings that are shown, at least one.
     """
     hidden = rrb.PlotLegend(visible=False)

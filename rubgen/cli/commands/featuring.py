@@ -28,8 +28,8 @@ def features_command(
     """Write the table of features to `out` and print what it contains. Returns the exit code 0.
 
     `channels` and `sets` are names with commas between them, or None. `workers` None is one process for each core. The
-    other parameters are those of `write_features`. With `force` an existing `out` is replaced. With `as_json` the
-    summary is JSON.
+    other parameters are as in `write_features`. With `force` an existing `out` is replaced. With `as_json` the summary
+    is JSON.
     """
     check_new_file("--out", out, (".parquet",), force=force)
     if workers is not None and workers < 1:

@@ -46,7 +46,7 @@ def generate_command(recipe: Path | None, out: Path, runs: int | None, work: Wor
 
 
 def resense_command(directory: Path, sensors: str, out: Path, workers: int | None, *, as_json: bool) -> int:
-    """Make a data set again with other sensors and print a summary. The parameters are those of `resense`.
+    """Make a data set again with other sensors and print a summary. The parameters are as in `resense`.
 
     With `as_json` the summary is JSON, and no progress is shown. Returns the exit code 1 where no run of the set is ok,
     else 0. After Ctrl-C it prints how to continue and returns 130.
@@ -56,7 +56,7 @@ def resense_command(directory: Path, sensors: str, out: Path, workers: int | Non
 
 
 def merge_command(directories: Sequence[Path], out: Path, *, as_json: bool) -> int:
-    """Merge data sets and print a summary. The parameters are those of `rubgen.merge`.
+    """Merge data sets and print a summary. The parameters are as in `rubgen.merge`.
 
     With `as_json` the summary is JSON, and no progress is shown. Returns the exit code 1 where no run of the set is ok,
     else 0. After Ctrl-C it prints how to continue and returns 130.

@@ -1,7 +1,7 @@
 """Checks of labels against labels of windows, and against the recorded channels as far as their errors allow.
 
 A row has the parameters and labels of one run with status ok, by the column names of `runs.parquet`, and the labels of
-its windows.
+its windows. Classes are words.
 """
 
 import math

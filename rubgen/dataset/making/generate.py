@@ -112,7 +112,7 @@ def generate_as(
 
     `decided` is a `runs.parquet` with a row for each run, at the number of the run. The run takes the candidates of its
     row, and they are not checked again. None chooses them as `generate` does. With `shard`, `decided` is not used.
-    Other arguments, result and errors are those of `generate`.
+    Other arguments, result and errors are as in `generate`.
     """
     recipe = _recipe(recipe, runs)
     remote = RemoteMaking(str(out), shard or "") if is_url(out) else None

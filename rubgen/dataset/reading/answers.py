@@ -65,8 +65,8 @@ class Answers:
     def of_windows(self, runs: Sequence[str], pieces: Sequence[FloatArray]) -> npt.NDArray[Any]:
         """Return the answer of each window (windows,), run after run, or for the target `faults` (windows, kinds).
 
-        Targets without a value of the window have the run's. `pieces` are start and end of the windows of each run
-        (windows, 2), in s from the first sample.
+        For a target that has one value for the whole run, every window has this value. `pieces` are start and end of
+        the windows of each run (windows, 2), in s from the first sample.
         """
         compute = _OF_STRETCH.get(self._column.name)
         if compute is None:
@@ -107,7 +107,10 @@ def _duty(_row: Row, touches: pd.DataFrame, edges: FloatArray) -> FloatArray:
 
 
 def _impulse(row: Row, touches: pd.DataFrame, edges: FloatArray) -> FloatArray:
-    """Return the mean normal impulse a turn of each window in N s; that of a touch is spread evenly over it."""
+    """Return the mean normal impulse a turn of each window in N s.
+
+    The impulse of a touch is spread evenly over its duration.
+    """
     start, end = touches["start_s"].to_numpy(), touches["end_s"].to_numpy()
     density = touches["impulse_n_s"].to_numpy() / (end - start)
     inside = [np.clip(np.minimum(end, b) - np.maximum(start, a), 0, None) @ density for a, b in edges]

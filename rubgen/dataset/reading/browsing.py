@@ -1,4 +1,4 @@
-"""The rows of a data set for Rerun's catalog: what was drawn, the labels, and the answers of a model beside them."""
+"""The rows of a data set for Rerun's catalog: what was drawn, the labels, and next to them the answers of a model."""
 
 from __future__ import annotations
 
@@ -78,11 +78,11 @@ def rows_of(data: DataSet, run_ids: Sequence[str], predictions: Path | None = No
 
 
 def read_predictions(path: Path, data: DataSet) -> pd.DataFrame:
-    """Read the predictions of a model from a CSV or Parquet file, with one row a run. The column `run_id` is the index.
+    """Read the predictions of a model from a CSV or Parquet file, with one row for each run.
 
-    Characters of column names other than letters, digits and _ become _. Raises UserError where the file is missing or
-    of another kind, has no `run_id` or no other column, names a run twice, names no run of the set, contains lists, or
-    has two columns with the same name then.
+    The column `run_id` is the index of the result. Characters of column names other than letters, digits and _ become
+    _. Raises UserError where the file is missing or of another kind, has no `run_id` or no other column, names a run
+    twice, names no run of the set, contains lists, or has two columns with the same name then.
     """
     reader, named = READERS.get(path.suffix), f"--predictions {path}"
     if reader is None:

@@ -74,7 +74,7 @@ def cut_of(seconds: float | None, turns: int | None, hop: float | None, rate: fl
     """Return how to cut signals: into windows of `seconds`, or of `turns`, every `hop`.
 
     - seconds: length of a window, rounded to whole samples.
-    - hop: distance of the starts, in the same unit and rounded alike; None is the length of a window.
+    - hop: distance of the starts, in the same unit and rounded in the same way; None is the length of a window.
     - rate: samples per second.
     - tacho: whether the set has a once_per_rev sensor.
 

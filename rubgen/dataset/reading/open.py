@@ -79,7 +79,7 @@ class DataSet:
 
     @cached_property
     def runs(self) -> pd.DataFrame:
-        """Parameters and labels of all runs, failed runs included, one row a run, with the index `run_id`.
+        """Parameters and labels of all runs, failed runs included: one row for each run, with the index `run_id`.
 
         `runs_frame` describes the types of the columns.
         """
@@ -154,16 +154,16 @@ class DataSet:
         return self._sensing.sample_rate_hz
 
     def row(self, run_id: str) -> dict[str, Any]:
-        """Return a run's parameters and labels by column name, as plain values. Raises UserError for an unknown run."""
+        """Return a run's parameters and labels by column, classes as words. Raises UserError for an unknown run."""
         row: dict[str, Any] = self._table.slice(self._number(run_id), 1).to_pylist()[0]
         return row
 
     def whole_row(self, run_id: str) -> dict[str, Any]:
         """Return everything that the set contains of a good run except its channels, by column name.
 
-        It is `row`, with the event times of the signals and, from the table `truth`, the touches in the signals,
-        amplitudes by window, and the like. Raises UserError where the run does not exist or failed, and where the set
-        has no Parquet files with signals.
+        It is `row` with the event times of the signals and with the table `truth`: touches in the signals, amplitudes
+        by window and more. Raises UserError where the run does not exist or failed, and where the set has no Parquet
+        files with signals.
         """
         self.check_has_signals(run_id)
         row = self.row(run_id)
@@ -186,7 +186,7 @@ class DataSet:
         return row_signals(table, 0)
 
     def touches(self, run_id: str) -> pd.DataFrame:
-        """Read the touches of blades within the whole record of a run, one row a touch, in order of their start.
+        """Read the touches of blades within the whole record of a run, one row for each touch, in order of their start.
 
         Columns (see `touches_frame`): `start_s` and `end_s` from the first sample, `blade`, `angle_rad` on the casing,
         `impulse_n_s`, `friction_work_j` and `normal_work_j` <= 0. Raises UserError where the run does not exist or

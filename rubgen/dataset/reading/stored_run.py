@@ -21,7 +21,7 @@ SHOWN = ("rub", "motion", "contact_duty", "contact_impulse_per_turn_n_s", "blade
 
 @dataclass(frozen=True, kw_only=True)
 class StoredRun:
-    """A run of a data set: parameters and labels as plain values; signals and touches are read on demand."""
+    """A run of a data set: parameters and labels as plain values, classes as words. Signals are read on demand."""
 
     run_id: str
     status: str
@@ -41,7 +41,7 @@ class StoredRun:
         return self.data.signals(self.run_id, channels)
 
     def touches(self) -> pd.DataFrame:
-        """Read the touches of blades within the whole record, one row a touch, with the columns of `DataSet.touches`.
+        """Read the touches of blades within the whole record, as `DataSet.touches` does: one row for each touch.
 
         Raises UserError where the run failed or the file is damaged.
         """

@@ -86,7 +86,7 @@ def check_runs(table: pa.Table, manifest: Manifest, path: Path) -> None:
 
 
 def touches_frame(record: CompactRecord, sensing: Sensing, seconds: float) -> pd.DataFrame:
-    """Make a DataFrame of the touches of a run, one row a touch of a blade, in order of its start.
+    """Make a DataFrame of the touches of a run: one row for each touch of a blade, in order of their start.
 
     - record: the touches of the run, from `read_touches`.
     - sensing: the sensors of the run, from which the first sample follows.

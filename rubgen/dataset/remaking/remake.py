@@ -1,4 +1,4 @@
-"""Make damaged shards of a finished set again from its manifest, and put back what has the listed bytes."""
+"""Make damaged shards of a finished set again from its manifest, and replace the files whose listed bytes result."""
 
 import shutil
 from collections.abc import Iterable
@@ -56,11 +56,11 @@ def remake(layout: Layout, manifest: Manifest, wrong: set[str], *, trusting: boo
     - wrong: paths of the files, relative to the set. Paths that the manifest does not list are ignored.
     - trusting: whether the rows of a damaged `runs.parquet` are used that can be read.
 
-    The runs are those of the files' shards (`shards_with`). For `runs.parquet` they are those of the shards whose rows
-    cannot be read; without `trusting`, all runs. If this does not restore the listed bytes of `runs.parquet`, all runs
-    are simulated. A file is replaced only by the bytes that the manifest lists. Where they are not restored, the file
-    is left as it is, and is not in the result. The installed package versions must be those of the set
-    (`other_versions`); this is not checked.
+    All runs of the files' shards (`shards_with`) are simulated. For `runs.parquet` they are all runs of the shards
+    whose rows cannot be read; without `trusting`, all runs of the set. If this does not restore the listed bytes of
+    `runs.parquet`, all runs are simulated. A file is replaced only by the bytes that the manifest lists. Where they are
+    not restored, the file is left as it is, and is not in the result. The installed package versions must be the same
+    as in the set (`other_versions`); this is not checked.
     """
     recipe = manifest.identity.recorded(str(layout.manifest))
     listed = {entry.path: entry.sha256 for entry in manifest.files}

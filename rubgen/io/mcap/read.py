@@ -105,9 +105,9 @@ class McapRun:
 def read_mcap(path: Path, *, channels: Collection[str] | None = None) -> McapRun:
     """Read the run in the MCAP file at `path`. CRCs of chunks, data and summary, and the content, are checked.
 
-    `channels` are names of channels (`<name>_clean` for the channel without noise): only these channels and the pulses
-    are decoded, beside scenario and labels. A name without a channel is ignored. None decodes everything. Raises
-    UserError, one line, where the file does not exist, is damaged, or has no run of rubgen.
+    `channels` are names of channels (`<name>_clean` for the channel without noise): only these channels, the pulses,
+    scenario and labels are decoded. A name without a channel is ignored. None decodes everything. Raises UserError, one
+    line, where the file does not exist, is damaged, or has no run of rubgen.
     """
     try:
         return run_of(read_content(path), channels=channels)

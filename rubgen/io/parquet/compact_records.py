@@ -1,4 +1,4 @@
-"""Compact records of runs as Parquet: of the true response what is needed to make its labels again.
+"""Compact records of runs as Parquet: the part of the true response from which its labels can be made again.
 
 One row a run. Arrays are stored as flat lists, row after row.
 """

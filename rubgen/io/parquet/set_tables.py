@@ -1,7 +1,7 @@
-"""Tables of a data set beside `runs.parquet`: what one trains on, the truth about it, and the windows of each run.
+"""Tables of a data set in addition to `runs.parquet`: signals with their answers, the true motion, and windows.
 
-`signals` has what a model may see and its answers; `truth` what only the simulation knows. So a test set can be
-published without its answers.
+`signals` has the inputs of a model and the answers. `truth` has values that only the simulation knows. So a test set
+can be published without its answers.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def windows_schema(_recipe: Recipe) -> pa.Schema:
 
 
 def window_rows(run: Run, split: str) -> pa.Table:
-    """Return the rows of a run with status ok in the table `windows`: one row a window of labels.
+    """Return the rows of a run with status ok in the table `windows`: one row for each window of labels.
 
     Only windows that lie completely within the run's signals have a row. A sample belongs to a window if its time is
     not before the window's start, and before its end. Raises ValueError for a failed run.

@@ -60,14 +60,14 @@ def principal_components(points: FloatArray) -> FloatArray:
 def growth_correlation(observable: FloatArray) -> float:
     """Compute K of the 0-1 test for a scalar observable (n,): near 1 for chaos, near 0 for regular motion.
 
-    The observable has n >= 32 points of a Poincare section. The test is that of Gottwald and Melbourne. The translation
+    The observable has n >= 32 points of a Poincare section. It is the test of Gottwald and Melbourne. The translation
     is p_c(n) = sum_{j <= n} phi_j exp(i c j). Its mean square displacement is M_c(n) = mean_j |p_c(j + n) - p_c(j)|^2
     over n = 1 .. N/10. Without its oscillation it is D_c(n) = M_c(n) - mean(phi)^2 (1 - cos n c)/(1 - cos c). The
     damped variant is D*_c(n) = D_c(n) + DAMPING var(phi) sin(sqrt(2) n): its oscillation is far larger than the slow
     growth that a little noise adds to regular motion. K_c = corr(n, D*_c(n)), and K is the median of K_c over all c.
-    Below DAMPED_FROM points D_c takes the place of D*_c.
-    The authors scale the oscillation by mean(phi)^2, which depends on the zero of the observable; var(phi) does not.
-    Not valid for a constant with rounding noise: test for clusters first.
+    Below DAMPED_FROM points D_c takes the place of D*_c. The authors scale the oscillation by mean(phi)^2, which
+    depends on the zero of the observable; var(phi) does not. Not valid for a constant with rounding noise: test for
+    clusters first.
     """
     displacement = _mean_square_displacement(observable)
     steps = np.arange(1, displacement.shape[1] + 1)

@@ -19,10 +19,9 @@ __all__ = ["Motions", "blisk_points", "casing_points", "chaos_indicator", "clust
 
 LEAST_TURNS = 32
 RESOLVED_STEPS = 4
-"""Touches are resolved where half of them last so many steps. Of the runs of `docs/confidence.md` those of shorter ones
-have a median of two steps or less and as many steps of contact with half the step, the others have six steps or more
-and nearly twice as many.
-"""
+"""Touches are resolved where half of them last so many steps. Among the runs of `docs/confidence.md`, the median touch
+of some lasts two steps or less: with half the time step they have as many steps of contact. In all other runs it lasts
+six steps or more, and with half the time step they have nearly twice as many."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,7 +103,7 @@ def indicators(parts: list[FloatArray], exponent: Exponent | None, *, resolved: 
     - exponent: Lyapunov exponent of the system, or None. Every part gets it.
     - resolved: whether the time step resolves the touches. Every part gets it.
 
-    Period (`cluster_period`) and rms distance from the clusters (`stray`) are those of each part. All parts have one K
+    Each part has its own period (`cluster_period`) and rms distance from the clusters (`stray`). All parts have one K
     of the 0-1 test, the largest of any part (`chaos_indicator`). All parts settle if any part settles (`settles`).
     """
     periods = [cluster_period(part) for part in parts]

@@ -156,8 +156,8 @@ def combined(blisk: MotionClass, casing: MotionClass) -> MotionClass:
 
     It is undecided if one class is undecided and none is chaotic. If the motion repeats, the period is the least common
     multiple of both periods, where a part at rest counts as 1, and the confidence is the smaller of both. If it does
-    not repeat, the period is None. The confidence is then that of the less regular part, and the larger for equal
-    classes.
+    not repeat, the period is None. The confidence is then the confidence of the less regular part; for equal classes it
+    is the larger of both.
     """
     worst = max(blisk, casing, key=lambda part: _REGULARITY.index(part.motion))
     alike = [part.confidence for part in (blisk, casing) if part.motion is worst.motion]

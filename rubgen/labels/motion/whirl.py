@@ -33,7 +33,7 @@ def whirl(orbit: FloatArray) -> Whirl | None:
     `orbit` (turns, 5) are means over each turn, as in `Response.orbit`. index = mean(r x v) / (rms(r) rms(v)), with r =
     (X, Y) less its mean: the areal velocity of the orbit over the largest possible one for its size and speed
     (Cauchy-Schwarz). A forward circle has 1, a backward circle -1, a line 0. Below |index| = 0.1 the direction is
-    mixed. The orbit r = p e^(i w t) + n e^(-i w t) has (|p|^2 - |n|^2) / (|p|^2 + |n|^2). Its sign is that of the shape
+    mixed. The orbit r = p e^(i w t) + n e^(-i w t) has (|p|^2 - |n|^2) / (|p|^2 + |n|^2). It has the sign of the shape
     and directivity index (|p| - |n|) / (|p| + |n|) of Lee and Han (1998, J. Sound Vib. 211, 4).
     """
     if not len(orbit):

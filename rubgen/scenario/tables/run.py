@@ -1,4 +1,4 @@
-"""The tables of a recipe that are alike in every run: its turns, its speed, its files, its sensors."""
+"""The tables of a recipe that are the same in every run: its turns, its speed, its files, its sensors."""
 
 from typing import Annotated, Literal
 

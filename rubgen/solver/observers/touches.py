@@ -38,9 +38,9 @@ class TouchKeeper(Observer):
 def contact_events(touches: list[FloatArray]) -> ContactEvents:
     """Sort touches by their last step, then by blade, and return them as `ContactEvents`.
 
-    Each array of `touches` is (touches, 8), one row a touch: number of the blade, first step, number of steps, sums of
-    impulse times cosine and sine of the polar angle, impulse (N s), friction loss and normal loss (J). An empty list
-    makes empty events.
+    Each array of `touches` is (touches, 8), one row for each touch: number of the blade, first step, number of steps,
+    sums of impulse times cosine and sine of the polar angle, impulse (N s), friction loss and normal loss (J). An empty
+    list makes empty events.
     """
     rows = np.concatenate([np.zeros((0, 8)), *touches])
     rows = rows[np.lexsort((rows[:, BLADE], rows[:, START] + rows[:, STEPS]))]

@@ -25,8 +25,8 @@ def scheme(M: FloatArray, C: FloatArray, K: FloatArray, force: FloatArray, dt: f
     A = M / dt^2 + C / (2 dt), P1 = A^-1 (2 M / dt^2 - K), P2 = -A^-1 (M / dt^2 - C / (2 dt)), p0 = A^-1 force. C and K
     may be unsymmetric (Carpenter, Taylor, Katona 1991). The arguments are in the coordinates q: matrices (n, n), the
     constant `force` (n,) in N, `dt` in s. The result is in z, the coordinates of `Blocks`: P1 is `now`, P2 `before`, p0
-    `constant` and A^-1 `inverse`. Entries between blocks are dropped, so `blocks` must be those of these matrices.
-    Stability at `dt` is not checked.
+    `constant` and A^-1 `inverse`. Entries between blocks are dropped, so `blocks` must have been found for these
+    matrices. Stability at `dt` is not checked.
     """
     inertia, drag = M / dt**2, C / (2 * dt)
     inverse = la.inv(inertia + drag)

@@ -98,8 +98,8 @@ def tip_radius_on_ray(tips: Tips, rays: Rays, displacement: FloatArray, step: in
     """Return the radius of the tips on a ray, m: linear in angle between the two blades around it.
 
     The radius of a tip is sqrt((R + a)^2 + t^2) with the radius R at rest. a and t are its radial and tangential
-    displacement, steady and `displacement` (2, n_blades or more) together, m. The angles are those of the undeformed
-    blisk at step `step` of the turn. `ray` is the number of the ray in `rays`.
+    displacement, steady and `displacement` (2, n_blades or more) together, m. The angles belong to the undeformed blisk
+    at step `step` of the turn. `ray` is the number of the ray in `rays`.
     """
     radius = 0.0
     for side in range(2):
@@ -133,7 +133,8 @@ def casing_radius_on_ray(rays: Rays, sums: FloatArray, opening: float, ray: int)
 def read_shaft(model: Model, taps: Taps, coordinates: Coordinates, support: SupportState, step: int) -> None:
     """Write displacement, velocity and support force of O_d, in the inertial frame, into `taps.signals`.
 
-    They are those of step n, number `step` of the turn, which is `coordinates.now`. Velocity is a central difference.
+    They belong to step n, which is number `step` of the turn; its q is `coordinates.now`. Velocity is a central
+    difference.
     """
     speed, dt = model.laws.speed, model.laws.dt
     cosine, sine = model.angles.cosine[step], model.angles.sine[step]

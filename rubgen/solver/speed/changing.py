@@ -30,7 +30,7 @@ class ChangingSystem:
         return min(self.systems, key=slowest_decay)
 
     def steps(self, sample_rate_hz: float) -> int:
-        """Return the steps in a turn at the highest speed: those of the operation, doubled until all speeds are stable.
+        """Return the steps in a turn at the highest speed: the operation's number, doubled until all speeds are stable.
 
         They are also enough for `sample_rate_hz`, the sensors' rate. Raises UserError for a system that would need more
         than 4,194,304 steps at the highest speed.

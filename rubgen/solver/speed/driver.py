@@ -48,7 +48,8 @@ class SpeedDriver(Protocol):
         """Run turns one after another. The stepper's outputs belong to the turn that was yielded last.
 
         - numbers: numbers of the turns; negative before the record.
-        - opening: opening of the surface, m, as a function of the turns from the start.
+        - opening: function of the turns since the start (any,), also fractions; it returns the opening of the surface,
+          m.
         - recording: whether taps, orbit and arrivals are recorded.
 
         A turn that fails is yielded too, with its code. No turn may be taken after it.

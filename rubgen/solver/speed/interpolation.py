@@ -37,7 +37,7 @@ def chebyshev_speeds(slowest: float, fastest: float) -> FloatArray:
 
 
 def lagrange_weights(nodes: FloatArray, at: FloatArray) -> FloatArray:
-    """Return the weights (at, nodes) of the polynomial through values at `nodes`, for the points `at`."""
+    """Return the weights (points, nodes) of the polynomial through values at `nodes`, for the points `at` (points,)."""
     others = np.array([np.delete(nodes, j) for j in range(len(nodes))])
     return np.asarray(np.prod((at[:, None, None] - others) / (nodes[:, None] - others), axis=2))
 
@@ -67,7 +67,8 @@ class SpeedInterpolation:
     def at(self, speeds: FloatArray, accelerations: FloatArray) -> Iterator[SpeedPart]:
         """Yield the part at each speed (rad/s) and acceleration (rad/s2), both (any number,).
 
-        The next call but one overwrites the parts. New memory for each call would take longer than the numbers.
+        The parts of a call stay valid during the next call. The call after that overwrites them: new memory for each
+        call would take longer than the numbers.
         """
         weights, count = lagrange_weights(self.speeds, speeds), len(speeds)
         rows = self._next_room(count)

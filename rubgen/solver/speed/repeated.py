@@ -1,4 +1,4 @@
-"""Run what provably never touches: one turn of its exact rub-free motion, repeated again and again."""
+"""Run a motion that provably never touches: one turn of the exact rub-free motion, repeated again and again."""
 
 from collections.abc import Iterator
 from dataclasses import replace

@@ -134,7 +134,8 @@ def build_drag(
 ) -> tuple[float, float]:
     """Write the damping D at u = (x, y) into `state.drag`, and `state.yielding`. Return the laws' spring force s(u), N.
 
-    D = c_a Q(theta) + D(u) of the laws; `yielding` is (1 + D Y / 2 dt)^-1 D / 2 dt. `cosine` and `sine` are of theta.
+    D = c_a Q(theta) + D(u) of the laws; `yielding` is (1 + D Y / 2 dt)^-1 D / 2 dt. `cosine` and `sine` are of theta. x
+    and y are in the turning frame, m.
     """
     D, Y = state.drag, support.compliance
     for i in range(2):
@@ -168,6 +169,7 @@ def push_supports(
 ) -> bool:
     """Add the effect of f and gravity at step n to q* in `after`. Return False where O_d is beyond a law's limit.
 
+    - speed: Omega, rad/s.
     - step: number of step n in the turn or part of a turn.
     - cosine, sine: cosine and sine of theta at step n.
     - before, now, after: z at steps n - 1, n and n + 1.
@@ -263,6 +265,7 @@ def add_support_works(
     Works of uneven springs and dampers, of the laws, of gravity, and of the loads of faults are each force times d.
     LAWS_LOSS is the force of the laws times dt v_abs.
 
+    - speed: Omega, rad/s.
     - cosine, sine: cosine and sine of theta at step n.
     - now, change: z at step n, and d = (z_n+1 - z_n-1) / 2.
     """

@@ -31,7 +31,7 @@ def force_derivatives(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the derivatives by u and by v (..., 2, 2) of `turning_force`, by a complex step.
 
-    The parameters are those of `turning_force`.
+    The parameters are as in `turning_force`.
     """
     by_u, by_v = [], []
     for i in range(2):

@@ -30,7 +30,7 @@ def shown_touches(replay: Replay, *, full: bool) -> IntArray:
 def send_touches(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
     """Send angle, impulse and blade of touches at their start, and their map. Nothing is sent without contact.
 
-    The touches are those of `shown_touches` with the same `full`. The map has all touches.
+    The touches that are sent one by one are chosen by `shown_touches` with the same `full`. The map has all touches.
     """
     touches, shown = replay.touches, shown_touches(replay, full=full)
     if not shown.size:
