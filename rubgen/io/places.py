@@ -92,7 +92,8 @@ def answered(path: Path, work: Callable[[], R]) -> R:
     """Call `work`, a short request to the server of the URL `path`, and return its result.
 
     Raises UserError where the server does not answer within PATIENCE_S, and where `work` raises any error
-    (`url_problems`). Without this bound the libraries try again for many minutes.
+    (`url_problems`). Without this bound the libraries try again for many minutes. After it `work` may go on in its
+    thread.
     """
     results: list[R] = []
     errors: list[BaseException] = []

@@ -88,7 +88,10 @@ def with_casing_fields(taps: dict[str, Array]) -> dict[str, Array]:
 
 
 def tap_orders(tap: FloatArray, response: Response) -> TapOrders:
-    """Compute the orders of one tap. `tap` (steps,) has a value at every time step of the record or of its end."""
+    """Compute the orders of one tap. Raises ValueError as `order_lines` does.
+
+    `tap` (steps,) has a value at every time step of the record or of its end.
+    """
     turns = spectrum_turns(response)
     looked_at = turns * (max(HIGHEST_ORDER, response.n_blades + SIDEBANDS) + 1)
     lines = order_lines(tap, response)[:looked_at]
@@ -131,7 +134,10 @@ def order_lines(tap: FloatArray, response: Response) -> ComplexArray:
 
 
 def order_spectrum(tap: FloatArray, response: Response) -> FloatArray:
-    """Return the peak amplitudes (n // 2 + 1,) of the lines of `order_lines`, in the tap's unit."""
+    """Return the peak amplitudes (n // 2 + 1,) of the lines of `order_lines`, in the tap's unit.
+
+    Raises ValueError as `order_lines` does.
+    """
     return np.asarray(np.abs(order_lines(tap, response)), dtype=np.float64)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 def headline(labels: Mapping[str, Any], profile: str) -> str:
     """Return one line about a run, such as `partial rub, chaotic` or `run-up: rub from 7,410 rev/min`.
 
-    - labels: the labels of one run with status ok, by their public names.
+    - labels: the labels of one run with status ok, by their public names, classes as words.
     - profile: its speed profile: steady, run-up, coast-down or fluctuating.
 
     If the speed changes, the line has no class of motion, because the class may change within the record. It has the

@@ -39,18 +39,22 @@ class MergedRecipe(Recipe):
     def scenario(self, index: int, *, screened: bool = True) -> Scenario:
         """Draw run number `index` as its source draws it. The scenario has the run's name in the merged set.
 
-        `screened` is as in `Recipe.scenario`: with False no candidates of a balance are simulated.
+        `screened` is as in `Recipe.scenario`: with False no candidates of a balance are simulated. Raises UserError as
+        `own` does.
         """
         number, own = self.own(index)
         return replace(self._sources[number][1].scenario(own, screened=screened), merged=self.origin(index))
 
     def origin(self, index: int) -> Merged:
-        """Return the source of run number `index`: its digits, and the number of its first run in the merged set."""
+        """Return the source of run number `index`: its digits, and the number of its first run in the merged set.
+
+        Raises UserError as `own` does.
+        """
         number, _ = self.own(index)
         return Merged(source=self._digits[number], first=self._sources[number][0])
 
     def split_of(self, index: int) -> str:
-        """Return the split of run number `index` in its source."""
+        """Return the split of run number `index` in its source. Raises UserError as `own` does."""
         number, own = self.own(index)
         return self._sources[number][1].split_of(own)
 

@@ -262,9 +262,9 @@ class Recipe(StrictModel):
         return paired(self.twins, self.twin_of(index), index, draw) if self.twins else draw(index)
 
     def candidate(self, index: int, attempt: int = 0) -> Scenario:
-        """Draw candidate number `attempt` of run number `index`.
+        """Draw candidate number `attempt` of run number `index`, both from 0. Nothing is simulated.
 
-        Without `[balance]` candidate 0 is the run itself, if no twin.
+        Without `[balance]` candidate 0 is the run itself, unless the run is a twin.
         """
         part = self.parts[self.split_of(index)]
         if part is not self:

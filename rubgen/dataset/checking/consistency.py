@@ -40,7 +40,7 @@ ENERGY_TOLERANCE = 1e-8
 def label_problems(row: Row) -> Iterator[str]:
     """Yield the contradictions among the labels of a run with status ok, such as contact time without a rub.
 
-    `row` has the run's columns of `runs.parquet`.
+    `row` has the run's columns of `runs.parquet`, classes as words.
     """
     rules = {
         "contact_duty outside [0, 1]": 0 <= row["contact_duty"] <= 1,
@@ -80,7 +80,7 @@ def label_problems(row: Row) -> Iterator[str]:
 def signal_problems(row: Row, signals: dict[str, Float32Array], sensing: Sensing) -> Iterator[str]:
     """Yield the contradictions between the labels of a run with status ok and its channels.
 
-    - row: the run's parameters and labels, by column.
+    - row: the run's parameters and labels, by column, classes as words.
     - signals: its channels, by name.
     - sensing: the sensors of the run and how they are recorded.
 

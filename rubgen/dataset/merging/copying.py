@@ -97,7 +97,7 @@ class _Copying:
             raise self._damaged(path)
 
     def copy(self, path: Path, to: Path) -> None:
-        """Copy a file of the source, byte for byte."""
+        """Copy a file of the source, byte for byte. Raises UserError where its content is not the listed one."""
         sha256, found = self._entry(path).sha256, hashlib.sha256()
 
         def write(part: Path) -> None:
@@ -111,7 +111,10 @@ class _Copying:
         write_durably(to, write)
 
     def copy_run(self, kind: Format, index: int) -> None:
-        """Write the file of run number `index` of the source in a format with one file a run."""
+        """Write the file of run number `index` of the source, in a format with one file for each run.
+
+        Raises UserError where the content of the source's file is not the listed one.
+        """
         number = index + self._source.first
         before = self._source.layout.export(kind.name, run_id_of(index))
         after = self._layout.export(kind.name, run_id_of(number))

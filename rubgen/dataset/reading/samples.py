@@ -54,7 +54,7 @@ def arrays(
     runs: Sequence[str] | None,
     out: Path | str | None,
 ) -> Arrays:
-    """Read whole runs as arrays. The arguments are as in `DataSet.arrays`."""
+    """Read whole runs as arrays. Arguments and errors are as in `DataSet.arrays`."""
     chosen, names = chosen_runs(data, split, runs), chosen_channels(data, channels)
     answers = Answers(data, target)
     y = answers.of_runs(chosen)
@@ -117,7 +117,8 @@ def window_index(
 def windows(index: WindowIndex, out: Path | str | None) -> Windows:
     """Read all windows of an index.
 
-    `out` is the path of a new .npy file for the samples, or None, as in `DataSet.windows`.
+    `out` is the path of a .npy file for the samples, or None, as in `DataSet.windows`. An existing file is overwritten.
+    Raises UserError where it cannot be written.
     """
     samples = _space(out, (len(index.y), len(index.channels), index.cut.samples))
     row = 0

@@ -26,10 +26,11 @@ DAMPED_FROM = 200
 def chaos_indicator(points: FloatArray) -> float:
     """Return the largest K of the 0-1 test among two groups of points (turns, groups, values): near 1 for chaos.
 
-    For a blisk, group 0 of `points` is the disk centre and is tested alone; the tips are tested together. Each K is the
-    median of the 0-1 test over the leading principal components of the points without their periodic part. If the first
-    half of the record is more than twice as far from the clusters as the second half, the motion still settles, and
-    only the second half is tested. K is 0 for a group whose distance from its clusters is below ROUNDING.
+    There must be at least 32 turns. For a blisk, group 0 of `points` is the disk centre and is tested alone; the tips
+    are tested together. Each K is the median of the 0-1 test over the leading principal components of the points
+    without their periodic part. If the first half of the record is more than twice as far from the clusters as the
+    second half, the motion still settles, and only the second half is tested. K is 0 for a group whose distance from
+    its clusters is below ROUNDING.
     """
     half = points.shape[0] // 2
     first, second = (rms(without_periodic_part(part)) for part in (points[:half], points[half:]))

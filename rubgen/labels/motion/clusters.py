@@ -33,8 +33,8 @@ def stray(points: FloatArray, period: int | None) -> float:
     """Return the rms distance of the points of the record's second half from their k clusters.
 
     k is `period`, or for None the k with the smallest distance, of those that `cluster_period` tries. `points` (turns,
-    groups, values) are divided by the size of the motion. The means of k clusters of n points lie nearer to the points
-    than the true means: dividing the mean square by 1 - k / n corrects this.
+    groups, values), at least eight turns, are divided by the size of the motion. The means of k clusters of n points
+    lie nearer to the points than the true means: dividing the mean square by 1 - k / n corrects this.
     """
     late = _late(points)
     periods = range(1, _longest(late) + 1) if period is None else (period,)
@@ -65,9 +65,9 @@ def farthest(points: FloatArray) -> FloatArray:
 def without_periodic_part(points: FloatArray) -> FloatArray:
     """Subtract from the points (turns, groups, values) the means of their k clusters, and return the rest.
 
-    k is the number with the least remaining variance, at most 16 and an eighth of the turns. Without this, a motion
-    that wanders within bands and visits the bands in turn would look regular, because the bands are larger. The
-    variance is divided by turns - k, so that more clusters alone do not reduce it.
+    k is the number with the least remaining variance, at most 16 and an eighth of the turns. There must be at least
+    eight turns. Without this, a motion that wanders within bands and visits the bands in turn would look regular,
+    because the bands are larger. The variance is divided by turns - k, so that more clusters alone do not reduce it.
     """
     turns = points.shape[0]
     left = [off_cluster(points, k) for k in range(1, min(LONGEST_PERIOD, turns // 8) + 1)]
@@ -92,7 +92,7 @@ def off_cluster(points: FloatArray, period: int) -> FloatArray:
 
 
 def settles(points: FloatArray) -> bool:
-    """Return whether the points (turns, groups, values) still approach a steady motion.
+    """Return whether the points (turns, groups, values), at least eight turns, still approach a steady motion.
 
     In the second half of the record, the rms distance from the clusters then falls by more than half from the first
     quarter to the last, from above CLUSTER_RADIUS. The number of clusters is the k with the smallest distance, of those

@@ -88,7 +88,7 @@ def off_branches(points: FloatArray, branches: int) -> FloatArray:
 
 
 def prediction_error(values: FloatArray) -> float:
-    """Return the rms error of a prediction of each of the values (n,) from the EARLIER values before it.
+    """Return the rms error of a prediction of each of the values (n,) from the EARLIER = 6 values before it; n > 12.
 
     The error is divided by the standard deviation of the values; equal values have the error 0. The prediction is
     linear, with the coefficients of the least error; the rms error is corrected for their number. A motion of m

@@ -30,7 +30,7 @@ def eigenvalues(system: SpinningSystem) -> ComplexArray:
     Laws of the support are linearised at the rub-free motion. The results are Floquet exponents (`floquet_exponents`)
     with uneven supports, which turn relative to the blisk, and with laws where gravity or loads of faults move O_d.
     Their imaginary parts are known up to a multiple of 2 Omega (Omega with laws). Laws with a motion that must settle
-    are left out.
+    are left out. For Floquet exponents UserError is raised as in `steps_per_turn`.
     """
     system = system.starting
     forces = system.turning

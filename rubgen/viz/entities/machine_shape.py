@@ -152,7 +152,7 @@ def shaft_mesh(disk: Disk, reach: float) -> Mesh:
 
 
 def revolved(profile: list[tuple[float, float]]) -> Mesh:
-    """Revolve a closed profile of points (radius, z), counter-clockwise, about Z. The normals of a side are flat."""
+    """Revolve a closed profile of points (radius, z), m, counter-clockwise, about Z. The normals of a side are flat."""
     angle = 2 * np.pi * np.arange(ROUND) / ROUND
     parts = []
     for (r1, z1), (r2, z2) in zip(profile, profile[1:] + profile[:1], strict=True):
