@@ -55,7 +55,8 @@ def windows_of(directory: Path, data: DataSet, seeds: int, workers: int) -> SetW
     channels = [sensor.name for sensor in data.sensors.sampled if sensor.name in data.inputs]
     with TemporaryDirectory() as folder:
         path = Path(folder) / "features.parquet"
-        length = f"{data.signal_seconds / WINDOWS:.9f}s"
+        size = round(data.signal_seconds * data.sample_rate_hz) // WINDOWS
+        length = f"{size / data.sample_rate_hz:.9f}s"
         write_features(directory, path, window=length, channels=channels, workers=workers)
         table = pd.read_parquet(path)
     runs = table["run_id"].to_numpy(dtype=np.str_)
