@@ -312,9 +312,10 @@ def wear_where_lined(count: int, liner: Liner, dt: float, work: ContactWork, wea
 def wear_liner(count: int, liner: Liner, dt: float, work: ContactWork, wear: Wear) -> None:
     """Wear the liner by the contacts of one step: volume = rate lam |v_rel| dt at each contact's foot. Changes `wear`.
 
-    Archard, J. Appl. Phys. 24 (1953): V = K F s / H; `liner.rate` is K / H. Before the wear, the work of the forces on
-    the receding surface is added to `wear.sums`. The gaps of this step used the present depth, the gaps of two steps
-    before `wear.earlier[0]`. In one step the surface has therefore receded by half the difference of the two depths.
+    Archard, J. Appl. Phys. 24 (1953): the worn volume is K F s / H for a force F, a path s and the hardness H;
+    `liner.rate` is K / H. Before the wear, the work of the forces on the receding surface is added to `wear.sums`. The
+    gaps of this step used the present depth, the gaps of two steps before `wear.earlier[0]`. In one step the surface
+    has therefore receded by half the difference of the two depths.
 
     - count: number of contacts in `work`, of which `blade`, `psi`, `lam` and `sliding` are read.
     - dt: time step, s.

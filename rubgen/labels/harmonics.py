@@ -69,9 +69,9 @@ class TapOrders:
 def harmonics(response: Response) -> dict[str, TapOrders]:
     """Compute the orders of every tap (true signal) over the last 100 turns, or over all turns of a shorter record.
 
-    The keys of the result are the names of the taps, which have a value at every time step. Also returned are
-    `casing_even` and `casing_odd`, the parts of the casing's radial acceleration at 0 degrees with even and with odd
-    circumferential order, (a(0) +- a(pi)) / 2, if the accelerations at 0 and 180 degrees were both recorded.
+    The keys of the result are the names of the taps, which have a value at every time step. If the casing's
+    accelerations a at 0 and 180 degrees were both recorded, the result also has `casing_even` and `casing_odd`. They
+    are the parts of a(0) with even and with odd circumferential order, (a(0) +- a(pi)) / 2.
     """
     return {name: tap_orders(tap, response) for name, tap in with_casing_fields(response.taps).items()}
 

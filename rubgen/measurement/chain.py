@@ -54,10 +54,13 @@ def start_seconds(sensing: Sensing, seconds: float, *, steps: int, dt: float) ->
 def margin_seconds(sensing: Sensing, seconds: float = 0.0, frame: Frame | None = None) -> float:
     """Return the length of signal in s that a recording of `seconds` needs in addition to `seconds`.
 
-    It is the sum of half the anti-alias filter's length on either side, the decay time of the sensors' own filters, the
-    decay time of the modes of the machine's `frame` (None without a frame), and how far the sensors' clocks are early
-    and late within `seconds`. A decay time is the time in which a start decays to 1e-4. Two sample periods are added
-    for rounding to whole steps and samples.
+    It is the sum of:
+
+    - half the length of the anti-alias filter on either side,
+    - the longest decay time of a sensor's own filters (`memory_seconds`),
+    - the decay time of the machine's `frame` (`Frame.memory_seconds`); None is no frame,
+    - how far the clocks of sensors are early and late within `seconds`,
+    - two sample periods, for rounding to whole steps and samples.
     """
     margin = 2 * half_width_seconds(sensing.sample_rate_hz) + 2 / sensing.sample_rate_hz
     margin += max((memory_seconds(each) for each in sensing.set.sampled), default=0.0)

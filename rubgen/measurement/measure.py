@@ -53,7 +53,7 @@ def measure(
     - response: true response with the taps of all sensors.
     - sensing: sensors, sample rate, noise and ADC.
     - seconds: length of the recording, > 0, at the end of the record.
-    - rng: random numbers.
+    - rng: random numbers. A second call with the same generator draws other noise.
     - surroundings: what sensors feel in addition to the motion, or None.
     - frame: frame of the machine, which carries the force of the disk's support to sensors, or None.
     - faults: faults of the machine; only their blows on the frame are used here.

@@ -1,6 +1,6 @@
 """Compute the steady centrifugal displacement of the blade tips, from the full model.
 
-O_d is the disk centre.
+O_d is the disk centre. K, K_sigma, S and f_c are as in `BliskModel`, A = K_sigma - S.
 """
 
 from dataclasses import dataclass

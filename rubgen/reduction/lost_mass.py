@@ -1,4 +1,7 @@
-"""Take masses from the tips of a reduced blisk."""
+"""Take masses from the tips of a reduced blisk.
+
+M is mass, G Coriolis, K_sigma the stiffness from centrifugal stress and S spin softening, at 1 rad/s.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace

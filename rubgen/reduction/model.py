@@ -64,10 +64,13 @@ class GrowingLoad:
 class TurningForces:
     """Forces on the blisk that depend on its angle or motion, so that no constant matrix contains them.
 
-    On O_d, with u its displacement and v_abs = v + Omega e_z x u its absolute velocity in the turning frame: -k_a Q u -
-    c_a Q v_abs, Q = [[cos 2 theta, -sin 2 theta], [-sin 2 theta, -cos 2 theta]], and the laws of the support, and Re
-    sum_m loads[m] e^(i m theta), the loads of faults. On all of the blisk: -g M T (sin theta, cos theta), with T the
-    rigid motions along x and y.
+    O_d has the displacement u and the absolute velocity v_abs = v + Omega e_z x u in the turning frame. On O_d act:
+
+    - uneven supports: -k_a Q u - c_a Q v_abs, with Q = [[cos 2 theta, -sin 2 theta], [-sin 2 theta, -cos 2 theta]].
+    - the laws of the support.
+    - the loads of faults: Re sum_m loads[m] e^(i m theta).
+
+    On all of the blisk acts gravity: -g M T (sin theta, cos theta), with T the rigid motions along x and y.
     """
 
     stiffness: float = 0.0

@@ -40,10 +40,10 @@ def blisk_modes(model: ReducedModel, speed: float) -> list[Mode]:
     """Compute the modes of the damped blisk at `speed` in rad/s, 0 or more, sorted by the size |s| of their roots s.
 
     The quadratic problem M s^2 + C s + K = 0 of the turning frame is solved. In a mode with n nodal diameters blade k
-    has the phase -n phi_k, so the wave turns with the frequency of the turning frame over n. In the inertial frame it
-    has the frequency omega + n Omega. The modes of a mistuned blisk mix waves: n belongs to the largest wave. A family
-    counts the modes of one n and direction. Uneven springs and dampers count with their mean, and laws of the support
-    are left out.
+    at the angle phi_k on the disk has the phase -n phi_k, so the wave turns with the frequency of the turning frame
+    over n. In the inertial frame it has the frequency omega + n Omega. The modes of a mistuned blisk mix waves: n
+    belongs to the largest wave. A family counts the modes of one n and direction. Uneven springs and dampers count with
+    their mean, and laws of the support are left out.
     """
     system = model.at_speed(max(speed, REST))
     roots, shapes = _shapes(model, system.C, system.K)
@@ -115,9 +115,9 @@ def synchronous_speeds(model: ReducedModel, stiffness: FloatArray) -> FloatArray
     """Compute the speeds (stiffnesses, any) in rev/min at which forward whirl of the inertial frame meets 1X.
 
     Each row belongs to one value of `stiffness` (one or more,), the lateral stiffness of the disk support in N/m. It is
-    ascending and filled up with NaN. At these speeds the undamped K_e + K_s + Omega^2 (K_sigma - S) of the turning
-    frame is singular. Only speeds whose mode has one nodal diameter are returned, because an unbalance excites no other
-    mode. Uneven springs count with their mean, and laws of the support are left out.
+    ascending and filled up with NaN. At these speeds the undamped stiffness of the turning frame
+    (`ReducedModel.stiffness`) is singular. Only speeds whose mode has one nodal diameter are returned, because an
+    unbalance excites no other mode. Uneven springs count with their mean, and laws of the support are left out.
     """
     blades, rows = model.machine.blades.count, []
     for each in stiffness:

@@ -1,6 +1,7 @@
 """Reduce a machine, and give its matrices as functions of the speed.
 
-O_d is the disk centre.
+O_d is the disk centre. Of the blisk, K_e is the elastic stiffness and K_s the springs of its support. At 1 rad/s
+K_sigma is the stiffness from centrifugal stress, S the spin softening and G the Coriolis matrix.
 """
 
 from dataclasses import dataclass

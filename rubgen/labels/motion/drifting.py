@@ -33,8 +33,8 @@ EARLIER = 6
 UNPREDICTABLE = 0.7
 """Least error of a prediction, over the standard deviation, of a chaotic motion.
 
-On 64 points it is at most 0.45 for a frequency with its second and third order that changes by 0.3 rad a turn within
-them, and at least 0.77 for the logistic map and Henon's map."""
+On 64 points it is at most 0.45 for a sinusoid with second and third order whose frequency changes by 0.3 rad a turn. It
+is at least 0.77 for the logistic map and Henon's map."""
 UNDECIDED = MotionClass(motion=Motion.UNDECIDED, period=None, confidence=0.0)
 
 

@@ -43,10 +43,10 @@ def casing_problem(machine: Machine, modes: int) -> str | None:
 def carried_orders(machine: Machine, modes: int) -> tuple[int, ...]:
     """Return the circumferential orders that the first `modes` modes of the casing carry in full, ascending.
 
-    Modes are ranked by the frequency of the thin inextensible circular ring on an elastic foundation, omega_n^2 = [E I
-    n^2 (n^2 - 1)^2 / R^4 + k_r n^2 + k_t] / [rho A (n^2 + 1)], with k_r and k_t per length. Order 0 has one mode, every
-    other order two. With k_t <= k_r the result is 0 to (modes - 1) // 2. Stiffer tangential springs raise the low
-    orders.
+    Modes are ranked by the frequency of the thin inextensible circular ring on an elastic foundation: omega_n^2 = [E I
+    n^2 (n^2 - 1)^2 / R^4 + k_r n^2 + k_t] / [rho A (n^2 + 1)]. k_r and k_t are the radial and tangential stiffness of
+    the springs per length. Order 0 has one mode, every other order two. With k_t <= k_r the result is 0 to (modes - 1)
+    // 2. Stiffer tangential springs raise the low orders.
     """
     casing = machine.casing
     order = np.arange(max(modes, 1) + 2)

@@ -1,6 +1,6 @@
 """Compute growth or decay of small disturbances of the rub-free motion, with uneven supports or a squeeze film.
 
-O_d is the disk centre.
+O_d is the disk centre. E selects its x and y among the coordinates, u and v are its displacement and velocity.
 """
 
 import math

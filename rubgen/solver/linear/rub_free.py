@@ -1,6 +1,6 @@
 """Compute the rub-free motion: static in the turning frame, or periodic with uneven supports or gravity.
 
-O_d is the disk centre.
+O_d is the disk centre. E selects its x and y among the coordinates, u and v are its displacement and velocity.
 """
 
 import math
@@ -29,8 +29,8 @@ CLEARANCE_PLACES = 1440
 1440)^2 / 2, 40 nm in an oval of 8 mm, 1 um with chords."""
 
 CLEARANCE_MARGIN = 1e-5
-"""What a run that never touches leaves between tips and casing at least, m, beyond what those places can miss. Chords
-miss 1 um; the motion itself is exact but for rounding."""
+"""Least clearance of a run that never touches, m, in addition to the error of these places. The error is 1 um with
+chords; the motion itself is exact except for rounding."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,11 +5,11 @@ On the disk centre O_d, in the turning frame and at the time of step n,
     f = p(theta_n) - k_a Q(theta_n) u_n + s(u_n) - D v_abs,   D = c_a Q(theta_n) + D(u_n)
     v_abs = (u_n+1 - u_n-1) / (2 dt) + Omega e_z x u_n
 
-with p the loads of faults, k_a and c_a the anisotropy of springs and dampers, s(u) and D(u) the sums over the laws
-(`reduction.model.TurningForces`). f depends linearly on the velocity and is taken implicitly, like the scheme's own
-dampers: u_n+1 = u* + Y f with Y = E^T A^-1 E leaves two equations. E selects x and y of O_d. z are the coordinates in
-the order of the blocks (`linalg.blocks`). In the contact problem A + E D E^T / (2 dt) replaces A. The work of D is
-therefore never positive where D is positive semidefinite, whatever the contact does in the same step.
+with p the loads of faults, k_a and c_a the anisotropy of springs and dampers, Q(theta) their matrix, s(u) and D(u) the
+sums over the laws (`reduction.model.TurningForces`). f depends linearly on the velocity and is taken implicitly, like
+the scheme's own dampers: u_n+1 = u* + Y f with Y = E^T A^-1 E leaves two equations. E selects x and y of O_d. z are the
+coordinates in the order of the blocks (`linalg.blocks`). In the contact problem A + E D E^T / (2 dt) replaces A. The
+work of D is therefore never positive where D is positive semidefinite, whatever the contact does in the same step.
 """
 
 from typing import NamedTuple

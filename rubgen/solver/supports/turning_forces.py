@@ -1,6 +1,7 @@
 """Compute the forces that no constant matrix contains: uneven supports, laws of the support, gravity, faults.
 
-It is plain numpy. `support_kernels` applies the same law in the steps of a run. O_d is the disk centre.
+It is plain numpy. `support_kernels` applies the same law in the steps of a run. O_d is the disk centre. k_a, c_a, Q and
+v_abs are as in `TurningForces`.
 """
 
 import numpy as np
