@@ -86,7 +86,8 @@ def impulse_response(time: FloatArray, sample_rate_hz: float) -> FloatArray:
 def filter_bank(dt: float, sample_rate_hz: float) -> FloatArray:
     """Tabulate the filter's weights (PHASES + 1, 2 half) for positions between two steps of `dt` s. Rows sum to 1.
 
-    A row is a position, from the first step to the next. A column is a step; half of the steps lie on either side.
+    The array is read-only. A row is a position, from the first step to the next. A column is a step; half of the steps
+    lie on either side.
     """
     half = int(np.ceil(half_width_seconds(sample_rate_hz) / dt))
     phase = np.linspace(0.0, 1.0, PHASES + 1)[:, None]

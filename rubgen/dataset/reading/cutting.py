@@ -48,7 +48,8 @@ class Cut:
     def cutter(self, signals: Float32Array, pulses: FloatArray) -> Callable[[float], Float32Array]:
         """Return a function that cuts a window (channels, samples) out of a run's signals.
 
-        The function takes the start of the window in s, which must be a start in `pieces`.
+        The function takes the start of the window in s, which must be a start in `pieces`. A window of equal time is a
+        view of `signals`.
 
         - signals (channels, count): the channels of the run.
         - pulses: times of the run's once_per_rev pulses in s.

@@ -174,7 +174,7 @@ class DataSet:
         return row
 
     def signals(self, run_id: str, channels: Sequence[str] | None = None) -> dict[str, Float32Array]:
-        """Read the recorded channels of a run by name, each (n_samples,) in its unit of `units`.
+        """Read the recorded channels of a run by name, each (n_samples,), read-only, in its unit of `units`.
 
         Sample i is at i / sample_rate_hz. `channels` are the names of the channels to read; None reads all. Raises
         UserError where the run or a channel does not exist, the run failed, a file is damaged, or the set has neither
@@ -213,20 +213,20 @@ class DataSet:
     ) -> Arrays:
         """Read whole runs for learning: `X, y, groups = data.arrays(["proximity_x"], "rub", "train")`.
 
-        X (runs, channels, time) is float32, one row a good run, each channel in its unit. y (runs,) are the answers,
-        the values of the target: a flag as 0 or 1; a class as its number, as in `rubgen.labels.MOTION_CLASSES`, -1
-        where it is undecided or undefined; a number, NaN where it is undefined. For the target `faults`, y is (runs,
-        kinds), 1 where the run has the kind of `fault_kinds`. groups (runs,) are names from `groups_of`: runs with the
-        same name must be on the same side of a split.
+        X (runs, channels, time) is float32, one row for each good run, each channel in its unit. y (runs,) are the
+        answers, the values of the target: a flag as 0 or 1; a class as its number, as in
+        `rubgen.labels.MOTION_CLASSES`, -1 where it is undecided or undefined; a number, NaN where it is undefined. For
+        the target `faults`, y is (runs, kinds), 1 where the run has the kind of `fault_kinds`. groups (runs,) are names
+        from `groups_of`: runs with the same name must be on the same side of a split.
 
         - channels: names; None takes `inputs`, all channels that a sensor could record.
-        - target: a column with one value a run, of any role but id.
+        - target: a column with one value for each run, of any role but id.
         - split: name of a split; None takes all runs.
         - runs: names of runs, as from `folds`, in place of a split.
         - out: path of a .npy file for X, mapped into memory, so that X may be larger. An existing file is overwritten.
 
-        Raises UserError for an unknown channel, target, split or run, a failed run, split with runs, another `out`, and
-        where there is no run. Warns where all runs have the same class.
+        Raises UserError for an unknown channel, target, split or run, a failed run, split with runs, an `out` without
+        .npy or its folder, and where there is no run. Warns where all runs have the same class.
         """
         return arrays(self, channels, target, split, runs, out)
 
@@ -292,17 +292,17 @@ class DataSet:
     def recorded(
         self, run_ids: Sequence[str], channels: Sequence[str] | None = None
     ) -> Iterator[tuple[str, dict[str, Float32Array], FloatArray]]:
-        """Yield for each of these good runs its name, its channels by name and the arrival times of its pulses (s).
+        """Yield name, channels by name and pulse times (s from the first sample) of each of these good runs.
 
-        One run is in memory at a time. `channels` are names; None reads all. Raises UserError, at the first run, where
-        a channel or the row of a run does not exist, or the set has no signals; at any run where its file is damaged.
+        The arrays are read-only. One run is in memory at a time. `channels` are names; None reads all. Raises
+        UserError: at the first run for a channel, a run or signals that do not exist, at any run for a damaged file.
         """
         names = self.known_channels(channels)
         for run_id, table in self._recorded(run_ids, names):
             yield run_id, row_signals(table, 0), np.asarray(table[PULSES][0].values, dtype=np.float64)
 
     def each_channel(self, name: str) -> Iterator[tuple[str, Float32Array, FloatArray]]:
-        """Yield for each good run its name, the samples of the channel `name` and the arrival times of its pulses (s).
+        """Yield name, samples of the channel `name` and pulse times of each good run, as `recorded` does.
 
         One run is in memory at a time. Raises UserError, at the first run, where the set has no such channel.
         """

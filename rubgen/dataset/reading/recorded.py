@@ -67,7 +67,7 @@ def is_signal(field: Any) -> bool:
 
 
 def row_signals(table: pa.Table, row: int) -> dict[str, Float32Array]:
-    """Return the recorded channels in row number `row` of a data table, by name."""
+    """Return the recorded channels in row number `row` of a data table, by name. The arrays are read-only."""
     names = [field.name for field in table.schema if is_signal(field)]
     return {name: np.asarray(table[name][row].values, dtype=np.float32) for name in names}
 

@@ -118,7 +118,7 @@ def windows(index: WindowIndex, out: Path | str | None) -> Windows:
     """Read all windows of an index.
 
     `out` is the path of a .npy file for the samples, or None, as in `DataSet.windows`. An existing file is overwritten.
-    Raises UserError where it cannot be written.
+    Raises UserError for another ending, and for a folder that does not exist.
     """
     samples = _space(out, (len(index.y), len(index.channels), index.cut.samples))
     row = 0

@@ -33,7 +33,7 @@ class StoredRun:
     data: DataSet = field(repr=False)
 
     def signals(self, channels: Sequence[str] | None = None) -> dict[str, Float32Array]:
-        """Read the recorded channels by name, each (n_samples,) in its unit of `data.units`.
+        """Read the recorded channels by name, each (n_samples,), read-only, in its unit of `data.units`.
 
         `channels` are the names of the channels to read; None reads all. Raises UserError where the run failed, a
         channel does not exist, a file is damaged, or the set has no files with signals.

@@ -100,7 +100,7 @@ def multi_arrays(names: Sequence[str], values: FloatArray) -> list[bytes]:
 
 
 def read_multi_array(data: bytes) -> tuple[list[str], FloatArray]:
-    """Parse a message of `multi_arrays` into names and values (len(names),).
+    """Parse a message of `multi_arrays` into names and read-only values (len(names),).
 
     Raises ValueError or struct.error for other bytes.
     """

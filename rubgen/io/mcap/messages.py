@@ -190,7 +190,7 @@ def sample_block(values: Float32Array, sample_rate_hz: float, first_index: int, 
 
 
 def read_sample_block(data: bytes) -> tuple[int, float, int, Float32Array]:
-    """Parse a serialised SampleBlock: time in ns, sample rate in Hz, index of the first sample, values (n,).
+    """Parse a serialised SampleBlock: time in ns, sample rate in Hz, index of the first sample, read-only values (n,).
 
     Raises protobuf's DecodeError, or ValueError, for other bytes.
     """

@@ -65,7 +65,7 @@ class _MisfitError(Exception):
 
 
 def read_record(table: pa.Table, row: int, path: Path) -> CompactRecord:
-    """Read the compact record in row `row` of `table`. Returns its arrays by name.
+    """Read the compact record in row number `row` of `table`. Returns its arrays by name; they are read-only.
 
     `path` is the file of the table, for messages. Raises UserError where the lengths of its lists contradict each other
     or a number is not valid.
