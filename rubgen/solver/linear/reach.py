@@ -56,8 +56,8 @@ def with_clearance(scenario: Scenario) -> Scenario:
 
     A larger clearance moves the undeformed surface outward and leaves the rub-free motion as it is. One correction is
     therefore exact except for rounding, at the speed of the run and at the beginning of its record. For a changing
-    speed, the penetration is taken at the steady speed with the largest, of nine speeds (`deepest`). Raises UserError
-    where the clearance would be below the least allowed.
+    speed, the largest penetration of nine steady speeds counts (`deepest`). Raises UserError where the clearance would
+    be below the least allowed.
     """
     wanted, casing = scenario.free_penetration_m, scenario.machine.casing
     if wanted is None:

@@ -77,7 +77,7 @@ def never_touches(system: SpinningSystem, surface: Surface, penetration: float) 
     crack are linear.
 
     - system, surface: of the run.
-    - penetration: free penetration of the motion in m; negative, with its gap as the size, where it does not touch.
+    - penetration: `free_penetration` of the motion, m; negative where the tips keep a distance of this size.
     """
     forces = system.turning
     if forces is not None and not all(law.LINEAR for law in forces.laws):

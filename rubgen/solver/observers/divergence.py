@@ -32,7 +32,7 @@ class Growth:
     """Keeps the amplitudes of casing and blade tips over the last turns of a stepper, for the reason of a divergence.
 
     The casing's amplitude is the largest bound of its displacement within the turn. The blades' amplitude is the
-    largest tip coordinate in the frames of the turn. It is evaluated only at the end.
+    largest tip coordinate in the frames of the turn. It is evaluated only in `sentence`.
     """
 
     def __init__(self, stepper: Stepper) -> None:
@@ -70,7 +70,10 @@ class Growth:
 
 
 def what_diverged(stepper: Stepper) -> tuple[str, str]:
-    """Return what has left the valid range, "blade" or "casing", and a clause with its limit."""
+    """Return what has left the valid range, "blade" or "casing", and a clause with its limit.
+
+    The last turn of `stepper` must have failed with the code DIVERGED.
+    """
     system, laws = stepper.system, stepper.model.laws
     tips = np.abs(stepper.coordinates.after[: 3 * system.n_blades])
     if not np.all(tips <= laws.tip_limit):
