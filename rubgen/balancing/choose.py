@@ -38,7 +38,7 @@ def _with(candidate: Scenario, seen: list[int], problem: str = "") -> Scenario:
 
 
 def _place(balance: Balance, wanted: Cell, verdict: Verdict | None) -> int:
-    """Return the place of a candidate in `Chosen.seen`."""
+    """Return the index of a candidate in `Chosen.seen`."""
     unclassed = len(balance.cells)
     if verdict is None:
         return unclassed + 1

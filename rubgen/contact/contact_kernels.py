@@ -84,7 +84,7 @@ def find_near(
     """Find the blades nearer to the surface than `margin`. Return their number, and whether any tip has entered it.
 
     The numbers of these blades are written into `work.blade`, ascending. `psi`, `gap` and `tangent` of `work` are
-    written at the place of each such blade. The gap of every other blade is set to NaN. Only tips whose bound in
+    written at the index of each such blade. The gap of every other blade is set to NaN. Only tips whose bound in
     `work.bounds` is at most `radial_margin` are evaluated: any other is farther than `margin`.
 
     - worn (bins,): coefficients of the worn depth, m; (0,) without a liner.

@@ -11,7 +11,7 @@ UNSOLVED = 1
 SWEEPS = 400
 TOLERANCE = 1e-14
 RIGID = 0.0
-"""The place of rigid contact in the registry."""
+"""The number of rigid contact in the registry."""
 respond = switch([law.respond for law in NORMAL_LAWS])
 """`NormalLaw.respond` of the law with the number that stands first."""
 

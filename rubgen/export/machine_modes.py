@@ -20,7 +20,7 @@ class ShownMode:
     name: str
     hertz: float
     nodes: IntArray
-    """Numbers of the nodes that move (nodes,)."""
+    """Numbers of the nodes that move (nodes,), as in `nodes_of`."""
     shape: FloatArray
     """Displacements in x, y, z (nodes, 3), kg^-1/2."""
 
@@ -28,7 +28,7 @@ class ShownMode:
 def nodes_of(model: ReducedModel) -> tuple[IntArray, FloatArray]:
     """Return numbers (nodes,) and positions (nodes, 3) in m of the nodes that represent a machine.
 
-    They are nodes of the casing's mean line, of the tips at rest, and the disk centre.
+    They are the casing's nodes on its mean inner radius, the tips at rest with blade 0 on x, and the disk centre.
     """
     casing, blades = len(model.casing.modes_xy), model.machine.blades.count
     numbers = [*range(FIRST_OF_CASING, FIRST_OF_CASING + casing), *range(FIRST_OF_TIPS, FIRST_OF_TIPS + blades), CENTRE]

@@ -33,7 +33,7 @@ def rigid_link(arm: FloatArray, node_dof: IntArray, centre_dof: IntArray, size: 
     node i is -k_p T_i q.
 
     - arm (n, 2): X and Y of the nodes from O_d, m.
-    - node_dof (n, 6), centre_dof (6,): numbers of the DoFs of the nodes and of O_d.
+    - node_dof (n, 6), centre_dof (6,): indices of the DoFs of the nodes and of O_d.
     - size: number of all DoFs.
     """
     rows = rigid_rows(arm)
@@ -74,7 +74,7 @@ def rim_joint(angle: FloatArray, rim_dof: IntArray, root_dof: IntArray, size: in
     The penalty stiffness is k_p [I -T_k]^T [I -T_k] (Zeng et al. 2019).
 
     - angle (n,): polar angles of the blades, rad.
-    - rim_dof, root_dof (n, 6): numbers of the DoFs of rim nodes and blade roots.
+    - rim_dof, root_dof (n, 6): indices of the DoFs of rim nodes and blade roots.
     - size: number of all DoFs.
     """
     rows = np.stack([np.hstack([np.eye(6), -blade_rotation(a)]) for a in angle])

@@ -80,7 +80,7 @@ def gather_lines(
     """Write each line's sums with the numbers of z at `places[c]` into its rows of `out[c]`.
 
     c is `first`, then `second`; both share each load of a. `lines` (any, 5) are scaled ones, `a` (any, 8) are the
-    entries. `places` is (vectors, numbers), `out` (vectors, a multiple of eight).
+    entries. `places` (vectors, any) are indices in z, `out` is (vectors, a multiple of eight).
     """
     for line in lines:
         for c in (first, second):

@@ -24,7 +24,7 @@ class Drawn:
     values: tuple[float, ...] = field(repr=False)
     """Of the runs looked at that have the key, in their order."""
     runs: tuple[int, ...] = field(repr=False)
-    """The places of these runs among those looked at."""
+    """The indices of these runs among the examined runs."""
 
 
 def drawn_keys(recipe: Recipe, scenarios: Sequence[Scenario]) -> list[Drawn]:

@@ -33,7 +33,7 @@ class Turning:
     def copy_columns(self, V: FloatArray) -> None:
         """Fill the columns of the rim nodes 1, 2, ... of V with rotated copies of the columns of rim node 0.
 
-        V is (n, 6 + 6 blades + any), with the columns of O_d first, then six for each rim node.
+        V is (n, 6 + 6 blades + modes), with the columns of O_d first, then six for each rim node.
         """
         first = V[:, 6:FIRST].reshape(-1, 6, 6)
         for k in range(1, len(self.place)):
@@ -62,9 +62,9 @@ class Turning:
 
 
 def disk_turning(rings: IntArray, blades: int) -> Turning:
-    """Make the rotations of a disk by whole blade pitches. `rings` (any,) are the numbers of nodes of its rings.
+    """Make the rotations of a disk by whole blade pitches.
 
-    Each number is a multiple of `blades`.
+    `rings` (any,) is the number of nodes on each ring, in the order of the nodes: a multiple of `blades`.
     """
     starts = 1 + np.concatenate([[0], np.cumsum(rings)[:-1]])
     place = np.zeros((blades, 1 + int(rings.sum())), dtype=np.int64)
@@ -87,10 +87,11 @@ def craig_bampton(
     entry of a mode with the largest size is positive.
 
     - M, K (n, n): mass and stiffness.
-    - masters: numbers of the DoFs that are kept.
+    - masters: indices of the DoFs that are kept. With `turning` they are O_d, then six of each rim node in the order of
+      the blades.
     - modes: number of fixed-interface modes.
-    - turning: rotations of the disk; the first twelve masters are solved for, and their shapes rotated. None solves for
-      all.
+    - turning: rotations of the disk. Only the first twelve masters are solved for; the other shapes are rotated copies.
+      None solves for all.
 
     Raises UserError where there are fewer modes with mass than `modes`. With more than DENSE_LIMIT DoFs that are not
     kept, this is not checked. Tests: tests/reduction/test_craig_bampton.py.

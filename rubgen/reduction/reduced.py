@@ -137,7 +137,7 @@ class ReducedModel:
 
     @property
     def own_dofs(self) -> IntArray:
-        """Numbers of the blisk's coordinates, without the tips of lost blades."""
+        """Indices of the blisk's coordinates, without the tips of lost blades."""
         lost = 3 * np.array(self.machine.lost_blades, dtype=np.int64)[:, None] + np.arange(3)
         return np.setdiff1d(np.arange(len(self.blisk.M)), lost)
 

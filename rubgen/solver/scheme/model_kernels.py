@@ -22,7 +22,7 @@ class Laws(NamedTuple):
     restitution: float
     """Coefficient of restitution of the contact."""
     normal: FloatArray
-    """The law of the normal force: its place in the registry, and what its `NormalLaw.respond` takes."""
+    """The law of the normal force: its number in the registry, and the constants that its `NormalLaw.respond` takes."""
     regards_rate: bool
     """Whether contact takes gaps at step n - 1: with restitution, and with a law that regards the rate."""
     margin: float
@@ -73,7 +73,7 @@ class EnergyTerms(NamedTuple):
     force: FloatArray
     """The numbers of the unbalance force that are not zero, N."""
     force_places: IntArray
-    """Their places in z."""
+    """Their indices in z."""
     waits: bool
     """Whether works wait until those of several steps are computed at once: large matrices are read once for all."""
 

@@ -69,7 +69,7 @@ class State(NamedTuple):
     wear: Wear
     """The liner's worn depth."""
     works: FloatArray
-    """Works so far (8,), J, at the places of `energy_kernels`."""
+    """Works so far (8,), J, at the indices of `energy_kernels`."""
     scratch: Scratch
 
 

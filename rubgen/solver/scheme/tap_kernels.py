@@ -28,7 +28,7 @@ class Rays(NamedTuple):
     output: IntArray
     """Row of each ray's clearance in the taps (rays,)."""
     sum: IntArray
-    """First of three places in `Taps.sums` (rays,): radial and tangential displacement, slope of the radial one."""
+    """First of three indices in `Taps.sums` (rays,): radial and tangential displacement, slope of the radial one."""
     angle: FloatArray
     """Polar angle of each ray (rays,), rad."""
     radius: FloatArray
@@ -73,7 +73,7 @@ class Taps(NamedTuple):
     change: Product
     """Acts on d in z of the blisk."""
     linear: IntArray
-    """Output row and place in `sums` of each linear tap (any, 2)."""
+    """Output row and index in `sums` of each linear tap (any, 2)."""
     rays: Rays
     timing: Timing
     centre: int

@@ -271,7 +271,7 @@ class TurnEnds(NamedTuple):
     touches: IntArray
     """Number of touches that ended in the turn (turns,)."""
     works: FloatArray
-    """Works after the turn (turns, 8), J, at the places of `energy_kernels`."""
+    """Works after the turn (turns, 8), J, at the indices of `energy_kernels`."""
     support_works: FloatArray
     """Works of the supports after it (turns, any), J."""
     energy: FloatArray

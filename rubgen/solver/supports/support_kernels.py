@@ -39,13 +39,14 @@ class Support(NamedTuple):
     damping: float
     """c_a, N s/m."""
     laws: FloatArray
-    """A row for each law that acts (any, any): its place in the registry, and what its `SupportLaw.terms` takes."""
+    """A row for each law that acts (any, any): its number in the registry, and the constants that its
+    `SupportLaw.terms` takes."""
     limit: float
     """The eccentricity at which one of them ends, m."""
     centre: IntArray
-    """Numbers of z of O_d x, y (2,)."""
+    """Indices in z of O_d x, y (2,)."""
     places: IntArray
-    """Numbers of z (m,) that a force on O_d or the weight can move."""
+    """Indices in z (m,) of the coordinates that a force on O_d or the weight can move."""
     columns: FloatArray
     """A^-1 at `places` (m, 4) times unit forces on O_d x, y, and times minus the weight's sin and cos part."""
     weight: FloatArray
@@ -53,7 +54,7 @@ class Support(NamedTuple):
     compliance: FloatArray
     """Y = E^T A^-1 E (2, 2), m/N."""
     rows: FloatArray
-    """E^T A^-1 (2, numbers of z)."""
+    """E^T A^-1 (2, size of z)."""
     tip_columns: FloatArray
     """A^-1 E at the tip coordinates (3 blades, 2)."""
     tip_rows: FloatArray
