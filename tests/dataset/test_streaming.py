@@ -1,5 +1,6 @@
 """Runs in memory are those of the data set; failed runs are left out, and a recipe of failures ends."""
 
+from dataclasses import replace
 from itertools import islice
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 import rubgen
 from rubgen import streaming
 from rubgen.errors import RubgenError, UserError
+from rubgen.scenario import parse_recipe
 
 
 def test_the_stream_has_the_runs_of_the_set(small_set, short_records):
@@ -48,3 +50,23 @@ def test_a_recipe_of_failures_ends_with_the_last_reason(small_set, short_records
 def test_a_recipe_that_is_not_allowed_is_refused_at_once(small_set, short_records):
     with pytest.raises(UserError, match="runs"):
         rubgen.stream({**small_set.recipe, "runs": 0})
+    with pytest.raises(UserError, match="runs"):
+        rubgen.stream(parse_recipe(small_set.recipe).model_copy(update={"runs": 0}))
+
+
+def test_a_recipe_streams_as_its_values_do(small_set, short_records, monkeypatch, rub_run):
+    monkeypatch.setattr(streaming, "simulate", lambda scenario: replace(rub_run, scenario=scenario))
+    made = [next(rubgen.stream(each)).scenario for each in (small_set.recipe, parse_recipe(small_set.recipe))]
+    assert made[0] == made[1]
+
+
+def test_failures_in_between_do_not_end_the_stream(small_set, short_records, monkeypatch, rub_run):
+    """Only 64 failures one after the other do: 63 and a good run, again and again, go on."""
+
+    def made(scenario):
+        if scenario.index % 64 != 63:
+            raise UserError("not possible")
+        return replace(rub_run, scenario=scenario)
+
+    monkeypatch.setattr(streaming, "simulate", made)
+    assert [run.scenario.index for run in islice(rubgen.stream(small_set.recipe), 3)] == [63, 127, 191]

@@ -1,4 +1,4 @@
-"""`verify --sample`: the content of the drawn shards, presence and size of all. Manifests that list too much or too little."""
+"""`verify --sample`: content of the drawn shards, presence and size of all. Manifests that list too much or little."""
 
 import json
 import random
