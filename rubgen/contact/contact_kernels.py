@@ -25,7 +25,7 @@ class ContactWork(NamedTuple):
     bounds: FloatArray
     """Bound of each blade's clearance, infinite behind the last blade to a multiple of eight, m."""
     psi: FloatArray
-    """Polar angle of each blade's foot (n_blades,), rad, from -pi to pi."""
+    """Polar angle of each blade's foot (n_blades,), rad; it need not lie in [0, 2 pi)."""
     gap: FloatArray
     """Free gap of each blade at q* (n_blades,), NaN where the blade is certainly farther than the margin, m."""
     tangent: FloatArray

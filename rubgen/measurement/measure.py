@@ -1,6 +1,6 @@
 """Record all channels and events of one run.
 
-The tail are the last steps of a run, at which the response has taps (true signals).
+The tail is the end of a run: the steps at which the response has taps (true signals).
 """
 
 import zlib

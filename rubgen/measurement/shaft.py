@@ -1,6 +1,6 @@
 """Compute the shaft's angle over the tail of a run, and the pulse once per revolution at theta = 0.
 
-The tail are the last steps of a run, at which the response has taps (true signals).
+The tail is the end of a run: the steps at which the response has taps (true signals).
 """
 
 import math

@@ -66,7 +66,7 @@ def export(
     ] = None,
     json: Json = False,
 ) -> int:
-    """Write the good runs of a data set in a format of other programs, with units, sensors, parameters and labels."""
+    """Write the good runs of a data set in a format of other programs; all but parquet have parameters and labels."""
     from rubgen.cli.commands.exporting import export_command
 
     return export_command(directory, out, format_, split, channels, as_json=json)
