@@ -128,10 +128,10 @@ class Balance(StrictModel):
         return cell, int(v * self.speed_bands)
 
     def cell_of(self, *, rub: bool, motion: str = ANY_MOTION, severity: float = 0.0) -> int:
-        """Return the number of the cell of a run with these labels. `severity` is the label contact_severity.
+        """Return the index in `cells` of the class of a run with these labels.
 
-        Without a rub, `motion` and `severity` are not used. A `motion` that no cell names belongs to the cells of other
-        motions.
+        `severity` is the label contact_severity. Without a rub, `motion` and `severity` are not used. A `motion` that
+        no cell names belongs to the cells of other motions.
         """
         asked = {ANY_MOTION, motion if motion in (self.motion or {}) else OTHER_MOTION}
         return next(

@@ -1,4 +1,7 @@
-"""Run some turns of the blisk in one call: steps, works, taps, touches."""
+"""Run some turns of the blisk in one call: steps, works, taps, touches.
+
+z are the coordinates in the order of the blocks (`linalg.blocks`), d = (q_n+1 - q_n-1) / 2.
+"""
 
 import math
 from typing import NamedTuple
@@ -33,7 +36,7 @@ class Touches(NamedTuple):
     last: IntArray
     """Last step with a force on each blade (n_blades,)."""
     ended: FloatArray
-    """Touches that ended in the turn (many, 8)."""
+    """Touches that ended in the turn (rows, 8). n_blades (steps / 2 + 2) rows are enough for all."""
 
 
 class TurnResult(NamedTuple):
@@ -48,7 +51,7 @@ class TurnResult(NamedTuple):
     orbit: FloatArray
     """Sums over the steps (5,), see `add_orbit`."""
     frames: FloatArray
-    """z at equal steps from the first step on (any, any); at most one frame a step."""
+    """z at equal steps from the first step on (frames, size of z); at most one frame for each step."""
 
 
 @allocation_free_kernel
@@ -177,7 +180,9 @@ def add_contacts(
     - count: number of contacts in `state.contact`.
     - step: number of the step in the turn.
     - clock: number of the turn's first step in the run.
-    - opening (steps + 2,): added to the radius of the surface, m.
+    - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., m.
+    - coordinates: of the contacts' blades the tip coordinates must be valid. `change` is d.
+    - summary (4,): as in `TurnResult`; changed.
     - ended: number of ended touches before.
     """
     work, force, torque, dt = state.contact, 0.0, 0.0, model.laws.dt
@@ -208,7 +213,7 @@ def run_turn(
     """Integrate one turn or part of a turn. Return a code, the step where it ended, and the number of ended touches.
 
     The code is OK, or the code of `step_kernels` for the failure of a step. The turn ends at a step that fails: outputs
-    of later steps are not written, and present touches are not ended. The parameters are those of `run_turns`, of one
+    of later steps are not written, and present touches are not ended. The parameters are as in `run_turns`, for one
     turn. The motions of `state` are at step -1, at step 0, and scratch; they change places with every step.
     """
     laws, steps = model.laws, model.angles.cosine.shape[0] - 2
@@ -273,7 +278,7 @@ class TurnEnds(NamedTuple):
     works: FloatArray
     """Works after the turn (turns, 8), J, at the indices of `energy_kernels`."""
     support_works: FloatArray
-    """Works of the supports after it (turns, any), J."""
+    """Works of the supports after it (turns, 5), J."""
     energy: FloatArray
     """Stored energy half a step before its end (turns,), J."""
 
@@ -306,7 +311,7 @@ def run_turns(
     """Integrate turns, or parts of turns, one after another: one call is faster than a call for each turn.
 
     Return a code, the number of turns without a failed step, and the step where the last turn ended. The code is OK, or
-    that of a turn which failed (`run_turn`). No turn follows it; its row of `ends` is written too.
+    the code of the turn that failed (`run_turn`). No turn follows it; its row of `ends` is written too.
 
     - model: constants; its `angles` have the steps.
     - opening (turns, steps + 2): added to the radius of the surface at steps -1, 0, ..., steps of each turn, m.
@@ -314,7 +319,8 @@ def run_turns(
     - recording: False leaves out taps, orbit and arrivals. The motion is the same.
     - state: its arrays are changed. `moved_on` for the number of all steps gives the state at the end.
     - taps: true signals of the present step n, with the contact force lam_n of the same time; changed.
-    - touches, results, ends: written. `touches.ended` has a row for each turn. Arrivals are those of the last turn.
+    - touches, results, ends: written. `touches.ended` has a row for each turn. The arrivals in `taps.timing` belong to
+      the last turn.
     - snapshots: written at their steps; the last step is the end of a turn or later. Its arrays except `steps` have a
       row for each turn.
     """
