@@ -1,1 +1,1 @@
-"""Data sets in the file formats of other programs, one file a format."""
+"""Data sets in the file formats of other programs, one module for each format."""

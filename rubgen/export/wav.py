@@ -1,4 +1,4 @@
-"""WAV files of 32-bit floats, a track a channel."""
+"""WAV files of 32-bit floats, with a track for each channel."""
 
 from __future__ import annotations
 

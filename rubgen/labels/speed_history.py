@@ -54,7 +54,7 @@ class SpeedHistory:
 def speed_history(response: Response) -> SpeedHistory:
     """Find every change of rub or motion of a run whose speed changes, and the speeds at which rub begins and ends.
 
-    The speeds are those at the start of the first touch and at the end of the last touch, None without touch. The
+    The speeds are taken at the start of the first touch and at the end of the last touch; None without touch. The
     motion is classified for each window by `drifting_motion`; a window where rub begins or ends is divided there. The
     first entry of `changes` is the state at the start of the record.
 

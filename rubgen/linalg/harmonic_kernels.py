@@ -37,8 +37,8 @@ def recover_tips(harmonics: Harmonics, z: FloatArray, share_work: FloatArray, ti
     The coordinates have the unit of z: m, or m/s of a velocity.
 
     - share_work (3, `share_width(n_blades)` or more): scratch.
-    - tips_out (2 or 3, n_blades or more): written, one column a blade. Further columns are not changed. The axial
-      coordinate is computed if there are three rows.
+    - tips_out (2 or 3, n_blades or more): written, one column for each blade. Further columns are not changed. The
+      axial coordinate is computed if there are three rows.
     """
     blades, many, sums = harmonics.basis.shape[0], tips_out.shape[0], share_work
     half = blades // 2 if blades % 2 == 0 else blades

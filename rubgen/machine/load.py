@@ -44,7 +44,7 @@ def file_named(name_or_path: str, folder: Path | None = None) -> Iterator[None]:
     """Add the machine's file to a UserError that the block raises about a machine, "machine <name>: its ...".
 
     The code that builds the model of a machine knows only the machine's name. For a preset nothing is added.
-    `name_or_path` and `folder` are those that `load_machine` got.
+    `name_or_path` and `folder` are the arguments that `load_machine` got.
     """
     try:
         yield

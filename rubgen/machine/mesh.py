@@ -10,7 +10,7 @@ from rubgen.machine.machine import BladeRow, Casing, Disk
 def disk_nodes(disk: Disk) -> int:
     """Return the number of nodes of the disk's mesh.
 
-    A ring through the corners of elements has two nodes an element. A ring between two of these has one node an
+    A ring through the corners of elements has two nodes an element. A ring between two of these has one node for each
     element.
     """
     return disk.circumferential_elements * (3 * disk.radial_elements + 2)

@@ -114,7 +114,10 @@ class ContactIntervals:
 
 
 def contact_intervals(response: Response, recording: Recording) -> ContactIntervals:
-    """Return the touches of `response` that overlap `recording`, with times from its first sample."""
+    """Return the touches of `response` that overlap `recording`, with times in s from its first sample.
+
+    A touch that began before the first sample has a negative start.
+    """
     events, rate = response.events, recording.sample_rate_hz
     start = np.asarray(events.start_step * response.dt - recording.start_seconds, dtype=np.float64)
     duration = np.asarray(events.steps * response.dt, dtype=np.float64)

@@ -209,7 +209,7 @@ def drawn(table: BaseModel, seed: int, index: int) -> Surroundings:
 
 
 def extremes(table: BaseModel, source: str = "") -> tuple[Surroundings, Surroundings]:
-    """Return the surroundings with the least value of every key of the table, and those with the largest.
+    """Return two surroundings: with the least value of every key of the table, and with the largest value.
 
     Raises UserError, beginning with `source`, where a value is not allowed.
     """

@@ -188,7 +188,7 @@ class Response:
     record_turns: int
     """Number of turns of the record."""
     taps: dict[str, FloatArray]
-    """True signals by name, one value a step (n_tail,). The last value belongs to the last step of the record.
+    """True signals by name, one value for each step (n_tail,). The last value belongs to the last step of the record.
 
     The tail covers the seconds asked for or 100 turns, whichever is longer. It reaches back into the settling where
     the record is shorter."""

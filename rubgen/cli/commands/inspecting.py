@@ -113,7 +113,7 @@ def _tell(directory: Path, found: list[Finding], more: dict[str, object], *, as_
 
 
 def label_command(directory: Path, *, as_json: bool) -> int:
-    """Compute the labels of a data set again from its compact records, and print those that differ from `runs.parquet`.
+    """Compute the labels of a set again from its compact records, and print the labels that differ from runs.parquet.
 
     No file is changed. Numbers that differ only by rounding are equal. Labels of orders are left out. With `as_json`
     the differences are printed as JSON. Returns the exit code 1 if a label differs, else 0. Raises UserError where

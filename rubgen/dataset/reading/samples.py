@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Arrays(NamedTuple):
-    """Channels of whole runs, one row a good run, in the order of the set, or of the given names of runs."""
+    """Channels of whole runs, one row for each good run, in the order of the set, or of the given names of runs."""
 
     X: Float32Array
     """Samples (runs, channels, time), each channel in its unit of `DataSet.units`."""

@@ -139,7 +139,7 @@ class _PuttingBack:
                 source.unlink(missing_ok=True)
 
     def runs(self, rows: _Rows, recipe: Recipe) -> None:
-        """Write `runs.parquet` of the rows that can be read and those that were made again, and put it back."""
+        """Write `runs.parquet` from the readable rows and the rows that were made again, and put it back."""
         for shard in shards_of(recipe):
             staged = self._inner.staged(RUNS.name, shard.name)
             found = None if staged.exists() else rows.of(shard)

@@ -1,4 +1,4 @@
-"""Runs as MCAP files, one file a run."""
+"""Runs as MCAP files, one file for each run."""
 
 from rubgen.io.mcap.check import check_mcap
 from rubgen.io.mcap.read import McapRun, read_mcap

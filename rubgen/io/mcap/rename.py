@@ -15,8 +15,8 @@ from rubgen.io.mcap.write import new_writer, write_records
 def copy_with(source: Path, path: Path, changes: dict[str, Any]) -> None:
     """Write the MCAP file at `source` to `path` with some keys of its scenario changed, complete or not at all.
 
-    `changes` are the keys with their new values. A file at `path` is replaced. The bytes are the same as those from
-    `write_mcap` for the run with the changed scenario. Raises UserError where `source` is damaged.
+    `changes` are the keys with their new values. A file at `path` is replaced. The bytes are the bytes that
+    `write_mcap` writes for the run with the changed scenario. Raises UserError where `source` is damaged.
     """
 
     def write(part: Path) -> None:

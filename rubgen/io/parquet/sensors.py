@@ -1,4 +1,4 @@
-"""The sensors of a data set as a table: one row a sensor, its values as numbers."""
+"""The sensors of a data set as a table: one row for each sensor, its values as numbers."""
 
 import pyarrow as pa
 

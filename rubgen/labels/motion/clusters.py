@@ -32,9 +32,9 @@ def cluster_period(points: FloatArray) -> int | None:
 def stray(points: FloatArray, period: int | None) -> float:
     """Return the rms distance of the points of the record's second half from their k clusters.
 
-    k is `period`, or for None the k with the smallest distance, of those that `cluster_period` tries. `points` (turns,
-    groups, values), at least eight turns, are divided by the size of the motion. The means of k clusters of n points
-    lie nearer to the points than the true means: dividing the mean square by 1 - k / n corrects this.
+    k is `period`. For None it is the k with the smallest distance among all k that `cluster_period` tries. `points`
+    (turns, groups, values), at least eight turns, are divided by the size of the motion. The means of k clusters of n
+    points lie nearer to the points than the true means: dividing the mean square by 1 - k / n corrects this.
     """
     late = _late(points)
     periods = range(1, _longest(late) + 1) if period is None else (period,)
@@ -95,8 +95,8 @@ def settles(points: FloatArray) -> bool:
     """Return whether the points (turns, groups, values), at least eight turns, still approach a steady motion.
 
     In the second half of the record, the rms distance from the clusters then falls by more than half from the first
-    quarter to the last, from above CLUSTER_RADIUS. The number of clusters is the k with the smallest distance, of those
-    that `cluster_period` tries.
+    quarter to the last, from above CLUSTER_RADIUS. The number of clusters is the k with the smallest distance among all
+    k that `cluster_period` tries.
     """
     late = _late(points)
     distances = [cluster_distances(late, k) / math.sqrt(1 - k / len(late)) for k in range(1, _longest(late) + 1)]

@@ -13,7 +13,7 @@ class Motion(NamedTuple):
     z: FloatArray
     """All coordinates in the order of the blocks (`linalg.blocks`), padded to rows of eight."""
     tips: FloatArray
-    """Radial and tangential coordinates of the tips (2, n_blades or more), one column a blade."""
+    """Radial and tangential coordinates of the tips (2, n_blades or more), one column for each blade."""
     q: FloatArray
     """Physical coordinates (n,). A tip's are valid only after `recover_blade`; all others always are."""
 

@@ -55,7 +55,7 @@ def preview_rate(replay: Replay) -> float:
 
 
 def send_signals(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
-    """Send every channel as preview and at full rate over the detail window, one entity a quantity.
+    """Send every channel as preview and at full rate over the `detail_window`, one entity for each quantity.
 
     With `full` the whole recording is sent at full rate, with the pulses. Minimum and maximum of a bin have the colour
     of their channel.
