@@ -28,7 +28,7 @@ class WithFoot(ContactLaw):
 
 
 def test_a_law_is_chosen_by_its_key():
-    assert registered(WithFoot, NormalLaw) == {"foot": Foot}
+    assert registered(WithFoot, NormalLaw) == registered(ContactLaw, NormalLaw) | {"foot": Foot}
     assert WithFoot(foot=Foot()).normal == Foot()
     assert WithFoot(restitution=0.5).normal == Rigid()
 
