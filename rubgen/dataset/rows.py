@@ -95,8 +95,9 @@ class RunRows:
         run_ids = list(run_ids)
         lost = [run_id for run_id in run_ids if run_id not in self.places]
         if lost:
-            folder = self.files[0].parent if self.files else "the set"
-            raise UserError(f"{lost[0]}: has no row in {folder}; generate the set again")
+            if not self.files:
+                raise UserError(f"{lost[0]}: the set has no such files; generate it with the format parquet")
+            raise UserError(f"{lost[0]}: has no row in {self.files[0].parent}; generate the set again")
         types = pa.schema([self.types.field(name) for name in columns])
         for path, names in groupby(run_ids, key=lambda run_id: self.places[run_id].file):
             file = self._open(path)

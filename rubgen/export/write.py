@@ -65,6 +65,8 @@ def export(
         "split": split,
         "channels": list(chosen),
     }
+    everyone = [run for members in runs.values() for run in members]
+    first = next(exported_runs(data, everyone[:1], chosen))  # where it cannot be read, nothing is begun
     _claim(out, origin)
     files = list(_files(kind, runs, out))
     for number, (path, members) in enumerate(files):
@@ -72,8 +74,6 @@ def export(
             path.parent.mkdir(exist_ok=True)
             write_durably(path, lambda part, members=members: kind.write(exported_runs(data, members, chosen), part))  # type: ignore[misc]
         count(number + 1, len(files))
-    everyone = [run for members in runs.values() for run in members]
-    first = next(exported_runs(data, everyone[:1], chosen))
     write_durably(out / CHANNELS, lambda part: _channel_table(first).to_csv(part, index=False))
     if kind.answers:
         write_durably(out / RUNS, lambda part: _run_table(data, everyone).to_csv(part))

@@ -42,6 +42,7 @@ def test_generate_says_what_it_made(generate, tmp_path):
     assert motion == "  motion: 2 period-1"
     assert failed == "  1 diverged, such as run-000002: in turn 7"
     assert any(line.endswith(f"verify {tmp_path / 'set'}") for line in look)
+    assert look[0] == f"  {tmp_path / 'set'}/runs.parquet: parameters, labels; for pandas, polars, datasets"  # of MCAP
     assert errors == "rubgen: simulate\n"  # no terminal: the step at once, then a line a minute
 
 

@@ -124,7 +124,10 @@ def _what_was_made(made: Generated) -> Iterator[str]:
 
 def _ways_to_look(directory: Path) -> Iterator[str]:
     """Yield the places of the files, and the commands that show them."""
-    yield f"  {directory}/runs.parquet, signals/: parameters, labels, signals; for pandas, polars, datasets"
+    tables = "runs.parquet, signals/: parameters, labels, signals"
+    if not (directory / "signals").is_dir():  # neither without the format parquet
+        tables = "runs.parquet: parameters, labels"
+    yield f"  {directory}/{tables}; for pandas, polars, datasets"
     for each in run_formats():
         folder = min((directory / each.name).glob("*"), default=directory)
         first = min(folder.glob(f"*{each.suffix}"), default=None)

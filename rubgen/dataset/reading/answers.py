@@ -38,7 +38,7 @@ class Answers:
         """
         columns = {column.name: column for column in data.run_columns}
         targets = [name for name, column in columns.items() if column.role is Role.TARGET]
-        if target not in columns or columns[target].role is Role.ID:
+        if not isinstance(target, str) or target not in columns or columns[target].role is Role.ID:
             raise UserError(f"{data.layout.root}: no target {target!r}; {nearest(str(target), targets)}")
         self._data, self._column = data, columns[target]
         if target != "faults" and self._column.kind not in KINDS:

@@ -61,7 +61,7 @@ def base_runs(rows: pd.DataFrame) -> pd.Series[str]:
 def _groups(data: DataSet, runs: list[str], by: str) -> pd.Series[str]:
     """Return the group of each run. Raises UserError where groups would part what belongs together."""
     rows = data.runs.loc[runs]
-    if by != "run_id" and by not in rows:
+    if not isinstance(by, str) or (by != "run_id" and by not in rows):
         raise UserError(f"by = {by!r}: the set has no such column; use 'machine_id'")
     groups = base_runs(rows) if by == "run_id" else rows[by].astype("string")
     machines = rows["machine_id"]

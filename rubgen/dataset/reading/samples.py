@@ -139,7 +139,7 @@ def chosen_runs(data: DataSet, split: str | None, runs: Sequence[str] | None) ->
     """Return the names of the good runs (status ok) of `split`, or of the list `runs`, each once.
 
     If both are None, return all good runs of the set. They are in the order of the set, or of the list. Raises
-    UserError where both are given, a split or run is unknown, `runs` is a text, the list is empty, a run of it failed,
+    UserError where both are given, a split or run is unknown, `runs` is no list, the list is empty, a run of it failed,
     or the split or the set has no good run.
     """
     good = data.ok
@@ -153,11 +153,15 @@ def chosen_runs(data: DataSet, split: str | None, runs: Sequence[str] | None) ->
     if runs is not None:
         if isinstance(runs, str):
             raise UserError(f"runs = {runs!r}: give a list of names, [{runs!r}]")
-        if not len(runs):
+        try:
+            wanted = list(runs)
+        except TypeError:
+            raise UserError(f"runs = {runs!r:.200}: give a list of names") from None
+        if not wanted:
             raise UserError("runs = []: give the name of at least one run")
-        for run_id in runs:
+        for run_id in wanted:
             data.check_has_signals(run_id)
-        return list(dict.fromkeys(runs))
+        return list(dict.fromkeys(wanted))
     if good.empty:
         where = f"split {split!r}" if split else "the set"
         raise UserError(f"{data.layout.root}: {where} has no good run; see `rubgen info {data.layout.root}`")

@@ -198,6 +198,13 @@ def test_what_a_format_cannot_hold_is_refused(small_set, tmp_path, capsys, monke
     )
 
 
+def test_an_export_that_cannot_begin_leaves_no_folder(copied_set, tmp_path, capsys):
+    (copied_set / "signals/train-00000.parquet").write_bytes(b"x")
+    for name in ("csv", "ts", "parquet"):
+        assert "train-00000.parquet" in _refused(capsys, copied_set, tmp_path / "out", "--format", name)
+        assert not (tmp_path / "out").exists()
+
+
 def test_another_folder_is_never_overwritten(small_set, tmp_path, capsys):
     (tmp_path / "mine.txt").write_text("mine")
     assert "is not empty (mine.txt)" in _refused(capsys, small_set.directory, tmp_path, "--format", "csv")

@@ -126,6 +126,28 @@ def test_open_says_what_is_missing(data, tmp_path):
         rubgen.open(tmp_path)
 
 
+def test_a_whole_row_has_labels_and_truth_and_no_channel(data, small_set):
+    row = data.whole_row("run-000001")
+    assert {name: row[name] for name in data.row("run-000001")} == data.row("run-000001")
+    assert not set(row) & set(data.channels)
+    for table in ("signals", "truth"):
+        frame = pd.read_parquet(small_set.directory / table / "train-00000.parquet").set_index("run_id")
+        for name in set(frame.columns) - set(data.channels) - set(data.row("run-000001")):
+            np.testing.assert_array_equal(row[name], frame.loc["run-000001", name], err_msg=name)
+    assert len(row["once_per_rev_s"]) > 50
+
+
+def test_what_only_parquet_has_is_not_asked_of_a_set_without(data, monkeypatch):
+    without = rubgen.open(data.layout.root)
+    monkeypatch.setattr(type(data.manifest), "listed", lambda *_: [])
+    with pytest.raises(
+        UserError, match=r"^run-000001: the set has no such files; generate it with the format parquet$"
+    ):
+        without.whole_row("run-000001")
+    with pytest.raises(UserError, match=r"has no files with signals; generate it with formats parquet or mcap$"):
+        without.signals("run-000001")
+
+
 def test_a_manifest_that_the_system_refuses_is_no_missing_set(data, monkeypatch):
     def refuse(path):
         raise PermissionError(errno.EACCES, "of the system", str(path))

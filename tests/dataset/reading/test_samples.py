@@ -191,6 +191,8 @@ def test_a_run_without_a_value_is_in_no_fold_and_a_warning_names_it(data, monkey
         (lambda data: data.arrays(runs="run-000000"), r"give a list of names, \['run-000000'\]"),
         (lambda data: data.arrays(runs=["run-9"]), "no run 'run-9'"),
         (lambda data: data.arrays(out="X.bin"), "must end with .npy"),
+        (lambda data: data.arrays(out="none/X.npy"), "the folder none does not exist; make it"),
+        (lambda data: data.windows(seconds=0.1, out="none/X.npy"), "the folder none does not exist; make it"),
         (lambda data: data.windows(), "either in seconds or in turns"),
         (lambda data: data.windows(seconds=0.1, turns=4), "either in seconds or in turns"),
         (lambda data: data.windows(seconds=-1), "seconds = -1: must be a number above 0"),
@@ -209,6 +211,32 @@ def test_mistakes_are_one_line(call, message, data):
     with pytest.raises(UserError, match=message) as caught:
         call(data)
     assert "\n" not in str(caught.value)
+
+
+def test_failed_runs_are_left_out_and_cannot_be_asked_for(small_set, monkeypatch):
+    data = rubgen.open(small_set.directory)
+    frame = data.runs.copy()
+    frame["split"] = pd.array(["train", "train", "train", "test"], dtype="string")
+    frame.loc[["run-000001", "run-000003"], "status"] = "diverged"
+    monkeypatch.setattr(data, "runs", frame)
+    assert data.groups_of(data.ok.index).tolist() == ["run-000000", "run-000002"]
+    assert sorted(name for fold in data.folds(2, by="run_id") for name in fold.test) == ["run-000000", "run-000002"]
+    assert set(data.windows(["proximity_x"], seconds=0.1, target="speed_rpm").run_ids) == {"run-000000", "run-000002"}
+    with pytest.raises(UserError, match=r"split 'test' has no good run; see `rubgen info .+small`$"):
+        data.arrays(split="test")
+    frame["status"] = "diverged"
+    with pytest.raises(UserError, match=r"the set has no good run; see `rubgen info"):
+        data.windows(seconds=0.1)
+
+
+def test_a_signal_of_another_length_is_no_sample(data, monkeypatch):
+    def recorded(self, run_ids, channels=None):
+        yield from ((run, {name: np.zeros(7, np.float32) for name in channels}, np.zeros(0)) for run in run_ids)
+
+    monkeypatch.setattr(DataSet, "recorded", recorded)
+    for read in (lambda: data.arrays(["proximity_x"]), lambda: data.windows(["proximity_x"], seconds=0.1)):
+        with pytest.raises(UserError, match=r"^run-000000: proximity_x has 7 of 15872 samples; run rubgen verify$"):
+            read()
 
 
 def test_turns_need_a_tacho():

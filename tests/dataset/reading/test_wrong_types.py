@@ -39,6 +39,31 @@ def test_channels_come_in_any_collection_and_each_once(data):
         assert all(np.array_equal(found[name], wanted[name]) for name in wanted)
 
 
+@pytest.mark.parametrize("runs", [3, True, "run-000000", [3], [["run-000000"]], [None], (each for each in ())])
+def test_what_is_no_list_of_runs(data, runs):
+    with pytest.raises(UserError, match=r"give a list of names|no run |give the name of at least one run"):
+        data.arrays(runs=runs)
+
+
+def test_runs_come_in_any_collection_and_each_once(data):
+    wanted = data.arrays(["proximity_x"], "speed_rpm", runs=["run-000001", "run-000000"])
+    twice = ["run-000001", "run-000000", "run-000001"]
+    for runs in ((each for each in twice), tuple(twice), np.array(twice), data.runs.loc[twice].index):
+        found = data.arrays(["proximity_x"], "speed_rpm", runs=runs)
+        assert all(np.array_equal(one, other) for one, other in zip(found, wanted, strict=True))
+
+
+@pytest.mark.parametrize("name", [None, 3, ["rub"], {"rub"}, np.array(["rub", "motion"])])
+def test_what_is_no_name_of_a_column(data, name):
+    with pytest.raises(UserError, match=r"^.+: no target .+; "):
+        data.arrays(target=name)
+    with pytest.raises(UserError, match=r"^by = .+: the set has no such column; use 'machine_id'$"):
+        data.folds(2, by=name)
+    if not isinstance(name, np.ndarray | None):
+        with pytest.raises(UserError, match=r"no split .+; it has train$"):
+            data.arrays(split=name)
+
+
 @pytest.mark.parametrize("directory", [3, None, b"out", ["out"]])
 def test_what_is_no_path(directory):
     for refused in (rubgen.open, rubgen.verify, lambda out: rubgen.generate(MINIMAL, out)):
