@@ -141,9 +141,9 @@ def lowest_bit(bits: int) -> int:
 def square_of_farthest(a: FloatArray, b: FloatArray) -> float:
     """Return the largest squared distance between the same columns of a and b, both (2, a multiple of eight).
 
-    With a NaN in a column plain Python returns NaN, and compiled code leaves the column out.
+    A column with a NaN is left out. Without any other column the result is 0.
     """
-    return float(np.square(a[:2] - b[:2]).sum(axis=0).max(initial=0.0))
+    return float(np.fmax.reduce(np.square(a[:2] - b[:2]).sum(axis=0), initial=0.0))
 
 
 def _blended_product(context: Any, builder: Any, signature: Any, args: Any) -> Any:

@@ -59,3 +59,16 @@ def test_the_farthest_of_many_points():
         for function in (farthest, _farthest):
             assert function(a, b) == pytest.approx(2500.0, rel=1e-13)
             assert function(a, a) == 0.0
+
+
+def test_a_column_that_is_no_number_is_left_out_of_the_farthest():
+    a, b = np.zeros((2, 16)), np.zeros((2, 16))
+    a[:, 3], a[:, 12] = [3.0, 4.0], [1.0, 0.0]
+    for place in range(16):
+        broken = a.copy()
+        broken[place % 2, place] = np.nan
+        for function in (farthest, _farthest):
+            assert function(broken, b) == (1.0 if place == 3 else 25.0)
+            assert function(np.full((2, 16), np.nan), b) == 0.0
+    a[0, 5] = np.inf
+    assert [function(a, b) for function in (farthest, _farthest)] == [np.inf, np.inf]
