@@ -1,5 +1,7 @@
 """Blocks found in made matrices: they are those that were put in, and products in them are the dense ones."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -99,7 +101,7 @@ def test_parts_are_nearly_equal_and_none_is_too_large():
         parts = parts_of(rows)
         sizes = [part.stop - part.start for part in parts]
         assert [parts[0].start, parts[-1].stop, sum(sizes)] == [0, rows, rows]
-        assert all(before.stop == after.start for before, after in zip(parts, parts[1:], strict=False))
+        assert all(before.stop == after.start for before, after in pairwise(parts))
         assert max(sizes) <= MOST_ROWS
         assert max(sizes) - min(sizes) <= 1
         assert len(parts) == -(-rows // MOST_ROWS)
