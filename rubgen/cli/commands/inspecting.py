@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import rubgen
+from rubgen.brief import counted
 from rubgen.cli.printing import print_json, print_pairs, say
 from rubgen.dataset.checking.inventory import Finding
 from rubgen.dataset.checking.relabel import relabel
@@ -128,7 +129,8 @@ def label_command(directory: Path, *, as_json: bool) -> int:
         for each in done.differences:
             say(f"{each.run_id}  {each.label}: {each.stands} in runs.parquet, now {each.again}")
         same = "all as in runs.parquet" if not done.differences else f"{len(done.differences)} differ"
-        say(f"{directory}: {done.labels} labels of {done.runs} runs made again, {same}; labels of orders left out")
+        made = f"{counted(done.labels, 'label')} of {counted(done.runs, 'run')} made again"
+        say(f"{directory}: {made}, {same}; labels of orders left out")
     return 1 if done.differences else 0
 
 

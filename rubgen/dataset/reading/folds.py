@@ -37,7 +37,7 @@ def folds(data: DataSet, k: int, by: str, split: str | None) -> list[Fold]:
         raise UserError(f"k = {k!r:.60}: must be a whole number of at least 2")
     if len(sizes) < k:
         one = "; with one machine, by='run_id' tests other runs of the same machine" if by == "machine_id" else ""
-        raise UserError(f"{data.layout.root}: k = {k}: there are only {len(sizes)} groups by {by!r}{one}")
+        raise UserError(f"{data.layout.root}: k = {k}: the runs have {counted(len(sizes), 'group')} by {by!r}{one}")
     filled, side = [0] * k, dict.fromkeys(sizes.index, 0)
     for name, size in sizes.items():
         side[name] = filled.index(min(filled))

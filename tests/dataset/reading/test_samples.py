@@ -203,7 +203,7 @@ def test_a_run_without_a_value_is_in_no_fold_and_a_warning_names_it(data, monkey
         (lambda data: data.windows(seconds=1.0), "longer than every signal; signals last 0.62 s"),
         (lambda data: data.windows(turns=200), "longer than every signal"),
         (lambda data: data.folds(1), "k = 1: must be a whole number of at least 2"),
-        (lambda data: data.folds(2), "only 1 groups by 'machine_id'; with one machine, by='run_id'"),
+        (lambda data: data.folds(2), "k = 2: the runs have 1 group by 'machine_id'; with one machine, by='run_id'"),
         (lambda data: data.folds(2, by="engine"), "no such column; use 'machine_id'"),
     ],
 )
