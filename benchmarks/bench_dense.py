@@ -15,6 +15,7 @@ from threadpoolctl import threadpool_limits
 from benchmarks.bench_solver import CASES, STEPS, Case, settled
 from benchmarks.cpu_time import cpu_time
 from benchmarks.dense_kernels import Dense, run
+from benchmarks.rows import rows_of
 from rubgen.arrays import FloatArray
 from rubgen.solver.scheme.stepper import Stepper
 from validation.reference_step import ReferenceStepper
@@ -90,10 +91,7 @@ def measure_case(case: Case) -> list[dict[str, object]]:
         ("dense numba, every blade, over solver", every / ours, "ratio", "recorded"),
         ("dense numba: deviation from the reference over a turn", worst, "1", "<= 1e-9"),
     )
-    return [
-        {"name": f"{case.name}: {name}", "value": value, "unit": unit, "target": target}
-        for name, value, unit, target in rows
-    ]
+    return rows_of(rows, f"{case.name}: ")
 
 
 def measure() -> list[dict[str, object]]:

@@ -13,6 +13,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from benchmarks.cpu_time import median_time
+from benchmarks.rows import rows_of
 from rubgen import make_scenario
 from rubgen.labels import label
 from rubgen.measurement import margin_seconds
@@ -71,10 +72,7 @@ def measure_run(name: str, keys: dict[str, float]) -> list[dict[str, object]]:
             "<= 2",
         ),
     )
-    return [
-        {"name": f"{name}: {what}", "value": value, "unit": unit, "target": target}
-        for what, value, unit, target in rows
-    ]
+    return rows_of(rows, f"{name}: ")
 
 
 def measure() -> list[dict[str, object]]:

@@ -28,6 +28,7 @@ import numpy as np
 
 import rubgen
 from benchmarks.cpu_time import cpu_time
+from benchmarks.rows import rows_of
 from rubgen import pipeline
 from rubgen.scenario import load_recipe
 from rubgen.solver import integrate
@@ -72,7 +73,7 @@ def measure() -> list[dict[str, object]]:
         ("share of CPU time in the kernels", share, "1", ">= 0.8"),
     )
     every = [*rows, *((f"{name}, CPU", value, "s", target) for name, value, target in shortened)]
-    return [{"name": name, "value": value, "unit": unit, "target": target} for name, value, unit, target in every]
+    return rows_of(every)
 
 
 def _shortened(folder: Path) -> list[tuple[str, float, str]]:

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.linalg import eigh
 from threadpoolctl import threadpool_limits
 
+from benchmarks.rows import rows_of
 from rubgen.fem.constraints import support_stiffness
 from rubgen.machine import BladeRow, Disk, DiskSupport, Mistuning, load_machine
 from rubgen.reduction.blisk import ReducedBlisk, reduce_blisk
@@ -68,7 +69,7 @@ def measure() -> list[dict[str, object]]:
     with threadpool_limits(1):
         for name, parts in machines().items():
             rows += _rows(name, *parts)
-    return [{"name": name, "value": value, "unit": unit, "target": target} for name, value, unit, target in rows]
+    return rows_of(rows)
 
 
 def _rows(name: str, disk: Disk, blades: BladeRow, support: DiskSupport) -> list[tuple[str, float, str, str]]:

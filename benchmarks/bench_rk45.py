@@ -19,6 +19,7 @@ from threadpoolctl import threadpool_limits
 
 from benchmarks.bench_solver import CASES, STEPS, Case, settled
 from benchmarks.penalty_kernels import Penalty, slope_of
+from benchmarks.rows import rows_of
 from rubgen.arrays import FloatArray
 from rubgen.reduction.model import SpinningSystem
 from rubgen.solver.scheme.stepper import Stepper
@@ -199,10 +200,7 @@ def measure_case(case: Case) -> list[dict[str, object]]:
         ("impulse a turn, ours", impulse, "N s", "> 0"),
         ("impulse a turn, RK45", pushed, "N s", "> 0"),
     )
-    return [
-        {"name": f"{case.name}: {name}", "value": value, "unit": unit, "target": target}
-        for name, value, unit, target in rows
-    ]
+    return rows_of(rows, f"{case.name}: ")
 
 
 def measure() -> list[dict[str, object]]:

@@ -19,6 +19,7 @@ from threadpoolctl import threadpool_limits
 
 from benchmarks.bench_solver import CASES, STEPS, settled
 from benchmarks.cpu_time import median_time
+from benchmarks.rows import rows_of
 
 ENVIRONMENT = Path("out/ross")
 REQUIREMENTS = ("ross-rotordynamics", "plotly<7")
@@ -71,7 +72,7 @@ def measure() -> list[dict[str, object]]:
         (f"{name}, 12 modes, over solver", reduced["us"] / ours, "ratio", ">= 50, goal 150"),
         (f"{name}, 12 modes, over solver, a coordinate", coordinate(reduced, 12), "ratio", "recorded"),
     )
-    return [{"name": name, "value": value, "unit": unit, "target": target} for name, value, unit, target in rows]
+    return rows_of(rows)
 
 
 def _ross() -> dict:

@@ -13,6 +13,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from benchmarks.cpu_time import cpu_time
+from benchmarks.rows import rows_of
 from rubgen import make_scenario
 from rubgen.reduction import reduce
 from rubgen.scenario import ContactLaw, Reduction
@@ -131,10 +132,7 @@ def measure_case(case: Case) -> list[dict[str, object]]:
         ("largest deviation over a turn", worst, "1", "<= 1e-6"),
         ("turns of 50 with other contacts", unequal, "turns", "0"),
     )
-    return [
-        {"name": f"{case.name}: {name}", "value": value, "unit": unit, "target": target}
-        for name, value, unit, target in rows
-    ]
+    return rows_of(rows, f"{case.name}: ")
 
 
 def measure() -> list[dict[str, object]]:

@@ -10,6 +10,7 @@ import resource
 import time
 from dataclasses import replace
 
+from benchmarks.rows import rows_of
 from rubgen import make_scenario
 from rubgen.dataset.making.workers import unordered, worker_pool
 from validation.sensitivity.halving import SPEEDS_RPM
@@ -48,4 +49,4 @@ def measure() -> list[dict[str, object]]:
         ("sweep: CPU time of both workers / 2", spent / WORKERS, "s", "recorded"),
         ("sweep: speeds that rub", rubbing, "runs", "recorded"),
     )
-    return [{"name": name, "value": value, "unit": unit, "target": target} for name, value, unit, target in rows]
+    return rows_of(rows)

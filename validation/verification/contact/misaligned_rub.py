@@ -28,6 +28,7 @@ from validation.verification.rotors.jeffcott import (
     STATOR_MASS,
     STATOR_STIFFNESS,
     jeffcott_system,
+    penalty_contact,
 )
 from validation.verification.row import Row, relative, within
 
@@ -36,7 +37,6 @@ CASES = {"light": (1.5e-3, 2000.0), "heavy": (1.8e-3, 3000.0)}
 TURNS, STEPS, EARLY = 30, 2048, 3
 RETURN = 0.01
 """A point of the section has come back when it is nearer than this share of its size: as clusters in the labels."""
-PENALTY, DAMPING_RATIO = 1e11, 5.0
 
 
 def by_scheme(unbalance: float, side_force: float, steps: int) -> FloatArray:
@@ -55,15 +55,7 @@ def by_scheme(unbalance: float, side_force: float, steps: int) -> FloatArray:
 
 def by_penalty(unbalance: float, side_force: float) -> FloatArray:
     """The same (turns, 5) by LSODA with a stiff penalty."""
-    damper = 2 * DAMPING_RATIO * np.sqrt(PENALTY / (1 / ROTOR_MASS + 1 / STATOR_MASS))
-
-    def contact(z: complex, v: complex) -> tuple[float, complex]:
-        """Normal force, and the force on the ring, for the rotor's place and velocity relative to it."""
-        if abs(z) <= CLEARANCE:
-            return 0.0, 0j
-        outward = z / abs(z)
-        normal = max(0.0, PENALTY * (abs(z) - CLEARANCE) + damper * (v * outward.conjugate()).real)
-        return normal, normal * complex(1, FRICTION) * outward
+    contact = penalty_contact(ROTOR_MASS, CLEARANCE)
 
     def slope(t: float, y: FloatArray) -> FloatArray:
         z, v, ring, ring_v = y[0] + 1j * y[1], y[2] + 1j * y[3], y[4] + 1j * y[5], y[6] + 1j * y[7]

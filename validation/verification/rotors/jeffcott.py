@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,8 @@ ROTOR_MASS, ROTOR_STIFFNESS, ROTOR_DAMPING = 10.0, 1e7, 2000.0
 STATOR_MASS, STATOR_STIFFNESS, STATOR_DAMPING = 2.0, 2e7, 1200.0
 UNBALANCE = 6e-3
 NODES = 12
+PENALTY, DAMPING_RATIO = 1e11, 5.0
+"""Of `penalty_contact`: stiffness in N/m, and damping ratio of the contact of the two masses."""
 
 
 def jeffcott_system(unbalance: float = UNBALANCE, side_force: float = 0.0) -> SpinningSystem:
@@ -50,6 +53,23 @@ def jeffcott_system(unbalance: float = UNBALANCE, side_force: float = 0.0) -> Sp
         lateral_stiffness=1e6,
         lateral_damping=0.0,
     )
+
+
+def penalty_contact(mass: float, clearance: float) -> Callable[[complex, complex], tuple[float, complex]]:
+    """The contact of a rotor of that mass in the ring with a stiff penalty: what an ODE solver can take.
+
+    It gives the normal force, and the force on the ring, for the rotor's place and velocity relative to the ring.
+    """
+    damper = 2 * DAMPING_RATIO * np.sqrt(PENALTY / (1 / mass + 1 / STATOR_MASS))
+
+    def contact(z: complex, v: complex) -> tuple[float, complex]:
+        if abs(z) <= clearance:
+            return 0.0, 0j
+        outward = z / abs(z)
+        normal = max(0.0, PENALTY * (abs(z) - clearance) + damper * (v * outward.conjugate()).real)
+        return normal, normal * complex(1, FRICTION) * outward
+
+    return contact
 
 
 @dataclass(frozen=True)

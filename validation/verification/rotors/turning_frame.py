@@ -32,6 +32,7 @@ from validation.verification.rotors.jeffcott import (
     STATOR_MASS,
     STATOR_STIFFNESS,
     jeffcott_system,
+    penalty_contact,
 )
 from validation.verification.row import Row, relative, within
 
@@ -59,7 +60,6 @@ CASES = {
 }
 TURNS, EARLY, STEPS = 20, 3, 2048
 FREE_CLEARANCE = 1.0
-PENALTY, DAMPING_RATIO = 1e11, 5.0
 
 
 def system_of(case: Case, clearance: float) -> SpinningSystem:
@@ -123,17 +123,10 @@ def film_force(film: SqueezeFilm | None, z: complex, v: complex) -> complex:
 
 def in_inertial_axes(case: Case, clearance: float) -> FloatArray:
     """The same (turns, 7) in inertial axes: constant supports and weight, a link that turns."""
-    damper = 2 * DAMPING_RATIO * np.sqrt(PENALTY / (1 / LINK_MASS + 1 / STATOR_MASS))
+    contact = penalty_contact(LINK_MASS, clearance)
     k, c = (np.array([mean + part, mean - part]) for mean, part in (
         (DISK_STIFFNESS, case.stiffness), (DISK_DAMPING, case.damping)
     ))  # fmt: skip
-
-    def contact(z: complex, v: complex) -> tuple[float, complex]:
-        if abs(z) <= clearance:
-            return 0.0, 0j
-        outward = z / abs(z)
-        normal = max(0.0, PENALTY * (abs(z) - clearance) + damper * (v * outward.conjugate()).real)
-        return normal, normal * complex(1, FRICTION) * outward
 
     def slope(t: float, y: FloatArray) -> FloatArray:
         z, tip, ring, v, tip_v, ring_v = y[0:12:2] + 1j * y[1:12:2]
