@@ -11,7 +11,7 @@ from rubgen.errors import UserError
 from rubgen.solver.exponent import ASKED_FROM, is_settled
 from rubgen.solver.observers.companion_kernels import distance, run_companion
 from rubgen.solver.observers.observer import Observer
-from rubgen.solver.scheme.model import new_state, turned
+from rubgen.solver.scheme.model import new_state
 from rubgen.solver.scheme.motion_kernels import recover
 from rubgen.solver.scheme.step_kernels import OK
 from rubgen.solver.scheme.stepper import Stepper
@@ -125,7 +125,6 @@ class Companion:
         stepper, growth = self.stepper, np.full(len(self.stepper.snapshots.steps), np.nan)
         self.state.wear.depth[:] = stepper.state.wear.depth
         code = run_companion(stepper.model, opening, stepper.snapshots, self.closeness, self.state, growth)
-        self.state = turned(self.state, stepper.steps)
         return growth if code == OK else np.full(growth.size, np.nan)
 
     def _distance(self, main: FloatArray, companion: FloatArray) -> float:

@@ -11,7 +11,7 @@ from rubgen.arrays import FloatArray
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.block_kernels import Product, quadratic
 from rubgen.solver.scheme.model_kernels import Laws, Model
-from rubgen.solver.scheme.motion_kernels import Motion, recover
+from rubgen.solver.scheme.motion_kernels import Motion, motion_at, put_in_order, recover
 from rubgen.solver.scheme.state_kernels import Scratch, Snapshots, State
 from rubgen.solver.scheme.step_kernels import OK, advance, shift_gaps
 
@@ -79,15 +79,18 @@ def run_companion(
     - state: state of the companion; changed.
     - growth_out (snapshots,): written: ln of the distance's growth between snapshots.
     """
-    before, now, after = state.motions
+    buffer, first, second, third = state.buffer, 0, 1, 2
     step = 0
     for number in range(snapshots.steps.shape[0]):
         while step < snapshots.steps[number]:
+            before, now, after = motion_at(buffer, first), motion_at(buffer, second), motion_at(buffer, third)
             code, _ = advance(model, step, opening, before, now, after, state)
             if code != OK:
                 return code
-            before, now, after = now, after, before
+            first, second, third = second, third, first
             shift_gaps(state.contact)
             step += 1
-        growth_out[number] = renormalise(model, snapshots, number, closeness, (before, now), state)
+        pair = motion_at(buffer, first), motion_at(buffer, second)
+        growth_out[number] = renormalise(model, snapshots, number, closeness, pair, state)
+    put_in_order(buffer, first)
     return OK

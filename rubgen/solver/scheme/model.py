@@ -15,7 +15,7 @@ from rubgen.scenario.contact_laws.contact_law import NORMAL_LAWS
 from rubgen.solver.scheme.central_difference import compliances, energy_terms, scheme
 from rubgen.solver.scheme.energy_kernels import WORKS
 from rubgen.solver.scheme.model_kernels import Angles, Laws, Model
-from rubgen.solver.scheme.motion_kernels import Motion
+from rubgen.solver.scheme.motion_kernels import Motion, MotionBuffer
 from rubgen.solver.scheme.speed_part import SpeedPart
 from rubgen.solver.scheme.state_kernels import Scratch, State, Waiting
 from rubgen.solver.supports.constants import support_of
@@ -149,20 +149,13 @@ def angle_tables(system: SpinningSystem, theta: FloatArray, section: float = 0.0
 def new_state(model: Model) -> State:
     """Return a state at rest: undeformed and unworn, with all works zero."""
     return State(
-        motions=(new_motion(model), new_motion(model), new_motion(model)),
+        buffer=MotionBuffer(*(aligned(np.zeros((3, *each.shape))) for each in new_motion(model))),
         contact=new_contact_work(len(model.tip_compliance), len(model.casing_compliance)),
         support=SupportState(np.zeros((2, 2)), np.zeros((2, 2)), np.zeros((3, 2)), np.zeros(SUPPORT_WORKS)),
         wear=unworn(model.surface.liner),
         works=np.zeros(WORKS),
         scratch=_scratch(model),
     )
-
-
-def turned(state: State, steps: int) -> State:
-    """Return the state after `steps` steps. The three motions of the state rotate by one place in each step."""
-    first = steps % 3
-    order = state.motions[first:] + state.motions[:first]
-    return state._replace(motions=(order[0], order[1], order[2]))
 
 
 def new_motion(model: Model) -> Motion:

@@ -9,7 +9,7 @@ from rubgen.arrays import FloatArray, IntArray
 from rubgen.contact.contact_kernels import ContactWork
 from rubgen.contact.liner_kernels import Wear
 from rubgen.jit import inlined_kernel
-from rubgen.solver.scheme.motion_kernels import Motion
+from rubgen.solver.scheme.motion_kernels import Motion, MotionBuffer
 from rubgen.solver.supports.support_kernels import SupportState
 
 
@@ -60,8 +60,8 @@ class Scratch(NamedTuple):
 class State(NamedTuple):
     """Everything that changes from step to step, and scratch arrays. One model may have several states."""
 
-    motions: tuple[Motion, Motion, Motion]
-    """The motions at steps n - 1 and n, and one to write."""
+    buffer: MotionBuffer
+    """The motions at steps n - 1 and n, and one to write. Between turns they are in this order."""
     contact: ContactWork
     """Gaps that steps have left, and the contacts of the last step."""
     support: SupportState
@@ -71,6 +71,12 @@ class State(NamedTuple):
     works: FloatArray
     """Works so far (8,), J, at the indices of `energy_kernels`."""
     scratch: Scratch
+
+    @property
+    def motions(self) -> tuple[Motion, Motion, Motion]:
+        """Views of the three motions in `buffer`, outside of kernels."""
+        before, now, other = (Motion(z, tips, q) for z, tips, q in zip(*self.buffer, strict=True))
+        return before, now, other
 
 
 class Snapshots(NamedTuple):

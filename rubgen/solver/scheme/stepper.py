@@ -13,8 +13,8 @@ from rubgen.scenario import ContactLaw
 from rubgen.solver.linear.admissible import check_step
 from rubgen.solver.linear.system_blocks import system_blocks
 from rubgen.solver.scheme.energy_kernels import ABSOLUTE, SPEED_CHANGE, WORKS, stored_energy
-from rubgen.solver.scheme.model import angle_tables, at_speed, build_model, new_state, turned
-from rubgen.solver.scheme.motion_kernels import recover
+from rubgen.solver.scheme.model import angle_tables, at_speed, build_model, new_state
+from rubgen.solver.scheme.motion_kernels import put_in_order, recover
 from rubgen.solver.scheme.speed_part import SpeedPart
 from rubgen.solver.scheme.state_kernels import Coordinates, Snapshots
 from rubgen.solver.scheme.step_kernels import OK, advance, shift_gaps
@@ -175,7 +175,6 @@ class Stepper:
             self.model, opening, clock, recording, self.state, self.taps, touches, snapshots, results, ends
         )
         last = step if code != OK else 0
-        self.state = turned(self.state, whole * self.steps + last)
         for t in range(whole + (code != OK)):
             self.touches = touches._replace(ended=touches.ended[t])
             self.snapshots = Snapshots(snapshots.steps, snapshots.z[t], snapshots.step_gaps[t])
@@ -241,7 +240,7 @@ class Stepper:
         code, count = advance(self.model, index, width, *state.motions, state)
         wear_where_lined(count, self.model.surface.liner, self.dt, state.contact, state.wear)
         shift_gaps(state.contact)
-        self.state = turned(self.state, 1)
+        put_in_order(state.buffer, 1)
         return code, count
 
     def energy(self) -> float:

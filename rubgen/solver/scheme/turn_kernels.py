@@ -19,7 +19,7 @@ from rubgen.solver.scheme.energy_kernels import (
     stored_energy,
 )
 from rubgen.solver.scheme.model_kernels import Model
-from rubgen.solver.scheme.motion_kernels import Motion
+from rubgen.solver.scheme.motion_kernels import Motion, motion_at, put_in_order
 from rubgen.solver.scheme.state_kernels import Coordinates, Scratch, Snapshots, State, keep_snapshot
 from rubgen.solver.scheme.step_kernels import OK, advance, change_contacts, recover_contacts, shift_gaps
 from rubgen.solver.scheme.tap_kernels import SPEED_X, SPEED_Y, Taps, X, Y, record_arrivals, record_taps
@@ -214,20 +214,22 @@ def run_turn(
 
     The code is OK, or the code of `step_kernels` for the failure of a step. The turn ends at a step that fails: outputs
     of later steps are not written, and present touches are not ended. The parameters are as in `run_turns`, for one
-    turn. The motions of `state` are at step -1, at step 0, and scratch; they change places with every step.
+    turn. In `state.buffer` are the motions at steps -1 and 0, at the end those at the last two steps.
     """
     laws, steps = model.laws, model.angles.cosine.shape[0] - 2
     work, scratch = state.contact, state.scratch
-    before, now, after = state.motions
+    buffer, first, second, third = state.buffer, 0, 1, 2
     ended = arrivals = frame = number = waiting = 0
     result.summary[:] = 0.0
     result.orbit[:] = 0.0
     for s in range(steps):
+        before, now, after = motion_at(buffer, first), motion_at(buffer, second), motion_at(buffer, third)
         if snapshots.steps[number] == s:
             number = keep_snapshot(snapshots, number, before, now, work)
         code, count = advance(model, s, opening, before, now, after, state)
         if code != OK:
             add_waiting_works(model.energy, waiting, laws.dt, scratch.waiting, state.works)
+            put_in_order(buffer, first)
             return code, s, ended
         coordinates = Coordinates(before.q, now.q, after.q, scratch.change)
         for i in range(scratch.z_change.shape[0]):
@@ -260,11 +262,12 @@ def run_turn(
             record_section(model.harmonics, model.angles.section, laws.dt, before, now, after, scratch, result.section)
         displacement = casing_displacement_bound(model.surface, after.q[after.q.shape[0] - taps.bend.shape[0] :])
         result.summary[2] = max(result.summary[2], displacement)
-        before, now, after = now, after, before
+        first, second, third = second, third, first
         wear_where_lined(count, model.surface.liner, laws.dt, work, state.wear)
         shift_gaps(work)
     add_waiting_works(model.energy, waiting, laws.dt, scratch.waiting, state.works)
-    keep_snapshot(snapshots, number, before, now, work)
+    keep_snapshot(snapshots, number, motion_at(buffer, first), motion_at(buffer, second), work)
+    put_in_order(buffer, first)
     ended = close_touches(touches, clock + steps - 1, ended)
     result.summary[3] = arrivals
     return OK, steps, ended
@@ -281,18 +284,6 @@ class TurnEnds(NamedTuple):
     """Works of the supports after it (turns, 5), J."""
     energy: FloatArray
     """Stored energy half a step before its end (turns,), J."""
-
-
-@inlined_kernel
-def moved_on(state: State, steps: int) -> State:
-    """Return the state after `steps` steps. The three motions of the state rotate by one place in each step."""
-    a, b, c = state.motions
-    motions = (a, b, c)
-    if steps % 3 == 1:
-        motions = (b, c, a)
-    elif steps % 3 == 2:
-        motions = (c, a, b)
-    return State(motions, state.contact, state.support, state.wear, state.works, state.scratch)
 
 
 @allocation_free_kernel
@@ -317,7 +308,7 @@ def run_turns(
     - opening (turns, steps + 2): added to the radius of the surface at steps -1, 0, ..., steps of each turn, m.
     - clock: number of the first step of the first turn in the run.
     - recording: False leaves out taps, orbit and arrivals. The motion is the same.
-    - state: its arrays are changed. `moved_on` for the number of all steps gives the state at the end.
+    - state: changed to the state at the end.
     - taps: true signals of the present step n, with the contact force lam_n of the same time; changed.
     - touches, results, ends: written. `touches.ended` has a row for each turn. The arrivals in `taps.timing` belong to
       the last turn.
@@ -337,11 +328,10 @@ def run_turns(
             Snapshots(snapshots.steps, snapshots.z[t], snapshots.step_gaps[t]),
             TurnResult(results.taps[t], results.section[t], results.summary[t], results.orbit[t], results.frames[t]),
         )
-        state = moved_on(state, step)
-        before, now, _ = state.motions
-        for i in range(now.z.shape[0]):
-            state.scratch.z_change[i] = now.z[i] - before.z[i]
-        ends.energy[t] = stored_energy(model.energy, before.z, now.z, state.scratch.z_change, model.laws.dt)
+        before, now = state.buffer.z[0], state.buffer.z[1]
+        for i in range(now.shape[0]):
+            state.scratch.z_change[i] = now[i] - before[i]
+        ends.energy[t] = stored_energy(model.energy, before, now, state.scratch.z_change, model.laws.dt)
         for i in range(state.works.shape[0]):
             ends.works[t, i] = state.works[i]
         for i in range(state.support.works.shape[0]):
