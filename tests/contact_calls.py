@@ -3,8 +3,16 @@
 import numpy as np
 
 from rubgen.arrays import FloatArray
+from rubgen.contact.clearance_kernels import (
+    casing_displacement_bound,
+    clearance_bounds,
+    deformation_bounds,
+    radial_margin,
+    tighten,
+)
 from rubgen.contact.contact_kernels import friction_direction, slip_velocity
-from rubgen.contact.geometry_kernels import Surface, foot_of
+from rubgen.contact.geometry import with_zeros
+from rubgen.contact.geometry_kernels import Surface, Tips, foot_of
 from rubgen.contact.lcp_kernels import RIGID, SOLVED, solve_normal
 
 
@@ -58,3 +66,32 @@ def solve_complementarity(W: FloatArray, b: FloatArray) -> FloatArray:
     if solve_normal(np.array([RIGID]), matrix, gap, m, lam, *work) != SOLVED:
         raise ArithmeticError(f"no contact forces found for {m} contacts")
     return lam
+
+
+def screened(
+    surface: Surface,
+    tips: Tips,
+    casing: FloatArray,
+    displacement: FloatArray,
+    theta: float,
+    opening: float,
+    margin: float,
+    tip_shift: float,
+) -> tuple[FloatArray, FloatArray, float, bool]:
+    """Bounds (n_blades,) to the undeformed and to the deformed surface, what is enough of them, and the result.
+
+    - casing (n_casing,), displacement (2 or more, n_blades): the casing's coordinates and the tips' displacement, m.
+    - theta: angle of the blisk, rad.
+    - opening, margin: in m; `tip_shift` in tip radii.
+    """
+    angle, blades = surface.order * (theta - surface.phase), displacement.shape[1]
+    waves, moved = (np.cos(angle), np.sin(angle)), with_zeros(displacement)
+    deformation = deformation_bounds(surface, casing, casing_displacement_bound(surface, casing))
+    enough, bounds = radial_margin(surface, deformation, margin), np.full(moved.shape[1], np.nan)
+    clearance_bounds(surface, tips, moved, opening, tip_shift, *waves, bounds)
+    free = bounds.copy()
+    apart = tighten(
+        surface, tips, with_zeros(casing), moved, theta, *waves, opening, tip_shift, deformation, enough, bounds
+    )
+    assert bounds[blades:].min(initial=np.inf) > 1e5
+    return free[:blades], bounds[:blades], enough, apart

@@ -1,9 +1,11 @@
 """Bounds of tip clearance and of casing displacement. They only save work: no bit of a run depends on them."""
 
 import math
+from typing import NamedTuple
 
 from rubgen.arrays import FloatArray
 from rubgen.contact.geometry_kernels import Surface, Tips, tip_position, undeformed_radius
+from rubgen.contact.tip_rows_kernels import set_tip_bounds
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.vector_kernels import LANES, blended_product, lowest_bit, not_above
 
@@ -65,13 +67,14 @@ def least_clearance(surface: Surface, tips: Tips, states: FloatArray, theta: Flo
 def tip_angle(tips: Tips, blade: int, displacement: FloatArray, theta: float) -> float:
     """Return the polar angle of a blade's tip in rad. Its error is at most `angle_error`.
 
-    The tip is at the radius a, with the distance t from the blade's axis. t / radius replaces arctan(t / a).
+    The tip is at the radius a, with the distance t from the blade's axis. t / a replaces arctan(t / a).
 
     - displacement (2 or more, n_blades or more): radial and tangential displacement of each blade's tip, m.
     - theta: angle of the blisk, rad.
     """
+    along = tips.radius + tips.static[0, blade] + displacement[0, blade]
     aside = tips.static[1, blade] + displacement[1, blade]
-    angle: float = theta + tips.angle[blade] + aside / tips.radius
+    angle: float = theta + tips.angle[blade] + aside / along
     return angle
 
 
@@ -79,9 +82,9 @@ def tip_angle(tips: Tips, blade: int, displacement: FloatArray, theta: float) ->
 def angle_error(tip_shift: float) -> float:
     """Return a bound of the error of `tip_angle` in rad, for |a - radius| and |t| up to s = `tip_shift` radii.
 
-    |t / radius - t / a| <= 4/3 s^2, and |x - arctan x| <= |x|^3 / 3 with |x| <= 4/3 s. Valid for s < LARGEST_TIP_SHIFT.
+    |x - arctan x| <= |x|^3 / 3 with |x| = |t / a| <= 4/3 s. Valid for s < LARGEST_TIP_SHIFT.
     """
-    return tip_shift * tip_shift * (4.0 / 3.0 + 0.8 * tip_shift)
+    return 0.8 * tip_shift * tip_shift * tip_shift
 
 
 @inlined_kernel
@@ -104,80 +107,116 @@ def clearance_bounds(
     blade's by x, with an error of at most |x|^3 / 3. There r differs from r + r' x by at most |r''| x^2 / 2. |P| is at
     most a + t x / 2.
 
-    - displacement (2 or more, n_blades or more): radial and tangential displacement of each blade's tip, m.
+    - displacement (2 or more, width): radial and tangential displacement of each blade's tip, then zeros, m.
     - opening: added to the radius of the surface, m.
     - tip_shift: bound of |a - radius| and |t|, in tip radii; below LARGEST_TIP_SHIFT.
     - cos_orders, sin_orders (n_harmonics,): cosine and sine of order_j (theta - phase_j).
-    - bounds_out (n_blades or more,): written, m.
+    - bounds_out (width,): written, m; beyond 1e5 m behind the last blade. `width` is the number of blades up to a
+      multiple of eight.
     """
     base = surface.mean_radius + opening - tips.radius - surface.inset
     nearest = 1.0 / tips.radius
     # 1 / (radius + a) differs from 1 / radius by a share of at most 2 tip_shift.
     aside = nearest * surface.steepness * tip_shift * (2.0 + tip_shift)
     bend = nearest * (0.5 + tip_shift + surface.bend * nearest)
-    for k in range(tips.angle.shape[0]):
-        away = abs(tips.static[1, k] + displacement[1, k])
-        bounds_out[k] = base - (tips.static[0, k] + displacement[0, k]) - away * (aside + bend * away)
-    for j in range(surface.amplitude.shape[0]):
-        cosine, sine = surface.amplitude[j] * cos_orders[j], surface.amplitude[j] * sin_orders[j]
-        order = surface.order[j] * nearest
-        for k in range(tips.angle.shape[0]):
-            t = tips.static[1, k] + displacement[1, k]
-            at = cosine * tips.cos_order[j, k] - sine * tips.sin_order[j, k]
-            slope = sine * tips.cos_order[j, k] + cosine * tips.sin_order[j, k]
-            bounds_out[k] += at - order * t * slope
+    set_tip_bounds(
+        tips.bound_rows, displacement, (base, nearest, aside, bend), surface.amplitude, surface.order, cos_orders,
+        sin_orders, bounds_out,
+    )  # fmt: skip
+
+
+class Deformation(NamedTuple):
+    """Bounds of the casing's displacement u on the whole ring in one step."""
+
+    displacement: float
+    """Of |u|, m."""
+    slope: float
+    """Of the derivatives of u_r and u_t by the polar angle, m."""
+    bend: float
+    """Of their second derivatives, m."""
+    sag: float
+    """How far u_r and u_t may lie beside a straight line between their values at two nodes, m."""
 
 
 @inlined_kernel
-def deformation_bounds(surface: Surface, q_casing: FloatArray, tip_shift: float) -> tuple[float, float]:
-    """Return two bounds of the deformed surface on the whole ring, for `tighten`.
+def deformation_bounds(surface: Surface, q_casing: FloatArray, displacement: float) -> Deformation:
+    """Return bounds of the casing's deformation. `displacement` is the bound of `casing_displacement_bound`, m.
 
-    The first, in m, is how far the surface's radius at a polar angle may lie below r + opening + u_r, with u_r
-    interpolated linearly between the nodes at the angle of `tip_angle`. The second is the largest slope of r + opening
-    + u_r by the angle, over the smallest radius.
+    `q_casing` (n_casing,) are the casing's modal coordinates.
+    """
+    slope, bend = 0.0, 0.0
+    for j in range(q_casing.shape[0]):
+        size = abs(q_casing[j])
+        slope += size * surface.mode_slope[j]
+        bend += size * surface.mode_bend[j]
+    return Deformation(displacement, slope, bend, 0.125 * surface.node_step * surface.node_step * bend)
 
-    - q_casing (n_casing,): the casing's modal coordinates.
-    - tip_shift: bound of the tips' displacement, in tip radii; below LARGEST_TIP_SHIFT.
+
+@inlined_kernel
+def radius_loss(surface: Surface, deformation: Deformation, tip_shift: float) -> float:
+    """Return how far the deformed surface's radius at a tip's polar angle may lie below r + opening + u_r there, m.
+
+    r is the unworn surface's radius, and u_r the linear interpolation between nodes at the angle of `tip_angle`.
+    `tip_shift` is the bound of the tips' displacement, in tip radii; below LARGEST_TIP_SHIFT.
 
     A surface point at psi is at a polar angle that differs from psi by at most |u_t| / |X|. Its radius is therefore
     less by at most this angle times the slope.
     """
-    displacement, moved, bend = 0.0, 0.0, 0.0
-    for j in range(q_casing.shape[0]):
-        size = abs(q_casing[j])
-        displacement += size * surface.mode_displacement[j]
-        moved += size * surface.mode_slope[j]
-        bend += size * surface.mode_bend[j]
-    slope = surface.slope + moved
-    h = surface.node_step
-    nearest: float = NEAREST_SHARE * surface.mean_radius
-    return slope * displacement / nearest + moved * angle_error(tip_shift) + 0.125 * h * h * bend, slope / nearest
+    nearest = NEAREST_SHARE * surface.mean_radius
+    turned = deformation.displacement / nearest
+    loss: float = (surface.slope + deformation.slope) * turned
+    return loss + deformation.slope * angle_error(tip_shift) + deformation.sag
 
 
 @inlined_kernel
-def radial_displacement(surface: Surface, casing: FloatArray, angle: float) -> float:
-    """Return the radial displacement u_r of the casing at a polar angle, m: linear in the angle between two nodes.
+def small_radius_loss(
+    surface: Surface, deformation: Deformation, tip_shift: float, opening: float, tangential: float, aside: float
+) -> float:
+    """Return how far that radius may lie below r + opening + u_r - r' u_t / R, m; much less than `radius_loss`.
 
-    - casing (a multiple of eight,): the casing's modal coordinates, then zeros.
-    - angle: polar angle in the inertial frame, rad; it need not lie in [0, 2 pi). Node i is at i times
-      `surface.node_step`.
+    r' is the slope of the smooth curve at the angle of the blade, R its mean radius, and u_t interpolated as u_r is.
+
+    The surface point at the polar angle phi was at phi - d before the deformation, with tan d = u_t / (r + opening +
+    u_r). The radius is at least r + opening + u_r at phi - d. To first order in d that is the expression above, with
+    the linear interpolation and the tip's approximate angle. What they leave out is bounded by sums of products.
+
+    - opening: added to the radius of the surface, m.
+    - tangential: u_t, m.
+    - aside: |t| / a of the tip, rad.
     """
-    nodes = surface.radial.shape[0]
-    position = angle * (1.0 / surface.node_step)
-    first = math.floor(position)
-    at = int(first % nodes)
-    after = at + 1 if at + 1 < nodes else 0
-    outward: float = blended_product(surface.radial, at, after, position - first, casing)
-    return outward
+    nearest, error = NEAREST_SHARE * surface.mean_radius, angle_error(tip_shift)
+    turned = deformation.displacement / nearest
+    missed = deformation.sag + deformation.slope * (turned + error)  # of u_t at phi - d
+    size = abs(tangential)
+    here = (size + missed) / nearest  # bound of |d|
+    unlike = 1.0 / NEAREST_SHARE - 1.0 + abs(opening) / surface.mean_radius  # of R / (r + opening + u_r)
+    angle = missed / nearest + unlike * size / surface.mean_radius + turned * turned * turned / 3
+    loss: float = deformation.sag + deformation.slope * (error + here)
+    loss += surface.steepness * angle + surface.bend * here * aside
+    return loss + 0.5 * (surface.bend + deformation.bend) * turned * turned
 
 
 @inlined_kernel
-def radial_margin(margin: float, limits: tuple[float, float]) -> float:
+def radial_margin(surface: Surface, deformation: Deformation, margin: float) -> float:
     """Return the largest radial distance to the surface, m, of a point that is at most `margin` (m) from the surface.
 
-    It is the margin times the Lipschitz constant of the surface's radius. `limits` are the two `deformation_bounds`.
+    It is the margin times the Lipschitz constant of the deformed surface's radius.
     """
-    return margin * (1.0 + 0.5 * limits[1] * limits[1])
+    slope = (surface.slope + deformation.slope) / (NEAREST_SHARE * surface.mean_radius)
+    return margin * (1.0 + 0.5 * slope * slope)
+
+
+@inlined_kernel
+def curve_slope(surface: Surface, tips: Tips, blade: int, cos_orders: FloatArray, sin_orders: FloatArray) -> float:
+    """Return dr/dpsi of the smooth curve at the angle of a blade on the disk, m.
+
+    `cos_orders` and `sin_orders` (n_harmonics,) are cosine and sine of order_j (theta - phase_j).
+    """
+    slope = 0.0
+    for j in range(surface.amplitude.shape[0]):
+        cos_tip, sin_tip = tips.bound_rows[2 + 2 * j, blade], tips.bound_rows[3 + 2 * j, blade]
+        slope -= surface.amplitude[j] * surface.order[j] * (sin_orders[j] * cos_tip + cos_orders[j] * sin_tip)
+    return slope
 
 
 @inlined_kernel
@@ -187,31 +226,48 @@ def tighten(
     casing: FloatArray,
     displacement: FloatArray,
     theta: float,
-    far: float,
-    limits: tuple[float, float],
+    cos_orders: FloatArray,
+    sin_orders: FloatArray,
+    opening: float,
+    tip_shift: float,
+    deformation: Deformation,
+    enough: float,
     bounds: FloatArray,
 ) -> bool:
-    """Replace every clearance bound of at most `far` by a bound of the clearance to the deformed surface.
+    """Replace every clearance bound that the casing's displacement could undo by one to the deformed surface.
 
-    A bound that is NaN is replaced too. Return True if all replaced bounds are positive, or none is replaced. Then no
-    tip touches, provided that `far` is at least the bound of the casing's displacement plus limits[0]. A tip whose new
-    bound exceeds `radial_margin(margin, limits)`, for any margin in m, is inside the deformed surface and farther than
-    the margin from it.
+    A bound that is NaN is replaced too. Return True if all replaced bounds are positive, or none is replaced: then no
+    tip touches. A tip whose bound is then above `enough` is inside the deformed surface, and farther from it than the
+    margin for which `enough` is the `radial_margin`. The second, closer bound is computed where the first is below.
 
     - casing (a multiple of eight,): the casing's modal coordinates, then zeros.
     - displacement (2 or more, n_blades or more): radial and tangential displacement of each blade's tip, m.
     - theta: angle of the blisk, rad.
-    - far: largest bound that is replaced, m.
-    - limits: the two `deformation_bounds`.
-    - bounds (a multiple of eight,): bounds of `clearance_bounds`, then inf; changed, m.
+    - cos_orders, sin_orders (n_harmonics,): cosine and sine of order_j (theta - phase_j).
+    - opening: added to the radius of the surface, m.
+    - tip_shift: bound of the tips' displacement, in tip radii; below LARGEST_TIP_SHIFT.
+    - deformation: the casing's.
+    - bounds (a multiple of eight,): bounds of `clearance_bounds`; changed, m.
     """
-    positive = True
+    positive, nodes = True, surface.radial.shape[0]
+    loss = radius_loss(surface, deformation, tip_shift)
+    far = deformation.displacement + loss + enough  # u_r is nowhere larger than the displacement
     for row in range(bounds.shape[0] // LANES):
         near = not_above(bounds, row, far)
         while near != 0:
             k = LANES * row + lowest_bit(near)
             near &= near - 1
-            outward = radial_displacement(surface, casing, tip_angle(tips, k, displacement, theta))
-            bounds[k] += outward - limits[0]
+            position = tip_angle(tips, k, displacement, theta) * (1.0 / surface.node_step)
+            first = math.floor(position)
+            at = int(first % nodes)
+            after = at + 1 if at + 1 < nodes else 0
+            free = bounds[k] + blended_product(surface.radial, at, after, position - first, casing)
+            bounds[k] = free - loss
+            if not bounds[k] > enough:
+                tangential = blended_product(surface.tangential, at, after, position - first, casing)
+                aside = abs(tips.static[1, k] + displacement[1, k]) / (tips.radius * (1.0 - tip_shift))
+                shift = curve_slope(surface, tips, k, cos_orders, sin_orders) * tangential / surface.mean_radius
+                least = small_radius_loss(surface, deformation, tip_shift, opening, tangential, aside)
+                bounds[k] = free - shift - least
             positive = positive and bounds[k] > 0.0
     return positive

@@ -10,7 +10,6 @@ import math
 from typing import NamedTuple
 
 from rubgen.arrays import FloatArray, IntArray
-from rubgen.contact.clearance_kernels import radial_margin
 from rubgen.contact.geometry_kernels import Surface, Tips, casing_rows, foot_of, tip_position
 from rubgen.contact.liner_kernels import WORK, Liner, Wear, remove, worn_depth
 from rubgen.jit import allocation_free_kernel, inlined_kernel
@@ -23,7 +22,7 @@ class ContactWork(NamedTuple):
     casing: FloatArray
     """The casing's coordinates in q* and zeros behind, as `Surface.radial` has them."""
     bounds: FloatArray
-    """Bound of each blade's clearance, infinite behind the last blade to a multiple of eight, m."""
+    """Bound of each blade's clearance, and huge numbers behind the last blade to a multiple of eight, m."""
     psi: FloatArray
     """Polar angle of each blade's foot (n_blades,), rad; it need not lie in [0, 2 pi)."""
     gap: FloatArray
@@ -78,14 +77,14 @@ def find_near(
     cos_theta: float,
     sin_theta: float,
     margin: float,
-    limits: tuple[float, float],
+    enough: float,
     work: ContactWork,
 ) -> tuple[int, bool]:
     """Find the blades nearer to the surface than `margin`. Return their number, and whether any tip has entered it.
 
     The numbers of these blades are written into `work.blade`, ascending. `psi`, `gap` and `tangent` of `work` are
     written at the index of each such blade. The gap of every other blade is set to NaN. Only tips whose bound in
-    `work.bounds` is at most `radial_margin` are evaluated: any other is farther than `margin`.
+    `work.bounds` is at most `enough` are evaluated: any other is farther than `margin`.
 
     - worn (bins,): coefficients of the worn depth, m; (0,) without a liner.
     - q (n,): q*; radial and tangential displacement of the evaluated tips are copied into it.
@@ -94,9 +93,9 @@ def find_near(
     - opening: added to the radius of the surface, m.
     - cos_theta, sin_theta: of the blisk's angle.
     - margin: in m.
-    - limits: the two `deformation_bounds`.
+    - enough: its `radial_margin`, m.
     """
-    count, penetrates, enough = 0, False, radial_margin(margin, limits)
+    count, penetrates = 0, False
     for k in range(work.gap.shape[0]):
         work.gap[k] = math.nan
     for row in range(work.bounds.shape[0] // LANES):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rubgen.arrays import FloatArray, frozen
-from rubgen.contact.geometry_kernels import Surface, Tips
+from rubgen.contact.geometry_kernels import FAR_AWAY, Surface, Tips
 from rubgen.contact.liner_kernels import Liner, Wear
 from rubgen.errors import UserError
 from rubgen.reduction.model import CasingSurface, SpinningSystem
@@ -97,9 +97,10 @@ def casing_surface(system: SpinningSystem, contact: ContactLaw = CENTRE_LINE) ->
             table=np.ascontiguousarray(np.concatenate([modes, slopes], axis=1).transpose(0, 2, 1)),
             node_step=step,
             mode_displacement=np.ascontiguousarray(size + 0.25 * step * slope_size),
-            mode_slope=np.ascontiguousarray(between + size),
+            mode_slope=np.ascontiguousarray(between + size + 0.25 * step * slope_size),
             mode_bend=np.ascontiguousarray(bends + 2 * between + size + 0.25 * step * slope_size),
             radial=with_zeros(modes[:, 0] * np.cos(angle) + modes[:, 1] * np.sin(angle)),
+            tangential=with_zeros(modes[:, 1] * np.cos(angle) - modes[:, 0] * np.sin(angle)),
             steepness=steepness,
             bend=bend,
             corners=corners,
@@ -116,17 +117,18 @@ def blade_tips(system: SpinningSystem) -> Tips:
     They have one radius at rest, m; the steady displacement along the blades' axes (3, n_blades), m; each blade's angle
     on the disk, rad; and the cosines and sines of this angle and of its multiples by the orders of the surface.
     """
-    angle = np.asarray(system.blade_angles, dtype=float)
-    orders = np.multiply.outer(np.asarray(system.surface.order, dtype=float), angle)
+    angle, static = np.asarray(system.blade_angles, dtype=float), np.asarray(system.tip_static.T, dtype=float)
+    orders = [order * angle for order in np.asarray(system.surface.order, dtype=float)]
+    rows = with_zeros(np.array([*static[:2], *(wave(each) for each in orders for wave in (np.cos, np.sin))]))
+    rows[0, len(angle) :] = -FAR_AWAY
     return frozen(
         Tips(
             radius=float(system.tip_radius),
-            static=np.ascontiguousarray(system.tip_static.T, dtype=float),
+            static=np.ascontiguousarray(static),
             angle=angle,
             cos_angle=np.cos(angle),
             sin_angle=np.sin(angle),
-            cos_order=np.cos(orders),
-            sin_order=np.sin(orders),
+            bound_rows=rows,
         )
     )
 

@@ -14,6 +14,8 @@ from rubgen.jit import allocation_free_kernel, inlined_kernel
 
 FOOT_TOLERANCE = 1e-10
 FOOT_ITERATIONS = 20
+FAR_AWAY = 1e6
+"""Distance in m of a tip that does not exist from the surface."""
 
 
 class Surface(NamedTuple):
@@ -34,11 +36,14 @@ class Surface(NamedTuple):
     mode_displacement: FloatArray
     """Bound of the displacement anywhere on the ring per unit of each mode (n_casing,)."""
     mode_slope: FloatArray
-    """Bound of the first derivative of the radial displacement by the angle per unit of each mode (n_casing,)."""
+    """Bound of the first derivative of the radial and tangential displacement by the angle per unit of each mode
+    (n_casing,)."""
     mode_bend: FloatArray
-    """Bound of its second derivative (n_casing,)."""
+    """Bound of their second derivatives (n_casing,)."""
     radial: FloatArray
     """Radial displacement at the nodes per unit of each mode, and zeros behind (nodes, a multiple of eight)."""
+    tangential: FloatArray
+    """Tangential displacement, likewise."""
     steepness: float
     """Bound of |dr/dpsi| of the smooth curve."""
     bend: float
@@ -66,10 +71,10 @@ class Tips(NamedTuple):
     """Its cosine (n_blades,)."""
     sin_angle: FloatArray
     """Its sine (n_blades,)."""
-    cos_order: FloatArray
-    """Cosine of order_j times the angle (n_harmonics, n_blades), order_j as in `Surface`."""
-    sin_order: FloatArray
-    """Sine of order_j times the angle (n_harmonics, n_blades)."""
+    bound_rows: FloatArray
+    """What `set_tip_bounds` takes of each blade (2 + 2 n_harmonics, the blades up to a multiple of eight): the radial
+    and tangential part of `static`, and for each harmonic cosine and sine of its order times the angle. Behind the last
+    blade the first row has -FAR_AWAY, the others have zeros."""
 
 
 @allocation_free_kernel

@@ -5,16 +5,9 @@ import pytest
 from test_contact_geometry import NODES, RADIUS, ring
 
 from rubgen.contact import blade_tips, casing_surface
-from rubgen.contact.clearance_kernels import (
-    clearance_bounds,
-    deformation_bounds,
-    radial_margin,
-    tighten,
-)
-from rubgen.contact.geometry import with_zeros
 from rubgen.contact.geometry_kernels import chord_radius, undeformed_radius
 from rubgen.scenario import ContactLaw
-from tests.contact_calls import gap_and_foot
+from tests.contact_calls import gap_and_foot, screened
 
 CHORDS = ContactLaw(surface="chords")
 STEP = 2 * np.pi / NODES
@@ -84,20 +77,15 @@ def test_the_screening_bounds_hold_for_chords_in_a_deformed_casing():
     for _ in range(60):
         q = np.concatenate([rng.normal(size=29) * 3e-4, rng.normal(size=3) * 2e-4])
         theta = rng.uniform(0, 2 * np.pi)
-        orders = system.surface.order * (theta - system.surface.phase)
-        bounds = np.full(16, np.inf)
-        displacement = np.ascontiguousarray(q[:27].reshape(9, 3).T)
-        clearance_bounds(surface, tips, displacement, 1e-4, 0.01, np.cos(orders), np.sin(orders), bounds)
-        limits = deformation_bounds(surface, q[29:], 0.01)
-        free = bounds.copy()
-        tighten(surface, tips, with_zeros(q[29:]), displacement, theta, 1.0, limits, bounds)
+        displacement = q[:27].reshape(9, 3).T
+        free, bounds, enough, _ = screened(surface, tips, q[29:], displacement, theta, 1e-4, 2e-5, 0.01)
         for k in range(9):
             place = system.tip_static[k] + q[3 * k : 3 * k + 3]
             point = (RADIUS + place[0] + 1j * place[1]) * np.exp(1j * (theta + system.blade_angles[k]))
             gap = gap_and_foot(surface, q[29:], np.array([point.real, point.imag]), 1e-4)[0]
             radius = undeformed_radius(surface, np.angle(point))[0] + 1e-4
             assert free[k] <= radius - abs(point)
-            clear = bounds[k] > radial_margin(2e-5, limits)
+            clear = bounds[k] > enough
             assert gap > 2e-5 or not clear
             decided.append(clear)
     assert 0.3 < np.mean(decided) < 1

@@ -9,17 +9,15 @@ from test_contact_geometry import NODES, RADIUS, ring
 
 from rubgen.contact import blade_tips, casing_surface
 from rubgen.contact.clearance_kernels import (
-    clearance_bounds,
-    deformation_bounds,
+    Deformation,
     largest_nodal_displacement,
-    radial_margin,
-    tighten,
+    radius_loss,
+    small_radius_loss,
 )
-from rubgen.contact.geometry import with_zeros
 from rubgen.contact.geometry_kernels import tip_position, undeformed_radius
 from rubgen.scenario import ContactLaw
 from rubgen.solver.scheme.model import CASING_LIMIT_SHARE, TIP_LIMIT_SHARE, bounds_hold, relative_tip_shift
-from tests.contact_calls import gap_and_foot
+from tests.contact_calls import gap_and_foot, screened
 
 TIP_LIMIT = TIP_LIMIT_SHARE * RADIUS
 CASING_LIMIT = CASING_LIMIT_SHARE * RADIUS
@@ -34,15 +32,15 @@ def thick_ring(ovality, lobes, phase):
     return replace(ring(ovality, lobes, phase=phase, static=2e-3), **thick)
 
 
-def near_states(surface, tips, rng):
-    """Tips (2, 16) at a few gaps about a margin, a casing (3,) within its limit, an opening, an angle, and the margin.
+def near_states(surface, tips, rng, bent=(1e-5, CASING_LIMIT), aside=(1e-5, 1e-2)):
+    """Tips (2, 9) at a few gaps about a margin, a casing (3,) within its limit, an opening, an angle, and the margin.
 
-    The casing bends by 10 um to 10 mm, the tips aside by up to 10 mm; radially they are moved until the gap is right.
+    The casing bends by `bent`, the tips aside by some `aside`, m; radially they are moved until the gap is right.
     """
     casing = rng.normal(size=3) * (rng.random(3) < 0.7) + 1e-9
-    casing *= 10 ** rng.uniform(-5, math.log10(CASING_LIMIT)) / largest_nodal_displacement(surface, casing)
-    aside = np.clip(rng.normal(size=9) * 10 ** rng.uniform(-5, -2), -TIP_LIMIT, TIP_LIMIT)
-    displacement = with_zeros(np.stack([np.zeros(9), aside]))
+    casing *= 10 ** rng.uniform(*np.log10(bent)) / largest_nodal_displacement(surface, casing)
+    tangential = np.clip(rng.normal(size=9) * 10 ** rng.uniform(*np.log10(aside)), -TIP_LIMIT, TIP_LIMIT)
+    displacement = np.stack([np.zeros(9), tangential])
     opening, margin = rng.choice([0.0, 1e-4, 1e-3]), rng.choice([2e-5, 3e-4])
     theta = rng.uniform(-20, 20)
     for k, share in enumerate(rng.choice([-0.01, 0.0, 0.9, 0.999], size=9)):
@@ -69,17 +67,23 @@ def test_no_tip_within_the_margin_is_ever_called_clear(lobes, contact):
         assert bounds_hold(surface, tip_shift, CASING_LIMIT)
         for _ in range(20):
             displacement, casing, opening, theta, margin = near_states(surface, tips, rng)
-            orders = system.surface.order * (theta - system.surface.phase)
-            bounds, limits = np.full(16, np.inf), deformation_bounds(surface, casing, tip_shift)
-            clearance_bounds(surface, tips, displacement, opening, tip_shift, np.cos(orders), np.sin(orders), bounds)
-            free = bounds.copy()
-            apart = tighten(surface, tips, with_zeros(casing), displacement, theta, 1.0, limits, bounds)
+            free, bounds, enough, apart = screened(
+                surface, tips, casing, displacement, theta, opening, margin, tip_shift
+            )
             places = [tip_place(tips, k, displacement, theta) for k in range(9)]
             gaps = np.array([gap_and_foot(surface, casing, place, opening)[0] for place in places])
             angles = [math.atan2(place[1], place[0]) % (2 * np.pi) for place in places]
             radii = np.array([undeformed_radius(surface, angle)[0] for angle in angles]) + opening
-            assert np.all(free[:9] <= radii - np.hypot(*np.transpose(places)))
+            assert np.all(free <= radii - np.hypot(*np.transpose(places)))
             assert not apart or gaps.min() > 0
-            assert np.all(bounds[:9][gaps < margin] <= radial_margin(margin, limits))
+            assert np.all(bounds[gaps < margin] <= enough)
             within += int((gaps < margin).sum())
     assert within > 300
+
+
+def test_the_closer_bound_loses_a_tenth_of_the_wide_one():
+    """The wide one loses (r' + u_r') |u| / R: 8 mm times 0.3 mm over 0.4 m are 6 um."""
+    surface, casing = casing_surface(ring(8e-3, 2, phase=0.3)), Deformation(3e-4, 1e-3, 4e-3, 0.0)
+    wide, close = radius_loss(surface, casing, 0.025), small_radius_loss(surface, casing, 0.025, 1e-4, 8e-5, 1e-3)
+    assert wide > 6e-6
+    assert 0 < close < wide / 10

@@ -48,7 +48,7 @@ def test_near_blades_are_those_whose_gap_is_below_the_margin(near, margin):
     blind[0 : 3 * BLADES : 3] = blind[1 : 3 * BLADES : 3] = np.nan  # must be taken from `displacement`
     turned = np.cos(THETA), np.sin(THETA)
     count, penetrates = find_near(
-        surface, tips, NO_WEAR, blind, displacement, START, OPENING, *turned, margin, (0.0, 0.0), work
+        surface, tips, NO_WEAR, blind, displacement, START, OPENING, *turned, margin, margin, work
     )
     expected = np.flatnonzero(gaps[:, 0] < margin)
     assert count == expected.size
@@ -69,7 +69,7 @@ def test_a_blade_whose_bound_is_far_is_not_looked_at(near):
     displacement = with_zeros(q[: 3 * BLADES].reshape(BLADES, 3).T[:2])
     q[: 3 * BLADES] = np.nan
     turned = np.cos(THETA), np.sin(THETA)
-    find_near(surface, tips, NO_WEAR, q, displacement, START, OPENING, *turned, 2e-4, (0.0, 1.0), work)
+    find_near(surface, tips, NO_WEAR, q, displacement, START, OPENING, *turned, 2e-4, 3e-4, work)
     np.testing.assert_array_equal(np.flatnonzero(np.isfinite(q[: 3 * BLADES])), [6, 7])
 
 

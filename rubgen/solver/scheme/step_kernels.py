@@ -12,6 +12,7 @@ import math
 
 from rubgen.arrays import FloatArray
 from rubgen.contact.clearance_kernels import (
+    Deformation,
     casing_displacement_bound,
     clearance_bounds,
     deformation_bounds,
@@ -172,9 +173,8 @@ def bound_clearances(
     inside: int,
     opening: float,
     after: Motion,
-    margin: float,
-    casing_bound: float,
-    limits: tuple[float, float],
+    deformation: Deformation,
+    enough: float,
     work: ContactWork,
 ) -> bool:
     """Write a lower bound of each tip's clearance to the deformed surface, m, into `work.bounds`.
@@ -184,25 +184,23 @@ def bound_clearances(
     - inside: row of `model.angles` of the step.
     - opening: added to the radius of the surface, m.
     - after: the motion at the step.
-    - margin: tips nearer than this need a bound to the deformed surface, m.
-    - casing_bound: bound of the casing's displacement, m.
-    - limits: the two `deformation_bounds`.
+    - deformation: the casing's at the step.
+    - enough: `radial_margin` of the margin within which blades are solved together, m.
     """
     n_blades, n_casing = work.gap.shape[0], work.rows.shape[1]
     if not model.laws.screen:
         for k in range(n_blades):
             work.bounds[k] = -math.inf
         return False
-    angles, start = model.angles, after.q.shape[0] - n_casing
-    clearance_bounds(
-        model.surface, model.tips, after.tips, opening, model.laws.tip_shift, angles.cos_orders[inside],
-        angles.sin_orders[inside], work.bounds,
-    )  # fmt: skip
+    angles, start, tip_shift = model.angles, after.q.shape[0] - n_casing, model.laws.tip_shift
+    cosine, sine = angles.cos_orders[inside], angles.sin_orders[inside]
+    clearance_bounds(model.surface, model.tips, after.tips, opening, tip_shift, cosine, sine, work.bounds)
     for j in range(n_casing):
         work.casing[j] = after.q[start + j]
-    # The linear interpolation of u_r is nowhere above casing_bound.
-    far = (casing_bound + limits[0]) + radial_margin(margin, limits)
-    return tighten(model.surface, model.tips, work.casing, after.tips, angles.theta[inside], far, limits, work.bounds)
+    return tighten(
+        model.surface, model.tips, work.casing, after.tips, angles.theta[inside], cosine, sine, opening, tip_shift,
+        deformation, enough, work.bounds,
+    )  # fmt: skip
 
 
 @inlined_kernel
@@ -235,17 +233,18 @@ def contact_step(
     surface, laws, angles = model.surface, model.laws, model.angles
     coordinates = Coordinates(before.q, now.q, after.q, scratch.change)
     new, inside = opening[step + 2], step + 1
-    limits = deformation_bounds(surface, after.q[start:], laws.tip_shift)
+    deformation = deformation_bounds(surface, after.q[start:], casing_bound)
     margin = starting_margin(laws, work.step_gaps)
     for _ in range(MARGIN_TRIES):
-        apart = bound_clearances(model, inside, new, after, margin, casing_bound, limits, work)
+        enough = radial_margin(surface, deformation, margin)
+        apart = bound_clearances(model, inside, new, after, deformation, enough, work)
         if apart and not laws.lasting:
             for k in range(n_blades):
                 work.step_gaps[2, k] = math.nan
             return OK, 0
         count, penetrates = find_near(
             surface, model.tips, state.wear.depth, after.q, after.tips, start, new, angles.cosine[inside],
-            angles.sine[inside], margin, limits, work,
+            angles.sine[inside], margin, enough, work,
         )  # fmt: skip
         for k in range(n_blades):
             work.step_gaps[2, k] = work.gap[k]

@@ -103,6 +103,7 @@ def _arrays(part: SpeedPart) -> dict[str, FloatArray]:
     scheme, energy = part.scheme, part.energy
     return {
         "static": part.tips.static,
+        "bound_rows": part.tips.bound_rows,
         "now": scheme.now,
         "before": scheme.before,
         "constant": scheme.constant,
@@ -152,7 +153,7 @@ def _unpacked(template: SpeedPart, row: FloatArray, layout: PartLayout) -> Speed
     new = _arrays(template) | {name: row[place].reshape(shape) for name, (place, shape) in layout.items()}
     scheme, energy = template.scheme, template.energy
     return SpeedPart(
-        template.tips._replace(static=new["static"]),
+        template.tips._replace(static=new["static"], bound_rows=new["bound_rows"]),
         Scheme(scheme.lines, new["now"], new["before"], new["constant"], new["inverse"]),
         new["tips"],
         new["casing"],
