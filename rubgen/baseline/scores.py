@@ -37,7 +37,8 @@ def best_threshold(values: FloatArray, flags: BoolArray) -> Threshold:
     scores = np.where(allowed, (above + below) / 2, 0.5)
     either = np.maximum(scores, 1 - scores)
     at = int(np.argmax(either))
-    return Threshold(float(either[at]), float(np.mean(ranked[at : at + 2])), bool(scores[at] >= 0.5))
+    middle = ranked[at] / 2 + ranked[at + 1] / 2  # halves: the sum of two largest numbers is none
+    return Threshold(float(either[at]), float(middle), bool(scores[at] >= 0.5))
 
 
 def balanced_accuracy(predicted: npt.NDArray[Any], truth: npt.NDArray[Any]) -> float:
