@@ -12,6 +12,7 @@ from rubgen.dataset.manifest import Identity
 from rubgen.dataset.tables import RUNS, SECTIONS, tables_of
 from rubgen.dataset.tally import Tally, tally_of
 from rubgen.io.columns import Role
+from rubgen.io.parquet.features import is_list
 from rubgen.io.parquet.sensors import SENSORS_SCHEMA
 from rubgen.labels import MOTION_CLASSES
 
@@ -180,7 +181,7 @@ def _field(record_set: str, column: pa.Field, source: dict[str, Any]) -> dict[st
     role = facts.get("role", "")
     notes = [facts["meaning"], *([f"in {facts['unit']}"] if facts.get("unit") else []), *([role] if role else [])]
     notes += [f"classes {facts['classes']}"] if "classes" in facts else []
-    listed = pa.types.is_list(column.type) or pa.types.is_fixed_size_list(column.type)
+    listed = is_list(column.type)
     kind = TYPES[str(column.type.value_type if listed else column.type)]
     kinds = [kind, *_MEANT.get(column.name, []), *(["cr:Label"] if role == Role.TARGET.value else [])]
     field: dict[str, Any] = {

@@ -13,6 +13,7 @@ from rubgen.dataset.manifest import Manifest
 from rubgen.dataset.rows import RunRows
 from rubgen.errors import UserError
 from rubgen.formats import run_formats
+from rubgen.io.parquet.features import is_list
 from rubgen.measurement.channel import Float32Array
 from rubgen.scenario.run_id import run_id_of
 
@@ -62,8 +63,7 @@ def exported_signals(
 
 def is_signal(field: Any) -> bool:
     """Return whether the column of this Arrow field contains recorded channels: lists of float32."""
-    a_list = pa.types.is_list(field.type) or pa.types.is_fixed_size_list(field.type)
-    return bool(a_list and field.type.value_type == pa.float32())
+    return is_list(field.type) and bool(field.type.value_type == pa.float32())
 
 
 def row_signals(table: pa.Table, row: int) -> dict[str, Float32Array]:

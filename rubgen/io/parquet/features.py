@@ -26,8 +26,13 @@ def features_json(columns: Iterable[Column], fields: Iterable[pa.Field]) -> str:
     return json.dumps({"info": {"features": features}})
 
 
+def is_list(kind: pa.DataType) -> bool:
+    """Return whether an Arrow type is that of lists, of any or of one length."""
+    return bool(pa.types.is_list(kind) or pa.types.is_fixed_size_list(kind))
+
+
 def _feature(column: Column, kind: pa.DataType) -> dict[str, Any]:
-    if pa.types.is_list(kind) or pa.types.is_fixed_size_list(kind):
+    if is_list(kind):
         length = kind.list_size if pa.types.is_fixed_size_list(kind) else -1
         return {"feature": _feature(column, kind.value_type), "length": length, "_type": "Sequence"}
     if column.words:

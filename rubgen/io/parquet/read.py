@@ -14,6 +14,7 @@ import pyarrow.parquet as pq
 
 from rubgen.errors import UserError
 from rubgen.io.files import check_regular
+from rubgen.io.parquet.features import is_list
 from rubgen.io.places import is_url, url_problems
 
 MOST_BYTES = 256 * 1024**2
@@ -177,7 +178,7 @@ def _text_columns(path: Path, types: pa.Schema) -> dict[str, str]:
     if len(set(types.names)) != len(types.names):
         raise UserError(f"{path}: two columns share a name; that is no file of rubgen")
     for field in types:
-        leaf = field.type.value_type if _is_list(field.type) else field.type
+        leaf = field.type.value_type if is_list(field.type) else field.type
         number = pa.types.is_integer(leaf) or pa.types.is_floating(leaf) or pa.types.is_boolean(leaf)
         if not (number or pa.types.is_string(leaf)):
             raise UserError(f"{path}: column {field.name!r} is {field.type!s:.60}; that is no file of rubgen")
@@ -186,10 +187,6 @@ def _text_columns(path: Path, types: pa.Schema) -> dict[str, str]:
     ]
     text = [field.name for field in types if pa.types.is_string(field.type)]
     return {name: name for name in text} | {name: f"{name}.list.element" for name in lists}
-
-
-def _is_list(kind: pa.DataType) -> bool:
-    return bool(pa.types.is_list(kind) or pa.types.is_fixed_size_list(kind))
 
 
 def _text_bytes(chunk: pa.Array) -> int:

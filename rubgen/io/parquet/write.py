@@ -22,7 +22,7 @@ import pyarrow.parquet as pq
 from rubgen.arrays import FloatArray
 from rubgen.io.columns import DRAWING, IN_RUNS_ALONE, Column, Role, scalar_columns, signal_columns
 from rubgen.io.files import write_durably
-from rubgen.io.parquet.features import features_json
+from rubgen.io.parquet.features import features_json, is_list
 from rubgen.io.parquet.words import with_numbers
 from rubgen.labels.classes import class_numbers
 from rubgen.labels.faults import fault_labels
@@ -231,8 +231,8 @@ def _field(column: Column) -> pa.Field:
 
 def _settings(types: pa.Schema) -> dict[str, Any]:
     # The leaf of a list must be named: the plain column's name is silently ignored.
-    leaves = {field.name: f"{field.name}.list.element" if _is_list(field.type) else field.name for field in types}
-    values = {field.name: field.type.value_type if _is_list(field.type) else field.type for field in types}
+    leaves = {field.name: f"{field.name}.list.element" if is_list(field.type) else field.name for field in types}
+    values = {field.name: field.type.value_type if is_list(field.type) else field.type for field in types}
     single = [name for name, kind in values.items() if kind == pa.float32()]
     roles = {field.name: (field.metadata or {}).get(b"role", b"").decode() for field in types}
     recorded = [name for name in single if roles[name] and not name.endswith("_clean")]
@@ -249,10 +249,6 @@ def _settings(types: pa.Schema) -> dict[str, Any]:
         "write_page_index": True,
         "use_content_defined_chunking": True,
     }
-
-
-def _is_list(kind: pa.DataType) -> bool:
-    return bool(pa.types.is_list(kind) or pa.types.is_fixed_size_list(kind))
 
 
 def _identity(run: Run, split: str) -> dict[str, object]:

@@ -6,7 +6,8 @@ so the order must not change.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from operator import attrgetter
+from functools import reduce
+from operator import attrgetter, getitem
 from typing import Any
 
 import numpy as np
@@ -67,7 +68,7 @@ def _plain(key: str, unit: str, meaning: str, quantity: Any, *places: str) -> Ma
     def write(values: Values, value: float) -> None:
         for place in places:
             *parts, name = place.split(".")
-            _part(values, parts)[name] = value
+            reduce(getitem, parts, values)[name] = value
 
     return MachineKey(key, unit, meaning, quantity, write, attrgetter(places[0]))
 
@@ -103,12 +104,6 @@ def _of_frame(key: str, unit: str, meaning: str, quantity: Any, name: str) -> Ma
         return float(getattr(machine.frame.modes[0], name)) if machine.frame else float("nan")
 
     return MachineKey(key, unit, meaning, quantity, write, read)
-
-
-def _part(values: Values, parts: list[str]) -> Values:
-    for part in parts:
-        values = values[part]
-    return values
 
 
 def _write_count(values: Values, count: float) -> None:
