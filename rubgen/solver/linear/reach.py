@@ -84,8 +84,8 @@ def deepest(scenario: Scenario) -> tuple[float, float]:
     """Return the largest free penetration of a run in m, and its speed in rev/min. A negative penetration is a gap.
 
     A changing speed is checked at nine speeds from the slowest to the fastest, each as a steady speed. The amplitude of
-    a run through a critical speed is smaller. The penetration is infinite where the motion without rub is not known
-    because of laws of the support. Raises UserError where the system cannot be integrated at a speed.
+    a run through a critical speed is smaller. The penetration is infinite where only the run shows it, as in
+    `penetration_at`. Raises UserError where the system cannot be integrated at a speed.
     """
     scenario = with_clearance(scenario)
     model = reduce(scenario.machine, scenario.reduction)
@@ -95,15 +95,19 @@ def deepest(scenario: Scenario) -> tuple[float, float]:
 def penetration_at(model: ReducedModel, scenario: Scenario, speed: float) -> float:
     """Return the free penetration at a speed in rad/s: how deep tips enter the undeformed casing without contact, in m.
 
-    It is infinite where the motion without rub is not known because of laws of the support. Raises UserError where the
-    system cannot be integrated at this speed.
+    It is infinite where the motion without rub is not known because of laws of the support. It is also infinite where a
+    gap at the beginning of the record may be used up later, by a load that grows or a clearance that closes. Raises
+    UserError where the system cannot be integrated at this speed.
     """
     system = model.at_speed(speed)
     check_system(system)
     if system.starting is not system:
         return math.inf
     surface, tips = casing_surface(system, scenario.contact), blade_tips(system)
-    return free_penetration(rub_free_motion(system), surface, tips)
+    depth = free_penetration(rub_free_motion(system), surface, tips)
+    closing = sum(each.amount_m for each in system.narrowings)
+    grows = system.turning is not None and bool(system.turning.growing)
+    return math.inf if depth < 0 and (grows or depth + closing >= 0) else depth
 
 
 def _speeds(scenario: Scenario) -> list[float]:

@@ -1,14 +1,17 @@
 """A set in which nothing can rub is told before it is made, from the motion without rub."""
 
+import math
 import warnings
 from dataclasses import replace
 
 import pytest
 
+from rubgen.balancing.screen import reaches
 from rubgen.dataset.making.generate import generate
 from rubgen.dataset.reading.open import DataSet
 from rubgen.errors import RubgenWarning
 from rubgen.pipeline import simulate
+from rubgen.planning.plan import Reach
 from rubgen.scenario import Labelling, load_recipe, make_scenario, parse_recipe
 from rubgen.scenario.load import RECIPES
 from rubgen.solver.linear.reach import deepest, no_rub_warning
@@ -47,6 +50,29 @@ def test_speeds_in_rad_per_s_are_asked_about_where_they_would_rub():
         assert "rad/s" not in no_rub_warning([scenario, scenario])
         assert no_rub_warning([scenario]) is None  # one run without rub may be meant
     assert "in this run" in no_rub_warning([make_scenario(speed_rpm=1000.0)])
+
+
+AIR = {"speed_rpm": 8000, "clearance_m": 9e-4}
+GROWING = [
+    ({"fault": "closing-clearance", "closing_m": 6e-4}, True),
+    ({"fault": "closing-clearance", "closing_m": 1e-5}, False),
+    ({"fault": "growing-unbalance", "kg_m": 1e-2}, True),
+    ({"fault": "bow", "bow_m": 1e-5, "growth_s": 0.1}, True),
+    ({"fault": "bow", "bow_m": 1e-5}, False),
+]
+
+
+@pytest.mark.parametrize(("fault", "may_rub"), GROWING)
+def test_what_grows_within_the_record_may_use_up_the_gap(fault, may_rub):
+    """Only the run shows it then: no warning, and a plan that counts the run. What cannot reach is warned of."""
+    scenario = make_scenario(**AIR, **fault)
+    depth, _ = deepest(scenario)
+    assert (depth == math.inf) is may_rub
+    assert (no_rub_warning([scenario] * 2) is None) is may_rub
+    assert Reach(depth_m=depth).can_rub is may_rub
+    assert reaches(scenario) is (False if "growth_s" not in fault and fault["fault"] == "bow" else None)
+    there = make_scenario(**AIR | {"clearance_m": 1e-5}, **fault)
+    assert 0 < deepest(there)[0] < math.inf
 
 
 def test_a_run_up_is_looked_at_over_its_speeds():
