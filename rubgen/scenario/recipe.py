@@ -378,10 +378,7 @@ class Recipe(StrictModel):
             yield from part.own_corners(where)
 
     def own_corners(self, source: str = "") -> Iterator[Scenario]:
-        """Yield the scenarios of `corners` for this recipe alone, without the changes of its splits.
-
-        `source` is the beginning of messages.
-        """
+        """Yield the scenarios of `corners` without the changes of splits. Messages begin with `source`."""
         for base in self.bases:
             machine = self.machines.largest(base.machine) if self.machines else base.machine
             for corner in self.corners_of(base, machine, source):

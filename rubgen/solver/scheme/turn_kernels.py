@@ -210,11 +210,9 @@ def run_turn(
     snapshots: Snapshots,
     result: TurnResult,
 ) -> tuple[int, int, int]:
-    """Integrate one turn or part of a turn. Return a code, the step where it ended, and the number of ended touches.
+    """Integrate one turn, or part of it, as `run_turns` does. Return code, step of the end, number of ended touches.
 
-    The code is OK, or the code of `step_kernels` for the failure of a step. The turn ends at a step that fails: outputs
-    of later steps are not written, and present touches are not ended. The parameters are as in `run_turns`, for one
-    turn. In `state.buffer` are the motions at steps -1 and 0, at the end those at the last two steps.
+    The code is OK, or that of a step that fails (`step_kernels`). The turn ends there, and present touches go on.
     """
     laws, steps = model.laws, model.angles.cosine.shape[0] - 2
     work, scratch = state.contact, state.scratch
@@ -302,13 +300,14 @@ def run_turns(
     """Integrate turns, or parts of turns, one after another: one call is faster than a call for each turn.
 
     Return a code, the number of turns without a failed step, and the step where the last turn ended. The code is OK, or
-    the code of the turn that failed (`run_turn`). No turn follows it; its row of `ends` is written too.
+    the code of the turn that failed (`run_turn`). No turn follows it, and outputs of its later steps are not written;
+    its row of `ends` is.
 
     - model: constants; its `angles` have the steps.
     - opening (turns, steps + 2): added to the radius of the surface at steps -1, 0, ..., steps of each turn, m.
     - clock: number of the first step of the first turn in the run.
     - recording: False leaves out taps, orbit and arrivals. The motion is the same.
-    - state: changed to the state at the end.
+    - state: changed to the state at the end. `state.buffer` has the motions at steps -1 and 0, then at the last two.
     - taps: true signals of the present step n, with the contact force lam_n of the same time; changed.
     - touches, results, ends: written. `touches.ended` has a row for each turn. The arrivals in `taps.timing` belong to
       the last turn.
