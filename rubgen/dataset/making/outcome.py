@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from rubgen.dataset.layout import Layout
-from rubgen.dataset.making.close import read_closed
+from rubgen.dataset.making.close import ClosedShard
 from rubgen.dataset.making.keep import kept_runs
 from rubgen.errors import UserError
 from rubgen.io.files import read_json
@@ -83,11 +83,21 @@ class Unfinished:
 
 
 def finished_runs(out: Path | str) -> int:
-    """Return the number of finished runs of an unfinished data set in the directory `out`."""
+    """Return the number of finished runs of an unfinished data set in the directory `out`. Nothing is changed."""
     layout = Layout(out)
     closed = [path.stem for path in layout.closed("").parent.glob("*.json")]
     begun = {path.name for path in layout.kept("").glob("*")} - set(closed)
-    return sum(read_closed(layout, name).runs for name in closed) + sum(len(kept_runs(layout, name)) for name in begun)
+    return sum(_closed_runs(layout.closed(name)) for name in closed) + sum(
+        len(kept_runs(layout, name)) for name in begun
+    )
+
+
+def _closed_runs(path: Path) -> int:
+    """Return the number of runs of a closed shard; 0 where its record is damaged, so that its runs are made again."""
+    try:
+        return ClosedShard.model_validate(read_json(path.read_bytes())).runs
+    except (FileNotFoundError, ValueError):  # a ValidationError is a ValueError
+        return 0
 
 
 def unfinished(directory: Path) -> Unfinished | None:

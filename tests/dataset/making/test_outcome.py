@@ -1,11 +1,13 @@
 """Counts of a finished set: rub, classes, and the shortest reason of each way to fail."""
 
 import errno
+import json
 from pathlib import Path
 
 import pyarrow as pa
 import pytest
 
+from rubgen.cli import main
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.making import outcome
 from rubgen.dataset.making.close import read_closed
@@ -61,6 +63,22 @@ def test_a_record_that_the_system_refuses_is_not_called_damaged_and_stays(tmp_pa
     with pytest.raises(RubgenError, match=r"train-00000\.json: damaged"):
         read_closed(layout, "train-00000")
     assert not layout.closed("train-00000").exists()
+
+
+def test_info_counts_no_run_of_a_damaged_record_and_changes_nothing(tmp_path, capsys):
+    layout = Layout(tmp_path)
+    layout.closed("").parent.mkdir(parents=True)
+    layout.identity.write_text('{"recipe": {"name": "a", "runs": 9}}')
+    record = {"runs": 4, "status": {"ok": 4}, "tables": [], "exports": [], "derived": []}
+    layout.closed("train-00000").write_text(json.dumps(record))
+    for content in ("{}", "", "[1]", json.dumps(record | {"runs": -4})):
+        layout.closed("train-00001").write_text(content)
+        assert unfinished(tmp_path).kept == 4
+        with pytest.raises(SystemExit) as ended:
+            main(["info", str(tmp_path)])
+        assert ended.value.code == 0
+        assert f"{tmp_path}: unfinished, 4 of 9 runs of the recipe 'a' are kept" in capsys.readouterr().out
+        assert layout.closed("train-00001").read_text() == content
 
 
 def test_an_identity_that_cannot_be_read_says_why(tmp_path, monkeypatch):
