@@ -30,8 +30,8 @@ def write_uff(runs: Iterator[ExportedRun], path: Path) -> None:
 
     `runs` must yield exactly one run, else ValueError is raised. Set 164 declares SI units. A channel in another unit
     has the data type "unknown" and its unit as the axis label. The geometry (sets 15, 82) has nodes for each sensor,
-    the casing, the tips and the disk centre. Sets 55 are the modes of the run's machine: `machine_modes.modes_of`. The
-    format cannot contain arrival times of pulses; the channel of the pulse is written.
+    the casing, the tips and the disk centre. Sets 55 are the modes of the run's machine up to the sample rate / 2.56:
+    `machine_modes.modes_of`. The format cannot contain arrival times of pulses; the channel of the pulse is written.
     """
     import pyuff
 

@@ -32,11 +32,11 @@ def order_features(turned: FloatArray) -> FloatArray:
 def orbit_features(turned: FloatArray, angles_deg: tuple[float, float]) -> FloatArray:
     """Compute the features `vocabulary.ORBIT` (features,) of two shaft probes (2, turns, points a turn).
 
-    - turned: the signals of the probes, from `by_turn`.
-    - angles_deg: directions of the probes. They must not be parallel.
+    - turned: the signals of the probes, from `by_turn`. Features of lengths have the unit of the signals.
+    - angles_deg: directions of the probes from X towards Y, the sense of rotation. They must not be parallel.
 
-    The full spectrum is the Fourier series of x + iy over the angle of the shaft. Source: API 670; Bently and Hatch,
-    Fundamentals of Rotating Machinery Diagnostics, chapter 8.
+    A feature that needs more turns is NaN. The full spectrum is the Fourier series of x + iy over the angle of the
+    shaft. Source: API 670; Bently and Hatch, Fundamentals of Rotating Machinery Diagnostics, chapter 8.
     """
     angle = np.deg2rad(angles_deg)
     probes = np.column_stack([np.cos(angle), np.sin(angle)])

@@ -110,7 +110,7 @@ class ContactIntervals:
     friction_loss: FloatArray
     """Work of friction, J, <= 0."""
     normal_loss: FloatArray
-    """Work lost along the normal, J, <= 0."""
+    """Work lost along the normal, J, <= 0 for restitution 0."""
 
 
 def contact_intervals(response: Response, recording: Recording) -> ContactIntervals:

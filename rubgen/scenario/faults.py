@@ -127,7 +127,8 @@ def with_given_faults(scenario: Scenario, kinds: str | Sequence[str], values: Ma
     - values: the values of the faults' keys. Each goes to the kind that has the key.
 
     Raises UserError of one line for an unknown kind, a kind that the machine has already, a key that no kind or several
-    kinds have, and a value that is not allowed.
+    kinds have, and a value that the kind cannot have. Whether the machine can have the fault is checked by
+    `check_feasible`.
     """
     named = [kinds] if isinstance(kinds, str) else list(kinds)
     already = kinds_of(scenario.machine.faults)
@@ -169,7 +170,8 @@ def extremes(scenario: Scenario, tables: Sequence[BaseModel], source: str) -> It
     - tables: the `[[faults]]` tables of the recipe, from which the values come.
     - source: beginning of messages.
 
-    Raises UserError for a value that is not allowed, and for a kind that the machine and the recipe name twice.
+    Raises UserError for a value that the kind cannot have, and for a kind that the machine and the recipe name twice.
+    Whether the machine can have the faults is checked by `check_feasible`.
     """
     kinds = [kind_of(fault) for fault in scenario.machine.faults]
     largest = []

@@ -224,10 +224,7 @@ class Recipe(StrictModel):
         self._candidates[index] = chosen
 
     def machine_named(self) -> AbstractContextManager[None]:
-        """Name the machine's file in errors that the block raises about the machine.
-
-        With several files no file is named.
-        """
+        """Name the machine's file, if there is only one, in errors about the machine that the block raises."""
         return file_named(self.machine, self._folder) if isinstance(self.machine, str) else nullcontext()
 
     def distributions(self) -> Iterator[tuple[Parameter, Distribution]]:
@@ -371,8 +368,8 @@ class Recipe(StrictModel):
 
         Every other key has its first value. The keys of the surroundings are all at their least, then all at their
         largest value; for faults see `scenario.faults.extremes`. The machines are those of the files, with the largest
-        number of blades of `[machines]`. With `[twins]` each scenario is followed by its twin. Raises UserError where
-        an extreme value is not allowed.
+        number of blades of `[machines]`. With `[twins]` each scenario is followed by its twin. Raises UserError for an
+        extreme value that its key cannot have; whether the machine can have it is checked by `check_feasible`.
         """
         for where, part in self.named_parts():
             yield from part.own_corners(where)

@@ -34,11 +34,11 @@ class Work:
 
 
 def generate_command(recipe: Path | None, out: Path, runs: int | None, work: Work, *, as_json: bool) -> int:
-    """Generate a data set and print a summary. `recipe`, `out`, `runs` and `work` are as in `rubgen.generate`.
+    """Generate a data set and print a summary. Parameters, with the fields of `work`, are as in `rubgen.generate`.
 
-    `recipe` None is the default recipe. With `as_json` the summary is JSON, and no progress is shown. Returns the exit
-    code 1 where no run of the set is ok, else 0. For a part of a set (`work.shard`) it is always 0. After Ctrl-C it
-    prints how to continue and returns 130.
+    Errors are as there. With `as_json` the summary is JSON, and no progress is shown. Returns the exit code 1 where no
+    run of the set is ok, else 0. For a part of a set (`work.shard`) it is always 0. After Ctrl-C it prints how to
+    continue and returns 130.
     """
     made = partial(generate, recipe, out, runs=runs, progress=not as_json, **dataclasses.asdict(work))
     kept_in = RemoteMaking(str(out), work.shard or "").layout.root if is_url(out) else out
@@ -46,7 +46,7 @@ def generate_command(recipe: Path | None, out: Path, runs: int | None, work: Wor
 
 
 def resense_command(directory: Path, sensors: str, out: Path, workers: int | None, *, as_json: bool) -> int:
-    """Make a data set again with other sensors and print a summary. The parameters are as in `resense`.
+    """Make a data set again with other sensors and print a summary. Parameters and errors are as in `resense`.
 
     With `as_json` the summary is JSON, and no progress is shown. Returns the exit code 1 where no run of the set is ok,
     else 0. After Ctrl-C it prints how to continue and returns 130.
@@ -56,7 +56,7 @@ def resense_command(directory: Path, sensors: str, out: Path, workers: int | Non
 
 
 def merge_command(directories: Sequence[Path], out: Path, *, as_json: bool) -> int:
-    """Merge data sets and print a summary. The parameters are as in `rubgen.merge`.
+    """Merge data sets and print a summary. Parameters and errors are as in `rubgen.merge`.
 
     With `as_json` the summary is JSON, and no progress is shown. Returns the exit code 1 where no run of the set is ok,
     else 0. After Ctrl-C it prints how to continue and returns 130.

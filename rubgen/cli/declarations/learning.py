@@ -55,8 +55,8 @@ def export(
         str,
         Parameter(
             name="--format",
-            help="uff58, mat, hdf5, csv, wav, ts, webdataset, or parquet, without labels, parameters and channels that "
-            "no probe measures.",
+            help="uff58, mat, hdf5, csv, wav, ts, webdataset, or parquet, which has no labels, no parameters, and only "
+            "channels that a probe measures.",
         ),
     ],
     out: Annotated[Path, here("New or empty folder, or one of the same export, which is then completed.")],

@@ -60,10 +60,10 @@ def close_shard(root: Path, shard: Shard) -> None:
 
 
 def write_closed(layout: Layout, recipe: Recipe, shard: Shard, status: dict[str, int], good: list[str]) -> None:
-    """Hash the files of a shard and write its record.
+    """Hash the files of a shard and write its record. All these files must exist: its tables, and files of single runs.
 
     - status: number of the shard's runs by status.
-    - good: names of its runs with status ok.
+    - good: names of its runs with status ok; only these have files of single runs.
     """
     formats = recipe.output.formats
     exports = {remake: _exports(layout, formats, good, remade=remake) for remake in (False, True)}

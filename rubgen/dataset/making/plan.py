@@ -71,7 +71,7 @@ class PartOfSet:
                 yield shard, shard.indexes
 
     def runs_of(self, shard: Shard) -> tuple[int, ...]:
-        """Return the numbers of the runs of a shard that are of this part, of all runs where parts share no shard."""
+        """Return the numbers of the shard's runs that are of this part: all of them, where parts share no shard."""
         if not self._shares_shards:
             return shard.indexes
         count, runs = self.part.count, self.recipe.runs
@@ -146,9 +146,9 @@ class Plan:
         return _Queue(self._urgent, self._jobs(size))
 
     def ended(self, shard: Shard) -> None:
-        """Note that a job that made runs of this shard has ended.
+        """Note that a job that made runs of this shard has ended. Do not call it for a job that closes a shard.
 
-        After the shard's last job, a job that closes it is added.
+        After the shard's last job, a job that closes it is added if all runs of the shard are of this part.
         """
         self._left[shard.name] -= 1
         if not self._left[shard.name]:

@@ -188,9 +188,9 @@ class DataSet:
     def touches(self, run_id: str) -> pd.DataFrame:
         """Read the touches of blades within the whole record of a run, one row for each touch, in order of their start.
 
-        Columns (see `touches_frame`): `start_s` and `end_s` from the first sample, `blade`, `angle_rad` on the casing,
-        `impulse_n_s`, `friction_work_j` and `normal_work_j` <= 0. Raises UserError where the run does not exist or
-        failed, or the file is damaged.
+        Columns as in `touches_frame`: `start_s` and `end_s` from the first sample (negative before it), `blade`,
+        `angle_rad` on the casing, `impulse_n_s`, and the works `friction_work_j` and `normal_work_j`. Raises UserError
+        where the run does not exist or failed, or the file is damaged.
         """
         self.check_has_signals(run_id)
         ((_, touches),) = self.each_touches([run_id])

@@ -95,9 +95,9 @@ def touches_frame(record: CompactRecord, sensing: Sensing, seconds: float) -> pd
     The columns are the names in UNITS. `start_s` and `end_s` count from the first sample of the signals: earlier
     touches have negative times. `blade` counts from 0. `angle_rad` is the polar angle on the casing in [0, 2 pi), a
     mean weighted by impulse. `impulse_n_s` is the normal impulse. `friction_work_j` and `normal_work_j` are the works
-    of the contact force on blade and casing, along the surface and normal to it. They are <= 0, the normal work without
-    restitution. `attrs["units"]` maps each column to its unit. `attrs["first_sample_s"]` is the time of the first
-    sample from the start of the record, s.
+    of the contact force on blade and casing, along the surface and normal to it. The friction work is <= 0, and without
+    restitution the normal work is too. `attrs["units"]` maps each column to its unit. `attrs["first_sample_s"]` is the
+    time of the first sample from the start of the record, s.
     """
     import pandas as pd
 

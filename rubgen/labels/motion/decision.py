@@ -20,7 +20,7 @@ EXPONENT_SPREAD = 0.2
 ZERO_SPREAD = 0.003
 """Half the step moves an exponent near zero by so much, in 1/turn."""
 UNRESOLVED_STRAY = 2.5e-3
-"""Where the step does not resolve the touches, half the step may make a regular rest chaotic; it then strays so far."""
+"""Where the step does not resolve the touches, half the step may make a regular scatter chaotic, and then so large."""
 KEPT = {Motion.PERIOD_1: 0.97, Motion.PERIOD_K: 0.8, Motion.QUASI_PERIODIC: 0.8, Motion.CHAOTIC: 0.98}
 """Confidence far from every bound: (runs that kept the class + 1) / (runs + 2), after Laplace. Few had the middle two.
 """
@@ -68,8 +68,9 @@ FORCED = MotionClass(motion=Motion.PERIOD_1, period=1)
 def decide(seen: Indicators) -> MotionClass:
     """Return the class of motion on which the indicators `seen` of a part agree. If they contradict, it is undecided.
 
-    - Clusters: periodic at the scale of the motion. The rest may be chaotic at a far smaller scale. If the rest is not
-      far smaller (CLOSE) and the two other indicators find chaos, the part is undecided.
+    - Clusters: periodic at the scale of the motion. The scatter of the points within their clusters may be chaotic. If
+      this scatter (`stray`) is above CLOSE times the cluster radius, and K and the exponent find chaos, the part is
+      undecided.
     - No clusters, K above its bound, exponent positive: chaotic. K below its bound, exponent zero within its error:
       quasi-periodic. Anything else is undecided: a negative exponent belongs to a periodic motion that is still
       settling, or that repeats after more than 16 turns.
@@ -115,7 +116,7 @@ def _confidence(seen: Indicators, motion: Motion) -> float:
 
 
 def _stays_periodic(seen: Indicators) -> float:
-    """Probability that the rest stays inside the clusters and, where it is regular, that the motion does not bifurcate.
+    """Probability that the points stay inside their clusters and, where their scatter is regular, do not bifurcate.
 
     A regular motion bifurcates where its exponent reaches zero.
     """

@@ -38,7 +38,10 @@ class BreathingSpring(SupportLaw):
 
     @staticmethod
     def terms(numbers: FloatArray, cosine: float, sine: float, x: float, y: float) -> Terms:
-        """Return the spring force lost f(theta) s e at u = (x, y), and zero damping."""
+        """Return the spring force lost f(theta) s e at u = (x, y), and zero damping.
+
+        The arguments are as in `SupportLaw.terms`.
+        """
         e_x, e_y = numbers[1], numbers[2]
         opening = 0.5 * (1.0 - (sine * e_x + cosine * e_y))
         force = numbers[0] * opening * (e_x * x + e_y * y)

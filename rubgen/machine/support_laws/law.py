@@ -44,10 +44,11 @@ class SupportLaw(ABC):
     @staticmethod
     @abstractmethod
     def terms(numbers: FloatArray, cosine: float, sine: float, x: float, y: float) -> Terms:
-        """Return the spring force s_x, s_y (N) and the damping D_xx, D_xy, D_yx, D_yy (N s/m) at u = (x, y) in m.
+        """Return the spring force s_x, s_y (N) and the damping D_xx, D_xy, D_yx, D_yy (N s/m) at u = (x, y).
 
         - numbers: what the property `numbers` returns.
         - cosine, sine: cosine and sine of theta.
+        - x, y: displacement of the disk centre along the axes of the turning frame, m. The result has these axes too.
 
         The solver compiles this function and calls it in every step. It may use arithmetic, `math` and constants of its
         own file. The scheme takes D implicitly, so a D that is not negative never adds energy.

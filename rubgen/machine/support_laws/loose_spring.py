@@ -40,7 +40,10 @@ class LooseSpring(SupportLaw):
 
     @staticmethod
     def terms(numbers: FloatArray, cosine: float, sine: float, x: float, y: float) -> Terms:
-        """Return the spring force lost (s - gap) e where s > gap, at u = (x, y), and zero damping."""
+        """Return the spring force lost (s - gap) e where s > gap, at u = (x, y), and zero damping.
+
+        The arguments are as in `SupportLaw.terms`.
+        """
         e_x = numbers[2] * cosine + numbers[3] * sine
         e_y = numbers[3] * cosine - numbers[2] * sine
         force = numbers[0] * max(e_x * x + e_y * y - numbers[1], 0.0)

@@ -15,7 +15,7 @@ class SqueezeFilm(SupportLaw):
     """Short squeeze film damper beside the lateral spring: a centred journal that does not turn, in a full film of oil.
 
     The Reynolds equation of a short bearing (Ocvirk), integrated over the whole film, without cavitation. The force on
-    the journal is F = -C v with v its velocity in the inertial frame. Along and across its eccentricity e = epsilon c,
+    the journal is F = -C v with v its absolute velocity. Along and across its eccentricity e = epsilon c,
 
         C_rr = C_0 (1 + 2 epsilon^2) / (1 - epsilon^2)^(5/2),   C_tt = C_0 / (1 - epsilon^2)^(3/2),
         C_0  = pi mu R (L / c)^3
@@ -53,9 +53,9 @@ class SqueezeFilm(SupportLaw):
 
     @staticmethod
     def terms(numbers: FloatArray, _cosine: float, _sine: float, x: float, y: float) -> Terms:
-        """Return zero spring force and the damping matrix C(u) of `force`: an oil film only damps.
+        """Return no spring force and the damping matrix C(u) of the method `force`: (0, 0, C_xx, C_xy, C_yx, C_yy).
 
-        The result is (0, 0, C_xx, C_xy, C_yx, C_yy) at u = (x, y) in m, in N s/m.
+        The arguments are as in `SupportLaw.terms`. Valid for |u| below the clearance.
         """
         centred, clearance = numbers[0], numbers[1]
         rest = 1.0 - (x * x + y * y) / (clearance * clearance)

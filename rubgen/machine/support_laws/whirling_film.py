@@ -42,7 +42,10 @@ class WhirlingFilm(SupportLaw):
 
     @staticmethod
     def terms(numbers: FloatArray, _cosine: float, _sine: float, x: float, y: float) -> Terms:
-        """Return the spring force q (swirl e_z x u + soft u) at u = (x, y), and zero damping."""
+        """Return the spring force q (swirl e_z x u + soft u) at u = (x, y), and zero damping.
+
+        The arguments are as in `SupportLaw.terms`.
+        """
         q = 1.0 / (1.0 + (x * x + y * y) / (numbers[2] * numbers[2]))
         across, along = q * numbers[0], q * numbers[1]
         return along * x - across * y, along * y + across * x, 0.0, 0.0, 0.0, 0.0

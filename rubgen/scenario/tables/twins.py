@@ -98,7 +98,8 @@ def twin(partner: Scenario, twins: BaseModel, source: str = "") -> Scenario:
     """Return the twin of a run: the scenario `partner` with the one value of the table `[twins]` changed.
 
     A fault replaces a fault of the same kind, or is added. A clearance or a free penetration replaces either of them.
-    Raises UserError, beginning with `source`, where the value is not allowed.
+    Raises UserError, beginning with `source`, for a value of `[vary]` out of its range. Whether the machine can have
+    the value or the fault is checked by `check_feasible`.
     """
     key = twins.changed  # type: ignore[attr-defined]
     value = getattr(twins, key)
@@ -115,7 +116,7 @@ def twin(partner: Scenario, twins: BaseModel, source: str = "") -> Scenario:
 def with_twin(scenario: Scenario, twins: BaseModel | None, source: str) -> Iterator[Scenario]:
     """Yield the scenario, then its twin. Without the table `[twins]` only the scenario is yielded.
 
-    Raises UserError, beginning with `source`, where the twin's value is not allowed.
+    Raises UserError, beginning with `source`, as `twin` does.
     """
     yield scenario
     if twins:

@@ -29,7 +29,7 @@ NEVER = 2**62
 """A step number that no part reaches."""
 
 Opening = Callable[[FloatArray], FloatArray]
-"""The opening of the surface, m, after a number of turns from the start."""
+"""The opening of the surface, m, after a number of turns from the start: it is added to the radius of the surface."""
 
 
 class SpeedDriver(Protocol):
@@ -114,10 +114,10 @@ class ChangingDriver:
     """A speed that follows a rotation. At t = 0 theta is 0 and the record begins, after `settle` turns.
 
     Time steps are equal. A turn begins at the step that is nearest to theta = 0 mod 2 pi. Each turn is cut into equal
-    parts, MOST_PARTS at most, in which the speed changes by at most SPEED_SHARE if so many are enough. The end of the
-    ramp also begins a part. The matrices of a part belong to the speed in its middle, so the error falls with the
-    square of a part's length. The tips' mean steady growth changes at every step, as part of the opening of the
-    surface.
+    parts. In a part the speed changes by at most SPEED_SHARE, unless this takes more than MOST_PARTS parts: then there
+    are MOST_PARTS. The end of the ramp also begins a part. The matrices of a part belong to the speed in its middle, so
+    the error falls with the square of a part's length. The tips' mean steady growth is exact at every step: its change
+    within a part is subtracted from the opening, the length that is added to the surface's radius.
     """
 
     def __init__(self, stepper: Stepper, matrices: SpeedInterpolation, rotation: Rotation, settle: int) -> None:
@@ -125,7 +125,10 @@ class ChangingDriver:
         stepper.take_snapshots([NEVER])
 
     def begin(self, motion: RubFreeMotion) -> None:
-        """Put the stepper into a rub-free motion, and set its works to zero."""
+        """Put the stepper at the start of the settle turns, in `motion`: the rub-free motion of the speed there.
+
+        Its works are set to zero, except for the works of the supports.
+        """
         start = np.array([self._time_of(-self.settle)])
         speed = self.rotation.speed(start)
         part = next(self.matrices.at(speed, self.rotation.acceleration(start)))

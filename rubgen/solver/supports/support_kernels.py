@@ -168,12 +168,13 @@ def push_supports(
     after: FloatArray,
     state: SupportState,
 ) -> bool:
-    """Add the effect of f and gravity at step n to q* in `after`. Return False where O_d is beyond a law's limit.
+    """Add the effect of the support force f and of gravity at step n to `after`. Return False beyond a law's limit.
 
     - speed: Omega, rad/s.
     - step: number of step n in the turn or part of a turn.
     - cosine, sine: cosine and sine of theta at step n.
-    - before, now, after: z at steps n - 1, n and n + 1.
+    - before, now: z at steps n - 1 and n.
+    - after: z at step n + 1, without f, gravity and contact; changed.
     - state: the forces of the step; written.
     """
     i, j = support.centre[0], support.centre[1]
