@@ -59,9 +59,9 @@ def recover_tips(harmonics: Harmonics, z: FloatArray, share_work: FloatArray, ti
 @inlined_kernel
 def recover_rest(harmonics: Harmonics, z: FloatArray, q_out: FloatArray) -> None:
     """Write the coordinates behind the tips from z into `q_out` (n,)."""
-    start = 3 * harmonics.basis.shape[0]
+    behind = q_out[3 * harmonics.basis.shape[0] :]
     for i in range(harmonics.rest.shape[0]):
-        q_out[start + i] = z[harmonics.rest[i]]
+        behind[i] = z[harmonics.rest[i]]
 
 
 @allocation_free_kernel

@@ -204,6 +204,84 @@ def bound_clearances(
 
 
 @inlined_kernel
+def try_margin(
+    model: Model,
+    step: int,
+    opening: FloatArray,
+    coordinates: Coordinates,
+    motions: tuple[Motion, Motion],
+    deformation: Deformation,
+    margin: float,
+    state: State,
+) -> tuple[int, int, float]:
+    """Solve for the contacts of the blades within a margin. Return a code, their number, and the largest approach, m.
+
+    The code is OK or CONTACT_UNSOLVED. The approach is that of `largest_approach`. It is 0 without contacts, and where
+    all blades were solved: no larger margin would then change the result.
+
+    - step, opening, deformation: as in `contact_step`.
+    - coordinates: q of both motions and of step n.
+    - motions: at step n - 1, and q*, which is changed to q_n+1.
+    - margin: in m.
+    """
+    surface, laws, angles, work, scratch = model.surface, model.laws, model.angles, state.contact, state.scratch
+    before, after = motions
+    n_blades, start = work.gap.shape[0], after.q.shape[0] - work.rows.shape[1]
+    new, inside = opening[step + 2], step + 1
+    enough = radial_margin(surface, deformation, margin)
+    apart = bound_clearances(model, inside, new, after, deformation, enough, work)
+    if apart and not laws.lasting:
+        for k in range(n_blades):
+            work.step_gaps[2, k] = math.nan
+        return OK, 0, 0.0
+    count, penetrates = find_near(
+        surface, model.tips, state.wear.depth, after.q, after.tips, start, new, angles.cosine[inside],
+        angles.sine[inside], margin, enough, work,
+    )  # fmt: skip
+    for k in range(n_blades):
+        work.step_gaps[2, k] = work.gap[k]
+    if count == 0 or not (penetrates or laws.restitution > 0.0):
+        return OK, 0, 0.0
+    recover_contacts(count, model, before, work)
+    recover_contacts(count, model, after, work)
+    change_contacts(count, before, after, 0.5 / laws.dt, work, scratch.change)
+    if solve_contacts(count, model, step, opening, coordinates, state) != SOLVED:
+        return CONTACT_UNSOLVED, count, 0.0
+    copy_motion(after, scratch.free)
+    apply_contacts(count, model, after, state)
+    if count == n_blades:
+        return OK, count, 0.0
+    return OK, count, largest_approach(surface, after.tips, scratch.free.tips, after.q, scratch.free.q, start)
+
+
+@allocation_free_kernel
+def try_larger_margins(
+    model: Model,
+    step: int,
+    opening: FloatArray,
+    coordinates: Coordinates,
+    motions: tuple[Motion, Motion],
+    deformation: Deformation,
+    margin: float,
+    state: State,
+) -> tuple[int, int]:
+    """Solve a step again with `margin`, and with ever larger margins. Return OK or CONTACT_UNSOLVED, and the contacts.
+
+    The parameters are as in `try_margin`. After MARGIN_TRIES margins, the first one counted, the step is unsolved.
+
+    It is a function of its own, which steps hardly ever call: a loop over the margins within a step would let the
+    compiler prepare all of a contact before it, in every step.
+    """
+    for _ in range(MARGIN_TRIES - 1):
+        copy_motion(state.scratch.free, motions[1])
+        code, count, approach = try_margin(model, step, opening, coordinates, motions, deformation, margin, state)
+        if code != OK or approach <= margin:
+            return code, count
+        margin = 2 * approach
+    return CONTACT_UNSOLVED, count
+
+
+@inlined_kernel
 def contact_step(
     model: Model,
     step: int,
@@ -227,43 +305,16 @@ def contact_step(
     - after: q*, the motion at step n + 1 without contact; changed to q_n+1.
     - casing_bound: bound of the casing's displacement in q*, m.
     """
-    work, scratch = state.contact, state.scratch
-    n_blades = work.gap.shape[0]
-    start = after.q.shape[0] - work.rows.shape[1]
-    surface, laws, angles = model.surface, model.laws, model.angles
-    coordinates = Coordinates(before.q, now.q, after.q, scratch.change)
-    new, inside = opening[step + 2], step + 1
-    deformation = deformation_bounds(surface, after.q[start:], casing_bound)
-    margin = starting_margin(laws, work.step_gaps)
-    for _ in range(MARGIN_TRIES):
-        enough = radial_margin(surface, deformation, margin)
-        apart = bound_clearances(model, inside, new, after, deformation, enough, work)
-        if apart and not laws.lasting:
-            for k in range(n_blades):
-                work.step_gaps[2, k] = math.nan
-            return OK, 0
-        count, penetrates = find_near(
-            surface, model.tips, state.wear.depth, after.q, after.tips, start, new, angles.cosine[inside],
-            angles.sine[inside], margin, enough, work,
-        )  # fmt: skip
-        for k in range(n_blades):
-            work.step_gaps[2, k] = work.gap[k]
-        if count == 0 or not (penetrates or laws.restitution > 0.0):
-            return OK, 0
-        recover_contacts(count, model, before, work)
-        recover_contacts(count, model, after, work)
-        change_contacts(count, before, after, 0.5 / laws.dt, work, scratch.change)
-        if solve_contacts(count, model, step, opening, coordinates, state) != SOLVED:
-            return CONTACT_UNSOLVED, count
-        copy_motion(after, scratch.free)
-        apply_contacts(count, model, after, state)
-        approach = largest_approach(surface, after.tips, scratch.free.tips, after.q, scratch.free.q, start)
-        if approach <= margin or count == n_blades:
-            break
+    work, motions = state.contact, (before, after)
+    coordinates = Coordinates(before.q, now.q, after.q, state.scratch.change)
+    deformation = deformation_bounds(model.surface, after.q[after.q.shape[0] - work.rows.shape[1] :], casing_bound)
+    margin = starting_margin(model.laws, work.step_gaps)
+    code, count, approach = try_margin(model, step, opening, coordinates, motions, deformation, margin, state)
+    if not approach <= margin:
         margin = 2 * approach
-        copy_motion(scratch.free, after)
-    else:
-        return CONTACT_UNSOLVED, count
+        code, count = try_larger_margins(model, step, opening, coordinates, motions, deformation, margin, state)
+    if code != OK:
+        return code, count
     for m in range(count):
         gap = work.gap[work.blade[m]]
         for column in range(count):
