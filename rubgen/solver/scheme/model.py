@@ -122,16 +122,15 @@ def speed_part(system: SpinningSystem, blocks: Blocks, dt: float) -> SpeedPart:
     )
 
 
-def at_speed(model: Model, part: SpeedPart, speed: float, angles: Angles, *, screen: bool) -> Model:
-    """Return the model at another speed.
+def at_speed(model: Model, part: SpeedPart, speed: float, angles: Angles) -> Model:
+    """Return the model at another speed. It is screened only if `model` is.
 
     - part: made by `speed_part` at that speed.
     - speed: in rad/s.
     - angles: tables of the steps to make.
-    - screen: as in `build_model`.
     """
     tip_shift = relative_tip_shift(part.tips, model.laws.tip_limit)
-    screen = screen and bounds_hold(model.surface, tip_shift, model.laws.casing_limit)
+    screen = model.laws.screen and bounds_hold(model.surface, tip_shift, model.laws.casing_limit)
     laws = model.laws._replace(speed=speed, tip_shift=tip_shift, screen=screen)
     return model._replace(laws=laws, angles=angles, **part._asdict())
 

@@ -24,7 +24,7 @@ from rubgen.solver.supports.support_kernels import SUPPORT_WORKS
 from rubgen.taps import DEFAULT_TAPS, Tap
 
 TURNS = 8
-"""Most turns in one call of the kernel."""
+"""Turns in one call of the kernel: more would hardly be faster."""
 FRAMES = 32
 """Frames of a turn: enough for smooth blade modes up to the 16th order of rotation."""
 
@@ -56,7 +56,7 @@ class Stepper:
         alike: Sequence[SpinningSystem] = (),
     ) -> None:
         check_step(system, steps)
-        self.system, self.turn_steps, self.screen = system, steps, screen
+        self.system, self.turn_steps = system, steps
         self.blocks = system_blocks(system, *alike)
         self.model = build_model(system, contact, self.blocks, steps, start_angle=start_angle, screen=screen)
         self.steady_support, self.state = self.model.support, new_state(self.model)
@@ -116,7 +116,7 @@ class Stepper:
         - section: time from step 0 to the Poincare section in steps, if this part of a turn contains it.
         """
         old, angles = self.model.energy.K, angle_tables(self.system, theta, section)
-        self.model = at_speed(self.model, part, speed, angles, screen=self.screen)
+        self.model = at_speed(self.model, part, speed, angles)
         self.steady_support = self.model.support
         self.taps = turned_taps(self.taps, self.system, theta[: self.steps])
         self.result = self.result._replace(taps=np.zeros((len(self.result.taps), self.steps)))
@@ -167,7 +167,7 @@ class Stepper:
         `state` is the state after the last turn, and the arrivals of timing probes belong to the last turn. The turns
         end after a turn that fails.
 
-        - opening (turns, steps + 2): as in `run_turn`, a row for each turn. There may be TURNS rows at most.
+        - opening (turns, steps + 2): as in `run_turn`, a row for each turn. More than TURNS rows only take more memory.
         - clock, recording: as in `run_turn`.
         """
         touches, snapshots, results, ends = self._rows(len(opening))
@@ -187,7 +187,7 @@ class Stepper:
         if turns == 1:
             rows = [each[None] for each in present]
         else:
-            shapes = [(TURNS, *each.shape) for each in present]
+            shapes = [(max(TURNS, turns), *each.shape) for each in present]
             if [each.shape for each in self._many] != shapes:
                 self._many = [np.zeros(shape) for shape in shapes]
             rows = [each[:turns] for each in self._many]

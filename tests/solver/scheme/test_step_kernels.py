@@ -93,3 +93,28 @@ def test_a_step_in_contact_balances_and_no_force_pulls_and_no_blade_enters(small
     assert np.abs(gaps[lam > 0]).max() < 1e-12
     assert gaps.min() > -1e-12
     assert np.isnan(np.delete(work.step_gaps[2], blades)).all()
+
+
+@pytest.mark.parametrize("margin", [1e-12, 1e-5])
+def test_a_blade_that_the_forces_on_others_push_in_is_solved_in_the_same_step(small_system, margin):
+    """A narrow margin leaves it out at first. The step is solved again, and is that of a margin around all blades."""
+    system = small_system(speed=500.0, clearance=-2e-4)
+
+    def stepped(opening, margin):
+        stepper = rub_free_stepper(system, ContactLaw(friction=0.2), STEPS)
+        model = stepper.model._replace(laws=stepper.model.laws._replace(margin=margin))
+        code, count = advance(model, 0, np.full(STEPS + 2, opening), *stepper.state.motions, stepper.state)
+        assert code == OK
+        forces = np.zeros(system.n_blades)
+        forces[stepper.state.contact.blade[:count]] = stepper.state.contact.lam[:count]
+        return stepper.coordinates.after, forces, stepper.state.contact.gap
+
+    free = stepped(0.0, 1.0)[2]
+    pushed_in = 0
+    for least in np.sort(free)[1:6]:
+        opening = 1e-10 - least  # this blade is just inside of the surface, those before it are not
+        (q, forces, _), (wide, all_forces, gaps) = stepped(opening, margin), stepped(opening, 1.0)
+        pushed_in += int(((all_forces > 0) & (gaps > 0)).sum())
+        np.testing.assert_allclose(forces, all_forces, rtol=1e-9, atol=1e-9 * all_forces.max())
+        np.testing.assert_allclose(q, wide, atol=1e-14)
+    assert pushed_in > 0

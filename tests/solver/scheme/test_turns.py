@@ -8,7 +8,8 @@ from rubgen.solver.scheme.energy_kernels import ABSOLUTE, CIRCULATORY, DAMPING, 
 from rubgen.solver.scheme.step_kernels import DIVERGED, OK
 from rubgen.solver.speed.start import closing_ramp, rub_free_stepper
 
-STEPS, TURNS = 256, 8
+STEPS, TURNS = 256, 10
+"""Two turns more than the stepper has room for before it is asked."""
 OPENING = 5e-4 * closing_ramp((np.arange(TURNS)[:, None] + np.arange(-1, STEPS + 1) / STEPS) / 6)
 
 
