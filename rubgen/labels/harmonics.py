@@ -24,6 +24,8 @@ RATIO = 10.0
 """20 dB above the median of the neighbourhood."""
 FLOOR = 0.1
 """Least amplitude, in m/s2: 20 dB above a line of a sensor's noise of 1 m/s2 over 1 s."""
+TOGETHER = 4
+"""Taps that are transformed together: twice as fast as one by one, and still in the nearest caches."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,7 +75,11 @@ def harmonics(response: Response) -> dict[str, TapOrders]:
     accelerations a at 0 and 180 degrees were both recorded, the result also has `casing_even` and `casing_odd`. They
     are the parts of a(0) with even and with odd circumferential order, (a(0) +- a(pi)) / 2.
     """
-    return {name: tap_orders(tap, response) for name, tap in with_casing_fields(response.taps).items()}
+    taps = with_casing_fields(response.taps)
+    names, found = list(taps), dict[str, TapOrders]()
+    for some in (names[first : first + TOGETHER] for first in range(0, len(names), TOGETHER)):
+        found |= zip(some, _orders(_spectrum_part([taps[name] for name in some], response), response), strict=True)
+    return found
 
 
 def with_casing_fields(taps: dict[str, Array]) -> dict[str, Array]:
@@ -87,30 +93,41 @@ def with_casing_fields(taps: dict[str, Array]) -> dict[str, Array]:
     return taps | {"casing_even": (first + second) / 2, "casing_odd": (first - second) / 2}
 
 
-def tap_orders(tap: FloatArray, response: Response) -> TapOrders:
-    """Compute the orders of one tap. Raises ValueError as `order_lines` does.
+def _spectrum_part(taps: list[FloatArray], response: Response) -> FloatArray:
+    """Return the values (taps, steps) that a spectrum covers: the turns of `spectrum_turns` at the end of each tap.
 
-    `tap` (steps,) has a value at every time step of the record or of its end.
+    Raises ValueError for a tap that is shorter.
     """
-    turns = spectrum_turns(response)
+    count = spectrum_turns(response) * response.steps_per_turn
+    for tap in taps:
+        if tap.size < count:
+            raise ValueError(f"a tap of {tap.size} steps is shorter than the {count} steps that the orders need")
+    return np.stack([tap[-count:] for tap in taps])
+
+
+def _orders(taps: FloatArray, response: Response) -> list[TapOrders]:
+    """Compute the orders of each of the taps (taps, steps), which are the turns of a spectrum."""
+    turns, steps = spectrum_turns(response), response.steps_per_turn
     looked_at = turns * (max(HIGHEST_ORDER, response.n_blades + SIDEBANDS) + 1)
-    lines = order_lines(tap, response)[:looked_at]
+    lines = spectrum_lines(taps, turns)[:, :looked_at]
     whole = _at_orders(lines, turns * np.arange(1, HIGHEST_ORDER + 1))
     blades = np.arange(response.n_blades - SIDEBANDS, response.n_blades + SIDEBANDS + 1)
-    return TapOrders(
-        amplitudes=np.abs(whole),
-        phases=np.where(whole == 0, 0.0, np.angle(whole)),
-        floors=order_floors(np.abs(lines), turns),
-        fractional=fractional_amplitudes(tap, response),
-        blade_passing=np.abs(_at_orders(lines, turns * blades)),
+    columns = (
+        np.abs(whole),
+        np.where(whole == 0, 0.0, np.angle(whole)),
+        order_floors(np.abs(lines), turns),
+        fractional_amplitudes(taps, steps),
+        np.abs(_at_orders(lines, turns * blades)),
     )
+    names = ("amplitudes", "phases", "floors", "fractional", "blade_passing")
+    return [TapOrders(**dict(zip(names, row, strict=True))) for row in zip(*columns, strict=True)]
 
 
 def _at_orders(lines: ComplexArray, places: IntArray) -> ComplexArray:
-    """Return the lines at these places; NaN where there is none."""
-    found = np.full(places.size, np.nan, dtype=np.complex128)
-    inside = (places >= 0) & (places < lines.size)
-    found[inside] = lines[places[inside]]
+    """Return the lines of each row at these places (rows, places); NaN where there is none."""
+    found = np.full((len(lines), places.size), np.nan, dtype=np.complex128)
+    inside = (places >= 0) & (places < lines.shape[1])
+    found[:, inside] = lines[:, places[inside]]
     return found
 
 
@@ -119,59 +136,72 @@ def spectrum_turns(response: Response) -> int:
     return min(SPECTRUM_TURNS, response.record_turns)
 
 
-def order_lines(tap: FloatArray, response: Response) -> ComplexArray:
-    """Compute peak amplitudes and phases of a tap (steps,): complex A e^(i phase) of A cos(k theta + phase).
+def spectrum_lines(taps: FloatArray, turns: int) -> ComplexArray:
+    """Compute peak amplitudes and phases of taps (taps, n): complex A e^(i phase) of A cos(k theta + phase).
 
-    Line j (n // 2 + 1,) is at order j / turns: 2 X_j / n, with X the DFT of the last n = turns * steps_per_turn values,
-    and `turns` from `spectrum_turns`. The unit is the tap's. Line 0 is twice the mean. The record ends with a complete
-    turn, so at a constant speed the first of the n values is at theta = 0. Raises ValueError where the tap has fewer
-    than n values.
+    The n values are so many turns, the first at theta = 0. Line j (taps, n // 2 + 1) is at order j / turns: 2 X_j / n,
+    with X the DFT. The unit is that of the taps. Line 0 is twice the mean. Taps that repeat exactly after one turn have
+    lines at whole orders alone: those of the turn, and 0 between them.
     """
-    count = spectrum_turns(response) * response.steps_per_turn
-    if tap.size < count:
-        raise ValueError(f"a tap of {tap.size} steps is shorter than the {count} steps that the orders need")
-    return np.asarray(2 / count * rfft(tap[-count:]))
+    count = taps.shape[1]
+    steps = count // turns
+    again = (taps[:, steps:] == taps[:, :-steps]).all(axis=1)
+    if again.all():
+        lines = np.zeros((len(taps), count // 2 + 1), dtype=np.complex128)
+    else:
+        lines = np.asarray(2 / count * rfft(taps, axis=1))
+        lines[again] = 0.0
+    lines[again, ::turns] = 2 / steps * rfft(taps[again, :steps], axis=1)
+    return lines
 
 
 def order_spectrum(tap: FloatArray, response: Response) -> FloatArray:
-    """Return the peak amplitudes (n // 2 + 1,) of the lines of `order_lines`, in the tap's unit.
+    """Return the peak amplitudes (n // 2 + 1,) of a tap (steps,) from `spectrum_lines`, in the tap's unit.
 
-    Raises ValueError as `order_lines` does.
+    The n values are the last ones, of `spectrum_turns` turns. Raises ValueError where the tap has fewer.
     """
-    return np.asarray(np.abs(order_lines(tap, response)), dtype=np.float64)
+    lines = spectrum_lines(_spectrum_part([tap], response), spectrum_turns(response))
+    return np.asarray(np.abs(lines[0]), dtype=np.float64)
 
 
-def order_floors(spectrum: FloatArray, turns: int) -> FloatArray:
-    """Return the median amplitude (20,) of the lines around each order k = 1 .. 20; 0 where there are no lines.
+def order_floors(spectra: FloatArray, turns: int) -> FloatArray:
+    """Return the median amplitude (taps, 20) of the lines around each order k = 1 .. 20; 0 where there are no lines.
 
-    The lines around k are within half an order of k, without the lines within 0.05 of k. `spectrum` has `turns` lines
-    per order.
+    The lines around k are within half an order of k, without the lines within 0.05 of k. The rows of `spectra` have
+    `turns` lines per order.
     """
     near, half = turns // 20, turns // 2
     beside = np.concatenate([np.arange(-half, -near), np.arange(near + 1, half + 1)])
+    floors = np.zeros((len(spectra), HIGHEST_ORDER))
     if beside.size == 0:
-        return np.zeros(HIGHEST_ORDER)
+        return floors
     lines = turns * np.arange(1, HIGHEST_ORDER + 1)[:, None] + beside
-    if lines.max() < spectrum.size:
-        return np.asarray(np.median(spectrum[lines], axis=1), dtype=np.float64)
-    around = (spectrum[row[row < spectrum.size]] for row in lines)  # few steps a turn: some lie beyond the spectrum
-    return np.array([float(np.median(row)) if row.size else 0.0 for row in around])
+    if lines.max() < spectra.shape[1]:
+        return np.asarray(np.median(spectra[:, lines], axis=2), dtype=np.float64)
+    for order, row in enumerate(lines):  # few steps a turn: some lie beyond the spectrum
+        there = row[row < spectra.shape[1]]
+        if there.size:
+            floors[:, order] = np.median(spectra[:, there], axis=1)
+    return floors
 
 
-def fractional_amplitudes(tap: FloatArray, response: Response) -> FloatArray:
-    """Compute peak amplitudes (9,) at FRACTIONS of f_r over the last 96 turns (or the largest multiple of 12 below).
+def fractional_amplitudes(taps: FloatArray, steps: int) -> FloatArray:
+    """Compute peak amplitudes (taps, 9) at FRACTIONS of f_r over the last 96 turns (or the largest multiple of 12).
 
-    Twelve turns are a whole number of periods of each fraction. The tap is therefore averaged over its sections of
-    twelve turns, which removes other orders and noise. All values are NaN for a record of fewer than 12 turns.
+    Twelve turns are a whole number of periods of each fraction. Each tap is therefore averaged over its sections of
+    twelve turns, which removes other orders and noise. All values are NaN for taps of fewer than 12 turns.
+
+    - taps (taps, any): the values of whole turns.
+    - steps: number of steps of a turn.
     """
-    folds = spectrum_turns(response) // FOLDED_TURNS
-    length = FOLDED_TURNS * response.steps_per_turn
+    length = FOLDED_TURNS * steps
+    folds = taps.shape[1] // length
     if folds == 0:
-        return np.full(len(FRACTIONS), np.nan)
-    folded = tap[-folds * length :].reshape(folds, length).mean(axis=0)
-    size = 2 / length * np.abs(rfft(folded))
+        return np.full((len(taps), len(FRACTIONS)), np.nan)
+    folded = taps[:, -folds * length :].reshape(len(taps), folds, length).mean(axis=1)
+    size = 2 / length * np.abs(rfft(folded, axis=1))
     places = [int(FOLDED_TURNS * fraction) for fraction in FRACTIONS]
-    return np.asarray(size[places], dtype=np.float64)
+    return np.asarray(size[:, places], dtype=np.float64)
 
 
 def _share(amplitudes: FloatArray, part: FloatArray) -> float:

@@ -2,8 +2,9 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from scipy.fft import rfft
 
-from rubgen.labels.harmonics import FLOOR, FRACTIONS, harmonics
+from rubgen.labels.harmonics import FLOOR, FRACTIONS, TapOrders, harmonics
 from rubgen.solver.response import Response
 
 Respond = Callable[..., Response]
@@ -129,6 +130,50 @@ def test_only_the_last_100_turns_count(respond: Respond) -> None:
     early = np.concatenate([wave({1.0: 50.0}, turns=37)[:-99], late])
     long, short = (harmonics(respond(taps={"casing_acc_0": tap})) for tap in (early, late))
     assert np.array_equal(long["casing_acc_0"].amplitudes, short["casing_acc_0"].amplitudes)
+
+
+NAMES = [f"support_force_{name}" for name in "abcdefg"]
+"""More taps than are transformed together."""
+
+
+def plain(tap: np.ndarray, turns: int = 100, steps: int = 256) -> TapOrders:
+    """Compute the orders of one tap by itself, from the DFT of its last turns."""
+    lines = 2 / tap.size * rfft(tap)[: 39 * turns]
+    folded = tap[-96 * steps :].reshape(8, -1).mean(axis=0)
+    beside = [*range(-50, -5), *range(6, 51)]
+    whole = lines[turns : 21 * turns : turns]
+    return TapOrders(
+        amplitudes=np.abs(whole),
+        phases=np.angle(whole),
+        floors=np.array([np.median(np.abs(lines[[turns * k + j for j in beside]])) for k in range(1, 21)]),
+        fractional=2 / folded.size * np.abs(rfft(folded))[[int(12 * fraction) for fraction in FRACTIONS]],
+        blade_passing=np.abs(lines[34 * turns : 39 * turns : turns]),
+    )
+
+
+def test_taps_that_are_transformed_together_have_the_bits_of_each_alone(respond: Respond) -> None:
+    random = np.random.default_rng(1)
+    taps = {name: random.standard_normal(25600) for name in NAMES}
+    found = harmonics(respond(taps=taps))
+    assert list(found)[-len(NAMES) :] == NAMES
+    for name, tap in taps.items():
+        for field in TapOrders.__dataclass_fields__:
+            assert np.array_equal(getattr(found[name], field), getattr(plain(tap), field)), field
+
+
+def test_taps_that_repeat_exactly_have_the_orders_of_one_turn(respond: Respond) -> None:
+    tap = np.tile(np.random.default_rng(2).standard_normal(256), 100)
+    nearly = tap.copy()
+    nearly[-1] *= 1 + 1e-15
+    both = harmonics(respond(taps={"blisk_x": tap, "blisk_y": nearly}))
+    found, other = both["blisk_x"], plain(tap)
+    assert found.amplitudes == pytest.approx(other.amplitudes, rel=1e-12)
+    assert found.phases == pytest.approx(other.phases, abs=1e-11)
+    assert found.blade_passing == pytest.approx(other.blade_passing, rel=1e-12)
+    assert found.fractional == pytest.approx(other.fractional, abs=1e-14)
+    assert not found.floors.any()
+    assert other.floors.max() < 1e-14
+    assert both["blisk_y"].floors.all()
 
 
 def test_a_short_record_is_taken_whole_and_a_short_tail_refused(respond: Respond) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rubgen.labels.contact.zones import BINS, contact_zones, impulse_histogram, touched_arcs, turn_imbalance
-from rubgen.labels.harmonics import harmonics, spectrum_turns, tap_orders
+from rubgen.labels.harmonics import harmonics, spectrum_turns
 from rubgen.labels.labels import Motion
 from rubgen.labels.motion.clusters import cluster_distances, cluster_period, off_cluster, stray, without_periodic_part
 from rubgen.labels.motion.decision import MotionClass, combined
@@ -95,14 +95,14 @@ def test_a_later_start_of_the_turn_turns_each_phase_by_its_order(respond):
     theta = 2 * np.pi / steps * np.arange(turns * steps)
     signal = sum(np.cos(k * theta + 0.3 * k) / k for k in (1, 2, 5, 7))
     response = respond(turns=turns, tail_turns=turns, steps=steps)
-    first, later = (tap_orders(np.roll(signal, shift), response) for shift in (0, -3))
+    taps = {"first": signal, "later": np.roll(signal, -3), "scaled": 1e3 * signal}
+    first, later, scaled = harmonics(replace(response, taps=taps)).values()
     for k in (1, 2, 5, 7):
         assert first.amplitudes[k - 1] == pytest.approx(1 / k, rel=1e-9)
         assert later.amplitudes[k - 1] == pytest.approx(1 / k, rel=1e-9)
         turned = later.phases[k - 1] - first.phases[k - 1] - k * 3 * 2 * np.pi / steps
         assert abs(np.exp(1j * turned) - 1) < 1e-9
     assert first.even_share + first.odd_share == pytest.approx(1.0)
-    scaled = tap_orders(1e3 * signal, response)
     assert scaled.even_share == pytest.approx(first.even_share, rel=1e-12)
     assert scaled.dominant == first.dominant == 1
 
