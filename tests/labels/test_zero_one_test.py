@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rubgen.labels.motion.chaos import FREQUENCIES, growth_correlation
+from rubgen.labels.motion.chaos import FREQUENCIES, growth_correlation, mean_square_displacement
 from validation.verification.chaos.chaos_indicators import henon
 
 GOLDEN = (np.sqrt(5) - 1) / 2
@@ -39,3 +39,20 @@ def test_an_offset_and_a_scale_do_not_matter() -> None:
 def test_frequencies_lie_where_the_test_is_valid() -> None:
     assert FREQUENCIES.size == 100
     assert np.pi / 5 < FREQUENCIES.min() < FREQUENCIES.max() < 4 * np.pi / 5
+
+
+@pytest.mark.parametrize("count", [32, 250, 500])
+@pytest.mark.parametrize("kind", ["noise", "torus", "chaos"])
+def test_mean_square_displacement_is_that_of_the_walk(kind: str, count: int) -> None:
+    orbits = {
+        "noise": np.random.default_rng(0).standard_normal(count),
+        "torus": circle_map(GOLDEN, 0.9, count) + 0.3,
+        "chaos": henon()[:count],
+    }
+    observable, c = orbits[kind], FREQUENCIES[:, None]
+    found = mean_square_displacement(observable)
+    cut = max(count // 10, 3)
+    walk = np.cumsum(observable * np.exp(1j * c * np.arange(1, count + 1)), axis=1)
+    starts = walk[:, : count - cut]
+    away = [np.mean(np.abs(walk[:, n : n + count - cut] - starts) ** 2, axis=1) for n in range(1, cut + 1)]
+    assert found == pytest.approx(np.transpose(away), rel=1e-10)

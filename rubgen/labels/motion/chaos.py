@@ -3,10 +3,10 @@
 from functools import lru_cache
 
 import numpy as np
-from scipy.fft import fft, ifft, next_fast_len
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy.linalg import eigh
 
-from rubgen.arrays import ComplexArray, FloatArray
+from rubgen.arrays import FloatArray
 from rubgen.labels.motion.clusters import rms, without_periodic_part
 
 CHAOTIC_FROM = 0.7
@@ -70,36 +70,47 @@ def growth_correlation(observable: FloatArray) -> float:
     depends on the zero of the observable; var(phi) does not. Not valid for a constant with rounding noise: test for
     clusters first.
     """
-    displacement = _mean_square_displacement(observable)
-    steps = np.arange(1, displacement.shape[1] + 1)
-    c = FREQUENCIES[:, None]
-    oscillation = observable.mean() ** 2 * (1 - np.cos(steps * c)) / (1 - np.cos(c))
-    alpha = DAMPING if observable.size >= DAMPED_FROM else 0.0
+    displacement = mean_square_displacement(observable)
+    size, cut = observable.size, displacement.shape[1]
+    steps = np.arange(1, cut + 1)
+    oscillation = observable.mean() ** 2 * _oscillation(cut)
+    alpha = DAMPING if size >= DAMPED_FROM else 0.0
     damping = alpha * observable.var() * np.sin(np.sqrt(2) * steps)
     return float(np.median(_correlation(steps.astype(np.float64), displacement - oscillation + damping)))
 
 
-def _mean_square_displacement(observable: FloatArray) -> FloatArray:
-    """Return M_c(n), (frequencies, n_cut), every mean over the same L = N - n_cut starts.
+def mean_square_displacement(observable: FloatArray) -> FloatArray:
+    """Return M_c(n) (frequencies, n_cut) of an observable (N,), every mean over the same L = N - n_cut starts.
 
-    L M_c(n) = sum |p(j + n)|^2 + sum |p(j)|^2 - 2 Re sum conj(p(j)) p(j + n), the last by Fourier transform.
+    p_c(j + n) - p_c(j) is a sum of n points, and its square is a sum over their pairs. Pairs d points apart have the
+    factor cos(c d), the only one that depends on c: L M_c(n) = T_0(n) + 2 sum_{0 < d < n} cos(c d) T_d(n), with T_d(n)
+    = sum_{j < L} sum_{d < b <= n} phi_{j + b - d} phi_{j + b}.
     """
     size = observable.size
     cut = max(size // 10, 3)
-    starts, length = size - cut, next_fast_len(size)
-    walk = np.cumsum(observable * _turns(size), axis=1)
-    cross = ifft(np.conj(fft(walk[:, :starts], length)) * fft(walk, length))[:, : cut + 1].real
-    squares = np.cumsum(np.pad(walk.real**2 + walk.imag**2, ((0, 0), (1, 0))), axis=1)
-    energy = squares[:, starts:] - squares[:, : cut + 1]
-    return np.asarray((energy + energy[:, :1] - 2 * cross)[:, 1:] / starts, dtype=np.float64)
+    starts = size - cut
+    before = sliding_window_view(np.concatenate([np.zeros(cut - 1), observable]), size)[::-1]
+    sums = np.cumsum(observable * before, axis=1)
+    pairs = np.triu(sums[:, starts:] - sums[:, :cut])
+    return np.asarray(_pair_factors(cut) @ np.cumsum(pairs, axis=1) / starts, dtype=np.float64)
 
 
 @lru_cache(maxsize=4)
-def _turns(size: int) -> ComplexArray:
-    """Return exp(i c j) (frequencies, size), cached: all observables of a run have one size, and it is slow."""
-    turns = np.exp(1j * FREQUENCIES[:, None] * np.arange(1, size + 1))
-    turns.setflags(write=False)
-    return np.asarray(turns)
+def _pair_factors(cut: int) -> FloatArray:
+    """Return the factors (frequencies, cut) of pairs d < cut points apart: 1 for d = 0, else 2 cos(c d)."""
+    factors = 2 * np.cos(FREQUENCIES[:, None] * np.arange(cut))
+    factors[:, 0] = 1.0
+    factors.setflags(write=False)
+    return np.asarray(factors)
+
+
+@lru_cache(maxsize=4)
+def _oscillation(cut: int) -> FloatArray:
+    """Return (1 - cos n c) / (1 - cos c) (frequencies, cut) for n = 1 .. cut."""
+    c = FREQUENCIES[:, None]
+    shape = (1 - np.cos(np.arange(1, cut + 1) * c)) / (1 - np.cos(c))
+    shape.setflags(write=False)
+    return np.asarray(shape)
 
 
 def _correlation(steps: FloatArray, curves: FloatArray) -> FloatArray:
