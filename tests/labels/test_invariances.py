@@ -9,7 +9,14 @@ import pytest
 from rubgen.labels.contact.zones import BINS, contact_zones, impulse_histogram, touched_arcs, turn_imbalance
 from rubgen.labels.harmonics import harmonics, spectrum_turns
 from rubgen.labels.labels import Motion
-from rubgen.labels.motion.clusters import cluster_distances, cluster_period, off_cluster, stray, without_periodic_part
+from rubgen.labels.motion.clusters import (
+    cluster_distances,
+    cluster_period,
+    late_distances,
+    off_cluster,
+    stray,
+    without_periodic_part,
+)
 from rubgen.labels.motion.decision import MotionClass, combined
 from rubgen.labels.motion.intermittency import segments
 from rubgen.labels.motion.whirl import WhirlDirection, whirl
@@ -150,14 +157,15 @@ def test_what_is_off_a_cluster_is_the_distance_to_its_mean(turns, period):
 def test_each_period_up_to_sixteen_is_found_from_any_turn_and_at_any_place(period):
     points = np.tile(RNG.normal(size=(period, 2, 4)), (260 // period + 1, 1, 1))[:256]
     for each in (points, np.roll(points, 5, axis=0)[5:], points + 7.0, points[:, ::-1]):
-        assert cluster_period(each) == period
-        assert stray(each, period) == pytest.approx(0, abs=1e-12)
+        distances = late_distances(each)
+        assert cluster_period(distances) == period
+        assert stray(distances, period) == pytest.approx(0, abs=1e-12)
         assert not without_periodic_part(each).round(9).any()
 
 
 def test_a_period_beyond_sixteen_is_none():
     points = np.tile(RNG.normal(size=(17, 1, 4)), (40, 1, 1))
-    assert cluster_period(points) is None
+    assert cluster_period(late_distances(points)) is None
 
 
 def test_stretches_cover_every_turn_once():

@@ -7,7 +7,7 @@ from rubgen.errors import UserError
 from rubgen.labels import Motion
 from rubgen.labels.motion.chaos import chaos_indicator
 from rubgen.labels.motion.classify import motion
-from rubgen.labels.motion.clusters import cluster_distances, cluster_period, settles, stray
+from rubgen.labels.motion.clusters import cluster_distances, cluster_period, late_distances, settles, stray
 from rubgen.labels.motion.decision import Indicators, MotionClass, combined, decide
 from rubgen.solver.response import Response
 
@@ -29,8 +29,9 @@ def section(*columns: np.ndarray) -> np.ndarray:
 
 
 def classify(points: np.ndarray) -> MotionClass:
-    period = cluster_period(points)
-    seen = Indicators(period=period, stray=stray(points, period), growth=chaos_indicator(points), exponent=None)
+    distances = late_distances(points)
+    period = cluster_period(distances)
+    seen = Indicators(period=period, stray=stray(distances, period), growth=chaos_indicator(points), exponent=None)
     return decide(seen)
 
 
@@ -227,9 +228,9 @@ def test_fewer_than_32_turns_are_refused(respond: Respond) -> None:
 )
 def test_a_motion_settles_while_its_transient_is_above_the_scale(decay_turns, start, expected) -> None:
     points = section(1 + start * np.exp(-TURN / decay_turns) * np.cos(2 * np.pi * GOLDEN * TURN), 0 * TURN)
-    assert settles(points) is expected
-    assert settles(section(logistic(4.0))) is False
-    assert settles(points[:32]) is False
+    assert settles(late_distances(points)) is expected
+    assert settles(late_distances(section(logistic(4.0)))) is False
+    assert settles(late_distances(points[:32])) is False
 
 
 def test_a_motion_that_settles_is_not_quasi_periodic() -> None:

@@ -8,7 +8,7 @@ from rubgen.arrays import FloatArray
 from rubgen.errors import UserError
 from rubgen.labels.labels import Motion
 from rubgen.labels.motion.chaos import chaos_indicator
-from rubgen.labels.motion.clusters import cluster_distances, cluster_period, settles, stray
+from rubgen.labels.motion.clusters import cluster_distances, cluster_period, late_distances, settles, stray
 from rubgen.labels.motion.decision import AT_REST, FORCED, Indicators, MotionClass, combined, decide
 from rubgen.labels.motion.intermittency import Segment, is_intermittent, segments
 from rubgen.labels.motion.section import blisk_points, casing_points, casing_rests, is_symmetric
@@ -106,10 +106,11 @@ def indicators(parts: list[FloatArray], exponent: Exponent | None, *, resolved: 
     Each part has its own period (`cluster_period`) and rms distance from the clusters (`stray`). All parts have one K
     of the 0-1 test, the largest of any part (`chaos_indicator`). All parts settle if any part settles (`settles`).
     """
-    periods = [cluster_period(part) for part in parts]
-    strays = [stray(part, period) for part, period in zip(parts, periods, strict=True)]
+    distances = [late_distances(part) for part in parts]
+    periods = [cluster_period(each) for each in distances]
+    strays = [stray(each, period) for each, period in zip(distances, periods, strict=True)]
     growth = max(chaos_indicator(part) for part in parts)
-    settling = any(settles(part) for part in parts)
+    settling = any(settles(each) for each in distances)
     return tuple(
         Indicators(period=period, stray=size, growth=growth, exponent=exponent, settling=settling, resolved=resolved)
         for period, size in zip(periods, strays, strict=True)
@@ -119,7 +120,7 @@ def indicators(parts: list[FloatArray], exponent: Exponent | None, *, resolved: 
 def _tips_alone_stray(parts: list[FloatArray], seen: tuple[Indicators, ...]) -> bool:
     """Return whether the blisk does not repeat, but the disk centre and the casing by themselves do."""
     blisk, *casing = (part.period for part in seen)
-    return blisk is None and None not in casing and cluster_period(parts[0][:, :1]) is not None
+    return blisk is None and None not in casing and cluster_period(late_distances(parts[0][:, :1])) is not None
 
 
 def _stretches(parts: list[FloatArray], whole: Motion) -> tuple[Segment, ...]:

@@ -13,32 +13,38 @@ EXCURSION = 0.03
 """Largest distance of a single point."""
 
 
-def cluster_period(points: FloatArray) -> int | None:
-    """Return the smallest k <= 16 after which the points (turns, groups, values) repeat, or None.
+def late_distances(points: FloatArray) -> list[FloatArray]:
+    """Return the distances of points (turns, groups, values) from k = 1, 2, ... clusters, each (turns // 2,).
 
-    Only the second half of the record is used, where transients have decayed. A point's distance to the mean of its
-    cluster is the distance of its farthest group, so that one chattering tip counts. The distances must be at most
-    CLUSTER_RADIUS (rms over turns) and at most EXCURSION in each turn, and must not grow. In a short record k is at
-    most an eighth of the turns.
+    Only the second half of the record is used, where transients have decayed. k is at most 16, in a short record at
+    most an eighth of the turns, of which there must be at least eight. See `cluster_distances`.
     """
-    late = _late(points)
-    for period in range(1, _longest(late) + 1):
-        distance = cluster_distances(late, period)
+    late = points[points.shape[0] // 2 :]
+    return [cluster_distances(late, k) for k in range(1, min(LONGEST_PERIOD, len(late) // 4) + 1)]
+
+
+def cluster_period(distances: list[FloatArray]) -> int | None:
+    """Return the smallest k <= 16 after which points repeat, or None. `distances` are from `late_distances`.
+
+    A point's distance to the mean of its cluster is the distance of its farthest group, so that one chattering tip
+    counts. The distances must be at most CLUSTER_RADIUS (rms over turns) and at most EXCURSION in each turn, and must
+    not grow.
+    """
+    for period, distance in enumerate(distances, start=1):
         if rms(distance) <= CLUSTER_RADIUS and distance.max() <= EXCURSION and not _grows(distance):
             return period
     return None
 
 
-def stray(points: FloatArray, period: int | None) -> float:
-    """Return the rms distance of the points of the record's second half from their k clusters.
+def stray(distances: list[FloatArray], period: int | None) -> float:
+    """Return the rms distance of points from their k clusters. `distances` are from `late_distances`.
 
-    k is `period`. For None it is the k with the smallest distance among all k that `cluster_period` tries. `points`
-    (turns, groups, values), at least eight turns, are divided by the size of the motion. The means of k clusters of n
-    points lie nearer to the points than the true means: dividing the mean square by 1 - k / n corrects this.
+    k is `period`, or for None the k with the smallest distance. The points are divided by the size of the motion. The
+    means of k clusters of n points lie nearer to the points than the true means: dividing the mean square by 1 - k / n
+    corrects this.
     """
-    late = _late(points)
-    periods = range(1, _longest(late) + 1) if period is None else (period,)
-    return min(rms(cluster_distances(late, k)) / math.sqrt(1 - k / len(late)) for k in periods)
+    periods = range(1, len(distances) + 1) if period is None else (period,)
+    return min(rms(distances[k - 1]) / math.sqrt(1 - k / distances[k - 1].size) for k in periods)
 
 
 def cluster_distances(points: FloatArray, period: int) -> FloatArray:
@@ -70,9 +76,13 @@ def without_periodic_part(points: FloatArray) -> FloatArray:
     because the bands are larger. The variance is divided by turns - k, so that more clusters alone do not reduce it.
     """
     turns = points.shape[0]
-    left = [off_cluster(points, k) for k in range(1, min(LONGEST_PERIOD, turns // 8) + 1)]
-    variance = [np.sum(rest**2) / (turns - k) for k, rest in enumerate(left, start=1)]
-    return left[int(np.argmin(variance))]
+    kept, least = points, math.inf
+    for k in range(1, min(LONGEST_PERIOD, turns // 8) + 1):
+        rest = off_cluster(points, k)
+        variance = float(np.vdot(rest, rest)) / (turns - k)
+        if variance < least:
+            kept, least = rest, variance
+    return kept
 
 
 def off_cluster(points: FloatArray, period: int) -> FloatArray:
@@ -91,30 +101,20 @@ def off_cluster(points: FloatArray, period: int) -> FloatArray:
     return residual
 
 
-def settles(points: FloatArray) -> bool:
-    """Return whether the points (turns, groups, values), at least eight turns, still approach a steady motion.
+def settles(distances: list[FloatArray]) -> bool:
+    """Return whether points still approach a steady motion. `distances` are from `late_distances`.
 
     In the second half of the record, the rms distance from the clusters then falls by more than half from the first
-    quarter to the last, from above CLUSTER_RADIUS. The number of clusters is the k with the smallest distance among all
-    k that `cluster_period` tries.
+    quarter to the last, from above CLUSTER_RADIUS. The number of clusters is the k with the smallest distance.
     """
-    late = _late(points)
-    distances = [cluster_distances(late, k) / math.sqrt(1 - k / len(late)) for k in range(1, _longest(late) + 1)]
-    first, *_, last = (rms(quarter) for quarter in np.array_split(min(distances, key=rms), 4))
+    corrected = [each / math.sqrt(1 - k / each.size) for k, each in enumerate(distances, start=1)]
+    first, *_, last = (rms(quarter) for quarter in np.array_split(min(corrected, key=rms), 4))
     return first > 2 * last and first > CLUSTER_RADIUS
 
 
 def rms(values: FloatArray) -> float:
     """Return the root of the mean square of values."""
     return float(np.sqrt(np.mean(values**2)))
-
-
-def _late(points: FloatArray) -> FloatArray:
-    return points[points.shape[0] // 2 :]
-
-
-def _longest(late: FloatArray) -> int:
-    return min(LONGEST_PERIOD, len(late) // 4)
 
 
 def _grows(distance: FloatArray) -> bool:
