@@ -5,6 +5,7 @@ The tail is the end of a run: the steps at which the response has taps (true sig
 
 import zlib
 from collections.abc import Sequence
+from functools import cache, partial
 
 import numpy as np
 
@@ -73,11 +74,11 @@ def measure(
     start = start_seconds(sensing, seconds, steps=response.record_steps, dt=response.dt)
     pulses = pulse_times(response, float(angle[0]), start, covered)
     streams = dict(zip((sensor.name for sensor in sensors), rng.spawn(len(sensors)), strict=True))
-    tail = _tail(response, seconds)
-    motion = _frame_motion(frame, response, tail, surroundings, faults, rng) if frame else None
+    tail = cache(partial(_tail, response, seconds))  # few runs need it
+    motion = _frame_motion(frame, response, tail(), surroundings, faults, rng) if frame else None
     stream = _stream(rng, SURROUNDINGS_STREAM)
-    disturbances = Disturbances(surroundings, tail, stream, motion) if surroundings else None
-    source = Source(response, tail.angle, motion, disturbances)
+    disturbances = Disturbances(surroundings, tail(), stream, motion) if surroundings else None
+    source = Source(response, tail, motion, disturbances)
     channels = _channels(source, sensing, positions, angle, streams)
     timing: dict[str, TipTimes] = {}
     for sensor in sensors:

@@ -1,6 +1,6 @@
 """Turn the tap (true signal) of a sampled sensor into its recorded channel."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from rubgen.measurement.channel import Channel
 from rubgen.measurement.frame import FrameMotion
 from rubgen.measurement.front_end import drop_out, front_end, miscalibrate, noise, noise_level
 from rubgen.measurement.surroundings import Disturbances
+from rubgen.measurement.tail import Tail
 from rubgen.scenario import Sensing
 from rubgen.sensors.sensor import SampledSensor
 from rubgen.sensors.sensor_set import SensorSet
@@ -24,8 +25,8 @@ class Source:
     """Everything that the sensors of a run may feel: the response, the frame and the surroundings."""
 
     response: Response
-    angle: FloatArray
-    """Theta at each step of the tail (steps,), rad."""
+    tail: Callable[[], Tail]
+    """Returns the steps that are measured, with the shaft's angle."""
     frame: FrameMotion | None
     """Motion of the machine's frame; None without one."""
     disturbances: Disturbances | None
@@ -82,7 +83,8 @@ def feed_of(sensor: SampledSensor, source: Source, sensors: SensorSet) -> Feed:
         return signal if (factor, zero) == (1.0, 0.0) else zero + factor * signal
 
     felt = true if added is None else true + added
-    ideal, seen = in_unit(true), sensor.disturbed(felt, source.angle, sensors.shaft_runout)
+    shaft = sensors.shaft_runout
+    ideal, seen = in_unit(true), sensor.disturbed(felt, source.tail().angle, shaft) if shaft else felt
     return Feed(sensor, ideal, front_end(sensor, ideal if seen is true else in_unit(seen), source.response.dt))
 
 

@@ -61,6 +61,7 @@ class SensorSet:
     @property
     def taps(self) -> tuple[Tap, ...]:
         """The true signals that the solver must record, each once: the default taps, then further taps of sensors."""
-        solved = (sensor.tap for sensor in self.sampled if sensor not in self.on_housing)
+        housing = self.on_housing
+        solved = (sensor.tap for sensor in self.sampled if sensor not in housing)
         sampled = dict.fromkeys([*DEFAULT_TAPS, *solved])
         return (*sampled, *(sensor.tap for sensor in self.sensors if isinstance(sensor, TimingProbe)))
