@@ -1,10 +1,16 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.linalg as la
 
-from rubgen.scenario import ContactLaw
+from rubgen import make_scenario
+from rubgen.machine import Mistuning
+from rubgen.reduction import reduce
+from rubgen.scenario import ContactLaw, Reduction
 from rubgen.solver import Status
 from rubgen.solver.integrate import integrate
+from rubgen.solver.linear.floquet import quadratic_eigenvalues
 from rubgen.solver.linear.rub_free import steady_state
 from rubgen.solver.linear.stability import automatic_settle_turns, eigenvalues, stable_step, steps_per_turn
 from rubgen.solver.speed.start import closing_ramp, rub_free_stepper, start_opening
@@ -141,6 +147,20 @@ def test_eigenvalues_solve_the_quadratic_pencil(small_system):
         pencil = s**2 * system.M + s * system.C + system.K
         singular = la.svdvals(pencil)
         assert singular[-1] < 1e-9 * singular[0]
+
+
+@pytest.mark.parametrize("mistuning", [None, Mistuning(relative_std=0.01, seed=3)])
+def test_eigenvalues_by_blocks_are_those_of_the_whole_matrices(mistuning):
+    """Equal blades leave many small blocks, mistuned ones a large one."""
+    machine = make_scenario("zeng2019").machine
+    machine = replace(machine, blades=replace(machine.blades, mistuning=mistuning))
+    system = reduce(machine, Reduction()).at_speed(1000.0)
+    whole = quadratic_eigenvalues(system.M, system.C, system.K)
+    found = eigenvalues(system)
+    assert found.size == whole.size
+    away = np.abs(whole[:, None] - found)
+    assert (away.min(axis=0) / np.abs(found)).max() < 1e-9
+    assert (away.min(axis=1) / np.abs(whole)).max() < 1e-9
 
 
 def test_the_step_is_halved_for_stability_and_for_the_sample_rate(small_system):

@@ -59,11 +59,13 @@ def floquet_exponents(system: SpinningSystem, steps: int) -> ComplexArray:
 
 
 def quadratic_eigenvalues(M: FloatArray, C: FloatArray, K: FloatArray) -> ComplexArray:
-    """Return all 2 n eigenvalues s (1/s) of s^2 M + s C + K, matrices (n, n), from the first-order form."""
-    n = len(M)
-    first_order = np.block([[np.zeros((n, n)), np.eye(n)], [-la.solve(M, K), -la.solve(M, C)]])
-    values: ComplexArray = la.eigvals(first_order).astype(np.complex128)
-    return values
+    """Return all 2 n eigenvalues s (1/s) of s^2 M + s C + K (any, 2 n), from the first-order form.
+
+    The matrices are (any, n, n).
+    """
+    zero, one = np.zeros_like(M), np.broadcast_to(np.eye(M.shape[-1]), M.shape)
+    first_order = np.block([[zero, one], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+    return np.asarray(np.linalg.eigvals(first_order), dtype=np.complex128)
 
 
 def _transition(

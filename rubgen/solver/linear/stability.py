@@ -11,6 +11,7 @@ from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Operation
 from rubgen.scenario.costs import STEPS_PER_SAMPLE
 from rubgen.solver.linear.floquet import floquet_exponents, linearised, quadratic_eigenvalues
+from rubgen.solver.linear.system_blocks import system_blocks
 from rubgen.units import rev_per_min
 
 STEP_SAFETY = 0.95
@@ -25,7 +26,7 @@ FLOQUET_STEPS = 1024
 
 
 def eigenvalues(system: SpinningSystem) -> ComplexArray:
-    """Return all 2 n eigenvalues s in 1/s of M q'' + C q' + K q = 0. Blisk and casing are computed separately.
+    """Return all 2 n eigenvalues s in 1/s of M q'' + C q' + K q = 0. Each block of the matrices is computed by itself.
 
     Laws of the support are linearised at the rub-free motion. The results are Floquet exponents (`floquet_exponents`)
     with uneven supports, which turn relative to the blisk, and with laws where gravity or loads of faults move O_d.
@@ -37,10 +38,11 @@ def eigenvalues(system: SpinningSystem) -> ComplexArray:
     if forces and (forces.uneven or (forces.laws and forces.is_periodic)):
         return floquet_exponents(system, steps_per_turn(system, FLOQUET_STEPS))
     constant = linearised(system) if forces and forces.laws else system
-    parts = (slice(0, system.casing_start), slice(system.casing_start, None))
-    return np.concatenate(
-        [quadratic_eigenvalues(*(X[part, part] for X in (constant.M, constant.C, constant.K))) for part in parts]
-    )
+    blocks = system_blocks(constant)
+    y = [blocks.transform.T @ matrix @ blocks.transform for matrix in (constant.M, constant.C, constant.K)]
+    alike = [bundle[bundle[:, 0] >= 0] for bundle in blocks.lanes] + [block[None] for block in blocks.single]
+    found = [quadratic_eigenvalues(*(X[part[:, :, None], part[:, None]] for X in y)) for part in alike]
+    return np.concatenate([values.ravel() for values in found])
 
 
 def slowest_decay(system: SpinningSystem) -> float:
