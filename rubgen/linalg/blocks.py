@@ -7,6 +7,7 @@ blocks, padded to rows of eight.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -43,6 +44,7 @@ def padded(size: int) -> int:
     return -(-size // LANES) * LANES
 
 
+@lru_cache(maxsize=8)
 def blade_harmonics(blades: int) -> FloatArray:
     """Return orthonormal real harmonics (blades, blades) over the blade number k, one harmonic in each column.
 
@@ -54,7 +56,9 @@ def blade_harmonics(blades: int) -> FloatArray:
         columns += [np.sqrt(2 / blades) * wave(2 * np.pi * ((d * k) % blades) / blades) for wave in (np.cos, np.sin)]
     if blades % 2 == 0:
         columns.append((-1.0) ** k / np.sqrt(blades))
-    return np.stack(columns, axis=1)
+    harmonics = np.stack(columns, axis=1)
+    harmonics.setflags(write=False)
+    return harmonics
 
 
 def coupled(matrix: FloatArray) -> BoolArray:

@@ -32,10 +32,14 @@ class RepeatedDriver(SteadyDriver):
     def run_turns(self, numbers: range, opening: Opening, *, recording: bool) -> Iterator[Turn]:
         """Yield the turns with these numbers. One integrated turn is repeated under each number.
 
-        A recorded turn in which `opening` is not yet 0 is integrated itself.
+        A recorded turn in which `opening` is not yet 0 is integrated itself. Of settling turns that are not recorded
+        only the first is yielded: the others are that turn once more, and nobody reads them.
         """
         for number in numbers:
-            yield self._run_turn(number, opening, recording=recording)
+            if number < 0 and self.once is not None and not recording:
+                self.repeated += 1
+            else:
+                yield self._run_turn(number, opening, recording=recording)
 
     def _run_turn(self, number: int, opening: Opening, *, recording: bool) -> Turn:
         if recording and opening(np.array([float(number + self.settle)]))[0] > 0:
