@@ -62,7 +62,7 @@ def filter_response(frequencies: FloatArray) -> FloatArray:
     positions: FloatArray = margin + 0.37 + np.arange(400, dtype=np.float64) * STEP_RATE / RATE
     phase = 2 * np.pi * frequencies / STEP_RATE * np.arange(int(positions[-1]) + margin + 2)[:, None]
     parts = np.concatenate([np.cos(phase), np.sin(phase)], axis=1)
-    out = band_limit(parts, positions, dt=1 / STEP_RATE, sample_rate_hz=RATE)
+    out = band_limit([*parts.T], positions, dt=1 / STEP_RATE, sample_rate_hz=RATE)
     half = len(frequencies)
     return np.asarray(np.hypot(out[:, :half], out[:, half:]).max(axis=0))
 

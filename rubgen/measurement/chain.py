@@ -1,6 +1,7 @@
 """The measuring chain of every channel: anti-alias filter and resampling, range and ADC."""
 
 import math
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -102,14 +103,14 @@ def filter_bank(dt: float, sample_rate_hz: float) -> FloatArray:
     return bank
 
 
-def band_limit(signals: FloatArray, positions: FloatArray, *, dt: float, sample_rate_hz: float) -> FloatArray:
+def band_limit(signals: Sequence[FloatArray], positions: FloatArray, *, dt: float, sample_rate_hz: float) -> FloatArray:
     """Return band-limited signals (samples, channels) at fractional step positions.
 
     Filter and interpolation in one: y(t) = sum_j h(t - j dt) x_j dt, with the weights' sum set to 1. The gain is 1
     within 1e-4 up to sample_rate / 2.56 and below 1e-4 from sample_rate / 2 on. There is no delay. The step rate must
     be at least 2.56 sample rates, and all positions at least half a filter length from the ends of the signals.
 
-    - signals (steps, channels): values at every step.
+    - signals: one of each channel, each (steps,) with values at every step.
     - positions (samples,): times of the samples, in steps.
     - dt: time step, s.
     - sample_rate_hz: sample rate.
@@ -119,19 +120,19 @@ def band_limit(signals: FloatArray, positions: FloatArray, *, dt: float, sample_
         interpolate_rows,
     )
 
-    channels, bank = signals.shape[1], filter_bank(dt, sample_rate_hz)
+    bank = filter_bank(dt, sample_rate_hz)
     before, after = 1 - bank.shape[1] // 2, 1 + bank.shape[1] // 2
-    out = np.empty((positions.size, channels))
-    for start in range(0, channels, ABREAST):
-        part, filtered = signals[:, start : start + ABREAST], np.zeros((positions.size, ABREAST))
-        for sample in range(0, positions.size, SAMPLES_AT_ONCE):
-            together = slice(sample, sample + SAMPLES_AT_ONCE)
-            at = positions[together]
-            first, end = math.floor(at.min()) + before, math.floor(at.max()) + after
-            steps = np.zeros((end - first, ABREAST))
-            steps[:, : part.shape[1]] = part[first:end]
-            interpolate_rows(steps, bank, at - first, filtered[together])  # the difference is exact
-        out[:, start : start + ABREAST] = filtered[:, : part.shape[1]]
+    parts = [slice(sample, sample + SAMPLES_AT_ONCE) for sample in range(0, positions.size, SAMPLES_AT_ONCE)]
+    spans = [(math.floor(at.min()) + before, math.floor(at.max()) + after) for at in map(positions.__getitem__, parts)]
+    room = np.zeros((max(end - first for first, end in spans), ABREAST))
+    out = np.empty((positions.size, len(signals)))
+    for start in range(0, len(signals), ABREAST):
+        abreast, filtered = signals[start : start + ABREAST], np.zeros((positions.size, ABREAST))
+        for part, (first, end) in zip(parts, spans, strict=True):
+            for column, signal in enumerate(abreast):
+                room[: end - first, column] = signal[first:end]
+            interpolate_rows(room, bank, positions[part] - first, filtered[part])  # the difference is exact
+        out[:, start : start + ABREAST] = filtered[:, : len(abreast)]
     return out
 
 

@@ -107,7 +107,7 @@ def filtered(feeds: Sequence[Feed], positions: FloatArray, *, dt: float, sensing
     for clock in dict.fromkeys(clock for clock, _ in wanted):
         signals = {id(signal): signal for own, signal in wanted if own == clock}
         at = positions if clock == (0.0, 0.0) else positions + (clock[0] + 1e-6 * clock[1] * time) / dt
-        out = band_limit(np.stack([*signals.values()]).T, at, dt=dt, sample_rate_hz=rate)
+        out = band_limit([*signals.values()], at, dt=dt, sample_rate_hz=rate)
         done |= {(clock, name): out[:, i] for i, name in enumerate(signals)}
     return {
         feed.sensor.name: Samples(

@@ -25,7 +25,7 @@ def tone_response(frequency: float, step_rate: float, rate: float = RATE) -> np.
     positions = margin + 0.37 + np.arange(200) * step_rate / rate
     steps = np.arange(int(positions[-1]) + margin + 2)
     phase = 2 * np.pi * frequency / step_rate
-    parts = np.stack([np.cos(phase * steps), np.sin(phase * steps)], axis=1)
+    parts = [np.cos(phase * steps), np.sin(phase * steps)]
     out = band_limit(parts, positions, dt=1 / step_rate, sample_rate_hz=rate)
     return (out[:, 0] + 1j * out[:, 1]) * np.exp(-1j * phase * positions)
 
@@ -76,28 +76,28 @@ def test_filter_is_scipys_kaiser_design() -> None:
 def test_integral_of_impulses_is_preserved() -> None:
     rng = np.random.default_rng(1)
     step_rate, dt = 170666.7, 1 / 170666.7
-    force = np.zeros((60_000, 1))
+    force = np.zeros(60_000)
     hits = rng.integers(10_000, 50_000, 40)
-    force[hits, 0] += rng.uniform(0.01, 0.3, hits.size) / dt  # single-step multipliers: impulse / dt
+    force[hits] += rng.uniform(0.01, 0.3, hits.size) / dt  # single-step multipliers: impulse / dt
     positions = np.arange(1000.0, 59_000.0, step_rate / RATE)
-    recorded = band_limit(force, positions, dt=dt, sample_rate_hz=RATE)
+    recorded = band_limit([force], positions, dt=dt, sample_rate_hz=RATE)
     assert recorded.sum() / RATE == pytest.approx(force.sum() * dt, rel=1e-5)
 
 
 def test_peak_of_an_impulse_does_not_depend_on_the_step() -> None:
     peaks = []
     for step_rate in [100_000.0, 200_000.0, 400_000.0]:
-        force = np.zeros((int(0.02 * step_rate), 1))
+        force = np.zeros(int(0.02 * step_rate))
         middle = force.shape[0] // 2
         force[middle] = step_rate  # 1 N s
         positions = middle + (np.arange(-50, 51) + 0.3) * step_rate / RATE
-        peaks.append(band_limit(force, positions, dt=1 / step_rate, sample_rate_hz=RATE).max())
+        peaks.append(band_limit([force], positions, dt=1 / step_rate, sample_rate_hz=RATE).max())
     assert peaks == pytest.approx([peaks[0]] * 3, rel=1e-3)
 
 
 def test_constant_passes_exactly() -> None:
-    signal = np.full((3000, 1), 8.3e-3)
-    out = band_limit(signal, np.linspace(500, 2400, 301), dt=1 / 170666.7, sample_rate_hz=RATE)
+    signal = np.full(3000, 8.3e-3)
+    out = band_limit([signal], np.linspace(500, 2400, 301), dt=1 / 170666.7, sample_rate_hz=RATE)
     assert out == pytest.approx(8.3e-3, rel=1e-13)
 
 
@@ -110,11 +110,22 @@ def test_every_channel_is_filtered_by_itself(channels: int) -> None:
     positions = half + np.array([0.0, 3.25, 17.5, 28.75])  # rows of the bank: nothing is interpolated
     weights = impulse_response((positions[:, None] - np.arange(len(signals))) * dt, RATE)
     expected = weights / weights.sum(axis=1, keepdims=True) @ signals
-    found = band_limit(signals, positions, dt=dt, sample_rate_hz=RATE)
+    found = band_limit([*signals.T], positions, dt=dt, sample_rate_hz=RATE)
     assert found.shape == (4, channels)
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
-    alone = band_limit(signals[:, -1:], positions, dt=dt, sample_rate_hz=RATE)
+    alone = band_limit([signals[:, -1]], positions, dt=dt, sample_rate_hz=RATE)
     np.testing.assert_array_equal(alone, found[:, -1:])  # to the bit, whatever stands beside it
+
+
+def test_samples_are_filtered_as_if_all_were_filtered_at_once() -> None:
+    dt, rng = 1 / 70_000, np.random.default_rng(3)
+    bank = filter_bank(dt, RATE)
+    positions = bank.shape[1] + 0.3 + np.arange(1200) * 1.7  # some blocks of samples and a part of one
+    signals = rng.standard_normal((int(positions[-1]) + bank.shape[1], ABREAST))
+    at_once = np.zeros((positions.size, ABREAST))
+    interpolate_rows(signals, bank, positions, at_once)
+    found = band_limit([*signals.T], positions, dt=dt, sample_rate_hz=RATE)
+    np.testing.assert_array_equal(found, at_once)
 
 
 def test_compiled_and_plain_kernel_agree() -> None:
