@@ -18,7 +18,8 @@ def labels_to_json(labels: Labels) -> dict[str, object]:
     """Return the labels of one run by their public names, as plain Python values for JSON.
 
     The keys are in the order of `rubgen.labels.registry`, which lists names, units and meanings. Then follow the labels
-    of each true signal, such as `<tap>_orders`. Undefined values and NaN are None.
+    of each true signal, such as `<tap>_orders`. Labels of windows of the signals are not included (`window_labels`).
+    Undefined values, NaN and infinite values are None, in lists too.
     """
     values = {each.name: _plain(each.kind, each.value(labels)) for each in LABELS}
     for tap, orders in labels.orders.items():
@@ -64,7 +65,8 @@ def motion_classes(labels: Labels, start: float, seconds: float) -> list[tuple[f
     - start: start of the part in s from the start of the record. The returned times count from it.
     - seconds: length of the part.
 
-    A class is a dict of the labels in MOTION_LABELS. A steady run has one entry, at time 0.
+    A class is a dict of the labels in MOTION_LABELS. A class that began before the part has the time 0. A steady run
+    has one entry, at time 0.
     """
     if labels.history is None:
         stretches = [(0.0, labels.motion, labels.motion_blisk, labels.motion_casing)]

@@ -66,9 +66,9 @@ def windows(response: Response) -> Windows:
 
 
 def turn_times(response: Response, changing: ChangingSpeed | None) -> FloatArray:
-    """Return the start of each turn, and at the end the end of the record (record_turns + 1,), in s.
+    """Return the start of each turn of the record, and last the end of the record (record_turns + 1,), in s.
 
-    `changing` is the course of a changing speed; None is a steady speed.
+    Times count from the start of the record. `changing` is the course of a changing speed; None is a steady speed.
     """
     turns = range(response.record_turns + 1)
     if changing is None:

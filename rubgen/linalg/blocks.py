@@ -103,10 +103,13 @@ class Blocks:
         return self._packed(self.transform.T @ matrix @ self.transform, triangle=False)
 
     def without_zeros(self, matrix: FloatArray, like: FloatArray) -> Product:
-        """Store a matrix as `product` does, but without lines of zeros.
+        """Store a matrix as `product` does, but with rounding set to 0, and without lines that have only zeros.
 
-        An entry counts as zero if it is rounding: at most ROUNDING times the `scale_of` the matrix `like` (n, n), from
-        whose entries `matrix` (n, n) was computed.
+        A line is one sum of products of a kernel (`lanes_kernels`).
+
+        - matrix (n, n): in the coordinates q.
+        - like (n, n): the matrix, such as K, from whose entries `matrix` was computed. Entries of `matrix` up to
+          ROUNDING times its `scale_of` are rounding. They are compared with the tips as harmonics.
         """
         Y = self.transform.T @ matrix @ self.transform
         size = ROUNDING * scale_of(self.transform.T @ like @ self.transform)
@@ -140,11 +143,15 @@ class Blocks:
         return aligned(np.array(pairs).reshape(-1, 2, self.rows * LANES))
 
     def damping(self, matrix: FloatArray, *, whole: bool = False) -> Product:
-        """Store a damping matrix C (n, n) as a triangle, so that a kernel computes d^T C d as 2 d^T (triangle d).
+        """Store a damping matrix C as a triangle, so that a kernel computes d^T C d as 2 d^T (triangle d).
 
-        The triangle is the lower triangle of the symmetric part with half its diagonal. Within a block, Coriolis forces
-        couple more coordinates than dampers. In blocks side by side, entries between coordinates that the symmetric
-        part does not connect are left out, unless `whole` is set.
+        The triangle is the lower triangle of the symmetric part of C with half its diagonal, for vectors d in the order
+        of z.
+
+        - matrix (n, n): C, in the coordinates q.
+        - whole: store all entries of the triangle. Without it, blocks that are stored side by side lack the entries
+          between coordinates that the symmetric part does not connect (`coupled`): these are 0 or rounding. Coriolis
+          forces couple more coordinates within a block than dampers do.
         """
         Y = self.transform.T @ matrix @ self.transform
         Y = (Y + Y.T) / 2
@@ -212,7 +219,7 @@ def entry_rows(lines: IntArray) -> IntArray:
 
 
 def parts_of(rows: int) -> list[slice]:
-    """Divide `rows` rows of results into parts of nearly equal size, none larger than MOST_ROWS.
+    """Divide `rows` rows of results, 1 or more, into parts of nearly equal size, none larger than MOST_ROWS.
 
     Return the parts as slices.
     """

@@ -68,7 +68,10 @@ def recover_rest(harmonics: Harmonics, z: FloatArray, q_out: FloatArray) -> None
 def recover_all(
     harmonics: Harmonics, z: FloatArray, share_work: FloatArray, tips_work: FloatArray, q: FloatArray
 ) -> None:
-    """Compute all coordinates from z, into `q` (n,). `share_work` and `tips_work` are scratch, as in `recover_tips`."""
+    """Compute all coordinates from z, into `q` (n,): radial, tangential, axial of each tip, then the others.
+
+    `share_work` is scratch as in `recover_tips`, `tips_work` (3, n_blades or more) too.
+    """
     recover_tips(harmonics, z, share_work, tips_work)
     for k in range(harmonics.basis.shape[0]):
         for a in range(3):

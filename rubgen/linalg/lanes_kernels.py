@@ -39,8 +39,8 @@ def line_kind(rows: int, *, scaled: bool) -> int:
 def line_sum(line: IntArray, a: FloatArray, x: FloatArray) -> FloatArray:
     """Return the rows of results (rows, 8) of one line, with the entries `a` (any, 8) and the vector `x`.
 
-    Row r is the sum over j < COUNT of a[FIRST + j rows + r] times row of eight, or for a scaled line number, START + j
-    of x.
+    Row r is the sum over j < COUNT of a[FIRST + j rows + r] times x_(START + j). x_i is row i of x in rows of eight,
+    and for a scaled line the single number i of x.
     """
     rows, scaled = line[KIND] // 2 + 1, line[KIND] % 2
     entries = a.reshape(-1, LANES)[line[FIRST] : line[FIRST] + rows * line[COUNT]].reshape(-1, rows, LANES)
@@ -65,7 +65,7 @@ def add_lines(lines: IntArray, a: FloatArray, x: FloatArray, out: FloatArray) ->
 def set_two_lines(
     lines: IntArray, a: FloatArray, b: FloatArray, x: FloatArray, y: FloatArray, base: FloatArray, out: FloatArray
 ) -> None:
-    """Set each row of `out` to the same row of `base` plus the sums of a with x and of b with y.
+    """Set each row of `out` to the same row of `base` plus the sums of a with x and of b with y along the same lines.
 
     `lines` (any, 5) contain each row of results once; `a` and `b` (any, 8) are entries.
     """

@@ -78,10 +78,12 @@ def complete(schema: dict[str, Any]) -> dict[str, Any]:
 
 
 def draws(quantity: Any, default: object = None) -> Callable[[dict[str, Any]], None]:
-    """Return a function that adds range and default of the drawn quantity to the JSON schema of a distribution.
+    """Return a function that adds range and default of a drawn quantity to the JSON schema of a distribution, in place.
+
+    It adds the keys ALLOWED and OWN_DEFAULT, and is made for pydantic's `json_schema_extra`.
 
     - quantity: the annotated type of the drawn value.
-    - default: the value without the key.
+    - default: the value where the key is missing. With None no default is shown.
     """
 
     def add(schema: dict[str, Any]) -> None:

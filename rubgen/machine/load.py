@@ -28,8 +28,8 @@ def preset_names() -> list[str]:
 def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
     """Load the preset with the given name, or the machine in a TOML file: a text that ends with .toml is a path.
 
-    A relative path starts from `folder`; None is the current directory. Raises UserError with file, key, value and what
-    is allowed where the machine does not exist or is not valid.
+    A relative path starts from `folder`; None is the current directory. `~` is the home directory. Raises UserError
+    with file, key, value and what is allowed where the machine does not exist or is not valid.
     """
     if name_or_path in preset_names():
         return _machine_from(PRESETS / f"{name_or_path}.toml")
@@ -41,10 +41,11 @@ def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
 
 @contextmanager
 def file_named(name_or_path: str, folder: Path | None = None) -> Iterator[None]:
-    """Add the machine's file to a UserError that the block raises about a machine, "machine <name>: its ...".
+    """Name the machine's file in a UserError of the block that contains "machine <name>: its ...".
 
-    The code that builds the model of a machine knows only the machine's name. For a preset nothing is added.
-    `name_or_path` and `folder` are the arguments that `load_machine` got.
+    It is raised as "<file>: its ...", without the text before. The code that builds the model of a machine knows only
+    the machine's name. For a preset, and for any other text, the error is unchanged. `name_or_path` and `folder` are
+    the arguments that `load_machine` got.
     """
     try:
         yield

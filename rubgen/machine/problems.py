@@ -56,7 +56,8 @@ def validated(
     - adapter: pydantic's adapter of the type.
     - place: turns the path of a value in `data` into its path in the file.
 
-    Raises UserError of one line: the first problem in the order of the file, and the number of problems.
+    Raises UserError of one line. It is the error of `check_plain` if there is one, else the first problem in the order
+    of the file, with the number of problems if there are several.
     """
     check_plain(source, data)
     try:
@@ -120,7 +121,8 @@ def _of(source: object, text: str) -> str:
 def nearest(name: str, known: list[str]) -> str:
     """Return a hint for an unknown `name`: "did you mean ...?" with the nearest known name, and the allowed names.
 
-    Without known names the hint is "remove it".
+    The question is left out where no known name is like `name`. At most MOST_LISTED names are listed. Without known
+    names the hint is "remove it".
     """
     close = _closest(name, known)
     hint = f"did you mean {close}? " if close else ""

@@ -27,7 +27,10 @@ class Usual:
     ours: str = ""
 
     def doubt(self, value: float) -> str | None:
-        """Return why a value is unusual, with the first unit in which it would be usual; None for a usual value."""
+        """Return why a value is unusual; None for a value from `low` to `high`, both included.
+
+        The text is `fact`, and asks for the first of `units` in which the value would be usual, if there is one.
+        """
         if self.low <= value <= self.high:
             return None
         for unit, size in self.units:

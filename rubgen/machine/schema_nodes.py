@@ -25,7 +25,11 @@ class SchemaNodes:
         self.root: Node = adapter.json_schema()
 
     def at(self, data: object, path: Path) -> list[Node]:
-        """Return all schema nodes that describe the value at `path` of `data`."""
+        """Return all schema nodes that describe the value at `path` of `data`; none where the schema has no such path.
+
+        References are followed. Of a union all branches are returned, then the union itself. Where a key such as `kind`
+        in `data` chooses a branch, only this branch is followed. `data` need not contain the path.
+        """
         nodes = list(self._branches(self.root, data))
         for part in path:
             data = _within(data, part)

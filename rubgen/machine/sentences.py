@@ -55,10 +55,12 @@ LEVELS = 6
 
 
 def sentence(error: Mapping[str, Any], bounds: str, nodes: list[Mapping[str, Any]]) -> str:
-    """Return what a value must be, as a clause, for one error of validation.
+    """Return what a value must be, as a clause for one error of validation, such as "must be a whole number".
+
+    A message of rubgen's own rules is returned as it is. For an unknown kind of error it is "is not allowed here".
 
     - error: one error of pydantic.
-    - bounds: allowed range in words, or empty.
+    - bounds: allowed range in words, for an error about a bound. Empty shows only the bound that the error names.
     - nodes: JSON schema nodes of the value.
     """
     kind, context = str(error["type"]), error.get("ctx", {})
@@ -105,9 +107,9 @@ def _list_of(kind: str, context: Mapping[str, Any], nodes: list[Mapping[str, Any
 
 
 def toml_text(value: object, levels: int = LEVELS) -> str:
-    """Write a value in TOML: `true`, `{ uniform = [1, 2] }`, `2026-01-31`; texts in single quotes.
+    """Write a value in TOML for a message: `true`, `{ uniform = [1, 2] }`, `2026-01-31`; texts in single quotes.
 
-    Tables and lists deeper than `levels` are written as "...".
+    Numbers have 12 significant digits, except for integers. Tables and lists deeper than `levels` are written as "...".
     """
     if isinstance(value, bool):
         return str(value).lower()

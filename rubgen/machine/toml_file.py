@@ -63,10 +63,11 @@ def toml_path(name: str | Path, folder: Path | None = None) -> Path:
 
 
 def named_toml(key: str, name: str, folder: Path | None = None) -> Path:
-    """Return the path of the TOML file `name`. A relative path starts from `folder`.
+    """Return the path of the TOML file `name`, with `~` as the home directory. A relative path starts from `folder`.
 
-    `folder` None is the current directory. Raises UserError with `key`, the key whose value `name` is, where the file
-    does not exist.
+    `folder` None is the current directory. Raises UserError where nothing is at the path; `key` is the key whose value
+    `name` is, for the message. What is at the path, such as a directory, is not checked. Raises UserError as
+    `toml_path` too.
     """
     path = toml_path(name, folder)
     if os.path.lexists(path):
@@ -81,7 +82,8 @@ def check_kind(path: Path | str, data: dict[str, object], wanted: str) -> None:
     - path: path of the file, for the message.
     - data: its content.
 
-    Raises UserError where the content is clearly of another kind. A file without any known key passes.
+    Raises UserError where the content is clearly of another kind: it has no key of `wanted` in KEYS_OF_KIND, and two or
+    more of another kind, or a list `sensors`. All other content passes, also without any known key.
     """
     if any(key in data for key in KEYS_OF_KIND[wanted]):
         return
@@ -95,7 +97,7 @@ def read_toml(path: Path) -> dict[str, object]:
     """Read a TOML file and return its values. `~` in `path` is the home directory.
 
     A byte order mark of UTF-8 is skipped. Lines may end as on any system. Raises UserError of one line where the file
-    is missing, not text, too large or not TOML.
+    is missing, not a readable regular file, larger than MOST_BYTES, not a text in UTF-8, or not TOML.
     """
     path = toml_path(path)
     text = _text(path, _content(path)).replace("\r\n", "\n").replace("\r", "\n")

@@ -57,7 +57,8 @@ class Crack(Fault):
     def doubt(self, machine: Machine, speed: float) -> str | None:
         """Return a doubt where the unbalance moves the disk by more than its weight does; else None.
 
-        A real crack then does not breathe with the weight. `speed` is in rad/s.
+        A real crack then does not breathe with the weight. `speed` is in rad/s. Both motions are estimated for a rigid
+        blisk on its lateral spring and damper, with `unbalance_kg_m` as the only unbalance.
         """
         mass, stiffness = blisk_mass(machine), machine.disk_support.lateral_stiffness_n_per_m
         drag = 2 * machine.damping.lateral * math.sqrt(stiffness * mass)

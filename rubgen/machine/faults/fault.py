@@ -164,13 +164,13 @@ class Fault(ABC):
         - speed (steps,): speed of the shaft at the steps, rad/s.
         - rng: random numbers.
 
-        The result has the angle of the shaft, impulse (N s) and direction (rad) of each blow.
+        The result has the angle of the shaft, the impulse (N s) and the direction (rad from +X, inertial) of each blow.
         """
         return None
 
 
 def missing_blade(blade: int, machine: Machine) -> str | None:
-    """Return a problem if the machine has no blade of this number, or has lost it; else None."""
+    """Return a problem if the machine has no blade of this number, or has lost it as a whole; else None."""
     last = machine.blades.count - 1
     if blade > last:
         return f"blade = {blade}: there is no such blade; give 0 to {last}"

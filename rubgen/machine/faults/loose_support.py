@@ -46,7 +46,10 @@ class LooseSupport(Fault):
         return self.lost_stiffness
 
     def support_laws(self, machine: Machine, speed: float) -> tuple[SupportLaw, ...]:
-        """Return the stiffness that is lost beyond the gap, as a spring law with a force along the displacement."""
+        """Return one law: a force in the direction of the lift that cancels the lost stiffness beyond the gap.
+
+        `lost_stiffness` is a share of `lateral_stiffness_n_per_m`, the mean of X and Y. The speed has no influence.
+        """
         stiffness = machine.disk_support.lateral_stiffness_n_per_m
         return (
             LooseSpring(

@@ -37,9 +37,10 @@ class LostBlade(Fault):
         return float(self.lost_count)
 
     def problem(self, machine: Machine) -> str | None:
-        """Return a problem where the machine does not have the blades or loses too many of them; else None.
+        """Return a problem where the machine has no blade number `blade` or loses too many blades; else None.
 
-        An unbalance of the machine on a lost blade is a problem too.
+        A quarter of the blades can be lost, rounded down, and always one, as long as two blades stay. After the last
+        blade comes blade 0. An unbalance of the machine on a lost blade is a problem too.
         """
         count = machine.blades.count
         if self.blade >= count:

@@ -60,7 +60,11 @@ class OilWhirl(Fault):
         return "damping.lateral = 0, and the oil acts through that damper; give it a ratio above 0"
 
     def support_laws(self, machine: Machine, speed: float) -> tuple[SupportLaw, ...]:
-        """Return the law of the oil film, in addition to springs and dampers of the support, c = 2 zeta sqrt(k m)."""
+        """Return one law, the oil film at `speed` (rad/s). It acts in addition to springs and dampers of the support.
+
+        The swirl is c `swirl_ratio` `speed`, with the damper c = 2 zeta sqrt(k m) of the blisk as a rigid mass. The
+        film lacks (1 - `film_stiffness`) k at its centre. k is the support's lateral stiffness, the mean of X and Y.
+        """
         stiffness = machine.disk_support.lateral_stiffness_n_per_m
         damper = 2 * machine.damping.lateral * math.sqrt(stiffness * blisk_mass(machine))
         return (

@@ -51,7 +51,7 @@ class SupportLaw(ABC):
         - x, y: displacement of the disk centre along the axes of the turning frame, m. The result has these axes too.
 
         The solver compiles this function and calls it in every step. It may use arithmetic, `math` and constants of its
-        own file. The scheme takes D implicitly, so a D that is not negative never adds energy.
+        own file. The scheme takes D implicitly, so a D with v^T D v >= 0 for every v never adds energy.
         """
 
     @property
