@@ -70,8 +70,9 @@ def simulate(scenario: Scenario) -> Run:
     """Simulate the run that `scenario` describes and return its true response, recorded channels and labels.
 
     Progress is shown on a terminal and in a notebook. A run that fails has `response.status` and `response.reason`, but
-    its recording and labels are None. Raises UserError for a machine that cannot be modelled or reduced, or a record
-    too short for its signals. See `rubgen.pipeline.simulate`.
+    its recording and labels are None. Raises UserError for what is no Scenario, and for a scenario that is not
+    possible, such as a machine that cannot be modelled or reduced, or a record too short for its signals. See
+    `rubgen.pipeline.simulate`.
     """
     from rubgen.pipeline import simulate
     from rubgen.progress import shown
@@ -83,7 +84,7 @@ def simulate(scenario: Scenario) -> Run:
 def open(directory: Path | str) -> DataSet:  # noqa: A001
     """Open the data set in `directory`: `.runs` is a DataFrame, `.signals(run_id)` are arrays, read on demand.
 
-    Raises UserError where the directory holds no finished data set.
+    `directory` may be a URL such as s3://bucket/set. Raises UserError where it holds no finished data set.
     """
     from rubgen.dataset.reading.open import DataSet
 
@@ -93,7 +94,7 @@ def open(directory: Path | str) -> DataSet:  # noqa: A001
 def verify(directory: Path | str) -> list[str]:
     """Check the data set in `directory` and return its problems, one sentence each. The list is empty for a good set.
 
-    Raises UserError where the directory holds no finished data set, and for a URL.
+    Raises UserError where the directory holds no finished data set, where its manifest is damaged, and for a URL.
     """
     from rubgen.dataset.checking.verify import verify
 

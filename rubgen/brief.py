@@ -16,8 +16,8 @@ def brief(value: object) -> str:
     """Return a dataclass as text, `Name(field=..., ...)`, in one line of at most about MOST characters.
 
     An array is shown by its shape, a mapping by its size and first FEW keys, a list of more than FEW values by its
-    size. Fields whose number, text or None is the default are left out. Classes with large fields use it as their
-    `__repr__`.
+    size. Fields whose number, text or None is the default, and fields with `repr=False`, are left out. Classes with
+    large fields use it as their `__repr__`.
     """
     fields = dataclasses.fields(value) if dataclasses.is_dataclass(value) else ()
     shown = [f"{field.name}={_short(getattr(value, field.name))}" for field in fields if _is_shown(value, field)]

@@ -42,8 +42,8 @@ def wanted_root() -> Path:
 def cache_folder(name: str) -> Path | None:
     """Return the folder called `name` of the caches, such as one of FOLDERS, or None if none can be written anywhere.
 
-    The folder need not exist. It lies below `wanted_root()`, or else below a temporary folder of this process. Child
-    processes use the same folder: they inherit the path of a temporary one in $RUBGEN_CACHE_DIR.
+    The folder need not exist. It lies below `wanted_root()`, or else below a temporary folder of this process. A
+    warning then says so. Child processes use the same folder: $RUBGEN_CACHE_DIR is set to the path of a temporary one.
     """
     root = _settled_root(wanted_root())
     return None if root is None else root / name

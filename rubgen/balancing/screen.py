@@ -32,8 +32,9 @@ def reaches(scenario: Scenario) -> bool | None:
     """Return whether the run rubs, from its rub-free motion alone; None where this motion is not enough to know.
 
     A run starts in its rub-free motion, so it rubs if and only if its tips would pass through the casing. For a
-    changing speed nine steady speeds are used. It is not known for faults that grow and for supports with laws. Raises
-    UserError for a run that is not possible.
+    changing speed nine steady speeds are used. None is returned for supports with laws. It is also returned for a fault
+    that grows, unless the tips pass through the casing from the beginning. Raises UserError for a run that is not
+    possible.
     """
     with one_blas_thread():
         depth = deepest(scenario)[0]

@@ -52,9 +52,10 @@ Scores = dict[str, tuple[float, float]]
 def cross_validated(samples: Samples, model: Model, metrics: Metrics, *, by_group: bool) -> Scores:
     """Score a model on windows that it did not learn from, SEEDS times with different folds.
 
-    Returns the scores. The predictions of all folds are scored together by `metrics`. With `by_group` a group is never
-    on both sides. Without it windows are assigned to folds at random, so that windows of one run are on both sides,
-    which leaks. Where no metric is defined, nothing is learned and the scores are empty.
+    Returns mean and standard deviation over the seeds of each metric, by its name. The predictions of all folds are
+    scored together by `metrics`. With `by_group` a group is never on both sides. Without it windows are assigned to
+    folds at random, so that windows of one run are on both sides, which leaks. A metric that is undefined on these
+    samples is left out. If all are, nothing is learned.
     """
     if not _any_defined(metrics, samples):
         return {}
@@ -74,8 +75,8 @@ def cross_validated(samples: Samples, model: Model, metrics: Metrics, *, by_grou
 def transferred(train: Samples, tests: Mapping[str, Samples], model: Model, metrics: Metrics) -> dict[str, Scores]:
     """Learn from `train` with SEEDS seeds of the model, and score on each of `tests` by `metrics`.
 
-    Returns the scores by the name of the test. A model learns once a seed, for all tests. Tests where no metric is
-    defined are left out.
+    Returns the scores by the name of the test, each as in `cross_validated`. A model learns once a seed, for all tests.
+    Tests where no metric is defined are left out.
     """
     tests = {name: test for name, test in tests.items() if _any_defined(metrics, test)}
     if not tests:

@@ -15,8 +15,9 @@ from rubgen.baseline.tasks import TASKS
 def table(found: Sequence[Baseline]) -> str:
     """Return a table of all scores as Markdown: a row for each task, metric and model, a column for each kind of score.
 
-    A kind of score is for example "by group". Below the table a line for each task says from how many windows its
-    models learned. A further line for each marked task says what is wrong with it.
+    A kind of score is for example "by group". A cell has mean ± standard deviation over the seeds, and is empty where
+    there is no score. Below the table a line for each task says from how many windows its models learned. A further
+    line for each marked task says what is wrong with it.
     """
     ways = list(dict.fromkeys(way for each in found for scores in each.scores.values() for way in scores))
     head = ["task", "metric", "model", *ways]

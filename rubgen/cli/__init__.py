@@ -15,7 +15,7 @@ STDERR = 2
 def main(arguments: list[str] | None = None) -> NoReturn:
     """Run the command line with the words `arguments` and exit. None stands for the words after the program's name.
 
-    Ctrl-C ends the program with one line.
+    Ctrl-C ends the program with one line and the exit code 130.
     """
     try:
         _open_streams()

@@ -28,9 +28,10 @@ EXIT_CODES = {
 def main(arguments: list[str] | None = None) -> NoReturn:
     """Run the command line with the words `arguments` and exit. It never returns.
 
-    None stands for the words after the program's name. An error becomes one line on stderr and one of EXIT_CODES: 1 for
-    a RubgenError, 2 for a mistake of the user or an OSError. Any other exception is a bug and passes with its
-    traceback. If the reader of the output has closed the pipe, nothing is printed.
+    None stands for the words after the program's name. The exit code is that of the command, unless there is an error.
+    An error becomes one line on stderr and one of EXIT_CODES: 2 for a mistake of the user (UserError) or an OSError, 1
+    for any other RubgenError, 130 for Ctrl-C. Any other exception is a bug and passes with its traceback. If the reader
+    of the output has closed the pipe, nothing is printed and the exit code is 141.
     """
     warnings.simplefilter("always", RubgenWarning)
     warnings.showwarning = _show_warning

@@ -172,9 +172,10 @@ def radius_loss(surface: Surface, deformation: Deformation, tip_shift: float) ->
 def small_radius_loss(
     surface: Surface, deformation: Deformation, tip_shift: float, opening: float, tangential: float, aside: float
 ) -> float:
-    """Return how far that radius may lie below r + opening + u_r - r' u_t / R, m; much less than `radius_loss`.
+    """Return how far the radius in `radius_loss` may lie below r + opening + u_r - r' u_t / R, m; much less than there.
 
-    r' is the slope of the smooth curve at the angle of the blade, R its mean radius, and u_t interpolated as u_r is.
+    r, u_r and the first three parameters are as in `radius_loss`. r' is the slope of the smooth curve at the angle of
+    the blade, R its mean radius, and u_t interpolated as u_r is.
 
     The surface point at the polar angle phi was at phi - d before the deformation, with tan d = u_t / (r + opening +
     u_r). The radius is at least r + opening + u_r at phi - d. To first order in d that is the expression above, with
@@ -208,7 +209,7 @@ def radial_margin(surface: Surface, deformation: Deformation, margin: float) -> 
 
 @inlined_kernel
 def curve_slope(surface: Surface, tips: Tips, blade: int, cos_orders: FloatArray, sin_orders: FloatArray) -> float:
-    """Return dr/dpsi of the smooth curve at the angle of a blade on the disk, m.
+    """Return dr/dpsi of the smooth curve, m, at the polar angle of a blade: theta plus the blade's angle on the disk.
 
     `cos_orders` and `sin_orders` (n_harmonics,) are cosine and sine of order_j (theta - phase_j).
     """
@@ -238,7 +239,8 @@ def tighten(
 
     A bound that is NaN is replaced too. Return True if all replaced bounds are positive, or none is replaced: then no
     tip touches. A tip whose bound is then above `enough` is inside the deformed surface, and farther from it than the
-    margin for which `enough` is the `radial_margin`. The second, closer bound is computed where the first is below.
+    margin for which `enough` is the `radial_margin`. The new bound uses `radius_loss`. Where this bound is not above
+    `enough`, one with `small_radius_loss` takes its place.
 
     - casing (a multiple of eight,): the casing's modal coordinates, then zeros.
     - displacement (2 or more, n_blades or more): radial and tangential displacement of each blade's tip, m.

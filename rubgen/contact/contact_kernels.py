@@ -207,7 +207,8 @@ def build_rows(
 
     Read are `blade`, `psi` and `tangent` of `work`, which `find_near` writes. Written are `normal_tip`, `full_tip`,
     `normal_casing`, `full_casing` and `slip`, a unit vector along tangent and axis, or 0 without slip. With friction or
-    a liner `sliding` is written too. Without both `slip` is 0.
+    a liner `sliding` is written too. Without both `slip` is 0. Afterwards `work.rows` has the `casing_rows` of this
+    contact.
 
     - m: number of the contact, not of the blade.
     - q (n,), velocity (n,): free state q*, m, and its velocity, m/s. Of the tips only coordinates of this blade are
@@ -314,7 +315,8 @@ def wear_liner(count: int, liner: Liner, dt: float, work: ContactWork, wear: Wea
     Archard, J. Appl. Phys. 24 (1953): the worn volume is K F s / H for a force F, a path s and the hardness H;
     `liner.rate` is K / H. Before the wear, the work of the forces on the receding surface is added to `wear.sums`. The
     gaps of this step used the present depth, the gaps of two steps before `wear.earlier[0]`. In one step the surface
-    has therefore receded by half the difference of the two depths.
+    has therefore receded by half the difference of the two depths. Then `wear.earlier` moves on by one step. Contacts
+    without force are left out.
 
     - count: number of contacts in `work`, of which `blade`, `psi`, `lam` and `sliding` are read.
     - dt: time step, s.

@@ -165,7 +165,7 @@ def solve_normal(
     first. Where it is not, or fails, Lemke's pivoting is used for rigid contact; any other law is then unsolved. `law`
     is the number of the law in the registry and its parameters; W and b are as in `projected_gauss_seidel`. `square`
     (m, m), `tableau` (m, 2 m + 2) and `basis` (m,) are scratch. All arrays may be larger. For a law with a rate, the
-    first row of `tableau` contains the gaps at step n - 1.
+    caller writes the gaps at step n - 1 into the first row of `tableau`.
     """
     if is_positive_definite(W, m, square) and projected_gauss_seidel(law, W, b, tableau[0], m, lam_out) == SOLVED:
         return SOLVED

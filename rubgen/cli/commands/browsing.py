@@ -28,7 +28,8 @@ def browse_command(directory: Path, where: str | None, predictions: Path | None,
 
     Missing recordings are made while the viewer is open, in the order of the table, in a temporary folder. The viewer
     does not read a recording again, so rows have previews only when all recordings exist. Returns the exit code 0.
-    Raises UserError for `web` with `serve`, without a screen, and if no run meets the condition.
+    Raises UserError for `web` with `serve`, if no run meets the condition, and if there is no screen and neither `web`
+    nor `serve` is given.
     """
     if web and serve:
         raise UserError("--web and --serve: one opens a viewer and the other none; give one of them")

@@ -80,8 +80,8 @@ def verify_command(directory: Path, sample: int | None, *, repair: bool = False,
 def repair_command(directory: Path, *, as_json: bool, told: bool = False) -> int:
     """Make damaged or missing files again and print them, then the problems that remain.
 
-    With `told` the problems before the repair are printed first. With `as_json` all is printed as JSON. Returns the
-    exit code 1 if a problem remains, else 0.
+    With `told` the problems before the repair are printed first, if any file was made again. With `as_json` all is
+    printed as JSON. Returns the exit code 1 if a problem remains, else 0.
     """
     from rubgen.dataset.checking.repair import repair
 
@@ -117,8 +117,8 @@ def label_command(directory: Path, *, as_json: bool) -> int:
     """Compute the labels of a set again from its compact records, and print the labels that differ from runs.parquet.
 
     No file is changed. Numbers that differ only by rounding are equal. Labels of orders are left out. With `as_json`
-    the differences are printed as JSON. Returns the exit code 1 if a label differs, else 0. Raises UserError where
-    `directory` holds no finished data set.
+    the differences are printed as JSON. Returns the exit code 1 if a label differs, else 0. Raises UserError as
+    `relabel` does, such as for a set without compact records.
     """
     with step("make labels again"):
         done = relabel(directory)

@@ -41,7 +41,8 @@ def plan_command(
     - as_json: print the plan as JSON.
     - slurm: also print the script of a job of SLURM.
 
-    Returns the exit code 1 where runs, or scenarios at extreme values of the recipe, are refused; else 0.
+    Up to 64 runs are looked at (`rubgen.planning.plan.plan`). Returns the exit code 1 where one of them, or a scenario
+    at extreme values of the recipe, is refused; else 0.
     """
     if tries < 0:
         raise UserError(f"--try {tries}: must be at least 0; give a number of runs")

@@ -38,7 +38,8 @@ class Showing:
     def check(self) -> None:
         """Check the options before any work.
 
-        Raises UserError where a file exists or cannot be written, options exclude each other, or there is no screen.
+        Raises UserError where a file exists and `force` is False, a file cannot be written, an option lacks its file or
+        excludes another, or a viewer needs a screen and there is none.
         """
         for option, path, ending in (
             ("--save", self.save, ".rrd"),
@@ -61,9 +62,10 @@ class Showing:
 
 
 def replay_command(source: Path, run_id: str | None, where: str | None, showing: Showing) -> int:
-    """Find a run as `find_replay` does, print the remarks on it to stderr, and show it. Returns the exit code 0.
+    """Find a run as `find_replay` does, print the remarks on it to stderr, and `show` it. Returns the exit code 0.
 
-    `source`, `run_id` and `where` are as in `find_replay`, `showing` are the user's options.
+    `source`, `run_id` and `where` are as in `find_replay`, `showing` are the user's options. Raises UserError as
+    `find_replay` and `Showing.check` do, and where a file cannot be written.
     """
     showing.check()
     from rubgen.dataset.reading.replaying import find_replay

@@ -19,8 +19,8 @@ def baseline_command(directory: Path, task: str | None, out: Path | None, *, for
     """Score simple models on a data set, print a table, and write it as JSON to `out` if given.
 
     `task` are names of tasks with commas between them; None takes all that are possible. `force` replaces an existing
-    `out`. `as_json` prints JSON in place of the table. Returns the exit code 1 if one threshold solves a task, or if no
-    model solves one; else 0.
+    `out`. `as_json` prints JSON in place of the table. Returns the exit code 1 if a task is marked: one threshold
+    solves it, or no model learns it (`mark_of`). Else returns 0.
     """
     if out:
         check_new_file("--out", out, (".json",), force=force)

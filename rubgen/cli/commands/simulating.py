@@ -48,7 +48,7 @@ def simulate_command(
     - force: replace an existing file.
     - as_json: print every label as JSON instead of a summary.
 
-    Returns the exit code 1 where the run failed, else 0.
+    Returns the exit code 1 where the run failed, else 0. A run that failed is not written and not shown.
     """
     if replay:
         Showing().check()

@@ -34,7 +34,9 @@ def init_command(kind: str, origin: str | None, path: Path | None) -> int:
     - origin: name of the file of rubgen to begin from; None is the default of the kind.
     - path: file to write; None is the kind with the ending .toml, in the current directory.
 
-    Raises UserError where the file exists.
+    The schema by which editors explain the keys is written beside it, if it is not there yet. Raises UserError where
+    the file exists or cannot be written, its name does not end in .toml, it would lie in a data set, or `origin` is
+    unknown.
     """
     path = path or Path(f"{kind}.toml")
     if path.exists():

@@ -41,7 +41,10 @@ def baseline(
     force: Force = False,
     json: Json = False,
 ) -> int:
-    """Score simple models on a data set, by machine or run; exit 1 where one threshold or no model solves a task."""
+    """Score simple models on a data set, by machine or run.
+
+    Exit 1 if one threshold solves a task, or if no model learns one.
+    """
     from rubgen.cli.commands.scoring import baseline_command
 
     return baseline_command(directory, task, out, force=force, as_json=json)

@@ -67,9 +67,9 @@ def merge(
     out: Annotated[Path, here("New or empty directory, or the one of the same command, which is then completed.")],
     json: Json = False,
 ) -> int:
-    """Make one data set of several that have different seeds; runs get new names, splits stay, nothing is simulated.
+    """Make one data set of several that have different seeds; runs get new names, splits stay.
 
-    Exit 1 where no run of the set is ok.
+    No run is simulated, except for .rrd files of sets without MCAP files. Exit 1 where no run of the set is ok.
     """
     from rubgen.cli.commands.generating import merge_command
 

@@ -48,8 +48,8 @@ def windows_fit(row: Row) -> bool:
 def duty_fits(row: Row) -> bool:
     """Return whether the run's contact duty is the mean over the windows of its record, weighted by their turns.
 
-    `row` has the values of the run by column name. The result is False for a wrong number of windows. It is True for a
-    run with a changing speed: its turns have unequal length, and nothing is compared.
+    `row` has the values of the run by column name. The result is always True for a run with a changing speed: its turns
+    have unequal length, and nothing is compared. Else it is False for a wrong number of windows.
     """
     turns, values = _window_turns(row), row["window_contact_duty"]
     if row["change_times_s"] or len(values) != turns.size:
@@ -61,8 +61,8 @@ def duty_fits(row: Row) -> bool:
 def window_times_fit(row: Row) -> bool:
     """Return whether the windows begin after whole turns, WINDOW_TURNS apart, and have the run's speed.
 
-    `row` has the values of the run by column name. The result is False for a wrong number of windows. It is True for a
-    changing speed.
+    `row` has the values of the run by column name. The result is always True for a changing speed. Else it is False for
+    a wrong number of windows.
     """
     if row["change_times_s"]:
         return True
@@ -90,8 +90,9 @@ def exponents_fit(row: Row) -> bool:
 def impulse_problems(row: Row, force: Float32Array, noise_rms: float, step: float) -> Iterator[str]:
     """Compare the impulse label of a period-1 run in contact with its force channel. Yields a sentence if they differ.
 
-    The channel's impulse per turn is its mean over whole turns times the time of a turn. It may differ from the label
-    by `resolved_impulse`. Nothing is compared where fewer than LEAST_TURNS turns are recorded, or where the label
+    The channel's impulse per turn is its mean over whole turns times the time of a turn. The label is the mean over the
+    whole record. It is first scaled to the windows that the channel covers, and the two may then differ by
+    `resolved_impulse`. Nothing is compared where fewer than LEAST_TURNS turns are recorded, or where the label
     contradicts the run's windows.
 
     - row: of a period-1 run in contact at a steady speed; this is not checked.

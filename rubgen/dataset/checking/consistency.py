@@ -84,8 +84,9 @@ def signal_problems(row: Row, signals: dict[str, Float32Array], sensing: Sensing
     - signals: its channels, by name.
     - sensing: the sensors of the run and how they are recorded.
 
-    A channel is compared with labels only if its values stay within its range, its sensor has no error but noise, and
-    the sensor feels no surroundings.
+    All channels must be finite and of one length. Pulses are compared with `once_per_rev_s`. A channel is compared with
+    labels only if its values stay within its range, its sensor has no error but noise and ADC, and the sensor feels no
+    surroundings.
     """
     lengths = {values.size for values in signals.values()}
     if len(lengths) > 1:

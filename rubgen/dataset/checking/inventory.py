@@ -44,10 +44,10 @@ class Finding:
 
 
 def file_findings(layout: Layout, manifest: Manifest, chosen: Callable[[str], bool]) -> Iterator[Finding]:
-    """Yield a finding for every file of the manifest that is missing, unreadable, or has another size or content.
+    """Yield a finding for every listed file that is missing, unreadable, outside of the set or changed.
 
-    The content is compared by sha256, only for paths for which `chosen` returns True. The sha256 of derived files
-    (.rrd) are in derived.json.
+    The manifest lists the files. Sizes are compared, and the sha256 of paths for which `chosen` returns True.
+    Sizes and sha256 of derived files (.rrd) are in derived.json. Problems of derived.json are yielded too.
     """
     for entry in manifest.files:
         kind, read = _kind(layout, entry.path), chosen(entry.path)
@@ -132,11 +132,12 @@ def _reason(error: OSError | UserError) -> str:
 
 
 def unlisted_files(layout: Layout, manifest: Manifest) -> Iterator[Finding]:
-    """Yield a finding for every file or folder in the set's directory that rubgen did not write.
+    """Yield a finding for every file or folder in the set's directory that does not belong to the set.
 
-    Ignored are files of the operating system, and pages of `rubgen report`, known by their name and mark. Also ignored
-    are `.staging` and its lock, which a stop of `generate` at its very end leaves, and `.repair`, which a stop of
-    `repair` leaves: the next call continues there.
+    A file belongs to it if the manifest lists it. The content of a foreign folder is not listed. A folder that cannot
+    be read has a finding too. Ignored are files of the operating system, and pages of `rubgen report`, known by their
+    name and mark. Also ignored are `.staging` and its lock, which a stop of `generate` at its very end leaves, and
+    `.repair`, which a stop of `repair` leaves: the next call continues there.
     """
     known = {entry.path for entry in manifest.files} | set(manifest.derived)
     known |= {layout.manifest.name, layout.digest.name}

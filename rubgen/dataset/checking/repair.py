@@ -43,8 +43,9 @@ def repair(directory: Path) -> Repaired:
     - sensors.parquet, README.md and croissant.json are written again.
     - An .rrd file is made from its MCAP file if that is good. Else its run is simulated again, with the same versions.
 
-    No other file is changed and none is deleted. Raises UserError where `directory` holds no finished data set, its
-    manifest is damaged, or it cannot be written.
+    What cannot be made again stays as it is, and is in `left` of the result. If all .rrd files are good then,
+    derived.json is written with their digests. No other file is changed and none is deleted. Raises UserError where
+    `directory` holds no finished data set, its manifest is damaged, or it cannot be written.
     """
     layout = Layout(directory)
     manifest = read_manifest(layout)

@@ -48,7 +48,7 @@ def table_problems(
     - layout: the paths of the set.
     - manifest: its manifest.
     - closed: paths of files that must not be opened; nothing is reported for them.
-    - chosen: returns whether the content of a shard is checked.
+    - chosen: returns whether the content of a shard is checked. `runs.parquet` is always read.
     """
     recorded = manifest.identity.recorded(str(layout.manifest))
     runs: RunTable | None = None

@@ -27,7 +27,8 @@ _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EINVAL)
 def acquired(path: Path, wait_s: float = 0.0) -> BaseFileLock | None:
     """Take the lock at `path`, waiting up to `wait_s` seconds. Return the lock, or None if another process has it.
 
-    On a file system without locks, a file that only one process can create is the lock. A warning then says so.
+    The caller releases it. On a file system without locks, a file that only one process can create is the lock. A
+    warning then says so.
     """
     try:
         return _acquired(FileLock(path, timeout=wait_s))
@@ -60,7 +61,7 @@ def finished(layout: Layout, identity: Identity) -> bool:
 
     A set with fewer runs of the same recipe is not finished: more runs can be added. Package versions are ignored.
     Raises UserError where the directory holds the finished set of another recipe, or a set of this recipe with more
-    runs.
+    runs, or where the manifest there is damaged.
     """
     if not (is_there(layout.manifest) and is_there(layout.digest)):
         return False
@@ -113,9 +114,10 @@ def claimed(layout: Layout, identity: Identity, *, wait_s: float = 0.0) -> Itera
 def begun(layout: Layout, identity: Identity) -> Iterator[None]:
     """Make the folders of an unfinished data set for the block, which fills them. Call it within `claimed`.
 
-    Incomplete files are removed. `.staging` appears in one step with the identity in it, so that the same recipe can
-    continue after any stop. Raises UserError where the unfinished set of another recipe or of other package versions is
-    there. If the block raises a UserError before the first run is finished, everything is removed.
+    The runs of a finished set of the recipe with fewer runs are taken over (`prepare_growth`). Incomplete files are
+    removed. `.staging` appears in one step with the identity in it, so that the same recipe can continue after any
+    stop. Raises UserError where the set there has another recipe or other package versions, or the directory has other
+    content. If the block raises a UserError before the first run is finished, everything is removed.
     """
     if not layout.identity.exists():
         _begin(layout, identity)

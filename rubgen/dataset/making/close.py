@@ -43,7 +43,7 @@ def close_shard(root: Path, shard: Shard) -> None:
     - root: directory of the set.
     - shard: the shard. Nothing is done if it is closed already.
 
-    Raises RubgenError where the kept rows of a run are damaged.
+    Raises RubgenError where a run is not kept, or its kept rows are damaged.
     """
     layout = Layout(root)
     if layout.closed(shard.name).exists():  # by a worker that died before it could say so

@@ -72,13 +72,14 @@ def generate(
 ) -> Generated:
     """Make the data set of a recipe in a directory.
 
-    - recipe: a recipe, its TOML values, its file, or None for the default recipe.
+    - recipe: a recipe, its TOML values, its file, a name of `rubgen list`, or None for the default recipe.
     - out: the directory, or a URL such as s3://bucket/set. For a URL the set is made in the cache folder. Each closed
       shard is uploaded, the manifest last.
     - runs: number of runs in place of the recipe's. A larger number than before adds runs to a finished set.
     - workers: number of processes, by default one for each usable core; 1 works in this process.
     - scheduler: address of a Dask scheduler, whose workers make the runs; or "slurm" for jobs of SLURM, one a worker.
     - shard: "17/200" makes only part 17 of 200 of the runs. Other processes may make the other parts at the same time.
+      The result of a part has empty `status` and no counts in `outcome`.
     - finish: make no run; complete the set from its parts.
     - progress: called with the numbers of finished and of all runs. True shows them on stderr, None only on a terminal
       or in a notebook.

@@ -29,7 +29,9 @@ def prepare_growth(layout: Layout, before: Manifest, recipe: Recipe) -> None:
     - before: its manifest.
     - recipe: the recipe with more runs.
 
-    Raises UserError where a file of the set is missing or damaged.
+    A shard that stays as it is counts as closed, with the digests of the manifest; its files are not read. Runs of a
+    shard that gets more runs are kept again, from its tables. Raises UserError where a file that is read is missing or
+    damaged.
     """
     old = before.identity.recorded(str(layout.manifest))
     listed = {entry.path: entry for entry in before.files}

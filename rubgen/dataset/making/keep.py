@@ -67,7 +67,10 @@ def _message(row: pa.Table) -> bytes:
 
 
 def kept_runs(layout: Layout, shard: str) -> dict[int, Kept]:
-    """Return the finished runs of an open shard by their numbers. If a run was made twice, the first file is used."""
+    """Return the finished runs of an open shard by their numbers, failed runs included.
+
+    Of a run that was made twice, the one in the first file by name is used. Damaged records are left out.
+    """
     found: dict[int, Kept] = {}
     for file in sorted(layout.kept(shard).glob("*.kept")):
         for index, kept in _records(file):

@@ -42,11 +42,11 @@ def recipe_at(root: Path) -> Recipe:
 
 
 def make_runs(root: Path, shard: str, session: str, indexes: tuple[int, ...]) -> int:
-    """Make runs of an open shard and keep each run as it finishes. Return their number. A worker process calls it.
+    """Make runs of an open shard and keep each run as it finishes. A worker process calls it.
 
-    Runs that this session kept already are skipped: a lost job is submitted again. A run during which a worker of this
-    session died is made in a separate process. If this process dies too, the run is recorded as failed. Raises
-    RubgenError where it ends with an exception of Python.
+    Returns the number of `indexes`. Runs that this session kept already are skipped: a lost job is submitted again. A
+    run during which a worker of this session died is made in a separate process. If that process dies too, the run is
+    recorded as failed. Raises RubgenError where that process ends with an exception of Python.
 
     - root: directory of the set.
     - shard: name of the shard.

@@ -83,7 +83,10 @@ class Unfinished:
 
 
 def finished_runs(out: Path | str) -> int:
-    """Return the number of finished runs of an unfinished data set in the directory `out`. Nothing is changed."""
+    """Return the number of finished runs, failed ones included, of an unfinished data set in the directory `out`.
+
+    It is 0 without an unfinished set. Nothing is changed.
+    """
     layout = Layout(out)
     closed = [path.stem for path in layout.closed("").parent.glob("*.json")]
     begun = {path.name for path in layout.kept("").glob("*")} - set(closed)

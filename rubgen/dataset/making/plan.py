@@ -59,7 +59,11 @@ class PartOfSet:
     """The missing runs of the shards that were looked at, by name of the shard."""
 
     def shards(self) -> Iterator[tuple[Shard, tuple[int, ...]]]:
-        """Yield the shards of this part, each with its runs: whole shards, or runs where there are fewer shards."""
+        """Yield the shards of this part, each with the numbers of its runs that are of this part, missing or not.
+
+        Each shard is of one part. Where there are fewer shards than parts, several parts share the runs of a shard. If
+        `only` is set, other shards are left out.
+        """
         for place, shard in enumerate(shards_of(self.recipe)):
             if self.only is not None and shard.name not in self.only:
                 continue
@@ -78,7 +82,10 @@ class PartOfSet:
         return tuple(index for index in shard.indexes if index * count // runs == self.part.number - 1)
 
     def missing_of(self, shard: Shard) -> tuple[int, ...]:
-        """Return the numbers of the runs of this part that the shard lacks."""
+        """Return the numbers of the runs of this part that the shard lacks. A closed shard lacks none.
+
+        A run is lacking if it is not kept, or if it is good and one of its own files is not there.
+        """
         if shard.name in self.closed:
             return ()
         if shard.name not in self._begun:

@@ -43,7 +43,8 @@ def resense(
     a turn and the package versions are the same. Fast sensors need more steps: a warning names the speeds at which the
     steps change. Labels of amplitudes at orders are computed for the new sensors' signals. A sensor on the housing adds
     the machine's frame, which changes `machine_id`. Raises UserError for a URL as `directory`, a directory without a
-    finished set, an unknown sensor set, the sensors that the set has already, and sensors that the machine cannot have.
+    finished set, a merged set, an unknown sensor set, the sensors that the set has already, and sensors that the
+    machine cannot have.
     """
     layout = Layout(directory)
     check_local(layout.root, "resense")

@@ -26,7 +26,7 @@ def merge(
     *,
     progress: Report | bool | None = None,
 ) -> Generated:
-    """Make one data set of several in the directory `out`. No run is simulated.
+    """Make one data set of several in the directory `out`.
 
     - directories: two or more finished data sets; they are only read. Their runs follow each other in this order.
     - out: a new or empty directory, or a directory in which the same call was interrupted: the call then completes the
@@ -37,8 +37,9 @@ def merge(
     `merged_from` contains the run's source and its name there, and `twin_of` the new name of the partner. Splits stay
     the same. Files of the first set keep their bytes; all other files are written with the new names. A set that was
     merged before counts as its sources, so that merging in steps makes the same bytes as merging at once. The manifest
-    contains the recipe of each source, from which any run can be made again. One shard is copied at a time, with a few
-    runs in memory. An interrupted merge leaves no finished set.
+    contains the recipe of each source, from which any run can be made again. No run is simulated, with one exception:
+    .rrd files of later sets that have no MCAP files. One shard is copied at a time, with a few runs in memory. An
+    interrupted merge leaves no finished set.
 
     Raises UserError for fewer than two sets, sets of other versions, licence, formats, length of signals, sensors or
     columns, two sets with the same seed, a machine that is in different splits, damaged files, and an `out` that is in

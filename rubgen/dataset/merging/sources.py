@@ -68,8 +68,8 @@ def read_sources(directories: Sequence[Path | str]) -> list[SourceSet]:
 def merged_identity(sets: Sequence[SourceSet]) -> Identity:
     """Return the identity of the merged set of these sets, in this order. It depends only on their sources.
 
-    A set that was merged before counts as its sources. The recipe is the recipe of the first source, with the name and
-    the number of runs of the merged set.
+    A set that was merged before counts as its sources. Recipe, machine, sensors and versions are those of the first
+    source. The name in the recipe gets the ending -merged, and the number of runs is that of all sets.
     """
     sources = tuple(source for each in sets for source in each.sources)
     first = sources[0].identity

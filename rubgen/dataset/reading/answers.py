@@ -65,8 +65,10 @@ class Answers:
     def of_windows(self, runs: Sequence[str], pieces: Sequence[FloatArray]) -> npt.NDArray[Any]:
         """Return the answer of each window (windows,), run after run, or for the target `faults` (windows, kinds).
 
-        For a target that has one value for the whole run, every window has this value. `pieces` are start and end of
-        the windows of each run (windows, 2), in s from the first sample.
+        The targets rub, contact_duty and contact_impulse_per_turn_n_s are computed of the window's own stretch of time,
+        from the touches. For motion it is the class in this stretch, or -1 where windows of the labels that it overlaps
+        differ. For any other target every window has the value of the run. `pieces` are start and end of the windows of
+        each run (windows, 2), in s from the first sample.
         """
         compute = _OF_STRETCH.get(self._column.name)
         if compute is None:
