@@ -64,8 +64,9 @@ def blade_rotation(angle: float) -> FloatArray:
     Displacements and rotations are turned in the same way.
     """
     c, s = np.cos(angle), np.sin(angle)
-    R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    return np.kron(np.eye(2), R)
+    T = np.zeros((6, 6))
+    T[:3, :3] = T[3:, 3:] = [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]
+    return T
 
 
 def rim_joint(angle: FloatArray, rim_dof: IntArray, root_dof: IntArray, size: int) -> SparseMatrix:
