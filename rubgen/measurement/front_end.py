@@ -1,5 +1,7 @@
 """Apply dynamics and saturation of a sensor before the anti-alias filter, and its errors after it."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from rubgen.arrays import FloatArray
@@ -41,16 +43,26 @@ def front_end(sensor: SampledSensor, signal: FloatArray, dt: float) -> FloatArra
 
 
 def _behind_filters(sensor: SampledSensor, signal: FloatArray, dt: float) -> FloatArray:
-    from scipy.signal import butter, lfilter, lfilter_zi  # slow to import
+    from scipy.signal import lfilter  # slow to import
+
+    for b, a, start in _filters(sensor.bandwidth_hz, sensor.resonance_hz, sensor.resonance_damping, dt):
+        signal, _ = lfilter(b, a, signal, zi=start * signal[0])
+    return signal
+
+
+@lru_cache(maxsize=16)  # sensors of one kind share them, and to design one takes as long as to apply it
+def _filters(
+    bandwidth_hz: float | None, resonance_hz: float | None, damping: float, dt: float
+) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
+    """Return b, a of each filter and its state in equilibrium with a signal of 1."""
+    from scipy.signal import butter, lfilter_zi  # slow to import
 
     filters = []
-    if sensor.bandwidth_hz is not None:
-        filters.append(butter(2, sensor.bandwidth_hz, fs=1 / dt))
-    if sensor.resonance_hz is not None:
-        filters.append(resonance(sensor.resonance_hz, sensor.resonance_damping, dt))
-    for b, a in filters:
-        signal, _ = lfilter(b, a, signal, zi=lfilter_zi(b, a) * signal[0])
-    return signal
+    if bandwidth_hz is not None:
+        filters.append(butter(2, bandwidth_hz, fs=1 / dt))
+    if resonance_hz is not None:
+        filters.append(resonance(resonance_hz, damping, dt))
+    return [(b, a, lfilter_zi(b, a)) for b, a in filters]
 
 
 def memory_seconds(sensor: SampledSensor) -> float:
