@@ -45,7 +45,10 @@ def shards_of(recipe: Recipe) -> Iterator[Shard]:
 
 
 def source_shards(recipe: Recipe) -> Iterator[tuple[int, Shard, Shard]]:
-    """Yield for each shard of each source: the source's number, the shard there, and the shard in the merged set."""
+    """Yield for each shard of each source: the source's number, the shard there, and the shard in the merged set.
+
+    Runs are numbered in the source there, and in the merged set here. A set that is not merged is its only source.
+    """
     before = Counter[str]()
     for number, (first, source) in enumerate(recipe.sources):
         mine = Counter[str]()

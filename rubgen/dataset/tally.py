@@ -51,8 +51,9 @@ class Tally:
 def tally_of(runs: Path) -> Tally:
     """Count the runs of a set in its file `runs.parquet`: runs, machines, status, rub and motion, by split.
 
-    The result also lists the parameters whose means over failed and good runs differ by more than NOTEWORTHY. One row
-    group and the names of all machines are in memory. Raises UserError where the file is missing or damaged.
+    The result also lists the parameters whose means over failed and good runs differ by more than the share NOTEWORTHY
+    of the mean over good runs. One row group and the names of all machines are in memory. Raises UserError where the
+    file is missing or damaged.
     """
     splits: dict[str, SplitTally] = {}
     machines: set[tuple[str, str]] = set()

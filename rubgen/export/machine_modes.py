@@ -28,7 +28,8 @@ class ShownMode:
 def nodes_of(model: ReducedModel) -> tuple[IntArray, FloatArray]:
     """Return numbers (nodes,) and positions (nodes, 3) in m of the nodes that represent a machine.
 
-    They are the casing's nodes on its mean inner radius, the tips at rest with blade 0 on x, and the disk centre.
+    They are in this order the casing's nodes on its mean inner radius, the tips at rest with blade 0 on x, and the disk
+    centre.
     """
     casing, blades = len(model.casing.modes_xy), model.machine.blades.count
     numbers = [*range(FIRST_OF_CASING, FIRST_OF_CASING + casing), *range(FIRST_OF_TIPS, FIRST_OF_TIPS + blades), CENTRE]

@@ -14,7 +14,7 @@ def write_wav(runs: Iterator[ExportedRun], path: Path) -> None:
     """Write one run as a WAV file, with the tracks in the order of `channels.csv`.
 
     `runs` must yield exactly one run, else ValueError is raised. Values are in the units of the channels, so a player
-    clips values beyond 1.
+    clips values beyond 1. The sample rate must be a whole number: `export` checks it.
     """
     from scipy.io import wavfile
 

@@ -48,15 +48,15 @@ def condition(data: DataSet, limits: Limits | None = None, *, runs: Sequence[str
 
     - data: the data set.
     - limits: for a channel a quantity and the upper limits of the zones A, B and C, in the unit of the quantity, such
-      as {"proximity_x": ("overall_peak_to_peak", 80e-6, 120e-6, 180e-6)}. The column `zone` is then A to D, and null
-      for other channels. rubgen has no limits of its own: the limits of ISO 20816 depend on the machine.
+      as {"proximity_x": ("overall_peak_to_peak", 80e-6, 120e-6, 180e-6)}. Only with limits there is a column `zone`: A
+      to D, null for other channels and where the quantity is NaN. rubgen has no limits of its own: the limits of ISO
+      20816 depend on the machine.
     - runs: names of good runs; None takes all good runs.
 
-    The quantities come only from the recorded channels and the recorded pulses: orders are averaged over whole turns
-    between two pulses (order tracking). Quantities that a channel cannot have are NaN, such as orders without a
-    once_per_rev sensor. The column `unit` is the unit of the channel. `attrs["meanings"]` has the definitions. Raises
-    UserError for a failed or unknown run, an unknown channel or quantity in `limits`, and limits that do not rise from
-    above 0.
+    The channels are `data.inputs` without the pulse. Orders are averaged over whole turns between two recorded pulses
+    (order tracking). Quantities that a channel cannot have are NaN, such as orders without a once_per_rev sensor. The
+    column `unit` is the unit of the channel. `attrs["meanings"]` has the definitions. Raises UserError for a failed or
+    unknown run, an unknown channel or quantity in `limits`, and limits that do not rise from above 0.
     """
     import pandas as pd
 

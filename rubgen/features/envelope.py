@@ -25,8 +25,9 @@ def envelope_features(signals: FloatArray, rate_hz: float, pulses: FloatArray) -
     """Compute the features `vocabulary.envelope` of signals (channels, samples), as (channels, features).
 
     The envelope is the magnitude of the analytic signal in a band of frequency. `rate_hz` is the sample rate. `pulses`
-    are the times of the once_per_rev pulses in s from the first sample. Without two of them in the signals, impacts and
-    amplitudes at orders are NaN. At a rate without any band the result is (channels, 0).
+    are the times of the once_per_rev pulses in s from the first sample. The share ENDS of the signal at each end is not
+    used. Without two pulses in the rest, impacts and amplitudes at orders are NaN. At a rate without any band the
+    result is (channels, 0).
     """
     samples = signals.shape[1]
     faded = signals - signals.mean(axis=1, keepdims=True)

@@ -15,11 +15,11 @@ DOMAINS = ("statistical", "temporal", "spectral")
 
 
 def generic_features(signal: FloatArray, rate_hz: float) -> dict[str, float]:
-    """Compute the features of tsfel of a signal (samples,), by their names in lower case with `_` for other signs.
+    """Compute the features of tsfel of a signal (samples,): `tsfel_mean` and so on, in lower case, `_` for other signs.
 
     `rate_hz` is the sample rate. Features with a length that depends on the signal (spectra, histograms) are left out:
-    windows could not share columns. A value that is not finite becomes NaN. Raises UserError where tsfel is not
-    installed.
+    windows could not share columns. Entropies, fractal dimensions and Lempel-Ziv complexity are left out too. A value
+    that is not finite becomes NaN. Raises UserError where tsfel is not installed.
     """
     tsfel = _tsfel()
     with warnings.catch_warnings():

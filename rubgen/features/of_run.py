@@ -52,7 +52,7 @@ def run_features(
 
 
 def window_features(plan: Plan, signals: FloatArray, pulses: FloatArray) -> FloatArray:
-    """Compute the features (any,) of one window in the order of the plan's columns, without the ids.
+    """Compute the features (any,) of one window in the order of `plan.schema()`, without the columns IDS.
 
     - signals (channels, samples): the plan's channels.
     - pulses: times of the pulses in s from the first sample of the window.

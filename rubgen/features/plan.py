@@ -113,8 +113,8 @@ def _sets(sets: Sequence[str]) -> list[str]:
 def shaft_pairs(sensors: SensorSet, channels: Sequence[str]) -> tuple[tuple[str, str, float, float], ...]:
     """Return the first two shaft probes that can show an orbit, with their angles in degrees.
 
-    They have the same unit, and the sine of the angle between them is above NEVER_PARALLEL. The result has one pair, or
-    is empty if there is none among the `channels`.
+    The pair is the first in the order of the sensor set whose probes are in `channels`, have the same unit, and have an
+    angle between them whose sine is above NEVER_PARALLEL. The result has one pair, or is empty without such a pair.
     """
     probes = [each for each in sensors.sampled if isinstance(each, Proximity) and each.name in channels]
     for a, b in combinations(probes, 2):

@@ -62,7 +62,7 @@ def circles(turned: FloatArray | ComplexArray, orders: Sequence[int], turns: int
     - orders: whole numbers; negative orders turn backward.
     - turns: number of turns of one period. Only whole periods are used; without one the amplitudes are NaN.
 
-    A real signal A cos(k theta - phi) has (A / 2) exp(-i phi) at order k.
+    A real signal A cos(k theta - phi) has (A / 2) exp(-i phi) at order k, with theta from the first pulse.
     """
     count, whole, points = len(turned), turned.shape[1] // turns * turns, turned.shape[2]
     if not whole:

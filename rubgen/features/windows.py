@@ -30,7 +30,8 @@ class Window:
         """Return first sample and number of samples of each window of a signal with `samples` samples.
 
         `rate_hz` is the sample rate. `pulses` are the times of the pulses in s from the first sample. A window of turns
-        has all samples from its first to its last pulse. The list is empty if the signal has no whole window.
+        begins with the last sample at or before its first pulse, and ends with the first sample at or after its last
+        pulse: two successive windows share one or two samples. The list is empty if the signal has no whole window.
         """
         if self.unit == "s":
             size = round(self.length * rate_hz)

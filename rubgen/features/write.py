@@ -53,8 +53,8 @@ def write_features(
     - workers: number of processes.
 
     The bytes depend on the data set, the parameters and the versions of the packages, not on `workers`. The file is
-    complete or not written at all. An existing file is replaced. Raises UserError as `make_plan` and `run_features` do,
-    for a set without good runs, and for the set tsfel if it is not installed.
+    complete or not written at all. An existing file is replaced; its folder must exist. Raises UserError as `make_plan`
+    and `run_features` do, for a set without good runs, and for the set tsfel if it is not installed.
     """
     data = DataSet(directory)
     good = list(data.ok.index)
@@ -83,7 +83,10 @@ def write_features(
 
 
 def features_of(data: DataSet, plan: Plan, run_ids: Sequence[str]) -> pa.Table:
-    """Compute the rows of the runs `run_ids`, in this order, as `run_features` does."""
+    """Compute the rows of the runs `run_ids`, at least one, in this order, as `run_features` does.
+
+    If the plan has the set tsfel, `plan.generic` must name its features: `make_plan` does not.
+    """
     tables = []
     for run_id, signals, pulses in data.recorded(run_ids, plan.channels):
         row = data.row(run_id)

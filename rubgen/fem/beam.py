@@ -61,8 +61,8 @@ def blade_matrices(blades: BladeRow, root_radius: float) -> BeamMatrices:
     rho [I_y2 (th_x^2 + th_z^2) - I_yz th_y th_z] / 2 is minus the work of the centrifugal load on the second-order
     displacement th x (th x s) / 2 of the cross-section.
 
-    Left out: warping, the coupling of extension with twist, the geometric stiffness of the steady twisting moment.
-    Checked against closed forms, shooting and published rotating beams in tests/fem/test_beam*.py.
+    Left out: mistuning, warping, the coupling of extension with twist, the geometric stiffness of the steady twisting
+    moment. Checked against closed forms, shooting and published rotating beams in tests/fem/test_beam*.py.
     """
     elements = blades.elements
     step = blades.length_m / elements
@@ -170,11 +170,11 @@ def skew(matrix: FloatArray) -> FloatArray:
 def root_strain_row(blades: BladeRow, root_radius: float, beam: BeamMatrices) -> FloatArray:
     """Return the row (12,) that multiplies the displacements of a blade's first two nodes to the strain at its root.
 
-    It is the spanwise strain of the mid-chord fibre on the face to which the thickness normal n = (-sin a, cos a) in
-    (y, z) points, half the thickness h from the centre line: eps + (h / 2) (n_z th_y' - n_y th_z'). The generalised
-    strains are D^-1 F. The internal forces F at the root are minus the nodal forces of the first element, which is
-    exact for loads at the nodes. The row is the same for a mistuned blade. `root_radius` is in m. Test:
-    tests/reduction/test_root_strain.py.
+    The displacements are along the blade's own axes. It is the spanwise strain of the mid-chord fibre on the face to
+    which the thickness normal n = (-sin a, cos a) in (y, z) points, half the thickness h from the centre line: eps + (h
+    / 2) (n_z th_y' - n_y th_z'). The generalised strains are D^-1 F. The internal forces F at the root are minus the
+    nodal forces of the first element, which is exact for loads at the nodes. The row is the same for a mistuned blade.
+    `root_radius` is in m. Test: tests/reduction/test_root_strain.py.
     """
     sections = cross_sections(blades, root_radius, np.zeros(1))
     strains = -np.linalg.solve(cross_section_stiffness(blades, sections)[0], beam.K[:6, :12])

@@ -145,7 +145,8 @@ def rigid_motions(model: BliskModel) -> FloatArray:
 def blade_motions(model: BliskModel, angle: float) -> FloatArray:
     """Return the displacements (DoFs of a blade, 6) of a blade in the motions of `rigid_motions`.
 
-    `angle` is the polar angle of the blade, rad.
+    The displacements are along the blade's own axes, the motions along o-xyz. `angle` is the polar angle of the blade,
+    rad.
     """
     radius = model.blade_radius
     in_disk_axes = _rigid_nodes(radius * np.cos(angle), radius * np.sin(angle)).reshape(-1, 6, 6)

@@ -45,9 +45,9 @@ def assemble_casing(machine: Machine, *, any_nodes: bool = False) -> CasingModel
     without locking), Cowper's shear coefficient and rotary inertia. The springs act at each node along e_r and e_theta
     of its polar angle. The modulus is E of a beam, not E / (1 - nu^2) of a wide shell: the published model uses a beam.
 
-    Raises UserError where the nodes are not divisible by 4 and by the number of lobes: any other mesh breaks the
-    symmetry of the surface and adds orders to the response that the machine does not have. With `any_nodes`, for
-    experiments, this is not checked.
+    Raises UserError where the number of nodes is no multiple of 4 or no multiple of the number of lobes: any other mesh
+    breaks the symmetry of the surface and adds orders to the response that the machine does not have. With `any_nodes`,
+    for experiments, this is not checked.
     """
     casing = machine.casing
     problem = None if any_nodes else node_problem(casing)

@@ -115,9 +115,9 @@ def cross_section_coriolis(s: CrossSections) -> FloatArray:
 
 
 def cross_section_pull(s: CrossSections) -> FloatArray:
-    """Return the quadratic form of the pull P in K_sigma: P (u_y'^2 + u_z'^2) + P I_p / A th_x'^2.
+    """Return the quadratic form (..., 6, 6) of the pull P in K_sigma: P (u_y'^2 + u_z'^2) + P I_p / A th_x'^2.
 
-    It acts on (-, u_y', u_z', th_x', -, -).
+    It acts on (-, u_y', u_z', th_x', -, -). P is `s.pull`, at 1 rad/s; it contains the density.
     """
     m = np.zeros((*s.area.shape, 6, 6))
     m[..., 1, 1] = m[..., 2, 2] = s.pull
@@ -128,7 +128,8 @@ def cross_section_pull(s: CrossSections) -> FloatArray:
 def cross_section_second_order(s: CrossSections) -> FloatArray:
     """Return the quadratic form I_y2 (th_x^2 + th_z^2) - I_yz th_y th_z, the part of rotations in K_sigma.
 
-    It is minus twice the work of the centrifugal load (r, y, 0) on the second-order displacement th x (th x s) / 2.
+    It is (..., 6, 6), acts on (u, th), and is for unit density, with I_y2 = int y^2 dA and I_yz = int y z dA. It is
+    minus twice the work of the centrifugal load (r, y, 0) on the second-order displacement th x (th x s) / 2.
     """
     m = np.zeros((*s.area.shape, 6, 6))
     m[..., 3, 3] = m[..., 5, 5] = s.yy

@@ -42,9 +42,9 @@ def shell_stiffness(mesh: ShellMesh, material: Material) -> SparseMatrix:
 
     Membrane, bending and drilling are integrated at 3 x 3 points, transverse shear at 2 x 2. Strains: u_x, v_y, u_y +
     v_x; curvatures th_y,x, -th_x,y, th_y,y - th_x,x; shear w_x + th_y, w_y - th_x with the correction 5/6. Drilling:
-    energy G h (th_z - (v_x - u_y)/2)^2 / 2 per area; far below G it makes the joint of a blade too soft. Square
-    elements do not lock however thin; narrow sectors of a disk keep 1 % down to a thickness of a hundredth of the
-    element. Tests: tests/fem/test_shell.py, test_disk.py.
+    energy G h (th_z - (v_x - u_y)/2)^2 / 2 per area. A factor far below G would make the joint of a blade too soft.
+    Square elements do not lock however thin; narrow sectors of a disk keep 1 % down to a thickness of a hundredth of
+    the element. Tests: tests/fem/test_shell.py, test_disk.py.
     """
     K = _element_stiffness(mesh.firsts, material)
     return _assemble(mesh, mesh.turned(_on_nodes(_following(K), K)))

@@ -36,7 +36,7 @@ class ShellMesh:
     def turned(self, firsts: FloatArray) -> FloatArray:
         """Return the matrices (e, 6 a, 6 b) of all elements, Z_j X Z_j^T, from X = `firsts` of the first elements.
 
-        Z_j turns each node's DoFs to the position of element j of the group.
+        `firsts` is (groups, 6 a, 6 b). Z_j turns each node's DoFs to the position of element j of the group.
         """
         if self.around == 1:
             return firsts
@@ -68,6 +68,7 @@ class Quadrature:
 def serendipity(xi: FloatArray, eta: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return shape functions N (q, 8) and their derivatives (q, 8, 2) by xi, eta at points (q,) of [-1, 1]^2.
 
+    The first four nodes are the corners, counter-clockwise from (-1, -1), the others the midsides, from (0, -1).
     Corners: (1 + a)(1 + b)(a + b - 1)/4 with a = xi xi_i, b = eta eta_i; midsides (1 - xi^2)(1 + b)/2 and (1 + a)(1 -
     eta^2)/2 (Zienkiewicz and Taylor, The Finite Element Method, serendipity family).
     """
@@ -108,7 +109,10 @@ def in_plane_strain(points: Quadrature) -> FloatArray:
 
 
 def curvature(points: Quadrature) -> FloatArray:
-    """Return the rows (e, q, 3, 54) that multiply an element's DoFs to th_y,x, -th_x,y, th_y,y - th_x,x."""
+    """Return the rows (e, q, 3, 54) that multiply an element's DoFs to th_y,x, -th_x,y, th_y,y - th_x,x.
+
+    The DoFs are six of each of the eight nodes, then six of the bubble.
+    """
     B, g = _strain_rows(points, 3), points.gradient
     B[:, :, 0, :, 4] = g[..., 0]
     B[:, :, 1, :, 3] = -g[..., 1]

@@ -240,8 +240,8 @@ def scalar_columns(
 ) -> tuple[Column, ...]:
     """Return the columns of `runs.parquet` for runs with the sensor set `sensors`.
 
-    They are identity, parameters, operation, labels, the orders of each tap of a sensor, and energies. Further columns
-    are
+    They are identity, parameters, operation, labels, the orders of each tap (true signal) of a sensor, except of timing
+    probes, and of the even and odd part of the casing's acceleration, and energies. Further columns are
 
     - surroundings: the levels of the table `[surroundings]`.
     - faults: labels of the kinds of fault that the runs may have.
@@ -273,10 +273,11 @@ def every_scalar(sensors: SensorSet) -> tuple[Column, ...]:
 
 
 def signal_columns(sensors: SensorSet, *, clean: bool) -> tuple[Column, ...]:
-    """Return the columns that data files have in addition to `runs.parquet`: channels, touches, windows, arrivals.
+    """Return the columns that data files have in addition to `runs.parquet`: pulses, channels, touches and so on.
 
-    With `clean` the clean channel (without noise) of each channel is included. Raises UserError where a sensor has the
-    name of another column.
+    They are start, angle and pulses, channels, touches, amplitudes by window, and arrivals at timing probes. With
+    `clean` the clean channel (without noise) of each channel is included. Raises UserError where a sensor has the name
+    of another column.
     """
     channels = [_channel(each) for each in sensors.sensors if isinstance(each, SampledSensor | OncePerRev)]
     seen = Role.INPUT if any(isinstance(each, OncePerRev) for each in sensors.sensors) else Role.TRUTH

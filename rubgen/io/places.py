@@ -29,9 +29,9 @@ def place_of(text: str | Path) -> Path:
     """Return the path of a directory, or of a URL as a UPath, which has the methods of a Path that reading needs.
 
     Keys, endpoints and regions come from the settings of the library for the URL's scheme: environment, files of
-    settings, configuration of fsspec. A URL of the local file system gives a Path. Raises UserError where the scheme is
-    unknown, its library is not installed, nothing follows it, or the URL contains a name or a password. Raises
-    TypeError for what is neither a text nor a path.
+    settings, configuration of fsspec. A URL of the local file system gives a Path. The place need not exist. Raises
+    UserError where the scheme is unknown, its library is not installed, nothing follows it, or the URL contains a name
+    or a password. Raises TypeError for what is neither a text nor a path.
     """
     found = _URL.match(text) if isinstance(text, str) else None
     if not isinstance(text, str) or not found:

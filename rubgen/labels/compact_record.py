@@ -72,7 +72,8 @@ def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
 def response_of(record: CompactRecord) -> Response:
     """Make a response from a compact record.
 
-    It has no taps, orders, blisk modes and velocities of tips; energies are NaN.
+    Its status is OK. It has no taps, no orders and no modes of the blisk. The velocities of the tips are 0, the
+    energies NaN.
     """
     scalars = named_scalars(record["scalars"].tolist())
     blades, casing = int(scalars["n_blades"]), int(scalars["n_casing"])
@@ -116,7 +117,8 @@ def named_scalars(values: Sequence[float]) -> dict[str, float]:
 def in_record_precision(response: Response) -> Response:
     """Round a response to the precision of the compact record. Its taps and orders are not rounded.
 
-    The labels of a run are then equal to labels computed from its compact record.
+    What the record does not contain is lost as in `response_of`: modes of the blisk, velocities of tips, energies. The
+    labels of a run are then equal to labels computed from its compact record.
     """
     rounded = response_of(compact_record(response))
     return replace(

@@ -9,10 +9,10 @@ from rubgen.solver import Response, Status
 def fault_labels(scenario: Scenario, response: Response) -> dict[str, object]:
     """Return the labels of faults by name: `faults`, `healthy`, `rub_onset_s`, and severities.
 
-    There is a severity for each kind of fault that the recipe names, 0 where the run does not have the fault. `healthy`
-    is True without a fault and without a rub. `rub_onset_s` is the time of the first touch in s from the record's
-    start, None without a rub. `healthy` and `rub_onset_s` are None where the run failed. The result is empty if neither
-    recipe nor machine have faults.
+    There is a severity for each kind of fault that the recipe or the machine names, 0 where the run does not have the
+    fault. `healthy` is True without a fault and without a rub. `rub_onset_s` is the time of the first touch in s from
+    the record's start, None without a rub. `healthy` and `rub_onset_s` are None where the run failed. The result is
+    empty if neither recipe nor machine have faults.
     """
     if not scenario.fault_kinds:
         return {}

@@ -85,7 +85,7 @@ def harmonics(response: Response) -> dict[str, TapOrders]:
 def with_casing_fields(taps: dict[str, Array]) -> dict[str, Array]:
     """Return `taps` with the even and the odd part of the casing's acceleration, (a(0) +- a(pi)) / 2.
 
-    Without an acceleration at 180 degrees `taps` is returned unchanged.
+    They are called `casing_even` and `casing_odd`. Without an acceleration at 180 degrees `taps` is returned unchanged.
     """
     if OPPOSITE_TAP not in taps:
         return taps

@@ -29,8 +29,8 @@ def window_motions(
     window across the end of a stretch is undecided.
 
     While the speed changes, a window has the class from `history` if it is the same throughout the window, and is
-    undecided otherwise. While a fault grows and blades rub, it has the class of `drifting_motion`. Both have unknown
-    confidence.
+    undecided otherwise. While a fault grows and the motion of the whole is undecided, it has the class of
+    `drifting_motion`. Both have unknown confidence.
     """
     edges = window_edges(response)
     windows = list(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True))

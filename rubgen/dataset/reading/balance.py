@@ -23,18 +23,20 @@ def balance_table(runs: pd.DataFrame, recipe: Recipe) -> pd.DataFrame:
     - runs: the rows of `runs.parquet`, by name.
     - recipe: the recipe of the set.
 
-    Columns: `split`; `cell`, the class; `wanted`, its share in the recipe; `natural`, its estimated share in a set
-    without balance; `runs`, the good runs drawn for the class; `tries`, the candidates of these runs and of the failed
-    ones; `weight`, the importance weight of such a run, NaN where there is none. Twins do not count. With s_c
-    candidates seen in class c in the split and the band, and B bands of equal chance, the natural share is
+    Columns: `split`; `cell`, the class and its band; `wanted`, its share in the recipe over the number of bands;
+    `natural`, its estimated share in a set without balance; `runs`, the good runs drawn for the class; `tries`, the
+    candidates of these runs and of the failed ones; `weight`, the importance weight of such a run, NaN where there is
+    none. Twins do not count. With s_c candidates seen in class c in the split and the band, s their sum, and B bands of
+    equal chance, the natural share is
 
         p(no rub) = s_0 / (s B),   p(c) = (1 / B - p(no rub)) s_c / (sum of s over rubbing classes)
 
-    The second factor counts only the classes of the recipe. Every candidate is an independent draw, and a run stops at
-    the first candidate in its class, so these ratios tend to the shares (Wald's equation). Candidates that are not
-    possible do not count. The weight is p(c) over the share of class c among the good runs of the split. A merged set
-    has separate rows for each source, and a first column `source` with the digits of `merged_from`. Raises UserError
-    for a set without `[balance]`.
+    Of a candidate that rubs in the place of a run without rub the class is not computed: s counts it, the sum of s over
+    rubbing classes does not. Every candidate is an independent draw, and a run stops at the first candidate in its
+    class, so these ratios tend to the shares (Wald's equation). Candidates that are not possible do not count. The
+    weight is p(c) over the share of class c among the good runs of the split. A merged set has separate rows for each
+    source, and a first column `source` with the digits of `merged_from`. Raises UserError for a set without
+    `[balance]`.
     """
     import pandas as pd
 
@@ -91,7 +93,8 @@ def balance_weights(runs: pd.DataFrame, table: pd.DataFrame) -> pd.Series[float]
     """Return the importance weight of each run by its name; NaN for a failed run. A twin has the weight of its partner.
 
     With these weights, a mean over the good runs of a split estimates the mean over a set drawn without balance, except
-    for classes that the balance leaves out. For a merged set it estimates the mean over sources drawn without balance.
+    for classes that the balance leaves out. `table` is the `balance_table` of the same `runs`. For a merged set it
+    estimates the mean over sources drawn without balance.
     """
     import pandas as pd
 

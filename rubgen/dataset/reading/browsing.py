@@ -41,7 +41,8 @@ class Rows:
 def rows_of(data: DataSet, run_ids: Sequence[str], predictions: Path | None = None) -> Rows:
     """Return the rows of these runs: name, split, status, headline, what differs, labels, and predictions.
 
-    What differs are parameters, and the machine and the partner of a twin.
+    Parameters, the machine and the partner of a twin are shown only where they differ between runs of the set. A failed
+    run has no headline. Of the labels those with the role target are shown.
 
     `predictions` is the path of a file for `read_predictions`, or None. A predicted column with the name of a shown
     column stands after it. A flag `<name>_right` follows, True where both are equal, if the answers are words or
@@ -81,8 +82,9 @@ def read_predictions(path: Path, data: DataSet) -> pd.DataFrame:
     """Read the predictions of a model from a CSV or Parquet file, with one row for each run.
 
     The column `run_id` is the index of the result. Characters of column names other than letters, digits and _ become
-    _. Raises UserError where the file is missing or of another kind, has no `run_id` or no other column, names a run
-    twice, names no run of the set, contains lists, or has two columns with the same name then.
+    _. Rows of runs that the set does not have are kept. Raises UserError where the file is missing or of another kind,
+    has no `run_id` or no other column, names a run twice, has not one run of the set, contains lists, or where two
+    columns get the same name by this change.
     """
     reader, named = READERS.get(path.suffix), f"--predictions {path}"
     if reader is None:

@@ -159,7 +159,7 @@ class DataSet:
         return row
 
     def whole_row(self, run_id: str) -> dict[str, Any]:
-        """Return everything that the set contains of a good run except its channels, by column name.
+        """Return the values of a good run in the tables `runs`, `signals` and `truth` except channels, by column name.
 
         It is `row` with the event times of the signals and with the table `truth`: touches in the signals, amplitudes
         by window and more. Raises UserError where the run does not exist or failed, and where the set has no Parquet
@@ -215,9 +215,9 @@ class DataSet:
 
         X (runs, channels, time) is float32, one row for each good run, each channel in its unit. y (runs,) are the
         answers, the values of the target: a flag as 0 or 1; a class as its number, as in
-        `rubgen.labels.MOTION_CLASSES`, -1 where it is undecided or undefined; a number, NaN where it is undefined. For
-        the target `faults`, y is (runs, kinds), 1 where the run has the kind of `fault_kinds`. groups (runs,) are names
-        from `groups_of`: runs with the same name must be on the same side of a split.
+        `rubgen.labels.MOTION_CLASSES`, -1 where it is undecided or undefined; a number. An undefined flag or number is
+        NaN. For the target `faults`, y is (runs, kinds), 1 where the run has the kind of `fault_kinds`. groups (runs,)
+        are names from `groups_of`: runs with the same name must be on the same side of a split.
 
         - channels: names; None takes `inputs`, all channels that a sensor could record.
         - target: a column with one value for each run, of any role but id.
@@ -252,7 +252,7 @@ class DataSet:
         For every other target the answer is the run's. All windows of a run, and of its machine, are one group: put
         them on one side of a split, else the score of a model is worth nothing. All other arguments are as in `arrays`.
 
-        Raises UserError as `arrays` does, and where no length or both are given, windows are longer than the signals,
+        Raises UserError as `arrays` does, and where no length or both are given, windows are longer than every signal,
         or the set has no once_per_rev sensor for `turns`.
         """
         cut = self.cut(seconds, turns, hop)
@@ -294,8 +294,8 @@ class DataSet:
     ) -> Iterator[tuple[str, dict[str, Float32Array], FloatArray]]:
         """Yield name, channels by name and pulse times (s from the first sample) of each of these good runs.
 
-        The arrays are read-only. One run is in memory at a time. `channels` are names; None reads all. Raises
-        UserError: at the first run for a channel, a run or signals that do not exist, at any run for a damaged file.
+        The arrays are read-only. One run is in memory at a time. `channels` are names; None reads all. Raises UserError
+        before the first run for an unknown channel, and at a run without signals or with a damaged file.
         """
         names = self.known_channels(channels)
         for run_id, table in self._recorded(run_ids, names):
@@ -361,7 +361,7 @@ class DataSet:
         return exported_signals(self.layout, self.manifest, run_ids, names)
 
     def known_channels(self, channels: Sequence[str] | None) -> tuple[str, ...]:
-        """Return the names in `channels`, each once; for None all channels. Raises UserError for an unknown name."""
+        """Return the names in `channels`, each once; None is all. Raises UserError for any other name."""
         if isinstance(channels, str):
             raise UserError(f"channels = {channels!r}: give a list of names, [{channels!r}]")
         try:

@@ -28,7 +28,7 @@ def parquet_signals(
     - signals, truth: the tables `signals` and `truth`. A table with none of the columns is not opened.
     - run_ids: names of the runs, in the order of the results.
 
-    Raises UserError where a file is damaged.
+    Raises UserError where a run has no row or a file is damaged, as `RunRows.each` does.
     """
     seen = [name for name in names if name in signals.types.names]
     hidden = [name for name in names if name not in seen]

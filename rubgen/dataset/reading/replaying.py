@@ -55,9 +55,9 @@ def find_replay(source: Path, run_id: str | None = None, where: str | None = Non
 
     Give at most one of `run_id` and `where`, and none of them with a file. Without both the first good run is taken. A
     run of the set without an MCAP file is simulated again. The remarks say whether it was, what a damaged file has
-    lost, and how many runs met the condition. Raises UserError where the source or the run does not exist, the run
-    failed, a choice does not fit, no good run meets the condition, the condition is not valid, or the file does not fit
-    the set or this version.
+    lost, and how many runs met the condition if several did. Raises UserError where the source or the run does not
+    exist, the run failed, a choice does not fit, no good run meets the condition, the condition is not valid, or the
+    file does not fit the set or this version.
     """
     if source.is_dir():
         return _from_data_set(source, run_id, where)

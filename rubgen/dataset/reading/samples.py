@@ -101,7 +101,7 @@ def window_index(
 ) -> WindowIndex:
     """Find the windows of runs and their answers.
 
-    The arguments are as in `DataSet.windows`; `cut` is the window length. Raises UserError as `DataSet.windows` does.
+    The arguments are as in `DataSet.windows`; `cut` is from `DataSet.cut`. Raises UserError as `DataSet.windows` does.
     """
     chosen, names = chosen_runs(data, split, runs), chosen_channels(data, channels)
     answers = Answers(data, target)
@@ -138,9 +138,9 @@ def windows(index: WindowIndex, out: Path | str | None) -> Windows:
 def chosen_runs(data: DataSet, split: str | None, runs: Sequence[str] | None) -> list[str]:
     """Return the names of the good runs (status ok) of `split`, or of the list `runs`, each once.
 
-    If both are None, return all good runs of the set. They are in the order of the set, or of the list. Raises
-    UserError where both are given, a split or run is unknown, `runs` is no list, the list is empty, a run of it failed,
-    or the split or the set has no good run.
+    If both are None, return all good runs of the set. The order is that of the set, or of the list. Raises UserError
+    where both are given, a split or run is unknown, `runs` is no list, the list is empty, a run of it failed, or the
+    split or the set has no good run.
     """
     good = data.ok
     if split is not None and runs is not None:

@@ -56,10 +56,10 @@ class Regenerated:
 def regenerate(directory: Path | str, run_id: str) -> Regenerated:
     """Simulate the run called `run_id` of a data set again from its manifest, and compare it with the stored run.
 
-    Differences are in the result; none is an error. With the versions that made the set, on the same kind of processor,
-    every bit should be equal. Otherwise a period-1 run should have the same labels within PERIODIC_TOLERANCE. Any other
-    run should have the same class of motion, and amplitudes at orders within ORDER_TOLERANCE. Raises UserError where
-    the set or the run does not exist.
+    The tables are compared, not files of single runs. Differences are in the result; none is an error. With the
+    versions that made the set, on the same kind of processor, every bit should be equal. Otherwise a period-1 run
+    should have the same labels within PERIODIC_TOLERANCE. Any other run should have the same class of motion, and
+    amplitudes at orders within ORDER_TOLERANCE. Raises UserError where the set or the run does not exist.
     """
     from rubgen.dataset.making.make_runs import simulated
 

@@ -54,7 +54,7 @@ def remake(layout: Layout, manifest: Manifest, wrong: set[str], *, trusting: boo
     """Simulate the runs of damaged or missing files again, and replace these files. Return their paths, sorted.
 
     - wrong: paths of the files, relative to the set. Paths that the manifest does not list are ignored.
-    - trusting: whether the rows of a damaged `runs.parquet` are used that can be read.
+    - trusting: whether rows that can still be read from a damaged `runs.parquet` are used.
 
     All runs of the files' shards (`shards_with`) are simulated. For `runs.parquet` they are all runs of the shards
     whose rows cannot be read; without `trusting`, all runs of the set. If this does not restore the listed bytes of

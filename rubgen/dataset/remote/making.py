@@ -52,14 +52,14 @@ class RemoteMaking:
         shutil.rmtree(self.layout.root, ignore_errors=True)
 
     def begin(self, identity: Identity, formats: tuple[str, ...]) -> None:
-        """Reserve the place at the URL for this set, and complete the closed shards there and in the local folder.
+        """Reserve the place at the URL for this set, and bring URL and local folder to the same closed shards.
 
         - identity: recipe, machine, sensors and versions of the set.
         - formats: formats of its files.
 
         Records of shards that were uploaded before are downloaded, so that these shards are not made again. Shards that
         were closed in the local folder and not uploaded before an interruption are uploaded now. Raises UserError where
-        the URL has other files or a finished set with fewer runs, and where it cannot be read or written.
+        the URL has other files, another set or a finished set, and where it cannot be read or written.
         """
         store = self.store
         there = store.begin(identity, grows=False)

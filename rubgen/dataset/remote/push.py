@@ -14,10 +14,11 @@ from rubgen.progress import count, step
 def push(directory: Path | str, url: str) -> int:
     """Copy the finished data set in `directory` to a URL such as s3://bucket/set. Return the number of files copied.
 
-    Files are uploaded one by one, the manifest and its digest last: an incomplete set cannot be opened. The same call
-    after an interruption copies the missing files. If the URL has a set with fewer runs of the same recipe, the new
-    runs are added. Raises UserError where the directory has no finished set or a damaged file, the URL cannot be
-    written, or the URL has other files, another set, or the same set with more runs or of other package versions.
+    Files are uploaded one by one. The manifest and its digest, which are not counted, are the last: an incomplete set
+    cannot be opened. The same call after an interruption copies files that are missing or have another size. If the URL
+    has a set with fewer runs of the same recipe, the new runs are added. Raises UserError where the directory has no
+    finished set or a damaged file, the URL cannot be written, or the URL has other files, another set, or the same set
+    with more runs or of other package versions.
     """
     source, store = Layout(directory), Store(url)
     manifest = read_manifest(source)

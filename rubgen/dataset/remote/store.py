@@ -40,9 +40,9 @@ class Store:
         return {name[start:]: int(facts["size"] or 0) for name, facts in found.items()}
 
     def check_sizes(self, manifest: Manifest) -> None:
-        """Check that the listed files of a finished set are there with their sizes; of derived files no size is known.
+        """Check that the files in the manifest of a finished set are there with their sizes.
 
-        Raises UserError with the first that is not.
+        Derived files only have to be there. Raises UserError with the first wrong file.
         """
         there = self.sizes()
         wrong = [
@@ -64,8 +64,7 @@ class Store:
         """Reserve the URL for the set of this identity before anything is made. Return the files there, as `sizes`.
 
         Raises UserError where the URL has a set of another recipe or of other package versions, a set with more runs,
-        or other files, and where it cannot be written. With `grows` False, a finished set with fewer runs is refused
-        too.
+        or other files, and where it cannot be written. With `grows` False, any finished set is refused.
         """
         layout, there = self.layout, self.sizes()
         marker = self._name(layout.identity)

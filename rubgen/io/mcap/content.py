@@ -149,7 +149,7 @@ def check_other(content: McapContent, topic: str) -> None:
     """Check a topic that is written for other programs: `/tf` and previews. Every message is decoded.
 
     Raises DamageError where messages are of another type or cannot be decoded, a preview has other names than its
-    channel or values that are not finite, or the topic is unknown.
+    channel or values that are not finite, and for any other topic.
     """
     channel = content.channels[topic]
     if topic == "/tf":
@@ -180,8 +180,8 @@ def event_columns(content: McapContent, topic: str, scenario: Scenario) -> dict[
     """Decode the events of a topic, such as contacts, into one array (n_events,) for each field of their message.
 
     The field `timestamp` is left out. `scenario` has the number of blades and the length of the recording. Raises
-    DamageError where a value is not finite, a blade does not exist, or events are not in order, or more than SLACK_S
-    outside of the recording.
+    DamageError where a value is not finite, a blade does not exist, events are not in order, or an event ends more than
+    SLACK_S before the recording or begins more than SLACK_S after it.
     """
     found = decoded(content, topic)
     names = [each.name for each in message_class(message_name(topic) or "").DESCRIPTOR.fields]

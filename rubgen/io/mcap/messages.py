@@ -117,7 +117,7 @@ def proto_file(path: str, package: str, messages: dict[str, list[Field]]) -> des
 
     - path: name of the file, under which other files import it.
     - package: the protobuf package of the messages.
-    - messages: the fields of each message, by its name.
+    - messages: the fields of each message, by its name. They get the numbers 1, 2, ... in their order.
     """
     file = descriptor_pb2.FileDescriptorProto(name=path, package=package, syntax="proto3")
     for name, fields in messages.items():

@@ -120,7 +120,8 @@ def read_mcap(path: Path, *, channels: Collection[str] | None = None) -> McapRun
 def run_of(content: McapContent, *, gaps: bool = False, channels: Collection[str] | None = None) -> McapRun:
     """Make the run from the records of its file. Raises DamageError where they are not a run of rubgen.
 
-    - gaps: True sets missing samples to NaN; False raises DamageError for a missing block.
+    - gaps: True sets missing samples to NaN; False raises DamageError for a missing block. Without any sample of a
+      channel it is raised in both cases.
     - channels: names of the channels to decode, with pulses, scenario and labels alone; None decodes everything.
     """
     plain, scenario = checked_scenario(content)

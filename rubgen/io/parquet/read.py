@@ -155,8 +155,9 @@ def damage_named(path: Path) -> Iterator[None]:
     """Turn an error of pyarrow in the block into a UserError of one line that names the file `path`.
 
     pyarrow reports damage by its own exceptions, by an OSError without a number, and for names of columns by a
-    UnicodeDecodeError. An OSError with a number and a MemoryError come from the system. Any other error of a file
-    passes: it is a bug. At a URL every Exception is turned (`url_problems`).
+    UnicodeDecodeError: the message calls the file damaged. An OSError with a number and a MemoryError come from the
+    system: the message says that the file cannot be read. Any other error of a file passes: it is a bug. At a URL every
+    Exception is turned (`url_problems`).
     """
     with url_problems(path) if is_url(path) else nullcontext():
         try:

@@ -23,7 +23,7 @@ def with_numbers(row: Mapping[str, object]) -> dict[str, object]:
 def with_words(table: pa.Table) -> pa.Table:
     """Return a table with words in place of the numbers of classes, in columns with the name and type of a class.
 
-    A number that is no class of the column becomes the text "class" and the number.
+    A number that is no class of the column becomes the text "class" and the number. Null stays null.
     """
     for place, name in enumerate(table.column_names):
         if name in NUMBERS and pa.types.is_integer(table.schema.field(name).type):

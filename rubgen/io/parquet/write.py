@@ -96,7 +96,8 @@ def _schema(
 def recipe_schema(recipe: Recipe, *, signals: bool) -> pa.Schema:
     """Return the Arrow schema of the files of the data set that `recipe` makes.
 
-    With `signals` it is the schema of the data files, else of `runs.parquet`.
+    With `signals` it is the schema of a whole row with signals, whose columns the tables `signals` and `truth` share
+    out. Else it is the schema of `runs.parquet`.
     """
     sensing, around = recipe.sensing, recipe.surroundings
     return schema(

@@ -41,11 +41,11 @@ def contact_zones(events: ContactEvents, *, steps_per_turn: int) -> ContactZones
     """Find the contact zones of a record: arcs of the casing with impulse, and whether they are symmetric.
 
     A zone is a connected arc of the impulse histogram. Gaps of more than 10 deg separate zones. The lightest bins, 2 %
-    of the impulse in all, are left out first, then zones with less than 2 %. `imbalance` counts both. A zone's centre
-    is its mean angle weighted by impulse. Its width is the arc from its first to its last bin. A circle without a gap
-    above 10 deg is one zone of width 2 pi. Zones are symmetric if their widths and spacings are equal within 3 deg and
-    their impulses in each turn within 5 % (rms): over many turns even a chaotic rub has equal mean impulses. A single
-    zone is symmetric only as the whole circle.
+    of the impulse in all, are left out first, then zones with less than 2 %. `imbalance` counts their impulse too. A
+    zone's centre is its mean angle weighted by impulse. Its width is the arc from its first to its last bin. A circle
+    without a gap above 10 deg is one zone of width 2 pi. Zones are symmetric if their widths and spacings are equal
+    within 3 deg and their impulses in each turn within 5 % (rms): over many turns even a chaotic rub has equal mean
+    impulses. A single zone is symmetric only as the whole circle.
 
     - events: touches, in steps of equal angle.
     - steps_per_turn: number of such steps in a turn.

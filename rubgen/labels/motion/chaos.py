@@ -24,13 +24,13 @@ DAMPED_FROM = 200
 
 
 def chaos_indicator(points: FloatArray) -> float:
-    """Return the largest K of the 0-1 test among two groups of points (turns, groups, values): near 1 for chaos.
+    """Return the larger K of the 0-1 test of group 0 of the points (turns, groups, values) and of all others together.
 
-    There must be at least 32 turns. For a blisk, group 0 of `points` is the disk centre and is tested alone; the tips
-    are tested together. Each K is the median of the 0-1 test over the leading principal components of the points
-    without their periodic part. If the first half of the record is more than twice as far from the clusters as the
-    second half, the motion still settles, and only the second half is tested. K is 0 for a group whose distance from
-    its clusters is below ROUNDING.
+    K is near 1 for chaos. There must be at least 32 turns. Group 0 of a blisk is the disk centre, the others are the
+    tips; a casing has group 0 alone. The points are divided by the size of the motion. Each K is the median of the 0-1
+    test over the leading principal components of the points without their periodic part. If the first half of the
+    record is more than twice as far from the clusters as the second half, the motion still settles, and only the second
+    half is tested. K is 0 for a group whose distance from its clusters is below ROUNDING.
     """
     half = points.shape[0] // 2
     first, second = (rms(without_periodic_part(part)) for part in (points[:half], points[half:]))
@@ -59,9 +59,9 @@ def principal_components(points: FloatArray) -> FloatArray:
 
 
 def growth_correlation(observable: FloatArray) -> float:
-    """Compute K of the 0-1 test for a scalar observable (n,): near 1 for chaos, near 0 for regular motion.
+    """Compute K of the 0-1 test for a scalar observable (N,): near 1 for chaos, near 0 for regular motion.
 
-    The observable has n >= 32 points of a Poincare section. It is the test of Gottwald and Melbourne. The translation
+    The observable has N >= 32 points of a Poincare section. It is the test of Gottwald and Melbourne. The translation
     is p_c(n) = sum_{j <= n} phi_j exp(i c j). Its mean square displacement is M_c(n) = mean_j |p_c(j + n) - p_c(j)|^2
     over n = 1 .. N/10. Without its oscillation it is D_c(n) = M_c(n) - mean(phi)^2 (1 - cos n c)/(1 - cos c). The
     damped variant is D*_c(n) = D_c(n) + DAMPING var(phi) sin(sqrt(2) n): its oscillation is far larger than the slow

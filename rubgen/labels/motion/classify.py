@@ -69,8 +69,9 @@ def motion(response: Response, exponent: Exponent | None = None) -> Motions:
     not by their own clusters. The 0-1 test uses the disk centre, the tips and the casing. Its largest K counts for all
     of them: contact couples them into one system, which is chaotic as a whole. A lightly damped blade with random
     excitation looks regular for longer than the record; the disk centre does not. Without contact the motion is the
-    forced motion, which repeats every turn, if this motion is known (`Response.knows_free_motion`). If it is not known,
-    because a support is not linear, the section is classified as with contact, and the casing is at rest.
+    forced motion, which repeats every turn, and the casing is at rest, if this motion is known
+    (`Response.knows_free_motion`). If it is not known, because a support is not linear, the section is classified as
+    with contact.
     """
     turns = response.section_q.shape[0]
     if turns < LEAST_TURNS:

@@ -14,10 +14,11 @@ EXCURSION = 0.03
 
 
 def late_distances(points: FloatArray) -> list[FloatArray]:
-    """Return the distances of points (turns, groups, values) from k = 1, 2, ... clusters, each (turns // 2,).
+    """Return the distances of points (turns, groups, values) from k = 1, 2, ... clusters, each (late turns,).
 
-    Only the second half of the record is used, where transients have decayed. k is at most 16, in a short record at
-    most an eighth of the turns, of which there must be at least eight. See `cluster_distances`.
+    The points are divided by the size of the motion. Only the second half of the record is used, where transients have
+    decayed. k is at most 16, in a short record at most an eighth of the turns, of which there must be at least eight.
+    See `cluster_distances`.
     """
     late = points[points.shape[0] // 2 :]
     return [cluster_distances(late, k) for k in range(1, min(LONGEST_PERIOD, len(late) // 4) + 1)]
@@ -27,8 +28,9 @@ def cluster_period(distances: list[FloatArray]) -> int | None:
     """Return the smallest k <= 16 after which points repeat, or None. `distances` are from `late_distances`.
 
     A point's distance to the mean of its cluster is the distance of its farthest group, so that one chattering tip
-    counts. The distances must be at most CLUSTER_RADIUS (rms over turns) and at most EXCURSION in each turn, and must
-    not grow.
+    counts. The distances must be at most CLUSTER_RADIUS (rms over turns) and at most EXCURSION in each turn. Their rms
+    must not more than double from the first half of these turns to the second, unless it stays below a tenth of
+    CLUSTER_RADIUS.
     """
     for period, distance in enumerate(distances, start=1):
         if rms(distance) <= CLUSTER_RADIUS and distance.max() <= EXCURSION and not _grows(distance):

@@ -42,14 +42,15 @@ def drifting_motion(response: Response, first: int, last: int, *, rub: bool) -> 
     """Return the classes of motion of the turns first .. last - 1 of a record, whose speed or machine may drift.
 
     `rub` is whether blades touch in these turns. Without a rub the motion is the forced motion, if this is known
-    (`Response.knows_free_motion`); while the casing still moves, casing and system are undecided. Otherwise, on the
-    turns about the middle:
+    (`Response.knows_free_motion`); while the casing still moves, casing and system are undecided. Otherwise, on
+    BRANCH_TURNS about the middle, which may reach beyond a short stretch:
 
     - periodic after k <= 4 turns where the points lie on k branches, within CLUSTER_RADIUS rms and EXCURSION each. A
       branch is every kth point, fitted by a quadratic in time; the rms is corrected for its coefficients.
     - chaotic where the part does not repeat, and a group (disk centre, tips, casing) lies farther than SCATTER from one
       branch and cannot be predicted (`prediction_error`) over PREDICTED_TURNS. Contact couples the parts.
-    - undecided otherwise: on a torus, while the motion settles, across a change. A class needs 32 turns, chaos 64.
+    - undecided otherwise: on a torus, while the motion settles, across a change. A class needs a record of 32 turns,
+      chaos of 64.
 
     A beat that takes more than some hundred turns counts as drift.
     """
@@ -73,9 +74,9 @@ def drifting_motion(response: Response, first: int, last: int, *, rub: bool) -> 
 
 
 def off_branches(points: FloatArray, branches: int) -> FloatArray:
-    """Subtract from the points (turns, groups, values) their branch, and return the rest.
+    """Subtract from each of the points (turns, groups, values) its branch, and return the rest.
 
-    A branch is a quadratic in time through every `branches`-th point.
+    A branch is a quadratic in time, fitted to every `branches`-th point.
     """
     time = np.linspace(-1.0, 1.0, len(points))
     rest = np.empty_like(points)

@@ -27,9 +27,9 @@ def segments(parts: list[FloatArray]) -> list[Segment]:
 
     - parts: the points (turns, groups, values) of blisk and casing, each divided by the size of its motion.
 
-    A segment is regular with period k <= 16 if each point returns after k turns within EXCURSION, in every part and
-    group, for at least 10 + k turns and 3 k turns. Each turn has the smallest such k. An irregular segment below 10
-    turns joins the segment before it.
+    A segment is regular with period k, at most 16 and a quarter of the turns, if each point returns after k turns
+    within EXCURSION, in every part and group, for at least 10 + k turns and 3 k turns. Each turn has the smallest such
+    k. An irregular segment below 10 turns joins the segment before it.
     """
     turns = len(parts[0])
     period = np.zeros(turns, dtype=np.int64)

@@ -42,7 +42,7 @@ def casing_points(response: Response) -> FloatArray:
 
     Each point has Omega times the modal displacements, then the modal velocities. Between two touches the casing swings
     freely about its shape at rest, so its displacement from this shape is motion. Touches that end do not offset the
-    section; only a touch that never ends would.
+    section; only a touch that never ends would. Points of a casing that does not move at all are NaN.
     """
     return casing_states(response, response.section_q, response.section_v)
 
