@@ -45,7 +45,7 @@ class SetWindows:
 
 
 def windows_of(directory: Path, data: DataSet, seeds: int, workers: int) -> SetWindows:
-    """Compute the windows of the good runs of `data`, the set in `directory`, in the order of their runs.
+    """Compute the windows of the good runs of `data`, the set in `directory`: WINDOWS equal ones a run, run by run.
 
     - seeds: number of choices of random convolutions.
     - workers: number of processes.

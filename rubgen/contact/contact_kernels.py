@@ -176,7 +176,7 @@ def contact_slip(
     - velocity (n,): q' or a step d of q, in the coordinates' own frames. With d the result is a path in m.
     - q (n,): coordinates, m.
     - speed: Omega, rad/s, or Omega dt where `velocity` is d.
-    - cosine, sine: of the blade's angle.
+    - cosine, sine: of the blade's polar angle, theta plus its angle on the disk.
     """
     k, n_casing = work.blade[m], work.rows.shape[1]
     radial = velocity[3 * k] - speed * (tips.static[1, k] + q[3 * k + 1])

@@ -12,7 +12,8 @@ ENDINGS = (".png", ".svg", ".pdf")
 def figure_command(name: str, source: Path | None, out: Path, choice: Choice, *, force: bool) -> int:
     """Draw the figure called `name` and write it to `out`. Returns the exit code 0.
 
-    `source` and `choice` are as in `make_figure`. With `force` an existing file is replaced.
+    `source` and `choice` are as in `make_figure`. `out` ends in .png, .svg or .pdf. With `force` an existing file is
+    replaced. Raises UserError as `make_figure` and `check_new_file` do.
     """
     from rubgen.viz.figures import save_figure
 
@@ -27,7 +28,8 @@ def figure_command(name: str, source: Path | None, out: Path, choice: Choice, *,
 def report_command(directory: Path, out: Path | None, *, force: bool) -> int:
     """Write the page of the data set in `directory` to `out`, for None to its report.html. Returns the exit code 0.
 
-    With `force` an existing file is replaced.
+    With `force` an existing file is replaced. Raises UserError where `directory` holds no finished data set, and as
+    `check_new_file` does.
     """
     from rubgen.report.page import write_report
 

@@ -67,7 +67,8 @@ def merge_command(directories: Sequence[Path], out: Path, *, as_json: bool) -> i
 def push_command(directory: Path, url: str, *, as_json: bool) -> int:
     """Copy a finished data set to a URL and print the number of files copied. Returns the exit code 0.
 
-    With `as_json` the number is printed as JSON. After Ctrl-C it prints how to continue and returns 130.
+    With `as_json` the number is printed as JSON. After Ctrl-C it prints how to continue and returns 130. Errors are as
+    in `push`.
     """
     try:
         with terminable(), shown(not as_json and None):

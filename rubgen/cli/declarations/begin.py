@@ -47,7 +47,8 @@ def plan(
 ) -> int:
     """Print what a recipe draws, which runs can rub, which values are refused, and minutes and MB of its data set.
 
-    The data set is not made. Exit 1 where a run, or a scenario at an extreme value of the recipe, is refused.
+    The data set is not made. Up to 64 of its runs are looked at. Exit 1 where one of them, or a scenario at an extreme
+    value of the recipe, is refused.
     """
     from rubgen.cli.commands.planning import plan_command
 

@@ -44,7 +44,7 @@ def repair(directory: Directory, /, *, json: Json = False) -> int:
     """Make lost or damaged files again; exit 1 if a problem remains.
 
     Damaged shards are simulated again from the manifest, which needs the versions that made the set. A file is replaced
-    only by the bytes that the manifest lists; nothing is deleted.
+    only by the bytes that the manifest lists, but .rrd files may get other bytes. Nothing is deleted.
     """
     from rubgen.cli.commands.inspecting import repair_command
 

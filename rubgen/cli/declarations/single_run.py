@@ -54,7 +54,7 @@ def simulate(
     json: Json = False,
     **fault_keys: Annotated[str, option("A value of the fault: --parallel-m 5e-5.")],
 ) -> int:
-    """Simulate one run and print its labels; with --out also write its signals."""
+    """Simulate one run and print its labels; with --out also write its signals. Exit 1 where the run fails."""
     options = dict(locals())
     from rubgen.cli.commands.simulating import simulate_command
 

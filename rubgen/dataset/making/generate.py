@@ -80,7 +80,7 @@ def generate(
     - scheduler: address of a Dask scheduler, whose workers make the runs; or "slurm" for jobs of SLURM, one a worker.
     - shard: "17/200" makes only part 17 of 200 of the runs. Other processes may make the other parts at the same time.
       The result of a part has empty `status` and no counts in `outcome`.
-    - finish: make no run; complete the set from its parts.
+    - finish: make no run; complete the set from its parts. Raises UserError if a run is missing.
     - progress: called with the numbers of finished and of all runs. True shows them on stderr, None only on a terminal
       or in a notebook.
 

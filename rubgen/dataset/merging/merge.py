@@ -30,7 +30,7 @@ def merge(
 
     - directories: two or more finished data sets; they are only read. Their runs follow each other in this order.
     - out: a new or empty directory, or a directory in which the same call was interrupted: the call then completes the
-      set.
+      set. If the set is complete, nothing is changed.
     - progress: as in `generate`.
 
     Run number i of a set becomes number i plus the number of runs of all sets before it. In `runs.parquet` the column

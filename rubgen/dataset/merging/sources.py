@@ -79,7 +79,10 @@ def merged_identity(sets: Sequence[SourceSet]) -> Identity:
 
 
 def check_sources(sets: Sequence[SourceSet]) -> None:
-    """Check that these sets can be merged. Raises UserError, one line with both sets, at the first difference."""
+    """Check that these sets can be merged. Raises UserError, one line with both sets, at the first difference.
+
+    It is also raised for fewer than two sets, and for more than MOST_RUNS runs in all.
+    """
     if len(sets) < 2:
         raise UserError("merge: give two or more data sets")
     runs = sum(each.manifest.runs for each in sets)

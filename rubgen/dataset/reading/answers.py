@@ -48,9 +48,9 @@ class Answers:
     def of_runs(self, runs: Sequence[str]) -> npt.NDArray[Any]:
         """Return the answer of each of the runs, by name: (runs,), or for the target `faults` (runs, kinds).
 
-        A flag is 0 or 1, a class its number or -1 where it is undefined, a number NaN where it is undefined. If a flag
-        or an integer is undefined in any of the runs, all are floats, with NaN there. Raises KeyError for an unknown
-        run.
+        A kind of fault is 1 where the run has it, else 0, in the order of `DataSet.fault_kinds`. A flag is 0 or 1, a
+        class its number or -1 where it is undefined, a number NaN where it is undefined. If a flag or an integer is
+        undefined in any of the runs, all are floats, with NaN there. Raises KeyError for an unknown run.
         """
         values = self._data.runs.loc[list(runs), self._column.name]
         if self._column.name == "faults":
