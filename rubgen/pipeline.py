@@ -95,7 +95,7 @@ def simulate(scenario: Scenario) -> Run:
     On one computer the same scenario always has the same bits, with any number of BLAS threads (one is used here), and
     with or without the cache of reduced models. A run that fails is returned with its status, without recording and
     labels. Raises UserError for a machine that cannot be modelled or reduced, for values with which no run is possible,
-    and for what is no Scenario.
+    for a virtual machine or a class of `[balance]` of which no candidate was found, and for what is no Scenario.
     """
     if not isinstance(scenario, Scenario):
         raise UserError(f"{scenario!r:.200}: is no scenario; give rubgen.make_scenario(...) or recipe.scenario(0)")

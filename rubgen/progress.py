@@ -69,7 +69,11 @@ def count(done: int, total: int) -> None:
 
 @contextmanager
 def shown(wanted: bool | None = None) -> Iterator[None]:
-    """Show the steps of the block on stderr. If `wanted` is None, show them only on a terminal or in a notebook."""
+    """Show the steps of the block on stderr.
+
+    If `wanted` is None, they are shown only on a terminal or in a notebook; True shows them in a file too. False, or
+    None elsewhere, changes nothing: what a surrounding `shown` allows is still shown.
+    """
     show = _way(wanted)
     token = _showing.set(show) if show else None
     try:

@@ -48,7 +48,8 @@ def padded(size: int) -> int:
 def blade_harmonics(blades: int) -> FloatArray:
     """Return orthonormal real harmonics (blades, blades) over the blade number k, one harmonic in each column.
 
-    The columns are 1, cos, sin, cos 2, sin 2, ..., and for an even number of blades (-1)^k, each normalised.
+    The columns are 1, cos, sin, cos 2, sin 2, ..., and for an even number of blades (-1)^k, each normalised. The array
+    is read-only.
     """
     k = np.arange(blades)
     columns = [np.ones(blades) / np.sqrt(blades)]

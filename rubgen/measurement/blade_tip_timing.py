@@ -35,7 +35,7 @@ def blurred(sensor: TimingProbe | OncePerRev, time: FloatArray, noise: float, rn
 
     - time (any,): exact times, s.
     - noise: factor of the sensor's jitter.
-    - rng: random numbers. None is drawn without jitter.
+    - rng: random numbers. Without jitter no number is drawn.
     """
     jitter = noise * sensor.jitter_s
     shaken = time + jitter * rng.standard_normal(time.size) if jitter else time

@@ -43,7 +43,10 @@ def late_seconds(sensing: Sensing, seconds: float, *, sign: int = 1) -> float:
 
 
 def start_seconds(sensing: Sensing, seconds: float, *, steps: int, dt: float) -> float:
-    """Return the time of the first sample, in s from the start of the record.
+    """Return the time of the first sample, in s from the start of the record; negative where the record is too short.
+
+    It is the time for a sensor without clock errors. The last of round(`seconds` * sample rate) samples, as the latest
+    clock takes it, is half the length of the anti-alias filter before the last step.
 
     - sensing: sample rate, and the clocks of the sensors.
     - seconds: length of the recording.
@@ -90,8 +93,8 @@ def impulse_response(time: FloatArray, sample_rate_hz: float) -> FloatArray:
 def filter_bank(dt: float, sample_rate_hz: float) -> FloatArray:
     """Tabulate the filter's weights (PHASES + 1, 2 half) for positions between two steps of `dt` s. Rows sum to 1.
 
-    The array is read-only. A row is a position, from the first step to the next. A column is a step; half of the steps
-    lie on either side.
+    The array is read-only. A row is a position, from the first of the two steps to the second. A column is a step, and
+    the two steps are columns half - 1 and half.
     """
     half = int(np.ceil(half_width_seconds(sample_rate_hz) / dt))
     phase = np.linspace(0.0, 1.0, PHASES + 1)[:, None]
@@ -108,10 +111,11 @@ def band_limit(signals: Sequence[FloatArray], positions: FloatArray, *, dt: floa
 
     Filter and interpolation in one: y(t) = sum_j h(t - j dt) x_j dt, with the weights' sum set to 1. The gain is 1
     within 1e-4 up to sample_rate / 2.56 and below 1e-4 from sample_rate / 2 on. There is no delay. The step rate must
-    be at least 2.56 sample rates, and all positions at least half a filter length from the ends of the signals.
+    be at least 2.56 sample rates, and all positions at least half a filter length from the ends of the signals. The
+    caller ensures both.
 
     - signals: one of each channel, each (steps,) with values at every step.
-    - positions (samples,): times of the samples, in steps.
+    - positions (samples,): times of the samples, in steps from the first step; at least one.
     - dt: time step, s.
     - sample_rate_hz: sample rate.
     """

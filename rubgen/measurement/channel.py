@@ -74,8 +74,9 @@ class Recording:
     def by_quantity(self) -> dict[str, list[Channel]]:
         """Group the channels by quantity and unit. Groups and channels are in the order of the recording.
 
-        The key is the quantity with "_" for blanks. If its channels have several units, each unit has a group. The
-        first unit's group has this key. The key of any other is `<quantity>_in_<unit>`, with "_per_" for "/".
+        The key of a group is its quantity, with "_" for blanks. Where channels of a quantity have several units, only
+        the group of the first unit has this key. The key of each other group is `<quantity>_in_<unit>`, with "_per_"
+        for "/".
         """
         groups: dict[str, list[Channel]] = {}
         for channel in self.channels.values():

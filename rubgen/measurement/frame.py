@@ -57,7 +57,7 @@ def accelerations(mode: FrameMode, force: FloatArray, dt: float) -> FloatArray:
 
     F is linear between the steps, and the result is exact at the steps, by the recursion of Smallwood (1981, ramp
     invariant; ISO 18431-4): with E = exp(-d w dt) and K = w dt sqrt(1 - d^2), H(z) = E sin(K) / K (1 - 1/z)^2 / (1 - 2
-    E cos(K) / z + E^2 / z^2). The mode starts at rest under the first force.
+    E cos(K) / z + E^2 / z^2). The mode starts at rest, in equilibrium with the first force, so the first value is 0.
 
     - mode: its frequency w, damping ratio d and modal mass m.
     - force (steps,): F, N.
@@ -80,7 +80,8 @@ def spread(frame: Frame, deviation: float, rng: np.random.Generator) -> Frame:
     """Draw the frame of another machine of the same kind. With `deviation` 0 the frame is returned unchanged.
 
     Each frequency and each mass is multiplied by exp(`deviation` x), x standard normal: `deviation` is the standard
-    deviation of the logarithm. Values outside of the allowed range are set to its nearest end.
+    deviation of the logarithm. Values outside of the allowed range are set to its nearest end. Damping, directions and
+    casing shares are not changed.
     """
     if deviation == 0:
         return frame

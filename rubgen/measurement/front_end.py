@@ -30,7 +30,7 @@ def resonance(frequency_hz: float, damping: float, dt: float) -> tuple[FloatArra
 
 
 def front_end(sensor: SampledSensor, signal: FloatArray, dt: float) -> FloatArray:
-    """Return the signal (steps,) after bandwidth, resonance and saturation of a sensor, in the sensor's unit.
+    """Return the signal (steps,) after bandwidth, then resonance, then saturation of a sensor, in the sensor's unit.
 
     The bandwidth is a Butterworth low-pass of second order. The filters start in equilibrium with the first value. A
     sensor without these properties returns the signal unchanged. `dt` is the time step in s.
@@ -97,15 +97,16 @@ def miscalibrate(sensor: SampledSensor, signal: FloatArray, *, zero: float, samp
 def noise(
     sensor: SampledSensor, samples: int, sample_rate_hz: float, scale: float, rng: np.random.Generator
 ) -> FloatArray:
-    """Draw Gaussian noise (samples,): white of `noise_rms`, and of the one-sided density D^2 (1 + f_c / f).
+    """Draw the sum (samples,) of two Gaussian noises: a white one of the rms `noise_rms`, and a coloured one.
 
-    D is `noise_density` per sqrt(Hz), f_c `noise_corner_hz`. The second noise is white noise shaped in the frequency
-    domain. Its mean is zero, and it repeats after the recording's length.
+    The coloured one has the one-sided spectral density D^2 (1 + f_c / f) up to half the sample rate. D is
+    `noise_density` per sqrt(Hz), f_c `noise_corner_hz`. It is white noise shaped in the frequency domain. Its mean is
+    zero, and it repeats after the recording's length.
 
     - sensor: the sensor; its noise is in its unit.
     - samples: number of samples.
     - sample_rate_hz: sample rate.
-    - scale: factor of the noise.
+    - scale: factor of both noises.
     - rng: random numbers.
     """
     total = scale * sensor.noise_rms * rng.standard_normal(samples)
@@ -116,7 +117,10 @@ def noise(
 
 
 def noise_level(sensor: SampledSensor, samples: int, sample_rate_hz: float) -> float:
-    """Return the rms of the noise of a recording of `samples` samples at `sample_rate_hz`, in the sensor's unit."""
+    """Return the expected rms of `noise` with the scale 1, both noises together, in the sensor's unit.
+
+    `samples` and `sample_rate_hz` are of the recording.
+    """
     if sensor.noise_density == 0:
         return sensor.noise_rms
     shape = _shape(sensor, samples, sample_rate_hz)

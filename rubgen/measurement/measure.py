@@ -62,10 +62,10 @@ def measure(
 
     The last sample of the latest clock is half a filter length before the end of the tail, so that no sample is
     affected by its edge. The step after the tail has theta = 0 mod 2 pi. Each sensor has its own child of `rng`, by its
-    place in the set: its noise depends only on the state of `rng` and the number of samples. The surroundings have
-    another child, which does not depend on the set. Raises UserError where the tail is too short for `seconds` and the
-    filter, where the step rate is below 2.56 sample rates, and where a sensor or the surroundings need a frame and
-    there is none.
+    place in the set: its noise depends only on the seed of `rng`, how many children it had before, and the number of
+    samples. Surroundings, frame and blows have further children, which are the same in every call with this `rng`.
+    Raises UserError where the tail is too short for `seconds` and the filter, where the step rate is below 2.56 sample
+    rates, and where a sensor or the surroundings need a frame and there is none.
     """
     rate, sensors = sensing.sample_rate_hz, sensing.set.sensors
     positions = sample_positions(response, sensing, seconds)
@@ -100,13 +100,16 @@ def measure(
 
 
 def sample_positions(response: Response, sensing: Sensing, seconds: float) -> FloatArray:
-    """Return the times of the samples (samples,) in steps from the start of the tail. There are round(seconds * rate).
+    """Return the times of the samples (samples,) in steps from the start of the tail, fractional and ascending.
+
+    There are round(seconds * rate). They are the times for a sensor without clock errors.
 
     - response: the response with its tail.
     - sensing: sample rate and clocks of the sensors.
     - seconds: length of the recording, s.
 
-    Raises UserError where the tail is too short for `seconds`, or the step rate below 2.56 sample rates.
+    Raises UserError where the tail is too short for `seconds`, the filter and the clocks, for less than one sample, and
+    where the step rate is below 2.56 sample rates.
     """
     dt, rate = response.dt, sensing.sample_rate_hz
     if dt * rate * STEPS_PER_SAMPLE > 1 + 1e-9:

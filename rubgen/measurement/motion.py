@@ -36,7 +36,8 @@ class MotionFrames:
 def motion_frames(response: Response, recording: Recording) -> MotionFrames | None:
     """Return the frames of a run within its recording: its replay track, and Poincare sections of other turns.
 
-    At most 48 sections, at equal distances, are taken. The result is None where the response has no track.
+    At most 48 sections are taken, at equal distances over the recording, without those that the track covers. The
+    result is None where the response has no track.
     """
     track, starts = response.track, _turn_steps(response)
     if track is None:
@@ -116,7 +117,8 @@ class ContactIntervals:
 def contact_intervals(response: Response, recording: Recording) -> ContactIntervals:
     """Return the touches of `response` that overlap `recording`, with times in s from its first sample.
 
-    A touch that began before the first sample has a negative start.
+    A touch that began before the first sample has a negative start. Duration, impulse and works are of the whole touch,
+    not of the part within the recording.
     """
     events, rate = response.events, recording.sample_rate_hz
     start = np.asarray(events.start_step * response.dt - recording.start_seconds, dtype=np.float64)

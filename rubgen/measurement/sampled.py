@@ -67,13 +67,15 @@ class Samples:
 
 
 def feed_of(sensor: SampledSensor, source: Source, sensors: SensorSet) -> Feed:
-    """Make the input of the anti-alias filter from one sensor: the ideal and the real signal.
+    """Make the input of the anti-alias filter from one sensor: the ideal and the real signal, at every step.
 
-    Only the real signal includes the surroundings and the sensor's dynamics.
+    Only the real signal includes the surroundings, the shaft's profile and the sensor's dynamics.
 
     - sensor: the sensor.
     - source: the response with the sensor's tap, the frame and the surroundings.
     - sensors: the sensor set, with the profile of the shaft.
+
+    Raises UserError where the sensor needs a frame and there is none.
     """
     true = source.truth(sensor.tap)
     added = source.disturbances.by(sensor.tap) if source.disturbances else None
@@ -91,8 +93,9 @@ def feed_of(sensor: SampledSensor, source: Source, sensors: SensorSet) -> Feed:
 def filtered(feeds: Sequence[Feed], positions: FloatArray, *, dt: float, sensing: Sensing) -> dict[str, Samples]:
     """Filter and resample every feed. Returns the samples by the sensor's name.
 
-    Sample i of a sensor whose clock is late by o and slow by p ppm is taken at o + (1 + 1e-6 p) i / rate. Sensors with
-    the same clock are filtered together.
+    Sample i of a sensor whose clock is late by o and slow by p ppm is taken o + (1 + 1e-6 p) i / rate after the first
+    of `positions`. Sensors with the same clock are filtered together. Ideal samples have no clock errors. They are None
+    without `sensing.keep_clean`.
 
     - feeds: inputs at every step.
     - positions (samples,): times of the samples without clock errors, in steps.
@@ -118,10 +121,10 @@ def filtered(feeds: Sequence[Feed], positions: FloatArray, *, dt: float, sensing
 
 
 def recorded(sensor: SampledSensor, samples: Samples, sensing: Sensing, rng: np.random.Generator) -> Channel:
-    """Make the channel of a sensor: add calibration errors, noise, range, ADC and dropouts to its samples.
+    """Make the channel of a sensor: its samples with calibration errors, noise, range, ADC and dropouts, in this order.
 
     - sensor: the sensor.
-    - samples: its band-limited samples.
+    - samples: its band-limited samples. The ideal ones become the clean copy as they are.
     - sensing: sample rate, noise and ADC.
     - rng: random numbers of the sensor.
     """

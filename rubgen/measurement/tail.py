@@ -40,7 +40,7 @@ class Tail:
 
     @cached_property
     def once(self) -> Tail:
-        """The last turn if all turns are equal, else the whole tail.
+        """The last turn if all turns are known to be equal, else the whole tail.
 
         Signals that follow the angle are computed only there.
         """
@@ -51,7 +51,7 @@ class Tail:
     def everywhere(self, signal: FloatArray) -> FloatArray:
         """Return `signal`, which has a value for each step of `once`, at all steps of the tail.
 
-        It is repeated turn by turn.
+        It is repeated turn by turn, backward from the last step.
         """
         if signal.size == self.angle.size:
             return signal
@@ -67,7 +67,10 @@ class Tail:
         return np.asarray(angle - angle[-1] + self.angle[-1] - 2 * np.pi)
 
     def wave(self, order: float) -> ComplexArray:
-        """Return exp(i order theta) (steps,), with theta without jumps. `order` may be fractional."""
+        """Return exp(i order theta) (steps,), with theta without jumps. `order` is 0 or more, and may be fractional.
+
+        The array may be kept for further calls: do not change it.
+        """
         if not float(order).is_integer():
             return np.asarray(np.exp(1j * order * self.turned))
         if order not in self._waves:
@@ -84,7 +87,7 @@ class Tail:
         return np.asarray(order * self.speed * self.dt < np.pi)
 
     def sinusoids(self, amplitudes: ComplexArray, advances: FloatArray) -> FloatArray:
-        """Return sum_j Re(a_j exp(i w_j n)) (steps,), with n counted from the step after the last one.
+        """Return sum_j Re(a_j exp(i w_j n)) (steps,), with n counted from the step after the last one: -steps to -1.
 
         The exponential of n = BLOCK k + m is the product of the exponentials of BLOCK k and of m, so few are computed.
 

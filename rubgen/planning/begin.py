@@ -22,7 +22,8 @@ USES = {
 def commented(kind: str, name: str) -> str:
     """Return the text of rubgen's file `name` with a comment for each key. It has the values of rubgen's file.
 
-    `kind` is recipe, machine or sensors.
+    A key without a value there is a comment too, with its default. `kind` is recipe, machine or sensors. Raises
+    UserError where rubgen has no such file.
     """
     head = (
         f"#:schema {FILE_NAMES[kind]}\n# Begun from {name} by `rubgen init {kind}`. Lines without # are in force.\n\n"
@@ -33,7 +34,8 @@ def commented(kind: str, name: str) -> str:
 def begin(kind: str, name: str, path: Path) -> list[Path]:
     """Write the text of `commented` to `path`, and its schema for editors beside it. Return the written files.
 
-    An existing schema is kept, an existing file at `path` is replaced. Raises UserError where a file cannot be written.
+    An existing schema is kept, an existing file at `path` is replaced. Raises UserError where rubgen has no file
+    `name`, and where a file cannot be written.
     """
     text = commented(kind, name)
     schema = path.with_name(FILE_NAMES[kind])

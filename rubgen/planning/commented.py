@@ -85,7 +85,7 @@ class Commented:
 
 
 def toml_value(value: Any) -> str:
-    """Return a value as TOML, with all bits of its numbers."""
+    """Return a truth value, text, number, list or table as TOML, with all bits of numbers. Texts have double quotes."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):

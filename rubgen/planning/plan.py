@@ -75,7 +75,8 @@ def plan(recipe: Recipe, *, tries: int = 0) -> Plan:
 
     The recipe must be checked already (`load_recipe`). Up to 64 runs are examined, 16 where virtual machines are drawn.
     The extremes of `[vary]` are examined too, except where virtual machines are drawn. With `[balance]` the first
-    candidate of each run is examined, which may not be chosen later. `tries` is the number of runs to simulate.
+    candidate of each run is examined, which may not be chosen later. A run that is not possible is in the result with
+    its reason. `tries` is the number of runs to simulate.
     """
     scenarios = list(_looked_at(recipe))
     with recipe.machine_named(), step("look at the runs", "runs", long=True):

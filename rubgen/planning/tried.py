@@ -30,10 +30,11 @@ class Tried:
 
 
 def try_runs(recipe: Recipe, tries: int) -> Tried:
-    """Simulate `tries` runs spread evenly over the recipe, or all if there are fewer, and measure them.
+    """Simulate `tries` runs (1 or more) spread evenly over the recipe, or all if there are fewer, and measure them.
 
-    Their files are written to a temporary folder, which is deleted. Failed runs count by their status. The time is CPU
-    time with the writing. The first run is simulated once before, so that no time contains the compilation.
+    Their files are written to a temporary folder, which is deleted. Failed runs count by their status, runs that are
+    not possible as "refused". The time is CPU time with the writing. The first run is simulated once before, so that no
+    time contains the compilation.
     """
     places = sorted({round(place) for place in np.linspace(0, recipe.runs - 1, min(tries, recipe.runs))})
     classes: Counter[str] = Counter()

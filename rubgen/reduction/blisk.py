@@ -81,7 +81,7 @@ def reduce_blisk(
     *,
     cyclic: bool = True,
 ) -> ReducedBlisk:
-    """Reduce the blisk to its tips, O_d x and y, and modes.
+    """Reduce the blisk to its tips, O_d x and y, and modes. The matrices of the result are without springs.
 
     Step 1: each blade keeps root, tip and `blade_modes` fixed-interface modes. The disk keeps O_d, the rim nodes with
     blades and `disk_modes`. Penalties join blades and rim. Step 2, on the axial, tilt and torsion springs: the tips'
@@ -92,7 +92,7 @@ def reduce_blisk(
 
     - disk, blades, support: parts of the machine.
     - reduction: numbers of modes.
-    - missing: numbers of the blades that are missing.
+    - missing: numbers of the blades that are missing. Their tips keep uncoupled DoFs (`with_places`).
     - cyclic: use one sector of the disk for all sectors. False uses the sparse matrices of the whole disk, in twice the
       time and with the same result to 1e-9. A disk with missing blades is never cyclic.
 

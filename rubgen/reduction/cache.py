@@ -38,8 +38,8 @@ def cached_blisk(
 
     The parameters are as in `reduce_blisk`. Lateral stiffness and the number of casing modes do not affect the result,
     so runs that vary them share one file. A damaged file is made again. If nothing can be stored, each process makes
-    the blisk itself. If several processes need the same blisk, one makes it, and the others wait for at most
-    PATIENCE_S. Raises UserError as `reduce_blisk` does.
+    the blisk itself. If several processes need the same blisk, one makes it, and the others wait. Those that have
+    waited for PATIENCE_S make it too. Raises UserError as `reduce_blisk` does.
     """
     folder = cache_folder("reduction")
     if folder is None:

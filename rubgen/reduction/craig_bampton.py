@@ -33,7 +33,8 @@ class Turning:
     def copy_columns(self, V: FloatArray) -> None:
         """Fill the columns of the rim nodes 1, 2, ... of V with rotated copies of the columns of rim node 0.
 
-        V is (n, 6 + 6 blades + modes), with the columns of O_d first, then six for each rim node.
+        V is (n, 6 + 6 blades + modes), C-contiguous, with the columns of O_d first, then six for each rim node. It is
+        changed in place.
         """
         first = V[:, 6:FIRST].reshape(-1, 6, 6)
         for k in range(1, len(self.place)):
@@ -82,9 +83,9 @@ def craig_bampton(
     """Return the basis V (n, masters + modes) of constraint modes and mass-normalised fixed-interface modes.
 
     q = V p, its rows in the order of the DoFs. For the masters V is [I, 0], for all other DoFs [-K_ss^-1 K_sm, Phi],
-    with Phi the lowest modes of K_ss Phi = M_ss Phi omega^2 (Craig and Bampton 1968). p begins with the masters' own
-    displacements. K_ss must be positive definite. M_ss may be singular: massless directions follow statically. The
-    entry of a mode with the largest size is positive.
+    with Phi the lowest modes of K_ss Phi = M_ss Phi omega^2 (Craig and Bampton 1968), ascending. p begins with the
+    masters' own displacements. K_ss must be positive definite. M_ss may be singular: massless directions follow
+    statically. The entry of a mode with the largest size is positive.
 
     - M, K (n, n): mass and stiffness.
     - masters: indices of the DoFs that are kept. With `turning` they are O_d, then six of each rim node in the order of
@@ -94,7 +95,8 @@ def craig_bampton(
       None solves for all.
 
     Raises UserError where there are fewer modes with mass than `modes`. With more than DENSE_LIMIT DoFs that are not
-    kept, this is not checked. Tests: tests/reduction/test_craig_bampton.py.
+    kept, this is not checked. A K_ss that cannot be factorised raises LinAlgError or RuntimeError. Tests:
+    tests/reduction/test_craig_bampton.py.
     """
     slaves = np.setdiff1d(np.arange(K.shape[0]), masters)
     K_ss, M_ss = K[slaves][:, slaves], M[slaves][:, slaves]

@@ -41,7 +41,8 @@ def turning_harmonics(loads: Iterable[HarmonicLoad]) -> ComplexArray:
 
     Row m of p is order m of x and y in the turning frame, from 0 to the largest order of a load + 1. f_x = cos theta
     F_X + sin theta F_Y and f_y = -sin theta F_X + cos theta F_Y. An inertial load of order k has the orders k - 1 and k
-    + 1 in the turning frame, a load of order 0 only the order 1. Without loads p is one row of zeros.
+    + 1 in the turning frame, a load of order 0 only the order 1. Loads that grow count with their full size. Without
+    loads p is one row of zeros.
     """
     loads = tuple(loads)
     total = np.zeros((max((load.order + 2 for load in loads), default=1), 2), dtype=np.complex128)

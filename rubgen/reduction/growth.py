@@ -50,9 +50,10 @@ def centrifugal_growth(model: BliskModel) -> CentrifugalGrowth:
     """Solve (K + Omega^2 (K_sigma - S)) u = Omega^2 f_c for the steady displacement at any speed, in a small basis.
 
     Galerkin's method in the Krylov space of K^-1 A and K^-1 f_c. K is on its axial, tilt and torsion springs with O_d
-    fixed laterally, because a symmetric load does not move O_d. With missing blades, O_d also bears the net load. Equal
-    to the direct solution to 1e-9 of its size at the preset's top speed: tests/reduction/test_reduced_model.py.
-    Mistuned blades grow unevenly, and O_d then bears Omega^2 `unbalance`, which the reduced model applies as a load.
+    fixed laterally, because a symmetric load does not move O_d. Equal to the direct solution to 1e-9 of its size at the
+    preset's top speed: tests/reduction/test_reduced_model.py. Mistuned blades grow unevenly, which loads O_d with
+    Omega^2 `unbalance`. Missing blades load it with Omega^2 `missing`. O_d does not move under these loads in u: the
+    reduced model applies them.
     """
     count = model.count
     whole = model.present.size == count

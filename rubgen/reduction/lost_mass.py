@@ -17,7 +17,7 @@ CROSS = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 
 
 def without_masses(blisk: ReducedBlisk, lost: Sequence[LostMass], tip_radius: float) -> ReducedBlisk:
-    """Return the blisk without some point masses at its tips.
+    """Return the blisk without some point masses at its tips. The given blisk is not changed.
 
     It is exact, except for the tension. M, G and A = K_sigma - S lose m, m e_z x and -m diag(1, 1, 0) on a tip, and the
     load of an angular acceleration loses m r along its tangent. The steady tension that the mass put into its blade
@@ -39,9 +39,10 @@ def without_masses(blisk: ReducedBlisk, lost: Sequence[LostMass], tip_radius: fl
 
 
 def missing_pull(lost: Sequence[LostMass], tip_radius: float, tip_static: FloatArray, size: int) -> FloatArray:
-    """Return minus the centrifugal force (size,) of the lost masses at 1 rad/s, in kg m.
+    """Return minus the centrifugal force of the lost masses at 1 rad/s, in kg m: (size,), on the tips' coordinates.
 
-    `tip_static` (blades, 3) is the steady displacement of the tips in m, `tip_radius` their radius at rest in m.
+    `tip_static` (blades, 3) is the steady displacement of the tips in m, `tip_radius` their radius at rest in m. `size`
+    is the number of coordinates of the result.
     """
     pull = np.zeros(size)
     for each in lost:

@@ -39,11 +39,11 @@ class Mode:
 def blisk_modes(model: ReducedModel, speed: float) -> list[Mode]:
     """Compute the modes of the damped blisk at `speed` in rad/s, 0 or more, sorted by the size |s| of their roots s.
 
-    The quadratic problem M s^2 + C s + K = 0 of the turning frame is solved. In a mode with n nodal diameters blade k
-    at the angle phi_k on the disk has the phase -n phi_k, so the wave turns with the frequency of the turning frame
-    over n. In the inertial frame it has the frequency omega + n Omega. The modes of a mistuned blisk mix waves: n
-    belongs to the largest wave. A family counts the modes of one n and direction. Uneven springs and dampers count with
-    their mean, and laws of the support are left out.
+    The quadratic problem M s^2 + C s + K = 0 of the turning frame is solved. Two conjugate roots give one mode. In a
+    mode with n nodal diameters blade k at the angle phi_k on the disk has the phase -n phi_k, so the wave turns with
+    the frequency of the turning frame over n. In the inertial frame it has the frequency omega + n Omega. The modes of
+    a mistuned blisk mix waves: n belongs to the largest wave. A family counts the modes of one n and direction. Uneven
+    springs and dampers count with their mean, and laws of the support are left out.
     """
     system = model.at_speed(max(speed, REST))
     roots, shapes = _shapes(model, system.C, system.K)

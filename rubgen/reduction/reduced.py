@@ -144,9 +144,10 @@ class ReducedModel:
     def root_strain(self, blade: int, speed: float) -> FloatArray:
         """Return the row (blisk DoFs,) that multiplies the blisk's DoFs to the spanwise strain at a blade's root.
 
-        Tip and root come from the reduced basis. The blade between them has its static shape at `speed` in rad/s
-        (`static_root_strain`). The basis at rest alone underestimates the strain by 37 % at 8,500 rev/min in the
-        preset. Bending by inertia between tip and root is left out.
+        The strain is on one face of the blade, as in `fem.beam.root_strain_row`. Tip and root come from the reduced
+        basis. The blade between them has its static shape at `speed` in rad/s (`static_root_strain`). The basis at rest
+        alone underestimates the strain by 37 % at 8,500 rev/min in the preset. Bending by inertia between tip and root
+        is left out. The steady strain of the centrifugal load is no part of it.
         """
         blades, rim = self.machine.blades, self.machine.disk.rim_radius_m
         stiffness = 1 + blades.stiffness_deviations[blade]
@@ -263,7 +264,7 @@ class ReducedModel:
 
         At this speed K_e + K_s + Omega^2 (K_sigma - S) is singular: an unbalance, static in the turning frame, acts
         against no stiffness. If there are several such speeds, it is the speed with the largest share of energy in the
-        lateral springs.
+        lateral springs. Uneven springs count with their mean, and laws of the support are left out.
         """
         with one_blas_thread():
             inverse_squares, modes = eigh(-self.blisk.A, self.stiffness(0.0))
@@ -288,7 +289,7 @@ def rigid_shifts(blades: int, size: int) -> FloatArray:
 
 
 def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:
-    """Reduce a machine: two-step Craig-Bampton for the blisk, modes for the casing.
+    """Reduce a machine with its faults: two-step Craig-Bampton for the blisk, modes for the casing.
 
     `reduction` has the numbers of modes. The blisk comes from the cache where possible. The result has the same bits
     with and without the cache, and with any number of BLAS threads. Raises UserError for meshes, mode numbers or lobes
@@ -341,10 +342,13 @@ def _materials(machine: Machine) -> str:
 def support_damping(damping: Damping, stiffness: FloatArray, inertia: FloatArray) -> FloatArray:
     """Return the constants (6,) of the dampers beside the springs of O_d, in N s/m and N m s/rad: c = 2 zeta sqrt(k m).
 
-    `stiffness` (6,) are the springs and `inertia` (6,) m, m, m, I_d, I_d, I_p, so zeta is the ratio of the blisk moving
-    as a rigid body on one spring. The elastic mode with this motion has nearly the same ratio if it is not near a mode
-    of the blades. It is not used to compute c: near a veering with a blade mode its modal mass doubles. c would double
-    too, an artefact within the range of stiffness that data sets vary.
+    - damping: the ratios zeta: lateral for x and y, axial, tilt for two axes, torsion.
+    - stiffness (6,): k of the springs.
+    - inertia (6,): m, m, m, I_d, I_d, I_p.
+
+    So zeta is the ratio of the blisk moving as a rigid body on one spring. The elastic mode with this motion has nearly
+    the same ratio if it is not near a mode of the blades. Its modal mass is not used for c: near a veering with a blade
+    mode the modal mass doubles, and c would double too, within the range of stiffness that data sets vary.
     """
     ratio = np.array([damping.lateral, damping.lateral, damping.axial, damping.tilt, damping.tilt, damping.torsion])
     constants: FloatArray = 2 * ratio * np.sqrt(stiffness * inertia)

@@ -33,8 +33,9 @@ Values = dict[str, Any]
 def interactive_figures(replays: list[Replay]) -> list[Values]:
     """Return the figures of the page: Campbell diagram of the first run's machine, orbits and waterfalls of all runs.
 
-    Each figure has `name`, `text`, and the `data` and `layout` of plotly.js. Orbits are left out where no pair of
-    proximity probes was recorded, waterfalls where the recording has fewer than two blocks of turns.
+    Each figure has `name`, `text`, and the `data` and `layout` of plotly.js. A menu in a figure chooses the run. A run
+    without a pair of proximity probes has no orbit, a run of fewer than two blocks of turns no waterfall. A figure
+    without any run is left out. `replays` are the runs, at least one.
     """
     first = replays[0].scenario
     found = [_campbell(first.machine, first.reduction), _orbits(replays), _waterfalls(replays)]

@@ -43,8 +43,8 @@ def reduction_bytes(machine: Machine, reduction: Reduction) -> float:
 
     n are the DoFs of the full blisk, n_d of its disk, m = 6 + 6 blades + disk modes the columns of the disk's basis, j
     the DoFs of disk and blades joined, c the nodes of the casing. Measured growth of memory of `reduce_blisk` in a
-    process of its own: 155 MB in the preset (0.24 GB here), 1.6 GB with a disk of 20 x 288 elements (1.9 GB), 2.1 GB
-    with 240 blades of 10 elements on 10 x 240 (3.5 GB).
+    process of its own, with this estimate in brackets: 155 MB in the preset (0.24 GB), 1.6 GB with a disk of 20 x 288
+    elements (1.9 GB), 2.1 GB with 240 blades of 10 elements on 10 x 240 (3.5 GB).
     """
     blades = machine.blades
     plate = 6 * disk_nodes(machine.disk)
@@ -85,8 +85,8 @@ def _fits(machine: Machine, reduction: Reduction) -> bool:
 def steps_per_turn(scenario: Scenario) -> int:
     """Return the steps of a turn: the operation's `steps_per_turn`, doubled until they are enough for the sensors.
 
-    They are counted at the highest speed. Stability may double them further, which is known only from the reduced
-    model.
+    All steps of a run have one length. The number counts at the highest speed; a slower turn has more steps. Stability
+    may double them further, which is known only from the reduced model.
     """
     operation = scenario.operation
     needed = max(1.0, STEPS_PER_SAMPLE * scenario.sensing.fastest_hz * 2 * math.pi / operation.rotation.fastest)
@@ -133,7 +133,8 @@ def stored_bytes(scenario: Scenario) -> float:
 def run_seconds(scenario: Scenario, *, rubs: bool, formats: Sequence[str] = ()) -> float:
     """Estimate the CPU time in s of a run with its files in `formats`, within a factor of two on a computer of today.
 
-    `rubs` is whether blades touch in the run: a steady run without contact is made from one turn.
+    `rubs` is whether blades touch in the run: a steady run without contact is made from one turn. `formats` are of
+    parquet, mcap and rrd.
     """
     operation, megabytes = scenario.operation, stored_bytes(scenario) / 1e6
     writing = sum(SECONDS_A_STORED_MEGABYTE.get(name, 0.0) * megabytes for name in formats)

@@ -97,13 +97,14 @@ def kind_of(fault: Fault | BaseModel) -> str:
 
 
 def with_faults(scenario: Scenario, tables: Sequence[BaseModel]) -> Scenario:
-    """Draw the faults of a run and return the scenario with them.
+    """Draw the faults of a run and return the scenario with them, in addition to the faults of its machine.
 
     - scenario: its seed and index determine the random numbers.
     - tables: the `[[faults]]` tables of the recipe.
 
-    `fault_kinds` of the result are all kinds that the machine or the recipe names. Each key of each kind has its own
-    random numbers, which do not depend on the other keys and kinds.
+    `fault_kinds` of the result are all kinds that the machine or the tables name, also those that this run does not
+    have. Each key of each kind has its own random numbers, which do not depend on the other keys and kinds. Raises
+    UserError for a drawn value that the kind cannot have.
     """
 
     def number(name: str) -> float:
@@ -166,6 +167,9 @@ FAULT_KEYS = tuple(dict.fromkeys(key for kind in FAULTS for key in _keys(kind)))
 
 def extremes(scenario: Scenario, tables: Sequence[BaseModel], source: str) -> Iterator[Scenario]:
     """Yield the scenario with each fault alone, at its least and at its largest values, then with all at their largest.
+
+    The faults come in addition to those of the scenario's machine. All keys of a fault have their least, or all their
+    largest value.
 
     - tables: the `[[faults]]` tables of the recipe, from which the values come.
     - source: beginning of messages.

@@ -40,7 +40,8 @@ NOT_FOR_DATA = (
 def load_recipe(path: Path | str | None = None, *, runs: int | None = None) -> Recipe:
     """Load the recipe of a TOML file, a recipe that comes with rubgen, or the default recipe.
 
-    - path: path of the file, or a name that `rubgen list` prints, without .toml. None is the default recipe.
+    - path: path of the file, or a name that `rubgen list` prints, without .toml. An existing file comes before a name.
+      None is the default recipe.
     - runs: number of runs in place of the recipe's; None keeps the recipe's.
 
     Warns (RubgenWarning) of values that are hardly intended. Raises UserError with file, key, value, what is allowed
@@ -99,7 +100,7 @@ def recorded_recipe(
 ) -> Recipe:
     """Make the recipe of a data set from its manifest, with the recorded machines and sensors.
 
-    The files of the machines and sensors are not read: changes to them have no effect.
+    The files of the machines and sensors are not read: changes to them have no effect. The recipe counts as checked.
 
     - data, machine, sensors: the three documents of the manifest. Several machines stand in a list.
     - source: beginning of messages.
@@ -125,10 +126,13 @@ def _recorded(kind: Any, data: object, source: str) -> Any:
 
 
 def check_recipe(recipe: Recipe, source: str = "recipe", data: dict[str, Any] | None = None) -> None:
-    """Check that every run of the recipe is possible, at fixed values and at the extreme values of `[vary]`.
+    """Check that the runs of the recipe are possible, at fixed values and at the extreme values of what it draws.
+
+    Nothing is simulated, and no virtual machine is drawn: the ranges of `[machines]` are checked.
 
     - source: beginning of messages.
-    - data: the TOML values of the recipe; without them, fields that are set count as given.
+    - data: the TOML values of the recipe, in which keys are sought that its speed profile does not use. Without them,
+      fields that are set count as given.
 
     Warns once of each value that is hardly intended, but not for a recipe that was checked before. Raises UserError
     where some run is not possible.

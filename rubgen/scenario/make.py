@@ -94,8 +94,8 @@ def make_scenario(
     - `machine`: A preset of rubgen by its name, or the path of a machine in TOML.
     - `speed_rpm`: Spin speed; 10,000 when not given.
     - `profile`: "steady"; "run-up" or "coast-down" from `speed_rpm` to `end_speed_rpm`; or "fluctuating" by
-      `fluctuation_rpm` (0 when not given) with the period `fluctuation_period_s` (1 when not given). All but "steady"
-      need `duration_s`, the length of the record.
+      `fluctuation_rpm` with the period `fluctuation_period_s` (1 when not given). All but "steady" need these keys and
+      `duration_s`, the length of the record.
     - `clearance_m`: Smallest gap between blade tips and casing at rest. In its place `free_penetration_m` may say how
       deep tips would be without contact.
     - `ovality_m`, `lobes`: Largest minus smallest radius of the inner surface; number of narrow places around it.

@@ -190,7 +190,7 @@ class Recipe(StrictModel):
     def parts(self) -> "dict[str, Recipe]":
         """The recipe of each split, by the split's name: this recipe with the keys that the split changes.
 
-        Without `[splits]` there is one split, "train", and its recipe is this recipe.
+        Splits without changes share one recipe. Without `[splits]` there is one split, "train", with this recipe.
         """
         if not self.splits:
             return dict.fromkeys(ONE_SPLIT, self)
@@ -364,12 +364,13 @@ class Recipe(StrictModel):
                 yield f"{source}: splits.{name}".removeprefix(": ") if own else source, part
 
     def corners(self) -> Iterator[Scenario]:
-        """Yield the scenarios in which one key has an extreme value of its distribution. Checks of the recipe use them.
+        """Yield the scenarios at the extreme values of all distributions. Checks of the recipe use them.
 
-        Every other key has its first value. The keys of the surroundings are all at their least, then all at their
-        largest value; for faults see `scenario.faults.extremes`. The machines are those of the files, with the largest
-        number of blades of `[machines]`. With `[twins]` each scenario is followed by its twin. Raises UserError for an
-        extreme value that its key cannot have; whether the machine can have it is checked by `check_feasible`.
+        In the first, each key of `[vary]` has the first of its extreme values; in each further one a single key has
+        another. The keys of the surroundings are all at their least, then all at their largest value; for faults see
+        `scenario.faults.extremes`. The machines are those of the files, with the largest number of blades of
+        `[machines]`. With `[twins]` each scenario is followed by its twin. Raises UserError for an extreme value that
+        its key cannot have; whether the machine can have it is checked by `check_feasible`.
         """
         for where, part in self.named_parts():
             yield from part.own_corners(where)
@@ -382,7 +383,10 @@ class Recipe(StrictModel):
                 yield from with_twin(corner, self.twins, source)
 
     def corners_of(self, base: Scenario, machine: Machine, source: str = "") -> Iterator[Scenario]:
-        """Yield the scenarios of `corners` for the scenario `base` with `machine` as its machine, without twins."""
+        """Yield the scenarios of `corners` for the scenario `base` with `machine` as its machine.
+
+        Twins and the changes of splits are left out. Messages begin with `source`.
+        """
         base = replace(base, machine=machine)
         ends = {entry.key: distribution.extremes() for entry, distribution in self.distributions()}
         first = vary(base, {key: values[0] for key, values in ends.items()}, source, ("vary",))

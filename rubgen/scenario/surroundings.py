@@ -198,7 +198,8 @@ SurroundingsTable = create_model(
 def drawn(table: BaseModel, seed: int, index: int) -> Surroundings:
     """Draw the surroundings of run number `index` from the table `[surroundings]` and the recipe's seed.
 
-    Each key has its own random numbers, which do not depend on the other keys.
+    Each key has its own random numbers, which do not depend on the other keys. A key that the table lacks has its
+    default. Raises UserError for a drawn value that its key cannot have.
     """
 
     def value(key: str, distribution: Distribution) -> float:

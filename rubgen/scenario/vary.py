@@ -57,7 +57,10 @@ class Parameter:
 
     @property
     def about(self) -> str:
-        """The description of the key for the recipe's schema: its field's, or its meaning if the key has two fields."""
+        """The description of the key for the recipe's schema: its field's, or its meaning if it has several fields.
+
+        For a value of the machine, and for the speed, a last sentence says what is used without the key.
+        """
         kind: Any = Scenario
         text = None
         for name in self.places[0].split("."):
@@ -70,9 +73,10 @@ class Parameter:
         return f"{text} Without it {DEFAULT_SPEED_RPM:,.0f}." if self.key == "speed_rpm" else text
 
     def read(self, scenario: Scenario) -> float:
-        """Return the key's value in `scenario`.
+        """Return the value in `scenario` of a key of PARAMETERS.
 
-        Without an end speed it is `speed_rpm`. Without a duration it is the length of the record in s.
+        Without an end speed, `end_speed_rpm` is `speed_rpm`. Without a duration, `duration_s` is the length of the
+        record in s.
         """
         value: float | None = attrgetter(self.places[0])(scenario)
         if value is not None:

@@ -20,9 +20,10 @@ example)."""
 
 
 def check_feasible(scenario: Scenario, source: str = "") -> None:
-    """Check that the scenario can be run.
+    """Check a scenario before its run: speed profile, lengths, sizes, faults, sensors, numbers of modes, memory.
 
-    Raises UserError with the first problem, after `source`; keys are named as in a recipe.
+    Whether there is a motion without rub is not checked: it is known only from the model. Raises UserError with the
+    first problem. `source` is the beginning of the message with its ": "; keys are named as in a recipe.
     """
     for problem in (*PROBLEMS, *SENSOR_PROBLEMS, _cost_problem):
         text = problem(scenario)

@@ -56,7 +56,8 @@ def idle(scenarios: Sequence[Scenario]) -> dict[str, str]:
     """Return the keys that change no channel in any of the scenarios, each with the text of a warning.
 
     Such a key is a key of the surroundings, or `faults.KIND` for a fault that only shakes a frame which no sensor
-    feels. A text has the value of the first scenario in which the key differs from its default.
+    feels. A text has the value of the first scenario in which the key differs from its default. A key with its default
+    in all scenarios is not returned.
     """
     around = [scenario for scenario in scenarios if scenario.surroundings]
     useless = {key: text for scenario in reversed(around) for key, text in idle_surroundings(scenario).items()}

@@ -44,10 +44,10 @@ _QUARTERS = ("", "pi / 2", "pi", "3 pi / 2", "2 pi")
 
 
 def warn_of(scenarios: Iterable[Scenario], source: str = "") -> None:
-    """Warn once of each key with an implausible value. The warning begins with `source`.
+    """Warn once of each key with an implausible value. `source` is the beginning of the warning with its ": ".
 
-    It shows the value of the first scenario in which the key is implausible. A key that changes no channel is named
-    only if it changes no channel in all of the scenarios.
+    The warning shows the value of the first scenario in which the key is implausible. A key that changes no channel is
+    named only if it changes no channel in all of the scenarios.
     """
     checked = list(scenarios)
     found: dict[str, str] = {}
@@ -108,7 +108,7 @@ class Share(NamedTuple):
 
 
 def shares(scenario: Scenario) -> Iterator[Share]:
-    """Yield a `Share` for every length of a scenario that is a part of another length."""
+    """Yield a `Share` for every length of a scenario that is a part of another length, plausible or not."""
     machine, casing, film = scenario.machine, scenario.machine.casing, scenario.machine.disk_support.squeeze_film
     tip, tips = machine.tip_radius_m, "the radius of the blade tips"
     mean, ring = machine.casing_mean_radius_m, "the radius of the casing"
@@ -327,7 +327,8 @@ def gram(unbalance: float) -> str:
 def length_question(value: float, most: float) -> str:
     """Return the question whether a length was given in mm or um; empty where `value` is plausible in neither unit.
 
-    `most` is the largest plausible length in m.
+    `most` is the largest plausible length in m, LEAST_SHARE of it the smallest. mm is tried first. Whether `value` is
+    plausible in m is not checked.
     """
     for unit, size in LENGTHS:
         if LEAST_SHARE * most <= value * size <= most:

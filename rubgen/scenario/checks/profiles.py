@@ -30,7 +30,7 @@ def check_used(source: str, recipe: Mapping[str, Any], place: Callable[[Place], 
 
     Raises UserError for an unused key. A key with the value false passes.
 
-    - source: beginning of messages.
+    - source: beginning of messages, with its ": ".
     - recipe: the TOML values.
     - place: turns a path in the recipe into the path of the key that the user wrote.
     """

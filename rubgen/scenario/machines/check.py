@@ -29,9 +29,9 @@ CLEARANCES = {"clearance_m", "casing_radius_m", FREE_PENETRATION.key}
 
 
 def check_machines(recipe: Recipe, source: str) -> None:
-    """Check that the virtual machines of a recipe can be drawn.
+    """Check that the virtual machines of a recipe can be drawn, from its keys and ranges; no machine is drawn.
 
-    Raises UserError, beginning with `source`, where they cannot.
+    Raises UserError, beginning with `source`, where they cannot. Whether a candidate is sane is found when it is drawn.
     """
     files = recipe.files
     if len(set(files)) != len(files):
@@ -137,7 +137,7 @@ def _columns(sensors: SensorSet) -> list[object]:
 def machine_extremes(recipe: Recipe) -> Iterator[Scenario]:
     """Yield a scenario at each end of each range of `[machines.vary]`, for warnings.
 
-    Ends without a feasible machine are left out.
+    All other keys of `[machines.vary]` are those of the machine's file. Ends without a feasible machine are left out.
     """
     for _, part in recipe.named_parts():
         for entry, distribution in part.machines.distributions() if part.machines else ():

@@ -30,7 +30,8 @@ def candidate(table: MachineTable, files: tuple[Machine, ...], seed: int, number
     - seed: seed of the recipe.
 
     Candidate 0 is the next point of the file's own scrambled Sobol sequence. Every later candidate has its own random
-    stream. Raises UserError where the values make no machine.
+    stream. All candidates of a machine have the same pattern of mistuning. Raises UserError where the values make no
+    machine.
     """
     of, place = number % len(files), number // len(files)
     point = _sobol(seed, of, place) if tried == 0 else _stream(seed, number, tried).random(DIMENSIONS)
@@ -55,10 +56,10 @@ class Population:
         self._recent: OrderedDict[int, tuple[Machine, VirtualMachine]] = OrderedDict()
 
     def machine(self, number: int) -> tuple[Machine, VirtualMachine]:
-        """Return virtual machine `number` and its record: the first of its candidates that passes the check.
+        """Return virtual machine `number`, from 0, and its record: the first of its candidates that passes the check.
 
-        If none of `table.tries` candidates passes, the machine is the file's, and the record has the reason as its
-        `problem`.
+        A machine in `known` has its recorded candidate, which is not checked again. If none of `table.tries` candidates
+        passes, the machine is the file's, and the record has the reason as its `problem`.
         """
         if number not in self._recent:
             self._recent[number] = self._chosen(number)

@@ -98,8 +98,9 @@ def twin(partner: Scenario, twins: BaseModel, source: str = "") -> Scenario:
     """Return the twin of a run: the scenario `partner` with the one value of the table `[twins]` changed.
 
     A fault replaces a fault of the same kind, or is added. A clearance or a free penetration replaces either of them.
-    Raises UserError, beginning with `source`, for a value of `[vary]` out of its range. Whether the machine can have
-    the value or the fault is checked by `check_feasible`.
+    Index and pairing stay those of the partner: `paired` sets them. Raises UserError, beginning with `source`, for a
+    value of `[vary]` out of its range. Whether the machine can have the value or the fault is checked by
+    `check_feasible`.
     """
     key = twins.changed  # type: ignore[attr-defined]
     value = getattr(twins, key)
@@ -132,7 +133,7 @@ def paired(twins: BaseModel, partner: int | None, index: int, draw: Callable[[in
 
     A twin is its partner with one value changed, its own index and the partner's random numbers. It also has the
     partner's clearance, even if the recipe draws a free penetration and the changed value would lead to another
-    clearance.
+    clearance. This clearance is then computed here, which reduces the machine.
     """
     run = draw(index if partner is None else partner)
     if partner is not None:
