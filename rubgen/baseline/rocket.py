@@ -40,9 +40,9 @@ class Rocket:
     def transform(self, window: Float32Array) -> Float32Array:
         """Return the numbers of a window (channels, samples) for each seed: (seeds, numbers).
 
-        They are the share of samples at which each convolution is above its bias, and the mean and the logarithm of the
-        standard deviation of each channel. Convolutions cannot see these two: they have zero mean, and each channel is
-        scaled to a standard deviation of 1.
+        They are the share of samples at which each convolution is above its bias, and the mean and the base-10
+        logarithm of the standard deviation of each channel. Convolutions cannot see these two: they have zero mean, and
+        each channel is scaled to a standard deviation of 1.
         """
         shares = []
         for channel, of_channel in zip(_scaled(window), self.biases, strict=True):

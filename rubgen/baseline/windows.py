@@ -45,7 +45,7 @@ class SetWindows:
 
 
 def windows_of(directory: Path, data: DataSet, seeds: int, workers: int) -> SetWindows:
-    """Compute the windows of the good runs of `data`, the set in `directory`: WINDOWS equal ones a run, run by run.
+    """Compute WINDOWS windows of equal length of each good run of `data`, the set in `directory`, run by run.
 
     - seeds: number of choices of random convolutions.
     - workers: number of processes.

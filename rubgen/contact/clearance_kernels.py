@@ -47,7 +47,7 @@ def largest_nodal_displacement(surface: Surface, q_casing: FloatArray) -> float:
 
 @allocation_free_kernel
 def least_clearance(surface: Surface, tips: Tips, states: FloatArray, theta: FloatArray) -> float:
-    """Return the smallest clearance r(angle of P) - |P| over all tips P, m. It is negative where a tip is outside r.
+    """Return the smallest clearance r(angle of P) - |P| over all tips P and states, m; negative with a tip outside r.
 
     r is the radius of the undeformed, unworn surface. `states` (places, n) are coordinates of the blisk, each at the
     angle in `theta` (places,), rad.

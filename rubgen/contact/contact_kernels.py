@@ -206,9 +206,10 @@ def build_rows(
     """Write B_n and B of contact m, and the direction of its friction, into row m of `work`.
 
     Read are `blade`, `psi` and `tangent` of `work`, which `find_near` writes. Written are `normal_tip`, `full_tip`,
-    `normal_casing`, `full_casing` and `slip`, a unit vector along tangent and axis, or 0 without slip. With friction or
-    a liner `sliding` is written too. Without both `slip` is 0. Afterwards `work.rows` has the `casing_rows` of this
-    contact.
+    `normal_casing`, `full_casing` and `slip`, a unit vector along tangent and axis, or 0 without slip. B_n pushes the
+    tip inwards and the casing outwards. The three numbers of a tip are along its blade's radial, tangential and axial
+    direction. With friction or a liner `sliding` is written too. Without both `slip` is 0. Afterwards `work.rows` has
+    the `casing_rows` of this contact.
 
     - m: number of the contact, not of the blade.
     - q (n,), velocity (n,): free state q*, m, and its velocity, m/s. Of the tips only coordinates of this blade are

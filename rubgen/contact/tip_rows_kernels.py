@@ -26,8 +26,9 @@ def set_tip_bounds(
 ) -> None:
     """Write base - a - |t| (aside + bend |t|) + sum_j amplitude_j (at_j - order_j t / radius slope_j) of all tips.
 
-    a and t are a tip's radial and tangential position, static and `displacement` (2 or more, width) together, m. at_j
-    and slope_j are the cosine and the sine of order_j times its angle. `clearance_bounds` explains the terms.
+    a and t are a tip's radial and tangential displacement from its radius at rest, the steady one and `displacement` (2
+    or more, width) together, m. at_j and slope_j are the cosine and the sine of order_j (theta + the blade's angle -
+    phase_j). `clearance_bounds` explains the terms.
 
     - tips (2 + 2 n_harmonics, width): `Tips.bound_rows`.
     - numbers: at BASE, NEAREST, ASIDE and BEND.

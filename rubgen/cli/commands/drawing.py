@@ -28,8 +28,7 @@ def figure_command(name: str, source: Path | None, out: Path, choice: Choice, *,
 def report_command(directory: Path, out: Path | None, *, force: bool) -> int:
     """Write the page of the data set in `directory` to `out`, for None to its report.html. Returns the exit code 0.
 
-    With `force` an existing file is replaced. Raises UserError where `directory` holds no finished data set, and as
-    `check_new_file` does.
+    With `force` an existing file is replaced. Raises UserError as `write_report` and `check_new_file` do.
     """
     from rubgen.report.page import write_report
 

@@ -42,7 +42,8 @@ def simulate_command(
 ) -> int:
     """Simulate one run and print its labels. With `out` also write a file, with `replay` also show the run.
 
-    - options: the parameters of `make_scenario` by name, from the command line.
+    - options: the parameters of `make_scenario` by name, from the command line. Its entry `fault_keys` has the values
+      of the faults, as texts by their keys.
     - out: file to write, in the format of its ending, or None.
     - replay: show the run in the viewer at the end.
     - force: replace an existing file.

@@ -34,7 +34,7 @@ def verify(
     repair: Annotated[bool, Parameter(negative=(), help="Then do what rubgen repair does.")] = False,
     json: Json = False,
 ) -> int:
-    """Check hashes, checksums, schemas, and labels against signals; exit 1 where there is a problem."""
+    """Check hashes, checksums, schemas, and labels against signals; exit 1 where a problem remains."""
     from rubgen.cli.commands.inspecting import verify_command
 
     return verify_command(directory, sample, repair=repair, as_json=json)

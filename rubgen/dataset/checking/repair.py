@@ -39,7 +39,8 @@ def repair(directory: Path) -> Repaired:
 
     - A damaged Parquet or MCAP file: all runs of its shard are simulated again from the manifest. This needs the
       versions of the packages that made the set.
-    - A damaged `runs.parquet`: the runs of the shards whose rows cannot be read are simulated again.
+    - A damaged `runs.parquet`: the runs of the shards whose rows cannot be read are simulated again. If this does not
+      restore its bytes, all runs of the set are.
     - sensors.parquet, README.md and croissant.json are written again.
     - An .rrd file is made from its MCAP file if that is good. Else its run is simulated again, with the same versions.
 

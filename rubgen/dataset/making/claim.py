@@ -117,7 +117,8 @@ def begun(layout: Layout, identity: Identity) -> Iterator[None]:
     The runs of a finished set of the recipe with fewer runs are taken over (`prepare_growth`). Incomplete files are
     removed. `.staging` appears in one step with the identity in it, so that the same recipe can continue after any
     stop. Raises UserError where the set there has another recipe or other package versions, or the directory has other
-    content. If the block raises a UserError before the first run is finished, everything is removed.
+    content. After the block `.staging` is still there; `remove_staging` deletes it. But if the block raises a UserError
+    before the first run is finished, everything is removed.
     """
     if not layout.identity.exists():
         _begin(layout, identity)

@@ -30,10 +30,11 @@ ROWS_PER_GROUP = 4096
 def finish_set(recipe: Recipe, layout: Layout, identity: Identity, *, moved: bool = False) -> dict[str, int]:
     """Complete a set whose shards are all closed. Return the number of runs by status.
 
-    It writes `runs.parquet`, moves the files of all shards to their final paths, and writes card, manifest and digests.
-    With `moved` the shards' files are already in an object store and are not moved. ROWS_PER_GROUP rows are in memory
-    at a time. A set to which runs are added stays as it was until its new files are complete. Raises RubgenError where
-    a file of a closed shard is lost: its record is deleted, and the same command makes the shard's runs again.
+    It writes `runs.parquet`, moves the files of all shards to their final paths, and writes `sensors.parquet`, card,
+    `croissant.json`, manifest and digests. `.staging` stays. With `moved` the shards' files are already in an object
+    store and are not moved. ROWS_PER_GROUP rows are in memory at a time. A set to which runs are added stays as it was
+    until its new files are complete. Raises RubgenError where a file of a closed shard is lost: its record is deleted,
+    and the same command makes the shard's runs again.
     """
     whole = layout.staging / layout.runs.name
     write_runs(layout, recipe, whole)

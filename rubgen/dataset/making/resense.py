@@ -40,7 +40,7 @@ def resense(
     - progress: called with the numbers of finished and of all runs, as in `generate`.
 
     The same call completes an interrupted set. Labels that need no sensor keep all bits where a run has the same steps
-    a turn and the package versions are the same. Fast sensors need more steps: a warning names the speeds at which the
+    a turn and the package versions are the same. Fast sensors need more steps: a warning names a speed at which the
     steps change. Labels of amplitudes at orders are computed for the new sensors' signals. A sensor on the housing adds
     the machine's frame, which changes `machine_id`. Raises UserError for a URL as `directory`, a directory without a
     finished set, a merged set, an unknown sensor set, the sensors that the set has already, and sensors that the

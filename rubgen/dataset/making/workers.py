@@ -166,7 +166,8 @@ def unordered(
     """Call `work(*job)` for every job and yield the results as they finish, in any order.
 
     Only a few jobs are submitted at a time. If a process dies, the lost jobs are submitted again. Raises RubgenError
-    where processes die `tries` times without a result and without progress in between.
+    where processes die `tries` times without a result and without progress in between. An exception of `work` is raised
+    here.
 
     - pool: from `worker_pool` or a cluster; None works in this process.
     - work: a function that can be pickled.
@@ -259,7 +260,7 @@ def _how_it_ended(context: _OwnMain) -> str:
 
 
 def how_ended(codes: Sequence[int]) -> str:
-    """Return how a process ended, from the exit codes of several processes.
+    """Return how a process ended, such as "was ended by SIGKILL", from the exit codes of several processes.
 
     SIGTERM is chosen only if all codes are SIGTERM.
     """
