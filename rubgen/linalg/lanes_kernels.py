@@ -79,8 +79,9 @@ def gather_lines(
 ) -> None:
     """Write each line's sums with the numbers of z at `places[c]` into its rows of `out[c]`.
 
-    c is `first`, then `second`; both share each load of a. `lines` (any, 5) are scaled ones, `a` (any, 8) are the
-    entries. `places` (vectors, any) are indices in z, `out` is (vectors, a multiple of eight).
+    c is `first`, then `second`; both share each load of a. `lines` (any, 5) must be scaled; their START and COUNT count
+    along `places[c]`. `a` (any, 8) are the entries, `places` (vectors, any) indices in z. `out` is (vectors, a multiple
+    of eight).
     """
     for line in lines:
         for c in (first, second):

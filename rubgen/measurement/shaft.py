@@ -42,7 +42,7 @@ def pulse_channel(angle: FloatArray, name: str = "once_per_rev", *, keep_clean: 
 def arrival_times(first_angle: float, speed: float, seconds: float) -> FloatArray:
     """Return the exact times in [0, seconds) at which theta = first_angle + speed t passes 0 mod 2 pi, in s.
 
-    `first_angle` is in rad, `speed` in rad/s.
+    `first_angle` is in rad, `speed` in rad/s and positive.
     """
     first = np.mod(-first_angle, 2 * np.pi) / speed
     count = int(np.ceil((seconds - first) * speed / (2 * np.pi)))
@@ -73,7 +73,7 @@ def pulse_times(response: Response, first_angle: float, start: float, seconds: f
     """Return the exact times (any,) in [0, seconds) at which theta passes 0 mod 2 pi, in s.
 
     - response: response of the run.
-    - first_angle: theta at time 0, rad.
+    - first_angle: theta at time 0, rad; used at a steady speed only. A changing speed gives its own angle.
     - start: time 0, in s from the start of the record.
     - seconds: length of the recording, s.
     """

@@ -18,7 +18,10 @@ LOGARITHMIC = "{ log_uniform"
 
 
 def plan_figure(made: Plan) -> Figure:
-    """Draw a histogram of each key that varies, and of the free penetration. Runs that can rub have another colour."""
+    """Draw a histogram of each key that varies in the examined runs, and of the free penetration in mm.
+
+    Runs that can rub have another colour.
+    """
     shown = [each for each in made.drawn if len(set(each.values)) > 1]
     rows = math.ceil((len(shown) + 1) / COLUMNS)
     figure = new_figure(3.2 * COLUMNS, 2.4 * rows + 0.6)

@@ -163,6 +163,16 @@ def test_a_level_that_no_sensor_feels_is_warned_of(tmp_path):
         make_scenario(runout_m=1e-6, sensors=sensors)
 
 
+def test_tones_that_no_sensor_feels_are_warned_of(tmp_path):
+    sensors = tmp_path / "s.toml"
+    sensors.write_text('name = "one"\n[[sensors]]\nname = "f"\nkind = "contact_force"\n')
+    tones = {"surroundings": {"tones": [{"order": 2.5, "level_m_per_s2": 0.3}]}, "name": "r", "runs": 2}
+    with pytest.warns(RubgenWarning) as caught:
+        parse_recipe(tones | {"machine": "zeng2019", "sensors": {"set": str(sensors)}})
+    words = [str(each.message) for each in caught]
+    assert words == ["recipe: surroundings.tones: changes no channel: the sensor set one has no accelerometer"]
+
+
 @pytest.mark.filterwarnings("error")
 def test_a_key_that_some_run_needs_is_not_warned_of():
     recipe(background_slope=2, background_m_per_s2={"uniform": [0, 10]})

@@ -127,8 +127,9 @@ class BearingDefect(Fault):
         - speed (steps,): speed of the shaft at the steps, rad/s.
         - rng: random numbers.
 
-        Returns the blows in order of time: angle of the shaft, impulse (N s) and direction (rad) of each. They are
-        drawn backward from the last angle, so that the last blows do not depend on the length of the record.
+        Returns the blows in order of time: angle of the shaft, impulse (N s) and direction (rad from +X, inertial) of
+        each. Outside of the load zone the impulse is 0. The blows are drawn backward from the last angle, so that the
+        last blows do not depend on the length of the record.
         """
         mean = 2 * math.pi / self.order
         start, cage, defect = rng.uniform(0, 1, 3)

@@ -13,8 +13,9 @@ FELT_BY: dict[str, tuple[tuple[type[Tap], ...], str]] = {
     "path_gain": (CASING, "accelerometer on the casing"),
     "runout_m": ((CentreDisplacement,), "proximity probe"),
     "shaft_drift_m": ((CentreDisplacement,), "proximity probe"),
+    "tones": (SHAKEN, "accelerometer"),
 }
-"""The taps that feel each level, and the sensors of these taps."""
+"""The taps that feel each level and the tones, and the sensors of these taps."""
 SCALED_BY = {
     "background_slope": ("background_m_per_s2",),
     "speed_exponent": ("background_m_per_s2", "blade_passing_m_per_s2"),
@@ -25,14 +26,15 @@ SCALED_BY = {
 def idle_surroundings(scenario: Scenario) -> dict[str, str]:
     """Return the keys of the scenario's surroundings that change no recorded channel, each with the text of a warning.
 
-    A key is returned if its value differs from its default and changes no channel: no sensor feels it, or the levels
+    A key is returned if its value differs from its default and changes no channel: no sensor feels it, or all levels
     that it scales are 0. The keys are written as `surroundings.KEY`. The result is empty if every key changes a
     channel. The scenario must have surroundings.
     """
     values, usual, why = vars(scenario.surroundings), vars(Surroundings()), _reasons(scenario)
     given = {key: value for key, value in values.items() if value != usual[key]}
-    names = {key: f"surroundings.{key}" for key in given if key in why}
-    return {name: f"{name} = {given[key]:g}: changes no channel: {why[key]}" for key, name in names.items()}
+    shown = {key: "" if key == "tones" else f" = {value:g}" for key, value in given.items() if key in why}
+    names = {key: f"surroundings.{key}" for key in shown}
+    return {name: f"{name}{shown[key]}: changes no channel: {why[key]}" for key, name in names.items()}
 
 
 def _reasons(scenario: Scenario) -> dict[str, str]:
