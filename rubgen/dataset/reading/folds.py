@@ -42,13 +42,14 @@ def folds(data: DataSet, k: int, by: str, split: str | None) -> list[Fold]:
     for name, size in sizes.items():
         side[name] = filled.index(min(filled))
         filled[side[name]] += int(size)
-    places = groups.map(side)
+    known = groups.dropna()  # else NaN, of texts that pandas stores without pyarrow, would differ from every fold
+    places = known.map(side)
     without = groups.index[groups.isna()]
     if len(without):
         left = f"{counted(len(without), 'run')} without a value, such as {without[0]}"
         warn(f"{data.layout.root}: by = {by!r}: no fold has {left}")
     return [
-        Fold(train=tuple(groups.index[places != fold]), test=tuple(groups.index[places == fold])) for fold in range(k)
+        Fold(train=tuple(known.index[places != fold]), test=tuple(known.index[places == fold])) for fold in range(k)
     ]
 
 

@@ -168,11 +168,13 @@ def test_folds_by_machine_are_balanced_and_refuse_to_part_machines(data, monkeyp
         data.folds(2, by="half")
 
 
-def test_a_run_without_a_value_is_in_no_fold_and_a_warning_names_it(data, monkeypatch):
+@pytest.mark.parametrize("storage", ["pyarrow", "python"])
+def test_a_run_without_a_value_is_in_no_fold_and_a_warning_names_it(data, monkeypatch, storage):
     frame = data.runs.copy()
-    frame["rig"] = pd.array(["a", None, "b", "b"], dtype="string")
+    frame["rig"] = pd.array(["a", None, "b", "b"], dtype=pd.StringDtype(storage))
     monkeypatch.setattr(data, "runs", frame)
-    with pytest.warns(RubgenWarning, match="'rig': no fold has 1 run without a value, such as run-000001$"):
+    warned = pytest.warns(RubgenWarning, match="'rig': no fold has 1 run without a value, such as run-000001$")
+    with pd.option_context("mode.string_storage", storage), warned:
         first, second = data.folds(2, by="rig")
     assert (first.train, first.test) == (second.test, second.train) == (("run-000000",), ("run-000002", "run-000003"))
 
