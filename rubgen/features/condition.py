@@ -49,8 +49,8 @@ def condition(data: DataSet, limits: Limits | None = None, *, runs: Sequence[str
     - data: the data set.
     - limits: for a channel a quantity and the upper limits of the zones A, B and C, in the unit of the quantity, such
       as {"proximity_x": ("overall_peak_to_peak", 80e-6, 120e-6, 180e-6)}. Only with limits there is a column `zone`: A
-      to D, null for other channels and where the quantity is NaN. rubgen has no limits of its own: the limits of ISO
-      20816 depend on the machine.
+      to D, null for other channels and where the quantity is NaN. A value at a limit is in the lower zone. rubgen has
+      no limits of its own: the limits of ISO 20816 depend on the machine.
     - runs: names of good runs; None takes all good runs.
 
     The channels are `data.inputs` without the pulse. Orders are averaged over whole turns between two recorded pulses

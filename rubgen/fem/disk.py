@@ -55,8 +55,9 @@ def assemble_disk(disk: Disk) -> DiskModel:
 def annular_mesh(disk: Disk) -> ShellMesh:
     """Make the mesh of the annulus, rings from the bore outwards, with all nodes on true circles.
 
-    A ring through the corners of elements has two nodes an element (corner and midside). A ring between two of these
-    has one node for each element, at the angle of a corner.
+    The nodes of a ring follow each other counter-clockwise from +x. A ring through the corners of elements has two
+    nodes an element (corner and midside). A ring between two of these has one node for each element, at the angle of a
+    corner.
     """
     n_r, n_c = disk.radial_elements, disk.circumferential_elements
     radii = np.linspace(disk.bore_radius_m, disk.rim_radius_m, 2 * n_r + 1)

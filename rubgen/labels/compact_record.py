@@ -43,9 +43,8 @@ def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
     - `section` (turns, 3 blades + 4 + 2 casing modes), once a turn: displacements of the tips, x, y, v_x, v_y of the
       disk centre, displacements and velocities of the casing modes.
     - `fractions` (N, as many): the same values for each of `Response.symmetry_states`.
-    - `growth`, `turn_impulse`, `contact_steps` (turns,): `companion_growth`, `impulse_per_turn` and
-      `contact_steps_per_turn` of the response.
-    - `orbit` (turns, 5): `Response.orbit`.
+    - `turn_impulse`, `contact_steps` (turns,): `impulse_per_turn` and `contact_steps_per_turn` of the response.
+    - `growth` (any,) and `orbit` (any, 5): `companion_growth` and `orbit`, which may have fewer turns than the record.
     - `rotation` (5,) and `turn_steps` (turns + 1,) of a changing speed; empty for a steady speed.
     - the names of `TOUCHES` (touches,): the fields of `ContactEvents`.
     """
@@ -72,8 +71,8 @@ def compact_record(response: Response) -> dict[str, npt.NDArray[Any]]:
 def response_of(record: CompactRecord) -> Response:
     """Make a response from a compact record.
 
-    Its status is OK. It has no taps, no orders and no modes of the blisk. The velocities of the tips are 0, the
-    energies NaN.
+    Its status is OK. It has no taps, orders, track, arrivals, worn liner and modes of the blisk. The velocities of the
+    tips are 0, the energies NaN.
     """
     scalars = named_scalars(record["scalars"].tolist())
     blades, casing = int(scalars["n_blades"]), int(scalars["n_casing"])
@@ -117,8 +116,8 @@ def named_scalars(values: Sequence[float]) -> dict[str, float]:
 def in_record_precision(response: Response) -> Response:
     """Round a response to the precision of the compact record. Its taps and orders are not rounded.
 
-    What the record does not contain is lost as in `response_of`: modes of the blisk, velocities of tips, energies. The
-    labels of a run are then equal to labels computed from its compact record.
+    What else the record does not contain is lost as in `response_of`, such as energies and the track. The labels of a
+    run are then equal to labels computed from its compact record.
     """
     rounded = response_of(compact_record(response))
     return replace(

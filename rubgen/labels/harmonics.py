@@ -139,9 +139,9 @@ def spectrum_turns(response: Response) -> int:
 def spectrum_lines(taps: FloatArray, turns: int) -> ComplexArray:
     """Compute peak amplitudes and phases of taps (taps, n): complex A e^(i phase) of A cos(k theta + phase).
 
-    The n values are so many turns, the first at theta = 0. Line j (taps, n // 2 + 1) is at order j / turns: 2 X_j / n,
-    with X the DFT. The unit is that of the taps. Line 0 is twice the mean. Taps that repeat exactly after one turn have
-    lines at whole orders alone: those of the turn, and 0 between them.
+    The n values are `turns` whole turns, the first at theta = 0. Line j (taps, n // 2 + 1) is at order j / turns: 2 X_j
+    / n, with X the DFT. The unit is that of the taps. Line 0 is twice the mean. Taps that repeat exactly after one turn
+    have lines at whole orders alone: those of the turn, and 0 between them.
     """
     count = taps.shape[1]
     steps = count // turns
@@ -186,10 +186,11 @@ def order_floors(spectra: FloatArray, turns: int) -> FloatArray:
 
 
 def fractional_amplitudes(taps: FloatArray, steps: int) -> FloatArray:
-    """Compute peak amplitudes (taps, 9) at FRACTIONS of f_r over the last 96 turns (or the largest multiple of 12).
+    """Compute peak amplitudes (taps, 9) at FRACTIONS of f_r over the last 12, 24, ... turns, as many as there are.
 
     Twelve turns are a whole number of periods of each fraction. Each tap is therefore averaged over its sections of
-    twelve turns, which removes other orders and noise. All values are NaN for taps of fewer than 12 turns.
+    twelve turns, which reduces noise and all orders that are no multiple of 1/12. All values are NaN for taps of fewer
+    than 12 turns.
 
     - taps (taps, any): the values of whole turns.
     - steps: number of steps of a turn.

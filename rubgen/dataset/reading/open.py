@@ -295,7 +295,7 @@ class DataSet:
         """Yield name, channels by name and pulse times (s from the first sample) of each of these good runs.
 
         The arrays are read-only. One run is in memory at a time. `channels` are names; None reads all. Raises UserError
-        before the first run for an unknown channel, and at a run without signals or with a damaged file.
+        before the first run for an unknown channel, and at the latest at a run whose signals are missing or damaged.
         """
         names = self.known_channels(channels)
         for run_id, table in self._recorded(run_ids, names):

@@ -39,8 +39,9 @@ class RemoteMaking:
     def folder(self) -> Iterator[None]:
         """Make the parent of the local folder.
 
-        Delete the local folder after the block, unless the block raises an error. After a UserError the reservation at
-        the URL is removed, if nothing else is there. A warning names the folder, since a large set needs space there.
+        Delete the local folder after the block, unless the block raises an error. After a UserError the reservation
+        that `begin` made at the URL is removed, if nothing else is there. A warning names the folder, since a large set
+        needs space there.
         """
         self.layout.root.parent.mkdir(parents=True, exist_ok=True)
         warn(f"{self.store.layout.root}: made in {self.layout.root}, from which finished shards go up and are deleted")

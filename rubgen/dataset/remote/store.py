@@ -61,7 +61,7 @@ class Store:
             )
 
     def begin(self, identity: Identity, *, grows: bool = True) -> dict[str, int]:
-        """Reserve the URL for the set of this identity before anything is made. Return the files there, as `sizes`.
+        """Reserve the URL for the set of this identity. Return the files that were there before, as `sizes`.
 
         Raises UserError where the URL has a set of another recipe or of other package versions, a set with more runs,
         or other files, and where it cannot be written. With `grows` False, any finished set is refused.

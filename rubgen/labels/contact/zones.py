@@ -132,9 +132,9 @@ def turn_imbalance(events: ContactEvents, centres: FloatArray, steps_per_turn: i
     """Compute how unequal the zones are: standard deviation over mean of the impulses of all zones in all turns.
 
     It is 0 for symmetric motion, q(t + T/N) = q(t), where all zones have equal impulses in each turn. An event belongs
-    to the zone with the nearest centre. A turn begins at the angle with the least contact, so that no touch of a
-    periodic rub changes from one turn to the next. The incomplete first and last turn are left out if there are more
-    than two turns.
+    to the zone with the nearest centre. A turn begins at the angle of the blisk with the least impulse, so that no
+    touch of a periodic rub changes from one turn to the next. The incomplete first and last turn are left out if there
+    are more than two turns.
 
     - events: the touches of the record, at least one.
     - centres (zones,): centres of the zones, rad.
