@@ -31,7 +31,7 @@ def offered_faults() -> dict[str, str]:
 
 
 def file_of(kind: str, name: str) -> Path:
-    """Return the path of rubgen's file of the given kind and name.
+    """Return the path of rubgen's file of the given kind (recipe, machine or sensors) and name.
 
     Raises UserError, with the nearest name, if none exists.
     """

@@ -43,11 +43,10 @@ signal = data.signals("RUN")["CHANNEL"]"""
 def write_report(directory: Path, path: Path) -> None:
     """Write the page of the data set in `directory` to `path`, as one file that needs no other files.
 
-    An existing file is replaced.
-
-    It shows the content of the set, balance of classes, coverage of parameters, failed runs and reasons, six examples
-    with pictures, the channels, how to load it, and its checks. Raises UserError where there is no finished data set,
-    no good run, no example that can be read, or the file cannot be written.
+    An existing file is replaced. The page shows the content of the set, balance of classes, coverage of parameters,
+    failed runs and reasons, up to six examples with pictures, the channels, how to load it, and its checks. Raises
+    UserError where there is no finished data set, no good run, no example that can be read, or the file cannot be
+    written.
     """
     html = render_report(directory)
     with write_problems(path):

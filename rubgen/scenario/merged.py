@@ -37,10 +37,10 @@ class MergedRecipe(Recipe):
         return number, index - self._sources[number][0]
 
     def scenario(self, index: int, *, screened: bool = True) -> Scenario:
-        """Draw run number `index` as its source draws it. The scenario has the run's name in the merged set.
+        """Draw run number `index` as its source draws it.
 
-        `screened` is as in `Recipe.scenario`: with False no candidates of a balance are simulated. Raises UserError as
-        `own` does.
+        The scenario has the run's name in the merged set, but its own `index` in the source. `screened` is as in
+        `Recipe.scenario`: with False no candidates of a balance are simulated. Raises UserError as `own` does.
         """
         number, own = self.own(index)
         return replace(self._sources[number][1].scenario(own, screened=screened), merged=self.origin(index))

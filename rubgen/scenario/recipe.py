@@ -147,7 +147,7 @@ class Recipe(StrictModel):
 
     @cached_property
     def bases(self) -> tuple[Scenario, ...]:
-        """One scenario for each machine file, without the draws of `[vary]`, at 10,000 rev/min.
+        """One scenario for each machine file, without anything that the recipe draws, at 10,000 rev/min.
 
         The machine's frame is removed if no sensor feels the frame: `machine_id` and JSON are then those of the machine
         without a frame. Reading a file may raise UserError.
