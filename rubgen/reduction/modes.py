@@ -1,13 +1,17 @@
 """Natural modes of a machine at one speed: frequency, nodal diameters, whirl, damping, family."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from scipy.linalg import eig, eigh
+from scipy.optimize import linear_sum_assignment
 
 from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.linalg.threads import one_blas_thread
-from rubgen.reduction.reduced import ReducedModel, linearised
+from rubgen.machine import Machine
+from rubgen.reduction.reduced import ReducedModel, linearised, lost_masses, reduce
+from rubgen.scenario import Reduction
 from rubgen.units import rev_per_min
 
 REST = 1e-3
@@ -15,6 +19,9 @@ REST = 1e-3
 SUPPORTS = ("lateral", "lateral", "axial", "tilt", "tilt", "torsion")
 LEAST_SHARE = 0.4
 """A mode that has this share of its elastic energy in the springs of the disk support is named after them."""
+APART = 10.0
+"""Weight of the distance of two roots over their sizes, beside the difference of two shapes, 0 to 1. Roots of one
+family differ by a few percent, roots of two families by tens of percent."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,48 +43,111 @@ class Mode:
     blades."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class _Named:
+    """Roots s of the damped blisk, one of each conjugate pair, and what each mode is called."""
+
+    roots: ComplexArray
+    """The roots (modes,), 1/s."""
+    shapes: ComplexArray
+    """Motion of tips and disk centre (3 blades + 2, modes)."""
+    waves: list[int]
+    """Nodal diameters of each mode."""
+    families: list[str]
+    """As `Mode.family`."""
+
+
 def blisk_modes(model: ReducedModel, speed: float) -> list[Mode]:
     """Compute the modes of the damped blisk at `speed` in rad/s, 0 or more, sorted by the size |s| of their roots s.
 
     The quadratic problem M s^2 + C s + K = 0 of the turning frame is solved. Two conjugate roots give one mode. In a
     mode with n nodal diameters blade k at the angle phi_k on the disk has the phase -n phi_k, so the wave turns with
-    the frequency of the turning frame over n. In the inertial frame it has the frequency omega + n Omega. The modes of
-    a mistuned blisk mix waves: n belongs to the largest wave. A family counts the modes of one n and direction. Uneven
+    the frequency of the turning frame over n. In the inertial frame it has the frequency omega + n Omega. A family
+    counts the modes of one n and direction. Where blades differ or are lost, modes mix waves: each mode then has n,
+    direction and family of the mode of the even blisk that it resembles, and no two modes resemble the same one. Uneven
     springs and dampers count with their mean, and laws of the support are left out.
     """
-    system = model.at_speed(max(speed, REST))
-    roots, shapes = _shapes(model, system.C, system.K)
-    blades = model.machine.blades.count
-    chosen, waves = _one_of_each_pair(roots, shapes, blades)
-    kinds = _support_kinds(model, shapes[:, chosen])
-    found = sorted(zip(roots[chosen], waves, kinds, strict=True), key=lambda each: abs(each[0]))
-    counts: dict[tuple[int, bool], int] = {}
+    named = _named_by_waves(model, speed) if _even(model.machine) else _named_by_likeness(model, speed)
+    found = sorted(zip(named.roots, named.waves, named.families, strict=True), key=lambda each: abs(each[0]))
     modes = []
-    for root, wave, kind in found:
-        travels = 0 < 2 * wave < blades
-        key = wave, bool(root.imag > 0) and speed > 0
-        counts[key] = counts.get(key, 0) + (kind is None)
-        number = (counts[key] + 1) // 2 if travels and speed == 0 else counts[key]  # at rest both directions are one
+    for root, wave, family in found:
+        travels = 0 < 2 * wave < model.machine.blades.count
         seen = float(root.imag + wave * speed)
+        on_support = family in SUPPORTS
         modes.append(
             Mode(
                 turning_hz=float(root.imag) / (2 * np.pi),
                 inertial_hz=seen / (2 * np.pi),
                 nodal_diameters=wave,
-                damping_ratio=float(-root.real / np.hypot(root.real, seen if kind else root.imag)),
-                family=kind or f"blade {number}",
+                damping_ratio=float(-root.real / np.hypot(root.real, seen if on_support else root.imag)),
+                family=family,
                 whirl=("forward" if seen > 0 else "backward") if travels and speed else "",
             )
         )
     return modes
 
 
-def _shapes(model: ReducedModel, C: FloatArray, K: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+def _even(machine: Machine) -> bool:
+    """Whether all blades are equal."""
+    return not (any(machine.blades.stiffness_deviations) or machine.lost_blades or lost_masses(machine))
+
+
+def _named_by_waves(model: ReducedModel, speed: float) -> _Named:
+    """Name the modes of an even blisk by their waves and frequencies."""
+    roots, shapes = _roots(model, speed)
+    blades = model.machine.blades.count
+    chosen, waves = _one_of_each_pair(roots, shapes, blades)
+    order = np.argsort(np.abs(roots[chosen]), kind="stable")
+    chosen, waves = np.array(chosen)[order].tolist(), np.array(waves)[order].tolist()
+    counts: dict[tuple[int, bool], int] = {}
+    families = []
+    for root, wave, kind in zip(roots[chosen], waves, _support_kinds(model, shapes[:, chosen]), strict=True):
+        key = wave, bool(root.imag > 0) and speed > 0
+        counts[key] = counts.get(key, 0) + (kind is None)
+        both = 0 < 2 * wave < blades and speed == 0  # at rest both directions are one
+        families.append(kind or f"blade {(counts[key] + 1) // 2 if both else counts[key]}")
+    return _Named(roots=roots[chosen], shapes=shapes[: 3 * blades + 2, chosen], waves=waves, families=families)
+
+
+def _named_by_likeness(model: ReducedModel, speed: float) -> _Named:
+    """Name the modes of an uneven blisk after those of the even one: one to one, alike in root and shape as a whole.
+
+    Two roots differ by |s - t| / (|s| + |t|), two shapes by 1 minus their modal assurance at tips and disk centre.
+    Of each conjugate pair the root is taken whose wave goes the way of the even one.
+    """
+    even = _named_by_waves(_even_model(_evened(model.machine), model.reduction), speed)
+    roots, shapes = _roots(model, speed)
+    upper = np.flatnonzero(roots.imag > 0)
+    roots, shapes = roots[upper], shapes[: len(even.shapes), upper]
+    one, other = (X / np.linalg.norm(X, axis=0) for X in (even.shapes, shapes))
+    against = even.roots.imag < 0
+    turned = np.where(against[:, None], roots.conj(), roots)
+    apart = np.abs(turned - even.roots[:, None]) / (np.abs(roots) + np.abs(even.roots[:, None]))
+    alike = np.where(against[:, None], np.abs(one.conj().T @ other.conj()), np.abs(one.conj().T @ other)) ** 2
+    rows, columns = linear_sum_assignment(APART * apart + 1 - alike)
+    return _Named(
+        roots=turned[rows, columns],
+        shapes=shapes[:, columns],
+        waves=[even.waves[row] for row in rows],
+        families=[even.families[row] for row in rows],
+    )
+
+
+def _evened(machine: Machine) -> Machine:
+    return replace(machine, blades=replace(machine.blades, mistuning=None), faults=())
+
+
+@lru_cache(maxsize=2)
+def _even_model(machine: Machine, reduction: Reduction) -> ReducedModel:
+    return reduce(machine, reduction)
+
+
+def _roots(model: ReducedModel, speed: float) -> tuple[ComplexArray, ComplexArray]:
     """Return the roots of M s^2 + C s + K and their shapes (blisk DoFs, roots), which are 0 where a blade is lost."""
-    own = model.own_dofs
+    system, own = model.at_speed(max(speed, REST)), model.own_dofs
     part = np.ix_(own, own)
     with one_blas_thread():
-        roots, vectors = eig(*linearised(model.blisk.M[part], C[part], K[part]))
+        roots, vectors = eig(*linearised(model.blisk.M[part], system.C[part], system.K[part]))
     shapes = np.zeros((len(model.blisk.M), roots.size), dtype=np.complex128)
     shapes[own] = vectors[: own.size]
     return roots, shapes

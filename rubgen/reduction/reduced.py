@@ -39,9 +39,11 @@ class ReducedModel:
 
     `springs` (N/m, N m/rad) and `dampers` (N s/m, N m s/rad), both (6,), act on O_d in the inertial frame. `beta` (s)
     is the factor of the blisk's elastic damping beta K_e. `machine` is the machine as its faults have altered it.
+    `reduction` has the numbers of modes.
     """
 
     machine: Machine
+    reduction: Reduction
     blisk: ReducedBlisk
     casing: ReducedCasing
     springs: FloatArray
@@ -314,6 +316,7 @@ def reduce(machine: Machine, reduction: Reduction) -> ReducedModel:
     springs = support_stiffness(machine.disk_support)
     return ReducedModel(
         machine=machine,
+        reduction=reduction,
         blisk=blisk,
         casing=casing,
         springs=springs,

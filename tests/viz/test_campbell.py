@@ -1,11 +1,14 @@
 """The Campbell diagram and the modes behind it, against closed forms of a rigid rotor and a symmetric blisk."""
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from rubgen.machine import load_machine
+from rubgen.machine.faults.lost_blade import LostBlade
+from rubgen.machine.machine import Mistuning
 from rubgen.reduction import reduce
 from rubgen.reduction.modes import blisk_modes, casing_diameters
 from rubgen.scenario import Reduction
@@ -16,6 +19,12 @@ from rubgen.viz.figures.campbell_diagram import branches, campbell, crossings
 @pytest.fixture(scope="module")
 def model():
     return reduce(load_machine("zeng2019"), Reduction())
+
+
+@pytest.fixture(scope="module")
+def mistuned(model):
+    blades = replace(model.machine.blades, mistuning=Mistuning(relative_std=0.03, seed=5))
+    return reduce(replace(model.machine, blades=blades), Reduction())
 
 
 def test_frequencies_at_rest_are_those_of_the_symmetric_problem(model):
@@ -46,6 +55,33 @@ def test_each_nodal_diameter_has_its_waves(model):
     assert counts[2:half].tolist() == [6] * (half - 2)  # three coordinates of a tip, two directions
     assert counts[half] == 3
     assert counts.sum() == len(model.blisk.M)
+
+
+@pytest.mark.parametrize("speed", [0.0, 60.0, 400.0, 6000.0])
+def test_each_mode_of_uneven_blades_is_named_after_its_own_mode_of_the_even_blisk(model, mistuned, speed):
+    even, found = ({}, {})
+    for of, names in ((model, even), (mistuned, found)):
+        for mode in blisk_modes(of, rad_per_s(speed)):
+            names.setdefault((mode.family, mode.nodal_diameters, mode.whirl), []).append(abs(mode.turning_hz))
+    assert {name: len(values) for name, values in found.items()} == {name: len(even[name]) for name in even}
+    for name, values in found.items():
+        np.testing.assert_allclose(sorted(values), sorted(even[name]), rtol=0.04)  # deviations reach 7 %: 3.5 % in Hz
+
+
+def test_branches_of_uneven_blades_follow_those_of_even_ones(model, mistuned):
+    speeds = np.linspace(60, 12_000, 7)
+    for waves in (0, 1, 2, 9, 18):
+        even, found = (branches([blisk_modes(of, rad_per_s(x)) for x in speeds], waves) for of in (model, mistuned))
+        np.testing.assert_allclose(found[..., 0], even[..., 0], rtol=0.04, atol=2)
+
+
+def test_a_blisk_without_a_blade_lacks_modes_of_blades_alone(model):
+    lost = reduce(replace(model.machine, faults=(LostBlade(blade=3),)), Reduction())
+    of_lost, of_all = (Counter(mode.family for mode in blisk_modes(x, rad_per_s(6000))) for x in (lost, model))
+    assert set(of_all) == set(of_lost)
+    missing = of_all - of_lost
+    assert missing.total() == 3
+    assert set(missing) <= {family for family in of_all if family.startswith("blade")}
 
 
 def test_waves_of_the_casing_come_in_pairs(model):

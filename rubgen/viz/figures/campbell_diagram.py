@@ -58,8 +58,8 @@ def branches(modes: Sequence[Sequence[Mode]], waves: int) -> FloatArray:
     """Return the modes of `waves` nodal diameters at each speed (speeds, branches, 3).
 
     Values are the frequencies in the turning and in the inertial frame, Hz, with signs, and the damping ratio. Modes of
-    one nodal diameter veer and do not cross in the turning frame, so their order there makes the branches. A mistuned
-    blisk may have more modes at some speeds: the highest modes are then left out.
+    one nodal diameter veer and do not cross in the turning frame, so their order there makes the branches. Where a mode
+    stops to oscillate at some speeds, the highest branch is left out.
     """
     rows = []
     for each in modes:
