@@ -131,7 +131,7 @@ class RunTable:
         self._group = lru_cache(GROUPS_IN_MEMORY)(self._file.read_row_group)
 
     def rows(self, indexes: Sequence[int]) -> pa.Table:
-        """Return the rows of the runs with these numbers, which must ascend.
+        """Return the rows of the runs with these numbers, which must ascend. Classes are numbers, as in the file.
 
         Raises UserError where a row cannot be read.
         """

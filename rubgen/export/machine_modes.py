@@ -42,8 +42,9 @@ def nodes_of(model: ReducedModel) -> tuple[IntArray, FloatArray]:
 def modes_of(model: ReducedModel, highest_hz: float) -> list[ShownMode]:
     """Return the modes of casing and blisk up to `highest_hz`, the modes of the casing first.
 
-    The modes of the blisk solve K phi = omega^2 M phi of the reduced model at rest: without damping, rotation and
-    contact. A tip's radial, tangential and axial displacement is turned into x, y, z at the angle of its blade.
+    The modes of the blisk solve K phi = omega^2 M phi of the reduced model at rest: on its supports, without damping,
+    rotation and contact. A tip's radial, tangential and axial displacement is turned into x, y, z at the angle of its
+    blade.
     """
     found = []
     casing = model.casing

@@ -17,7 +17,7 @@ IDS = ("run_id", "machine_id", "split")
 def write_parquet(runs: Iterator[ExportedRun], path: Path) -> None:
     """Write runs, a row each: the names in IDS, recorded pulses and channels, without parameters and labels.
 
-    `runs` must yield at least one run. `export` gives runs without channels that no probe can measure.
+    `runs` must yield at least one run. `export` gives only channels that a probe can measure.
     """
     first = next(runs)
     fields = [pa.field(name, pa.string()) for name in IDS]

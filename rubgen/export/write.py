@@ -48,7 +48,7 @@ def export(
       other channels.
 
     The folder has the files of the runs, `channels.csv`, and `runs.csv` with parameters and labels, lists as JSON. The
-    format parquet has no labels, no parameters, no `runs.csv` and no channel that no probe can measure. A file is
+    format parquet has no labels, no parameters and no `runs.csv`, and only channels that a probe can measure. A file is
     complete or does not exist, and the same call completes an interrupted export. Raises UserError for an unknown
     format, split or channel, for a missing package, for content that the format cannot contain, for a set without good
     runs, and where `out` lies in a data set or has other content than this export.

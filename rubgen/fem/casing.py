@@ -75,8 +75,9 @@ def element_matrices(
 ) -> tuple[FloatArray, FloatArray]:
     """Return stiffness and consistent mass (elements, 6, 6) of straight plane beams in local (u, v, phi) at both ends.
 
-    With Phi = 12 E I / (kappa G A L^2) the static shape functions of a uniform Timoshenko beam interpolate v and phi,
-    linear ones u; I = width thickness^3 / 12 (bending in the plane of the ring).
+    u is along the beam, v 90 degrees counter-clockwise from it. With Phi = 12 E I / (kappa G A L^2) the static shape
+    functions of a uniform Timoshenko beam interpolate v and phi, linear ones u; I = width thickness^3 / 12 (bending in
+    the plane of the ring).
 
     - width, thickness: of the cross-section, m.
     - lengths (elements,): of the elements, m.

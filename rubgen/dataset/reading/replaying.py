@@ -50,8 +50,8 @@ def find_replay(source: Path, run_id: str | None = None, where: str | None = Non
 
     - source: an MCAP file, which contains one run, or the directory of a data set.
     - run_id: name of a good run (status ok) of the set.
-    - where: a condition in duckdb's SQL, without the word WHERE, on the columns of `runs.parquet`. The first good run
-      by name that meets it is taken.
+    - where: a condition in duckdb's SQL, without the word WHERE, on the columns of `runs.parquet`, with words for
+      classes: motion = 'chaotic'. The first good run by name that meets it is taken.
 
     Give at most one of `run_id` and `where`, and none of them with a file. Without both the first good run is taken. A
     run of the set without an MCAP file is simulated again. The remarks say whether it was, what a damaged file has
@@ -113,8 +113,8 @@ def replay_of_recorded(run: McapRun, *, source: str = "the file") -> Replay:
 def find_runs(data: DataSet, where: str) -> list[str]:
     """Return the names of the good runs that meet the condition `where`, in order of the names.
 
-    `where` is SQL on the columns of `runs.parquet`, without the word WHERE. Raises UserError, with similar columns, for
-    a condition that duckdb does not understand.
+    `where` is SQL on the columns of `runs.parquet` with words for classes, such as motion = 'chaotic', without the word
+    WHERE. Raises UserError, with similar columns, for a condition that duckdb does not understand.
     """
     import duckdb
 

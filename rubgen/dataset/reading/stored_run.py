@@ -61,7 +61,7 @@ class StoredRun:
 
 
 def stored_run(data: DataSet, row: dict[str, Any]) -> StoredRun:
-    """Return the run of one row of `runs.parquet`. `row` contains the values by column."""
+    """Return the run of one row of `runs.parquet`. `row` is from `DataSet.row`."""
     own = ("run_id", "status", "reason", *KEYS)
     return StoredRun(
         run_id=row["run_id"],

@@ -37,9 +37,10 @@ UNITS = {
 def runs_frame(table: pa.Table, sensors: SensorSet) -> pd.DataFrame:
     """Turn the table of `runs.parquet` into a DataFrame with `run_id` as the index. Failed runs are included.
 
-    Flags are pandas "boolean", integers "Int64", texts and classes "string". Of a failed run, and where a value is
-    undefined, they are <NA>: a flag can still select rows. Numbers are float64 with NaN. Lists are numpy arrays, or
-    None where a run has no list. `attrs["units"]` and `attrs["meanings"]` map each column to its unit and its meaning.
+    `table` has words for classes; `sensors` is the sensor set of the set. Flags are pandas "boolean", integers "Int64",
+    texts and classes "string". Of a failed run, and where a value is undefined, they are <NA>: a flag can still select
+    rows. Numbers are float64 with NaN. Lists are numpy arrays, or None where a run has no list. `attrs["units"]` and
+    `attrs["meanings"]` map each column to its unit and its meaning.
     """
     frame: pd.DataFrame = table.to_pandas(types_mapper=_nullable)
     frame = frame.set_index("run_id")
@@ -62,7 +63,7 @@ def _nullable(kind: pa.DataType) -> Any:
 def check_runs(table: pa.Table, manifest: Manifest, path: Path) -> None:
     """Check `runs.parquet` against the manifest: names, status counts, and the main labels of good runs.
 
-    - table: the content of the file at `path`.
+    - table: the content of the file at `path`, with words for classes (`with_words`).
     - manifest: the manifest of the set.
 
     Raises UserError, one line with file and run, where they do not fit.

@@ -63,8 +63,9 @@ class Store:
     def begin(self, identity: Identity, *, grows: bool = True) -> dict[str, int]:
         """Reserve the URL for the set of this identity. Return the files that were there before, as `sizes`.
 
-        Raises UserError where the URL has a set of another recipe or of other package versions, a set with more runs,
-        or other files, and where it cannot be written. With `grows` False, any finished set is refused.
+        Raises UserError where the URL has a set of another recipe or of other package versions, a finished set with
+        more runs, an unfinished set with another number of runs, or other files, and where it cannot be written. With
+        `grows` False, any finished set is refused.
         """
         layout, there = self.layout, self.sizes()
         marker = self._name(layout.identity)

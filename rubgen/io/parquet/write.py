@@ -134,9 +134,9 @@ def drawing_of(recipe: Recipe, *, signals: bool = False) -> list[str]:
 def run_table(run: Run, *, split: str = "train", signals: bool = True) -> pa.Table:
     """Make the row of one run: identity, parameters, labels and energies, and with `signals` its channels and touches.
 
-    With `signals` it also has the labels of windows. Without it these columns are left out. `split` is the name of the
-    split of the run. A failed run has null labels, energies, channels and touches. Raises ValueError where a label has
-    no column.
+    With `signals` it also has the labels of windows. Without it these columns are left out. Classes are numbers.
+    `split` is the name of the split of the run. A failed run has null labels, energies, channels and touches. Raises
+    ValueError where a label has no column.
     """
     around = run.scenario.surroundings
     row = _identity(run, split) | varied_values(run.scenario) | _operation(run)

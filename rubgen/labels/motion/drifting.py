@@ -47,8 +47,9 @@ def drifting_motion(response: Response, first: int, last: int, *, rub: bool) -> 
 
     - periodic after k <= 4 turns where the points lie on k branches, within CLUSTER_RADIUS rms and EXCURSION each. A
       branch is every kth point, fitted by a quadratic in time; the rms is corrected for its coefficients.
-    - chaotic where the part does not repeat, and a group (disk centre, tips, casing) lies farther than SCATTER from one
-      branch and cannot be predicted (`prediction_error`) over PREDICTED_TURNS. Contact couples the parts.
+    - chaotic where the part does not repeat, and a group of any part (disk centre, tips, casing) lies farther than
+      SCATTER from one branch and cannot be predicted (`prediction_error`) over PREDICTED_TURNS: contact couples the
+      parts.
     - undecided otherwise: on a torus, while the motion settles, across a change. A class needs a record of 32 turns,
       chaos of 64.
 
