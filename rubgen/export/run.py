@@ -27,9 +27,10 @@ class ExportedChannel:
 
     @property
     def facts(self) -> dict[str, str | float]:
-        """The description of its sensor: kind, quantity, axis, location, range, and angle in degrees if it has one.
+        """The description of its sensor by name.
 
-        The pulse of the shaft has no range and no angle.
+        The names are `kind`, `quantity`, `axis`, `location`, `range_min`, `range_max` in the unit of the channel, and
+        `angle_deg` if the sensor has an angle. The pulse of the shaft has neither range nor angle.
         """
         if self.sensor is None:
             return {"kind": "once_per_rev", "quantity": "pulse", "axis": "", "location": "shaft"}

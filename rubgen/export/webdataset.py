@@ -16,7 +16,7 @@ from rubgen.export.run import ExportedRun
 def write_webdataset(runs: Iterator[ExportedRun], path: Path) -> None:
     """Write runs to a tar file: an array (channels, samples) and a JSON document for each run.
 
-    The JSON has names, units and sensors of the channels, pulses, parameters and labels.
+    The JSON has the sample rate, names, units and sensors of the channels, pulses, parameters and labels.
     """
     with tarfile.open(path, "w") as tar:
         for run in runs:

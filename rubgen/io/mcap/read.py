@@ -34,7 +34,7 @@ FRAMES, MODES = "/motion/frames", "/motion/casing_modes"
 
 
 def read_frames(content: McapContent, scenario: Scenario) -> MotionFrames | None:
-    """Decode the frames of motion: positions of disk, tips and casing at single moments. None if the file has none.
+    """Decode the frames of motion: displacements of disk, tips and casing at single moments. None if the file has none.
 
     Raises DamageError where the sizes of the frames contradict each other or the machine, a value is not finite, times
     descend, or a time is outside of the recording.
