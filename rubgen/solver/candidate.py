@@ -11,7 +11,7 @@ from rubgen.reduction import ReducedModel, reduce
 from rubgen.scenario import Scenario
 from rubgen.scenario.tables.machines import MachineTable
 from rubgen.solver.linear.admissible import check_system
-from rubgen.solver.linear.reach import penetration_at
+from rubgen.solver.linear.reach import onset_clearance
 from rubgen.solver.refusal import stability
 
 STABILITY_SPEEDS, ONSET_SPEEDS = 3, 9
@@ -26,8 +26,9 @@ def candidate_problem(scenario: Scenario, bounds: MachineTable, slowest: float, 
     - slowest, fastest: the speeds of the recipe, rad/s.
 
     Checked in this order: reduction, critical speed, stability at three speeds, and at nine speeds the clearance at
-    which the blades just reach the casing. This onset clearance is the machine's clearance plus the largest free
-    penetration. A quantity without bounds is not checked.
+    which the blades just reach the casing (`onset_clearance`). The speeds go in equal steps from the slowest to the
+    fastest. A critical speed or onset clearance without bounds is not checked. With bounds, an onset clearance that is
+    not known is a reason. An error of a check is returned as the reason, not raised.
     """
     try:
         with one_blas_thread():
@@ -65,7 +66,7 @@ def _onset(
 ) -> str | None:
     if bounds.onset_clearance_m is None:
         return None
-    deepest = max(penetration_at(model, scenario, speed) for speed in dict.fromkeys(speeds.tolist()))
-    if not math.isfinite(deepest):
+    onset = onset_clearance(model, scenario, list(dict.fromkeys(speeds.tolist())))
+    if not math.isfinite(onset):
         return "onset_clearance_m = unknown: laws of the support leave the motion without rub unknown; remove it"
-    return _outside("onset_clearance_m", scenario.machine.casing.clearance_m + deepest, bounds.onset_clearance_m)
+    return _outside("onset_clearance_m", onset, bounds.onset_clearance_m)

@@ -14,6 +14,7 @@ from rubgen.dataset.making.warm_up import warm_up
 from rubgen.dataset.manifest import Identity, identity_of
 from rubgen.errors import UserError
 from rubgen.machine import Machine, load_machine
+from rubgen.machine.faults.closing_clearance import ClosingClearance
 from rubgen.machine.load import PRESETS
 from rubgen.pipeline import simulate
 from rubgen.reduction import reduce
@@ -213,6 +214,18 @@ def test_bounds_of_a_sane_machine():
         problem = candidate_problem(scenario, above, slow, fast)
         assert problem.startswith(f"{key} = ")
         assert float(problem.split()[2].rstrip(":")) == pytest.approx(value, rel=1e-5)
+
+
+def test_the_onset_of_a_closing_clearance_is_that_of_the_first_instant():
+    """The blades stand clear at first, and the casing closes on them later: the clearance of the onset is the same."""
+    wide = replace(PRESET, casing=replace(PRESET.casing, clearance_m=3e-3))
+    scenario = replace(make_scenario(speed_rpm=10_000), machine=wide)
+    closing = replace(scenario, machine=replace(wide, faults=(ClosingClearance(closing_m=2.9e-3),)))
+    speed = rad_per_s(10_000)
+    above = MachineTable(onset_clearance_m=(1.0, 2.0))
+    problem = candidate_problem(scenario, above, speed, speed)
+    assert problem.startswith("onset_clearance_m = 0.00")
+    assert candidate_problem(closing, above, speed, speed) == problem
 
 
 def test_an_unstable_machine_is_not_sane():

@@ -9,6 +9,7 @@ import numpy as np
 from rubgen.contact.geometry import blade_tips, casing_surface
 from rubgen.errors import UserError
 from rubgen.reduction import ReducedModel, reduce
+from rubgen.reduction.model import SpinningSystem
 from rubgen.scenario import Scenario
 from rubgen.scenario.checks.plausible import MOST_TIP_SPEED
 from rubgen.solver.linear.admissible import check_system
@@ -24,9 +25,9 @@ SPEEDS = 9
 def no_rub_warning(scenarios: Sequence[Scenario]) -> str | None:
     """Return a warning of one line if no blade reaches the casing in the rub-free motion of any run, else None.
 
-    A run starts from its rub-free motion and keeps it where nothing touches. Runs that are refused are left out; None
-    if all are refused. For a single run the warning is returned only if the run would rub with its speed's number in
-    rad/s, because a run without rub may be intended.
+    A run starts from its rub-free motion and keeps it where nothing touches. Where `deepest` is infinite a rub is
+    possible. Runs that are refused are left out; None if all are refused. A single run without rub may be intended. It
+    has the warning only if it would rub if its speed had been given in rad/s by mistake.
     """
     largest, at, looked_at = -math.inf, 0.0, 0
     for scenario in scenarios:
@@ -52,12 +53,13 @@ def no_rub_warning(scenarios: Sequence[Scenario]) -> str | None:
 
 
 def with_clearance(scenario: Scenario) -> Scenario:
-    """Return the scenario with the clearance that follows from its `free_penetration_m`. Without one it is unchanged.
+    """Return the scenario with the clearance that follows from its `free_penetration_m`, which becomes None.
 
-    A larger clearance moves the undeformed surface outward and leaves the rub-free motion as it is. One correction is
-    therefore exact except for rounding, at the speed of the run and at the beginning of its record. For a changing
-    speed, the largest penetration of nine steady speeds counts (`deepest`). Raises UserError where the clearance would
-    be below the least allowed.
+    Without a `free_penetration_m` the scenario is unchanged. A larger clearance moves the undeformed surface outward
+    and leaves the rub-free motion as it is. One correction is therefore exact except for rounding, at the speed of the
+    run and at the beginning of its record. For a changing speed, the largest penetration of nine steady speeds counts
+    (`deepest`). Laws whose motion must settle are left out. Raises UserError where the clearance would be below the
+    least allowed, 0.1 um.
     """
     wanted, casing = scenario.free_penetration_m, scenario.machine.casing
     if wanted is None:
@@ -85,7 +87,8 @@ def deepest(scenario: Scenario) -> tuple[float, float]:
 
     A changing speed is checked at nine speeds from the slowest to the fastest, each as a steady speed. The amplitude of
     a run through a critical speed is smaller. The penetration is infinite where only the run shows it, as in
-    `penetration_at`. Raises UserError where the system cannot be integrated at a speed.
+    `penetration_at`. The clearance is that of `with_clearance`. Raises UserError as `with_clearance` does, and where
+    the system cannot be integrated at a speed.
     """
     scenario = with_clearance(scenario)
     model = reduce(scenario.machine, scenario.reduction)
@@ -96,18 +99,35 @@ def penetration_at(model: ReducedModel, scenario: Scenario, speed: float) -> flo
     """Return the free penetration at a speed in rad/s: how deep tips enter the undeformed casing without contact, in m.
 
     It is infinite where the motion without rub is not known because of laws of the support. It is also infinite where a
-    gap at the beginning of the record may be used up later, by a load that grows or a clearance that closes. Raises
-    UserError where the system cannot be integrated at this speed.
+    gap at the beginning of the record may be used up later, by a load that grows or a clearance that closes. `model` is
+    the reduced machine of `scenario`, with its clearance. `free_penetration_m` is not read. Raises UserError where the
+    system cannot be integrated at this speed.
     """
     system = model.at_speed(speed)
+    depth = _first_penetration(system, scenario)
+    closing = sum(each.amount_m for each in system.narrowings)
+    grows = system.turning is not None and bool(system.turning.growing)
+    return math.inf if depth < 0 and (grows or depth + closing >= 0) else depth
+
+
+def onset_clearance(model: ReducedModel, scenario: Scenario, speeds: Sequence[float]) -> float:
+    """Return the clearance in m at which the blades just reach the casing at the worst of some speeds in rad/s.
+
+    It is the machine's clearance plus the largest free penetration at the beginning of the record: what grows or closes
+    later does not count. It is infinite where laws of the support leave the motion without rub unknown. Raises
+    UserError where the system cannot be integrated at a speed.
+    """
+    deepest = max(_first_penetration(model.at_speed(speed), scenario) for speed in speeds)
+    return scenario.machine.casing.clearance_m + deepest
+
+
+def _first_penetration(system: SpinningSystem, scenario: Scenario) -> float:
+    """Return the free penetration at the beginning of the record, m; infinite where it is not known."""
     check_system(system)
     if system.starting is not system:
         return math.inf
     surface, tips = casing_surface(system, scenario.contact), blade_tips(system)
-    depth = free_penetration(rub_free_motion(system), surface, tips)
-    closing = sum(each.amount_m for each in system.narrowings)
-    grows = system.turning is not None and bool(system.turning.growing)
-    return math.inf if depth < 0 and (grows or depth + closing >= 0) else depth
+    return free_penetration(rub_free_motion(system), surface, tips)
 
 
 def _speeds(scenario: Scenario) -> list[float]:
