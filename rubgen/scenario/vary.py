@@ -204,10 +204,12 @@ _VALUES: TypeAdapter[Any] = TypeAdapter(create_model("Values", __config__=STRICT
 def vary(scenario: Scenario, values: Mapping[str, float], source: str = "", table: tuple[str, ...] = ()) -> Scenario:
     """Return the scenario with the values of some keys of `[vary]` changed.
 
-    - values: by key, in the key's unit.
+    - values: by key, in the key's unit; `free_penetration_m` is such a key too.
     - source, table: file and table, for messages.
 
-    Raises UserError for an unknown key or a value out of range.
+    Raises UserError for an unknown key, or for a value outside of the range of its key. It is not checked whether the
+    values go together. A new `clearance_m` does not remove a `free_penetration_m` of the scenario, which replaces it
+    later (`with_clearance`).
     """
     checked = validated(source, dict(values), _VALUES, lambda path: (*table, *path))
     for entry in DRAWN:

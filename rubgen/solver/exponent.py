@@ -95,9 +95,9 @@ def changed_after(impulse: FloatArray, turns: int, exponent: float) -> bool:
 
     Chaos may be a transient, and a regular motion an episode. The deviation of successive turns is the rms difference
     of their impulses from the impulses p turns before, for the p = 1..16 where it is least. The 100 turns before
-    `turns` are compared with each 50 turns after `turns`. A motion with a positive exponent has changed if the
-    deviation falls to less than a tenth in any of these 50 turns. Any other motion has changed if the deviation rises
-    to more than ten times. With fewer than 50 later turns the result is False.
+    `turns` are compared with each whole block of 50 turns after `turns`. A motion with a positive exponent has changed
+    if the deviation falls to less than a tenth in any of these blocks. Any other motion has changed if it rises to more
+    than ten times in any of them. With fewer than 50 later turns the result is False.
 
     Of 86 rubs of three recipes one changed: its deviation fell to rounding. In the other chaotic rubs the deviation
     changed by a factor of 0.34 to 2.2. In the regular rubs it fell.

@@ -46,7 +46,8 @@ def integrate(
     """Integrate a spinning system with contact between blade tips and casing, and return its response.
 
     Central differences with Lagrange multipliers in forward increments (Carpenter, Taylor, Katona 1991), see
-    `step_kernels`. The run starts in the exact rub-free motion, with the surface opened so that nothing touches. The
+    `step_kernels`. The run starts in the exact rub-free motion, with the surface opened so that nothing touches. Laws
+    whose motion must settle are left out of this motion; a fluctuating speed starts in the motion of its mean. The
     surface closes smoothly (continuous second derivative) over `operation.closing_turns`, at most the settle turns.
 
     - model: makes the system at the speeds of the operation. A `SpinningSystem` is run at its own speed.
@@ -65,9 +66,9 @@ def integrate(
     A run that fails has the status and the reason; its other fields are not valid. A system that is unstable without
     contact is not integrated: its status is unstable. If no rub-free motion fits the laws of its support, the status is
     film-closed. Raises UserError for a system that `check_system` refuses, for a record too short for a wanted
-    exponent, for a profile without a key that it needs, and for a turn of more than 4,194,304 steps. Raises ValueError
-    where M, C or K couple blisk and casing, and for a tap that the system does not have. Raises TypeError for a
-    `SpinningSystem` at a changing speed. Valid for small casing displacements.
+    exponent, for what `profile_problem` finds at a changing speed, and for a turn of more than 4,194,304 steps. Raises
+    ValueError where M, C or K couple blisk and casing, and for a tap that the system does not have. Raises TypeError
+    for a `SpinningSystem` at a changing speed. Valid for small casing displacements.
     """
     if wants.companion:
         check_turns(operation.record_turns)
@@ -133,7 +134,7 @@ def _changing(changing: ChangingSystem, operation: Operation, contact: ContactLa
 class Integration:
     """One run in progress: speed driver, observers and status.
 
-    `start` is the system at the first instant; `free_penetration` is the value for the response, m.
+    `start` is the system in whose rub-free motion the run starts; `free_penetration` is the value for the response, m.
     """
 
     def __init__(
@@ -184,7 +185,7 @@ class Integration:
         return True
 
     def response(self) -> Response:
-        """Integrate the whole run, and return its response."""
+        """Integrate the whole run by `run`, and return its response. Call it once."""
         self.run()
         stepper, rotation, system = self.stepper, self.driver.rotation, self.stepper.system
         kept = {name: value for observer in self.observers for name, value in observer.result().items()}

@@ -89,7 +89,8 @@ def refused_response(system: SpinningSystem, operation: Operation, steps: int, r
 def film_refusal(system: SpinningSystem, steps: int) -> Refusal | None:
     """Return status FILM_CLOSED and a reason if no rub-free motion fits the laws of the support; else None.
 
-    A motion fits if at most 1e-8 of the force on O_d is not balanced. `steps` is the number of steps in a turn.
+    A motion fits if at most 1e-8 of the force on O_d is not balanced. Laws whose motion must settle are left out.
+    `steps` is the number of steps in a turn.
     """
     forces = system.starting.turning
     if forces is None or not forces.laws:
@@ -121,7 +122,8 @@ def stability(system: SpinningSystem) -> tuple[Refusal | None, float]:
 def no_run_warning(scenarios: Sequence[Scenario]) -> str | None:
     """Return a warning of one line if none of these runs can be integrated, with the first reason; None if one can.
 
-    `scenarios` are the runs, at least one.
+    `scenarios` are the runs, at least one. None is integrated here. A changing speed is checked at its first, its
+    slowest and its fastest speed.
     """
     reasons = []
     for scenario in scenarios:

@@ -85,7 +85,7 @@ class Catalog:
     def add_columns(self, group: str, rows: Mapping[str, Values]) -> None:
         """Add columns `property:<group>:<name>` to the table.
 
-        `rows` are the values of each run, by its recording's id.
+        `rows` are the values of each run, by its recording's id. Call it once for each group.
         """
         import rerun as rr
 
@@ -105,9 +105,9 @@ class Catalog:
             self.dataset.register(places, layer_name=group).wait()
 
     def arrange(self, columns: Sequence[tuple[str, str]], previews: Sequence[View] = ()) -> None:
-        """Show some columns of the table first, in this order, under their names.
+        """Show the column that opens a recording, then some columns in this order. The rows are sorted by id.
 
-        - columns: the group and the name of each column.
+        - columns: the group and the name of each column. Its heading is both; of the group `run` only the name.
         - previews: views of its recording that each row shows.
         """
         from rerun.blueprint.table import Column, PreviewCell, PreviewsConfig, TableBlueprint, TableLayout

@@ -61,11 +61,11 @@ def order_map(
 
 
 def shaft_orbit(replay: Replay) -> FloatArray | None:
-    """Compute X and Y of the disk centre (2, samples) in um from the first pair of proximity probes.
+    """Compute X and Y of the disk centre (2, samples) in um from the first pair of recorded proximity probes.
 
-    Returns None without two probes at least 30 degrees apart. A probe at angle phi reads u = x cos(phi) + y sin(phi),
-    so the two readings determine x and y. From readings in V the bias is subtracted, and the rest is divided by the
-    sensitivity.
+    Returns None without two probes whose directions differ by 30 to 150 degrees. A probe at angle phi reads u = x
+    cos(phi) + y sin(phi), so the two readings determine x and y. From readings in V the bias is subtracted, and the
+    rest is divided by the sensitivity.
     """
     channels = replay.recording.channels
     sensors = replay.scenario.sensing.set.sensors

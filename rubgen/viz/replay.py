@@ -38,7 +38,10 @@ class Replay:
 
     @property
     def title(self) -> str:
-        """Name of the run and of the machine, and its speed, or its first and last speed, in rev/min."""
+        """Name of the run and of the machine, and its speed, or its first and last speed, in rev/min.
+
+        A fluctuating speed is its mean ± its amplitude.
+        """
         rotation = self.scenario.operation.rotation
         start, end = (f"{rev_per_min(speed):,.0f}" for speed in (rotation.start, rotation.end))
         speed = start if start == end else f"{start} to {end}"

@@ -21,9 +21,9 @@ SCREENS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
 def open_viewer(replay: Replay, *, web: bool = False, full: bool = False) -> None:
-    """Show a replay in Rerun's viewer, and return when the viewer is closed.
+    """Show a replay in Rerun's viewer, and return when the viewer is closed or interrupted (Ctrl+C).
 
-    - web: show it in the browser, served to this computer only.
+    - web: show it in the browser, served to this computer only until interrupted.
     - full: with every sample and every touch.
 
     Raises UserError where the viewer cannot be started or ends with an error, OSError where its file cannot be written.

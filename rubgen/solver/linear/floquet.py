@@ -35,7 +35,7 @@ def linearised(system: SpinningSystem) -> SpinningSystem:
 
 
 def floquet_exponents(system: SpinningSystem, steps: int) -> ComplexArray:
-    """Return exponents ln(mu) / T in 1/s of the coordinates that O_d moves, and eigenvalues of all other coordinates.
+    """Return exponents ln(mu) / T in 1/s of the coordinates that O_d moves, then eigenvalues of all others: 2 n values.
 
     mu are the eigenvalues of the transition over one period T: M q'' + C q' + K q = E (f_u u + f_v v), with the
     derivatives of the turning forces along the rub-free motion. T is half a turn, or a whole turn with laws of the

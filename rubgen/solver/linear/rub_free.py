@@ -60,8 +60,8 @@ class RubFreeMotion:
 def free_penetration(motion: RubFreeMotion, surface: Surface, tips: Tips) -> float:
     """Return how deep the tips would enter the casing at rest in this motion, m; negative is a clearance.
 
-    It is the maximum over blades and angles of |P_k| - r(angle of P_k), with P_k the tip of blade k and r the radius of
-    the undeformed, unworn `surface`.
+    It is the maximum over blades and angles of rotation, every quarter of a degree, of |P_k| - r(angle of P_k). P_k is
+    the tip of blade k, r the radius of the undeformed, unworn `surface`.
     """
     theta = 2 * np.pi * np.arange(CLEARANCE_PLACES) / CLEARANCE_PLACES
     turn = np.exp(1j * np.multiply.outer(theta, np.arange(len(motion.harmonics))))
@@ -73,8 +73,8 @@ def never_touches(system: SpinningSystem, surface: Surface, penetration: float) 
     """Return whether a run at steady speed that starts in its rub-free motion provably never touches.
 
     It is False if a law of the support is not linear, so that other motions are possible, if the surface has a liner,
-    or if anything grows within the record. Uneven supports, gravity, mistuned blades, steady loads and a breathing
-    crack are linear.
+    if a fault grows, however late, or if the tips' distance is below 10 um plus the error of `free_penetration`.
+    Uneven supports, gravity, mistuned blades, steady loads and a breathing crack are linear.
 
     - system, surface: of the run.
     - penetration: `free_penetration` of the motion, m; negative where the tips keep a distance of this size.
@@ -99,12 +99,13 @@ def steady_state(system: SpinningSystem) -> FloatArray:
 def rub_free_motion(system: SpinningSystem, steps: float = 0) -> RubFreeMotion:
     """Compute the periodic motion without rub, by harmonic balance.
 
-    `steps` is the number of steps in a turn: the result is then the motion of the time-stepping scheme. With 0 it is
-    the motion of the differential equation M q'' + C q' + K q = force + weight(theta) + E (p(theta) + f(theta, u, v)),
-    with p the steady loads of faults. Loads that grow are left out. Each harmonic of f on O_d moves the blisk by the
-    receptance of that harmonic. This leaves a small system for u alone, solved at equal angles of a turn by Newton's
-    method (one step where it is linear). For the scheme's motion 2 (cos m phi - 1) / dt^2 replaces -(m Omega)^2 and i
-    sin(m phi) / dt replaces i m Omega, phi = 2 pi / steps: a run that starts from it keeps it.
+    E selects x and y of the disk centre O_d, u and v are its displacement and velocity in the turning frame. `steps` is
+    the number of steps in a turn: the result is then the motion of the time-stepping scheme. With 0 it is the motion of
+    the differential equation M q'' + C q' + K q = force + weight(theta) + E (p(theta) + f(theta, u, v)), with p the
+    steady loads of faults and f the `turning_force`. Loads that grow are left out. Each harmonic of f on O_d moves the
+    blisk by the receptance of that harmonic. This leaves a small system for u alone, solved at equal angles of a turn
+    by Newton's method (one step where it is linear). For the scheme's motion 2 (cos m phi - 1) / dt^2 replaces -(m
+    Omega)^2 and i sin(m phi) / dt replaces i m Omega, phi = 2 pi / steps: a run that starts from it keeps it.
 
     With laws of the support there may be more than one motion. The iteration starts from the motion without f,
     shortened to within the range of the laws. If it finds no motion, nothing is raised: `residual` is large. Laws with

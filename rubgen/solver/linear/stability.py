@@ -73,8 +73,9 @@ def stable_step(system: SpinningSystem) -> float:
 def steps_per_turn(system: SpinningSystem, least: int, sample_rate_hz: float = 0.0) -> int:
     """Double `least` until the step is stable and the step rate is at least 2.56 `sample_rate_hz`. Return the steps.
 
-    A step counts as stable if dt is at most 0.95 * 2 / omega_max. A turn is a whole number of steps, so the Poincare
-    section lies on steps exactly. Raises UserError for a system that would need more than 4,194,304 steps.
+    A step counts as stable if dt is at most 0.95 * 2 / omega_max. A rate of 0 asks for nothing. A turn is a whole
+    number of steps, so the Poincare section lies on steps exactly. Raises UserError for a system that would need more
+    than 4,194,304 steps.
     """
     turn = 2 * math.pi / system.speed
     sampled = 1 / (STEPS_PER_SAMPLE * sample_rate_hz) if sample_rate_hz else turn

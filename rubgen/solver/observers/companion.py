@@ -63,8 +63,8 @@ class CompanionGrowth(Observer):
     def turn(self, turn: Turn) -> None:
         """Run the companion through the turn, and append ln of the growth of its distance to `growth`.
 
-        Nothing is done before `start` and after the companion has stopped. The growth is NaN if the surface has worn in
-        the turn: the companion's surface then differs from the run's.
+        Nothing is done before `start` and after the companion has stopped. The growth is NaN if the companion failed,
+        or if the surface has worn in the turn: the companion's surface then differs from the run's.
         """
         before, self.removed = self.removed, self.stepper.state.wear.sums[REMOVED]
         if self.companion is None:

@@ -99,9 +99,9 @@ class Trend:
 
 
 def trend(amplitudes: FloatArray) -> Trend | None:
-    """Fit the growth of amplitudes (turns,), m, by least squares on their logarithms; None for fewer than two values.
+    """Fit the growth of amplitudes (turns,), m, by least squares on their logarithms.
 
-    Amplitudes that are zero, NaN or infinite are left out and do not count.
+    Amplitudes that are zero, NaN or infinite are left out. None where fewer than two are left.
     """
     known = np.isfinite(amplitudes) & (amplitudes > 0)
     if known.sum() < 2:

@@ -37,9 +37,10 @@ class EnergyIdentity:
     def residual(self) -> float:
         """Return |E - E_start - works| over the sum of the absolute works, at the end of the last turn.
 
-        A turn must have been run since the creation of this object. If this sum is smaller than the largest |E| or the
-        rounding error of the energy, the larger of the two is the divisor. At a critical speed the rub-free motion has
-        no energy in the turning frame: there the rounding error is the scale.
+        A turn must have been run since the creation of this object. If the sum of the absolute works is smaller than
+        the rounding error of the energy or the largest |E| at any call so far, the larger of these two is the divisor.
+        At a critical speed the rub-free motion has no energy in the turning frame: there the rounding error is the
+        scale.
         """
         works, energy = self.stepper.end.works, float(self.stepper.end.energy)
         self.largest_energy = max(self.largest_energy, abs(energy))

@@ -25,7 +25,11 @@ class WindowOrders(Observer):
         self.windows: list[ComplexArray] = []
 
     def turn(self, turn: Turn) -> None:
-        """Add the next turn of the record."""
+        """Add a turn.
+
+        A turn before the record, without recording, or before the first window is left out. Windows begin at turns 0,
+        16, 32, ... of the record.
+        """
         if turn.number < 0 or not turn.recording or (self.turns == 0 and turn.number % WINDOW_TURNS):
             return
         self.sum += turn.result.taps

@@ -24,8 +24,9 @@ def lobes_of(system: SpinningSystem) -> int:
 def turned_back(modes: FloatArray, share: float) -> FloatArray:
     """Return the matrix (n_casing, n_casing) that turns the casing's displacement back by a share of a turn.
 
-    The result is R(-a) u(theta + a), with u(theta) the displacement in X and Y, expressed in the casing's own `modes`
-    (nodes, 2, n_casing) by least squares over the nodes. Exact where the modes of each order come in pairs.
+    The result is R(-a) u(theta + a), with a = 2 pi `share` and u(theta) the displacement in X and Y, expressed in the
+    casing's own `modes` (nodes, 2, n_casing) by least squares over the nodes. The share must bring nodes onto nodes.
+    Exact where the modes of each order come in pairs.
     """
     angle, nodes = 2 * np.pi * share, len(modes)
     R = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])

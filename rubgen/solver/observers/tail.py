@@ -41,7 +41,7 @@ def tip_arrivals(arrivals: list[FloatArray], names: list[str]) -> dict[str, TipA
     """Sort arrivals by probe and then by time. Return the arrivals of each probe by the probe's name.
 
     Each array of `arrivals` is (any, 4): number of the probe, blade, time in steps, displacement in m. `names` are the
-    names of the probes, in the order of their numbers.
+    names of the probes, in the order of their numbers. A probe without arrivals has empty arrays.
     """
     rows = np.concatenate([np.zeros((0, 4)), *arrivals])
     seen = {}

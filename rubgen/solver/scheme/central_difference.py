@@ -42,9 +42,9 @@ def scheme(M: FloatArray, C: FloatArray, K: FloatArray, force: FloatArray, dt: f
 
 
 def compliances(system: SpinningSystem, dt: float) -> tuple[FloatArray, FloatArray]:
-    """Return A^-1 between tip coordinates (3 blades, 3 blades), and of casing modes (n_casing, n_casing), transposed.
+    """Return A^-1 between tip coordinates (3 n_blades, 3 n_blades), and of casing modes (n_casing, n_casing).
 
-    A = M / dt^2 + C / (2 dt), with `dt` in s.
+    Both are transposed. A = M / dt^2 + C / (2 dt), with `dt` in s.
     """
     A = system.M / dt**2 + system.C / (2 * dt)
     inverse = la.inv(A)
@@ -54,7 +54,11 @@ def compliances(system: SpinningSystem, dt: float) -> tuple[FloatArray, FloatArr
 
 
 def energy_terms(system: SpinningSystem, blocks: Blocks, *, zeros: bool = False) -> EnergyTerms:
-    """Build the matrices of the energy terms in blocks. With `zeros` entries that are zero are stored too."""
+    """Build the matrices of the energy terms in blocks.
+
+    With `zeros` entries that are zero are stored too, and the circulatory stiffness is never stored as pairs: all
+    speeds then have arrays of the same shapes.
+    """
     force = blocks.to_z(system.force)
     places = np.arange(force.size) if zeros else np.flatnonzero(force)
     circulatory, pairs = _circulatory_terms(system.K, blocks, zeros=zeros)

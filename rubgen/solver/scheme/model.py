@@ -123,9 +123,9 @@ def speed_part(system: SpinningSystem, blocks: Blocks, dt: float) -> SpeedPart:
 
 
 def at_speed(model: Model, part: SpeedPart, speed: float, angles: Angles) -> Model:
-    """Return the model at another speed. It is screened only if `model` is.
+    """Return the model at another speed, with the same time step. It is screened only if `model` is.
 
-    - part: made by `speed_part` at that speed.
+    - part: made by `speed_part` at that speed with the time step of `model`.
     - speed: in rad/s.
     - angles: tables of the steps to make.
     """
@@ -136,17 +136,17 @@ def at_speed(model: Model, part: SpeedPart, speed: float, angles: Angles) -> Mod
 
 
 def angle_tables(system: SpinningSystem, theta: FloatArray, section: float = 0.0) -> Angles:
-    """Tabulate cosine and sine of the blisk's angle and of its orders, for the steps of a turn or of a part of a turn.
+    """Tabulate cosine and sine of theta, and of order (theta - phase) of the surface's harmonics, at steps of a turn.
 
-    `theta` (steps + 2,) are the angles of steps 0, ..., steps and -1 in rad. `section` is the time from step 0 to theta
-    = 0 mod 2 pi, in steps.
+    The steps may be a part of a turn. `theta` (steps + 2,) are the angles of steps 0, ..., steps and -1 in rad.
+    `section` is the time from step 0 to theta = 0 mod 2 pi, in steps.
     """
     orders = np.multiply.outer(theta, system.surface.order) - system.surface.order * system.surface.phase
     return frozen(Angles(theta, np.cos(theta), np.sin(theta), np.cos(orders), np.sin(orders), section))
 
 
 def new_state(model: Model) -> State:
-    """Return a state at rest: undeformed and unworn, with all works zero."""
+    """Return a state at rest: undeformed and unworn, with all works zero. Gaps of earlier steps are NaN, unknown."""
     return State(
         buffer=MotionBuffer(*(aligned(np.zeros((3, *each.shape))) for each in new_motion(model))),
         contact=new_contact_work(len(model.tip_compliance), len(model.casing_compliance)),
@@ -175,7 +175,10 @@ def _scratch(model: Model) -> Scratch:
 
 
 def new_contact_work(tip_coordinates: int, c: int) -> ContactWork:
-    """Allocate the arrays of the contact step for `tip_coordinates` tip coordinates and `c` casing modes."""
+    """Allocate the arrays of the contact step for `tip_coordinates` = 3 n_blades, and `c` casing modes.
+
+    The gaps of earlier steps are NaN, unknown.
+    """
     m = tip_coordinates // 3
     return ContactWork(
         casing=with_zeros(np.zeros(c)), bounds=np.full(padded(m), np.inf), psi=np.zeros(m), gap=np.zeros(m),

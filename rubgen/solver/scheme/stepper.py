@@ -88,7 +88,7 @@ class Stepper:
         """Read-only copies of q: `before` at the step before the next turn, `now` at its first step.
 
         Use `set_coordinates` to change them. `after` is valid only after a turn that has failed: it is what the failed
-        step has computed. `change` is half the difference of the first two; it is not valid at a start.
+        step has computed. `change` is (now - before) / 2, which is not the d of `Coordinates`.
         """
         before, now, after = (self.blocks.to_q(motion.z) for motion in self.state.motions)
         for q in (before, now, after):
@@ -96,7 +96,10 @@ class Stepper:
         return Coordinates(before, now, after, (now - before) / 2)
 
     def set_coordinates(self, before: FloatArray, now: FloatArray) -> None:
-        """Set q (n,) at the step before the next turn (`before`) and at its first step (`now`)."""
+        """Set q (n,) at the step before the next turn (`before`) and at its first step (`now`).
+
+        The gaps of earlier steps become unknown. Works, wear and touches stay.
+        """
         motions = self.state.motions
         for motion, q in zip(motions[:2], (before, now), strict=True):
             motion.z[:] = self.blocks.to_z(q)
@@ -108,12 +111,12 @@ class Stepper:
         """Continue at another speed. The next turn has as many steps as `theta` has angles, less two.
 
         The state stays the same, because M and dt are the same. The change of stored energy with K is added to the
-        works.
+        works. `result.taps` becomes a new array of zeros.
 
         - part: made by `speed_part` at this speed.
         - speed: in rad/s.
         - theta (steps + 2,): angles of steps 0, ..., steps and -1, rad.
-        - section: time from step 0 to the Poincare section in steps, if this part of a turn contains it.
+        - section: time from step 0 to the Poincare section in steps; 0 in a part that does not begin at the section.
         """
         old, angles = self.model.energy.K, angle_tables(self.system, theta, section)
         self.model = at_speed(self.model, part, speed, angles)
@@ -128,7 +131,8 @@ class Stepper:
     def grow_loads(self, start: float, end: float) -> None:
         """Set the growing loads of faults for the next turn, from `start` to `end` in s from the start of the record.
 
-        The loads are linear in time within a turn: a sudden load therefore grows over one turn.
+        The loads are linear in time within a turn or part of a turn: a sudden load therefore grows over it. Without
+        growing loads nothing is done.
         """
         forces = self.system.turning
         if forces is None or not forces.growing:
@@ -150,10 +154,11 @@ class Stepper:
         """Integrate one turn. Its outputs are in `result`, `touches`, `snapshots` and `end`.
 
         - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., steps, m; None is 0.
-        - clock: number of the first step, for touches.
+        - clock: number of the first step, from which the times of touches and arrivals are counted.
         - recording: False leaves out taps, orbit and arrivals. The motion is the same.
 
-        Returns a code of `step_kernels`, the step where the turn ended, and the number of touches in `touches.ended`.
+        Returns a code of `step_kernels`, the step that failed or the number of steps, and the number of touches in
+        `touches.ended`.
         """
         width = np.zeros(self.steps + 2) if opening is None else opening
         return next(self.run_turns(width[None], clock, recording=recording))
@@ -164,10 +169,10 @@ class Stepper:
         """Integrate several turns in one call of the kernel. Yields the result of `run_turn` for each turn.
 
         `result`, `touches`, `snapshots` and `end` belong to the turn that was yielded last; its frames are new arrays.
-        `state` is the state after the last turn, and the arrivals of timing probes belong to the last turn. The turns
-        end after a turn that fails.
+        All turns are integrated before the first is yielded: `state` is the state after the last turn, and the arrivals
+        of timing probes belong to the last turn. The turns end after a turn that fails.
 
-        - opening (turns, steps + 2): as in `run_turn`, a row for each turn. More than TURNS rows only take more memory.
+        - opening (turns, steps + 2): as in `run_turn`, a row for each turn. More than TURNS rows are hardly faster.
         - clock, recording: as in `run_turn`.
         """
         touches, snapshots, results, ends = self._rows(len(opening))

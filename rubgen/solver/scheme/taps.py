@@ -92,7 +92,7 @@ class TapLayout:
     def product(self, source: str) -> Product:
         """Return the functionals of one source in the form of the kernels.
 
-        It has a line for each row of eight that is used.
+        It has a line for each row of eight sums that is used. `source` is one of SOURCES.
         """
         placed = self.rows[source]
         lines, parts, first = [], [np.zeros((0, LANES))], 0
@@ -116,7 +116,7 @@ def direction(angle_deg: float) -> tuple[float, float]:
 
 
 def along(angle_deg: float, first: int, second: int) -> FloatArray:
-    """Return the row of a linear functional on the shaft's signals: the part of a vector along a direction (deg).
+    """Return the row (8,) of a functional on the shaft's signals: the part of a vector along a direction, deg from X.
 
     `first` and `second` are the numbers of the vector's X and Y part in the signals.
     """
@@ -131,7 +131,7 @@ def only(signal: int) -> FloatArray:
 
 
 def polar_rows(surface: Surface, angle: float) -> list[FloatArray]:
-    """Return rows for radial and tangential displacement and d(radial)/d(angle) at a polar angle, per casing mode."""
+    """Return rows (n_casing,) for radial and tangential displacement and d(radial)/d(angle) at a polar angle, rad."""
     cosine, sine = np.cos(angle), np.sin(angle)
     n_casing = len(surface.mode_displacement)
     at, aside = np.zeros((2, n_casing)), np.zeros((2, 2, n_casing))
@@ -223,7 +223,8 @@ def build_taps(
     - laws: its dt and the limit of the tips are used.
     - theta (steps,): angles of a turn's steps, rad.
 
-    Raises ValueError for a blade that does not exist, and for strain or drive of a system without a machine.
+    Raises ValueError for a blade that does not exist, and for strain or drive of a system without a machine. Raises
+    KeyError for a `HousingAcceleration`, which the solver does not record.
     """
     layout = TapLayout(system, surface, blocks, laws.dt)
     for output, tap in enumerate(sampled_taps(taps)):

@@ -17,7 +17,10 @@ from rubgen.taps import DEFAULT_TAPS, Tap
 
 
 class ChangingSystem:
-    """A system at the speeds of an operation: `systems` at Chebyshev speeds, `start` at the first instant."""
+    """A system at the speeds of an operation: `systems` at Chebyshev speeds, `start` at `rotation.start`.
+
+    That is the speed before the record of a run-up or coast-down, and the mean of a fluctuating speed.
+    """
 
     def __init__(self, model: SpeedModel, operation: Operation) -> None:
         self.model, self.operation, self.rotation = model, operation, operation.rotation
@@ -42,9 +45,10 @@ class ChangingSystem:
         return steps
 
     def driver(self, contact: ContactLaw, steps: int, taps: tuple[Tap, ...] = DEFAULT_TAPS) -> ChangingDriver:
-        """Return a driver in the rub-free motion at the first instant.
+        """Return a driver at the beginning of the settle turns, in the rub-free motion of `start`.
 
-        `steps` is the number in a turn at the highest speed.
+        `steps` is the number in a turn at the highest speed, from the method `steps`. Raises ValueError for automatic
+        settle turns of an unstable system.
         """
         push = largest_acceleration(self.rotation)
         pushed = [self.model.at_speed(speed, push) for speed in (self.rotation.slowest, self.rotation.fastest)]

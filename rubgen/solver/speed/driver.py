@@ -48,8 +48,8 @@ class SpeedDriver(Protocol):
         """Run turns one after another. The stepper's outputs belong to the turn that was yielded last.
 
         - numbers: numbers of the turns; negative before the record.
-        - opening: function of the turns since the start (any,), also fractions; it returns the opening of the surface,
-          m.
+        - opening: function of the turns since the start of the run (any,), also fractions; it returns the opening of
+          the surface, m.
         - recording: whether taps, orbit and arrivals are recorded.
 
         A turn that fails is yielded too, with its code. No turn may be taken after it.
@@ -125,9 +125,10 @@ class ChangingDriver:
         stepper.take_snapshots([NEVER])
 
     def begin(self, motion: RubFreeMotion) -> None:
-        """Put the stepper at the start of the settle turns, in `motion`: the rub-free motion of the speed there.
+        """Put the stepper at the start of the settle turns, in a rub-free motion.
 
-        Its works are set to zero, except for the works of the supports.
+        `motion` belongs to `rotation.start`: the speed there, or the mean of a fluctuating speed. The stepper's works
+        are set to zero, except for the works of the supports.
         """
         start = np.array([self._time_of(-self.settle)])
         speed = self.rotation.speed(start)

@@ -43,8 +43,9 @@ def set_motion(stepper: Stepper, motion: RubFreeMotion, start_angle: float = 0.0
 def start_opening(system: SpinningSystem, inset: float = 0.0) -> float:
     """Return the opening of the surface, m, with which every tip of the rub-free motion has the start clearance.
 
-    It is added to the radius of the surface, and 0 where the clearance is large enough. `inset` (m) is how far the
-    surface may lie inside the smooth curve.
+    The start clearance is 2.5e-4 of the tip radius, from the narrowest radius of the surface. The opening is added to
+    the radius of the surface; it is 0 where the clearance is large enough. `inset` (m) is how far the surface may lie
+    inside the smooth curve.
     """
     motion = rub_free_motion(system)
     tips = motion.over_turn()[:, : 3 * system.n_blades].reshape(-1, system.n_blades, 3) + system.tip_static

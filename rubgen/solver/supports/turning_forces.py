@@ -13,12 +13,13 @@ from rubgen.reduction.model import TurningForces
 def turning_force(forces: TurningForces, speed: float, theta: AnyArray, u: AnyArray, v: AnyArray) -> AnyArray:
     """Return the force (..., 2) in N on O_d in the turning frame: -k_a Q u - c_a Q v_abs and the laws of the support.
 
-    It is piecewise analytic, so that complex steps differentiate it.
+    v_abs = v + Omega e_z x u. Gravity and loads of faults are not contained. The force is piecewise analytic, so that
+    complex steps differentiate it.
 
     - forces: constants of the forces.
     - speed: Omega, rad/s.
     - theta (...): angle of the blisk, rad.
-    - u, v (..., 2): displacement, m, and velocity, m/s, of O_d in the turning frame.
+    - u, v (..., 2): displacement of O_d, m, and its rate of change as seen in the turning frame, m/s.
     """
     absolute = v + speed * np.stack([-u[..., 1], u[..., 0]], axis=-1)
     f = -_uneven(theta, forces.stiffness * u + forces.damping * absolute)
@@ -32,7 +33,7 @@ def force_derivatives(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the derivatives by u and by v (..., 2, 2) of `turning_force`, by a complex step.
 
-    The parameters are as in `turning_force`.
+    Entry [..., i, j] is d f_i / d u_j, or d f_i / d v_j. The parameters are as in `turning_force`.
     """
     by_u, by_v = [], []
     for i in range(2):

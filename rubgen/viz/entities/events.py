@@ -17,7 +17,7 @@ MOST_PASSAGES = 4000
 
 
 def shown_touches(replay: Replay, *, full: bool) -> IntArray:
-    """Return the numbers of the touches that are drawn one by one.
+    """Return the ascending indices, in `replay.touches`, of the touches that are drawn one by one.
 
     They are all touches with `full`, else the 2,000 with the largest impulse.
     """
@@ -30,7 +30,8 @@ def shown_touches(replay: Replay, *, full: bool) -> IntArray:
 def send_touches(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
     """Send angle, impulse and blade of touches at their start, and their map. Nothing is sent without contact.
 
-    The touches that are sent one by one are chosen by `shown_touches` with the same `full`. The map has all touches.
+    A touch that began before the first sample is at time 0. The touches that are sent one by one are chosen by
+    `shown_touches` with the same `full`. The map has all touches.
     """
     touches, shown = replay.touches, shown_touches(replay, full=full)
     if not shown.size:

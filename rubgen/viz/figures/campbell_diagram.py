@@ -73,7 +73,8 @@ def crossings(speeds: FloatArray, hertz: FloatArray, order: float) -> FloatArray
     """Return the speeds (any,) in rev/min at which a frequency meets the order `order` of the rotation.
 
     `hertz` (speeds,) are the frequencies in Hz at `speeds` (speeds,) in rev/min, ascending; between two speeds they are
-    linear. The frequency must be above the order at one speed and below it at the next; NaN does not count.
+    linear. A meeting is counted where the frequency crosses the order, upward or downward, between two neighbouring
+    speeds. It is not counted where both are equal exactly at one of `speeds`, or where a frequency is NaN.
     """
     above = hertz - order * speeds / 60
     at = np.flatnonzero(above[:-1] * above[1:] < 0)

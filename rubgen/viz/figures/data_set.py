@@ -87,7 +87,10 @@ def scale_of(key: str) -> float:
 
 
 def axis_text(key: str) -> str:
-    """Return the label of an axis for the column `key`: its meaning, with the displayed unit."""
+    """Return the label of an axis for the column `key`: the beginning of its meaning, with the displayed unit.
+
+    `key` is a key of `[vary]` or `contact_impulse_per_turn_n_s`.
+    """
     if key == "contact_impulse_per_turn_n_s":
         return "Contact impulse a turn, N s"
     entry = next(entry for entry in PARAMETERS if entry.key == key)

@@ -36,8 +36,8 @@ SECTORS = 90
 def overview(run: Run) -> Figure:
     """Draw a run in four panels: orbit with section, casing acceleration, spectrum and polar map of the contact force.
 
-    Orbit, spectrum and map show the true response, the waveform the recorded channel. Raises ValueError for a run
-    without a recording.
+    Orbit, spectrum and map show the true response. The acceleration is the recorded channel `casing_acc_0`; without it
+    the first channel is drawn in its place. Raises ValueError for a run without a recording.
     """
     if run.recording is None:
         raise NoPictureError(f"{run.scenario.run_id} has status {run.response.status.code}: there is nothing to show")
@@ -134,9 +134,10 @@ def _force_spectrum(axes: Axes, run: Run) -> None:
 
 
 def orbit_section(replay: Replay) -> Figure:
-    """Draw the recorded orbit of the disk centre over the last 30 turns, and its Poincare section, enlarged.
+    """Draw the recorded orbit of the disk centre over the last 30 turns, and the points once a turn, enlarged.
 
-    Raises ValueError where no pair of proximity probes was recorded.
+    The points once a turn, the Poincare section, are of the whole recording. Raises ValueError where no pair of
+    proximity probes was recorded.
     """
     orbit, once = shaft_orbit(replay), poincare_section(replay)
     if orbit is None or once is None:
