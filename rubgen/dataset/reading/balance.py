@@ -31,12 +31,11 @@ def balance_table(runs: pd.DataFrame, recipe: Recipe) -> pd.DataFrame:
 
         p(no rub) = s_0 / (s B),   p(c) = (1 / B - p(no rub)) s_c / (sum of s over rubbing classes)
 
-    Of a candidate that rubs in the place of a run without rub the class is not computed: s counts it, the sum of s over
-    rubbing classes does not. Every candidate is an independent draw, and a run stops at the first candidate in its
-    class, so these ratios tend to the shares (Wald's equation). Candidates that are not possible do not count. The
-    weight is p(c) over the share of class c among the good runs of the split. A merged set has separate rows for each
-    source, and a first column `source` with the digits of `merged_from`. Raises UserError for a set without
-    `[balance]`.
+    A candidate that rubs where no rub is wanted may get no class: s counts it, the sum over rubbing classes does not.
+    Every candidate is an independent draw, and a run stops at the first candidate in its class, so these ratios tend to
+    the shares (Wald's equation). Candidates that are not possible do not count. The weight is p(c) over the share of
+    class c among the good runs of the split. A merged set has separate rows for each source, and a first column
+    `source` with the digits of `merged_from`. Raises UserError for a set without `[balance]`.
     """
     import pandas as pd
 
