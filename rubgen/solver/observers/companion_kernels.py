@@ -71,7 +71,9 @@ def renormalise(
 def run_companion(
     model: Model, opening: FloatArray, snapshots: Snapshots, closeness: float, state: State, growth_out: FloatArray
 ) -> int:
-    """Run the companion through the run's last turn. Return a code of `step_kernels`.
+    """Run the companion through the run's last turn. Return OK or the code of a failed step (`step_kernels`).
+
+    A failed step ends it: the remaining numbers of `growth_out` are then not written.
 
     - opening (steps + 2,): added to the radius of the surface, m.
     - snapshots: of the run's turn.

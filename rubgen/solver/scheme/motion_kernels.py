@@ -41,7 +41,7 @@ def motion_at(buffer: MotionBuffer, row: int) -> Motion:
 
 @inlined_kernel
 def put_in_order(buffer: MotionBuffer, first: int) -> None:
-    """Turn over the rows of the buffer, so that row `first` (0, 1 or 2) comes first, and the next row second."""
+    """Turn over the rows of the buffer: row `first` (0, 1 or 2) comes first, then the next rows, with 0 after 2."""
     second, third = (first + 1) % 3, (first + 2) % 3
     for i in range(buffer.z.shape[1]):
         z = buffer.z[first, i], buffer.z[second, i], buffer.z[third, i]

@@ -92,7 +92,10 @@ class Snapshots(NamedTuple):
 
 @inlined_kernel
 def keep_snapshot(snapshots: Snapshots, number: int, before: Motion, now: Motion, work: ContactWork) -> int:
-    """Copy the motions `before` and `now`, and the gaps, into snapshot `number`. Return the next number."""
+    """Copy z of the motions `before` and `now`, and their gaps, into snapshot `number`. Return the next number.
+
+    The gaps are rows 0 and 1 of `work.step_gaps`: `shift_gaps` must have been called.
+    """
     for i in range(now.z.shape[0]):
         snapshots.z[number, 0, i] = before.z[i]
         snapshots.z[number, 1, i] = now.z[i]

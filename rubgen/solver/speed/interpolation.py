@@ -67,8 +67,8 @@ class SpeedInterpolation:
     def at(self, speeds: FloatArray, accelerations: FloatArray) -> Iterator[SpeedPart]:
         """Yield the part at each speed (rad/s) and acceleration (rad/s2), both (any number,).
 
-        The parts of a call stay valid during the next call. The call after that overwrites them: new memory for each
-        call would take longer than the numbers.
+        The speeds must lie between the first and the last of `self.speeds`. The parts of a call stay valid during the
+        next call. The call after that overwrites them: new memory for each call would take longer than the numbers.
         """
         weights, count = lagrange_weights(self.speeds, speeds), len(speeds)
         rows = self._next_room(count)

@@ -170,6 +170,8 @@ def push_supports(
 ) -> bool:
     """Add the effect of the support force f and of gravity at step n to `after`. Return False beyond a law's limit.
 
+    The limit is compared with the place of O_d at step n, before anything is changed.
+
     - speed: Omega, rad/s.
     - step: number of step n in the turn or part of a turn.
     - cosine, sine: cosine and sine of theta at step n.
@@ -265,7 +267,7 @@ def add_support_works(
     """Add the works of one step to `state.works`, J. Return the sum of their absolute values, J.
 
     Works of uneven springs and dampers, of the laws, of gravity, and of the loads of faults are each force times d.
-    LAWS_LOSS is the force of the laws times dt v_abs.
+    LAWS_LOSS is the force of the laws times dt v_abs; it is not in the sum.
 
     - speed: Omega, rad/s.
     - cosine, sine: cosine and sine of theta at step n.

@@ -72,7 +72,9 @@ def casing_radius(machine: Machine, angle: FloatArray) -> FloatArray:
 def casing_curve(
     machine: Machine, frames: MotionFrames, angle: FloatArray, factor: float, closed: FloatArray
 ) -> FloatArray:
-    """Return drawn points (frames, stations, 2) of the casing's deformed inner surface, m. Nodes are joined linearly.
+    """Return drawn points (frames, stations, 2) of the casing's deformed inner surface, m.
+
+    The displacement is linear between the casing's nodes.
 
     - angle (stations,): polar angles, rad.
     - factor: factor by which deviations from the tip circle are enlarged.
@@ -116,7 +118,7 @@ def plate_mesh() -> Mesh:
 def plate_shapes(machine: Machine, factor: float) -> FloatArray:
     """Return matrices (stations, 3, 3) that stretch and turn `plate_mesh` into the plates of the casing at rest.
 
-    `factor` is as in `undeformed_curve`.
+    The stations are `casing_angles()`. `factor` is as in `undeformed_curve`.
     """
     curve = undeformed_curve(machine, casing_angles(), factor)
     chord = (np.roll(curve, -1, axis=0) - np.roll(curve, 1, axis=0)) / 2
@@ -152,7 +154,10 @@ def shaft_mesh(disk: Disk, reach: float) -> Mesh:
 
 
 def revolved(profile: list[tuple[float, float]]) -> Mesh:
-    """Revolve a closed profile of points (radius, z), m, counter-clockwise, about Z. The normals of a side are flat."""
+    """Revolve a closed profile of points (radius, z), m, about Z. Each side of the profile has its own normals.
+
+    The points go counter-clockwise, with the radius to the right and z upward: the normals then point outward.
+    """
     angle = 2 * np.pi * np.arange(ROUND) / ROUND
     parts = []
     for (r1, z1), (r2, z2) in zip(profile, profile[1:] + profile[:1], strict=True):

@@ -23,9 +23,9 @@ HIGHEST_ORDER = 6
 def waterfall(replay: Replay, speeds_rpm: tuple[float, float] | None = None) -> Figure:
     """Draw full spectra of the orbit over the speed: forward orders to the right, backward orders to the left.
 
-    Each line belongs to 16 turns at equal angles. A circle in the sense of rotation is order 1, a circle against it
-    order -1. The first touch is marked, or a line of text says where it is. `speeds_rpm` is the shown range in rev/min;
-    None shows all speeds. Raises ValueError as `whirl_by_turn` does.
+    Each line belongs to 16 turns at equal angles; up to 15 last turns are left out. A circle in the sense of rotation
+    is order 1, a circle against it order -1. The first touch is marked, or a line of text says where it is.
+    `speeds_rpm` is the shown range in rev/min; None shows all speeds. Raises ValueError as `whirl_by_turn` does.
     """
     speeds, turns = whirl_by_turn(replay)
     count = len(turns) // BLOCK_TURNS
