@@ -48,10 +48,13 @@ def run_keys() -> dict[str, Key]:
 
 
 def short(key: Key) -> str:
-    """The first sentence of a description, with unit, allowed values and default."""
+    """The first sentence of a description, with unit, allowed values and default.
+
+    A key that a profile needs has no default there, although the table of all profiles has one.
+    """
     sentence = key.meaning.split(". ", maxsplit=1)[0].rstrip(".")
     without = re.search(r"Without it (\d[\d,]*)", key.meaning)
-    default = without[1] if without else key.default if key.name in NOT_GIVEN else ""
+    default = without[1] if without else key.default if key.name in NOT_GIVEN and "needs it" not in sentence else ""
     range_ = ", ".join(filter(None, (f"in {key.unit}" if key.unit else "", key.allowed)))
     return "; ".join(filter(None, (sentence, range_, f"{default} when not given" if default else ""))) + "."
 

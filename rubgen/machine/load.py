@@ -17,7 +17,7 @@ from rubgen.machine.toml_file import check_kind, named_toml, names_toml, read_to
 PRESETS = Path(__file__).parent / "presets"
 FOR_COMPARISON = "zeng2019-as-computed"
 """The preset that repeats the paper's discretisation; a recipe that names it is told that it is not for data."""
-ABOUT_MACHINE = re.compile(r"(?:^|: )machine .*?: (its .*)")
+ABOUT_MACHINE = re.compile(r"(?:^|: )machine .*?: (its .*)|^((?:disk|blades|casing|disk_support|damping)\.\w+ = .*)")
 
 
 def preset_names() -> list[str]:
@@ -41,11 +41,11 @@ def load_machine(name_or_path: str, folder: Path | None = None) -> Machine:
 
 @contextmanager
 def file_named(name_or_path: str, folder: Path | None = None) -> Iterator[None]:
-    """Name the machine's file in a UserError of the block that contains "machine <name>: its ...".
+    """Name the machine's file in a UserError of the block: "machine <name>: its ...", or one that begins with its key.
 
-    It is raised as "<file>: its ...", without the text before. The code that builds the model of a machine knows only
-    the machine's name. For a preset, and for any other text, the error is unchanged. `name_or_path` and `folder` are
-    the arguments that `load_machine` got.
+    It is raised as "<file>: its ...", without the text before, or as "<file>: casing.nodes = ...". The code that builds
+    the model of a machine knows no file. For a preset, and for any other text, the error is unchanged. `name_or_path`
+    and `folder` are the arguments that `load_machine` got.
     """
     try:
         yield
@@ -53,7 +53,7 @@ def file_named(name_or_path: str, folder: Path | None = None) -> Iterator[None]:
         about = ABOUT_MACHINE.search(str(error))
         if not about or not names_toml(name_or_path):
             raise
-        raise UserError(f"{toml_path(name_or_path, folder)}: {about[1]}") from error
+        raise UserError(f"{toml_path(name_or_path, folder)}: {about[1] or about[2]}") from error
 
 
 def machine_id(machine: Machine) -> str:

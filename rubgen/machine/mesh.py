@@ -17,13 +17,8 @@ def disk_nodes(disk: Disk) -> int:
 
 
 def pitch_problem(disk: Disk, blades: BladeRow) -> str | None:
-    """Return a problem if the blades do not meet corner nodes of the rim, or if there is a single blade; else None.
-
-    The pull of a single blade would not be balanced.
-    """
+    """Return a problem if the blades do not meet corner nodes of the rim; else None."""
     elements, count = disk.circumferential_elements, blades.count
-    if count < 2:
-        return f"blades.count = {count}: a blisk needs at least 2 equal blades; raise it"
     if elements % count:
         return (
             f"disk.circumferential_elements = {elements}: must be a multiple of blades.count = {count}, "

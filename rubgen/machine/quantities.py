@@ -191,7 +191,7 @@ CasingShare = Annotated[float, real(ge=-1e3, le=1e3, usual=Usual(-10, 10, "casin
 FrameOrder = Annotated[int, _whole(ge=0, le=100)]
 
 # Numbers of parts, of the mesh and of modes.
-BladeCount = Annotated[int, _whole(ge=1, le=1000)]
+BladeCount = Annotated[int, _whole(ge=2, le=1000)]
 BallCount = Annotated[int, _whole(ge=3, le=200)]
 BladeElements = Annotated[int, _whole(ge=1, le=200)]
 RadialElements = Annotated[int, _whole(ge=1, le=200)]

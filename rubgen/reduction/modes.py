@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-from scipy.linalg import eig, eigh
+from scipy.linalg import block_diag, eig, eigh
 from scipy.optimize import linear_sum_assignment
 
 from rubgen.arrays import ComplexArray, FloatArray
@@ -179,6 +179,43 @@ def _support_kinds(model: ReducedModel, shapes: ComplexArray) -> list[str | None
     table = np.array(list(shares.values()))
     largest = np.argmax(table, axis=0)
     return [names[row] if table[row, mode] >= LEAST_SHARE else None for mode, row in enumerate(largest)]
+
+
+def lateral_springs(model: ReducedModel) -> tuple[float, ...]:
+    """Return the lateral stiffness of the disk support along X and along Y, N/m; one value where they are equal."""
+    k, uneven = float(model.springs[0]), model.machine.disk_support.lateral_stiffness_anisotropy
+    return (k * (1 + uneven), k * (1 - uneven)) if uneven else (k,)
+
+
+def critical_speeds_rpm(model: ReducedModel) -> tuple[float, ...]:
+    """Return the critical speeds in rev/min of the `lateral_springs`: undamped, without contact or laws of the support.
+
+    With even springs it is `ReducedModel.critical_speed_rpm`. Uneven springs k_m + k_a along X and k_m - k_a along Y
+    join the forward whirl, which stands still in the turning frame, and the backward one, which turns there with -2
+    Omega. With x of O_d in q_0, and x + i y of O_d in q_2 e^(-2 i theta), free whirl is
+
+        (K_0 + Omega^2 A) q_0 + k_a T_x^T (T_x + i T_y) q_2 = 0
+        2 (K_0 + Omega^2 (A - 4 M - 4 i G)) q_2 + k_a (T_x - i T_y)^T T_x q_0 = 0
+
+    K_0 is the stiffness at rest with the springs k_m, A that of the speed. The motion is along X where both parts of
+    O_d have one sign, else along Y. Of several speeds the one is taken whose mode has most motion of O_d. Whirls of
+    other orders, which unequal blades add, are left out.
+    """
+    uneven = model.machine.disk_support.lateral_stiffness_anisotropy
+    if not uneven:
+        return (float(model.critical_speed_rpm),)
+    blisk, size, x = model.blisk, len(model.blisk.M), 3 * model.machine.blades.count
+    rest, k_a = model.stiffness(0.0), uneven * float(model.springs[0])
+    stiffness = block_diag(rest, 2 * rest).astype(np.complex128)
+    for row, factor in ((size + x, 1.0), (size + x + 1, 1j)):
+        stiffness[x, row] += factor * k_a
+        stiffness[row, x] += np.conj(factor) * k_a
+    with one_blas_thread():
+        inverse_squares, shapes = eigh(-block_diag(blisk.A, 2 * (blisk.A - 4 * blisk.M - 4j * blisk.G)), stiffness)
+    forward, backward = shapes[x], shapes[size + x] + 1j * shapes[size + x + 1]
+    along_x = (backward * forward.conj()).real > 0
+    found = [np.argmax(np.where((inverse_squares > 0) & way, np.abs(forward), 0.0)) for way in (along_x, ~along_x)]
+    return tuple(rev_per_min(float(1 / np.sqrt(inverse_squares[each]))) for each in found)
 
 
 def synchronous_speeds(model: ReducedModel, stiffness: FloatArray) -> FloatArray:

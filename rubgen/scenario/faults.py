@@ -6,6 +6,7 @@ The tables are made from the fields of each kind (`rubgen.machine.faults.registr
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import MISSING, fields, replace
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -17,6 +18,7 @@ from rubgen.machine.faults.fault import Fault
 from rubgen.machine.faults.registry import FAULTS, AnyFault
 from rubgen.machine.problems import nearest, validated
 from rubgen.machine.quantities import StrictModel, about
+from rubgen.machine.schema_nodes import Path
 from rubgen.machine.sentences import toml_text
 from rubgen.scenario.distributions import Choice, Constant, Distribution
 from rubgen.scenario.scenario import Scenario
@@ -139,29 +141,32 @@ def with_given_faults(scenario: Scenario, kinds: str | Sequence[str], values: Ma
         if kind in already or named.count(kind) > 1:
             raise UserError(f"fault = {kind!r}: the machine has this fault already; name it once")
     for key in values:
-        having = [kind for kind in named if key in _keys(kind)]
+        having = [kind for kind in named if key in keys_of_kind(kind)]
         if len(having) > 1:
             raise UserError(f"{key}: {' and '.join(having)} have this key; write a recipe, or make two runs")
         if not having:
-            owners = " or ".join(kind for kind in FAULTS if key in _keys(kind))
+            owners = " or ".join(kind for kind in FAULTS if key in keys_of_kind(kind))
             raise UserError(f"{key}: a key of the fault {owners}; name that fault too, or leave the key out")
     faults = tuple(
-        validated("", {"kind": kind, **_of_kind(kind, values)}, _FAULT, lambda path: path or ("fault",))
-        for kind in named
+        validated("", {"kind": kind, **_of_kind(kind, values)}, _FAULT, partial(_place, kind)) for kind in named
     )
     return _having(scenario, (), faults) if named or already else scenario
 
 
-def _keys(kind: str) -> list[str]:
+def _place(kind: str, path: Path) -> Path:
+    return ("fault", kind, *path)
+
+
+def keys_of_kind(kind: str) -> list[str]:
     """Return the keys of a kind, except for `kind`."""
     return [field.name for field in fields(cast("Any", FAULTS[kind]))[1:]]
 
 
 def _of_kind(kind: str, values: Mapping[str, object]) -> dict[str, object]:
-    return {key: values[key] for key in _keys(kind) if key in values}
+    return {key: values[key] for key in keys_of_kind(kind) if key in values}
 
 
-FAULT_KEYS = tuple(dict.fromkeys(key for kind in FAULTS for key in _keys(kind)))
+FAULT_KEYS = tuple(dict.fromkeys(key for kind in FAULTS for key in keys_of_kind(kind)))
 """The keys of all kinds."""
 
 

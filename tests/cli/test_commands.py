@@ -195,6 +195,10 @@ BAD = {
     "inf": (["simulate", "--speed-rpm", "inf"], "speed_rpm = inf: must be a finite number"),
     "negative clearance": (["simulate", "--clearance-m", "-1e-4"], "clearance_m = -0.0001: must be at least 1e-07"),
     "lobes": (["simulate", "--lobes", "6"], "lobes = 6: 11 casing modes carry the orders 0 to 5"),
+    "key of another fault": (
+        ["simulate", "--fault", "crack", "--depth", "3"],
+        "--depth: unknown option of rubgen simulate; did you mean --width-m? the fault crack has --crack-loss, --angle",
+    ),
     "few turns": (
         ["simulate", "--record-turns", "60"],
         "record_turns = 60: labels need at least 500 turns, the Lyapunov exponent too; raise it",

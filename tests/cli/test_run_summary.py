@@ -35,3 +35,14 @@ def test_a_rub_ends_where_it_stops_and_not_where_the_record_does(rub_run, rubs, 
     told = summary(rub_run, *rubs)
     assert (told["onset of rub"], told["end of rub"]) == (onset, end)
     assert told["changes"] == f"{len(rubs) - 1} of rub or motion over the record"
+
+
+def test_a_fault_that_grows_has_a_first_touch_and_the_penetration_of_the_start(rub_run):
+    response = rub_run.response
+    growing = dict(run_summary(dataclasses.replace(rub_run, response=dataclasses.replace(response, grows=True))))
+    onset = response.events.start_step.min() * response.dt
+    assert growing["first touch"] == f"{onset:.4g} s after the start of the record"
+    assert growing["penetration"].endswith("had there been no contact at the start of the record")
+    steady = dict(run_summary(rub_run))
+    assert "first touch" not in steady
+    assert steady["penetration"].endswith("had there been no contact")

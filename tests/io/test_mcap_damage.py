@@ -51,6 +51,15 @@ def test_a_missing_file_is_named(tmp_path):
         read_mcap(tmp_path / "none.mcap")
 
 
+def test_a_file_of_another_format_is_not_called_damaged(tmp_path):
+    path = tmp_path / "run.parquet"
+    path.write_bytes(b"PAR1" + bytes(100))
+    with pytest.raises(
+        UserError, match=r"run\.parquet: a run is read from its \.mcap file alone; write one with rubgen"
+    ):
+        read_mcap(path)
+
+
 def test_a_recording_shorter_than_asked_is_found(rub_run, tmp_path):
     channels = dict(rub_run.recording.channels)
     channel = channels["casing_acc_90"]

@@ -5,7 +5,7 @@ import pytest
 
 from rubgen.errors import UserError
 from rubgen.machine import load_machine, preset_names
-from rubgen.machine.load import PRESETS, machine_id
+from rubgen.machine.load import PRESETS, file_named, machine_id
 
 TEXT = (PRESETS / "zeng2019.toml").read_text()
 BAD = {
@@ -23,7 +23,7 @@ BAD = {
         "lateral = 1.5",
         "damping.lateral = 1.5: must be at least 0 and below 1; 1.5 % is written 0.015",
     ),
-    "no blade": ("count = 36", "count = 0", "blades.count = 0: must be at least 1 and at most 1,000; change the value"),
+    "no blade": ("count = 36", "count = 0", "blades.count = 0: must be at least 2 and at most 1,000; change the value"),
     "no rim": (r"rim_radius_m = .*\n", "", "disk.rim_radius_m: this key is missing; add it"),
     "zero density": (
         r"density_kg_per_m3 = 7850.0",
@@ -98,3 +98,18 @@ def test_missing_machine_file_and_preset():
         load_machine("none.toml")
     with pytest.raises(UserError, match=r"'zeng': no such preset; did you mean zeng2019\?"):
         load_machine("zeng")
+
+
+@pytest.mark.parametrize("start", ["", "machine fan: its "])
+def test_a_problem_of_the_model_names_the_file_of_the_machine(tmp_path, start):
+    with pytest.raises(UserError) as error, file_named("own.toml", tmp_path):
+        raise UserError(f"{start}casing.nodes = 182: must be divisible by 4")
+    its = "its " if start else ""
+    assert str(error.value) == f"{tmp_path / 'own.toml'}: {its}casing.nodes = 182: must be divisible by 4"
+
+
+def test_a_problem_of_something_else_and_of_a_preset_stays_as_it_is(tmp_path):
+    for name, text in (("own.toml", "friction = 2: too much"), ("zeng2019", "casing.nodes = 182: no")):
+        with pytest.raises(UserError) as error, file_named(name, tmp_path):
+            raise UserError(text)
+        assert str(error.value) == text

@@ -123,9 +123,9 @@ BAD_KEYS = {
     "no fault": ({"parallel_m": 1e-5}, "parallel_m: a key of the fault misalignment; name that fault too, or leave"),
     "other fault": ({"fault": "bow", "bow_m": 1e-6, "parallel_m": 1e-5}, "parallel_m: a key of the fault misalignment"),
     "unknown key": ({"fault": "bow", "bw_m": 1e-6}, "bw_m: unknown key; "),
-    "missing": ({"fault": "bow"}, "bow_m: this key is missing; add it"),
-    "beyond": ({"fault": "bow", "bow_m": -1}, "bow_m = -1: must be at least 0"),
-    "no size": ({"fault": "misalignment"}, "fault: must have parallel_m or angular_deg"),
+    "missing": ({"fault": "bow"}, "fault.bow.bow_m: this key is missing; add it"),
+    "beyond": ({"fault": "bow", "bow_m": -1}, "fault.bow.bow_m = -1: must be at least 0"),
+    "no size": ({"fault": "misalignment"}, "fault.misalignment: must have parallel_m or angular_deg"),
 }
 
 

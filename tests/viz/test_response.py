@@ -7,7 +7,7 @@ import pytest
 
 from rubgen.machine import load_machine
 from rubgen.reduction import reduce
-from rubgen.reduction.modes import blisk_modes, synchronous_speeds
+from rubgen.reduction.modes import blisk_modes, critical_speeds_rpm, synchronous_speeds
 from rubgen.scenario import Reduction
 from rubgen.units import rad_per_s, rev_per_min
 from rubgen.viz.figures import critical_map, unbalance_response
@@ -40,6 +40,30 @@ def test_uneven_springs_whirl_backward_as_two_rotors_of_one_direction_do(rigid):
     found = whirl_of_unbalance(reduce(uneven, Reduction()), speeds)
     np.testing.assert_allclose(found[:, 0], (x + y) / 2, rtol=5e-5)
     np.testing.assert_allclose(found[:, 1], np.conj(x - y) / 2, rtol=5e-4)
+
+
+def test_uneven_springs_have_the_critical_speeds_at_which_the_orbit_is_largest(machine):
+    springs = replace(machine.disk_support, lateral_stiffness_anisotropy=0.1)
+    model = reduce(replace(machine, disk_support=springs), Reduction())
+    light = replace(model, dampers=1e-2 * model.dampers, beta=1e-2 * model.beta)
+    critical = critical_speeds_rpm(model)
+    assert len(critical) == 2
+    assert critical[1] < model.critical_speed_rpm < critical[0]  # along X, along Y
+    for each in critical:
+        speeds = each * np.linspace(0.99, 1.01, 81)
+        size = np.abs(whirl_of_unbalance(light, speeds)).sum(axis=1)
+        assert speeds[np.argmax(size)] == pytest.approx(each, rel=1e-3)
+
+
+def test_figures_of_uneven_springs_mark_both_critical_speeds(machine):
+    springs = replace(machine.disk_support, lateral_stiffness_anisotropy=0.1)
+    model = reduce(replace(machine, disk_support=springs), Reduction())
+    low, high = sorted(critical_speeds_rpm(model))
+    label = unbalance_response(model, (low - 10, high + 10)).axes[1].get_xlabel()
+    assert f"critical speeds, {low:,.0f} and {high:,.0f} rev/min" in label
+    drawn = [text.get_text() for text in critical_map(model).axes[0].texts]
+    assert f"{low:,.0f} rev/min" in drawn
+    assert f"{high:,.0f} rev/min" in drawn
 
 
 def test_a_rigid_blisk_is_critical_at_its_natural_frequency(rigid):

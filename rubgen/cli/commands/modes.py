@@ -7,8 +7,8 @@ from rubgen.errors import UserError
 from rubgen.machine import load_machine
 from rubgen.machine.load import file_named
 from rubgen.machine.published import BLISK_HZ, CASING_HZ, blisk_deviation, casing_deviation
-from rubgen.reduction import reduce
-from rubgen.reduction.modes import Mode, blisk_modes, casing_diameters
+from rubgen.reduction import ReducedModel, reduce
+from rubgen.reduction.modes import Mode, blisk_modes, casing_diameters, critical_speeds_rpm
 from rubgen.scenario import Reduction
 from rubgen.units import rad_per_s
 
@@ -20,9 +20,9 @@ HIGHEST_RPM = 60_000.0
 def modes_command(machine: str, speed_rpm: float, *, as_json: bool) -> int:
     """Reduce a machine and print its size, critical speed and modes at `speed_rpm`. Returns the exit code 0.
 
-    `machine` is the name of a preset or the path of a TOML file. `as_json` prints JSON, with all modes. At rest the
-    preset zeng2019 is compared with the published frequencies. Raises UserError for a speed outside 0 to 60,000
-    rev/min.
+    `machine` is the name of a preset or the path of a TOML file. `as_json` prints JSON, with all modes. Uneven springs
+    have a critical speed each, beside that of their mean. At rest the preset zeng2019 is compared with the published
+    frequencies. Raises UserError for a speed outside 0 to 60,000 rev/min.
     """
     if not 0 <= speed_rpm <= HIGHEST_RPM:
         raise UserError(f"--speed-rpm {speed_rpm:g}: must be from 0 to {HIGHEST_RPM:,.0f}")
@@ -36,6 +36,7 @@ def modes_command(machine: str, speed_rpm: float, *, as_json: bool) -> int:
         "full_dof": model.full_dof,
         "reduced_dof": model.reduced_dof,
         "critical_speed_rpm": float(model.critical_speed_rpm),
+        **_of_each_spring(model),
         "blisk_hz": blisk,
         "casing_hz": casing,
         "speed_rpm": speed_rpm,
@@ -58,6 +59,13 @@ def modes_command(machine: str, speed_rpm: float, *, as_json: bool) -> int:
     words = [f"{'':<10}{wave:>4}{damping:>8.2f} %" for wave in waves]
     _table("casing", casing, words, dict(enumerate(CASING_HZ, start=1)) if compared else {})
     return 0
+
+
+def _of_each_spring(model: ReducedModel) -> dict[str, float]:
+    """Return the critical speeds of the springs along X and Y; nothing where the springs are even."""
+    speeds = critical_speeds_rpm(model)
+    names = ("critical_speed_x_rpm", "critical_speed_y_rpm")
+    return dict(zip(names, speeds, strict=True)) if len(speeds) > 1 else {}
 
 
 def _table(title: str, frequencies: list[float], words: list[str], published: dict[int, float]) -> None:

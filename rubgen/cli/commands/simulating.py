@@ -24,7 +24,7 @@ from rubgen.output import save
 from rubgen.pipeline import Run, simulate
 from rubgen.progress import step
 from rubgen.scenario import Scenario, make_scenario
-from rubgen.scenario.faults import FAULT_KEYS, kind_of
+from rubgen.scenario.faults import FAULT_KEYS, FAULTS, keys_of_kind, kind_of
 from rubgen.scenario.vary import varied_values
 from rubgen.solver import Status
 from rubgen.solver.linear.reach import no_rub_warning
@@ -104,15 +104,20 @@ def _fault_keys(given: dict[str, str], options: dict[str, Any]) -> dict[str, Any
     for name, text in given.items():
         key = name.replace("-", "_")
         if key not in FAULT_KEYS:
-            known = [f"--{each.replace('_', '-')}" for each in (*options, *FAULT_KEYS)]
-            raise UserError(
-                f"--{name}: unknown option of rubgen simulate;{meant(f'--{name}', known)} see rubgen simulate --help"
-            )
+            hint = meant(f"--{name}", [_as_option(each) for each in (*options, *FAULT_KEYS)])
+            for kind in options["fault"] or ():
+                if kind in FAULTS:
+                    hint += f" the fault {kind} has {', '.join(map(_as_option, keys_of_kind(kind)))};"
+            raise UserError(f"--{name}: unknown option of rubgen simulate;{hint} see rubgen simulate --help")
         try:
             found[key] = float(text)
         except ValueError:
             found[key] = text
     return found
+
+
+def _as_option(key: str) -> str:
+    return f"--{key.replace('_', '-')}"
 
 
 def run_summary(run: Run) -> Iterator[tuple[str, str]]:
@@ -126,7 +131,10 @@ def run_summary(run: Run) -> Iterator[tuple[str, str]]:
         yield "fault", f"{kind_of(fault)}: {about.meaning} {value}"
     if run.labels is not None:
         yield "headline", headline(labels_to_json(run.labels), run.scenario.operation.profile)
-        yield from _contact(run.labels)
+        yield from _contact(run.labels, grows=run.response.grows)
+        if run.response.grows and run.labels.rub:
+            onset = float(run.response.events.start_step.min() * run.response.dt)
+            yield "first touch", f"{onset:.4g} s after the start of the record"
         yield from _motion(run.labels)
         yield from _speeds(run.labels)
 
@@ -142,13 +150,14 @@ def _course_of_run(run: Run) -> str:
     return f"{run.scenario.machine.name}, {speed}, {turns}, {response.steps_per_turn} steps a turn"
 
 
-def _contact(labels: Labels) -> Iterator[tuple[str, str]]:
+def _contact(labels: Labels, *, grows: bool) -> Iterator[tuple[str, str]]:
     amounts = labels.amounts
     penetration = amounts.free_penetration
+    when = " at the start of the record" if grows else ""  # a fault that grows changes it
     if not labels.rub:
         yield "rub", "no"
         if penetration is not None:
-            yield "smallest gap", f"{-penetration * 1e6:.4g} µm without contact"
+            yield "smallest gap", f"{-penetration * 1e6:.4g} µm without contact{when}"
         return
     touched, zones = counted(labels.blades_touched, "blade"), f"{labels.contact_zones} {_zones_word(labels)}"
     yield "rub", f"yes, {amounts.extent.value}: {touched}, {zones}"
@@ -158,7 +167,7 @@ def _contact(labels: Labels) -> Iterator[tuple[str, str]]:
     if amounts.severity is not None:
         yield "severity", f"{amounts.severity:.3g}, mean contact force over the blisk's weight"
     if penetration is not None:
-        yield "penetration", f"{penetration * 1e6:.4g} µm, had there been no contact"
+        yield "penetration", f"{penetration * 1e6:.4g} µm, had there been no contact{when}"
     if amounts.friction_work:
         yield "friction work", f"{amounts.friction_work:.4g} J a turn"
 

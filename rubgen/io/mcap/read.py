@@ -30,6 +30,8 @@ from rubgen.measurement.motion import MotionFrames
 from rubgen.scenario import Scenario
 
 MOST_NAMED = 3
+OTHER_FORMATS = (".parquet", ".rrd")
+"""Endings of files of a run that cannot be read back as a run."""
 FRAMES, MODES = "/motion/frames", "/motion/casing_modes"
 
 
@@ -114,6 +116,10 @@ def read_mcap(path: Path, *, channels: Collection[str] | None = None) -> McapRun
     except OSError as error:
         raise UserError(f"{path}: cannot be read ({error.strerror}); give an existing .mcap file") from None
     except DamageError as damage:
+        if path.suffix in OTHER_FORMATS:
+            raise UserError(
+                f"{path}: a run is read from its .mcap file alone; write one with rubgen simulate --out run.mcap"
+            ) from None
         raise UserError(f"{path}: damaged or no run of rubgen ({damage}); generate it again") from None
 
 

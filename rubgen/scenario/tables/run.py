@@ -35,8 +35,8 @@ class Simulation(StrictModel):
     record_turns: Annotated[
         TurnCount,
         about(
-            "Turns of the record of a steady run, from which its labels come. Labels need at least "
-            "500; more resolve slow motions better."
+            "Turns of the record of a steady run; its labels need at least 500. More turns "
+            " resolve slow motions better."
         ),
     ] = 500
     steps_per_turn: Annotated[

@@ -10,10 +10,10 @@ from matplotlib.lines import Line2D
 
 from rubgen.arrays import FloatArray
 from rubgen.reduction import ReducedModel
-from rubgen.reduction.modes import Mode, blisk_modes
+from rubgen.reduction.modes import Mode, blisk_modes, critical_speeds_rpm
 from rubgen.units import rad_per_s
 from rubgen.viz.colors import BLUE, GREY, ORANGE, VERMILION
-from rubgen.viz.figures.style import INK, label_axes, new_figure
+from rubgen.viz.figures.style import INK, label_axes, new_figure, speeds_in_words
 
 HIGHEST_RPM, SPEEDS = 15_000.0, 41
 CASING_MODES = 11
@@ -34,7 +34,8 @@ def campbell(
     """Draw Campbell diagrams: the whirl of the disk and the waves of the blades, and the casing.
 
     Left, in the inertial frame: modes of one nodal diameter, the only modes that move the disk centre sideways. A
-    critical speed is where a forward mode meets 1X. Middle, in the turning frame: modes of all nodal diameters n.
+    critical speed is where a forward mode meets 1X. Uneven springs count with their mean in the modes, and each has a
+    dotted critical speed. Middle, in the turning frame: modes of all nodal diameters n.
     Stationary forces excite n waves at order n; each crossing of the backward wave is marked. Right: modes of the
     casing in the inertial frame, and where the blisk, which turns under N lobes, excites them at orders k N. All modes
     are without contact; modes of the blisk are damped.
@@ -87,8 +88,8 @@ def _whirl(
     axes: Axes, model: ReducedModel, speeds: FloatArray, modes: Sequence[Sequence[Mode]], band: Band | None
 ) -> None:
     lines = branches(modes, 1)
-    critical = model.critical_speed_rpm
-    band = band or (0.0, 2.2 * max(critical, HIGHEST_RPM / 2) / 60)
+    criticals = critical_speeds_rpm(model)
+    band = band or (0.0, 2.2 * max(model.critical_speed_rpm, HIGHEST_RPM / 2) / 60)
     _orders(axes, speeds, band, range(1, HIGHEST_ORDER + 1))
     for _turning, seen, ratio in lines.transpose(1, 2, 0):
         forward = seen > 0
@@ -97,10 +98,12 @@ def _whirl(
         for met in crossings(speeds, np.where(forward, seen, np.nan), 1.0):
             damping = 100 * float(np.interp(met, speeds, ratio))
             _mark(axes, met, met / 60, f"{met:,.0f} rev/min, {damping:.1f} %")
-    axes.axvline(critical, color=VERMILION, linewidth=0.8, linestyle=":", zorder=1)
+    for critical in criticals:
+        axes.axvline(critical, color=VERMILION, linewidth=0.8, linestyle=":", zorder=1)
     handles = [Line2D([], [], color=BLUE, label="forward"), Line2D([], [], color=ORANGE, ls="--", label="backward")]
     _legend(axes, handles)
-    axes.set_title(f"Whirl, inertial frame; undamped critical {critical:,.0f} rev/min", fontsize=9.5, pad=14)
+    frame = "Whirl, inertial frame" if len(criticals) == 1 else "Whirl, mean springs"
+    axes.set_title(f"{frame}; undamped critical {speeds_in_words(criticals)} rev/min", fontsize=9.5, pad=14)
     _finish(axes, speeds, band, "Frequency of one nodal diameter, Hz")
 
 

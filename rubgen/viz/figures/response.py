@@ -7,10 +7,10 @@ from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from rubgen.arrays import ComplexArray, FloatArray
 from rubgen.reduction import ReducedModel
-from rubgen.reduction.modes import synchronous_speeds
+from rubgen.reduction.modes import critical_speeds_rpm, lateral_springs, synchronous_speeds
 from rubgen.units import rad_per_s
 from rubgen.viz.colors import BLUE, GREY, ORANGE, VERMILION
-from rubgen.viz.figures.style import head, label_axes, new_figure
+from rubgen.viz.figures.style import head, label_axes, new_figure, speeds_in_words
 
 SPEEDS, STIFFNESSES = 401, 121
 TIMES_CRITICAL = 2.0
@@ -32,8 +32,8 @@ def unbalance_response(model: ReducedModel, speeds_rpm: tuple[float, float] | No
     laws of the support add a backward whirl. `speeds_rpm` is the range in rev/min; None is up to twice the critical
     speed.
     """
-    critical = model.critical_speed_rpm
-    low, high = speeds_rpm or (0.0, TIMES_CRITICAL * critical)
+    criticals = critical_speeds_rpm(model)
+    low, high = speeds_rpm or (0.0, TIMES_CRITICAL * model.critical_speed_rpm)
     speeds = np.linspace(max(low, high / SPEEDS), high, SPEEDS)
     forward, backward = whirl_of_unbalance(model, speeds).T
     figure = new_figure(9.0, 5.6)
@@ -44,11 +44,13 @@ def unbalance_response(model: ReducedModel, speeds_rpm: tuple[float, float] | No
         upper.plot(speeds, 1e6 * np.abs(backward), "--", color=ORANGE, linewidth=1.2, label="backward")
         upper.legend(frameon=False, fontsize=9)
     for axes in (upper, lower):
-        if low < critical < high:
-            axes.axvline(critical, color=VERMILION, linewidth=0.8, linestyle=":", zorder=1)
+        for critical in criticals:
+            if low < critical < high:
+                axes.axvline(critical, color=VERMILION, linewidth=0.8, linestyle=":", zorder=1)
         axes.set_xlim(low, high)
     label_axes(upper, "", "Disk centre, 1X, µm")
-    label_axes(lower, f"Speed, rev/min (dotted: undamped critical speed, {critical:,.0f} rev/min)", "Phase, degrees")
+    dotted = f"undamped critical speed{'s' * (len(criticals) > 1)}, {speeds_in_words(criticals)} rev/min"
+    label_axes(lower, f"Speed, rev/min (dotted: {dotted})", "Phase, degrees")
     upper.set_ylim(bottom=0)
     unbalance = 1e3 * model.machine.unbalance_kg_m
     more = f" and {len(model.machine.unbalances)} more" if model.machine.unbalances else ""
@@ -78,12 +80,17 @@ def critical_map(model: ReducedModel, speeds_rpm: tuple[float, float] | None = N
     """Draw the critical speeds over the lateral stiffness of the disk support, on logarithmic axes.
 
     A critical speed is a speed at which a forward whirl of the inertial frame meets 1X. Modes are undamped and without
-    contact. The machine's own stiffness is marked, with its critical speeds. `speeds_rpm` is the drawn range of speeds
-    in rev/min; None chooses it.
+    contact. The machine's own stiffness, or that of each of its uneven springs, is marked with its critical speeds.
+    `speeds_rpm` is the drawn range of speeds in rev/min; None chooses it.
     """
-    own = float(model.springs[0])
-    stiffness = own * np.logspace(-DECADES, DECADES, STIFFNESSES)
-    speeds, marked = synchronous_speeds(model, stiffness), synchronous_speeds(model, np.array([own]))[0]
+    springs = lateral_springs(model)
+    stiffness = float(model.springs[0]) * np.logspace(-DECADES, DECADES, STIFFNESSES)
+    speeds = synchronous_speeds(model, stiffness)
+    marked = (
+        np.array(critical_speeds_rpm(model))[:, None]
+        if len(springs) > 1
+        else synchronous_speeds(model, np.array(springs))
+    )
     low, high = speeds_rpm or (0.8 * float(np.nanmin(speeds)), HIGHEST_RPM)
     inside = np.where((speeds >= low) & (speeds <= high), speeds, np.nan)
     if speeds_rpm is None:
@@ -91,17 +98,20 @@ def critical_map(model: ReducedModel, speeds_rpm: tuple[float, float] | None = N
     figure = new_figure(8.0, 5.2)
     axes = figure.subplots()
     axes.loglog(stiffness, inside, color=BLUE, linewidth=1.3)
-    axes.axvline(own, color=GREY, linewidth=0.9, linestyle="--", zorder=1)
-    for speed in _apart(marked[(marked >= low) & (marked <= high)]):
-        axes.plot(own, speed, "o", color=VERMILION, markersize=5, zorder=5)
-        axes.annotate(
-            f"{speed:,.0f} rev/min", (own, speed), xytext=(8, -5), textcoords="offset points", fontsize=9,
-            color=VERMILION, va="top",
-        )  # fmt: skip
+    for own, of_own in zip(springs, marked, strict=True):
+        axes.axvline(own, color=GREY, linewidth=0.9, linestyle="--", zorder=1)
+        left = own < max(springs)  # of two springs the softer one has its numbers on the left
+        for speed in _apart(of_own[(of_own >= low) & (of_own <= high)]):
+            axes.plot(own, speed, "o", color=VERMILION, markersize=5, zorder=5)
+            axes.annotate(
+                f"{speed:,.0f} rev/min", (own, speed), xytext=(-8, 5) if left else (8, -5), textcoords="offset points",
+                fontsize=9, color=VERMILION, va="bottom" if left else "top", ha="right" if left else "left",
+            )  # fmt: skip
     _plain_numbers(axes, low, high)
     axes.set(xlim=(stiffness[0], stiffness[-1]))
+    dashed = " and ".join(f"{each:.3g}" for each in sorted(springs))
     label_axes(
-        axes, f"Lateral stiffness of the disk support, N/m (dashed: this machine, {own:.3g})", "Critical speed, rev/min"
+        axes, f"Lateral stiffness of the disk support, N/m (dashed: this machine, {dashed})", "Critical speed, rev/min"
     )
     axes.grid(which="both", color=GREY, alpha=0.25, linewidth=0.5)
     head(figure, f"{model.machine.name}: critical speeds (forward whirl at 1X), undamped, without contact")

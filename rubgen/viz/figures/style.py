@@ -1,6 +1,6 @@
 """The style of all figures: plain axes with units, one colour and one marker for each class of motion."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from io import BytesIO
 from pathlib import Path
 
@@ -93,3 +93,8 @@ def save_figure(figure: Figure, path: Path) -> None:
     else:
         unset = {".svg": {"Creator": None, "Date": None}, ".pdf": {"CreationDate": None}}
         figure.savefig(path, metadata=unset[path.suffix])
+
+
+def speeds_in_words(speeds: Sequence[float]) -> str:
+    """Write speeds as whole numbers, ascending: "8,656 and 9,569"."""
+    return " and ".join(f"{speed:,.0f}" for speed in sorted(speeds))
