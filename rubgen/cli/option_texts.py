@@ -17,7 +17,7 @@ TEXTS = {
     "gravity_m_per_s2": "Gravity along -Y on the blisk; in m/s2, at least 0 and at most 10,000.",
     "end_speed_rpm": "Speed at the end of a run-up or coast-down, which need it; in rev/min, at least 0.001 and at most 1,000,000.",
     "duration_s": 'Duration of a record whose speed changes; every profile but "steady" needs it; in s, above 0 and at most 100,000.',
-    "fluctuation_rpm": "Amplitude of a fluctuating speed, which needs it; in rev/min, at least 0 and at most 1,000,000; 0 when not given.",
+    "fluctuation_rpm": "Amplitude of a fluctuating speed, which needs it; in rev/min, at least 0 and at most 1,000,000.",
     "fluctuation_period_s": "Period of a fluctuating speed; in s, above 0 and at most 100,000; 1 when not given.",
     "unbalance_angle_deg": "Angle of unbalance_kg_m from blade 0, in the sense of rotation; in deg, at least -360 and at most 360.",
     "free_penetration_m": "How deep tips would be without contact; the clearance follows from it; in m, at least -0.1 and at most 0.1.",

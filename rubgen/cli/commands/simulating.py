@@ -19,12 +19,13 @@ from rubgen.labels.headline import headline
 from rubgen.labels.labels import Motion
 from rubgen.labels.registry import LABELS
 from rubgen.labels.to_json import labels_to_json
+from rubgen.machine.faults.registry import FAULTS
 from rubgen.machine.load import file_named
 from rubgen.output import save
 from rubgen.pipeline import Run, simulate
 from rubgen.progress import step
 from rubgen.scenario import Scenario, make_scenario
-from rubgen.scenario.faults import FAULT_KEYS, FAULTS, keys_of_kind, kind_of
+from rubgen.scenario.faults import FAULT_KEYS, keys_of_kind, kind_of
 from rubgen.scenario.vary import varied_values
 from rubgen.solver import Status
 from rubgen.solver.linear.reach import no_rub_warning
