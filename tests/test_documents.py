@@ -6,11 +6,15 @@ import re
 import shlex
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
+import pandas as pd
 import pytest
 
 import rubgen
 from rubgen.cli.app import app
+from rubgen.dataset.reading.samples import Arrays
 from rubgen.io.columns import label_columns
 from rubgen.labels.registry import LABELS, TAP_ENDINGS
 from rubgen.labels.to_json import labels_to_json
@@ -117,6 +121,20 @@ def test_columns_and_channels_of_the_readme_exist():
     named = strings - {"out/demo", "run-000000", "run.mcap"}
     assert len(named) >= 5
     assert named <= {column.name for column in SCALARS} | set(CHANNELS)
+
+
+def test_the_program_of_begin_fits_one_machine_and_several(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (program,) = blocks(DOCUMENTS["docs/begin.md"], "python")
+    runs = [f"run-{number:06}" for number in range(20)]
+    for machines in (runs, [f"machine-{number // 4}" for number in range(20)]):
+        X, y = np.random.default_rng(0).normal(size=(20, 1, 50)), np.arange(20) % 2
+        arrays = Arrays(X, y, np.array(machines))
+        data = SimpleNamespace(ok=pd.DataFrame(index=runs), arrays=lambda *_, arrays=arrays: arrays)
+        monkeypatch.setattr("rubgen.open", lambda _, data=data: data)
+        exec(program, {})  # noqa: S102 -- the page is our own
+        answers = pd.read_csv("answers.csv")
+        assert (list(answers["run_id"]), set(answers["rub"]) <= {0, 1}) == (runs, True)
 
 
 def test_the_recipe_of_the_readme_is_a_recipe():
