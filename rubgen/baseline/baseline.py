@@ -17,6 +17,7 @@ from rubgen.baseline.evaluate import FOLDS, SEEDS, Samples, Scores, cross_valida
 from rubgen.baseline.models import models
 from rubgen.baseline.tasks import TASKS, Task, known, onsets
 from rubgen.baseline.windows import TRAIN, SetWindows, windows_of
+from rubgen.brief import counted
 from rubgen.dataset.making.workers import unordered, worker_pool
 from rubgen.dataset.reading.open import DataSet
 from rubgen.errors import UserError
@@ -200,7 +201,9 @@ def _why_not(data: DataSet, task: Task, blank: SetWindows) -> str:
     count = np.unique(train.groups).size
     of = "runs that rub and have an answer" if task.of_rubs else "runs"
     if count < 2 * FOLDS:
-        return f"{of}: {count} groups of them; at least {2 * FOLDS} are needed"
+        machines = data.ok["machine_id"].nunique() > 1
+        found = f"{counted(count, 'machine')} to learn from" if machines else f"{count} of them to learn from"
+        return f"{of}: {found}; at least {2 * FOLDS} are needed, so make a larger set"
     if train.answers.dtype.kind == "f":
         return ""
     for labels in np.atleast_2d(train.answers.T):

@@ -20,7 +20,7 @@ from rubgen.dataset.files import json_text, sha256_of, write_text
 from rubgen.dataset.layout import Layout
 from rubgen.errors import UserError, os_reason
 from rubgen.io.files import check_regular, read_json
-from rubgen.io.places import is_there
+from rubgen.io.places import answered, is_there, is_url
 from rubgen.machine import Machine
 from rubgen.machine.problems import first_problem
 from rubgen.machine.quantities import StrictModel, about
@@ -260,7 +260,8 @@ def read_manifest(layout: Layout) -> Manifest:
     Raises UserError where there is no manifest, or it is damaged or was not written by rubgen.
     """
     if not is_there(layout.manifest):
-        raise UserError(f"{layout.root}: no finished data set of rubgen: {_why_none(layout)}")
+        why = answered(layout.root, lambda: _why_none(layout)) if is_url(layout.root) else _why_none(layout)
+        raise UserError(f"{layout.root}: no finished data set of rubgen: {why}")
     try:
         for path in (layout.manifest, layout.digest):
             check_regular(path)

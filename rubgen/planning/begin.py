@@ -39,8 +39,8 @@ def begin(kind: str, name: str, path: Path) -> list[Path]:
     """
     text = commented(kind, name)
     schema = path.with_name(FILE_NAMES[kind])
-    with write_problems(path, named=f"FILE {path}"):
-        made = [] if schema.exists() else [schema]
+    made = [] if schema.exists() else [schema]
+    with write_problems(path.parent, named=f"FILE {path}"):
         if made:
             document = {"$schema": DIALECT, **complete(user_schema(kind))}
             write_durably(schema, lambda part: part.write_bytes(json_text(document).encode()))

@@ -164,6 +164,9 @@ def test_programs_read_what_export_features_and_push_made(run, tmp_path, monkeyp
     values = json.loads(output)
     assert (code, errors, values["runs"], values["windows"], values["sets"]) == (0, "", 4, 4, ["time"])
     assert values["channels"] == ["proximity_y", "proximity_x"]
+    code, output, errors = run("features", str(SAMPLE), "--out", str(out), "--force", "--workers", "1", "--set", "time")
+    assert (code, output.splitlines()[-1]) == (0, "  the metadata of each column has its unit and its definition")
+    assert "docs/" not in output  # a package that is installed has no such folder
     code, output, errors = run("features", str(SAMPLE), "--out", str(tmp_path / "g.parquet"), "--workers", "0")
     assert (code, output, errors) == (2, "", "rubgen: --workers 0: must be at least 1\n")
 

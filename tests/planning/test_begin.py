@@ -1,4 +1,6 @@
+import errno
 import json
+import os
 import re
 import tomllib
 from functools import cache
@@ -110,6 +112,19 @@ def test_a_mistake_is_one_line_and_writes_nothing(words, said, tmp_path, monkeyp
     assert said in err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["folder", "there.toml"]
     assert Path("there.toml").read_text(encoding="utf-8") == "kept"
+
+
+def test_a_folder_that_cannot_be_written_is_named_with_the_file_of_the_user(tmp_path, monkeypatch, capsys):
+    def refused(path, _write):
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS), str(path))
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("rubgen.planning.begin.write_durably", refused)
+    for _ in range(2):  # without the schema, then with it
+        code, _, err = run(capsys, "init", "recipe", "mine.toml")
+        assert (code, err.count("\n")) == (2, 1)
+        assert err.startswith("rubgen: FILE mine.toml: cannot be written (Read-only file system); choose another place")
+        Path("recipe.schema.json").touch()
 
 
 def test_init_says_what_to_do_with_the_file(tmp_path, monkeypatch, capsys):

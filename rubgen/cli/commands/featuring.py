@@ -48,5 +48,6 @@ def features_command(
     else:
         kinds = ", ".join(made.sets)
         say(f"{out}: {counted(made.windows, 'window')} of {counted(made.runs, 'run')}")
-        say(f"  {made.columns} features ({kinds}) of {counted(len(made.channels), 'channel')}; docs/features.md")
+        say(f"  {made.columns} features ({kinds}) of {counted(len(made.channels), 'channel')}")
+        say("  the metadata of each column has its unit and its definition")
     return 0

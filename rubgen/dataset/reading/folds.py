@@ -36,8 +36,8 @@ def folds(data: DataSet, k: int, by: str, split: str | None) -> list[Fold]:
     if isinstance(k, bool) or not isinstance(k, int) or k < 2:
         raise UserError(f"k = {k!r:.60}: must be a whole number of at least 2")
     if len(sizes) < k:
-        one = "; with one machine, by='run_id' tests other runs of the same machine" if by == "machine_id" else ""
-        raise UserError(f"{data.layout.root}: k = {k}: the runs have {counted(len(sizes), 'group')} by {by!r}{one}")
+        found = f"the runs have {counted(len(sizes), 'group')} by {by!r}"
+        raise UserError(f"{data.layout.root}: k = {k}: {found}; {_way_out(len(sizes), by)}")
     filled, side = [0] * k, dict.fromkeys(sizes.index, 0)
     for name, size in sizes.items():
         side[name] = filled.index(min(filled))
@@ -57,6 +57,15 @@ def base_runs(rows: pd.DataFrame) -> pd.Series[str]:
     """Return the name of the partner of each twin in `rows`, and of each other run its own name."""
     names = rows.index.to_series().astype("string")
     return rows["twin_of"].fillna(names) if "twin_of" in rows else names
+
+
+def _way_out(groups: int, by: str) -> str:
+    """Say what to do where there are fewer groups by the column `by` than folds."""
+    if groups > 1:
+        return f"take k = {groups}" if groups == 2 else f"take k = {groups} or less"
+    if by == "machine_id":
+        return "with one machine, by='run_id' tests other runs of the same machine"
+    return "folds need two groups at least"
 
 
 def _groups(data: DataSet, runs: list[str], by: str) -> pd.Series[str]:

@@ -206,6 +206,7 @@ def test_a_run_without_a_value_is_in_no_fold_and_a_warning_names_it(data, monkey
         (lambda data: data.windows(turns=200), "longer than every signal"),
         (lambda data: data.folds(1), "k = 1: must be a whole number of at least 2"),
         (lambda data: data.folds(2), "k = 2: the runs have 1 group by 'machine_id'; with one machine, by='run_id'"),
+        (lambda data: data.folds(len(data.ok) + 1, by="run_id"), "groups by 'run_id'; take k = [0-9]+ or less$"),
         (lambda data: data.folds(2, by="engine"), "no such column; use 'machine_id'"),
     ],
 )

@@ -313,6 +313,13 @@ def test_a_server_that_does_not_answer_is_one_line(s3, monkeypatch):
             rubgen.open(f"{s3}/set")
 
 
+def test_a_server_that_refuses_is_one_line_with_the_url():
+    with socket.create_server(("127.0.0.1", 0)) as there:
+        url = f"http://127.0.0.1:{there.getsockname()[1]}/set"
+    with pytest.raises(rubgen.UserError, match=rf"{url}: cannot be used \(Cannot connect .*\); give a place that "):
+        rubgen.open(url)
+
+
 def test_a_command_that_needs_a_directory_says_so(capsys):
     for command in ("repair", "verify"):
         assert called(command, "s3://bucket/set") == 2
