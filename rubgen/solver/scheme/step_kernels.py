@@ -238,9 +238,10 @@ def try_margin(
         surface, model.tips, state.wear.depth, after.q, after.tips, start, new, angles.cosine[inside],
         angles.sine[inside], margin, enough, work,
     )  # fmt: skip
-    for k in range(n_blades):
-        work.step_gaps[2, k] = work.gap[k]
-    if count == 0 or not (penetrates or laws.restitution > 0.0):
+    touches = count > 0 and (penetrates or laws.restitution > 0.0)
+    for k in range(n_blades):  # later works begin with it: it must not depend on the bounds
+        work.step_gaps[2, k] = work.gap[k] if touches or laws.lasting else math.nan
+    if not touches:
         return OK, 0, 0.0
     recover_contacts(count, model, before, work)
     recover_contacts(count, model, after, work)
