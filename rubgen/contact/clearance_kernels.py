@@ -208,6 +208,18 @@ def radial_margin(surface: Surface, deformation: Deformation, margin: float) -> 
 
 
 @inlined_kernel
+def larger_margin(surface: Surface, approach: float) -> float:
+    """Return the margin to try after a smaller one, m: twice the `approach` (m), at most four radii of the surface.
+
+    Every tip is nearer than four radii, and a `radial_margin` of four radii is nearer than FAR_AWAY. An approach that
+    is NaN gives the largest margin.
+    """
+    largest = 4.0 * surface.mean_radius
+    margin = 2.0 * approach
+    return margin if margin < largest else largest
+
+
+@inlined_kernel
 def curve_slope(surface: Surface, tips: Tips, blade: int, cos_orders: FloatArray, sin_orders: FloatArray) -> float:
     """Return dr/dpsi of the smooth curve, m, at the polar angle of a blade: theta plus the blade's angle on the disk.
 

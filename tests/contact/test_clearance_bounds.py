@@ -10,6 +10,7 @@ from test_contact_geometry import NODES, RADIUS, ring
 from rubgen.contact import blade_tips, casing_surface
 from rubgen.contact.clearance_kernels import (
     Deformation,
+    larger_margin,
     largest_nodal_displacement,
     radius_loss,
     small_radius_loss,
@@ -87,3 +88,9 @@ def test_the_closer_bound_loses_a_tenth_of_the_wide_one():
     wide, close = radius_loss(surface, casing, 0.025), small_radius_loss(surface, casing, 0.025, 1e-4, 8e-5, 1e-3)
     assert wide > 6e-6
     assert 0 < close < wide / 10
+
+
+@pytest.mark.parametrize(("approach", "margin"), [(3e-4, 6e-4), (1e9, 1.6), (np.inf, 1.6), (np.nan, 1.6)])
+def test_a_larger_margin_is_twice_the_approach_but_never_reaches_tips_that_do_not_exist(approach, margin):
+    surface = casing_surface(replace(ring(), surface=replace(ring().surface, mean_radius=0.4)))
+    assert larger_margin(surface, approach) == margin

@@ -16,6 +16,7 @@ from rubgen.contact.clearance_kernels import (
     casing_displacement_bound,
     clearance_bounds,
     deformation_bounds,
+    larger_margin,
     largest_nodal_displacement,
     radial_margin,
     tighten,
@@ -278,7 +279,7 @@ def try_larger_margins(
         code, count, approach = try_margin(model, step, opening, coordinates, motions, deformation, margin, state)
         if code != OK or approach <= margin:
             return code, count
-        margin = 2 * approach
+        margin = larger_margin(model.surface, approach)
     return CONTACT_UNSOLVED, count
 
 
@@ -312,7 +313,7 @@ def contact_step(
     margin = starting_margin(model.laws, work.step_gaps)
     code, count, approach = try_margin(model, step, opening, coordinates, motions, deformation, margin, state)
     if not approach <= margin:
-        margin = 2 * approach
+        margin = larger_margin(model.surface, approach)
         code, count = try_larger_margins(model, step, opening, coordinates, motions, deformation, margin, state)
     if code != OK:
         return code, count

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rubgen.contact.clearance_kernels import casing_displacement_bound
+from rubgen.contact.geometry_kernels import FAR_AWAY
 from rubgen.scenario import ContactLaw
 from rubgen.solver.scheme.state_kernels import Coordinates
 from rubgen.solver.scheme.step_kernels import OK, advance, has_diverged, previous_gap, starting_margin
@@ -93,6 +94,19 @@ def test_a_step_in_contact_balances_and_no_force_pulls_and_no_blade_enters(small
     assert np.abs(gaps[lam > 0]).max() < 1e-12
     assert gaps.min() > -1e-12
     assert np.isnan(np.delete(work.step_gaps[2], blades)).all()
+
+
+def test_forces_that_move_tips_by_millions_of_metres_ask_of_all_blades_and_of_no_more(small_system):
+    """Behind the sixth blade stand two that do not exist, FAR_AWAY: no margin may reach them."""
+    system = small_system(speed=500.0, clearance=-2e-4)
+    stepper = rub_free_stepper(system, ContactLaw(), STEPS)
+    soft = {name: 1e-13 * getattr(stepper.model, name) for name in ("tip_compliance", "casing_compliance")}
+    model = stepper.model._replace(laws=stepper.model.laws._replace(margin=1e-12), **soft)
+    _, _, after = stepper.state.motions
+    code, count = advance(model, 0, np.zeros(STEPS + 2), *stepper.state.motions, stepper.state)
+    assert code == OK
+    assert np.abs(after.tips).max() > FAR_AWAY
+    assert stepper.state.contact.blade[:count].tolist() == list(range(system.n_blades))
 
 
 @pytest.mark.parametrize("margin", [1e-12, 1e-5])
