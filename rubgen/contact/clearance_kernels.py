@@ -132,8 +132,6 @@ class Deformation(NamedTuple):
     """Of |u|, m."""
     slope: float
     """Of the derivatives of u_r and u_t by the polar angle, m."""
-    bend: float
-    """Of their second derivatives, m."""
     sag: float
     """How far u_r and u_t may lie beside a straight line between their values at two nodes, m."""
 
@@ -149,7 +147,7 @@ def deformation_bounds(surface: Surface, q_casing: FloatArray, displacement: flo
         size = abs(q_casing[j])
         slope += size * surface.mode_slope[j]
         bend += size * surface.mode_bend[j]
-    return Deformation(displacement, slope, bend, 0.125 * surface.node_step * surface.node_step * bend)
+    return Deformation(displacement, slope, 0.125 * surface.node_step * surface.node_step * bend)
 
 
 @inlined_kernel
@@ -194,29 +192,34 @@ def small_radius_loss(
     angle = missed / nearest + unlike * size / surface.mean_radius + turned * turned * turned / 3
     loss: float = deformation.sag + deformation.slope * (error + here)
     loss += surface.steepness * angle + surface.bend * here * aside
-    return loss + 0.5 * (surface.bend + deformation.bend) * turned * turned
+    return loss + 0.5 * surface.bend * turned * turned
 
 
 @inlined_kernel
 def radial_margin(surface: Surface, deformation: Deformation, margin: float) -> float:
     """Return the largest radial distance to the surface, m, of a point that is at most `margin` (m) from the surface.
 
-    It is the margin times the Lipschitz constant of the deformed surface's radius.
+    The radial distance is a bound of `tighten`, r + opening + u_r at the point's polar angle less losses and the
+    point's radius. Let X be the nearest place of the surface, for which the losses are true. From X's polar angle to
+    the point's the bound changes by at most F times their difference. F is the slope of r + u_r, and what u_t and r'
+    change on this way in the losses of `small_radius_loss`. This way and the one along the radius are at right angles;
+    the margin is their hypotenuse.
     """
-    slope = (surface.slope + deformation.slope) / (NEAREST_SHARE * surface.mean_radius)
+    nearest = NEAREST_SHARE * surface.mean_radius
+    slope = (surface.slope + deformation.slope) * (1.0 + deformation.slope / nearest)
+    slope = (slope + surface.bend * deformation.displacement / nearest) / nearest
     return margin * (1.0 + 0.5 * slope * slope)
 
 
 @inlined_kernel
 def larger_margin(surface: Surface, approach: float) -> float:
-    """Return the margin to try after a smaller one, m: twice the `approach` (m), at most four radii of the surface.
+    """Return the margin to try after a smaller one, m: twice the `approach` (m), but never much of a radius.
 
-    Every tip is nearer than four radii, and a `radial_margin` of four radii is nearer than FAR_AWAY. An approach that
-    is NaN gives the largest margin.
+    Beyond a hundredth of the surface's radius it is four radii, and so it is for an approach that is NaN. Every tip is
+    within four radii. Even their `radial_margin` is less than FAR_AWAY.
     """
-    largest = 4.0 * surface.mean_radius
     margin = 2.0 * approach
-    return margin if margin < largest else largest
+    return margin if margin < 0.01 * surface.mean_radius else 4.0 * surface.mean_radius
 
 
 @inlined_kernel
