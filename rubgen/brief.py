@@ -1,6 +1,7 @@
 """Short texts for large values: a notebook then shows one line in place of pages."""
 
 import dataclasses
+import shlex
 from collections.abc import Mapping
 from enum import Enum
 from html import escape
@@ -28,6 +29,11 @@ def brief(value: object) -> str:
 def counted(count: int, noun: str) -> str:
     """Return a count with its noun, in the plural unless the count is 1: "1 run", "2 runs"."""
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def in_shell(path: object) -> str:
+    """Return a path or URL as one word of a command to copy: in quotes where it has spaces or the like."""
+    return shlex.quote(str(path))
 
 
 def table(title: str, rows: Mapping[str, str]) -> str:

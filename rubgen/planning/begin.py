@@ -12,11 +12,11 @@ from rubgen.planning.offered import file_of
 from rubgen.planning.user_schemas import DIALECT, FILE_NAMES, user_schema
 
 USES = {
-    "recipe": "rubgen plan {file} says what it will do; rubgen generate {file} --out DIR makes the data set",
-    "machine": "rubgen modes {file} prints its frequencies; a recipe names it by machine = '{file}'",
+    "recipe": "rubgen plan {word} says what it will do; rubgen generate {word} --out DIR makes the data set",
+    "machine": "rubgen modes {word} prints its frequencies; a recipe names it by machine = '{file}'",
     "sensors": "a recipe names it by set = '{file}' in [sensors]",
 }
-"""What to do with a file of each kind."""
+"""What to do with a file of each kind: {file} is its path, {word} the path as a word of a command."""
 
 
 def commented(kind: str, name: str) -> str:

@@ -9,7 +9,7 @@ from textwrap import fill
 import numpy as np
 from matplotlib.figure import Figure
 
-from rubgen.brief import counted
+from rubgen.brief import counted, in_shell
 from rubgen.dataset.reading.open import DataSet
 from rubgen.dataset.reading.replaying import find_replay
 from rubgen.errors import NoPictureError, UserError
@@ -106,7 +106,7 @@ def _of_set(draw: Callable[[DataSet, Choice], Figure], *options: str) -> Make:
         directory = _needed(source)
         data = DataSet(directory)
         if data.ok.empty:
-            raise UserError(f"{directory}: no run is good; see `rubgen info {directory}`")
+            raise UserError(f"{directory}: no run is good; see `rubgen info {in_shell(directory)}`")
         return draw(data, choice)
 
     return make

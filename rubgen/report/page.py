@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from rubgen.brief import in_shell
 from rubgen.dataset.checking.verify import verify
 from rubgen.dataset.reading.open import DataSet
 from rubgen.dataset.reading.replaying import find_replay
@@ -58,7 +59,9 @@ def render_report(directory: Path) -> str:
     data = DataSet(directory)
     good = data.ok
     if good.empty:
-        raise UserError(f"{directory}: no run is good, so there is nothing to show; see `rubgen info {directory}`")
+        raise UserError(
+            f"{directory}: no run is good, so there is nothing to show; see `rubgen info {in_shell(directory)}`"
+        )
     replays = _replays(directory, example_runs(good))
     first = next(iter(replays.values()))
     environment = Environment(loader=PackageLoader("rubgen.report", "."), autoescape=True, undefined=StrictUndefined)

@@ -1,12 +1,15 @@
 """generate, info and verify on a set of made-up signals; real ones are generated in tests/dataset."""
 
 import json
+import shlex
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from rubgen.cli.commands.generating import _what_was_made
+from rubgen.cli.commands.generating import _ways_to_look, _what_was_made
+from rubgen.dataset.checking.inventory import Finding, Kind
+from rubgen.dataset.checking.verify import advice
 from rubgen.dataset.making.generate import Generated
 from rubgen.dataset.making.outcome import Outcome
 from rubgen.errors import UserError
@@ -44,6 +47,16 @@ def test_generate_says_what_it_made(generate, tmp_path):
     assert any(line.endswith(f"verify {tmp_path / 'set'}") for line in look)
     assert look[0] == f"  {tmp_path / 'set'}/runs.parquet: parameters, labels; for pandas, polars, datasets"  # of MCAP
     assert errors == "rubgen: simulate\n"  # no terminal: the step at once, then a line a minute
+
+
+def test_commands_to_copy_have_a_folder_with_spaces_in_quotes(tmp_path):
+    folder = tmp_path / "my set" / "rrd" / "0000"
+    folder.mkdir(parents=True)
+    (folder / "run-000000.rrd").touch()
+    words = [shlex.split(line)[-1] for line in _ways_to_look(tmp_path / "my set")]
+    assert words[1:4] == [str(folder / "run-000000.rrd"), *[str(tmp_path / "my set")] * 2]
+    found = [Finding(text="x", kind=kind, path="x") for kind in (Kind.DATA, Kind.DERIVED)]
+    assert advice(Path("my set"), found).count("rubgen repair 'my set'") == 2
 
 
 def test_a_set_without_a_run_that_is_ok_ends_with_1(generate, tmp_path, monkeypatch):

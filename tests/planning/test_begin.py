@@ -133,6 +133,8 @@ def test_init_says_what_to_do_with_the_file(tmp_path, monkeypatch, capsys):
     assert code == 0
     assert "rubgen modes machine.toml" in out
     assert load_machine("machine.toml") == load_machine("zeng2019")
+    _, out, _ = run(capsys, "init", "recipe", "my own.toml")
+    assert "rubgen plan 'my own.toml' says" in out
 
 
 def test_list_names_all_that_comes_with_rubgen(capsys):

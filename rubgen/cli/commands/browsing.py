@@ -5,7 +5,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from rubgen.brief import counted
+from rubgen.brief import counted, in_shell
 from rubgen.cli.printing import say
 from rubgen.dataset.reading.browsing import Rows, rows_of
 from rubgen.dataset.reading.open import DataSet
@@ -38,7 +38,7 @@ def browse_command(directory: Path, where: str | None, predictions: Path | None,
     data = DataSet(directory)
     run_ids = find_runs(data, where) if where else [str(run_id) for run_id in data.runs.index]
     if not run_ids:
-        raise UserError(f"--where {where!r}: no good run meets it; see `rubgen info {directory}`")
+        raise UserError(f"--where {where!r}: no good run meets it; see `rubgen info {in_shell(directory)}`")
     with step("read the table"):
         rows = rows_of(data, run_ids, predictions)
     with Catalog(data.manifest.name) as catalog:

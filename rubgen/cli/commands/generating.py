@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from shutil import which
 
-from rubgen.brief import counted
+from rubgen.brief import counted, in_shell
 from rubgen.cli.interrupts import terminable
 from rubgen.cli.printing import print_json, say
 from rubgen.dataset.making.generate import Generated, generate
@@ -96,7 +96,9 @@ def _made_in(out: Path, make: Callable[[], Generated], kept_in: Path, *, as_json
     _report(made, as_json=as_json)
     if made.part or "ok" in made.status:
         return 0
-    sys.stderr.write(f"rubgen: {made.directory}: no run is ok; the reason of each: rubgen info {made.directory}\n")
+    sys.stderr.write(
+        f"rubgen: {made.directory}: no run is ok; the reason of each: rubgen info {in_shell(made.directory)}\n"
+    )
     return 1
 
 
@@ -133,13 +135,13 @@ def _ways_to_look(directory: Path) -> Iterator[str]:
         folder = min((directory / each.name).glob("*"), default=directory)
         first = min(folder.glob(f"*{each.suffix}"), default=None)
         if first and each.look:
-            yield f"  {each.look.format(folder=folder, first=first, rerun=_command('rerun'))}"
-    yield f"  count classes:  {_command('rubgen')} info {directory}"
+            yield f"  {each.look.format(folder=folder, first=in_shell(first), rerun=_command('rerun'))}"
+    yield f"  count classes:  {_command('rubgen')} info {in_shell(directory)}"
     if not is_url(directory):
-        yield f"  check it all:   {_command('rubgen')} verify {directory}"
+        yield f"  check it all:   {_command('rubgen')} verify {in_shell(directory)}"
     yield f"  {directory}/README.md tells what every column means and how to load it"
 
 
 def _command(name: str) -> str:
     """Return the call of a program of this environment: its name where the shell finds it, else its path."""
-    return name if which(name) else os.path.relpath(Path(sys.executable).with_name(name))
+    return name if which(name) else in_shell(os.path.relpath(Path(sys.executable).with_name(name)))

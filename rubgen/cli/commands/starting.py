@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from rubgen.brief import in_shell
 from rubgen.cli.printing import check_new_file, print_json, say
 from rubgen.errors import UserError
 from rubgen.planning.begin import USES, begin
@@ -45,5 +46,5 @@ def init_command(kind: str, origin: str | None, path: Path | None) -> int:
     written = begin(kind, origin or DEFAULTS[kind], path)
     also = f", and {written[1].name} beside it, by which editors explain its keys" if len(written) > 1 else ""
     say(f"written {path}{also}")
-    say(USES[kind].format(file=path))
+    say(USES[kind].format(file=path, word=in_shell(path)))
     return 0

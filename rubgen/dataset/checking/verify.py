@@ -4,6 +4,7 @@ import random
 from collections.abc import Iterator
 from pathlib import Path
 
+from rubgen.brief import in_shell
 from rubgen.dataset.checking.inventory import Finding, Kind, derived_digests, file_findings, unlisted_files
 from rubgen.dataset.checking.table_check import table_problems
 from rubgen.dataset.layout import Layout
@@ -100,10 +101,10 @@ def advice(directory: Path, found: list[Finding]) -> str:
     sentences = {
         Kind.DATA: (
             f"data are damaged: with the versions that made the set, damaged shards are made again by: rubgen repair "
-            f"{directory}; else make the set again in a new directory (rubgen generate RECIPE --out NEW; its recipe "
-            f"stands in {directory / 'manifest.json'} at identity.recipe)"
+            f"{in_shell(directory)}; else make the set again in a new directory (rubgen generate RECIPE --out NEW; its "
+            f"recipe stands in {directory / 'manifest.json'} at identity.recipe)"
         ),
-        Kind.DERIVED: f"what is made from the data files is made again by: rubgen repair {directory}",
+        Kind.DERIVED: f"what is made from the data files is made again by: rubgen repair {in_shell(directory)}",
         Kind.UNLISTED: "files that are not listed are no part of the set: move them elsewhere",
     }
     whole = [] if Kind.DATA in kinds else ["the data files are whole"]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
+from rubgen.brief import in_shell
 from rubgen.dataset.files import sha256_of
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.making.close import write_closed
@@ -136,6 +137,5 @@ class _Copying:
         return self._listed[name]
 
     def _damaged(self, path: Path) -> UserError:
-        return UserError(
-            f"{path}: damaged, its sha256 is not the one in the manifest; rubgen repair {self._source.layout.root}"
-        )
+        remedy = f"rubgen repair {in_shell(self._source.layout.root)}"
+        return UserError(f"{path}: damaged, its sha256 is not the one in the manifest; {remedy}")

@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from rubgen.arrays import FloatArray
+from rubgen.brief import in_shell
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.reading.open import DataSet
 from rubgen.dataset.rows import remember
@@ -153,7 +154,7 @@ def _from_data_set(directory: Path, run_id: str | None, where: str | None) -> Fo
     if path.exists():
         found = replay_of_mcap(path)
         if found.replay.scenario.run_id != chosen:
-            raise UserError(f"{path}: holds {found.replay.scenario.run_id}; see `rubgen verify {directory}`")
+            raise UserError(f"{path}: holds {found.replay.scenario.run_id}; see `rubgen verify {in_shell(directory)}`")
         return FoundReplay(replay=found.replay, remarks=(*remarks, *found.remarks))
     from rubgen.pipeline import simulate
     from rubgen.viz.replay import replay_of
@@ -173,7 +174,7 @@ def _choose(data: DataSet, run_id: str | None, where: str | None) -> tuple[str, 
     found = find_runs(data, where) if where else [str(run_id) for run_id in data.ok.index]
     if not found:
         what = f"meets {where!r}" if where else "is good"
-        raise UserError(f"{data.layout.root}: no run {what}; see `rubgen info {data.layout.root}`")
+        raise UserError(f"{data.layout.root}: no run {what}; see `rubgen info {in_shell(data.layout.root)}`")
     more = f"{len(found)} runs meet the condition, {found[0]} is shown" if where and len(found) > 1 else ""
     return found[0], (more,) if more else ()
 

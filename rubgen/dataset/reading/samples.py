@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rubgen.arrays import FloatArray
+from rubgen.brief import in_shell
 from rubgen.dataset.reading.answers import Answers
 from rubgen.dataset.reading.cutting import Cut
 from rubgen.errors import UserError
@@ -164,7 +165,7 @@ def chosen_runs(data: DataSet, split: str | None, runs: Sequence[str] | None) ->
         return list(dict.fromkeys(wanted))
     if good.empty:
         where = f"split {split!r}" if split else "the set"
-        raise UserError(f"{data.layout.root}: {where} has no good run; see `rubgen info {data.layout.root}`")
+        raise UserError(f"{data.layout.root}: {where} has no good run; see `rubgen info {in_shell(data.layout.root)}`")
     return [str(run_id) for run_id in good.index]
 
 

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from rubgen.brief import in_shell
 from rubgen.dataset.files import sha256_of
 from rubgen.dataset.layout import Layout
 from rubgen.dataset.manifest import FileEntry, read_manifest
@@ -48,4 +49,6 @@ def _check_whole(file: Path, entry: FileEntry | None) -> None:
     except OSError as error:
         raise UserError(f"{file}: cannot be read ({error.strerror}); check the set: rubgen verify") from None
     if not good:
-        raise UserError(f"{file}: its sha256 is not the one in the manifest; mend it: rubgen repair {file.parents[1]}")
+        raise UserError(
+            f"{file}: its sha256 is not the one in the manifest; mend it: rubgen repair {in_shell(file.parents[1])}"
+        )
