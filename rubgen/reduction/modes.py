@@ -71,9 +71,9 @@ def blisk_modes(model: ReducedModel, speed: float) -> list[Mode]:
     found = sorted(zip(named.roots, named.waves, named.families, strict=True), key=lambda each: abs(each[0]))
     modes = []
     for root, wave, family in found:
-        travels = 0 < 2 * wave < model.machine.blades.count
-        seen = float(root.imag + wave * speed)
         on_support = family in SUPPORTS
+        travels = 0 < 2 * wave < model.machine.blades.count or (on_support and wave == 1)
+        seen = float(root.imag + wave * speed)
         modes.append(
             Mode(
                 turning_hz=float(root.imag) / (2 * np.pi),
@@ -99,9 +99,12 @@ def _named_by_waves(model: ReducedModel, speed: float) -> _Named:
     chosen, waves = _one_of_each_pair(roots, shapes, blades)
     order = np.argsort(np.abs(roots[chosen]), kind="stable")
     chosen, waves = np.array(chosen)[order].tolist(), np.array(waves)[order].tolist()
+    kinds = _support_kinds(model, shapes[:, chosen])
+    if blades == 2:
+        roots[chosen] = _seen_from_the_shaft(model, roots[chosen], shapes[:, chosen], kinds)
     counts: dict[tuple[int, bool], int] = {}
     families = []
-    for root, wave, kind in zip(roots[chosen], waves, _support_kinds(model, shapes[:, chosen]), strict=True):
+    for root, wave, kind in zip(roots[chosen], waves, kinds, strict=True):
         key = wave, bool(root.imag > 0) and speed > 0
         counts[key] = counts.get(key, 0) + (kind is None)
         both = 0 < 2 * wave < blades and speed == 0  # at rest both directions are one
@@ -166,6 +169,21 @@ def _one_of_each_pair(roots: ComplexArray, shapes: ComplexArray, blades: int) ->
     alone = (signed == 0) | (2 * signed == blades)
     taken = np.flatnonzero(np.where(alone, roots.imag > 0, signed > 0))
     return taken.tolist(), signed[taken].tolist()
+
+
+def _seen_from_the_shaft(
+    model: ReducedModel, roots: ComplexArray, shapes: ComplexArray, kinds: list[str | None]
+) -> ComplexArray:
+    """Return the roots (modes,) with the conjugate one where a motion on the support goes against the rotation.
+
+    Two blades do not show the direction of a wave, so disk centre and tilt do: for a root of positive frequency
+    |x + i y| > |x - i y| is a motion with the rotation.
+    """
+    x, y, _, tilt_x, tilt_y, _ = model.blisk.centre @ shapes
+    radius = model.machine.tip_radius_m
+    ways = [np.hypot(np.abs(x + i * y), radius * np.abs(tilt_x + i * tilt_y)) for i in (1j, -1j)]
+    sideways = np.array([kind in ("lateral", "tilt") for kind in kinds])
+    return np.where(sideways & (ways[0] < ways[1]), roots.conj(), roots)
 
 
 def _support_kinds(model: ReducedModel, shapes: ComplexArray) -> list[str | None]:

@@ -49,6 +49,14 @@ def test_an_elastic_blisk_has_a_pair_of_lateral_modes(model):
     assert [(mode.nodal_diameters, mode.whirl) for mode in lateral] == [(1, "forward"), (1, "backward")]
 
 
+def test_two_blades_whirl_with_the_disk_in_both_directions(model):
+    two = reduce(replace(model.machine, blades=replace(model.machine.blades, count=2)), Reduction())
+    forward, backward = (mode for mode in blisk_modes(two, rad_per_s(6000)) if mode.family == "lateral")
+    assert (forward.whirl, backward.whirl) == ("forward", "backward")
+    assert -backward.inertial_hz == pytest.approx(forward.inertial_hz, rel=0.02)
+    assert backward.damping_ratio == pytest.approx(forward.damping_ratio, rel=0.02)
+
+
 def test_each_nodal_diameter_has_its_waves(model):
     half = model.machine.blades.count // 2
     counts = np.bincount([mode.nodal_diameters for mode in blisk_modes(model, rad_per_s(6000))], minlength=half + 1)

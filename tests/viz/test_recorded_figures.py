@@ -115,3 +115,9 @@ def test_a_spectrum_over_turns_has_the_amplitude_at_each_order():
     expected = np.zeros(found.order.size)
     expected[turns - 1], expected[12 - 1] = 3, 0.5
     np.testing.assert_allclose(found.amplitude[0], expected, atol=2e-3)
+
+
+def test_blades_have_whole_numbers(replay):
+    bars = contact_distribution(replay).axes[1]
+    bars.set_xlim(-0.9, 18.9)  # as with 19 blades
+    assert np.all(bars.get_xticks() % 1 == 0)

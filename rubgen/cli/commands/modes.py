@@ -53,12 +53,17 @@ def modes_command(machine: str, speed_rpm: float, *, as_json: bool) -> int:
     if speed_rpm:
         _at_speed(modes[:SHOWN_BLISK_MODES])
     else:
-        words = [f"{mode.family:<10}{mode.nodal_diameters:>4}{100 * mode.damping_ratio:>8.2f} %" for mode in modes]
+        words = [f"{mode.family:<10}{mode.nodal_diameters:>4}{_percent(mode):>8} %" for mode in modes]
         _table("blisk", blisk[:SHOWN_BLISK_MODES], words, BLISK_HZ if compared else {})
     damping = 100 * loaded.damping.casing
     words = [f"{'':<10}{wave:>4}{damping:>8.2f} %" for wave in waves]
     _table("casing", casing, words, dict(enumerate(CASING_HZ, start=1)) if compared else {})
     return 0
+
+
+def _percent(mode: Mode) -> str:
+    """Return the damping in percent; rounding of an undamped mode has no sign."""
+    return f"{round(100 * mode.damping_ratio, 2) + 0.0:.2f}"
 
 
 def _of_each_spring(model: ReducedModel) -> dict[str, float]:
@@ -86,5 +91,5 @@ def _at_speed(modes: list[Mode]) -> None:
     for number, mode in enumerate(modes, start=1):
         say(
             f"{number:<8}{abs(mode.turning_hz):>12.3f}{abs(mode.inertial_hz):>13.3f}  {mode.whirl:<10}{mode.family:<10}"
-            f"{mode.nodal_diameters:>4}{100 * mode.damping_ratio:>8.2f} %"
+            f"{mode.nodal_diameters:>4}{_percent(mode):>8} %"
         )

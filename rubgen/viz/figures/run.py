@@ -169,6 +169,7 @@ def contact_distribution(replay: Replay) -> Figure:
     blades = replay.scenario.machine.blades.count
     by_blade = 1e3 * np.bincount(touches.blade.astype(np.int64), weights=touches.impulse, minlength=blades) / turns
     bars.bar(np.arange(blades), by_blade, color=BLUE, width=0.8)
+    bars.xaxis.set_major_locator(MaxNLocator(integer=True))
     label_axes(bars, "Blade", "Impulse a turn, mN s")
     if not by_blade.any():
         note(bars, "no contact")
