@@ -81,7 +81,7 @@ published machine are not known and were chosen. Simulated data: learn from it, 
 def _introduction(identity: Identity, status: dict[str, int]) -> str:
     """Say what the runs are, where they come from and how they ended."""
     recipe = identity.recipe
-    origin = _merged_from(identity) or f"machine `{recipe['machine']}`, seed\n{recipe['seed']}"
+    origin = _merged_from(identity) or f"{_machines(recipe['machine'])}, seed\n{recipe['seed']}"
     ended = ", ".join(f"{count} {name}" for name, count in status.items())
     record = " ".join(dict.fromkeys(map(_record, identity.recipes)))
     return f"""{counted(recipe["runs"], "run")} of a bladed disk that may rub its flexible oval casing: {origin}.
@@ -136,6 +136,13 @@ Each a list, row after row where it holds rows. A state has 3 n_blades + 4 + 2 n
 |---|---|---|
 | `run_id` | string | name of the run |
 {_section_table()}"""
+
+
+def _machines(names: str | list[str]) -> str:
+    """Name the machines that a recipe begins from."""
+    if isinstance(names, str):
+        return f"machine `{names}`"
+    return f"machines {', '.join(f'`{name}`' for name in names)}"
 
 
 def _merged_from(identity: Identity) -> str:

@@ -106,6 +106,12 @@ def test_the_card_fits_its_recipe(name):
     assert ("come from 500 turns" in text) is (name != "run-up")
 
 
+def test_the_card_names_every_machine_of_the_recipe():
+    recipe = load_recipe(RECIPES / "machines.toml")
+    text = card(identity_of(recipe), {"ok": recipe.runs}, Tally(splits={}, shifts=()))
+    assert "casing: machines `zeng2019`, `zeng2019-fitted`, seed\n5.\n" in text
+
+
 def test_open_gives_runs_as_a_frame(data, small_set):
     runs = data.runs
     assert runs.index.tolist() == [f"run-{i:06d}" for i in range(4)]
