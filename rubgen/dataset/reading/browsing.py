@@ -11,10 +11,11 @@ from typing import Any
 import pandas as pd
 
 from rubgen.dataset.reading.open import DataSet
-from rubgen.errors import UserError
+from rubgen.errors import UserError, warn
 from rubgen.io.columns import Column, Role
 from rubgen.io.parquet.words import NUMBERS
 from rubgen.labels.headline import headline
+from rubgen.machine.problems import nearest
 
 COLUMN_TYPES: dict[str, Any] = {"flag": bool, "integer": int, "number": float, "text": str, "class": str}
 """Kinds of column that have one value a run, and their types."""
@@ -47,7 +48,8 @@ def rows_of(data: DataSet, run_ids: Sequence[str], predictions: Path | None = No
     `predictions` is the path of a file for `read_predictions`, or None. A predicted column with the name of a shown
     column stands after it. A flag `<name>_right` follows, True where both are equal, if the answers are words or
     numbers of a class, 0 or 1 for a flag, whole numbers for an integer, or texts. Other answers, such as probabilities,
-    are not compared. Predicted columns with other names stand at the end. Raises UserError as `read_predictions` does.
+    are not compared. Predicted columns with other names stand at the end. Warns of a word that is no class, and where
+    no predicted column has the name of a shown one. Raises UserError as `read_predictions` does.
     """
     kinds = {column.name: column for column in data.run_columns if column.kind in COLUMN_TYPES}
     shown = _shown(data.runs, list(kinds.values()))
@@ -61,6 +63,9 @@ def rows_of(data: DataSet, run_ids: Sequence[str], predictions: Path | None = No
     guessed: list[str] = []
     if predictions is not None:
         table = read_predictions(predictions, data)
+        if not any(name in shown for name in table.columns):
+            meant = nearest(str(table.columns[0]), [name for name in shown if kinds[name].role is Role.TARGET])
+            warn(f"--predictions {predictions}: no column is called like a label, so none is compared; {meant}")
         for name in map(str, table.columns):
             guessed.append(name)
             values_of, compared = _as_answers(table[name].dropna(), kinds.get(name))
@@ -137,6 +142,11 @@ def _as_answers(given: pd.Series[Any], column: Column | None) -> tuple[dict[str,
     if column and kind == "class" and numeric:
         words = {number: word for word, number in NUMBERS[column.name].items()}
         return {run_id: words.get(value, f"class {value:g}") for run_id, value in plain.items()}, True
+    if column and kind == "class":
+        for word in dict.fromkeys(plain.values()):
+            if word not in NUMBERS[column.name]:
+                meant = nearest(str(word), list(NUMBERS[column.name]))
+                warn(f"--predictions: {column.name} = {word!r:.60}: no such class; {meant}")
     if kind == "flag" and numeric and all(value in (0, 1) for value in plain.values()):
         return {run_id: bool(value) for run_id, value in plain.items()}, True
     if kind == "integer" and numeric and all(float(value).is_integer() for value in plain.values()):

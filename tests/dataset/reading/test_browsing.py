@@ -1,10 +1,14 @@
 """A data set in Rerun's catalog: served without a viewer, and read with the client of Rerun's SDK."""
 
+import re
+
 import pandas as pd
 import pytest
 from rerun.chunk import RrdReader
 
 import rubgen
+from rubgen.dataset.reading.browsing import rows_of
+from rubgen.errors import RubgenWarning
 from rubgen.sensors.kinds.proximity import Proximity
 from rubgen.sensors.load import load_sensor_set
 from rubgen.viz.catalog import Catalog
@@ -109,6 +113,22 @@ def test_a_mistake_in_the_answers_is_one_line(shown_set, tmp_path, browse, text,
     assert code == 2
     assert said in error
     assert len(error.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("column", "answer", "said"),
+    [
+        ("rubs", "1", "no column is called like a label, so none is compared; did you mean rub?"),
+        ("motion", "chaotik", "motion = 'chaotik': no such class; did you mean chaotic?"),
+    ],
+)
+def test_a_misspelt_label_or_class_is_warned_of(shown_set, tmp_path, column, answer, said):
+    path = tmp_path / "answers.csv"
+    path.write_text(f"run_id,{column}\nrun-000000,{answer}\n")
+    data = rubgen.open(shown_set)
+    with pytest.warns(RubgenWarning, match=re.escape(said)):
+        rows = rows_of(data, list(data.runs.index), path)
+    assert ("prediction", column) in rows.columns
 
 
 def test_a_catalog_needs_a_package_and_the_viewer_a_screen(shown_set, monkeypatch, browse):
