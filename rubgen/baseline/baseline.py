@@ -88,7 +88,9 @@ def baselines(
         name, reason = next(iter(reasons.items()))
         raise UserError(f"{directory}: --task {name}: {reason}")
     if len(reasons) == len(tasks or TASKS):
-        raise UserError(f"{directory}: no task is possible: {'; '.join(f'{k}: {v}' for k, v in reasons.items())}")
+        alike = [([name for name in reasons if reasons[name] == why], why) for why in dict.fromkeys(reasons.values())]
+        every = "; ".join(f"{', '.join(names)}: {why}" for names, why in alike)
+        raise UserError(f"{directory}: no task is possible: {every}")
     windows = windows_of(directory, data, SEEDS, workers)
     return _scored(data, windows, [name for name in tasks or TASKS if name not in reasons], workers), reasons
 

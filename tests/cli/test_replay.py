@@ -26,8 +26,8 @@ def entities(path):
 
 
 def test_an_mcap_file_is_saved_as_a_replay(run, mcap_file, tmp_path):
-    code, out, _ = run("replay", str(mcap_file), "--save", str(tmp_path / "run.rrd"))
-    assert (code, out) == (0, f"{tmp_path}/run.rrd: open it with: rerun {tmp_path}/run.rrd\n")
+    code, out, _ = run("replay", str(mcap_file), "--save", str(tmp_path / "a run.rrd"))
+    assert (code, out) == (0, f"{tmp_path}/a run.rrd: open it with: rerun '{tmp_path}/a run.rrd'\n")
     expected = {
         "/machine/casing/ring",
         "/machine/rotor/blades",
@@ -35,7 +35,7 @@ def test_an_mcap_file_is_saved_as_a_replay(run, mcap_file, tmp_path):
         "/contact/map",
         "/labels/scenario",
     }
-    assert expected <= entities(tmp_path / "run.rrd")
+    assert expected <= entities(tmp_path / "a run.rrd")
 
 
 def test_pictures_need_no_screen(run, mcap_file, tmp_path, monkeypatch):

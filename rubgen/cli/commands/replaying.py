@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from rubgen.brief import in_shell
 from rubgen.cli.printing import check_new_file, say, write_file
 from rubgen.errors import UserError
 from rubgen.progress import step
@@ -84,7 +85,7 @@ def show(replay: Replay, showing: Showing) -> None:
 
     if showing.save:
         write_file("--save", showing.save, lambda part: write_replay(replay, part, full=showing.full))
-        say(f"{showing.save}: open it with: rerun {showing.save}")
+        say(f"{showing.save}: open it with: rerun {in_shell(showing.save)}")
     if showing.foxglove:
         text = json.dumps(foxglove_layout(replay.recording), indent=2)
         write_file("--foxglove", showing.foxglove, lambda part: part.write_text(f"{text}\n", encoding="utf-8"))

@@ -65,7 +65,7 @@ def find_replay(source: Path, run_id: str | None = None, where: str | None = Non
     if run_id is not None or where is not None:
         raise UserError(f"{source}: is one run, not a data set; leave out {run_id or '--where'}")
     if source.suffix == ".rrd" and source.exists():
-        raise UserError(f"{source}: .rrd files are for the Rerun viewer alone; open it with: rerun {source}")
+        raise UserError(f"{source}: .rrd files are for the Rerun viewer alone; open it with: rerun {in_shell(source)}")
     return replay_of_mcap(source)
 
 

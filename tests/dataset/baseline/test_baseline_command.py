@@ -20,7 +20,7 @@ def test_a_set_too_small_is_refused_in_one_line(small_set, capsys):
     code, _, errors = run(capsys, small_set.directory)
     assert (code, errors.count("\n")) == (2, 1)
     assert (
-        "no task is possible: rub: runs: 4 of them to learn from; at least 10 are needed, so make a larger set"
+        "no task is possible: rub, faults: runs: 4 of them to learn from; at least 10 are needed, so make a larger set"
         in errors
     )
     code, _, errors = run(capsys, small_set.directory, "--task", "motion")
