@@ -260,9 +260,15 @@ def synchronous_speeds(model: ReducedModel, stiffness: FloatArray) -> FloatArray
 
 
 def casing_diameters(model: ReducedModel) -> list[int]:
-    """Return the number of waves around the casing of each of its modes: the order of the largest radial component."""
+    """Return the number of waves around the casing of each of its modes: the order with the largest motion.
+
+    Radial and circumferential motion count. A ring that turns as a whole on its springs has 0 waves.
+    """
     shapes = model.casing.modes_xy
     angle = 2 * np.pi * np.arange(len(shapes)) / len(shapes)
-    radial = np.cos(angle)[:, None] * shapes[:, 0] + np.sin(angle)[:, None] * shapes[:, 1]
-    waves: list[int] = np.argmax(np.abs(np.fft.rfft(radial, axis=0)), axis=0).tolist()
+    cos, sin = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    parts = np.stack([cos * shapes[:, 0] + sin * shapes[:, 1], cos * shapes[:, 1] - sin * shapes[:, 0]])
+    power = np.abs(np.fft.rfft(parts, axis=1)) ** 2
+    power[:, 0] /= 2  # a wave has its other half at the negative order
+    waves: list[int] = np.argmax(power.sum(axis=0), axis=0).tolist()
     return waves

@@ -26,7 +26,7 @@ def titles(figure):
         ("lateral", 2, "lateral"),
         ("ND 4", 6, "ND 4"),
         ("blade 1 nd 2", 2, "blade 1"),
-        ("casing ND 2", 3, "casing"),
+        ("casing ND 2", 2, "casing"),
     ],
 )
 def test_modes_are_chosen(model, modes, count, words):
