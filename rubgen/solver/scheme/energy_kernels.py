@@ -32,7 +32,8 @@ def stored_energy(terms: EnergyTerms, before: FloatArray, now: FloatArray, diffe
 def add_works(terms: EnergyTerms, change: FloatArray, damping: float, circulatory: float, works: FloatArray) -> None:
     """Add the works of unbalance, dampers and circulatory stiffness in one step to `works` (8,), J.
 
-    `damping` and `circulatory` are the last two works, J. `change` is d in z.
+    `damping` and `circulatory` are the last two works, J. `change` is d = (q_n+1 - q_n-1) / 2 in z. The three
+    absolute values are added to `works[ABSOLUTE]`.
     """
     unbalance = 0.0
     for i in range(terms.force.shape[0]):
@@ -47,7 +48,7 @@ def add_works(terms: EnergyTerms, change: FloatArray, damping: float, circulator
 def add_linear_works(terms: EnergyTerms, now: FloatArray, change: FloatArray, dt: float, works: FloatArray) -> None:
     """Compute the works of unbalance, dampers and circulatory stiffness in one step, and add them to `works` (8,), J.
 
-    `now` is z at step n, `change` d in z, `dt` in s.
+    `now` is z at step n, `change` is d = (q_n+1 - q_n-1) / 2 in z, `dt` in s. See `add_works`.
     """
     damping = -2.0 * quadratic(terms.damping, change, change) / dt
     if terms.circulatory_pairs.shape[0] > 0:
@@ -59,7 +60,10 @@ def add_linear_works(terms: EnergyTerms, now: FloatArray, change: FloatArray, dt
 
 @allocation_free_kernel
 def add_waiting_works(terms: EnergyTerms, count: int, dt: float, waiting: Waiting, works: FloatArray) -> None:
-    """Add to `works` what `add_linear_works` adds in each of the first `count` steps that wait."""
+    """Add to `works` what `add_linear_works` adds in each of the first `count` steps that wait in `waiting`.
+
+    `waiting.damping` and `waiting.circulatory` are overwritten.
+    """
     if count == 0:
         return
     quadratic_each(terms.damping, waiting.change, waiting.change, waiting.damping)
@@ -99,15 +103,16 @@ def add_contact_works(
 ) -> tuple[float, float, float]:
     """Add the works at contact m in one step. Return its normal and friction loss, J, and torque on the blisk, N m.
 
-    The normal loss is lam (g_n+1 - g_n-1) / 2. The gaps are the scheme's: linearised where the blade was near, else
-    geometric. The friction loss is lam mu tau.v_rel dt, with tau the direction of friction in the step and v_rel the
-    central relative velocity. It is -mu lam |v_rel| dt, except that the contact changes the direction of v_rel. The
-    works go into `state.works`.
+    A loss is negative where energy is lost. The torque is about Z. The normal loss is lam (g_n+1 - g_n-1) / 2. The gaps
+    are the scheme's: linearised where the blade was near, else geometric. The friction loss is lam mu tau.v_rel dt,
+    with tau the direction of friction in the step and v_rel the central relative velocity. It is -mu lam |v_rel| dt,
+    except that the contact changes the direction of v_rel. The works go into `state.works`: CONTACT, NORMAL, FRICTION
+    and ABSOLUTE.
 
     - m: number of the contact in `state.contact`, not of the blade.
     - step: number of the step n in `model.angles`.
     - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., m.
-    - coordinates: of the contact's blade the tip coordinates must be valid. `change` is d.
+    - coordinates: of the contact's blade the tip coordinates must be valid. `change` is d = (q_n+1 - q_n-1) / 2.
     """
     surface, tips, laws, angles = model.surface, model.tips, model.laws, model.angles
     work, works = state.contact, state.works

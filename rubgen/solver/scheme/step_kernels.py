@@ -61,7 +61,7 @@ def previous_gap(
 ) -> float:
     """Return the gap of a blade at step n - 1, m: the scheme's gap if it is known, else the gap from the geometry.
 
-    The result is kept in `work.step_gaps`.
+    The result is kept in `work.step_gaps[0]`. The blade's tip coordinates in `coordinates.before` must be valid.
 
     - worn (bins,): coefficients of the worn depth, m; (0,) without a liner.
     - opening: added to the radius of the surface at step n - 1, m.
@@ -102,7 +102,7 @@ def change_contacts(
 ) -> None:
     """Write scale (q_after - q_before) into `change_out` (n,), for the tips of `count` contacts and the casing alone.
 
-    The tip coordinates in both q must be valid (`recover_contacts`).
+    The tip coordinates in both q must be valid (`recover_contacts`). No other element is written.
     """
     for m in range(count):
         k = work.blade[m]
@@ -122,7 +122,7 @@ def solve_contacts(
 
     - step: number of the step n in `model.angles`.
     - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., m.
-    - coordinates: of the contacts' blades the tip coordinates must be valid. `change` is the velocity d / dt.
+    - coordinates: of the contacts' blades the tip coordinates must be valid. `change` is (q* - q_n-1) / (2 dt).
     """
     surface, tips, laws, angles = model.surface, model.tips, model.laws, model.angles
     work, back = state.contact, step - 1 if step > 0 else angles.cosine.shape[0] - 1
@@ -149,9 +149,12 @@ def solve_contacts(
 
 @inlined_kernel
 def apply_contacts(count: int, model: Model, after: Motion, state: State) -> None:
-    """Move the motion `after` by the contact forces: add A^-1 B lam of `count` contacts to its z, `tips` and casing.
+    """Move the motion `after` from q* to q_n+1: add A^-1 (B lam) of the forces of `count` contacts to its z.
 
-    The tip coordinates in its q stay those of q*, until `recover_contacts`. `state.scratch.z_force` is overwritten.
+    z are all coordinates, in the order of the blocks. `tips` and the coordinates behind the tips in `after.q` follow.
+    The tip coordinates in `after.q` stay those of q*, without contact, until `recover_contacts`. lam and B are in
+    `state.contact`, as `solve_contacts` leaves them. With an active support the force contains the support's reaction
+    (`resist_contacts`). `state.scratch.z_force` is overwritten.
     """
     work, force, harmonics = state.contact, state.scratch.z_force, model.harmonics
     start = harmonics.rest.shape[0] - work.rows.shape[1]
@@ -218,9 +221,11 @@ def try_margin(
     """Solve for the contacts of the blades within a margin. Return a code, their number, and the largest approach, m.
 
     The code is OK or CONTACT_UNSOLVED. The approach is that of `largest_approach`. It is 0 without contacts, and where
-    all blades were solved: no larger margin would then change the result.
+    all blades were solved: no larger margin would then change the result. Where forces were solved, q* is kept in
+    `state.scratch.free`.
 
-    - step, opening, deformation: as in `contact_step`.
+    - step, opening: as in `contact_step`.
+    - deformation: bounds of the casing's deformation in q*.
     - coordinates: q of both motions and of step n.
     - motions: at step n - 1, and q*, which is changed to q_n+1.
     - margin: in m.
@@ -269,7 +274,8 @@ def try_larger_margins(
 ) -> tuple[int, int]:
     """Solve a step again with `margin`, and with ever larger margins. Return OK or CONTACT_UNSOLVED, and the contacts.
 
-    The parameters are as in `try_margin`. After MARGIN_TRIES margins, the first one counted, the step is unsolved.
+    The parameters are as in `try_margin`, which must have left q* in `state.scratch.free`. After MARGIN_TRIES margins,
+    the first one counted, the step is unsolved.
 
     It is a function of its own, which steps hardly ever call: a loop over the margins within a step would let the
     compiler prepare all of a contact before it, in every step.
@@ -327,7 +333,7 @@ def contact_step(
 
 @allocation_free_kernel
 def has_diverged(surface: Surface, laws: Laws, q: FloatArray, casing_start: int, n_blades: int) -> bool:
-    """Return whether a casing node or a blade tip has moved beyond its limit or is NaN.
+    """Return whether a casing node, or a coordinate of a blade tip, is beyond its limit or is NaN.
 
     `q` (n,) are the coordinates; the casing's begin at index `casing_start`. The limits are in `laws`.
     """
@@ -370,7 +376,7 @@ def advance(
     - step: number of the step n in `model.angles`.
     - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., m.
     - before, now: motion at steps n - 1 and n.
-    - after: written. Its tip coordinates in q are not valid.
+    - after: written; where the step fails, as far as it came. Its tip coordinates in q are not valid.
     - state: gaps, contacts, supports and scratch; changed.
     """
     free_step(model.scheme, before.z, now.z, after.z)

@@ -115,11 +115,12 @@ def tip_radius_on_ray(tips: Tips, rays: Rays, displacement: FloatArray, step: in
 def casing_radius_on_ray(rays: Rays, sums: FloatArray, opening: float, ray: int) -> float:
     """Return the radius at which a ray from the axis meets the deformed surface, m.
 
-    The surface point on the ray was at the angle u_t / r before the ray, undeformed. The radius is r + u_r - (r' +
-    u_r') u_t / r + u_t^2 / (2 r), exact to second order in the displacements on a circle, where r' = r'' = 0.
+    The surface point on the ray was at the angle u_t / r before the ray, undeformed. r is the undeformed radius on the
+    ray, and r' is its derivative by the angle. The radius is r + u_r - (r' + u_r') u_t / r + u_t^2 / (2 r), exact to
+    second order in the displacements on a circle, where r' = r'' = 0.
 
     - sums: values of the linear functionals, with u_r, u_t and u_r' of the ray.
-    - opening: added to the radius of the surface, m.
+    - opening: added to the radius of the surface, with the depth worn there, m.
     - ray: number of the ray in `rays`.
     """
     first = rays.sum[ray]
@@ -159,7 +160,8 @@ def read_shaft(model: Model, taps: Taps, coordinates: Coordinates, support: Supp
 def sum_functionals(taps: Taps, coordinates: Coordinates, z: FloatArray, z_change: FloatArray, dt: float) -> None:
     """Compute all linear functionals of the taps, into `taps.sums`. Accelerations are central differences.
 
-    `z` and `z_change` are the motion and its change d in blocks, `dt` in s.
+    `taps.signals` must belong to step n. `z` is the motion at step n in blocks, `z_change` is d = (q_n+1 - q_n-1) / 2
+    in blocks, `dt` in s.
     """
     start = coordinates.now.shape[0] - taps.bend.shape[0]
     for j in range(start, coordinates.now.shape[0]):
@@ -187,8 +189,9 @@ def record_taps(
 ) -> None:
     """Write all taps at step n into column `step` of `out` (taps, steps). q is `coordinates.now`.
 
-    Velocity and acceleration are central differences. `opening` (m) is added to the radius of the surface. `force` (N)
-    and `torque` (N m) are the sums over the contacts at step n.
+    Velocity and acceleration are central differences; `state.scratch.z_change` must contain d = (q_n+1 - q_n-1) / 2 in
+    z. `opening` (m) is added to the radius of the surface at step n. `force` (N) and `torque` (N m) are the sums over
+    the contacts at step n.
     """
     read_shaft(model, taps, coordinates, state.support, step)
     taps.signals[CONTACT_FORCE], taps.signals[CONTACT_TORQUE] = force, torque
@@ -272,8 +275,9 @@ def record_arrivals(
 ) -> int:
     """Write blades that pass a probe between steps n and n + 1 into `timing.arrivals`.
 
-    Return the number of arrivals so far. A blade passes where `beyond_probe` changes from negative to positive. Between
-    the steps the displacement is a parabola: d_n + s (d_n+1 - d_n) - s (1 - s) c / 2, with c the second difference.
+    Return the number of arrivals so far. A blade passes where `beyond_probe` changes from negative to 0 or more.
+    Between the steps the displacement is a parabola: d_n + s (d_n+1 - d_n) - s (1 - s) c / 2, with c the second
+    difference.
 
     - motions: at steps n - 1, n, n + 1. The tip coordinates of blades near a probe are written into their q.
     - theta (steps + 2,): angle of the blisk, rad.

@@ -118,8 +118,8 @@ def record_section(
 
     q = q_0 + tau d + tau^2 / 2 (q_1 - 2 q_0 + q_-1), and v is its derivative. tau is `Angles.section` in steps, 0 at a
     steady speed. The error is of third order in dt for q, of second order for v, like the central difference. `before`,
-    `now` and `after` are the motions at steps -1, 0 and 1. `scratch.z_change` must contain d, the central difference of
-    z; it is overwritten.
+    `now` and `after` are the motions at steps -1, 0 and 1. `scratch.z_change` must contain d = (z_1 - z_-1) / 2; it is
+    overwritten.
     """
     if tau == 0.0:
         recover_all(harmonics, now.z, scratch.share, scratch.tips, section_out[0])
@@ -181,7 +181,7 @@ def add_contacts(
     - step: number of the step in the turn.
     - clock: number of the turn's first step in the run.
     - opening (steps + 2,): added to the radius of the surface at steps -1, 0, ..., m.
-    - coordinates: of the contacts' blades the tip coordinates must be valid. `change` is d.
+    - coordinates: of the contacts' blades the tip coordinates must be valid. `change` is d = (q_n+1 - q_n-1) / 2.
     - summary (4,): as in `TurnResult`; changed.
     - ended: number of ended touches before.
     """
