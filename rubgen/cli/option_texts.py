@@ -27,7 +27,7 @@ TEXTS = {
     "path_gain": "Share of the motion of the machine's frame that the casing's sensors feel; at least 0 and at most 1,000,000; 0 when not given.",
     "profile": 'How the speed changes: not at all, linearly up, linearly down, or as a sine; "steady", "run-up", "coast-down", "fluctuating".',
     "settle_turns": 'Turns before the record, in which transients decay; at least 1 and at most 1,000,000 or "auto"; "auto" when not given.',
-    "record_turns": "Turns of the record of a steady run; its labels need at least 500; at least 1 and at most 1,000,000; 500 when not given.",
+    "record_turns": "Turns of the record of a steady run, from which its labels come; at least 500 and at most 1,000,000; 500 when not given.",
     "steps_per_turn": "Least number of integration steps in a turn; at least 32 and at most 16,384.",
     "sample_rate_hz": "Samples a second of every recorded channel; in Hz, above 0 and at most 1,000,000,000.",
     "signal_seconds": "Length of the recorded signals: the end of the record; in s, above 0 and at most 100,000.",

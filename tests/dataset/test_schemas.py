@@ -1,4 +1,5 @@
 import json
+import re
 import tomllib
 from functools import cache
 from inspect import signature
@@ -10,7 +11,8 @@ import pytest
 
 from rubgen.cli.app import app
 from rubgen.cli.option_texts import TEXTS
-from rubgen.scenario import make_scenario
+from rubgen.errors import UserError
+from rubgen.scenario import make_scenario, parse_recipe
 from schemas import make, reference
 from schemas.make import write_schemas
 from schemas.option_texts import TEXTS_FILE, texts_module
@@ -70,6 +72,23 @@ def test_reference_pages_have_every_key_of_the_schemas(name):
     names = set(property_names(schemas()[name]))
     assert len(names) > 30
     assert {each for each in names if f"`{each}`" not in text} == set()
+
+
+def test_the_schema_of_a_recipe_asks_for_the_turns_that_labels_need():
+    turns = schemas()["recipe.schema.json"]["$defs"]["Simulation"]["properties"]["record_turns"]
+    assert turns["minimum"] == 500 == turns["default"]
+    recipe = {"name": "few", "runs": 1, "machine": "zeng2019", "simulation": {"record_turns": 500}}
+    validator("recipe.schema.json").validate(recipe)
+    parse_recipe(recipe)
+    recipe["simulation"]["record_turns"] = 499
+    assert not validator("recipe.schema.json").is_valid(recipe)
+    with pytest.raises(UserError, match=r"record_turns = 499: labels need at least 500 turns"):
+        parse_recipe(recipe)
+
+
+@pytest.mark.parametrize("name", [name for name in sorted(schemas()) if name.endswith(".json")])
+def test_no_description_has_two_blanks_between_words(name):
+    assert re.findall(r"[\w.,;] {2,}\w+", json.dumps(schemas()[name]).replace(r"\n", "|")) == []
 
 
 def test_no_schema_is_left_over():

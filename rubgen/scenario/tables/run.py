@@ -35,9 +35,9 @@ class Simulation(StrictModel):
     record_turns: Annotated[
         TurnCount,
         about(
-            "Turns of the record of a steady run; its labels need at least 500. More turns "
-            " resolve slow motions better."
+            "Turns of the record of a steady run, from which its labels come. More turns resolve slow motions better."
         ),
+        Field(json_schema_extra={"minimum": 500}),
     ] = 500
     steps_per_turn: Annotated[
         StepCount,
