@@ -153,11 +153,12 @@ class _Problem:
 
     def text(self, data: object, schema: SchemaNodes | None) -> str:
         """Return value, what is allowed and the remedy, after the key."""
+        nodes = schema.at(data, self.path) if schema else []
         if self.kind == "missing":
-            return ": this key is missing; add it"
+            bounds = bounds_in_words(nodes)
+            return f": this key is missing; add it{f', {bounds}' if bounds else ''}"
         if self.kind in UNKNOWN:
             return f": unknown key; {_instead(self.path, data, schema)}"
-        nodes = schema.at(data, self.path) if schema else []
         sentences = [sentence(each, bounds_in_words(nodes), nodes) for each in self.errors]
         message = " or ".join(dict.fromkeys(sentences)).replace(" or must be", " or")
         value = self.errors[0].get("input")

@@ -24,7 +24,7 @@ BAD = {
         "damping.lateral = 1.5: must be at least 0 and below 1; 1.5 % is written 0.015",
     ),
     "no blade": ("count = 36", "count = 0", "blades.count = 0: must be at least 2 and at most 1,000; change the value"),
-    "no rim": (r"rim_radius_m = .*\n", "", "disk.rim_radius_m: this key is missing; add it"),
+    "no rim": (r"rim_radius_m = .*\n", "", "disk.rim_radius_m: this key is missing; add it, at least 1e-07 and"),
     "zero density": (
         r"density_kg_per_m3 = 7850.0",
         "density_kg_per_m3 = 0.0",

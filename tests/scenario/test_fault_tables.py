@@ -123,7 +123,7 @@ BAD_KEYS = {
     "no fault": ({"parallel_m": 1e-5}, "parallel_m: a key of the fault misalignment; name that fault too, or leave"),
     "other fault": ({"fault": "bow", "bow_m": 1e-6, "parallel_m": 1e-5}, "parallel_m: a key of the fault misalignment"),
     "unknown key": ({"fault": "bow", "bw_m": 1e-6}, "bw_m: unknown key; "),
-    "missing": ({"fault": "bow"}, "fault.bow.bow_m: this key is missing; add it"),
+    "missing": ({"fault": "bow"}, "fault.bow.bow_m: this key is missing; add it, at least 0 and at most 0.1"),
     "beyond": ({"fault": "bow", "bow_m": -1}, "fault.bow.bow_m = -1: must be at least 0"),
     "no size": ({"fault": "misalignment"}, "fault.misalignment: must have parallel_m or angular_deg"),
 }
