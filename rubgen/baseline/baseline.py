@@ -69,10 +69,11 @@ def baselines(
 
     Models see the input channels of WINDOWS windows of each run: as the features of `rubgen features`, or as random
     convolutions. The score "by group" keeps a machine on one side of a split where the set has several machines, else a
-    run with its twin. Models learn from the split "train", if the set has one, and are also scored on each other split.
-    The models in LEAKY also have a score "leaky", with windows of one run on both sides. Returns the scores, and the
-    reason for each task that is not possible with the set. Raises UserError for an unknown task, a task in `tasks` that
-    is not possible, a set that allows no task, a set without good runs, and where scikit-learn is not installed.
+    run with its twin, the same run with one thing changed. Models learn from the split "train", if the set has one, and
+    are also scored on each other split. The models in LEAKY also have a score "leaky", with windows of one run on both
+    sides. Returns the scores, and the reason for each task that is not possible with the set. Raises UserError for an
+    unknown task, a task in `tasks` that is not possible, a set that allows no task, a set without good runs, and where
+    scikit-learn is not installed.
     """
     _check_sklearn()
     for name in tasks or ():

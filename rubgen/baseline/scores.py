@@ -26,8 +26,8 @@ class Threshold(NamedTuple):
 def best_threshold(values: FloatArray, flags: BoolArray) -> Threshold:
     """Choose the threshold on `values` (any,) with the best balanced accuracy for `flags` (any,).
 
-    Values above it, or values below it, are then True. The threshold lies midway between two neighbouring values. Both
-    flags must occur.
+    Values above it, or values below it, are then True. The threshold lies midway between two neighbouring values. The
+    result has its score on these values too. Both flags must occur, and no value may be NaN.
     """
     order = np.argsort(values, kind="stable")
     ranked, sorted_flags = values[order], flags[order]

@@ -13,7 +13,7 @@ def write_hdf5(runs: Iterator[ExportedRun], path: Path) -> None:
     """Write one run to an HDF5 file: `channels/<name>` with attributes, and `once_per_rev_s`.
 
     `runs` must yield exactly one run, else ValueError is raised. Parameters and labels are attributes of `/`; an
-    undefined label has no attribute.
+    undefined label has no attribute. An existing file is overwritten.
     """
     import h5py
 

@@ -54,9 +54,10 @@ class SpeedHistory:
 def speed_history(response: Response) -> SpeedHistory:
     """Find every change of rub or motion of a run whose speed changes, and the speeds at which rub begins and ends.
 
-    The speeds are taken at the start of the first touch and at the end of the last touch; None without touch. The
-    motion is classified for each window by `drifting_motion`; a window where rub begins or ends is divided there. The
-    first entry of `changes` is the state at the start of the record.
+    All speeds are in rad/s, all times in s from the start of the record. The speeds of begin and end are taken at the
+    start of the first touch and at the end of the last touch; None without touch. The motion is classified for each
+    window by `drifting_motion`; a window where rub begins or ends is divided there. The first entry of `changes` is the
+    state at the start of the record.
 
     Raises ValueError for a response at a steady speed.
     """

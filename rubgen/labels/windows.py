@@ -40,8 +40,9 @@ def window_edges(response: Response) -> IntArray:
 def windows(response: Response) -> Windows:
     """Label each window of WINDOW_TURNS turns: impulse a turn, share of steps with contact, amplitudes at orders.
 
-    Windows do not overlap, and the last may be shorter. At a steady speed the amplitudes have rows only for the windows
-    that the taps cover: the last ones. The class of motion is left out; `rubgen.labels.stretches` finds it.
+    Windows do not overlap, and the last may be shorter. Taps are the true signals of the response, which at a steady
+    speed cover only the end of the record. The amplitudes then have rows only for the windows that the taps cover: the
+    last ones. The class of motion is left out; `rubgen.labels.stretches` finds it.
     """
     edges, changing = window_edges(response), response.changing_speed
     times = turn_times(response, changing)[edges]

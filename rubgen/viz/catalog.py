@@ -107,7 +107,10 @@ class Catalog:
     def arrange(self, columns: Sequence[tuple[str, str]], previews: Sequence[View] = ()) -> None:
         """Show the column that opens a recording, then some columns in this order. The rows are sorted by id.
 
-        - columns: the group and the name of each column. Its heading is both; of the group `run` only the name.
+        Recordings may be added before or later.
+
+        - columns: the group and the name of each column, as in `add_columns`. Its heading is both; of the group `run`
+          only the name.
         - previews: views of its recording that each row shows.
         """
         from rerun.blueprint.table import Column, PreviewCell, PreviewsConfig, TableBlueprint, TableLayout

@@ -83,9 +83,10 @@ def claimed(layout: Layout, identity: Identity, *, wait_s: float = 0.0) -> Itera
 
     If another process has the lock, this process waits for at most `wait_s` seconds. The state of the directory may
     have changed since a check before the block. A directory that was made here is removed if it stays empty, its
-    parents are not. Sets of other recipes are refused by `finished` and `begun`, not here. Raises UserError where the
-    directory lies in another data set or has content that is no data set, or another process keeps the lock; OSError
-    where the directory cannot be made.
+    parents are not. Sets of other recipes are refused by `finished` and `begun`, not here. `identity` is that of the
+    set to be made: if another process keeps the lock and makes another set there, the error says so. Raises UserError
+    where the directory lies in another data set or has content that is no data set, or another process keeps the lock;
+    OSError where the directory cannot be made.
     """
     root = layout.root
     _check_place(layout)

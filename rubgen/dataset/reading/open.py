@@ -246,7 +246,7 @@ class DataSet:
 
         A window has the length `seconds`, or `turns` of the shaft between its recorded pulses, with 256 samples a turn.
         Windows start every `hop`, in the same unit; by default they do not overlap. A shorter rest is left out.
-
+        X (windows, channels, samples) is float32. `start` (windows,) is in s from the first sample of the run.
         For the targets `rub`, `contact_duty`, `contact_impulse_per_turn_n_s` and `motion` the answer belongs to the
         window: in a window before a rub begins, `rub` is 0. `motion` is -1 where the class changes within the window.
         For every other target the answer is the run's. All windows of a run, and of its machine, are one group: put

@@ -27,10 +27,11 @@ def chaos_indicator(points: FloatArray) -> float:
     """Return the larger K of the 0-1 test of group 0 of the points (turns, groups, values) and of all others together.
 
     K is near 1 for chaos. There must be at least 32 turns. Group 0 of a blisk is the disk centre, the others are the
-    tips; a casing has group 0 alone. The points are divided by the size of the motion. Each K is the median of the 0-1
-    test over the leading principal components of the points without their periodic part. If the first half of the
-    record is more than twice as far from the clusters as the second half, the motion still settles, and only the second
-    half is tested. K is 0 for a group whose distance from its clusters is below ROUNDING.
+    tips; a casing has group 0 alone. The points must already be divided by the size of the motion, as those of
+    `blisk_points` and `casing_points` are. Each K is the median of the 0-1 test over the leading principal components
+    of the points without their periodic part. If the first half of the record is more than twice as far from the
+    clusters as the second half, the motion still settles, and only the second half is tested. K is 0 for a group whose
+    distance from its clusters is below ROUNDING.
     """
     half = points.shape[0] // 2
     first, second = (rms(without_periodic_part(part)) for part in (points[:half], points[half:]))

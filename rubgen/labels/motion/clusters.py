@@ -16,9 +16,9 @@ EXCURSION = 0.03
 def late_distances(points: FloatArray) -> list[FloatArray]:
     """Return the distances of points (turns, groups, values) from k = 1, 2, ... clusters, each (late turns,).
 
-    The points are divided by the size of the motion. Only the second half of the record is used, where transients have
-    decayed. k is at most 16, in a short record at most an eighth of the turns, of which there must be at least eight.
-    See `cluster_distances`.
+    The points must already be divided by the size of the motion, as those of `blisk_points` and `casing_points`
+    are. Only the second half of the record is used, where transients have decayed. k is at most 16, in a short record
+    at most an eighth of the turns, of which there must be at least eight. See `cluster_distances`.
     """
     late = points[points.shape[0] // 2 :]
     return [cluster_distances(late, k) for k in range(1, min(LONGEST_PERIOD, len(late) // 4) + 1)]
@@ -41,9 +41,9 @@ def cluster_period(distances: list[FloatArray]) -> int | None:
 def stray(distances: list[FloatArray], period: int | None) -> float:
     """Return the rms distance of points from their k clusters. `distances` are from `late_distances`.
 
-    k is `period`, or for None the k with the smallest distance. The points are divided by the size of the motion. The
-    means of k clusters of n points lie nearer to the points than the true means: dividing the mean square by 1 - k / n
-    corrects this.
+    k is `period` in turns, or for None the k with the smallest result. The result is a share of the size of the motion,
+    because `late_distances` is given points that are divided by it. The means of k clusters of n points lie nearer to
+    the points than the true means: dividing the mean square by 1 - k / n corrects this.
     """
     periods = range(1, len(distances) + 1) if period is None else (period,)
     return min(rms(distances[k - 1]) / math.sqrt(1 - k / distances[k - 1].size) for k in periods)

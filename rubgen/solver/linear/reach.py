@@ -87,8 +87,8 @@ def deepest(scenario: Scenario) -> tuple[float, float]:
 
     A changing speed is checked at nine speeds from the slowest to the fastest, each as a steady speed. The amplitude of
     a run through a critical speed is smaller. The penetration is infinite where only the run shows it, as in
-    `penetration_at`. The clearance is that of `with_clearance`. Raises UserError as `with_clearance` does, and where
-    the system cannot be integrated at a speed.
+    `penetration_at`. The clearance is that of `with_clearance`. Raises UserError as `with_clearance` and `reduce` do,
+    and where the system cannot be integrated at a speed.
     """
     scenario = with_clearance(scenario)
     model = reduce(scenario.machine, scenario.reduction)

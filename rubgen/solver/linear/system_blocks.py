@@ -7,7 +7,11 @@ from rubgen.reduction.model import SpinningSystem
 
 
 def system_blocks(*systems: SpinningSystem) -> Blocks:
-    """Find the blocks that the matrices of all systems share.
+    """Find the blocks that the matrices M, C and K of all systems share.
+
+    All systems have the same coordinates q. The tips' coordinates are first changed to harmonics over the blades,
+    q = T y. The blocks are those of y, not of q; `Blocks` has T and the place of each y in the stored order z. No block
+    has coordinates of both blisk and casing. See `find_blocks`.
 
     Raises ValueError where M, C or K couple blisk and casing.
     """

@@ -335,7 +335,7 @@ def contact_step(
 def has_diverged(surface: Surface, laws: Laws, q: FloatArray, casing_start: int, n_blades: int) -> bool:
     """Return whether a casing node, or a coordinate of a blade tip, is beyond its limit or is NaN.
 
-    `q` (n,) are the coordinates; the casing's begin at index `casing_start`. The limits are in `laws`.
+    `q` (n,) begins with the tips, three a blade, in m; the casing's begin at `casing_start`. `laws` has the limits.
     """
     for k in range(3 * n_blades):
         if not abs(q[k]) <= laws.tip_limit:

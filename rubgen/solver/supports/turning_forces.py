@@ -13,8 +13,9 @@ from rubgen.reduction.model import TurningForces
 def turning_force(forces: TurningForces, speed: float, theta: AnyArray, u: AnyArray, v: AnyArray) -> AnyArray:
     """Return the force (..., 2) in N on O_d in the turning frame: -k_a Q u - c_a Q v_abs and the laws of the support.
 
-    v_abs = v + Omega e_z x u. Gravity and loads of faults are not contained. The force is piecewise analytic, so that
-    complex steps differentiate it.
+    v_abs = v + Omega e_z x u. O_d is the disk centre. k_a = (k_X - k_Y) / 2 and c_a = (c_X - c_Y) / 2 are of the
+    supports. Q = [[cos 2 theta, -sin 2 theta], [-sin 2 theta, -cos 2 theta]]. Gravity and loads of faults are not
+    contained. The force is piecewise analytic, so that complex steps differentiate it.
 
     - forces: constants of the forces.
     - speed: Omega, rad/s.

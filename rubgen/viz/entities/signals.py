@@ -57,8 +57,8 @@ def preview_rate(replay: Replay) -> float:
 def send_signals(stream: rr.RecordingStream, replay: Replay, *, full: bool) -> None:
     """Send every channel as preview and at full rate over the `detail_window`, one entity for each quantity.
 
-    With `full` the whole recording is sent at full rate, with the pulses. Minimum and maximum of a bin have the colour
-    of their channel.
+    The pulses are sent only with `full`, which sends the whole recording at full rate. Minimum and maximum of a bin of
+    the preview have the colour of their channel.
     """
     recording, rate = replay.recording, replay.recording.sample_rate_hz
     window = slice(0, recording.samples) if full else detail_window(replay)

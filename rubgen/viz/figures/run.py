@@ -159,7 +159,10 @@ def orbit_section(replay: Replay) -> Figure:
 
 
 def contact_distribution(replay: Replay) -> Figure:
-    """Draw the mean normal impulse per turn around the casing, in sectors of 4 degrees, and by blade."""
+    """Draw the mean normal impulse per turn in mN s around the casing, in sectors of 4 degrees, and by blade.
+
+    Without touches both are empty, and a note says "no contact".
+    """
     touches, turns = replay.touches, max(replay.seconds / replay.turn_seconds, 1.0)
     figure = new_figure(10.0, 4.6)
     grid = figure.add_gridspec(1, 2, width_ratios=[1, 1.4])
