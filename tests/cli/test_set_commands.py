@@ -110,7 +110,7 @@ def test_another_number_of_runs_is_refused(generate):
     generate()
     code, _, errors = generate("--runs", "2")
     assert code == 2
-    assert "holds 3 runs of this recipe, asked for 2; it can only grow" in errors
+    assert "holds 3 runs of this recipe, asked for 2; it can only grow: ask for --runs 3 or more" in errors
 
 
 def test_info_counts(generate, run, tmp_path):

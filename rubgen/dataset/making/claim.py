@@ -69,9 +69,8 @@ def finished(layout: Layout, identity: Identity) -> bool:
     asked, has = int(identity.recipe["runs"]), int(there.recipe["runs"])
     if asked != has and there.with_runs(asked).same_recipe(identity):
         if asked < has:
-            raise UserError(
-                f"--out {layout.root}: holds {has} runs of this recipe, asked for {asked}; it can only grow"
-            )
+            held = f"holds {has} runs of this recipe, asked for {asked}"
+            raise UserError(f"--out {layout.root}: {held}; it can only grow: ask for --runs {has} or more")
         return False
     check_same(layout, there, identity)
     return True

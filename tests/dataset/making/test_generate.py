@@ -183,7 +183,9 @@ def test_many_runs_go_into_several_files_and_groups(fake_simulate, tmp_path, mon
 
 
 def test_another_recipe_or_number_of_runs_is_refused(small_set, short_records):
-    with pytest.raises(UserError, match="holds 4 runs of this recipe, asked for 3; it can only grow"):
+    with pytest.raises(
+        UserError, match="holds 4 runs of this recipe, asked for 3; it can only grow: ask for --runs 4 or more"
+    ):
         rubgen.generate(small_set.recipe, small_set.directory, runs=3)
     with pytest.raises(UserError, match=r"another recipe \(seed = 3, asked for 4\)"):
         rubgen.generate({**small_set.recipe, "seed": 4}, small_set.directory)
