@@ -33,7 +33,7 @@ RECIPES = {
     ),
     "turns without end": (
         {"simulation": {"record_turns": 10**9}},
-        "r.toml: simulation.record_turns = 1000000000: must be at least 1 and at most 1,000,000; change the value",
+        "r.toml: simulation.record_turns = 1000000000: must be at least 500 and at most 1,000,000; change the value",
     ),
     "runs without end": (
         {"runs": 1e12},
@@ -201,7 +201,7 @@ def test_numbers_of_numpy_are_numbers():
 MACHINES = {
     "nodes": ("nodes = 180", "nodes = 1000000", "casing.nodes = 1000000: must be at least 12 and at most 1,440; ch"),
     "elements": ("elements = 20", "elements = 100000", "blades.elements = 100000: must be at least 1 and at most 200;"),
-    "blades": ("count = 36", "count = 1e6", "blades.count = 1000000: must be at least 1 and at most 1,000; change"),
+    "blades": ("count = 36", "count = 1e6", "blades.count = 1000000: must be at least 2 and at most 1,000; change"),
     "key of a table": ("[disk]", "clearance_m = 3e-4\n[disk]", "clearance_m: unknown key; did you mean casing.clear"),
     "the material of that part": (
         "[casing]",

@@ -42,7 +42,7 @@ def cantilever(
     chord, thickness = (width, depth) if plane == FLAP else (depth, width)
     return BladeRow(
         material=MATERIAL,
-        count=1,
+        count=2,
         length_m=1.0,
         root_chord_m=chord,
         tip_chord_m=chord * (1 - taper[0]),

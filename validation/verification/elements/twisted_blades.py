@@ -28,7 +28,7 @@ SPIN = 1500.0
 MODES = 5
 TWISTED = BladeRow(
     material=Material(youngs_modulus_pa=2.06e11, poisson_ratio=0.3, density_kg_per_m3=7850.0),
-    count=1,
+    count=2,
     length_m=0.15,
     root_chord_m=48e-3,
     tip_chord_m=30e-3,
