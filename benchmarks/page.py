@@ -52,6 +52,9 @@ def main() -> int:
     rows = read_rows(ROWS)
     made = time.localtime(ROWS.stat().st_mtime) if rows else time.localtime()
     facts = {"date": time.strftime("%Y-%m-%d", made), "cores": str(os.cpu_count())}
+    thousand = row_of("1,000 runs of 600 turns, two workers", rows)
+    if thousand:
+        facts["thousand"] = str(thousand["name"]).partition("(")[2].rstrip(")")
     try:
         filled = page(TEXT.read_text(encoding="utf-8"), rows, facts)
     except LookupError as error:
