@@ -22,7 +22,8 @@ _NO_SYNC = (errno.EBADF, errno.EINVAL, errno.ENOSYS, errno.ENOTSUP)
 def write_durably(path: Path, write: Callable[[Path], object]) -> None:
     """Call `write` with a temporary path, flush the file that it writes to the disk, then rename the file to `path`.
 
-    A file at `path` is replaced; its folder must exist.
+    A file at `path` is replaced; its folder must exist. The temporary file lies in the same folder, has the same
+    suffix, and is removed in any case.
 
     If `write` raises an error, it is raised again, and `path` is unchanged. An OSError at the temporary file, or an
     OSError without a file name that only writing can cause, names `path`.

@@ -31,7 +31,8 @@ CLEARANCES = {"clearance_m", "casing_radius_m", FREE_PENETRATION.key}
 def check_machines(recipe: Recipe, source: str) -> None:
     """Check that the virtual machines of a recipe can be drawn, from its keys and ranges; no machine is drawn.
 
-    Raises UserError, beginning with `source`, where they cannot. Whether a candidate is sane is found when it is drawn.
+    A recipe without `[machines]` passes if it names one machine. Raises UserError, beginning with `source`, where they
+    cannot. Whether a candidate is sane is found when it is drawn.
     """
     files = recipe.files
     if len(set(files)) != len(files):
