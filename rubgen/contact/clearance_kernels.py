@@ -151,7 +151,7 @@ def deformation_bounds(surface: Surface, q_casing: FloatArray, displacement: flo
 
 
 @inlined_kernel
-def radius_loss(surface: Surface, deformation: Deformation, tip_shift: float) -> float:
+def radius_shortfall(surface: Surface, deformation: Deformation, tip_shift: float) -> float:
     """Return how far the deformed surface's radius at a tip's polar angle may lie below r + opening + u_r there, m.
 
     r is the unworn surface's radius, and u_r the linear interpolation between nodes at the angle of `tip_angle`.
@@ -162,18 +162,18 @@ def radius_loss(surface: Surface, deformation: Deformation, tip_shift: float) ->
     """
     nearest = NEAREST_SHARE * surface.mean_radius
     turned = deformation.displacement / nearest
-    loss: float = (surface.slope + deformation.slope) * turned
-    return loss + deformation.slope * angle_error(tip_shift) + deformation.sag
+    shortfall: float = (surface.slope + deformation.slope) * turned
+    return shortfall + deformation.slope * angle_error(tip_shift) + deformation.sag
 
 
 @inlined_kernel
-def small_radius_loss(
+def closer_radius_shortfall(
     surface: Surface, deformation: Deformation, tip_shift: float, opening: float, tangential: float, aside: float
 ) -> float:
-    """Return how far the radius in `radius_loss` may lie below r + opening + u_r - r' u_t / R, m; much less than there.
+    """Return how far that radius may lie below r + opening + u_r - r' u_t / R, m; much less than `radius_shortfall`.
 
-    r, u_r and the first three parameters are as in `radius_loss`. r' is the slope of the smooth curve at the angle of
-    the blade, R its mean radius, and u_t interpolated as u_r is.
+    r, u_r and the first three parameters are as in `radius_shortfall`. r' is the slope of the smooth curve at the angle
+    of the blade, R its mean radius, and u_t interpolated as u_r is.
 
     The surface point at the polar angle phi was at phi - d before the deformation, with tan d = u_t / (r + opening +
     u_r). The radius is at least r + opening + u_r at phi - d. To first order in d that is the expression above, with
@@ -190,19 +190,19 @@ def small_radius_loss(
     here = (size + missed) / nearest  # bound of |d|
     unlike = 1.0 / NEAREST_SHARE - 1.0 + abs(opening) / surface.mean_radius  # of R / (r + opening + u_r)
     angle = missed / nearest + unlike * size / surface.mean_radius + turned * turned * turned / 3
-    loss: float = deformation.sag + deformation.slope * (error + here)
-    loss += surface.steepness * angle + surface.bend * here * aside
-    return loss + 0.5 * surface.bend * turned * turned
+    shortfall: float = deformation.sag + deformation.slope * (error + here)
+    shortfall += surface.steepness * angle + surface.bend * here * aside
+    return shortfall + 0.5 * surface.bend * turned * turned
 
 
 @inlined_kernel
 def radial_margin(surface: Surface, deformation: Deformation, margin: float) -> float:
     """Return the largest radial distance to the surface, m, of a point that is at most `margin` (m) from the surface.
 
-    The radial distance is a bound of `tighten`, r + opening + u_r at the point's polar angle less losses and the
-    point's radius. Let X be the nearest place of the surface, for which the losses are true. From X's polar angle to
+    The radial distance is a bound of `tighten`, r + opening + u_r at the point's polar angle, less a shortfall
+    and the point's radius. Let X be the nearest place of the surface, for which the shortfall holds. From X's polar angle to
     the point's the bound changes by at most F times their difference. F is the slope of r + u_r, and what u_t and r'
-    change on this way in the losses of `small_radius_loss`. This way and the one along the radius are at right angles;
+    change on this way in `closer_radius_shortfall`. This way and the one along the radius are at right angles;
     the margin is their hypotenuse.
     """
     nearest = NEAREST_SHARE * surface.mean_radius
@@ -254,8 +254,8 @@ def tighten(
 
     A bound that is NaN is replaced too. Return True if all replaced bounds are positive, or none is replaced: then no
     tip touches. A tip whose bound is then above `enough` is inside the deformed surface, and farther from it than the
-    margin for which `enough` is the `radial_margin`. The new bound uses `radius_loss`. Where this bound is not above
-    `enough`, one with `small_radius_loss` takes its place.
+    margin for which `enough` is the `radial_margin`. The new bound uses `radius_shortfall`. Where this bound is not
+    above `enough`, one with `closer_radius_shortfall` takes its place.
 
     - casing (a multiple of eight,): the casing's modal coordinates, then zeros.
     - displacement (2 or more, n_blades or more): radial and tangential displacement of each blade's tip, m.
@@ -267,8 +267,8 @@ def tighten(
     - bounds (a multiple of eight,): bounds of `clearance_bounds`; changed, m.
     """
     positive, nodes = True, surface.radial.shape[0]
-    loss = radius_loss(surface, deformation, tip_shift)
-    far = deformation.displacement + loss + enough  # u_r is nowhere larger than the displacement
+    shortfall = radius_shortfall(surface, deformation, tip_shift)
+    far = deformation.displacement + shortfall + enough  # u_r is nowhere larger than the displacement
     for row in range(bounds.shape[0] // LANES):
         near = not_above(bounds, row, far)
         while near != 0:
@@ -279,12 +279,12 @@ def tighten(
             at = int(first % nodes)
             after = at + 1 if at + 1 < nodes else 0
             free = bounds[k] + blended_product(surface.radial, at, after, position - first, casing)
-            bounds[k] = free - loss
+            bounds[k] = free - shortfall
             if not bounds[k] > enough:
                 tangential = blended_product(surface.tangential, at, after, position - first, casing)
                 aside = abs(tips.static[1, k] + displacement[1, k]) / (tips.radius * (1.0 - tip_shift))
                 shift = curve_slope(surface, tips, k, cos_orders, sin_orders) * tangential / surface.mean_radius
-                least = small_radius_loss(surface, deformation, tip_shift, opening, tangential, aside)
+                least = closer_radius_shortfall(surface, deformation, tip_shift, opening, tangential, aside)
                 bounds[k] = free - shift - least
             positive = positive and bounds[k] > 0.0
     return positive

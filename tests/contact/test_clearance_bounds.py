@@ -11,11 +11,11 @@ from rubgen.contact import blade_tips, casing_surface
 from rubgen.contact.clearance_kernels import (
     NEAREST_SHARE,
     Deformation,
+    closer_radius_shortfall,
     larger_margin,
     largest_nodal_displacement,
     radial_margin,
-    radius_loss,
-    small_radius_loss,
+    radius_shortfall,
 )
 from rubgen.contact.geometry_kernels import tip_position, undeformed_radius
 from rubgen.scenario import ContactLaw
@@ -87,7 +87,8 @@ def test_no_tip_within_the_margin_is_ever_called_clear(lobes, contact):
 def test_the_closer_bound_loses_a_tenth_of_the_wide_one():
     """The wide one loses (r' + u_r') |u| / R: 8 mm times 0.3 mm over 0.4 m are 6 um."""
     surface, casing = casing_surface(ring(8e-3, 2, phase=0.3)), Deformation(3e-4, 1e-3, 0.0)
-    wide, close = radius_loss(surface, casing, 0.025), small_radius_loss(surface, casing, 0.025, 1e-4, 8e-5, 1e-3)
+    wide = radius_shortfall(surface, casing, 0.025)
+    close = closer_radius_shortfall(surface, casing, 0.025, 1e-4, 8e-5, 1e-3)
     assert wide > 6e-6
     assert 0 < close < wide / 10
 

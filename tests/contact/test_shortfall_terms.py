@@ -13,10 +13,10 @@ from rubgen.contact.clearance_kernels import (
     Deformation,
     angle_error,
     casing_displacement_bound,
+    closer_radius_shortfall,
     deformation_bounds,
     radial_margin,
-    radius_loss,
-    small_radius_loss,
+    radius_shortfall,
 )
 from rubgen.contact.geometry_kernels import hermite, hermite_slope, tip_position, undeformed_radius
 from rubgen.solver.scheme.model import relative_tip_shift
@@ -48,8 +48,8 @@ def worst(*, rises=0.0, u=0.0, sag=0.0, slope=0.0, bend=0.0, aside=0.0, f=NEARES
     surface = surface._replace(slope=surface.steepness)
     deformation = Deformation(largest, slope, sag)
     both = sag + slope * (error + turned) + bend * turned * (aside + 0.5 * turned)
-    close = small_radius_loss(surface, deformation, tip_shift, opening, u, aside)
-    wide = radius_loss(surface, deformation, tip_shift)
+    close = closer_radius_shortfall(surface, deformation, tip_shift, opening, u, aside)
+    wide = radius_shortfall(surface, deformation, tip_shift)
     return both + rises * (turned - u), close, both + abs(rises) * turned, wide
 
 
@@ -134,7 +134,7 @@ def test_a_bound_is_replaced_where_displacement_and_losses_together_can_undo_it(
     system, q, theta = ring(ovality=8e-3), np.array([0.0, 1e-3, 0.0]), math.pi / 2
     surface, tips = casing_surface(system), blade_tips(system)
     deformation = deformation_bounds(surface, q, casing_displacement_bound(surface, q))
-    loss, enough = radius_loss(surface, deformation, 0.025), radial_margin(surface, deformation, 2e-5)
+    loss, enough = radius_shortfall(surface, deformation, 0.025), radial_margin(surface, deformation, 2e-5)
     for share, replaced in ((0.5, True), (0.99, True), (1.01, False)):
         moved = np.zeros((2, 9))
         free = screened(surface, tips, q, moved, theta, 0.0, 2e-5, 0.025)[0]
