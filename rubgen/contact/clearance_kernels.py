@@ -200,9 +200,9 @@ def radial_margin(surface: Surface, deformation: Deformation, margin: float) -> 
     """Return the largest radial distance to the surface, m, of a point that is at most `margin` (m) from the surface.
 
     The radial distance is a bound of `tighten`, r + opening + u_r at the point's polar angle, less a shortfall
-    and the point's radius. Let X be the nearest place of the surface, for which the shortfall holds. From X's polar angle to
-    the point's the bound changes by at most F times their difference. F is the slope of r + u_r, and what u_t and r'
-    change on this way in `closer_radius_shortfall`. This way and the one along the radius are at right angles;
+    and the point's radius. Let X be the nearest place of the surface, for which the shortfall holds. From X's polar
+    angle to the point's the bound changes by at most F times their difference. F is the slope of r + u_r, and what u_t
+    and r' change on this way in `closer_radius_shortfall`. This way and the one along the radius are at right angles;
     the margin is their hypotenuse.
     """
     nearest = NEAREST_SHARE * surface.mean_radius

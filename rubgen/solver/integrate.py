@@ -21,7 +21,7 @@ from rubgen.solver.observers.energy import EnergyIdentity
 from rubgen.solver.observers.worn_liner import worn_liner
 from rubgen.solver.refusal import film_refusal, refused_response, stability
 from rubgen.solver.response import Response, Status
-from rubgen.solver.scheme.step_kernels import CONTACT_UNSOLVED, DIVERGED, ENERGY, FILM_CLOSED, OK
+from rubgen.solver.scheme.state_kernels import CONTACT_UNSOLVED, DIVERGED, ENERGY, FILM_CLOSED, OK
 from rubgen.solver.speed.changing import ChangingSystem
 from rubgen.solver.speed.driver import SpeedDriver, SteadyDriver
 from rubgen.solver.speed.repeated import RepeatedDriver
@@ -46,7 +46,7 @@ def integrate(
     """Integrate a spinning system with contact between blade tips and casing, and return its response.
 
     Central differences with Lagrange multipliers in forward increments (Carpenter, Taylor, Katona 1991), see
-    `step_kernels`. The run starts in the exact rub-free motion, with the surface opened so that nothing touches. Laws
+    `state_kernels`. The run starts in the exact rub-free motion, with the surface opened so that nothing touches. Laws
     whose motion must settle are left out of this motion; a fluctuating speed starts in the motion of its mean. The
     surface closes smoothly (continuous second derivative) over `operation.closing_turns`, at most the settle turns.
 

@@ -13,7 +13,7 @@ from rubgen.solver.observers.companion_kernels import distance, run_companion
 from rubgen.solver.observers.observer import Observer
 from rubgen.solver.scheme.model import new_state
 from rubgen.solver.scheme.motion_kernels import recover
-from rubgen.solver.scheme.step_kernels import OK
+from rubgen.solver.scheme.state_kernels import OK
 from rubgen.solver.scheme.stepper import Stepper
 from rubgen.solver.speed.turn import Turn
 

@@ -12,8 +12,8 @@ from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.block_kernels import Product, quadratic
 from rubgen.solver.scheme.model_kernels import Laws, Model
 from rubgen.solver.scheme.motion_kernels import Motion, motion_at, put_in_order, recover
-from rubgen.solver.scheme.state_kernels import Scratch, Snapshots, State
-from rubgen.solver.scheme.step_kernels import OK, advance, shift_gaps
+from rubgen.solver.scheme.state_kernels import OK, Scratch, Snapshots, State
+from rubgen.solver.scheme.step_kernels import advance, shift_gaps
 
 
 @allocation_free_kernel

@@ -10,9 +10,9 @@ from rubgen.contact.geometry_kernels import casing_rows, tip_position
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.block_kernels import quadratic, quadratic_each
 from rubgen.linalg.lanes_kernels import TOGETHER, dot_pairs
+from rubgen.solver.scheme.contact_step_kernels import previous_gap
 from rubgen.solver.scheme.model_kernels import EnergyTerms, Model
 from rubgen.solver.scheme.state_kernels import Coordinates, State, Waiting
-from rubgen.solver.scheme.step_kernels import previous_gap
 
 UNBALANCE, DAMPING, CIRCULATORY, CONTACT, NORMAL, FRICTION, ABSOLUTE, SPEED_CHANGE = range(8)
 WORKS = 8

@@ -12,6 +12,9 @@ from rubgen.jit import inlined_kernel
 from rubgen.solver.scheme.motion_kernels import Motion, MotionBuffer
 from rubgen.solver.supports.support_kernels import SupportState
 
+OK, CONTACT_UNSOLVED, DIVERGED, ENERGY, FILM_CLOSED = range(5)
+"""How a step or a run ended."""
+
 
 class Coordinates(NamedTuple):
     """Physical coordinates of three steps, each (n,). Within a turn only tips of blades in contact are valid."""

@@ -16,8 +16,8 @@ from rubgen.solver.scheme.energy_kernels import ABSOLUTE, SPEED_CHANGE, WORKS, s
 from rubgen.solver.scheme.model import angle_tables, at_speed, build_model, new_state
 from rubgen.solver.scheme.motion_kernels import put_in_order, recover
 from rubgen.solver.scheme.speed_part import SpeedPart
-from rubgen.solver.scheme.state_kernels import Coordinates, Snapshots
-from rubgen.solver.scheme.step_kernels import OK, advance, shift_gaps
+from rubgen.solver.scheme.state_kernels import OK, Coordinates, Snapshots
+from rubgen.solver.scheme.step_kernels import advance, shift_gaps
 from rubgen.solver.scheme.taps import build_taps, sampled_taps, turned_taps
 from rubgen.solver.scheme.turn_kernels import STEPS, Touches, TurnEnds, TurnResult, close_touches, run_turns
 from rubgen.solver.supports.support_kernels import SUPPORT_WORKS
@@ -157,7 +157,7 @@ class Stepper:
         - clock: number of the first step, from which the times of touches and arrivals are counted.
         - recording: False leaves out taps, orbit and arrivals. The motion is the same.
 
-        Returns a code of `step_kernels`, the step that failed or the number of steps, and the number of touches in
+        Returns a code of `state_kernels`, the step that failed or the number of steps, and the number of touches in
         `touches.ended`.
         """
         width = np.zeros(self.steps + 2) if opening is None else opening
@@ -237,7 +237,7 @@ class Stepper:
     def step(self, index: int, opening: FloatArray | None = None) -> tuple[int, int]:
         """Make one step from step `index` of the turn, without works, taps and touches.
 
-        Returns a code of `step_kernels` and the number of solved contacts. `state.contact` has the force `lam` and the
+        Returns a code of `state_kernels` and the number of solved contacts. `state.contact` has the force `lam` and the
         `blade` of each. `opening` (steps + 2,) is added to the radius of the surface, m; None is 0. The state moves on
         even where the step fails.
         """

@@ -11,6 +11,7 @@ from rubgen.contact.clearance_kernels import casing_displacement_bound
 from rubgen.contact.contact_kernels import wear_where_lined
 from rubgen.jit import allocation_free_kernel, inlined_kernel
 from rubgen.linalg.harmonic_kernels import Harmonics, recover_all
+from rubgen.solver.scheme.contact_step_kernels import change_contacts, recover_contacts
 from rubgen.solver.scheme.energy_kernels import (
     ABSOLUTE,
     add_contact_works,
@@ -20,8 +21,8 @@ from rubgen.solver.scheme.energy_kernels import (
 )
 from rubgen.solver.scheme.model_kernels import Model
 from rubgen.solver.scheme.motion_kernels import Motion, motion_at, put_in_order
-from rubgen.solver.scheme.state_kernels import Coordinates, Scratch, Snapshots, State, keep_snapshot
-from rubgen.solver.scheme.step_kernels import OK, advance, change_contacts, recover_contacts, shift_gaps
+from rubgen.solver.scheme.state_kernels import OK, Coordinates, Scratch, Snapshots, State, keep_snapshot
+from rubgen.solver.scheme.step_kernels import advance, shift_gaps
 from rubgen.solver.scheme.tap_kernels import SPEED_X, SPEED_Y, Taps, X, Y, record_arrivals, record_taps
 from rubgen.solver.supports.support_kernels import add_support_works
 

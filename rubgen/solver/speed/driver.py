@@ -11,7 +11,7 @@ import numpy as np
 from rubgen.arrays import FloatArray, IntArray
 from rubgen.scenario.rotation import Rotation, steady_rotation
 from rubgen.solver.linear.rub_free import RubFreeMotion
-from rubgen.solver.scheme.step_kernels import OK
+from rubgen.solver.scheme.state_kernels import OK
 from rubgen.solver.scheme.stepper import FRAMES, TURNS, Stepper
 from rubgen.solver.scheme.turn_kernels import TurnResult
 from rubgen.solver.speed.interpolation import SpeedInterpolation

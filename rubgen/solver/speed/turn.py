@@ -23,7 +23,7 @@ class Turn:
     number: int
     """Its number in the record; negative in the settling."""
     code: int
-    """A code of `step_kernels`."""
+    """A code of `state_kernels`."""
     step: int
     """The step of the turn where it ended."""
     first_step: int

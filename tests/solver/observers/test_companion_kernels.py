@@ -7,8 +7,7 @@ from rubgen.scenario import ContactLaw
 from rubgen.solver.observers.companion_kernels import bring_back, distance, renormalise, run_companion
 from rubgen.solver.scheme.model import new_state
 from rubgen.solver.scheme.motion_kernels import recover
-from rubgen.solver.scheme.state_kernels import Snapshots
-from rubgen.solver.scheme.step_kernels import DIVERGED, OK
+from rubgen.solver.scheme.state_kernels import DIVERGED, OK, Snapshots
 from rubgen.solver.speed.start import rub_free_stepper
 
 STEPS, CLOSENESS = 96, 1e-7

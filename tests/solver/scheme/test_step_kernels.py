@@ -6,8 +6,9 @@ import pytest
 from rubgen.contact.clearance_kernels import casing_displacement_bound
 from rubgen.contact.geometry_kernels import FAR_AWAY
 from rubgen.scenario import ContactLaw
-from rubgen.solver.scheme.state_kernels import Coordinates
-from rubgen.solver.scheme.step_kernels import OK, advance, has_diverged, previous_gap, starting_margin
+from rubgen.solver.scheme.contact_step_kernels import previous_gap, starting_margin
+from rubgen.solver.scheme.state_kernels import OK, Coordinates
+from rubgen.solver.scheme.step_kernels import advance, has_diverged
 from rubgen.solver.speed.start import rub_free_stepper
 from tests.contact_calls import gap_and_foot
 

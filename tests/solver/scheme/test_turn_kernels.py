@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from rubgen.scenario import ContactLaw
-from rubgen.solver.scheme.state_kernels import Snapshots
-from rubgen.solver.scheme.step_kernels import OK
+from rubgen.solver.scheme.state_kernels import OK, Snapshots
 from rubgen.solver.scheme.turn_kernels import (
     BLADE,
     COSINE,

@@ -5,7 +5,7 @@ import pytest
 
 from rubgen.scenario import ContactLaw
 from rubgen.solver.scheme.energy_kernels import ABSOLUTE, CIRCULATORY, DAMPING, UNBALANCE
-from rubgen.solver.scheme.step_kernels import DIVERGED, OK
+from rubgen.solver.scheme.state_kernels import DIVERGED, OK
 from rubgen.solver.speed.start import closing_ramp, rub_free_stepper
 
 STEPS, TURNS = 256, 10
