@@ -46,7 +46,7 @@ def integrate(
     """Integrate a spinning system with contact between blade tips and casing, and return its response.
 
     Central differences with Lagrange multipliers in forward increments (Carpenter, Taylor, Katona 1991), see
-    `state_kernels`. The run starts in the exact rub-free motion, with the surface opened so that nothing touches. Laws
+    `step_kernels`. The run starts in the exact rub-free motion, with the surface opened so that nothing touches. Laws
     whose motion must settle are left out of this motion; a fluctuating speed starts in the motion of its mean. The
     surface closes smoothly (continuous second derivative) over `operation.closing_turns`, at most the settle turns.
 
